@@ -1,1 +1,39 @@
-pub fn x() {}
+//! Kawabata (KES-F) measurements of cloth in; characterised fabrics, shell sections,
+//! smoothed-finite-element predictions and comparison charts out.
+//!
+//! The list of modules below is the layering: a module may use the ones above it only
+//! (`tests/architecture.rs` holds the exact table). Two arms meet in one type:
+//! [`instrument`] and [`characterise`] know cloth, [`mesh`] to [`fields`] know shells,
+//! and [`constitutive`] turns a [`characterise::FabricSheet`] into a [`section::ShellSection`].
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+
+pub mod finding;
+pub mod quantity;
+
+pub mod instrument;
+
+pub mod characterise;
+
+pub mod section;
+
+pub mod analytical;
+
+pub mod mesh;
+
+pub mod element;
+
+pub mod model;
+
+pub mod solve;
+
+pub mod fields;
+
+pub mod constitutive;
+
+pub mod study;
+
+pub mod report;
+
+#[cfg(feature = "cli")]
+pub mod cli;

@@ -1,0 +1,89 @@
+//! The parameter sheet of one fabric.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::finding::Finding;
+use crate::instrument::{Direction, FabricInfo, Measurement, Parameter, Source};
+use crate::quantity::{Curve, Estimate};
+
+/// A parameter in a direction (`None`: the fabric as a whole).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Key {
+    /// Which parameter.
+    pub parameter: Parameter,
+    /// Which direction.
+    pub direction: Option<Direction>,
+}
+
+/// One monotonic run of the drive, corrected (zero, slack, offset), SI, in recorded order.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Branch {
+    /// Cycle, from 0.
+    pub cycle: usize,
+    /// Whether the drive moves away from the origin (loading, outgoing).
+    pub outgoing: bool,
+    /// Corrected points.
+    pub curve: Curve,
+}
+
+/// A straight line fitted over a window, or a loop width read at an abscissa; drawn in charts.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Window {
+    /// The parameter it yields.
+    pub parameter: Parameter,
+    /// Abscissae of the window (SI); equal for a reading at one abscissa.
+    pub from: f64,
+    /// See `from`.
+    pub to: f64,
+    /// Ordinates of the drawn segment at `from` and `to` (SI): the ends of the fitted line, or the
+    /// lower and upper side of a loop width.
+    pub ordinates: [f64; 2],
+}
+
+/// One specimen after processing.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SpecimenResult {
+    /// The measurement it comes from (raw curve, conditions, source).
+    pub measurement: Measurement,
+    /// Corrected branches in recorded order.
+    pub branches: Vec<Branch>,
+    /// What was added to raw abscissa and ordinate (SI), by the zero/offset/slack correction.
+    pub correction: [f64; 2],
+    /// Windows and readings, for charts.
+    pub windows: Vec<Window>,
+    /// Parameters of this specimen (SI).
+    pub values: BTreeMap<Parameter, f64>,
+    /// Tangent stiffness over the low-load window and other moduli, by name (SI N/m):
+    /// `tangent_low`, `secant`, `energy`. Tensile only.
+    pub moduli: BTreeMap<String, f64>,
+}
+
+/// The characterised fabric. Values are SI.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FabricSheet {
+    /// Identifier (folder name).
+    pub name: String,
+    /// What `fabric.toml` says, origin included.
+    pub info: FabricInfo,
+    /// Mean, SD and n per parameter and direction.
+    pub values: BTreeMap<Key, Estimate>,
+    /// Tensile moduli by name and direction (N/m): `tangent_low`, `secant`, `energy`.
+    pub moduli: BTreeMap<(String, Direction), Estimate>,
+    /// Specimens in order of test, direction, number; empty for fabrics known from tables only.
+    pub specimens: Vec<SpecimenResult>,
+    /// Files behind the sheet.
+    pub sources: Vec<Source>,
+    /// What a reader of the sheet must know.
+    pub findings: Vec<Finding>,
+}
+
+impl FabricSheet {
+    /// The estimate of a parameter in a direction, or of the fabric as a whole.
+    ///
+    /// A directional parameter for which only a fabric mean is known is found under `None`.
+    pub fn get(&self, parameter: Parameter, direction: Option<Direction>) -> Option<&Estimate> {
+        self.values.get(&Key { parameter, direction })
+    }
+}

@@ -1,0 +1,164 @@
+//! Diagnostics: stable codes, the place they speak of, and the text behind each code.
+//!
+//! A [`Finding`] is something a reader of the result must know; it never stops the work.
+//! Errors are the layers' own types (`thiserror`) and carry the same codes, so that
+//! `kesf explain CODE` has one table to look in: the TOML files in `codes/`.
+//!
+//! First letters: `R` reading files, `K` characterising, `C` constitutive assumptions and
+//! sections, `M` meshes, elements and models, `N` numerics, `S` studies (cases and
+//! comparisons), `O` output files and usage.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use serde::{Deserialize, Serialize};
+
+/// Where in an input something was found. Lines and columns count from 1; a column counts
+/// characters of the decoded line. 0 means "not applicable".
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub struct Place {
+    /// The file, as it was named to us.
+    pub path: PathBuf,
+    /// Line, from 1; 0 when the whole file is meant.
+    pub line: usize,
+    /// Column, from 1; 0 when the whole line is meant.
+    pub column: usize,
+}
+
+impl Place {
+    /// A whole file.
+    pub fn file(path: impl AsRef<Path>) -> Self {
+        Self { path: path.as_ref().to_path_buf(), line: 0, column: 0 }
+    }
+
+    /// A position in a file.
+    pub fn at(path: impl AsRef<Path>, line: usize, column: usize) -> Self {
+        Self { path: path.as_ref().to_path_buf(), line, column }
+    }
+}
+
+impl fmt::Display for Place {
+    /// `file`, `file:line` or `file:line:column`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.path.display())?;
+        if self.line > 0 {
+            write!(f, ":{}", self.line)?;
+            if self.column > 0 {
+                write!(f, ":{}", self.column)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A non-fatal observation returned beside a result.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub struct Finding {
+    /// Stable code, e.g. `K003`; see [`explain`].
+    pub code: &'static str,
+    /// One sentence: what was found, what was expected, what to do.
+    pub message: String,
+    /// The file and position it speaks of, where there is one.
+    pub place: Option<Place>,
+}
+
+impl Finding {
+    /// A finding without a place.
+    pub fn new(code: &'static str, message: impl Into<String>) -> Self {
+        Self { code, message: message.into(), place: None }
+    }
+
+    /// The same finding, at a place.
+    pub fn at(mut self, place: Place) -> Self {
+        self.place = Some(place);
+        self
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.place {
+            Some(place) => write!(f, "{place}: {} {}", self.code, self.message),
+            None => write!(f, "{} {}", self.code, self.message),
+        }
+    }
+}
+
+/// The text behind a code, for `kesf explain`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Explanation {
+    /// The code, e.g. `R004`.
+    pub code: String,
+    /// `error` (the input or task is not used) or `finding` (the result comes with it).
+    pub kind: String,
+    /// A headline.
+    pub title: String,
+    /// Why it occurs.
+    pub cause: String,
+    /// What it looks like.
+    pub example: String,
+    /// What to do.
+    pub cure: String,
+}
+
+#[derive(Deserialize)]
+struct CodeFile {
+    code: Vec<Explanation>,
+}
+
+/// Every code of the program with its explanation, ordered by code.
+///
+/// # Panics
+/// Only if the tables that are compiled into the program are malformed; a test reads them.
+pub fn explanations() -> &'static [Explanation] {
+    static TABLE: OnceLock<Vec<Explanation>> = OnceLock::new();
+    TABLE.get_or_init(|| {
+        let mut all: Vec<Explanation> = [
+            include_str!("codes/read.toml"),
+            include_str!("codes/characterise.toml"),
+            include_str!("codes/constitutive.toml"),
+            include_str!("codes/mechanics.toml"),
+            include_str!("codes/study.toml"),
+            include_str!("codes/output.toml"),
+        ]
+        .into_iter()
+        .flat_map(|text| toml::from_str::<CodeFile>(text).expect("built-in code table").code)
+        .collect();
+        all.sort_by(|a, b| a.code.cmp(&b.code));
+        all
+    })
+}
+
+/// The explanation of one code (any letter case), if there is such a code.
+pub fn explain(code: &str) -> Option<&'static Explanation> {
+    explanations().iter().find(|e| e.code.eq_ignore_ascii_case(code))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_tables_parse_and_no_code_is_given_twice() {
+        let all = explanations();
+        assert!(!all.is_empty());
+        for pair in all.windows(2) {
+            assert_ne!(pair[0].code, pair[1].code);
+        }
+        for e in all {
+            assert!(e.kind == "error" || e.kind == "finding", "{}: kind {}", e.code, e.kind);
+            for text in [&e.title, &e.cause, &e.example, &e.cure] {
+                assert!(!text.trim().is_empty(), "{}: empty text", e.code);
+            }
+        }
+    }
+
+    #[test]
+    fn a_place_prints_only_what_it_knows() {
+        assert_eq!(Place::file("a.csv").to_string(), "a.csv");
+        assert_eq!(Place::at("a.csv", 3, 0).to_string(), "a.csv:3");
+        assert_eq!(Place::at("a.csv", 3, 7).to_string(), "a.csv:3:7");
+    }
+}

@@ -1,0 +1,199 @@
+//! What the readers hand over: one curve per specimen and test, or single result values.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Direction, Parameter};
+use crate::finding::{Finding, Place};
+use crate::quantity::Curve;
+
+/// The KES-F test that a curve comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Test {
+    /// FB1 tensile: x = strain (1), y = force per width (N/m).
+    Tensile,
+    /// FB1 shear: x = shear angle (rad), y = shear force per width (N/m).
+    Shear,
+    /// FB2 pure bending: x = curvature (1/m), y = moment per width (N).
+    Bending,
+    /// FB3 compression: x = thickness (m), y = pressure (Pa).
+    Compression,
+}
+
+impl Test {
+    /// Every test, in output order.
+    pub const ALL: [Self; 4] = [Self::Tensile, Self::Shear, Self::Bending, Self::Compression];
+
+    /// `tensile`, `shear`, `bending` or `compression`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tensile => "tensile",
+            Self::Shear => "shear",
+            Self::Bending => "bending",
+            Self::Compression => "compression",
+        }
+    }
+
+    /// The instrument, e.g. `KES-FB2`.
+    pub fn instrument(self) -> &'static str {
+        match self {
+            Self::Tensile | Self::Shear => "KES-FB1",
+            Self::Bending => "KES-FB2",
+            Self::Compression => "KES-FB3",
+        }
+    }
+}
+
+/// Where data come from; stated in every sheet and chart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Origin {
+    /// Instrument files of a laboratory.
+    #[default]
+    Measured,
+    /// Numbers printed in a publication.
+    Published,
+    /// Made by a generator.
+    Synthetic,
+}
+
+impl Origin {
+    /// `measured`, `published` or `synthetic`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Measured => "measured",
+            Self::Published => "published",
+            Self::Synthetic => "synthetic",
+        }
+    }
+}
+
+/// A file that was read: its path as given, its hash, and how its text was understood.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Source {
+    /// Path as it was named to us.
+    pub path: PathBuf,
+    /// SHA-256 of the bytes, lower-case hexadecimal.
+    pub sha256: String,
+    /// Encoding that was decided, e.g. `UTF-8`, `Shift_JIS`; empty for binary formats.
+    pub encoding: String,
+    /// Dialect that matched, e.g. `kesf`, `kes-japanese`.
+    pub dialect: String,
+}
+
+/// Test conditions in SI, from the file, else `fabric.toml`, else the standard set.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Conditions {
+    /// Specimen width (m); 0.20 by default.
+    pub width: f64,
+    /// Length between jaws or clamps (m); 0.05 for FB1, 0.01 for FB2, 0 for FB3.
+    pub gauge: f64,
+    /// The set maximum of the drive or load: FB1 tensile N/m (490.3325), FB1 shear rad (8 deg),
+    /// FB2 1/m (250), FB3 Pa (4903.325).
+    pub maximum: f64,
+    /// Constant tension during a shear test (N/m; 9.80665 by default); 0 otherwise.
+    pub pretension: f64,
+}
+
+/// One specimen in one test: the raw curve in SI, in recorded order, untouched otherwise.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Measurement {
+    /// Which test, and so what the axes are.
+    pub test: Test,
+    /// Sample name found in the file, if any.
+    pub sample: Option<String>,
+    /// Yarn direction; `None` for compression.
+    pub direction: Option<Direction>,
+    /// Specimen number, from 1.
+    pub specimen: usize,
+    /// Conditions of the test.
+    pub conditions: Conditions,
+    /// All samples, in recorded order.
+    pub curve: Curve,
+    /// Line of the file for each point of the curve.
+    pub lines: Vec<usize>,
+    /// The file.
+    pub source: Source,
+    /// Everything else the header said, untouched.
+    pub metadata: BTreeMap<String, String>,
+}
+
+/// One value of a result table, SI.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ResultValue {
+    /// Which parameter.
+    pub parameter: Parameter,
+    /// Direction; `None` when the table gives one value for the fabric.
+    pub direction: Option<Direction>,
+    /// Mean (SI).
+    pub mean: f64,
+    /// Standard deviation (SI), if the table gives one.
+    pub sd: Option<f64>,
+    /// Number of repeats behind the mean; 1 if the table does not say.
+    pub n: usize,
+    /// Whether the table itself marks it as inferred rather than measured.
+    pub inferred: bool,
+    /// Cell it was read from.
+    pub place: Place,
+}
+
+/// A measured behaviour kept for comparison with predictions, from `fabric.toml`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeasuredResult {
+    /// What was measured, e.g. `drape_coefficient`, `drape_nodes`, `bending_length`.
+    pub quantity: String,
+    /// Value with its unit, as text, e.g. `"82.9 %"`, `"5"`, `"21.3 mm"`.
+    pub value: String,
+    /// Method or standard, with sizes.
+    pub method: String,
+    /// Yarn direction, where it has one.
+    pub direction: Option<Direction>,
+}
+
+/// What `fabric.toml` says of a fabric.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct FabricInfo {
+    /// Name for people; the folder's name identifies the fabric.
+    pub title: String,
+    /// Weave, e.g. `plain`.
+    pub weave: Option<String>,
+    /// Fibre composition.
+    pub composition: Option<String>,
+    /// Where the data come from.
+    pub origin: Origin,
+    /// Citation, or how they were made.
+    pub source: Option<String>,
+    /// Test climate, e.g. `20 °C, 65 % RH`.
+    pub climate: Option<String>,
+    /// Areal density (kg/m²), where stated.
+    pub areal_density: Option<f64>,
+    /// Thickness (m), where stated.
+    pub thickness: Option<f64>,
+    /// Cautions and remarks about the data, shown beside them.
+    pub notes: Vec<String>,
+    /// Measured behaviour to compare predictions with.
+    pub results: Vec<MeasuredResult>,
+}
+
+/// Everything that was read about one fabric.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct FabricInput {
+    /// Identifier: the folder's name, or the file's stem.
+    pub name: String,
+    /// The folder or file.
+    pub path: PathBuf,
+    /// What `fabric.toml` says.
+    pub info: FabricInfo,
+    /// Curves, ordered by test, direction and specimen.
+    pub measurements: Vec<Measurement>,
+    /// Values of result tables.
+    pub results: Vec<ResultValue>,
+    /// Every file that was read, in name order.
+    pub sources: Vec<Source>,
+    /// What a reader of the data must know.
+    pub findings: Vec<Finding>,
+}

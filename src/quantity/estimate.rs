@@ -1,0 +1,65 @@
+//! A value with its spread over repeats.
+
+use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// The mean of n repeats and their sample standard deviation (SI).
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Estimate {
+    /// Arithmetic mean.
+    pub mean: f64,
+    /// Sample standard deviation (divisor n - 1); `None` for a single value.
+    pub sd: Option<f64>,
+    /// Number of repeats.
+    pub n: usize,
+    /// The repeats themselves, in specimen order; empty where only a mean was published.
+    pub values: Vec<f64>,
+}
+
+impl Estimate {
+    /// One value without a spread.
+    pub fn single(value: f64) -> Self {
+        Self { mean: value, sd: None, n: 1, values: vec![value] }
+    }
+
+    /// Mean and sample standard deviation of the repeats; `None` if there are none.
+    pub fn of(values: &[f64]) -> Option<Self> {
+        if values.is_empty() {
+            return None;
+        }
+        let n = values.len();
+        let mean = values.iter().sum::<f64>() / n as f64;
+        let sd =
+            (n > 1).then(|| (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1) as f64).sqrt());
+        Some(Self { mean, sd, n, values: values.to_vec() })
+    }
+
+    /// Coefficient of variation, SD / |mean|.
+    pub fn cv(&self) -> Option<f64> {
+        self.sd.filter(|_| self.mean != 0.0).map(|sd| sd / self.mean.abs())
+    }
+
+    /// Half width of the two-sided 95 % Student t interval of the mean.
+    pub fn ci95(&self) -> Option<f64> {
+        let sd = self.sd?;
+        let t = StudentsT::new(0.0, 1.0, (self.n - 1) as f64).ok()?.inverse_cdf(0.975);
+        Some(t * sd / (self.n as f64).sqrt())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn mean_spread_and_interval_of_three() {
+        let e = Estimate::of(&[1.0, 2.0, 3.0]).unwrap();
+        assert_relative_eq!(e.mean, 2.0);
+        assert_relative_eq!(e.sd.unwrap(), 1.0);
+        // t(0.975, 2) = 4.302652729911275 (tables).
+        assert_relative_eq!(e.ci95().unwrap(), 4.302652729911275 / 3f64.sqrt(), max_relative = 1e-8);
+        assert_eq!(Estimate::of(&[]), None);
+        assert_eq!(Estimate::of(&[4.0]).unwrap().ci95(), None);
+    }
+}

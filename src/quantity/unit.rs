@@ -1,0 +1,359 @@
+//! Unit symbols: products, quotients and powers of a short table of atoms.
+
+use std::str::FromStr;
+
+use serde::{Deserialize, Deserializer, de};
+use thiserror::Error;
+use unicode_normalization::UnicodeNormalization;
+
+/// Exponents of kilogram, metre and second. Angles and percent are dimensionless.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Dimension {
+    /// Exponent of the kilogram.
+    pub kg: i8,
+    /// Exponent of the metre.
+    pub m: i8,
+    /// Exponent of the second.
+    pub s: i8,
+}
+
+/// A unit: what one of it is in SI, and its dimension.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    /// SI value of one of this unit.
+    pub factor: f64,
+    /// Its dimension.
+    pub dimension: Dimension,
+}
+
+/// What can be wrong with a quantity written as text.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum QuantityError {
+    /// A number without a unit.
+    #[error("`{found}` has no unit: write it with one, such as \"{example}\"")]
+    NoUnit {
+        /// The text.
+        found: String,
+        /// A well-formed example.
+        example: &'static str,
+    },
+    /// No number at the start.
+    #[error("`{found}` does not begin with a number (decimal mark '.'): write it as in \"{example}\"")]
+    NoNumber {
+        /// The text.
+        found: String,
+        /// A well-formed example.
+        example: &'static str,
+    },
+    /// An unknown unit symbol.
+    #[error("`{symbol}` is not a unit that is known here (in `{found}`); `kesf list units` shows them all")]
+    UnknownUnit {
+        /// The unknown part.
+        symbol: String,
+        /// The whole unit text.
+        found: String,
+    },
+    /// `a/b·c` can be read in two ways.
+    #[error("`{found}` can be read in two ways: write a/(b·c) or (a·c)/b with the parentheses")]
+    Ambiguous {
+        /// The text.
+        found: String,
+    },
+    /// A unit of the wrong kind.
+    #[error("`{found}` has the wrong dimension: a unit like {expected} is needed, as in \"{example}\"")]
+    Dimension {
+        /// The text.
+        found: String,
+        /// A unit of the right dimension.
+        expected: &'static str,
+        /// A well-formed example.
+        example: &'static str,
+    },
+}
+
+const GF: f64 = 9.80665e-3;
+const DEG: f64 = std::f64::consts::PI / 180.0;
+
+/// The atoms: symbol, SI factor, exponents (kg, m, s), name. Products and powers are built of them.
+pub const UNITS: &[(&str, f64, [i8; 3], &str)] = &[
+    ("1", 1.0, [0, 0, 0], "one"),
+    ("%", 0.01, [0, 0, 0], "percent"),
+    ("rad", 1.0, [0, 0, 0], "radian"),
+    ("deg", DEG, [0, 0, 0], "degree of angle"),
+    ("°", DEG, [0, 0, 0], "degree of angle"),
+    ("degree", DEG, [0, 0, 0], "degree of angle"),
+    ("m", 1.0, [0, 1, 0], "metre"),
+    ("cm", 1e-2, [0, 1, 0], "centimetre"),
+    ("mm", 1e-3, [0, 1, 0], "millimetre"),
+    ("um", 1e-6, [0, 1, 0], "micrometre"),
+    ("km", 1e3, [0, 1, 0], "kilometre"),
+    ("kg", 1.0, [1, 0, 0], "kilogram"),
+    ("g", 1e-3, [1, 0, 0], "gram (mass)"),
+    ("mg", 1e-6, [1, 0, 0], "milligram"),
+    ("s", 1.0, [0, 0, 1], "second"),
+    ("ms", 1e-3, [0, 0, 1], "millisecond"),
+    ("min", 60.0, [0, 0, 1], "minute"),
+    ("Hz", 1.0, [0, 0, -1], "hertz"),
+    ("N", 1.0, [1, 1, -2], "newton"),
+    ("kN", 1e3, [1, 1, -2], "kilonewton"),
+    ("cN", 1e-2, [1, 1, -2], "centinewton"),
+    ("mN", 1e-3, [1, 1, -2], "millinewton"),
+    ("uN", 1e-6, [1, 1, -2], "micronewton"),
+    ("gf", GF, [1, 1, -2], "gram-force"),
+    ("kgf", 1e3 * GF, [1, 1, -2], "kilogram-force"),
+    ("mgf", 1e-3 * GF, [1, 1, -2], "milligram-force"),
+    ("dyn", 1e-5, [1, 1, -2], "dyne"),
+    ("Pa", 1.0, [1, -1, -2], "pascal"),
+    ("hPa", 1e2, [1, -1, -2], "hectopascal"),
+    ("kPa", 1e3, [1, -1, -2], "kilopascal"),
+    ("MPa", 1e6, [1, -1, -2], "megapascal"),
+    ("GPa", 1e9, [1, -1, -2], "gigapascal"),
+    ("J", 1.0, [1, 2, -2], "joule"),
+    ("mJ", 1e-3, [1, 2, -2], "millijoule"),
+];
+
+impl Unit {
+    /// Reads a unit such as `N·m`, `gf·cm²/cm`, `gf/(cm·deg)`, `kg/m2`, `1/cm` or `cm-1`.
+    ///
+    /// Products are written with `·`, `*`, `.` or a blank, powers as `²`, `2` or `^2`.
+    ///
+    /// # Errors
+    /// An unknown symbol, or `a/b·c`, which is read in two ways by different people.
+    pub fn parse(text: &str) -> Result<Self, QuantityError> {
+        // NFKC folds ㎝, ｇｆ, ², ⁻ and the two micro signs into one spelling each.
+        let folded: String = text
+            .nfkc()
+            .map(|c| match c {
+                'μ' => 'u',
+                '−' | '‐' | '–' => '-',
+                '×' | '⋅' | '・' | '*' | '.' => '·',
+                '[' => '(',
+                ']' => ')',
+                c => c,
+            })
+            .collect();
+        let mut parser = Parser { chars: folded.trim().chars().collect(), at: 0, whole: text };
+        let unit = parser.quotient()?;
+        if parser.at < parser.chars.len() {
+            return Err(parser.unknown(parser.chars[parser.at..].iter().collect()));
+        }
+        Ok(unit)
+    }
+
+    fn times(self, other: Self, power: i8) -> Self {
+        let (a, b) = (self.dimension, other.dimension);
+        Self {
+            factor: self.factor * other.factor.powi(i32::from(power)),
+            dimension: Dimension {
+                kg: a.kg.saturating_add(b.kg.saturating_mul(power)),
+                m: a.m.saturating_add(b.m.saturating_mul(power)),
+                s: a.s.saturating_add(b.s.saturating_mul(power)),
+            },
+        }
+    }
+}
+
+const ONE: Unit = Unit { factor: 1.0, dimension: Dimension { kg: 0, m: 0, s: 0 } };
+
+struct Parser<'a> {
+    chars: Vec<char>,
+    at: usize,
+    whole: &'a str,
+}
+
+impl Parser<'_> {
+    fn peek(&self) -> Option<char> {
+        self.chars.get(self.at).copied()
+    }
+
+    fn unknown(&self, symbol: String) -> QuantityError {
+        QuantityError::UnknownUnit { symbol, found: self.whole.trim().to_string() }
+    }
+
+    fn quotient(&mut self) -> Result<Unit, QuantityError> {
+        let (mut unit, _) = self.product()?;
+        while self.peek() == Some('/') {
+            self.at += 1;
+            let (divisor, factors) = self.product()?;
+            if factors > 1 {
+                return Err(QuantityError::Ambiguous { found: self.whole.trim().to_string() });
+            }
+            unit = unit.times(divisor, -1);
+        }
+        Ok(unit)
+    }
+
+    /// A product and the number of its factors.
+    fn product(&mut self) -> Result<(Unit, usize), QuantityError> {
+        let (mut unit, mut factors) = (ONE, 0);
+        loop {
+            while matches!(self.peek(), Some(' ' | '·')) {
+                self.at += 1;
+            }
+            match self.peek() {
+                None | Some('/' | ')') if factors > 0 => return Ok((unit, factors)),
+                _ => {
+                    unit = unit.times(self.factor()?, 1);
+                    factors += 1;
+                }
+            }
+        }
+    }
+
+    fn factor(&mut self) -> Result<Unit, QuantityError> {
+        if self.peek() == Some('(') {
+            self.at += 1;
+            let unit = self.quotient()?;
+            if self.peek() != Some(')') {
+                return Err(self.unknown("(".into()));
+            }
+            self.at += 1;
+            return Ok(unit);
+        }
+        if self.peek() == Some('1') {
+            self.at += 1;
+            return Ok(ONE);
+        }
+        let start = self.at;
+        while self.peek().is_some_and(|c| c.is_alphabetic() || matches!(c, '%' | '°')) {
+            self.at += 1;
+        }
+        let symbol: String = self.chars[start..self.at].iter().collect();
+        let Some(&(_, factor, [kg, m, s], _)) = UNITS.iter().find(|u| u.0 == symbol) else {
+            let shown = if symbol.is_empty() { self.chars[start..].iter().collect() } else { symbol };
+            return Err(self.unknown(shown));
+        };
+        Ok(ONE.times(Unit { factor, dimension: Dimension { kg, m, s } }, self.power()?))
+    }
+
+    fn power(&mut self) -> Result<i8, QuantityError> {
+        let start = self.at;
+        if self.peek() == Some('^') {
+            self.at += 1;
+        }
+        let digits = self.at;
+        if self.peek() == Some('-') {
+            self.at += 1;
+        }
+        while self.peek().is_some_and(|c| c.is_ascii_digit()) {
+            self.at += 1;
+        }
+        if self.at == start {
+            return Ok(1);
+        }
+        let text: String = self.chars[digits..self.at].iter().collect();
+        // Ninth powers are past every quantity here; a larger one is a misreading.
+        i8::from_str(&text).ok().filter(|p| p.abs() <= 9).ok_or_else(|| self.unknown(text))
+    }
+}
+
+/// Splits `"20 cm"` into its number and its unit.
+///
+/// # Errors
+/// No number, no unit, or an unknown unit. `example` is shown to the reader of the message.
+pub fn parse_quantity(text: &str, example: &'static str) -> Result<(f64, Unit), QuantityError> {
+    let text = text.trim();
+    let no_number = || QuantityError::NoNumber { found: text.to_string(), example };
+    let end = text
+        .char_indices()
+        .find(|&(i, c)| {
+            let exponent_sign =
+                matches!(c, '+' | '-') && i > 0 && matches!(text.as_bytes()[i - 1], b'e' | b'E');
+            let exponent = matches!(c, 'e' | 'E')
+                && text[i + 1..].starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-'));
+            let sign = i == 0 && matches!(c, '+' | '-');
+            !(c.is_ascii_digit() || c == '.' || exponent || exponent_sign || sign)
+        })
+        .map_or(text.len(), |(i, _)| i);
+    let value: f64 = text[..end].parse().map_err(|_| no_number())?;
+    if text[end..].starts_with(',') {
+        return Err(no_number());
+    }
+    let unit = text[end..].trim();
+    if unit.is_empty() {
+        return Err(QuantityError::NoUnit { found: text.to_string(), example });
+    }
+    Ok((value, Unit::parse(unit)?))
+}
+
+/// Deserialises a newtype from its text form, and answers a bare number with what to write.
+pub(super) fn deserialize_quantity<'de, D, Q>(d: D, example: &'static str) -> Result<Q, D::Error>
+where
+    D: Deserializer<'de>,
+    Q: FromStr<Err = QuantityError>,
+{
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum TextOrNumber {
+        Text(String),
+        Number(f64),
+    }
+    match TextOrNumber::deserialize(d) {
+        Ok(TextOrNumber::Text(text)) => text.parse().map_err(de::Error::custom),
+        Ok(TextOrNumber::Number(number)) => {
+            Err(de::Error::custom(QuantityError::NoUnit { found: number.to_string(), example }))
+        }
+        Err(_) => Err(de::Error::custom(format!("expected a quantity in quotes, such as \"{example}\""))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{ArealDensity, BendingRigidity, Length, LineForce, Ratio};
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn factor(text: &str) -> f64 {
+        Unit::parse(text).unwrap().factor
+    }
+
+    #[test]
+    fn kes_units_have_their_exact_factors() {
+        // 1 gf = 9.80665e-3 N exactly.
+        assert_relative_eq!(factor("gf/cm"), 0.980665, max_relative = 1e-15);
+        assert_relative_eq!(factor("gf·cm/cm²"), 0.980665, max_relative = 1e-15);
+        assert_relative_eq!(factor("gf cm2/cm"), 9.80665e-5, max_relative = 1e-15);
+        assert_relative_eq!(factor("gf/(cm·deg)"), 56.187_965_62, max_relative = 1e-9);
+        assert_relative_eq!(factor("gf/cm/deg"), factor("gf/(cm deg)"), max_relative = 1e-15);
+        assert_relative_eq!(factor("gf/cm²"), 98.0665, max_relative = 1e-15);
+        assert_relative_eq!(factor("mg/cm2"), 0.01, max_relative = 1e-15);
+        assert_relative_eq!(factor("cm⁻¹"), 100.0, max_relative = 1e-15);
+        assert_relative_eq!(factor("ｇｆ/㎝"), 0.980665, max_relative = 1e-15);
+        assert_relative_eq!(factor("µN·m"), 1e-6, max_relative = 1e-15);
+    }
+
+    #[test]
+    fn a_quotient_that_two_people_read_differently_is_refused() {
+        assert!(matches!(Unit::parse("gf/cm·deg"), Err(QuantityError::Ambiguous { .. })));
+        assert!(matches!(Unit::parse("furlong"), Err(QuantityError::UnknownUnit { .. })));
+        assert!(matches!(Unit::parse(""), Err(QuantityError::UnknownUnit { .. })));
+    }
+
+    #[test]
+    fn quantities_need_their_unit_and_dimension() {
+        assert_relative_eq!("20 cm".parse::<Length>().unwrap().si(), 0.2, max_relative = 1e-15);
+        assert_relative_eq!("1e-1m".parse::<Length>().unwrap().si(), 0.1);
+        assert_relative_eq!("150 g/m²".parse::<ArealDensity>().unwrap().si(), 0.15, max_relative = 1e-15);
+        assert_relative_eq!("5 %".parse::<Ratio>().unwrap().si(), 0.05);
+        assert!(matches!("20".parse::<Length>(), Err(QuantityError::NoUnit { .. })));
+        assert!(matches!("cm".parse::<Length>(), Err(QuantityError::NoNumber { .. })));
+        assert!(matches!("2,5 cm".parse::<Length>(), Err(QuantityError::NoNumber { .. })));
+        assert!(matches!("20 g".parse::<LineForce>(), Err(QuantityError::Dimension { .. })));
+        assert_relative_eq!(
+            "0.1 gf·cm²/cm".parse::<BendingRigidity>().unwrap().si(),
+            9.80665e-6,
+            max_relative = 1e-14
+        );
+    }
+
+    #[test]
+    fn a_bare_number_in_a_settings_file_says_what_to_write() {
+        #[derive(Debug, serde::Deserialize)]
+        struct Sheet {
+            #[allow(dead_code)]
+            width: Length,
+        }
+        let error = toml::from_str::<Sheet>("width = 20").unwrap_err().to_string();
+        assert!(error.contains("\"20 cm\""), "{error}");
+    }
+}
