@@ -1,1 +1,5 @@
 //! (skeleton)
+
+pub mod factor;
+pub mod ordering;
+pub mod sparse;
