@@ -52,10 +52,12 @@ pub enum SolveError {
         hint: &'static str,
     },
     /// N002: the factorisation itself failed.
-    #[error("N002 the factorisation failed: {0}")]
+    #[error(transparent)]
     Factor(FactorError),
     /// N003: the answer does not satisfy the equations.
-    #[error("N003 the residual is {residual:e} of the load, above {limit:e}: the model is nearly singular or too badly scaled")]
+    #[error(
+        "N003 the residual is {residual:e} of the load, above {limit:e}: the model is nearly singular or too badly scaled"
+    )]
     Residual {
         /// |K u - f| / |f|.
         residual: f64,
