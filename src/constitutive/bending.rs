@@ -12,8 +12,9 @@
 
 use nalgebra::Matrix3;
 
-use super::{Assumptions, BendingCoupling, ConstitutiveError, Notes, Torsion, significant};
+use super::{Assumptions, BendingCoupling, ConstitutiveError, Notes, Torsion};
 use crate::instrument::{Direction, Parameter};
+use crate::quantity::significant;
 
 /// D_b (N·m); `g` (N/m) and `thickness` (m) enter only with `Torsion::Shear`.
 pub(super) fn matrix(

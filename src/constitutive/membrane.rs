@@ -9,10 +9,10 @@
 
 use nalgebra::Matrix3;
 
-use super::{Assumptions, ConstitutiveError, Modulus, Notes, PoissonRule, significant};
+use super::{Assumptions, ConstitutiveError, Modulus, Notes, PoissonRule};
 use crate::characterise::SpecimenResult;
 use crate::instrument::{Direction, Parameter, Test};
-use crate::quantity::{Estimate, LineForce};
+use crate::quantity::{Estimate, LineForce, significant};
 
 /// The standard maximum force of KES-FB1, 500 gf/cm, in N/m: assumed where a table does not say.
 const STANDARD_MAXIMUM: f64 = 490.3325;

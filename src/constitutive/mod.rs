@@ -21,6 +21,7 @@ use thiserror::Error;
 use crate::characterise::FabricSheet;
 use crate::finding::Finding;
 use crate::instrument::{Direction, Parameter};
+use crate::quantity::significant;
 use crate::section::{SectionError, ShellSection};
 
 pub use assumptions::{
@@ -245,18 +246,6 @@ impl Notes<'_> {
         );
         Some([known.0; 2])
     }
-}
-
-/// Four significant digits, without an exponent where people would not write one.
-fn significant(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return value.to_string();
-    }
-    let exponent = value.abs().log10().floor();
-    if !(-3.0..6.0).contains(&exponent) {
-        return format!("{value:.3e}");
-    }
-    format!("{value:.*}", (3.0 - exponent).max(0.0) as usize)
 }
 
 #[cfg(test)]

@@ -8,8 +8,9 @@
 
 use nalgebra::Matrix2;
 
-use super::{Assumptions, ConstitutiveError, Notes, TransverseShear, significant};
+use super::{Assumptions, ConstitutiveError, Notes, TransverseShear};
 use crate::instrument::{Direction, Parameter};
+use crate::quantity::significant;
 
 /// Shear correction factor of a homogeneous plate.
 const CHI: f64 = 5.0 / 6.0;
