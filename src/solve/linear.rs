@@ -248,7 +248,7 @@ fn solve_group(
             (u, internal, residual) = (refined, refined_internal, refined_residual);
         }
     }
-    if !(residual <= RESIDUAL_LIMIT) {
+    if residual.is_nan() || residual > RESIDUAL_LIMIT {
         return Err(SolveError::Residual { residual, limit: RESIDUAL_LIMIT });
     }
     let reaction: Vec<f64> =

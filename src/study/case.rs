@@ -367,9 +367,9 @@ impl CaseError {
     /// File and position.
     pub fn place(&self) -> &Place {
         match self {
-            Self::Unreadable { place, .. } | Self::Malformed { place, .. } | Self::Inconsistent { place, .. } => {
-                place
-            }
+            Self::Unreadable { place, .. }
+            | Self::Malformed { place, .. }
+            | Self::Inconsistent { place, .. } => place,
         }
     }
 }
@@ -401,11 +401,16 @@ impl Case {
     }
 
     fn consistent(&self) -> Result<(), CaseError> {
-        let refuse =
-            |message: &str| Err(CaseError::Inconsistent { place: Place::file(&self.path), message: message.into() });
+        let refuse = |message: &str| {
+            Err(CaseError::Inconsistent { place: Place::file(&self.path), message: message.into() })
+        };
         match (&self.fabric, &self.section) {
-            (None, None) => return refuse("the case names neither `fabric` nor a [section]: give one of them"),
-            (Some(_), Some(_)) => return refuse("the case gives both `fabric` and [section]: remove one of them"),
+            (None, None) => {
+                return refuse("the case names neither `fabric` nor a [section]: give one of them");
+            }
+            (Some(_), Some(_)) => {
+                return refuse("the case gives both `fabric` and [section]: remove one of them");
+            }
             _ => {}
         }
         match (&self.sheet, &self.virtual_test) {
@@ -413,8 +418,12 @@ impl Case {
             (Some(_), Some(_)) => {
                 refuse("a [virtual_test] brings its own specimen: remove [sheet], or the [virtual_test]")
             }
-            (None, Some(_)) if !(self.supports.is_empty() && self.loads.is_empty() && self.probes.is_empty()) => {
-                refuse("a [virtual_test] brings its own supports and loads: remove [[supports]], [[loads]], [[probes]]")
+            (None, Some(_))
+                if !(self.supports.is_empty() && self.loads.is_empty() && self.probes.is_empty()) =>
+            {
+                refuse(
+                    "a [virtual_test] brings its own supports and loads: remove [[supports]], [[loads]], [[probes]]",
+                )
             }
             (Some(_), None) if self.supports.is_empty() => {
                 refuse("nothing holds the sheet: add [[supports]] (kind = \"free\" says that this is meant)")
