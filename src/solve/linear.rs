@@ -72,6 +72,14 @@ pub enum SolveError {
         /// Rounds done.
         rounds: usize,
     },
+    /// N005: the adaptive time step went to nothing.
+    #[error(
+        "N005 the time step vanished at t = {time} s: loosen the tolerance, or ramp the load instead of a step"
+    )]
+    StepVanished {
+        /// Time reached (s).
+        time: f64,
+    },
 }
 
 impl SolveError {
@@ -83,6 +91,7 @@ impl SolveError {
             Self::Factor(_) => "N002",
             Self::Residual { .. } => "N003",
             Self::ModesNotSettled { .. } => "N004",
+            Self::StepVanished { .. } => "N005",
         }
     }
 }

@@ -17,7 +17,7 @@ use crate::model::{DofGroup, Model, ModelError};
 pub struct Mode {
     /// Angular frequency (rad/s); 0 for a rigid motion.
     pub angular_frequency: f64,
-    /// Shape, six a node, with unit modal mass and a positive largest component.
+    /// Shape, six a node, with unit modal mass and a positive largest displacement.
     pub shape: Vec<f64>,
     /// Which dofs move.
     pub group: DofGroup,
@@ -161,7 +161,8 @@ fn mode(group: DofGroup, eigenvalue: f64, shift: f64, part: &[f64]) -> Mode {
     let n = part.len() / group.dofs().len();
     let mut shape = vec![0.0; 6 * n];
     group.scatter(part, &mut shape);
-    let largest = shape.iter().copied().fold(0.0, |m: f64, v| if v.abs() > m.abs() { v } else { m });
+    let translations = shape.chunks_exact(6).flat_map(|node| &node[..3]);
+    let largest = translations.fold(0.0, |m: f64, v| if v.abs() > m.abs() { *v } else { m });
     if largest < 0.0 {
         shape.iter_mut().for_each(|v| *v = -*v);
     }
