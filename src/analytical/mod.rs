@@ -10,17 +10,24 @@
 //! | [`levy`] | two edges simply supported, two supported, clamped or free | single series, closed inner sums |
 //! | [`clamped`] | four clamped edges | Hencky's superposition, closed inner sums |
 //! | [`ritz`] | clamped, cantilevered and free edges: statics | polynomials of high degree |
+//! | [`mindlin`] | shear-flexible plates, supported (hard) and clamped | double series, polynomials |
 //! | [`vibration`] | natural frequencies of the same plates | Navier, polynomials of high degree |
+//! | [`beam`] | beam strips, Peirce's formula, the fit to the heart loop | closed forms |
+//! | [`elastica`] | large deflection under tip load and own weight, hanging loops | spectral collocation |
 //!
 //! Signs: deflection `w` along the pressure; `M_x = -(D11 w,xx + D12 w,yy)` and so on, hence
 //! positive at the centre of a pressed plate and negative at its clamped edges.
 
+pub mod beam;
 pub mod clamped;
+pub mod elastica;
 mod legendre;
 pub mod levy;
+pub mod mindlin;
 pub mod navier;
 pub mod plate;
 pub mod ritz;
+mod rod;
 pub mod vibration;
 
 pub use plate::{Plate, PlateState};

@@ -13,9 +13,9 @@ impl Plate {
     /// `w = Σ Σ 16 q / (π² m n S(α, β)) sin αx sin βy`, m and n odd, `α = mπ/a`, `β = nπ/b`,
     /// `S = D11 α⁴ + 2 T α² β² + D22 β⁴` (Timoshenko and Woinowsky-Krieger, section 30 and Eq. (247)).
     ///
-    /// The deflection is good to about 1e-12 of its maximum everywhere; the moments, summed with a
-    /// smooth cut-off, to about 1e-10 of theirs farther than a tenth of the side from the edges, and to
-    /// 1e-3 at them. For moments near edges take [`Plate::levy`].
+    /// The deflection is good to 1e-11 of its maximum everywhere; the moments, summed with a smooth cut-off,
+    /// to 1e-10 of theirs farther than a twentieth of the side from the edges, but to 1e-6 only at a
+    /// hundredth. For moments near edges take [`Plate::levy`].
     pub fn navier(&self, x: f64, y: f64, q: f64) -> PlateState {
         let along_x = Waves::new(self.a, x);
         let along_y = Waves::new(self.b, y);

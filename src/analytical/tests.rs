@@ -179,3 +179,26 @@ proptest! {
         assert_abs_diff_eq!(hencky.edge_moment_y(x), ritz.state(x, 0.0).my, epsilon = 3e-5 * scale);
     }
 }
+/// The series are cut where more waves change nothing: the plate with the most singular corners of the
+/// set (T = 2 √(D11 D22)) and a long one.
+#[test]
+fn superposition_has_converged() {
+    for plate in [square(0.5, 2.0), Plate { a: 3.0, ..square(1.0, 0.4) }] {
+        let (x, y) = (0.5 * plate.a, 0.5 * plate.b);
+        let (used, more) = (plate.clamped(1.0).unwrap(), plate.superpose(1.0, 200).unwrap());
+        assert_relative_eq!(used.deflection(x, y), more.deflection(x, y), max_relative = 1e-11);
+        for at in [0.25, 0.5] {
+            let (along_x, along_y) = (at * plate.a, at * plate.b);
+            assert_relative_eq!(
+                used.edge_moment_x(along_y),
+                more.edge_moment_x(along_y),
+                max_relative = 1e-9
+            );
+            assert_relative_eq!(
+                used.edge_moment_y(along_x),
+                more.edge_moment_y(along_x),
+                max_relative = 1e-9
+            );
+        }
+    }
+}
