@@ -195,7 +195,7 @@ struct Gram {
 }
 
 /// Functions that vanish at both ends: Legendre polynomials integrated once, by parity.
-struct Bubbles {
+pub(super) struct Bubbles {
     even: Gram,
     odd: Gram,
     /// `∫φ_even' φ_odd`.
@@ -231,7 +231,7 @@ impl Bubbles {
     }
 
     /// `[[values, slopes] of the even functions, the same of the odd ones]` at `x` in `[0, length]`.
-    fn at(length: f64, count: usize, x: f64) -> [[DVector<f64>; 2]; 2] {
+    pub fn at(length: f64, count: usize, x: f64) -> [[DVector<f64>; 2]; 2] {
         let half = 0.5 * length;
         let xi = x / half - 1.0;
         let value = integrals(2 * count + 1, xi);
@@ -250,6 +250,7 @@ impl Bubbles {
 
 #[cfg(test)]
 mod tests {
+    use super::super::levy::Edge;
     use super::*;
     use approx::{assert_abs_diff_eq, assert_relative_eq};
 
@@ -268,6 +269,23 @@ mod tests {
             // The corner singularity leaves about 1e-8 on both sides.
             let deflection = plate.clamped(1.0, 15).unwrap().deflection(0.5, 0.5);
             assert_relative_eq!(deflection, clamped, max_relative = 3e-8);
+        }
+    }
+
+    /// A plate with straight supported edges deflects by the thin plate's `(M_x + M_y) / (1 + nu) / S` more
+    /// (Wang, *J. Struct. Eng.* 121 (1995) 1331): two methods for thick isotropic rectangles.
+    #[test]
+    fn thick_supported_plates_follow_from_thin_ones() {
+        for (a, t, nu, x, y) in
+            [(1.0, 0.1, 0.3, 0.5, 0.5), (1.7, 0.4, 0.1, 0.6, 0.3), (0.6, 0.02, 0.45, 0.1, 0.8)]
+        {
+            let thick = MindlinPlate::isotropic(a, 1.0, 2.0, nu, t);
+            let thin = thick.plate.levy(Edge::Supported, x, y, 3.0);
+            let shear = (thin.mx + thin.my) / (1.0 + nu) / thick.s1;
+            let state = thick.supported(x, y, 3.0);
+            assert_relative_eq!(state.deflection, thin.deflection + shear, max_relative = 1e-10);
+            assert_relative_eq!(state.mx, thin.mx, max_relative = 1e-9);
+            assert_relative_eq!(state.mxy, thin.mxy, max_relative = 1e-9, epsilon = 1e-12);
         }
     }
 

@@ -11,6 +11,7 @@
 //! | [`clamped`] | four clamped edges | Hencky's superposition, closed inner sums |
 //! | [`ritz`] | clamped, cantilevered and free edges: statics | polynomials of high degree |
 //! | [`mindlin`] | shear-flexible plates, supported (hard) and clamped | double series, polynomials |
+//! | [`von_karman`] | clamped and immovable, moderately large deflection | polynomials, Newton |
 //! | [`vibration`] | natural frequencies of the same plates | Navier, polynomials of high degree |
 //! | [`beam`] | beam strips, Peirce's formula, the fit to the heart loop | closed forms |
 //! | [`elastica`] | large deflection under tip load and own weight, hanging loops | spectral collocation |
@@ -29,6 +30,7 @@ pub mod plate;
 pub mod ritz;
 mod rod;
 pub mod vibration;
+pub mod von_karman;
 
 pub use plate::{Plate, PlateState};
 

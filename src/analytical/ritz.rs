@@ -87,8 +87,13 @@ impl Axis {
         }
     }
 
+    /// The length of the side.
+    pub fn length(&self) -> f64 {
+        2.0 * self.half
+    }
+
     /// Values, slopes and second derivatives of the functions at `x` in `[0, length]`; one row each.
-    fn at(&self, x: f64) -> [DVector<f64>; 3] {
+    pub fn at(&self, x: f64) -> [DVector<f64>; 3] {
         let functions = functions(self.ends, &self.degrees, x / self.half - 1.0);
         [0, 1, 2].map(|order| {
             DVector::from_iterator(
