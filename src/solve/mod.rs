@@ -1,5 +1,6 @@
 //! (skeleton)
 
 pub mod factor;
+mod multifrontal;
 pub mod ordering;
 pub mod sparse;
