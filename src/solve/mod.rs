@@ -4,6 +4,7 @@ pub mod assemble;
 pub mod factor;
 pub mod linear;
 pub mod modal;
+mod multifrontal;
 pub mod newmark;
 pub mod ordering;
 pub mod plan;
