@@ -14,7 +14,8 @@
 //! | [`von_karman`] | clamped and immovable, moderately large deflection | polynomials, Newton |
 //! | [`vibration`] | natural frequencies of the same plates | Navier, polynomials of high degree |
 //! | [`beam`] | beam strips, Peirce's formula, the fit to the heart loop | closed forms |
-//! | [`elastica`] | large deflection under tip load and own weight, hanging loops | spectral collocation |
+//! | [`elastica`] | large deflection of cantilevers under tip load and own weight | spectral collocation |
+//! | [`hanging`] | hanging loops, slack strips between clamps | spectral collocation |
 //!
 //! Signs: deflection `w` along the pressure; `M_x = -(D11 w,xx + D12 w,yy)` and so on, hence
 //! positive at the centre of a pressed plate and negative at its clamped edges.
@@ -22,6 +23,7 @@
 pub mod beam;
 pub mod clamped;
 pub mod elastica;
+pub mod hanging;
 mod legendre;
 pub mod levy;
 pub mod mindlin;
