@@ -81,7 +81,7 @@ pub struct Analysis {
 #[derive(Debug)]
 enum Symbolic {
     General(Arc<general::Symbolic>),
-    Multifrontal(Arc<multifrontal::Tree>),
+    Multifrontal(Arc<multifrontal::Symbolic>),
 }
 
 /// Orders the nodes and finds the structure of the factor.
@@ -121,7 +121,7 @@ pub fn analyse_ordered(
     let symbolic = match path {
         Path::Faer => Symbolic::General(Arc::new(general::Symbolic::new(graph, block, order)?)),
         Path::Auto | Path::Multifrontal => {
-            Symbolic::Multifrontal(Arc::new(multifrontal::Tree::new(graph, block, order)))
+            Symbolic::Multifrontal(Arc::new(multifrontal::Symbolic::new(graph, block, order)))
         }
     };
     Ok(Analysis { graph: Arc::clone(graph), block, symbolic })
@@ -154,7 +154,9 @@ impl Analysis {
             Symbolic::General(symbolic) => {
                 Ok(Factor(Numeric::General(symbolic.factorise(a, threads.max(1))?)))
             }
-            Symbolic::Multifrontal(tree) => Ok(Factor(Numeric::Multifrontal(tree.factorise(a, threads)?))),
+            Symbolic::Multifrontal(symbolic) => {
+                Ok(Factor(Numeric::Multifrontal(symbolic.factorise(a, threads)?)))
+            }
         }
     }
 
@@ -163,7 +165,7 @@ impl Analysis {
         let square = self.block * self.block;
         let counts = match &self.symbolic {
             Symbolic::General(symbolic) => symbolic.counts(),
-            Symbolic::Multifrontal(tree) => tree.counts(),
+            Symbolic::Multifrontal(symbolic) => symbolic.counts(),
         };
         Counts {
             rows: self.graph.nodes * self.block,

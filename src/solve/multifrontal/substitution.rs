@@ -14,7 +14,7 @@ const TOGETHER: usize = 32;
 impl Numeric {
     /// Solves in place for `columns` right-hand sides, one after the other in `x`.
     pub fn solve(&self, x: &mut [f64], columns: usize) {
-        let n = self.tree.node_at.len() * self.tree.block;
+        let n = self.symbolic.tree.node_at.len() * self.symbolic.tree.block;
         assert_eq!(x.len(), n * columns, "right-hand sides as long as the matrix");
         for x in x.chunks_mut((n * TOGETHER).max(1)) {
             let columns = x.len() / n;
@@ -40,25 +40,25 @@ impl Numeric {
 
     /// Calls `f(row of the matrix, row in the order of elimination)` for every row.
     fn permute(&self, mut f: impl FnMut(usize, usize)) {
-        let b = self.tree.block;
-        for (step, &node) in self.tree.node_at.iter().enumerate() {
+        let b = self.symbolic.tree.block;
+        for (step, &node) in self.symbolic.tree.node_at.iter().enumerate() {
             (0..b).for_each(|d| f(node as usize * b + d, step * b + d));
         }
     }
 
     /// The panel of a front and the dofs of its border, in nodes.
     fn panel(&self, node: &Supernode) -> (&[f64], &[u32]) {
-        let height = (node.width + node.border) * self.tree.block;
+        let height = (node.width + node.border) * self.symbolic.tree.block;
         (
-            &self.l[node.panel..][..node.width * self.tree.block * height],
-            &self.tree.rows[node.rows..][..node.border],
+            &self.l[node.panel..][..node.width * self.symbolic.tree.block * height],
+            &self.symbolic.tree.rows[node.rows..][..node.border],
         )
     }
 
     fn solve_one(&self, y: &mut [f64]) {
-        let b = self.tree.block;
+        let b = self.symbolic.tree.block;
         let mut border = Vec::new();
-        for node in &self.tree.supernodes {
+        for node in &self.symbolic.tree.supernodes {
             let (panel, rows) = self.panel(node);
             let width = node.width * b;
             let top = &mut y[node.begin * b..][..width];
@@ -76,7 +76,7 @@ impl Numeric {
                 }
             }
         }
-        for node in self.tree.supernodes.iter().rev() {
+        for node in self.symbolic.tree.supernodes.iter().rev() {
             let (panel, rows) = self.panel(node);
             let width = node.width * b;
             border.clear();
@@ -92,9 +92,9 @@ impl Numeric {
     }
 
     fn solve_some(&self, y: &mut [f64], columns: usize) {
-        let b = self.tree.block;
+        let b = self.symbolic.tree.block;
         let mut border = Vec::new();
-        for node in &self.tree.supernodes {
+        for node in &self.symbolic.tree.supernodes {
             let (panel, rows) = self.panel(node);
             let width = node.width * b;
             let (l11, l21) =
@@ -112,7 +112,7 @@ impl Numeric {
                 }
             }
         }
-        for node in self.tree.supernodes.iter().rev() {
+        for node in self.symbolic.tree.supernodes.iter().rev() {
             let (panel, rows) = self.panel(node);
             let width = node.width * b;
             let (l11, l21) =
