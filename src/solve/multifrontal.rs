@@ -16,9 +16,9 @@ use std::sync::atomic::{AtomicUsize, Ordering::AcqRel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use self::assemble::Update;
-use self::front::{BadPivot, Workspace, eliminate};
+use self::front::{BadPivot, Input, Workspace, eliminate};
 use self::symbolic::Tree;
-use super::factor::{Counts, FactorError};
+use super::factor::{Counts, FactorError, Form};
 use super::ordering::Ordering;
 use super::sparse::{BlockGraph, BlockMatrix};
 
@@ -83,19 +83,25 @@ impl Symbolic {
     }
 
     /// Factorises a matrix on the analysed graph.
-    pub fn factorise(self: &Arc<Self>, a: &BlockMatrix, threads: usize) -> Result<Numeric, FactorError> {
+    pub fn factorise(
+        self: &Arc<Self>,
+        a: &BlockMatrix,
+        form: Form,
+        threads: usize,
+    ) -> Result<Numeric, FactorError> {
         let mut l = self.storage()?;
+        let input = Input { values: &a.values, form };
         let result = if threads > 1 {
-            self.eliminate_tasks(&a.values, &mut l, threads)
+            self.eliminate_tasks(input, &mut l, threads)
         } else {
-            self.eliminate_all(&a.values, &mut l)
+            self.eliminate_all(input, &mut l)
         };
         // Also on failure: the panels go back when this is dropped.
         let numeric = Numeric { symbolic: Arc::clone(self), l };
         let Err((s, pivot)) = result else { return Ok(numeric) };
         let (tree, b) = (&self.tree, self.tree.block);
         let node = tree.node_at[tree.supernodes[s].begin + pivot.row / b] as usize;
-        Err(FactorError::NotPositiveDefinite { node, dof: pivot.row % b, pivot: pivot.value })
+        Err(form.bad_pivot(node, pivot.row % b, pivot.value))
     }
 
     /// Memory for the panels, holding any values.
@@ -115,10 +121,10 @@ impl Symbolic {
         lock(&self.workspaces).pop().unwrap_or_else(|| Workspace::new(self.width))
     }
 
-    fn eliminate_all(&self, values: &[f64], l: &mut [f64]) -> Result<(), (usize, BadPivot)> {
+    fn eliminate_all(&self, input: Input<'_>, l: &mut [f64]) -> Result<(), (usize, BadPivot)> {
         let mut workspace = self.workspace();
         let last = self.tree.supernodes.len().saturating_sub(1);
-        let result = self.eliminate_range((0, last), values, l, Vec::new(), &mut workspace);
+        let result = self.eliminate_range((0, last), input, l, Vec::new(), &mut workspace);
         lock(&self.workspaces).push(workspace);
         result.map(|_| ())
     }
@@ -128,7 +134,7 @@ impl Symbolic {
     fn eliminate_range(
         &self,
         (first, last): (usize, usize),
-        values: &[f64],
+        input: Input<'_>,
         mut panels: &mut [f64],
         mut waiting: Vec<Update>,
         workspace: &mut Workspace,
@@ -138,7 +144,7 @@ impl Symbolic {
                 panels.split_at_mut(node.width * (node.width + node.border) * self.tree.block.pow(2));
             panels = rest;
             let children = waiting.len() - node.children;
-            let update = eliminate(&self.tree, node, values, panel, &waiting[children..], workspace)
+            let update = eliminate(&self.tree, node, input, panel, &waiting[children..], workspace)
                 .map_err(|pivot| (s, pivot))?;
             waiting.drain(children..).for_each(|(_, update)| workspace.give(update));
             if node.parent.is_some() {
@@ -150,7 +156,7 @@ impl Symbolic {
 
     fn eliminate_tasks(
         &self,
-        values: &[f64],
+        input: Input<'_>,
         l: &mut [f64],
         threads: usize,
     ) -> Result<(), (usize, BadPivot)> {
@@ -163,7 +169,7 @@ impl Symbolic {
                 let mut waiting = std::mem::take(&mut *lock(&task.updates));
                 waiting.sort_unstable_by_key(|(s, _)| *s);
                 let mut panels = lock(&task.panels);
-                match self.eliminate_range(task.fronts, values, &mut panels, waiting, &mut workspace) {
+                match self.eliminate_range(task.fronts, input, &mut panels, waiting, &mut workspace) {
                     Ok(updates) => {
                         let Some(parent) = task.parent else { break };
                         lock(&tasks[parent].updates).extend(updates);

@@ -38,6 +38,16 @@ impl Numeric {
         }
     }
 
+    /// Number of negative pivots.
+    pub fn negative_pivots(&self) -> usize {
+        let b = self.symbolic.tree.block;
+        let negative = |node: &Supernode| {
+            let below = (node.width + node.border) * b;
+            self.panel(node).0.iter().step_by(below + 1).take(node.width * b).filter(|l| **l < 0.0).count()
+        };
+        self.symbolic.tree.supernodes.iter().map(negative).sum()
+    }
+
     /// Calls `f(row of the matrix, row in the order of elimination)` for every row.
     fn permute(&self, mut f: impl FnMut(usize, usize)) {
         let b = self.symbolic.tree.block;
@@ -86,7 +96,8 @@ impl Numeric {
             let top = &mut y[node.begin * b..][..width];
             for (j, column) in panel.chunks_exact(width + border.len()).enumerate().rev() {
                 let sum = dot(&column[j + 1..width], &top[j + 1..]) + dot(&column[width..], &border);
-                top[j] = (top[j] - sum) / column[j];
+                // S: the sign of the pivot.
+                top[j] = (top[j] * column[j].signum() - sum) / column[j];
             }
         }
     }
@@ -123,6 +134,11 @@ impl Numeric {
             }
             let below = MatRef::from_row_major_slice(&border, rows.len() * b, columns);
             let top = &mut y[node.begin * b * columns..][..width * columns];
+            for (j, top) in top.chunks_exact_mut(columns).enumerate() {
+                if l11[(j, j)] < 0.0 {
+                    top.iter_mut().for_each(|y| *y = -*y); // S
+                }
+            }
             let mut top = MatMut::from_row_major_slice_mut(top, width, columns);
             matmul(top.as_mut(), Accum::Add, l21.transpose(), below, -1.0, Par::Seq);
             solve_upper_triangular_in_place(l11.transpose(), top, Par::Seq);
