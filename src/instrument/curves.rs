@@ -266,8 +266,9 @@ fn points(
         match cells {
             [None, None] => {}
             [Some(x), Some(y)] => {
-                let cut = |c: &str| matches!(number(c, context.decimal), Number::Broken);
-                if last && cut(y) && !cut(x) && y.trim_matches(['+', '-', '.', ',']).is_empty() {
+                // The file ends behind the sign or the mark of its last number.
+                let cut = |c: &str| c.trim_matches(['+', '-', '.', ',']).is_empty();
+                if last && cut(y) && !cut(x) {
                     out.findings.push(truncated(row, context));
                     continue;
                 }

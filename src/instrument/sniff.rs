@@ -40,8 +40,11 @@ pub(super) fn folded(cell: &str) -> Cow<'_, str> {
 pub(super) fn number(cell: &str, decimal: char) -> Number {
     let text = folded(cell);
     let allowed = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | 'e' | 'E') || c == decimal;
-    if text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-') || c == decimal)
+    let has_digit = text.contains(|c: char| c.is_ascii_digit());
+    if has_digit
+        && text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-') || c == decimal)
         && text.chars().all(allowed)
+        && !is_date(&text)
     {
         let parsed = if decimal == ',' { text.replace(',', ".").parse() } else { text.parse::<f64>() };
         return match parsed {
@@ -67,11 +70,16 @@ pub(super) fn number(cell: &str, decimal: char) -> Number {
     ) {
         return Number::NotFinite;
     }
-    let starts = text.trim_start_matches(['+', '-', '.', ',']).starts_with(|c: char| c.is_ascii_digit());
     // "20 cm" and "2024-01-05" are not meant as numbers; "0,35" and "1.2.3" are.
+    let starts = text.trim_start_matches(['+', '-', '.', ',']).starts_with(|c: char| c.is_ascii_digit());
     let numberish =
         |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',' | ';' | '\t' | 'e' | 'E');
-    if starts && text.chars().all(numberish) { Number::Broken } else { Number::Text }
+    if starts && text.chars().all(numberish) && !is_date(&text) { Number::Broken } else { Number::Text }
+}
+
+/// Digits, a dash, digits: a date or a range, not a number with an exponent.
+fn is_date(text: &str) -> bool {
+    text.as_bytes().windows(2).any(|w| w[0].is_ascii_digit() && w[1] == b'-')
 }
 
 /// Decides the format of a text, within what is already `delimiter`/`decimal` known.
@@ -160,6 +168,8 @@ mod tests {
         assert_eq!(number("NaN", '.'), Number::NotFinite);
         assert_eq!(number("1e999", '.'), Number::NotFinite);
         assert_eq!(number("20 cm", '.'), Number::Text);
+        assert_eq!(number("2024-01-05", '.'), Number::Text);
+        assert_eq!(number("-", '.'), Number::Text);
         assert_eq!(number("", '.'), Number::Text);
     }
 
