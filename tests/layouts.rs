@@ -213,6 +213,28 @@ fn fast_values_give_bending_and_shear_rigidity() {
     assert!(content.findings.iter().any(|f| f.code == "R104" && f.message.contains("E100-1")));
 }
 
+/// What was inferred can be read: the words of `kesf check -v`.
+#[test]
+fn inference_is_told() {
+    let text = "direction;warp\nK (1/cm);M (gf·cm/cm);what\n0,0;0,0;a\n1,5;0,1;b\n2,5;0,2;c\n";
+    let told = read("a.csv", text).inference.join("\n");
+    for expected in [
+        "encoding UTF-8",
+        "delimiter ';', decimal mark ','",
+        "dialect kesf",
+        "\"K\" and \"M\": bending",
+        "width 0.2 m",
+    ] {
+        assert!(told.contains(expected), "{expected} is not in {told}");
+    }
+    let unknown = read_as("a.csv", "sample,x\nfoo (1/cm),moment (gf)\n0,0\n1,1\n", &ReadSettings::default())
+        .unwrap_err();
+    assert_eq!(unknown.code(), "R006");
+    assert!(unknown.to_string().contains("\"kesf\" comes closest"), "{unknown}");
+    assert!(unknown.to_string().contains("foo"), "{unknown}");
+    assert!(!unknown.hint().is_empty());
+}
+
 /// Two sheets: side-by-side curves with typed numbers, and a result table.
 #[test]
 fn a_workbook_is_read_like_text() {
