@@ -110,6 +110,8 @@ pub enum TableColumn {
     Sd,
     /// Number of repeats of the row.
     N,
+    /// How the row was had: `inferred` marks a value that was not measured (long form).
+    Status,
 }
 
 /// The words and marks of one kind of file. A laboratory with a layout of its own writes one.

@@ -186,10 +186,11 @@ impl Table<'_, '_> {
     fn long_row(&mut self, row: &Row<'_>) -> Result<(), ReadError> {
         let Some(index) = self.meta(TableColumn::Parameter) else { return Ok(()) };
         let Some(name) = row.get(index) else { return Ok(()) };
-        let Some(p) = parameter_column(name, self.context.vocabulary) else {
+        let Some(mut p) = parameter_column(name, self.context.vocabulary) else {
             self.ignored.push(name.to_string());
             return Ok(());
         };
+        p.inferred |= self.text(row, TableColumn::Status).is_some_and(|t| normalised(t) == "inferred");
         let (fabric, direction, n) = (self.fabric(row), self.direction(row)?, self.repeats(row)?);
         let unit_at = self.meta(TableColumn::Unit).unwrap_or(index);
         let text = self.text(row, TableColumn::Unit).or(p.unit.as_deref());
