@@ -1,0 +1,198 @@
+//! Cholesky factorisation of symmetric block matrices: analyse a graph once, factorise any
+//! number of matrices on it, solve with any number of right-hand sides.
+//!
+//! Constrained dofs stay in the matrix as unit rows (zero row and column, a positive
+//! diagonal), so that one analysis serves every set of supports.
+
+mod general;
+
+use std::sync::Arc;
+
+use super::multifrontal;
+use super::ordering::{Ordering, nested_dissection};
+use super::sparse::{BlockGraph, BlockMatrix};
+
+/// Largest number of dofs per node: the shell's six.
+pub const MAX_BLOCK: usize = 6;
+
+/// Which factorisation an [`Analysis`] prepares.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Path {
+    /// The faster one of the others for the graph at hand.
+    #[default]
+    Auto,
+    /// The general sparse factorisation of the crate `faer`: the permanent cross-check.
+    Faer,
+    /// The multifrontal factorisation on the graph of nodes, over `faer`'s dense kernels.
+    Multifrontal,
+}
+
+/// Why there is no factor.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FactorError {
+    /// A pivot is zero, negative or not a number.
+    #[error(
+        "N001 the stiffness matrix is not positive definite: pivot {pivot:e} at node {node}, dof {dof}; \
+         look for a missing support there, a zero stiffness or a turned-over element"
+    )]
+    NotPositiveDefinite {
+        /// Node of the pivot, from 0.
+        node: usize,
+        /// Dof of that node, from 0.
+        dof: usize,
+        /// The pivot that should have been positive.
+        pivot: f64,
+    },
+    /// The factor does not fit in memory.
+    #[error("N002 no memory for a factor of {bytes} bytes; use a coarser mesh or the iterative solver")]
+    OutOfMemory {
+        /// Bytes of the factor; 0 where even the analysis did not fit.
+        bytes: usize,
+    },
+}
+
+/// Absolute counts of a factorisation, for comparison with other solvers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Counts {
+    /// Rows of the matrix.
+    pub rows: usize,
+    /// Entries of the lower triangle of the matrix, all blocks counted as full.
+    pub nnz_a: usize,
+    /// Entries of the factor L, its diagonal included, without padding.
+    pub nnz_l: usize,
+    /// Entries of L as stored, with the padding of merged supernodes.
+    pub stored: usize,
+    /// Floating-point operations of the numeric phase, without padding: the sum over the
+    /// columns of L of the square of their entries.
+    pub flops: f64,
+    /// Bytes of the stored factor.
+    pub bytes: usize,
+}
+
+/// An order of elimination and the structure of the factor, for every matrix with the same
+/// graph and block size. Share it between threads by reference or `Arc`.
+#[derive(Debug)]
+pub struct Analysis {
+    graph: Arc<BlockGraph>,
+    block: usize,
+    symbolic: Symbolic,
+}
+
+#[derive(Debug)]
+enum Symbolic {
+    General(Arc<general::Symbolic>),
+    Multifrontal(Arc<multifrontal::Tree>),
+}
+
+/// Orders the nodes and finds the structure of the factor.
+///
+/// With `coordinates` (one point per node, any unit) the order is a nested dissection, else an
+/// approximate minimum degree of the graph of nodes.
+///
+/// # Errors
+/// [`FactorError::OutOfMemory`].
+///
+/// # Panics
+/// If `block` is not 1 to [`MAX_BLOCK`], or there are not as many points as nodes.
+pub fn analyse(
+    graph: &Arc<BlockGraph>,
+    block: usize,
+    coordinates: Option<&[[f64; 3]]>,
+    path: Path,
+) -> Result<Analysis, FactorError> {
+    analyse_ordered(graph, block, &order(graph, coordinates)?, path)
+}
+
+/// [`analyse`] with a given order of elimination.
+///
+/// # Errors
+/// [`FactorError::OutOfMemory`].
+///
+/// # Panics
+/// If `block` is not 1 to [`MAX_BLOCK`], or the order is not of the graph's nodes.
+pub fn analyse_ordered(
+    graph: &Arc<BlockGraph>,
+    block: usize,
+    order: &Ordering,
+    path: Path,
+) -> Result<Analysis, FactorError> {
+    assert!((1..=MAX_BLOCK).contains(&block), "{block} dofs per node");
+    assert_eq!(order.node_at.len(), graph.nodes, "an order of the graph's nodes");
+    let symbolic = match path {
+        Path::Faer => Symbolic::General(Arc::new(general::Symbolic::new(graph, block, order)?)),
+        Path::Auto | Path::Multifrontal => {
+            Symbolic::Multifrontal(Arc::new(multifrontal::Tree::new(graph, block, order)))
+        }
+    };
+    Ok(Analysis { graph: Arc::clone(graph), block, symbolic })
+}
+
+/// The order of elimination that [`analyse`] takes.
+///
+/// # Errors
+/// [`FactorError::OutOfMemory`].
+pub fn order(graph: &BlockGraph, coordinates: Option<&[[f64; 3]]>) -> Result<Ordering, FactorError> {
+    match coordinates {
+        Some(points) => Ok(nested_dissection(graph, points)),
+        None => general::minimum_degree(graph),
+    }
+}
+
+impl Analysis {
+    /// Factorises a matrix on the analysed graph, with at most `threads` threads.
+    ///
+    /// # Errors
+    /// [`FactorError::NotPositiveDefinite`] at the first pivot that is not positive,
+    /// [`FactorError::OutOfMemory`].
+    ///
+    /// # Panics
+    /// If the matrix has another block size or number of blocks than was analysed.
+    pub fn factorise(&self, a: &BlockMatrix, threads: usize) -> Result<Factor, FactorError> {
+        assert_eq!(a.block, self.block, "the block size that was analysed");
+        assert!(Arc::ptr_eq(&a.graph, &self.graph) || *a.graph == *self.graph, "the graph that was analysed");
+        match &self.symbolic {
+            Symbolic::General(symbolic) => {
+                Ok(Factor(Numeric::General(symbolic.factorise(a, threads.max(1))?)))
+            }
+            Symbolic::Multifrontal(tree) => Ok(Factor(Numeric::Multifrontal(tree.factorise(a, threads)?))),
+        }
+    }
+
+    /// Counts of the factorisation.
+    pub fn counts(&self) -> Counts {
+        let square = self.block * self.block;
+        let counts = match &self.symbolic {
+            Symbolic::General(symbolic) => symbolic.counts(),
+            Symbolic::Multifrontal(tree) => tree.counts(),
+        };
+        Counts {
+            rows: self.graph.nodes * self.block,
+            nnz_a: self.graph.row_idx.len() * square - self.graph.nodes * (square - self.block) / 2,
+            bytes: counts.stored * size_of::<f64>(),
+            ..counts
+        }
+    }
+}
+
+/// The factor of one matrix.
+#[derive(Debug)]
+pub struct Factor(Numeric);
+
+#[derive(Debug)]
+enum Numeric {
+    General(general::Numeric),
+    Multifrontal(multifrontal::Numeric),
+}
+
+impl Factor {
+    /// Solves `A x = b` in place for `columns` right-hand sides, one after the other in `x`.
+    ///
+    /// # Panics
+    /// If `x` does not have `columns` times the rows of the matrix.
+    pub fn solve(&self, x: &mut [f64], columns: usize) {
+        match &self.0 {
+            Numeric::General(numeric) => numeric.solve(x, columns),
+            Numeric::Multifrontal(numeric) => numeric.solve(x, columns),
+        }
+    }
+}

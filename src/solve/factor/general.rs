@@ -1,0 +1,184 @@
+//! The general path: `faer`'s sparse supernodal Cholesky over an order of the nodes.
+
+use std::sync::Arc;
+
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::linalg::solvers::LltError;
+use faer::perm::PermRef;
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::amd;
+use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, MatMut, Par, Side};
+
+use super::{Counts, FactorError};
+use crate::solve::ordering::Ordering;
+use crate::solve::sparse::{BlockGraph, BlockMatrix};
+
+/// Approximate minimum degree order of the graph of nodes.
+pub fn minimum_degree(graph: &BlockGraph) -> Result<Ordering, FactorError> {
+    let n = graph.nodes;
+    let row_idx: Vec<usize> = graph.row_idx.iter().map(|&i| i as usize).collect();
+    let pattern = SymbolicSparseColMatRef::new_checked(n, n, &graph.col_ptr, None, &row_idx);
+    let (mut node_at, mut step_of) = (vec![0usize; n], vec![0usize; n]);
+    let mut memory = scratch(amd::order_scratch::<usize>(n, row_idx.len()))?;
+    amd::order(&mut node_at, &mut step_of, pattern, amd::Control::default(), MemStack::new(&mut memory))
+        .map_err(|_| FactorError::OutOfMemory { bytes: 0 })?;
+    Ok(Ordering::new(node_at.into_iter().map(|node| node as u32).collect()))
+}
+
+fn scratch(need: StackReq) -> Result<MemBuffer, FactorError> {
+    MemBuffer::try_new(need).map_err(|_| FactorError::OutOfMemory { bytes: need.size_bytes() })
+}
+
+/// Structure of the factor by dofs.
+#[derive(Debug)]
+pub struct Symbolic {
+    block: usize,
+    /// The lower triangle of the matrix by dofs; the order of the values is that of
+    /// [`for_each_entry`].
+    col_ptr: Vec<usize>,
+    row_idx: Vec<usize>,
+    cholesky: SymbolicCholesky<usize>,
+}
+
+/// Calls `f(row, index into the blocks' values)` for the lower triangle of dof column `c` of
+/// node `j`, rows ascending.
+fn for_each_entry(graph: &BlockGraph, block: usize, j: usize, c: usize, mut f: impl FnMut(usize, usize)) {
+    for k in graph.col_ptr[j]..graph.col_ptr[j + 1] {
+        let i = graph.row_idx[k] as usize;
+        for r in if i == j { c } else { 0 }..block {
+            f(i * block + r, (k * block + c) * block + r);
+        }
+    }
+}
+
+impl Symbolic {
+    pub fn new(graph: &BlockGraph, block: usize, order: &Ordering) -> Result<Self, FactorError> {
+        let n = graph.nodes * block;
+        let (mut col_ptr, mut row_idx) = (vec![0], Vec::new());
+        for j in 0..graph.nodes {
+            for c in 0..block {
+                for_each_entry(graph, block, j, c, |row, _| row_idx.push(row));
+                col_ptr.push(row_idx.len());
+            }
+        }
+        let dofs = |nodes: &[u32]| -> Vec<usize> {
+            nodes.iter().flat_map(|&node| (0..block).map(move |d| node as usize * block + d)).collect()
+        };
+        let (dof_at, step_of) = (dofs(&order.node_at), dofs(&order.step_of));
+        let params = CholeskySymbolicParams {
+            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+            ..Default::default()
+        };
+        let cholesky = factorize_symbolic_cholesky(
+            SymbolicSparseColMatRef::new_checked(n, n, &col_ptr, None, &row_idx),
+            Side::Lower,
+            SymmetricOrdering::Custom(PermRef::new_checked(&dof_at, &step_of, n)),
+            params,
+        )
+        .map_err(|_| FactorError::OutOfMemory { bytes: 0 })?;
+        Ok(Self { block, col_ptr, row_idx, cholesky })
+    }
+
+    /// The supernodes; the simplicial form is never asked for.
+    fn supernodes(&self) -> Option<&SymbolicSupernodalCholesky<usize>> {
+        match self.cholesky.raw() {
+            SymbolicCholeskyRaw::Supernodal(supernodes) => Some(supernodes),
+            SymbolicCholeskyRaw::Simplicial(_) => None,
+        }
+    }
+
+    pub fn factorise(self: &Arc<Self>, a: &BlockMatrix, threads: usize) -> Result<Numeric, FactorError> {
+        let n = self.col_ptr.len() - 1;
+        let mut values = Vec::with_capacity(self.row_idx.len());
+        for j in 0..a.graph.nodes {
+            for c in 0..self.block {
+                for_each_entry(&a.graph, self.block, j, c, |_, at| values.push(a.values[at]));
+            }
+        }
+        let pattern = SymbolicSparseColMatRef::new_checked(n, n, &self.col_ptr, None, &self.row_idx);
+        let parallel = parallel(threads);
+        let mut l = Vec::new();
+        let len = self.cholesky.len_val();
+        l.try_reserve_exact(len).map_err(|_| FactorError::OutOfMemory { bytes: len * size_of::<f64>() })?;
+        l.resize(len, 0.0);
+        let mut memory =
+            scratch(self.cholesky.factorize_numeric_llt_scratch::<f64>(parallel, Default::default()))?;
+        let result = self
+            .cholesky
+            .factorize_numeric_llt(
+                &mut l,
+                SparseColMatRef::new(pattern, &values),
+                Side::Lower,
+                Default::default(),
+                parallel,
+                MemStack::new(&mut memory),
+                Default::default(),
+            )
+            .map(|_| ());
+        match result {
+            Ok(()) => Ok(Numeric { symbolic: Arc::clone(self), l }),
+            Err(LltError::NonPositivePivot { index }) => Err(self.not_positive(index, &l)),
+        }
+    }
+
+    /// The error of a pivot that is not positive: the factorisation stops with the pivot in
+    /// its place on the diagonal of its supernode.
+    fn not_positive(&self, step: usize, l: &[f64]) -> FactorError {
+        let pivot = self.supernodes().map_or(f64::NAN, |supernodes| {
+            let s = supernodes.supernode_begin().partition_point(|&begin| begin <= step) - 1;
+            let (begin, end) = (supernodes.supernode_begin()[s], supernodes.supernode_end()[s]);
+            let height = end - begin + supernodes.supernode(s).pattern().len();
+            l[supernodes.col_ptr_for_val()[s] + (step - begin) * (height + 1)]
+        });
+        let dof = self.cholesky.perm().map_or(step, |perm| perm.arrays().0[step]);
+        FactorError::NotPositiveDefinite { node: dof / self.block, dof: dof % self.block, pivot }
+    }
+
+    /// `nnz_l`, `stored` and `flops`. The counts without padding are not known here: they are
+    /// those of the stored factor.
+    pub fn counts(&self) -> Counts {
+        let (mut nnz_l, mut flops) = (0, 0.0);
+        if let Some(supernodes) = self.supernodes() {
+            for s in 0..supernodes.n_supernodes() {
+                let width = supernodes.supernode_end()[s] - supernodes.supernode_begin()[s];
+                let height = width + supernodes.supernode(s).pattern().len();
+                for entries in height - width + 1..=height {
+                    nnz_l += entries;
+                    flops += (entries * entries) as f64;
+                }
+            }
+        }
+        Counts { nnz_l, stored: self.cholesky.len_val(), flops, ..Counts::default() }
+    }
+}
+
+fn parallel(threads: usize) -> Par {
+    if threads > 1 { Par::rayon(threads) } else { Par::Seq }
+}
+
+/// The values of L.
+#[derive(Debug)]
+pub struct Numeric {
+    symbolic: Arc<Symbolic>,
+    l: Vec<f64>,
+}
+
+impl Numeric {
+    pub fn solve(&self, x: &mut [f64], columns: usize) {
+        let n = self.symbolic.col_ptr.len() - 1;
+        let cholesky = &self.symbolic.cholesky;
+        let mut memory = MemBuffer::new(cholesky.solve_in_place_scratch::<f64>(columns, Par::Seq));
+        LltRef::new(cholesky, &self.l).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(x, n, columns),
+            Par::Seq,
+            MemStack::new(&mut memory),
+        );
+    }
+}
