@@ -57,8 +57,9 @@ impl Marks<'_> {
     pub(super) fn readings(&self, canvas: &mut Canvas, traces: &[Trace]) -> Result<(), ChartError> {
         for (i, trace) in traces.iter().filter(|t| t.emphasised).enumerate() {
             for window in trace.windows.iter().filter(|w| !is_thickness(w)) {
-                // Widths are read at the same abscissa in every direction: the bars stand side by side.
-                let aside = if window.from == window.to { 9.0 * i as f64 } else { 0.0 };
+                // Loop widths are read at the same abscissa in every direction: the bars stand side by side.
+                let same = window.from == window.to && self.test != Test::Tensile;
+                let aside = if same { 9.0 * i as f64 } else { 0.0 };
                 let ends = self.ends(window).map(|p| (p.0 + aside, p.1));
                 self.window(canvas, ends, reading_stroke(trace))?;
             }
@@ -169,6 +170,11 @@ impl Marks<'_> {
 /// The colour of a direction, dark, so that a fit is told from the curve below it.
 pub(super) fn reading_stroke(trace: &Trace) -> Stroke {
     Stroke::solid(darker(palette::direction(trace.direction, 1.0).color, 0.55), 3.6)
+}
+
+/// Whether a trace has windows that are drawn with [`reading_stroke`].
+pub(super) fn has_readings(trace: &Trace) -> bool {
+    trace.emphasised && trace.windows.iter().any(|w| !is_thickness(w))
 }
 
 /// Thicknesses are drawn as lines down to the axis instead.

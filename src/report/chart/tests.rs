@@ -14,6 +14,7 @@ use crate::instrument::{
     self, Conditions, Direction, FabricInfo, Measurement, Origin, Parameter, Source, Test,
 };
 use crate::quantity::{Curve, Estimate};
+use crate::study;
 
 const WARP: Option<Direction> = Some(Direction::Warp);
 const WEFT: Option<Direction> = Some(Direction::Weft);
@@ -283,6 +284,25 @@ fn every_shipped_fabric_has_the_charts_that_its_data_allow() {
             }
         }
     }
+}
+
+#[test]
+fn a_comparison_is_drawn_as_one_line() {
+    let comparison = study::Comparison {
+        name: "bending warp".into(),
+        test: Test::Bending,
+        direction: WARP,
+        rmse: 1e-5,
+        nrmse: 0.02,
+        r2: f64::NAN,
+        n: 4,
+        unit: "N",
+        simulated: Curve::from_points([(0.0, 0.0), (2.0, 4.0), (1.0, 2.0), (2.0, 4.0)]),
+        measured: Curve::default(),
+    };
+    let curve = SimulatedCurve::from(&comparison);
+    assert_eq!(curve.curve, Curve::from_points([(0.0, 0.0), (1.0, 2.0), (2.0, 4.0)]));
+    assert_eq!((curve.rmse, curve.r2), (Some(1e-5), None));
 }
 
 #[test]
