@@ -18,6 +18,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use self::assemble::Update;
 use self::front::{BadPivot, Input, Workspace, eliminate};
 use self::symbolic::Tree;
+pub use self::symbolic::work;
 use super::factor::{Counts, FactorError, Form};
 use super::ordering::Ordering;
 use super::sparse::{BlockGraph, BlockMatrix};
