@@ -1,1 +1,252 @@
-//! (skeleton)
+//! From a parameter sheet to the matrices of a shell section: the paper's Eqs. (4) to (6).
+//!
+//! | matrix | measured | assumed | file |
+//! |---|---|---|---|
+//! | D_m, Eq. (4) | tensile curves, G | which slope, Poisson's ratio | `membrane.rs` |
+//! | D_b, Eq. (5) | B warp, weft (bias) | D12, D66 | `bending.rs` |
+//! | D_s, Eq. (6) | - | χ G_t t | `shear.rs` |
+//!
+//! x is the warp and y the weft. Everything is per unit width, so thickness cancels.
+//! Whatever is not measured is written down in [`Constitutive::used`], and what a reader
+//! could stumble over is a [`Finding`] as well.
+
+mod assumptions;
+mod bending;
+mod membrane;
+mod shear;
+
+use serde::Serialize;
+use thiserror::Error;
+
+use crate::characterise::FabricSheet;
+use crate::finding::Finding;
+use crate::instrument::{Direction, Parameter};
+use crate::quantity::significant;
+use crate::section::{SectionError, ShellSection};
+
+pub use assumptions::{
+    Assumptions, BendingCoupling, ChoiceError, Modulus, PoissonRule, Torsion, TransverseShear,
+};
+
+/// A section with everything that went into it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Constitutive {
+    /// The matrices, checked.
+    pub section: ShellSection,
+    /// Inputs and assumptions in the order in which they were used.
+    pub used: Vec<Used>,
+    /// What a reader of the section must know.
+    pub findings: Vec<Finding>,
+}
+
+/// One input or assumption behind a section.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Used {
+    /// What it is, e.g. `tensile modulus`.
+    pub name: &'static str,
+    /// Its value with unit, e.g. `warp 5120 N/m, weft 3080 N/m`.
+    pub value: String,
+    /// `measured: ...` or `assumed: ...` and why.
+    pub source: String,
+}
+
+/// Why a sheet gives no section.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ConstitutiveError {
+    /// C004: a value without which there is nothing to say.
+    #[error("C004 {fabric} has no {what}: {cure}")]
+    Missing {
+        /// Name of the fabric.
+        fabric: String,
+        /// What is missing.
+        what: String,
+        /// What to do.
+        cure: &'static str,
+    },
+    /// C005: a stiffness that is zero, negative or not a number.
+    #[error("C005 {fabric}: {what} is {value:e} {unit}, a positive number is needed: {cure}")]
+    NotPositive {
+        /// Name of the fabric.
+        fabric: String,
+        /// Which stiffness.
+        what: String,
+        /// Its value (SI).
+        value: f64,
+        /// The SI unit.
+        unit: &'static str,
+        /// What to do.
+        cure: &'static str,
+    },
+    /// C006: Poisson's ratio is outside the range in which energy is positive.
+    #[error("C006 Poisson's ratio {poisson} ({rule}) is too large: |nu| < {limit} is needed for {fabric}")]
+    Poisson {
+        /// Name of the fabric.
+        fabric: String,
+        /// The given ratio.
+        poisson: f64,
+        /// The rule.
+        rule: PoissonRule,
+        /// The limit of its absolute value.
+        limit: f64,
+    },
+    /// C001 to C003: the matrices do not describe a stable sheet.
+    #[error("{source} ({fabric})")]
+    Section {
+        /// Name of the fabric.
+        fabric: String,
+        /// What is wrong with the matrices.
+        source: SectionError,
+    },
+}
+
+impl ConstitutiveError {
+    /// The stable code.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Missing { .. } => "C004",
+            Self::NotPositive { .. } => "C005",
+            Self::Poisson { .. } => "C006",
+            Self::Section { source, .. } => match source {
+                SectionError::NotFinite { .. } => "C001",
+                SectionError::NotSymmetric { .. } => "C002",
+                SectionError::NotPositiveDefinite { .. } => "C003",
+            },
+        }
+    }
+}
+
+/// The shell section of a fabric: D_m (N/m), D_b (N·m), D_s (N/m), symmetric and positive definite
+/// (D_b semidefinite with `torsion = "neglect"`), with every assumption that was made.
+///
+/// # Errors
+/// No bending rigidity or areal density, a stiffness that is not positive, or a Poisson ratio that
+/// makes energy from nothing; see [`ConstitutiveError`].
+///
+/// ```
+/// use kesf::characterise::{FabricSheet, Key};
+/// use kesf::constitutive::{section, Assumptions};
+/// use kesf::instrument::{Direction, Parameter};
+/// use kesf::quantity::Estimate;
+///
+/// // Known from a table only: B = 0.118 gf·cm²/cm, W = 12.38 mg/cm², T0 = 0.497 mm.
+/// let mut sheet = FabricSheet { name: "broad".into(), ..Default::default() };
+/// for (parameter, kes) in [(Parameter::B, 0.118), (Parameter::W, 12.38), (Parameter::T0, 0.497)] {
+///     let value = Estimate::single(kes * parameter.kes_factor());
+///     sheet.values.insert(Key { parameter, direction: None }, value);
+/// }
+/// let broad = section(&sheet, &Assumptions::default()).unwrap();
+/// // B is D11 itself: 0.118 · 9.80665e-5 N·m.
+/// assert!((broad.section.d_b[(0, 0)] - 1.1571847e-5).abs() < 1e-12);
+/// // That the tensile stiffness is a stand-in is said.
+/// assert!(broad.findings.iter().any(|f| f.code == "C012"));
+/// ```
+pub fn section(sheet: &FabricSheet, assumptions: &Assumptions) -> Result<Constitutive, ConstitutiveError> {
+    let mut notes = Notes { sheet, used: Vec::new(), findings: Vec::new() };
+    let g = shear::in_plane(assumptions, &mut notes)?;
+    let thickness = thickness(assumptions, &mut notes)?;
+    let d_m = membrane::matrix(g, assumptions, &mut notes)?;
+    let d_b = bending::matrix(g, thickness, assumptions, &mut notes)?;
+    let d_s = shear::transverse(g, assumptions, &mut notes)?;
+    let areal_density = areal_density(assumptions, &mut notes)?;
+    let section = ShellSection { d_m, d_b, d_s, areal_density, thickness }
+        .checked()
+        .map_err(|source| ConstitutiveError::Section { fabric: sheet.name.clone(), source })?;
+    Ok(Constitutive { section, used: notes.used, findings: notes.findings })
+}
+
+/// T0, else Tm, else `fabric.toml`, else the stand-in (m).
+fn thickness(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, ConstitutiveError> {
+    let sheet = notes.sheet;
+    let measured = [Parameter::T0, Parameter::Tm]
+        .into_iter()
+        .find_map(|p| Some((sheet.get(p, None)?.mean, format!("measured: {p}"))));
+    let stated = || sheet.info.thickness.map(|t| (t, "measured: fabric.toml".to_string()));
+    let (value, source) = measured.or_else(stated).unwrap_or_else(|| {
+        let t = assumptions.thickness;
+        notes.finding(
+            "C014",
+            format!("no thickness is known; {t} stands in for it (statics do not depend on it)"),
+        );
+        (t.si(), "assumed: not measured".to_string())
+    });
+    notes.positive("thickness", value, "m", "measure it (KES-FB3) or correct it in fabric.toml")?;
+    notes.used("thickness", format!("{} mm", significant(value * 1e3)), source);
+    Ok(value)
+}
+
+/// W, else `fabric.toml`, else what is assumed explicitly (kg/m²).
+fn areal_density(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, ConstitutiveError> {
+    let sheet = notes.sheet;
+    let measured = sheet.get(Parameter::W, None).map(|w| (w.mean, "measured: W"));
+    let stated = || sheet.info.areal_density.map(|w| (w, "measured: fabric.toml"));
+    let assumed = || assumptions.areal_density.map(|w| (w.si(), "assumed: not measured"));
+    let Some((value, source)) = measured.or_else(stated).or_else(assumed) else {
+        return Err(notes.missing(
+            "areal density",
+            "weigh the specimen and write areal_density = \"150 g/m²\" in its fabric.toml, or pass --areal-density",
+        ));
+    };
+    notes.positive("areal density", value, "kg/m²", "correct it in its fabric.toml or result table")?;
+    notes.used("areal density", format!("{} g/m²", significant(value * 1e3)), source);
+    Ok(value)
+}
+
+/// What is written down on the way: the sheet, the inputs used and the findings.
+struct Notes<'a> {
+    sheet: &'a FabricSheet,
+    used: Vec<Used>,
+    findings: Vec<Finding>,
+}
+
+impl Notes<'_> {
+    fn used(&mut self, name: &'static str, value: impl Into<String>, source: impl Into<String>) {
+        self.used.push(Used { name, value: value.into(), source: source.into() });
+    }
+
+    fn finding(&mut self, code: &'static str, text: String) {
+        let finding = Finding::new(code, format!("{}: {text}", self.sheet.name));
+        // A value that is looked at twice is reported once.
+        if !self.findings.contains(&finding) {
+            self.findings.push(finding);
+        }
+    }
+
+    fn missing(&self, what: impl Into<String>, cure: &'static str) -> ConstitutiveError {
+        ConstitutiveError::Missing { fabric: self.sheet.name.clone(), what: what.into(), cure }
+    }
+
+    fn positive(
+        &self,
+        what: &str,
+        value: f64,
+        unit: &'static str,
+        cure: &'static str,
+    ) -> Result<(), ConstitutiveError> {
+        if value.is_finite() && value > 0.0 {
+            return Ok(());
+        }
+        let (fabric, what) = (self.sheet.name.clone(), what.to_string());
+        Err(ConstitutiveError::NotPositive { fabric, what, value, unit, cure })
+    }
+
+    /// Warp and weft value of a parameter. One value for the fabric, or for one direction only,
+    /// stands for both, with a finding.
+    fn warp_weft(&mut self, parameter: Parameter) -> Option<[f64; 2]> {
+        let get = |direction| self.sheet.get(parameter, direction).map(|e| e.mean);
+        let known = match (get(Some(Direction::Warp)), get(Some(Direction::Weft)), get(None)) {
+            (Some(warp), Some(weft), _) => return Some([warp, weft]),
+            (_, _, Some(mean)) => (mean, "one value for the fabric"),
+            (Some(warp), None, None) => (warp, "the warp value only"),
+            (None, Some(weft), None) => (weft, "the weft value only"),
+            (None, None, None) => return None,
+        };
+        self.finding(
+            "C010",
+            format!("{parameter} is known as {}; it stands for warp and weft alike", known.1),
+        );
+        Some([known.0; 2])
+    }
+}
+
+#[cfg(test)]
+mod tests;

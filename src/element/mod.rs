@@ -1,1 +1,61 @@
-//! (skeleton)
+//! The four-node flat shell element: cell-based strain smoothing (CS-FEM) for membrane and
+//! bending, MITC4 transverse shear, drilling rotation, rigid-link warp correction.
+//!
+//! Pure functions of corner coordinates, [`ShellSection`](crate::section::ShellSection) and
+//! [`Formulation`]: no state, no loads. Nodal dofs are `(u, v, w, θx, θy, θz)`, rotations by the
+//! right-hand rule.
+#![doc = include_str!("theory.md")]
+
+mod drilling;
+mod load;
+mod mass;
+mod prepared;
+mod quad4;
+mod shear;
+mod smoothing;
+
+pub use load::{gravity_load, pressure_load};
+pub use mass::{consistent_mass, lumped_mass};
+pub use prepared::{MaterialAxisError, Matrix12, Matrix24, Prepared, Vector24};
+pub use quad4::{Frame, GAUSS_2X2, GaussPoint, gauss_point, shape};
+pub use smoothing::{Cell, Cells};
+
+/// How an element is formulated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Formulation {
+    /// Smoothing cells for membrane and bending.
+    pub cells: Cells,
+    /// Stabilisation α of the transverse shear, `1/S_i + α h² / (3.5 B_i)` with `h` the longest
+    /// side: 0 as the seed paper has it, 0.05 by default. It removes the loss of digits of very
+    /// thin sheets.
+    pub shear_stabilisation: f64,
+    /// What resists the rotation θz about the normal.
+    pub drilling: Drilling,
+}
+
+/// The stiffness given to the drilling rotation θz.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drilling {
+    /// Penalty on `θz - (v,x - u,y)/2` with `γ = 4.8 B / (t_b² + A)`: keeps rigid rotations and
+    /// does not lock curved shells. `A` is the element's area, `t_b² = 12 B / D_m`.
+    Scaled,
+    /// The same penalty with `γ = D_m33` (Hughes and Brezzi 1989).
+    HughesBrezzi,
+    /// The seed's spring: this factor (1e-3) of the largest diagonal term, on every θz. It strains
+    /// rigid rotations and stiffens curved shells; for flat sheets it is harmless.
+    Seed(f64),
+}
+
+impl Default for Formulation {
+    /// Four cells, α = 0.05, scaled drilling penalty.
+    fn default() -> Self {
+        Self { cells: Cells::grid(2, 2), shear_stabilisation: 0.05, drilling: Drilling::Scaled }
+    }
+}
+
+impl Formulation {
+    /// The seed paper's element: four cells, no shear stabilisation, drilling spring 1e-3.
+    pub fn seed() -> Self {
+        Self { cells: Cells::grid(2, 2), shear_stabilisation: 0.0, drilling: Drilling::Seed(1e-3) }
+    }
+}

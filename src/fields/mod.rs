@@ -1,1 +1,191 @@
-//! (skeleton)
+//! What the displacements mean: resultants, values at points and along lines.
+//!
+//! Resultants are in material axes (x = warp, y = weft), so that they compare with the section's
+//! own stiffnesses whatever the mesh: `membrane` N (N/m), `moment` M (N), `shear` Q (N/m).
+
+mod probe;
+
+use nalgebra::{DMatrix, Matrix2, Matrix3, Vector2, Vector3};
+
+pub use probe::{Locator, ProbeValue, profile};
+
+use crate::element::{Cells, Prepared, Vector24};
+use crate::model::{Model, ModelError};
+
+/// Stress resultants in material axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Resultants {
+    /// Membrane forces `[N_x, N_y, N_xy]` (N/m).
+    pub membrane: [f64; 3],
+    /// Moments `[M_x, M_y, M_xy]` (N·m/m = N); positive stretches the +z face.
+    pub moment: [f64; 3],
+    /// Transverse shear forces `[Q_x, Q_y]` (N/m).
+    pub shear: [f64; 2],
+}
+
+impl Resultants {
+    fn add(&mut self, other: &Self, weight: f64) {
+        (0..3).for_each(|i| self.membrane[i] += weight * other.membrane[i]);
+        (0..3).for_each(|i| self.moment[i] += weight * other.moment[i]);
+        (0..2).for_each(|i| self.shear[i] += weight * other.shear[i]);
+    }
+}
+
+/// Resultants of one element: one entry per smoothing cell, and the shear at the four corners.
+struct ElementResultants {
+    /// N and M of each cell, with the cell's area.
+    cells: Vec<(f64, [f64; 3], [f64; 3])>,
+    /// Q at the natural corners, in node order.
+    corner_shear: [[f64; 2]; 4],
+    centre_shear: [f64; 2],
+}
+
+fn element_resultants(element: &Prepared, warp: &Vector3<f64>, u: &Vector24) -> ElementResultants {
+    let local = element.to_local() * u;
+    // From element axes to material axes: the warp seen in the element's plane.
+    let a = element.frame.rotation * warp;
+    let (s, c) = a.y.atan2(a.x).sin_cos();
+    #[rustfmt::skip]
+    let stress = Matrix3::new(
+        c * c, s * s, 2.0 * c * s,
+        s * s, c * c, -2.0 * c * s,
+        -c * s, c * s, c * c - s * s,
+    );
+    let vector = Matrix2::new(c, s, -s, c);
+    let cells = element
+        .cells()
+        .map(|cell| {
+            let (strain, curvature) = element.strains(&cell, &local);
+            (cell.area, (stress * element.d_m * strain).into(), (stress * element.d_b * curvature).into())
+        })
+        .collect();
+    let shear = |at: [f64; 2]| -> [f64; 2] {
+        let q: Vector2<f64> = vector * element.d_s * element.shear_strain(at, &local);
+        q.into()
+    };
+    ElementResultants {
+        cells,
+        corner_shear: [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(shear),
+        centre_shear: shear([0.0, 0.0]),
+    }
+}
+
+fn for_each_element(
+    model: &Model,
+    displacement: &[f64],
+    mut visit: impl FnMut(usize, ElementResultants),
+) -> Result<(), ModelError> {
+    let flat = model.mesh.is_flat();
+    for (quad, nodes) in model.mesh.quads.iter().enumerate() {
+        let element = model.element(quad, flat)?;
+        let u = Vector24::from_fn(|k, _| displacement[6 * nodes[k / 6] as usize + k % 6]);
+        visit(quad, element_resultants(&element, &model.warp, &u));
+    }
+    Ok(())
+}
+
+/// Resultants of each element: the mean over its smoothing cells, shear at its centre.
+///
+/// # Errors
+/// M008 if the warp direction is normal to an element.
+pub fn element_means(model: &Model, displacement: &[f64]) -> Result<Vec<Resultants>, ModelError> {
+    let mut means = vec![Resultants::default(); model.mesh.quads.len()];
+    for_each_element(model, displacement, |quad, e| {
+        let area: f64 = e.cells.iter().map(|c| c.0).sum();
+        for (a, membrane, moment) in e.cells {
+            means[quad].add(&Resultants { membrane, moment, shear: [0.0; 2] }, a / area);
+        }
+        means[quad].shear = e.centre_shear;
+    })?;
+    Ok(means)
+}
+
+/// Resultants at the nodes: each element's cells extrapolated to its corners, then averaged over
+/// the elements that meet.
+///
+/// Second order inside the sheet, first order on clamped edges: take edge moments from reactions.
+///
+/// # Errors
+/// M008 if the warp direction is normal to an element.
+pub fn nodal(model: &Model, displacement: &[f64]) -> Result<Vec<Resultants>, ModelError> {
+    let weights = extrapolation(model.formulation.cells);
+    let mut sums = vec![(Resultants::default(), 0.0); model.mesh.nodes.len()];
+    for_each_element(model, displacement, |quad, e| {
+        for (corner, node) in model.mesh.quads[quad].iter().enumerate() {
+            let (sum, count) = &mut sums[*node as usize];
+            for (k, (_, membrane, moment)) in e.cells.iter().enumerate() {
+                let part = Resultants { membrane: *membrane, moment: *moment, shear: [0.0; 2] };
+                sum.add(&part, weights[(corner, k)]);
+            }
+            sum.add(&Resultants { shear: e.corner_shear[corner], ..Default::default() }, 1.0);
+            *count += 1.0;
+        }
+    })?;
+    Ok(sums
+        .into_iter()
+        .map(|(sum, count)| {
+            let mut mean = Resultants::default();
+            mean.add(&sum, 1.0 / count);
+            mean
+        })
+        .collect())
+}
+
+/// Weights (4 corners x cells) of the least-squares surface through the cell values, in natural
+/// coordinates: bilinear through 2 x 2 cells or more, less where there are fewer.
+fn extrapolation(cells: Cells) -> DMatrix<f64> {
+    let unit = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let middles: Vec<[f64; 2]> = cells.over(&unit).map(|c| c.middle).collect();
+    let terms = match cells {
+        Cells::HalfAndQuarters => 3,
+        Cells::Grid { along_xi: 1, along_eta: 1 } => 1,
+        Cells::Grid { along_eta: 1, .. } => 2,
+        Cells::Grid { along_xi: 1, .. } => return column_extrapolation(&middles),
+        Cells::Grid { .. } => 4,
+    };
+    let basis = |[xi, eta]: [f64; 2]| [1.0, xi, eta, xi * eta];
+    fit(&middles, terms, basis)
+}
+
+fn column_extrapolation(middles: &[[f64; 2]]) -> DMatrix<f64> {
+    fit(middles, 2, |[xi, eta]| [1.0, eta, xi, xi * eta])
+}
+
+fn fit(middles: &[[f64; 2]], terms: usize, basis: impl Fn([f64; 2]) -> [f64; 4]) -> DMatrix<f64> {
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let at_cells = DMatrix::from_fn(middles.len(), terms, |i, j| basis(middles[i])[j]);
+    let at_corners = DMatrix::from_fn(4, terms, |i, j| basis(corners[i])[j]);
+    // Distinct cell middles give full column rank, so the normal equations are regular.
+    let gram = at_cells.transpose() * &at_cells;
+    match gram.try_inverse() {
+        Some(inverse) => at_corners * inverse * at_cells.transpose(),
+        None => DMatrix::from_element(4, middles.len(), 1.0 / middles.len() as f64),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn extrapolation_is_exact_for_what_the_cells_can_carry() {
+        for (nc, field) in [
+            (1, [2.0, 0.0, 0.0, 0.0]),
+            (2, [2.0, 3.0, 0.0, 0.0]),
+            (3, [2.0, 3.0, -1.0, 0.0]),
+            (4, [2.0, 3.0, -1.0, 0.5]),
+            (9, [2.0, 3.0, -1.0, 0.5]),
+        ] {
+            let cells = Cells::from_count(nc).unwrap();
+            let unit = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+            let value = |[x, y]: [f64; 2]| field[0] + field[1] * x + field[2] * y + field[3] * x * y;
+            let at_cells: Vec<f64> = cells.over(&unit).map(|c| value(c.middle)).collect();
+            let weights = extrapolation(cells);
+            for (i, corner) in unit.into_iter().enumerate() {
+                let got: f64 = at_cells.iter().enumerate().map(|(k, v)| weights[(i, k)] * v).sum();
+                assert_relative_eq!(got, value(corner), max_relative = 1e-12);
+            }
+        }
+    }
+}

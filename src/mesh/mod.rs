@@ -1,1 +1,257 @@
-//! (skeleton)
+//! Quadrilateral meshes with named node sets, and the checks that a mesh must pass.
+
+mod generate;
+
+use std::collections::{BTreeMap, HashMap};
+
+use nalgebra::{Point3, Vector3};
+use thiserror::Error;
+
+pub use generate::{annulus, disc, distorted, rectangle};
+
+/// A mesh of four-node quadrilaterals.
+///
+/// ```text
+///   4 --- C' --- 3      node order of a quad: counter-clockwise seen from +e3;
+///   |            |      natural coordinates xi to the right, eta upwards
+///   1 ---------- 2
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct QuadMesh {
+    /// Node coordinates (m).
+    pub nodes: Vec<Point3<f64>>,
+    /// Node indices of each quad, counter-clockwise.
+    pub quads: Vec<[u32; 4]>,
+    /// Named sets of nodes, each sorted.
+    pub node_sets: BTreeMap<String, Vec<u32>>,
+}
+
+/// Why a mesh cannot be used.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum MeshError {
+    /// M001: no element.
+    #[error("M001 the mesh has no quadrilateral")]
+    Empty,
+    /// M002: a quad names a node that does not exist.
+    #[error("M002 quad {quad} names node {node}, but there are {nodes} nodes (counted from 0)")]
+    NoSuchNode {
+        /// Index of the quad, from 0.
+        quad: usize,
+        /// The node it names.
+        node: u32,
+        /// Number of nodes.
+        nodes: usize,
+    },
+    /// M003: inverted, folded, non-convex or collapsed.
+    #[error(
+        "M003 quad {quad} (nodes {nodes:?}) is {what}: the smallest corner Jacobian is {ratio:.3} of the mean; \
+         every corner must turn counter-clockwise by less than 180 degrees"
+    )]
+    Shape {
+        /// Index of the quad, from 0.
+        quad: usize,
+        /// Its nodes.
+        nodes: [u32; 4],
+        /// `inverted`, `non-convex` or `degenerate`.
+        what: &'static str,
+        /// Smallest corner Jacobian over the mean of the four.
+        ratio: f64,
+    },
+    /// M004: a node that no quad uses.
+    #[error("M004 node {node} at ({x}, {y}, {z}) m belongs to no quad: remove it")]
+    UnconnectedNode {
+        /// Index of the node, from 0.
+        node: usize,
+        /// Its x.
+        x: f64,
+        /// Its y.
+        y: f64,
+        /// Its z.
+        z: f64,
+    },
+    /// M005: a coordinate is not finite.
+    #[error("M005 node {node} has a coordinate that is not a finite number")]
+    NotFinite {
+        /// Index of the node, from 0.
+        node: usize,
+    },
+    /// M006: sizes or counts that make no mesh.
+    #[error("M006 {what}")]
+    Parameters {
+        /// What is wrong and what is expected.
+        what: String,
+    },
+    /// M007: a set that the mesh does not have.
+    #[error("M007 the mesh has no set `{name}`; it has: {known}")]
+    NoSuchSet {
+        /// The name asked for.
+        name: String,
+        /// The names that exist.
+        known: String,
+    },
+}
+
+impl MeshError {
+    /// The stable code, e.g. `M003`.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Empty => "M001",
+            Self::NoSuchNode { .. } => "M002",
+            Self::Shape { .. } => "M003",
+            Self::UnconnectedNode { .. } => "M004",
+            Self::NotFinite { .. } => "M005",
+            Self::Parameters { .. } => "M006",
+            Self::NoSuchSet { .. } => "M007",
+        }
+    }
+}
+
+impl QuadMesh {
+    /// The four corners of a quad.
+    pub fn corners(&self, quad: usize) -> [Point3<f64>; 4] {
+        self.quads[quad].map(|n| self.nodes[n as usize])
+    }
+
+    /// The nodes of a named set.
+    ///
+    /// # Errors
+    /// M007 with the names that exist.
+    pub fn set(&self, name: &str) -> Result<&[u32], MeshError> {
+        self.node_sets.get(name).map(Vec::as_slice).ok_or_else(|| MeshError::NoSuchSet {
+            name: name.to_string(),
+            known: self.node_sets.keys().map(String::as_str).collect::<Vec<_>>().join(", "),
+        })
+    }
+
+    /// Edges that belong to one quad only, in quad order, each counter-clockwise along its quad.
+    pub fn boundary_edges(&self) -> Vec<[u32; 2]> {
+        let edges = || self.quads.iter().flat_map(|q| (0..4).map(move |i| [q[i], q[(i + 1) % 4]]));
+        let mut uses: HashMap<[u32; 2], u32> = HashMap::new();
+        for [a, b] in edges() {
+            *uses.entry([a.min(b), a.max(b)]).or_default() += 1;
+        }
+        edges().filter(|&[a, b]| uses[&[a.min(b), a.max(b)]] == 1).collect()
+    }
+
+    /// Boundary edges both of whose nodes lie in the set.
+    ///
+    /// # Errors
+    /// M007 if there is no such set.
+    pub fn set_edges(&self, name: &str) -> Result<Vec<[u32; 2]>, MeshError> {
+        let set = self.set(name)?;
+        let inside = |n: u32| set.binary_search(&n).is_ok();
+        Ok(self.boundary_edges().into_iter().filter(|&[a, b]| inside(a) && inside(b)).collect())
+    }
+
+    /// Whether the sheet lies in a plane z = const with every quad counter-clockwise about +z, so
+    /// that bending and membrane action do not couple.
+    pub fn is_flat(&self) -> bool {
+        let Some(first) = self.nodes.first() else { return true };
+        self.nodes.iter().all(|n| n.z == first.z)
+            && (0..self.quads.len()).all(|q| normal(&self.corners(q)).z > 0.0)
+    }
+
+    /// Finds whatever would make an element meaningless.
+    ///
+    /// # Errors
+    /// The first defect, in node and quad order.
+    pub fn check(&self) -> Result<(), MeshError> {
+        if self.quads.is_empty() {
+            return Err(MeshError::Empty);
+        }
+        if let Some(node) = self.nodes.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
+            return Err(MeshError::NotFinite { node });
+        }
+        let mut used = vec![false; self.nodes.len()];
+        for (quad, nodes) in self.quads.iter().enumerate() {
+            for &node in nodes {
+                if node as usize >= self.nodes.len() {
+                    return Err(MeshError::NoSuchNode { quad, node, nodes: self.nodes.len() });
+                }
+                used[node as usize] = true;
+            }
+            self.check_shape(quad)?;
+        }
+        if let Some(node) = used.iter().position(|u| !u) {
+            let p = self.nodes[node];
+            return Err(MeshError::UnconnectedNode { node, x: p.x, y: p.y, z: p.z });
+        }
+        Ok(())
+    }
+
+    fn check_shape(&self, quad: usize) -> Result<(), MeshError> {
+        let c = self.corners(quad);
+        let n = normal(&c);
+        let jacobians = [0, 1, 2, 3].map(|i| {
+            let (before, at, after) = (c[(i + 3) % 4], c[i], c[(i + 1) % 4]);
+            (after - at).cross(&(before - at)).dot(&n)
+        });
+        let size = (0..4).map(|i| (c[(i + 1) % 4] - c[i]).norm()).fold(0.0, f64::max);
+        let mean = jacobians.iter().sum::<f64>() / 4.0;
+        let smallest = jacobians.iter().copied().fold(f64::INFINITY, f64::min);
+        // A corner whose Jacobian is below a thousandth of the mean makes the map singular in practice.
+        let what = if mean.is_nan() || mean <= 1e-9 * size * size {
+            "degenerate"
+        } else if jacobians.iter().filter(|j| **j < 0.0).count() > 1 {
+            "inverted"
+        } else if smallest < 0.0 {
+            "non-convex"
+        } else if smallest < 1e-3 * mean {
+            "degenerate"
+        } else {
+            return Ok(());
+        };
+        let ratio = if mean > 0.0 { smallest / mean } else { 0.0 };
+        Err(MeshError::Shape { quad, nodes: self.quads[quad], what, ratio })
+    }
+}
+
+/// Unit normal of a quad: the cross product of its diagonals.
+fn normal(c: &[Point3<f64>; 4]) -> Vector3<f64> {
+    (c[2] - c[0]).cross(&(c[3] - c[1])).normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn two_quads() -> QuadMesh {
+        rectangle(2.0, 1.0, 2, 1).unwrap()
+    }
+
+    #[test]
+    fn a_good_mesh_passes_and_each_defect_is_named() {
+        assert_eq!(two_quads().check(), Ok(()));
+        assert_eq!(QuadMesh::default().check(), Err(MeshError::Empty));
+        let mut m = two_quads();
+        m.quads[1] = [1, 2, 9, 4];
+        assert!(matches!(m.check(), Err(MeshError::NoSuchNode { quad: 1, node: 9, nodes: 6 })));
+        let mut m = two_quads();
+        m.quads[0] = [0, 1, 3, 4];
+        assert!(matches!(m.check(), Err(MeshError::Shape { quad: 0, .. })), "{:?}", m.check());
+        let mut m = two_quads();
+        m.nodes[4] = Point3::new(0.2, 0.2, 0.0);
+        assert!(matches!(m.check(), Err(MeshError::Shape { quad: 0, what: "non-convex", .. })));
+        let mut m = two_quads();
+        m.nodes.push(Point3::new(5.0, 5.0, 0.0));
+        assert!(matches!(m.check(), Err(MeshError::UnconnectedNode { node: 6, .. })));
+        let mut m = two_quads();
+        m.nodes[0].x = f64::NAN;
+        assert!(matches!(m.check(), Err(MeshError::NotFinite { node: 0 })));
+        assert!(two_quads().set("rim").unwrap_err().to_string().contains("left"));
+    }
+
+    #[test]
+    fn boundary_edges_form_a_closed_loop() {
+        let m = rectangle(3.0, 2.0, 3, 2).unwrap();
+        let edges = m.boundary_edges();
+        assert_eq!(edges.len(), 10);
+        let mut balance = vec![0i32; m.nodes.len()];
+        for [a, b] in edges {
+            balance[a as usize] += 1;
+            balance[b as usize] -= 1;
+        }
+        assert!(balance.iter().all(|b| *b == 0));
+        assert_eq!(m.set_edges("left").unwrap().len(), 2);
+    }
+}

@@ -6,10 +6,12 @@
 
 mod curve;
 mod estimate;
+mod text;
 mod unit;
 
 pub use curve::Curve;
 pub use estimate::Estimate;
+pub use text::significant;
 pub use unit::{Dimension, QuantityError, UNITS, Unit, parse_quantity};
 
 /// Standard gravity in m/s², the value that defines the gram-force (exact).

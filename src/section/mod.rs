@@ -57,6 +57,17 @@ pub enum SectionError {
     },
 }
 
+impl SectionError {
+    /// The stable code.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NotFinite { .. } => "C001",
+            Self::NotSymmetric { .. } => "C002",
+            Self::NotPositiveDefinite { .. } => "C003",
+        }
+    }
+}
+
 impl ShellSection {
     /// The section itself if every matrix is finite, symmetric and positive definite
     /// (`d_b` may be semidefinite in twist: the seed's H = 0), and density and thickness are positive.

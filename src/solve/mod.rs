@@ -1,6 +1,15 @@
-//! (skeleton)
+//! Solving: block matrices and their factorisation, and the analyses on top.
 
+pub mod assemble;
 pub mod factor;
+pub mod linear;
+pub mod modal;
 mod multifrontal;
+pub mod newmark;
 pub mod ordering;
+pub mod plan;
 pub mod sparse;
+
+pub use linear::{Options, Solution, SolveError, Timings, solve, solve_with};
+pub use modal::{Mode, modes};
+pub use plan::Plan;

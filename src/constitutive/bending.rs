@@ -1,0 +1,93 @@
+//! D_b, Eq. (5): bending rigidities, their coupling and the torsional rigidity.
+//!
+//! KES-FB2 bends a sheet 20 cm wide over a gap of 1 cm, so cylindrically: its B, in N·m (moment
+//! per width over curvature), is D11 itself. There is no factor 1/(1-ν²), and no t³/12.
+//! The seed's Eq. (5) multiplies B by t³/12. That is right only if "B" is a bending *modulus*
+//! 12 B / t³ (Pa); with the measured rigidity it is wrong by 12/t³, about 1e11 at 0.5 mm. The
+//! seed does not say which it means; the units of its instrument do.
+//!
+//! Torsion is not measured by a standard KES set. The seed's H = D66 may be zero; then twisting
+//! w = x y costs nothing. Huber's D12 + 2 D66 = √(B1 B2) makes B(45°) the mean of warp, weft and
+//! twice their geometric mean, which lies near what bias tests of woven cloth give.
+
+use nalgebra::Matrix3;
+
+use super::{Assumptions, BendingCoupling, ConstitutiveError, Notes, Torsion};
+use crate::instrument::{Direction, Parameter};
+use crate::quantity::significant;
+
+/// D_b (N·m); `g` (N/m) and `thickness` (m) enter only with `Torsion::Shear`.
+pub(super) fn matrix(
+    g: f64,
+    thickness: f64,
+    assumptions: &Assumptions,
+    notes: &mut Notes,
+) -> Result<Matrix3<f64>, ConstitutiveError> {
+    let Some([b1, b2]) = notes.warp_weft(Parameter::B) else {
+        return Err(notes.missing("bending rigidity B", "add a KES-FB2 test or a result table with B"));
+    };
+    for (direction, b) in [("warp", b1), ("weft", b2)] {
+        let what = format!("the bending rigidity B along the {direction}");
+        notes.positive(&what, b, "N·m", "look at the bending chart and its windows")?;
+    }
+    let value = format!("warp {} N·m, weft {} N·m", significant(b1), significant(b2));
+    notes.used("bending rigidity", value, "measured: B of KES-FB2 is D11, D22");
+
+    let d12 = match assumptions.bending_coupling {
+        BendingCoupling::Poisson(nu) => nu * (b1 * b2).sqrt(),
+        BendingCoupling::Value(d12) => d12.si(),
+    };
+    let source = match assumptions.bending_coupling {
+        BendingCoupling::Poisson(0.0) => "assumed: no coupling".to_string(),
+        BendingCoupling::Poisson(nu) => format!("assumed: {nu} √(B1 B2)"),
+        BendingCoupling::Value(_) => "assumed: stated".to_string(),
+    };
+    notes.used("bending coupling D12", format!("{} N·m", significant(d12)), source);
+
+    let (d66, source) = torsion([b1, b2, d12], g, thickness, assumptions.torsion, notes)?;
+    notes.used("torsional rigidity D66", format!("{} N·m", significant(d66)), source);
+    Ok(Matrix3::new(b1, d12, 0.0, d12, b2, 0.0, 0.0, 0.0, d66))
+}
+
+/// D66 (N·m) and where it comes from.
+fn torsion(
+    [b1, b2, d12]: [f64; 3],
+    g: f64,
+    thickness: f64,
+    torsion: Torsion,
+    notes: &mut Notes,
+) -> Result<(f64, String), ConstitutiveError> {
+    let (d66, source) = match torsion {
+        Torsion::Huber => {
+            (((b1 * b2).sqrt() - d12) / 2.0, "assumed: Huber, D12 + 2 D66 = √(B1 B2)".to_string())
+        }
+        Torsion::Bias => {
+            let Some(b45) = notes.sheet.get(Parameter::B, Some(Direction::Bias)) else {
+                return Err(notes.missing(
+                    "bending test on the bias",
+                    "measure one at 45°, or choose torsion = \"huber\" or a value",
+                ));
+            };
+            let b45 = b45.mean;
+            (b45 - (b1 + b2 + 2.0 * d12) / 4.0, format!("measured: B at 45° = {} N·m", significant(b45)))
+        }
+        Torsion::Shear => (g * thickness.powi(2) / 12.0, "assumed: G t²/12".to_string()),
+        Torsion::Value(h) => (h.si(), "assumed: stated".to_string()),
+        Torsion::Neglect => {
+            notes.finding(
+                "C016",
+                "torsion is neglected (H = 0): twisting costs nothing, and bending on the bias is \
+                 underestimated about twofold for woven cloth"
+                    .into(),
+            );
+            return Ok((0.0, "assumed: neglected, as the seed allows".to_string()));
+        }
+    };
+    notes.positive(
+        "the torsional rigidity D66",
+        d66,
+        "N·m",
+        "choose torsion = \"huber\" or a value, or lower the bending coupling",
+    )?;
+    Ok((d66, source))
+}

@@ -1,0 +1,71 @@
+//! In-plane shear G, the last entry of D_m, and D_s, Eq. (6): transverse shear.
+//!
+//! KES-FB1 gives G in gf/(cm·deg); 1 gf/(cm·deg) = 56.188 N/m per rad. The warp and the weft test
+//! measure one constant, so their mean is taken.
+//!
+//! Nothing measures the transverse shear of cloth. The seed's χ G_t t with G_t = the in-plane G and
+//! χ = 5/6 is kept: any value with χ G_t t h²/B between 1e2 and 1e6 gives the same deflections.
+
+use nalgebra::Matrix2;
+
+use super::{Assumptions, ConstitutiveError, Notes, TransverseShear};
+use crate::instrument::{Direction, Parameter};
+use crate::quantity::significant;
+
+/// Shear correction factor of a homogeneous plate.
+const CHI: f64 = 5.0 / 6.0;
+
+/// Warp and weft values of G that differ by more than this part of their mean are reported:
+/// about three times the usual spread between specimens.
+const DIFFERENCE: f64 = 0.2;
+
+/// G (N/m per rad).
+pub(super) fn in_plane(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, ConstitutiveError> {
+    let sheet = notes.sheet;
+    let directions = [Some(Direction::Warp), Some(Direction::Weft), None];
+    let [warp, weft, mean] = directions.map(|d| sheet.get(Parameter::G, d).map(|e| e.mean));
+    let (g, source) = match (warp, weft) {
+        (Some(warp), Some(weft)) => {
+            let (g, difference) = ((warp + weft) / 2.0, (warp - weft).abs());
+            if difference > DIFFERENCE * g.abs() {
+                let percent = significant(100.0 * difference / g.abs());
+                notes.finding("C017", format!("G of warp and weft differ by {percent} % of their mean"));
+            }
+            let values = format!("{} and {} N/m", significant(warp), significant(weft));
+            (g, format!("measured: mean of G warp and weft, {values}"))
+        }
+        _ => match warp.or(weft).or(mean) {
+            Some(g) => (g, "measured: G".to_string()),
+            None => {
+                let g = assumptions.shear;
+                notes.finding(
+                    "C013",
+                    format!(
+                        "no shear test is known; {g} stands in for G (linear bending hardly depends on it, \
+                         in-plane results do)"
+                    ),
+                );
+                (g.si(), "assumed: no shear test".to_string())
+            }
+        },
+    };
+    notes.positive("the shear stiffness G", g, "N/m", "look at the shear chart and its window")?;
+    notes.used("shear stiffness G", format!("{} N/m", significant(g)), source);
+    Ok(g)
+}
+
+/// D_s (N/m), diagonal.
+pub(super) fn transverse(
+    g: f64,
+    assumptions: &Assumptions,
+    notes: &mut Notes,
+) -> Result<Matrix2<f64>, ConstitutiveError> {
+    let (s, source) = match assumptions.transverse_shear {
+        TransverseShear::InPlane => (CHI * g, "assumed: 5/6 of the in-plane G; not measurable on KES"),
+        TransverseShear::Value(s) => (s.si(), "assumed: stated"),
+    };
+    notes.positive("the transverse shear stiffness", s, "N/m", "state a positive one")?;
+    notes.used("transverse shear", format!("{} N/m", significant(s)), source);
+    // Eq. (6)
+    Ok(Matrix2::new(s, 0.0, 0.0, s))
+}

@@ -1,0 +1,204 @@
+//! References: the closed forms of orthotropic plates; published table values with the exact
+//! factor of the gram-force; a straight line as tensile curve.
+
+use super::*;
+use crate::characterise::{Branch, Key};
+use crate::instrument::{Conditions, Measurement, Source, Test};
+use crate::quantity::{BendingRigidity, Curve, Estimate, LineForce};
+use approx::assert_relative_eq;
+use std::collections::BTreeMap;
+
+const WARP: Option<Direction> = Some(Direction::Warp);
+const WEFT: Option<Direction> = Some(Direction::Weft);
+
+fn sheet(values: &[(Parameter, Option<Direction>, f64)]) -> FabricSheet {
+    let mut sheet = FabricSheet { name: "cloth".into(), ..Default::default() };
+    for &(parameter, direction, value) in values {
+        sheet.values.insert(Key { parameter, direction }, Estimate::single(value));
+    }
+    sheet
+}
+
+/// E 3000/1000 N/m (the pair of which one nu makes 989 against 330 N/m), B 8/4e-6 N·m.
+fn cloth() -> FabricSheet {
+    let mut cloth = sheet(&[
+        (Parameter::B, WARP, 8e-6),
+        (Parameter::B, WEFT, 4e-6),
+        (Parameter::G, WARP, 50.0),
+        (Parameter::G, WEFT, 54.0),
+        (Parameter::T0, None, 5e-4),
+        (Parameter::W, None, 0.15),
+    ]);
+    for (direction, e) in [(Direction::Warp, 3000.0), (Direction::Weft, 1000.0)] {
+        cloth.moduli.insert(("tangent_low".into(), direction), Estimate::single(e));
+    }
+    cloth
+}
+
+fn codes(c: &Constitutive) -> Vec<&'static str> {
+    c.findings.iter().map(|f| f.code).collect()
+}
+
+#[test]
+fn a_measured_cloth_gives_the_closed_forms_without_a_finding() {
+    let c = section(&cloth(), &Assumptions::default()).unwrap();
+    let s = &c.section;
+    assert_relative_eq!(s.d_m[(0, 0)], 3000.0 / 0.91, max_relative = 1e-12);
+    assert_relative_eq!(s.d_m[(1, 1)], 1000.0 / 0.91, max_relative = 1e-12);
+    assert_relative_eq!(s.d_m[(0, 1)], 0.3 * 3e6_f64.sqrt() / 0.91, max_relative = 1e-12);
+    assert_relative_eq!(s.d_m[(2, 2)], 52.0, max_relative = 1e-12);
+    // No t³/12, no 1/(1-nu²): B is D11.
+    assert_eq!((s.d_b[(0, 0)], s.d_b[(1, 1)], s.d_b[(0, 1)]), (8e-6, 4e-6, 0.0));
+    assert_relative_eq!(s.d_b[(2, 2)], 32e-12_f64.sqrt() / 2.0, max_relative = 1e-12);
+    assert_relative_eq!(s.d_s[(0, 0)], 52.0 * 5.0 / 6.0, max_relative = 1e-12);
+    assert_eq!((s.areal_density, s.thickness), (0.15, 5e-4));
+    assert_eq!(codes(&c), Vec::<&str>::new());
+    let names: Vec<_> = c.used.iter().map(|u| u.name).collect();
+    assert_eq!(names.len(), 9, "{names:?}");
+}
+
+#[test]
+fn every_poisson_rule_keeps_the_matrix_symmetric() {
+    let rule = |poisson_rule, poisson| {
+        section(&cloth(), &Assumptions { poisson_rule, poisson, ..Default::default() })
+    };
+    // nu12 = 0.3, nu21 = 0.1: D12 = nu12 E2 / (1 - 0.03).
+    let major = rule(PoissonRule::Major, 0.3).unwrap().section.d_m;
+    assert_relative_eq!(major[(0, 1)], 300.0 / 0.97, max_relative = 1e-12);
+    assert_eq!(major[(0, 1)], major[(1, 0)]);
+    let zero = rule(PoissonRule::Zero, 0.3).unwrap().section.d_m;
+    assert_eq!((zero[(0, 0)], zero[(0, 1)]), (3000.0, 0.0));
+    // nu12² < E1/E2 = 3.
+    assert!(rule(PoissonRule::Major, 1.7).is_ok());
+    assert_eq!(rule(PoissonRule::Major, 1.74).unwrap_err().code(), "C006");
+    assert_eq!(rule(PoissonRule::Geometric, 1.0).unwrap_err().code(), "C006");
+    assert_eq!(rule(PoissonRule::Geometric, f64::NAN).unwrap_err().code(), "C006");
+}
+
+#[test]
+fn torsion_from_the_bias_test_gives_the_bias_rigidity_back() {
+    let mut cloth = cloth();
+    let bias = Assumptions { torsion: Torsion::Bias, ..Default::default() };
+    assert_eq!(section(&cloth, &bias).unwrap_err().code(), "C004");
+    let key = Key { parameter: Parameter::B, direction: Some(Direction::Bias) };
+    cloth.values.insert(key, Estimate::single(5e-6));
+    let s = section(&cloth, &bias).unwrap().section;
+    assert_relative_eq!(s.d_b[(2, 2)], 5e-6 - 3e-6, max_relative = 1e-12);
+    let b45 = s.rotated(std::f64::consts::FRAC_PI_4).d_b[(0, 0)];
+    assert_relative_eq!(b45, 5e-6, max_relative = 1e-12);
+    cloth.values.insert(key, Estimate::single(2e-6));
+    assert_eq!(section(&cloth, &bias).unwrap_err().code(), "C005");
+}
+
+#[test]
+fn the_other_sources_of_torsion_and_coupling() {
+    let with = |torsion, bending_coupling| {
+        section(&cloth(), &Assumptions { torsion, bending_coupling, ..Default::default() })
+    };
+    let none = BendingCoupling::default();
+    // G t²/12 = 52 · 25e-8 / 12.
+    let s = with(Torsion::Shear, none).unwrap().section;
+    assert_relative_eq!(s.d_b[(2, 2)], 52.0 * 25e-8 / 12.0, max_relative = 1e-12);
+    let neglected = with(Torsion::Neglect, none).unwrap();
+    assert_eq!(neglected.section.d_b[(2, 2)], 0.0);
+    assert_eq!(codes(&neglected), ["C016"]);
+    let s = with(Torsion::Huber, BendingCoupling::Poisson(0.2)).unwrap().section;
+    let root = 32e-12_f64.sqrt();
+    assert_relative_eq!(s.d_b[(0, 1)], 0.2 * root, max_relative = 1e-12);
+    assert_relative_eq!(s.d_b[(0, 1)] + 2.0 * s.d_b[(2, 2)], root, max_relative = 1e-12);
+    // D12 above √(B1 B2) releases energy.
+    let h = Torsion::Value(BendingRigidity(1e-6));
+    let error = with(h, BendingCoupling::Value(BendingRigidity(6e-6))).unwrap_err();
+    assert_eq!(error.code(), "C003");
+}
+
+/// Petrak et al. 2025, fabric M1: B 1.95/0.61 µN·m, G 41 N/m, EMT 2.75/6.92 %, no curves.
+#[test]
+fn a_result_table_falls_back_to_the_secant_modulus_and_says_so() {
+    let table = sheet(&[
+        (Parameter::B, WARP, 1.95e-6),
+        (Parameter::B, WEFT, 0.61e-6),
+        (Parameter::G, None, 41.0),
+        (Parameter::Emt, WARP, 0.0275),
+        (Parameter::Emt, WEFT, 0.0692),
+        (Parameter::T0, None, 3.1e-4),
+        (Parameter::W, None, 0.13517),
+    ]);
+    let assumptions = Assumptions { poisson_rule: PoissonRule::Zero, ..Default::default() };
+    let c = section(&table, &assumptions).unwrap();
+    // 500 gf/cm = 490.3325 N/m over the strain.
+    assert_relative_eq!(c.section.d_m[(0, 0)], 490.3325 / 0.0275, max_relative = 1e-12);
+    assert_relative_eq!(c.section.d_m[(1, 1)], 490.3325 / 0.0692, max_relative = 1e-12);
+    assert_eq!(codes(&c), ["C015", "C011"]);
+}
+
+/// Matsudaira et al. 2015, fabric A: B 0.118 gf·cm²/cm, W 12.38 mg/cm², T 0.497 mm and nothing else.
+#[test]
+fn stand_ins_are_marked_and_do_not_touch_bending() {
+    let b = 0.118 * 9.80665e-5;
+    let mut table = sheet(&[(Parameter::B, None, b), (Parameter::W, None, 0.1238)]);
+    table.info.thickness = Some(4.97e-4);
+    let c = section(&table, &Assumptions::default()).unwrap();
+    assert_relative_eq!(c.section.d_b[(0, 0)], b, max_relative = 1e-15);
+    assert_relative_eq!(c.section.d_b[(1, 1)], b, max_relative = 1e-15);
+    assert_eq!(c.section.thickness, 4.97e-4);
+    assert_eq!(codes(&c), ["C013", "C012", "C010"]);
+    assert!(c.used.iter().any(|u| u.name == "tensile modulus" && u.source.starts_with("assumed")));
+}
+
+#[test]
+fn what_cannot_be_assumed_is_an_error() {
+    let assumptions = Assumptions::default();
+    assert_eq!(section(&sheet(&[]), &assumptions).unwrap_err().code(), "C004");
+    let error = section(&sheet(&[(Parameter::B, None, 1e-5)]), &assumptions).unwrap_err();
+    assert!(error.to_string().contains("areal density"), "{error}");
+    let mut bad = cloth();
+    bad.values.insert(Key { parameter: Parameter::B, direction: WARP }, Estimate::single(-1e-6));
+    assert_eq!(section(&bad, &assumptions).unwrap_err().code(), "C005");
+}
+
+#[test]
+fn a_window_takes_the_slope_of_the_curve_between_two_forces() {
+    // F = 1000 e up to 10 N/m, then 3000 e: slope 3000 N/m between 12 and 40 N/m.
+    let bilinear = |e: f64| if e < 0.01 { 1000.0 * e } else { 10.0 + 3000.0 * (e - 0.01) };
+    let specimen = |direction| SpecimenOf { direction }.with(bilinear);
+    let mut cloth = cloth();
+    cloth.specimens = vec![specimen(Direction::Warp), specimen(Direction::Weft)];
+    let window = |from, to| Assumptions {
+        modulus: Modulus::Window(LineForce(from), LineForce(to)),
+        poisson_rule: PoissonRule::Zero,
+        ..Default::default()
+    };
+    let s = section(&cloth, &window(12.0, 40.0)).unwrap().section;
+    assert_relative_eq!(s.d_m[(0, 0)], 3000.0, max_relative = 1e-10);
+    assert_eq!(section(&cloth, &window(1e3, 2e3)).unwrap_err().code(), "C004");
+}
+
+struct SpecimenOf {
+    direction: Direction,
+}
+
+impl SpecimenOf {
+    fn with(&self, law: impl Fn(f64) -> f64) -> crate::characterise::SpecimenResult {
+        let curve = Curve::from_points((0..=40).map(|i| f64::from(i) * 5e-4).map(|e| (e, law(e))));
+        crate::characterise::SpecimenResult {
+            measurement: Measurement {
+                test: Test::Tensile,
+                sample: None,
+                direction: Some(self.direction),
+                specimen: 1,
+                conditions: Conditions::default(),
+                curve: curve.clone(),
+                lines: Vec::new(),
+                source: Source::default(),
+                metadata: BTreeMap::new(),
+            },
+            branches: vec![Branch { cycle: 0, outgoing: true, curve }],
+            correction: [0.0; 2],
+            windows: Vec::new(),
+            fits: Vec::new(),
+            values: BTreeMap::new(),
+            moduli: BTreeMap::new(),
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! Rank and rigid-mode counts of one element (theory: table of zero-energy modes), reference: the
+//! design document's independent implementation.
+
+use super::*;
+use crate::element::Cells;
+use nalgebra::{DMatrix, Rotation3};
+
+fn isotropic(twist: f64) -> ShellSection {
+    // E = 1, nu = 0.3, t = 0.1.
+    let (e, nu, t) = (1.0, 0.3, 0.1f64);
+    let plane = Matrix3::new(1.0, nu, 0.0, nu, 1.0, 0.0, 0.0, 0.0, 0.5 * (1.0 - nu)) * (e / (1.0 - nu * nu));
+    let mut d_b = plane * (t.powi(3) / 12.0);
+    d_b[(2, 2)] *= twist;
+    if twist == 0.0 {
+        d_b[(0, 1)] = 0.0;
+        d_b[(1, 0)] = 0.0;
+    }
+    ShellSection {
+        d_m: plane * t,
+        d_b,
+        d_s: Matrix2::identity() * (5.0 / 6.0 * e * t / 2.6),
+        areal_density: 1.0,
+        thickness: t,
+    }
+}
+
+fn shapes() -> [[Point3<f64>; 4]; 3] {
+    [
+        [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
+        [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [0.0, 1.0]],
+        [[0.1, -0.2], [1.3, 0.1], [1.1, 0.9], [-0.2, 1.2]],
+    ]
+    .map(|q| q.map(|[x, y]| Point3::new(x, y, 0.0)))
+}
+
+fn zero_modes<const N: usize>(k: SMatrix<f64, N, N>) -> usize {
+    let values = DMatrix::from_column_slice(N, N, k.as_slice()).symmetric_eigenvalues();
+    values.iter().filter(|v| v.abs() < 1e-10 * values.max()).count()
+}
+
+#[test]
+fn zero_energy_modes_match_the_table() {
+    // (nc, plate, shell with penalty, plate with H = B12 = 0)
+    for (nc, plate, shell, twistless) in
+        [(1, 5, 10, 6), (3, 3, 6, 4), (4, 3, 6, 4), (9, 3, 6, 4), (16, 3, 6, 4)]
+    {
+        let formulation = Formulation {
+            cells: Cells::from_count(nc).unwrap(),
+            shear_stabilisation: 0.0,
+            drilling: Drilling::HughesBrezzi,
+        };
+        for corners in shapes() {
+            let x = Vector3::x();
+            let e = Prepared::from_corners(&corners, &isotropic(1.0), formulation, &x).unwrap();
+            assert_eq!(zero_modes(e.plate_stiffness()), plate, "plate, nc = {nc}");
+            assert_eq!(zero_modes(e.stiffness()), shell, "shell, nc = {nc}");
+            let e = Prepared::from_corners(&corners, &isotropic(0.0), formulation, &x).unwrap();
+            assert_eq!(zero_modes(e.plate_stiffness()), twistless, "H = 0, nc = {nc}");
+        }
+    }
+}
+
+/// Six rigid motions of a warped, arbitrarily turned element cost nothing.
+#[test]
+fn rigid_motions_are_free_even_when_warped() {
+    let turn = Rotation3::from_euler_angles(0.4, -1.1, 2.3);
+    let corners = [[0.1, -0.2, 0.05], [1.3, 0.1, -0.02], [1.1, 0.9, 0.08], [-0.2, 1.2, -0.06]]
+        .map(|[x, y, z]| turn * Point3::new(x, y, z));
+    let warp = turn * Vector3::new(0.8, 0.6, 0.0);
+    let k =
+        Prepared::from_corners(&corners, &isotropic(1.0), Formulation::default(), &warp).unwrap().stiffness();
+    for axis in 0..3 {
+        let e = Vector3::ith(axis, 1.0);
+        let (mut translation, mut rotation) = (Vector24::zeros(), Vector24::zeros());
+        for (i, c) in corners.iter().enumerate() {
+            translation.fixed_rows_mut::<3>(6 * i).copy_from(&e);
+            rotation.fixed_rows_mut::<3>(6 * i).copy_from(&e.cross(&c.coords));
+            rotation.fixed_rows_mut::<3>(6 * i + 3).copy_from(&e);
+        }
+        assert!((k * translation).norm() < 1e-13 * k.norm());
+        assert!((k * rotation).norm() < 1e-13 * k.norm());
+    }
+}
+
+#[test]
+fn a_warp_axis_normal_to_the_element_is_refused() {
+    let corners = shapes()[0];
+    let e = Prepared::from_corners(&corners, &isotropic(1.0), Formulation::default(), &Vector3::z());
+    assert_eq!(e.err(), Some(MaterialAxisError));
+}

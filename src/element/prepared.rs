@@ -1,0 +1,189 @@
+//! One element, ready to give its matrices: frame, section in the element's axes, penalties.
+
+use nalgebra::{Matrix2, Matrix3, Point3, SMatrix, SVector, Vector3};
+use thiserror::Error;
+
+use super::quad4::{Frame, GAUSS_2X2, gauss_point};
+use super::{Cell, Drilling, Formulation, drilling, shear};
+use crate::section::ShellSection;
+
+/// 12 x 12, three dofs a node.
+pub type Matrix12 = SMatrix<f64, 12, 12>;
+/// 24 x 24, six dofs a node.
+pub type Matrix24 = SMatrix<f64, 24, 24>;
+/// Displacements of an element, six dofs a node.
+pub type Vector24 = SVector<f64, 24>;
+
+/// M008: the warp direction is normal to the element, so it has no direction in it.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[error("M008 the warp direction is normal to the sheet there: choose an axis that lies along it")]
+pub struct MaterialAxisError;
+
+/// An element's geometry and its section in the element's axes.
+#[derive(Clone, Copy, Debug)]
+pub struct Prepared {
+    /// Plane, axes and corners.
+    pub frame: Frame,
+    /// Membrane stiffness in element axes (N/m).
+    pub d_m: Matrix3<f64>,
+    /// Bending stiffness in element axes (N·m).
+    pub d_b: Matrix3<f64>,
+    /// Transverse shear stiffness in element axes, stabilised (N/m).
+    pub d_s: Matrix2<f64>,
+    gamma: f64,
+    formulation: Formulation,
+}
+
+impl Prepared {
+    /// Prepares an element whose warp runs along `warp` (projected on its plane).
+    ///
+    /// # Errors
+    /// M008 if `warp` is normal to the element.
+    pub fn new(
+        frame: Frame,
+        section: &ShellSection,
+        formulation: Formulation,
+        warp: &Vector3<f64>,
+    ) -> Result<Self, MaterialAxisError> {
+        let a = frame.rotation * warp;
+        if a.x.hypot(a.y) <= 1e-6 * warp.norm() {
+            return Err(MaterialAxisError);
+        }
+        let angle = a.y.atan2(a.x);
+        let stabilised = ShellSection {
+            d_s: shear::stabilised(section, formulation.shear_stabilisation, frame.longest_side()),
+            ..section.clone()
+        };
+        let ShellSection { d_m, d_b, d_s, .. } = stabilised.rotated(angle);
+        let gamma = drilling::penalty(formulation.drilling, section, frame.area());
+        Ok(Self { frame, d_m, d_b, d_s, gamma, formulation })
+    }
+
+    /// The same from corners in space.
+    ///
+    /// # Errors
+    /// M008 if `warp` is normal to the element.
+    pub fn from_corners(
+        corners: &[Point3<f64>; 4],
+        section: &ShellSection,
+        formulation: Formulation,
+        warp: &Vector3<f64>,
+    ) -> Result<Self, MaterialAxisError> {
+        Self::new(Frame::of(corners), section, formulation, warp)
+    }
+
+    /// The smoothing cells.
+    pub fn cells(&self) -> impl Iterator<Item = Cell> {
+        self.formulation.cells.over(&self.frame.xy)
+    }
+
+    /// Stiffness of bending and transverse shear in element axes, dofs `(w, θx, θy)` node by node.
+    pub fn plate_stiffness(&self) -> Matrix12 {
+        let mut k = Matrix12::zeros();
+        for cell in self.cells() {
+            let b = bending_matrix(&cell);
+            k += b.transpose() * (self.d_b * cell.area) * b;
+        }
+        for point in GAUSS_2X2 {
+            let at = gauss_point(&self.frame.xy, point);
+            let b = shear::shear_matrix(&self.frame.xy, &at);
+            k += b.transpose() * (self.d_s * at.det) * b;
+        }
+        k
+    }
+
+    /// Stiffness of membrane and drilling penalty in element axes, dofs `(u, v, θz)` node by node.
+    pub fn membrane_stiffness(&self) -> Matrix12 {
+        let mut k = drilling::stiffness(&self.frame.xy, self.gamma);
+        for cell in self.cells() {
+            let b = membrane_matrix(&cell);
+            k += b.transpose() * (self.d_m * cell.area) * b;
+        }
+        if let Drilling::Seed(factor) = self.formulation.drilling {
+            let spring = factor * k.diagonal().max().max(self.plate_stiffness().diagonal().max());
+            for i in 0..4 {
+                k[(3 * i + 2, 3 * i + 2)] += spring;
+            }
+        }
+        k
+    }
+
+    /// Stiffness of the shell, global axes, dofs `(u, v, w, θx, θy, θz)` node by node.
+    pub fn stiffness(&self) -> Matrix24 {
+        let mut k = Matrix24::zeros();
+        for (part, dofs) in [(self.membrane_stiffness(), MEMBRANE_DOFS), (self.plate_stiffness(), PLATE_DOFS)]
+        {
+            for (i, j) in (0..12).flat_map(|i| (0..12).map(move |j| (i, j))) {
+                let (row, column) = (6 * (i / 3) + dofs[i % 3], 6 * (j / 3) + dofs[j % 3]);
+                k[(row, column)] = part[(i, j)];
+            }
+        }
+        let t = self.to_local();
+        let product = t.transpose() * k * t;
+        0.5 * (product + product.transpose())
+    }
+
+    /// Global nodal displacements to those of the element plane: rotation, then rigid links.
+    pub fn to_local(&self) -> Matrix24 {
+        let mut t = Matrix24::zeros();
+        let r = self.frame.rotation;
+        for i in 0..4 {
+            t.fixed_view_mut::<3, 3>(6 * i, 6 * i).copy_from(&r);
+            t.fixed_view_mut::<3, 3>(6 * i + 3, 6 * i + 3).copy_from(&r);
+            // u' = u - z θy, v' = v + z θx.
+            let z = self.frame.z[i];
+            let (rx, ry) = (r.row(0) * z, r.row(1) * z);
+            t.fixed_view_mut::<1, 3>(6 * i, 6 * i + 3).copy_from(&-ry);
+            t.fixed_view_mut::<1, 3>(6 * i + 1, 6 * i + 3).copy_from(&rx);
+        }
+        t
+    }
+
+    /// Membrane strain and curvature in a cell for local displacements.
+    pub fn strains(&self, cell: &Cell, local: &Vector24) -> (Vector3<f64>, Vector3<f64>) {
+        let membrane = membrane_matrix(cell) * pick(local, MEMBRANE_DOFS);
+        let curvature = bending_matrix(cell) * pick(local, PLATE_DOFS);
+        (membrane, curvature)
+    }
+
+    /// Transverse shear strains at a natural point for local displacements.
+    pub fn shear_strain(&self, natural: [f64; 2], local: &Vector24) -> nalgebra::Vector2<f64> {
+        let at = gauss_point(&self.frame.xy, natural);
+        shear::shear_matrix(&self.frame.xy, &at) * pick(local, PLATE_DOFS)
+    }
+}
+
+const MEMBRANE_DOFS: [usize; 3] = [0, 1, 5];
+const PLATE_DOFS: [usize; 3] = [2, 3, 4];
+
+fn pick(local: &Vector24, dofs: [usize; 3]) -> SVector<f64, 12> {
+    SVector::from_fn(|k, _| local[6 * (k / 3) + dofs[k % 3]])
+}
+
+/// `B̃_b` (3 x 12), dofs `(w, θx, θy)`: Eq. (23), corrected.
+fn bending_matrix(cell: &Cell) -> SMatrix<f64, 3, 12> {
+    let mut b = SMatrix::<f64, 3, 12>::zeros();
+    for (i, [bx, by]) in cell.gradient.into_iter().enumerate() {
+        b[(0, 3 * i + 2)] = bx;
+        b[(1, 3 * i + 1)] = -by;
+        b[(2, 3 * i + 1)] = -bx;
+        b[(2, 3 * i + 2)] = by;
+    }
+    b
+}
+
+/// `B̃_m` (3 x 12), dofs `(u, v, θz)`: Eq. (22).
+fn membrane_matrix(cell: &Cell) -> SMatrix<f64, 3, 12> {
+    let mut b = SMatrix::<f64, 3, 12>::zeros();
+    for (i, [bx, by]) in cell.gradient.into_iter().enumerate() {
+        b[(0, 3 * i)] = bx;
+        b[(1, 3 * i + 1)] = by;
+        b[(2, 3 * i)] = by;
+        b[(2, 3 * i + 1)] = bx;
+    }
+    b
+}
+
+#[cfg(test)]
+#[path = "element_tests.rs"]
+mod tests;

@@ -1,0 +1,229 @@
+//! Element matrices into block matrices, in element order: the result does not depend on threads.
+
+use std::sync::Arc;
+
+use nalgebra::{Matrix3, Point3, SMatrix, Vector3};
+
+use super::sparse::{BlockGraph, BlockMatrix};
+use crate::element::{MaterialAxisError, Prepared, consistent_mass, lumped_mass};
+use crate::model::{DofGroup, Model};
+use crate::section::ShellSection;
+
+/// The node graph of a mesh and the place of every element's blocks in it: computed once per mesh.
+#[derive(Clone, Debug)]
+pub struct Pattern {
+    /// Neighbouring nodes.
+    pub graph: Arc<BlockGraph>,
+    /// Block index of each of the ten node pairs of every quad, in the order of [`PAIRS`].
+    blocks: Vec<[u32; 10]>,
+}
+
+/// Pairs (i, j), i >= j, of local nodes.
+const PAIRS: [(usize, usize); 10] =
+    [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2), (3, 0), (3, 1), (3, 2), (3, 3)];
+
+impl Pattern {
+    /// The pattern of a mesh.
+    pub fn new(nodes: usize, quads: &[[u32; 4]]) -> Self {
+        let graph = BlockGraph::from_elements(nodes, quads);
+        let blocks = quads
+            .iter()
+            .map(|quad| {
+                PAIRS.map(|(i, j)| {
+                    let (a, b) = (quad[i], quad[j]);
+                    // Every pair of an element is in the graph that was made of the elements.
+                    graph.find(a.max(b), a.min(b)).map_or(u32::MAX, |k| k as u32)
+                })
+            })
+            .collect();
+        Self { graph: Arc::new(graph), blocks }
+    }
+}
+
+/// Which matrix of an element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Stiffness.
+    Stiffness,
+    /// Mass, Eq. (12).
+    Mass {
+        /// Row sums on the diagonal instead of the consistent matrix.
+        lumped: bool,
+    },
+}
+
+/// Element matrices of a model in one dof group; equal elements in a row are computed once.
+pub struct ElementMatrices<'a> {
+    model: &'a Model,
+    group: DofGroup,
+    kind: Kind,
+    last: Option<([Point3<f64>; 4], f64)>,
+    matrix: Vec<f64>,
+}
+
+impl<'a> ElementMatrices<'a> {
+    /// Matrices of one kind of `model` restricted to `group`.
+    pub fn new(model: &'a Model, group: DofGroup, kind: Kind) -> Self {
+        Self { model, group, kind, last: None, matrix: Vec::new() }
+    }
+
+    /// The matrix of a quad, column-major, `4 b` square with `b` dofs a node.
+    ///
+    /// # Errors
+    /// M008 if the warp direction is normal to the element.
+    pub fn of(&mut self, quad: usize) -> Result<&[f64], MaterialAxisError> {
+        let corners = self.model.mesh.corners(quad);
+        if !self.is_like_the_last(&corners) {
+            let flat = self.group != DofGroup::Shell;
+            let element: Prepared = self.model.element(quad, flat)?;
+            self.matrix.clear();
+            match (self.kind, self.group) {
+                (Kind::Stiffness, DofGroup::Plate) => {
+                    self.matrix.extend_from_slice(element.plate_stiffness().as_slice());
+                }
+                (Kind::Stiffness, DofGroup::Membrane) => {
+                    self.matrix.extend_from_slice(element.membrane_stiffness().as_slice());
+                }
+                (Kind::Stiffness, DofGroup::Shell) => {
+                    self.matrix.extend_from_slice(element.stiffness().as_slice());
+                }
+                (Kind::Mass { lumped }, group) => {
+                    self.matrix = mass(&element, &self.model.section, group, lumped);
+                }
+            }
+            let size = (corners[2] - corners[0]).norm();
+            self.last = Some((corners, size));
+        }
+        Ok(&self.matrix)
+    }
+
+    /// Equal up to a translation, to the rounding of the coordinates.
+    fn is_like_the_last(&self, corners: &[Point3<f64>; 4]) -> bool {
+        let Some((last, size)) = &self.last else { return false };
+        (1..4).all(|i| ((corners[i] - corners[0]) - (last[i] - last[0])).amax() <= 1e-12 * size)
+    }
+}
+
+/// Mass of an element in global axes: `ρ ∫ N_i N_j` times `diag(1, 1, 1, t²/12, t²/12, 0)` in its own.
+fn mass(element: &Prepared, section: &ShellSection, group: DofGroup, lumped: bool) -> Vec<f64> {
+    let pairs = if lumped {
+        SMatrix::<f64, 4, 4>::from_diagonal(&lumped_mass(&element.frame, section).into())
+    } else {
+        consistent_mass(&element.frame, section)
+    };
+    let rotary = section.thickness * section.thickness / 12.0;
+    let r = element.frame.rotation;
+    let rotation = r.transpose() * Matrix3::from_diagonal(&Vector3::new(rotary, rotary, 0.0)) * r;
+    let mut node = SMatrix::<f64, 6, 6>::identity();
+    node.fixed_view_mut::<3, 3>(3, 3).copy_from(&rotation);
+    let dofs = group.dofs();
+    let n = 4 * dofs.len();
+    let mut m = vec![0.0; n * n];
+    for (k, value) in m.iter_mut().enumerate() {
+        let (column, row) = (k / n, k % n);
+        let (a, b) = (dofs[row % dofs.len()] as usize, dofs[column % dofs.len()] as usize);
+        *value = pairs[(row / dofs.len(), column / dofs.len())] * node[(a, b)];
+    }
+    m
+}
+
+/// The sum of `factor` times each kind of matrix, with rows and columns of held dofs empty.
+///
+/// `held` says of each dof of the group (`b` a node) whether it is held.
+///
+/// # Errors
+/// M008 if the warp direction is normal to an element.
+pub fn assemble(
+    model: &Model,
+    group: DofGroup,
+    pattern: &Pattern,
+    terms: &[(Kind, f64)],
+    held: &[bool],
+) -> Result<BlockMatrix, MaterialAxisError> {
+    let b = group.dofs().len();
+    let mut matrix = BlockMatrix::zeros(Arc::clone(&pattern.graph), b);
+    let mut copy = vec![0.0; 16 * b * b];
+    for &(kind, factor) in terms {
+        let mut elements = ElementMatrices::new(model, group, kind);
+        for (quad, nodes) in model.mesh.quads.iter().enumerate() {
+            let k = elements.of(quad)?;
+            let is_held = |dof: usize| held[nodes[dof / b] as usize * b + dof % b];
+            if factor == 1.0 && !(0..4 * b).any(is_held) {
+                scatter(k, b, nodes, &pattern.blocks[quad], &mut matrix);
+                continue;
+            }
+            copy.iter_mut().zip(k).for_each(|(c, k)| *c = factor * k);
+            for j in (0..4 * b).filter(|j| is_held(*j)) {
+                for i in 0..4 * b {
+                    copy[j * 4 * b + i] = 0.0;
+                    copy[i * 4 * b + j] = 0.0;
+                }
+            }
+            scatter(&copy, b, nodes, &pattern.blocks[quad], &mut matrix);
+        }
+    }
+    Ok(matrix)
+}
+
+/// Adds an element matrix to the blocks of the lower triangle.
+fn scatter(k: &[f64], b: usize, nodes: &[u32; 4], blocks: &[u32; 10], matrix: &mut BlockMatrix) {
+    let n = 4 * b;
+    for (&(i, j), &block) in PAIRS.iter().zip(blocks) {
+        // The stored block has the greater node as row; element matrices are symmetric.
+        let (row, column) = if nodes[i] >= nodes[j] { (i, j) } else { (j, i) };
+        let target = &mut matrix.values[block as usize * b * b..][..b * b];
+        for c in 0..b {
+            let source = &k[(column * b + c) * n + row * b..][..b];
+            target[c * b..][..b].iter_mut().zip(source).for_each(|(t, s)| *t += s);
+        }
+    }
+}
+
+/// Puts the largest diagonal entry of its kind on the diagonal of each held dof, so that the
+/// factorisation sees a unit row of ordinary size.
+pub fn unit_rows(matrix: &mut BlockMatrix, held: &[bool]) {
+    let b = matrix.block;
+    let diagonal = |col_ptr: &[usize], k: usize| col_ptr[k / b] * b * b + (k % b) * (b + 1);
+    let graph = Arc::clone(&matrix.graph);
+    let mut scale = vec![0.0f64; b];
+    for k in 0..graph.nodes * b {
+        scale[k % b] = scale[k % b].max(matrix.values[diagonal(&graph.col_ptr, k)]);
+    }
+    for k in (0..held.len()).filter(|k| held[*k]) {
+        // A kind of dof that is held everywhere has no scale of its own.
+        let s = if scale[k % b] > 0.0 { scale[k % b] } else { 1.0 };
+        matrix.values[diagonal(&graph.col_ptr, k)] = s;
+    }
+}
+
+/// A matrix of the model times a vector of the group, by a loop over the elements: independent of
+/// the assembled matrix, held dofs included.
+///
+/// # Errors
+/// M008 if the warp direction is normal to an element.
+pub fn multiply(
+    model: &Model,
+    group: DofGroup,
+    kind: Kind,
+    u: &[f64],
+) -> Result<Vec<f64>, MaterialAxisError> {
+    let b = group.dofs().len();
+    let n = 4 * b;
+    let mut elements = ElementMatrices::new(model, group, kind);
+    let mut product = vec![0.0; u.len()];
+    let (mut local, mut f) = (vec![0.0; n], vec![0.0; n]);
+    for (quad, nodes) in model.mesh.quads.iter().enumerate() {
+        let k = elements.of(quad)?;
+        for (i, node) in nodes.iter().enumerate() {
+            local[i * b..][..b].copy_from_slice(&u[*node as usize * b..][..b]);
+        }
+        f.fill(0.0);
+        for (j, value) in local.iter().enumerate() {
+            f.iter_mut().zip(&k[j * n..][..n]).for_each(|(f, k)| *f += k * value);
+        }
+        for (i, node) in nodes.iter().enumerate() {
+            product[*node as usize * b..][..b].iter_mut().zip(&f[i * b..]).for_each(|(a, f)| *a += f);
+        }
+    }
+    Ok(product)
+}

@@ -1,0 +1,218 @@
+//! A case and a section become a model.
+
+use std::str::FromStr;
+
+use nalgebra::{Matrix2, Matrix3, Vector3};
+
+use super::StudyError;
+use super::case::{
+    Case, DrillingChoice, LoadTable, SectionTable, Shape, Sheet, Subcells, SupportKind, SupportTable,
+};
+use crate::element::{Cells, Drilling, Formulation};
+use crate::mesh::{self, QuadMesh};
+use crate::model::{Dof, Load, Model, Support};
+use crate::quantity::{Angle, Force, Length, Moment, STANDARD_GRAVITY};
+use crate::section::ShellSection;
+
+/// The section of a `[section]` table (`geometric` rule: the given Poisson ratio is √(ν12 ν21)).
+///
+/// # Errors
+/// C001 to C003 if the constants make no section.
+pub fn section(table: &SectionTable) -> Result<ShellSection, StudyError> {
+    let (e1, e2, nu) = (table.tensile_warp.si(), table.tensile_weft.si(), table.poisson);
+    let factor = 1.0 / (1.0 - nu * nu);
+    let d12 = nu * (e1 * e2).sqrt() * factor;
+    let (b1, b2) = (table.bending_warp.si(), table.bending_weft.si());
+    let b12 = table.bending_coupling.si();
+    Ok(ShellSection {
+        d_m: Matrix3::new(e1 * factor, d12, 0.0, d12, e2 * factor, 0.0, 0.0, 0.0, table.shear.si()),
+        d_b: Matrix3::new(b1, b12, 0.0, b12, b2, 0.0, 0.0, 0.0, table.torsion.si()),
+        d_s: Matrix2::identity() * table.transverse_shear.si(),
+        areal_density: table.areal_density.si(),
+        thickness: table.thickness.si(),
+    }
+    .checked()?)
+}
+
+/// The formulation that a case asks for.
+///
+/// # Errors
+/// S003 for a number of smoothing cells that has no layout.
+pub fn formulation(case: &Case) -> Result<Formulation, StudyError> {
+    let cells = match case.element.subcells {
+        Subcells::Count(nc) => Cells::from_count(nc).ok_or_else(|| {
+            case.inconsistent(format!(
+                "subcells = {nc} has no layout: take 1, 2, 3, 4, 9, 16 ... or [nx, ny]"
+            ))
+        })?,
+        Subcells::Grid([nx, ny]) if nx > 0 && ny > 0 => Cells::grid(nx, ny),
+        Subcells::Grid(_) => {
+            return Err(case.inconsistent("subcells = [nx, ny] needs two positive numbers".into()));
+        }
+    };
+    let drilling = match case.element.drilling {
+        DrillingChoice::Scaled => Drilling::Scaled,
+        DrillingChoice::HughesBrezzi => Drilling::HughesBrezzi,
+        DrillingChoice::Seed => Drilling::Seed(1e-3),
+    };
+    let shear_stabilisation = case.element.shear_stabilisation;
+    if !(0.0..=1.0).contains(&shear_stabilisation) {
+        return Err(
+            case.inconsistent(format!("shear_stabilisation = {shear_stabilisation}: it must be 0 to 1"))
+        );
+    }
+    Ok(Formulation { cells, shear_stabilisation, drilling })
+}
+
+/// The model of a case with a `[sheet]`.
+///
+/// # Errors
+/// S003, and the errors of mesh and model.
+pub fn model(case: &Case, sheet: &Sheet, section: ShellSection) -> Result<Model, StudyError> {
+    let mesh = sheet_mesh(case, sheet)?;
+    let (sin, cos) = sheet.warp_angle_deg.to_radians().sin_cos();
+    let mut supports = Vec::new();
+    for table in &case.supports {
+        supports.extend(support(case, &mesh, table)?);
+    }
+    let mut loads = Vec::new();
+    for table in &case.loads {
+        match table {
+            LoadTable::Prescribed { set, dof, value } => {
+                let dof = dof_named(case, dof)?;
+                let value = match dof {
+                    Dof::U | Dof::V | Dof::W => quantity::<Length>(case, value)?.si(),
+                    _ => quantity::<Angle>(case, value)?.si(),
+                };
+                supports.push(Support { nodes: mesh.set(set)?.to_vec(), held: vec![(dof, value)] });
+            }
+            other => loads.push(load(case, &mesh, other)?),
+        }
+    }
+    let formulation = formulation(case)?;
+    Ok(Model { mesh, section, warp: Vector3::new(cos, sin, 0.0), formulation, supports, loads })
+}
+
+fn sheet_mesh(case: &Case, sheet: &Sheet) -> Result<QuadMesh, StudyError> {
+    let need = |value: Option<Length>, key: &str| {
+        value.map(Length::si).ok_or_else(|| {
+            case.inconsistent(format!("[sheet] shape = {:?} needs `{key}`", sheet.shape).to_lowercase())
+        })
+    };
+    let [a, b] = sheet.cells;
+    let unused = match sheet.shape {
+        Shape::Rectangle | Shape::Strip => sheet.diameter.or(sheet.inner_diameter).map(|_| "diameter"),
+        Shape::Disc => {
+            sheet.width.or(sheet.height).or(sheet.inner_diameter).map(|_| "width, height, inner_diameter")
+        }
+        Shape::Annulus => sheet.width.or(sheet.height).map(|_| "width, height"),
+    };
+    if let Some(keys) = unused {
+        let shape = format!("{:?}", sheet.shape).to_lowercase();
+        return Err(case.inconsistent(format!("[sheet] shape = \"{shape}\" does not use {keys}: remove it")));
+    }
+    let mesh = match sheet.shape {
+        Shape::Rectangle | Shape::Strip => {
+            mesh::rectangle(need(sheet.width, "width")?, need(sheet.height, "height")?, a, b)?
+        }
+        Shape::Disc if a == b => mesh::disc(0.5 * need(sheet.diameter, "diameter")?, a)?,
+        Shape::Disc => {
+            return Err(case.inconsistent("cells of a disc: give one number twice, such as [16, 16]".into()));
+        }
+        Shape::Annulus => mesh::annulus(
+            0.5 * need(sheet.inner_diameter, "inner_diameter")?,
+            0.5 * need(sheet.diameter, "diameter")?,
+            a,
+            b,
+        )?,
+    };
+    let mesh = mesh::distorted(mesh, sheet.distortion, sheet.seed)?;
+    mesh.check()?;
+    Ok(mesh)
+}
+
+fn dof_named(case: &Case, name: &str) -> Result<Dof, StudyError> {
+    Dof::from_name(name).ok_or_else(|| {
+        case.inconsistent(format!("`{name}` is not a dof: take u, v, w, theta_x, theta_y or theta_z"))
+    })
+}
+
+fn support(case: &Case, mesh: &QuadMesh, table: &SupportTable) -> Result<Vec<Support>, StudyError> {
+    let nodes = mesh.set(&table.set)?;
+    Ok(match (table.kind, &table.fix) {
+        (Some(kind), None) => match kind {
+            SupportKind::Clamped => vec![Support::clamped(nodes)],
+            SupportKind::SimplySupported => Support::simple(mesh, &table.set, true)?,
+            SupportKind::SimplySupportedSoft => Support::simple(mesh, &table.set, false)?,
+            SupportKind::SymmetryX => vec![Support::symmetry_x(nodes)],
+            SupportKind::SymmetryY => vec![Support::symmetry_y(nodes)],
+            SupportKind::Free => Vec::new(),
+        },
+        (None, Some(names)) => {
+            let dofs = names.iter().map(|n| dof_named(case, n)).collect::<Result<Vec<_>, _>>()?;
+            vec![Support::fix(nodes, &dofs)]
+        }
+        _ => {
+            return Err(case.inconsistent(format!(
+                "the support of set `{}` needs either `kind` or `fix`, and not both",
+                table.set
+            )));
+        }
+    })
+}
+
+fn load(case: &Case, mesh: &QuadMesh, table: &LoadTable) -> Result<Load, StudyError> {
+    let unit = |direction: &[f64; 3]| {
+        let v = Vector3::from(*direction);
+        let length = v.norm();
+        if length > 0.0 && length.is_finite() {
+            Ok(v / length)
+        } else {
+            Err(case.inconsistent(format!(
+                "direction {direction:?} has no direction: give a vector such as [0, 0, -1]"
+            )))
+        }
+    };
+    let edges = |set: &str| {
+        let edges = mesh.set_edges(set)?;
+        if edges.is_empty() {
+            return Err(
+                case.inconsistent(format!("set `{set}` has no edge on the boundary to carry an edge load"))
+            );
+        }
+        Ok(edges)
+    };
+    Ok(match table {
+        LoadTable::Pressure { value } => Load::Pressure(value.si()),
+        LoadTable::Gravity { value, direction } => {
+            let g = value.map_or(STANDARD_GRAVITY, |v| v.si());
+            Load::Gravity(unit(&direction.unwrap_or([0.0, 0.0, -1.0]))? * g)
+        }
+        LoadTable::Point { set, value, direction } => {
+            let nodes = mesh.set(set)?.to_vec();
+            let along = unit(direction)?;
+            match (Force::from_str(value), Moment::from_str(value)) {
+                (Ok(force), _) => Load::Point { nodes, force: along * force.si(), moment: Vector3::zeros() },
+                (_, Ok(moment)) => {
+                    Load::Point { nodes, force: Vector3::zeros(), moment: along * moment.si() }
+                }
+                (Err(e), _) => return Err(case.inconsistent(format!("point load: {e}"))),
+            }
+        }
+        LoadTable::EdgeForce { set, value, direction } => {
+            Load::Edge { edges: edges(set)?, force: unit(direction)? * value.si(), moment: Vector3::zeros() }
+        }
+        LoadTable::EdgeMoment { set, value, direction } => {
+            Load::Edge { edges: edges(set)?, force: Vector3::zeros(), moment: unit(direction)? * value.si() }
+        }
+        // Held dofs, not forces: the caller makes supports of them.
+        LoadTable::Prescribed { .. } => Load::Pressure(0.0),
+    })
+}
+
+fn quantity<Q: FromStr<Err = crate::quantity::QuantityError>>(
+    case: &Case,
+    text: &str,
+) -> Result<Q, StudyError> {
+    text.parse().map_err(|e| case.inconsistent(format!("prescribed value: {e}")))
+}
