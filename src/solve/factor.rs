@@ -105,7 +105,7 @@ pub struct Counts {
 /// An order of elimination and the structure of the factor, for every matrix with the same
 /// graph and block size. Share it between threads by reference or `Arc`.
 ///
-/// It keeps the memory of dropped factors (at most one per thread of the pool) for the next.
+/// It keeps the memory of a dropped factor, or of several small ones, for the next.
 #[derive(Debug)]
 pub struct Analysis {
     graph: Arc<BlockGraph>,
