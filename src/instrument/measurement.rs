@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use super::fab::FabFile;
 use super::{Direction, Parameter};
 use crate::finding::{Finding, Place};
 use crate::quantity::Curve;
@@ -192,6 +193,8 @@ pub struct FabricInput {
     pub measurements: Vec<Measurement>,
     /// Values of result tables.
     pub results: Vec<ResultValue>,
+    /// FAB strip measurements, in file order.
+    pub fab: Vec<FabFile>,
     /// Every file that was read, in name order.
     pub sources: Vec<Source>,
     /// What a reader of the data must know.

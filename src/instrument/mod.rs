@@ -1,12 +1,33 @@
 //! Laboratory files in, typed measurements in SI out.
 //!
-//! `raw` keeps every cell with its line and column, `dialect` knows layouts as data, and the
-//! instrument modules turn cells into [`Measurement`]s. Nothing here computes a parameter.
+//! `raw` keeps every cell with its line and column, [`Dialect`]s know layouts as data, and `curves`
+//! and `result_table` turn cells into [`Measurement`]s and [`ResultValue`]s. Nothing here computes a
+//! parameter, and raw data are never altered beyond their units.
 
+mod conditions;
+mod curves;
+mod dialect;
+mod error;
+pub mod fab;
+mod folder;
+mod layout;
 mod measurement;
 mod parameter;
+mod raw;
+mod read;
+mod result_table;
+mod sniff;
+mod words;
 
+pub use conditions::{
+    BendingConditions, CompressionConditions, ShearConditions, StatedConditions, TensileConditions,
+    standard_conditions,
+};
+pub use dialect::{Dialect, Key, Role, TableColumn, dialects};
+pub use error::{Problem, ReadError};
+pub use folder::{Batch, read_dialect, read_fabrics};
 pub use measurement::{
     Conditions, FabricInfo, FabricInput, MeasuredResult, Measurement, Origin, ResultValue, Source, Test,
 };
 pub use parameter::{Direction, Parameter};
+pub use read::{FileContent, ReadSettings, parse, read};

@@ -1,0 +1,137 @@
+//! Test conditions: what a file states, else what its owner states, else the standard set.
+
+use serde::Deserialize;
+
+use super::{Conditions, Test};
+use crate::quantity::{Angle, Curvature, Length, LineForce, Pressure};
+
+/// Conditions that files leave out; the `[conditions]` of fabric.toml and of dialects.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct StatedConditions {
+    /// Specimen width in every test.
+    pub width: Option<Length>,
+    /// FB1 tensile.
+    pub tensile: TensileConditions,
+    /// FB1 shear.
+    pub shear: ShearConditions,
+    /// FB2 pure bending.
+    pub bending: BendingConditions,
+    /// FB3 compression.
+    pub compression: CompressionConditions,
+}
+
+/// Conditions of FB1 tensile.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct TensileConditions {
+    /// Specimen width.
+    pub width: Option<Length>,
+    /// Distance between the jaws.
+    pub gauge: Option<Length>,
+    /// Set maximum of the force per width.
+    pub maximum: Option<LineForce>,
+}
+
+/// Conditions of FB1 shear.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ShearConditions {
+    /// Specimen width.
+    pub width: Option<Length>,
+    /// Distance between the jaws.
+    pub gauge: Option<Length>,
+    /// Set maximum of the angle.
+    pub maximum: Option<Angle>,
+    /// Constant tension per width.
+    pub pretension: Option<LineForce>,
+}
+
+/// Conditions of FB2.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct BendingConditions {
+    /// Specimen width.
+    pub width: Option<Length>,
+    /// Distance between the clamps.
+    pub gauge: Option<Length>,
+    /// Set maximum of the curvature.
+    pub maximum: Option<Curvature>,
+}
+
+/// Conditions of FB3.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct CompressionConditions {
+    /// Set maximum of the pressure.
+    pub maximum: Option<Pressure>,
+}
+
+/// Area of the standard compression foot, 2.0 cm² (m²).
+pub(super) const FOOT_AREA: f64 = 2.0e-4;
+
+/// The standard set of conditions (kes.md, section 1): 20 cm wide specimens, 5 cm between the jaws
+/// of FB1 and 1 cm between the clamps of FB2, maxima of 500 gf/cm, 8 deg, 2.5 1/cm and 50 gf/cm²,
+/// and 10 gf/cm of tension during shear.
+pub fn standard_conditions(test: Test) -> Conditions {
+    const GF_PER_CM: f64 = 0.980_665;
+    let (gauge, maximum, pretension) = match test {
+        Test::Tensile => (0.05, 500.0 * GF_PER_CM, 0.0),
+        Test::Shear => (0.05, 8f64.to_radians(), 10.0 * GF_PER_CM),
+        Test::Bending => (0.01, 250.0, 0.0),
+        Test::Compression => (0.0, 50.0 * 98.0665, 0.0),
+    };
+    Conditions { width: 0.20, gauge, maximum, pretension }
+}
+
+impl StatedConditions {
+    /// `self` where it states something, else `other`.
+    pub(super) fn or(&self, other: &Self) -> Self {
+        let (a, b) = (self, other);
+        Self {
+            width: a.width.or(b.width),
+            tensile: TensileConditions {
+                width: a.tensile.width.or(b.tensile.width),
+                gauge: a.tensile.gauge.or(b.tensile.gauge),
+                maximum: a.tensile.maximum.or(b.tensile.maximum),
+            },
+            shear: ShearConditions {
+                width: a.shear.width.or(b.shear.width),
+                gauge: a.shear.gauge.or(b.shear.gauge),
+                maximum: a.shear.maximum.or(b.shear.maximum),
+                pretension: a.shear.pretension.or(b.shear.pretension),
+            },
+            bending: BendingConditions {
+                width: a.bending.width.or(b.bending.width),
+                gauge: a.bending.gauge.or(b.bending.gauge),
+                maximum: a.bending.maximum.or(b.bending.maximum),
+            },
+            compression: CompressionConditions { maximum: a.compression.maximum.or(b.compression.maximum) },
+        }
+    }
+
+    /// The standard set with everything that is stated here put over it.
+    pub fn over_standard(&self, test: Test) -> Conditions {
+        let mut c = standard_conditions(test);
+        let (width, gauge, maximum) = match test {
+            Test::Tensile => {
+                let t = &self.tensile;
+                (t.width, t.gauge, t.maximum.map(LineForce::si))
+            }
+            Test::Shear => {
+                let t = &self.shear;
+                c.pretension = t.pretension.map_or(c.pretension, LineForce::si);
+                (t.width, t.gauge, t.maximum.map(Angle::si))
+            }
+            Test::Bending => {
+                let t = &self.bending;
+                (t.width, t.gauge, t.maximum.map(Curvature::si))
+            }
+            Test::Compression => (None, None, self.compression.maximum.map(Pressure::si)),
+        };
+        c.width = width.or(self.width).map_or(c.width, Length::si);
+        c.gauge = gauge.map_or(c.gauge, Length::si);
+        c.maximum = maximum.unwrap_or(c.maximum);
+        c
+    }
+}

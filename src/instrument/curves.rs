@@ -1,0 +1,432 @@
+//! Column pairs to measurements: which test it is, its conditions, and SI.
+
+use std::str::FromStr;
+
+use super::conditions::FOOT_AREA;
+use super::dialect::{Key, Role};
+use super::error::{Problem, ReadError};
+use super::layout::{Column, Context, Entry, Header, Pair};
+use super::raw::Row;
+use super::sniff::{Number, folded, number};
+use super::words::{is_volt, known_unit};
+use super::{Conditions, Direction, Measurement, Source, Test};
+use crate::finding::{Finding, Place};
+use crate::quantity::{Angle, Curvature, Curve, Dimension, Length, LineForce, Pressure, QuantityError, Unit};
+
+/// How a number of a column becomes SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Scale {
+    /// Times a factor.
+    Linear(f64),
+    /// A displacement (times the factor) over the gauge: its arc tangent is the shear angle.
+    Atan(f64),
+}
+
+impl Scale {
+    fn apply(self, value: f64) -> f64 {
+        match self {
+            Self::Linear(factor) => value * factor,
+            Self::Atan(factor) => (value * factor).atan(),
+        }
+    }
+
+    fn times(self, by: f64) -> Self {
+        match self {
+            Self::Linear(f) => Self::Linear(f * by),
+            Self::Atan(f) => Self::Atan(f * by),
+        }
+    }
+}
+
+const RATIO: Dimension = Dimension { kg: 0, m: 0, s: 0 };
+const LENGTH: Dimension = Dimension { kg: 0, m: 1, s: 0 };
+const PER_LENGTH: Dimension = Dimension { kg: 0, m: -1, s: 0 };
+const FORCE: Dimension = Dimension { kg: 1, m: 1, s: -2 };
+const LINE_FORCE: Dimension = Dimension { kg: 1, m: 0, s: -2 };
+const MOMENT: Dimension = Dimension { kg: 1, m: 2, s: -2 };
+const PRESSURE: Dimension = Dimension { kg: 1, m: -1, s: -2 };
+
+/// The measurement of one column pair, with what was noticed on the way; `None` if the pair holds
+/// no value at all (an empty column block).
+pub(super) fn measurement(
+    pair: &Pair,
+    rows: &[&Row<'_>],
+    ends_file: bool,
+    context: &Context<'_>,
+    log: &mut Vec<String>,
+) -> Result<Option<(Measurement, Vec<Finding>)>, ReadError> {
+    let test = test_of(pair, context)?;
+    let header = &pair.header;
+    let conditions = conditions(test, header, context, log)?;
+    let x = scale(&pair.x, test, true, &conditions, header, context)?;
+    let y = scale(&pair.y, test, false, &conditions, header, context)?;
+    let points = points(pair, rows, ends_file, context)?;
+    if points.rows.is_empty() {
+        return Ok(None);
+    }
+    if points.rows.len() < 3 {
+        let problem = Problem::TooShort { points: points.rows.len() };
+        return Err(context.error(points.rows[0].0, pair.x.column, problem));
+    }
+    let direction = match test {
+        Test::Compression => None,
+        _ => Some(direction(pair, context)?),
+    };
+    let measurement = Measurement {
+        test,
+        sample: header
+            .known
+            .get(&Key::Sample)
+            .map(|e| e.text.clone())
+            .or_else(|| context.label.sample.clone()),
+        direction,
+        // 0 stands for "not stated" until the whole file is known.
+        specimen: specimen(header, context)?.unwrap_or(0),
+        conditions,
+        curve: Curve::from_points(points.rows.iter().map(|&(_, a, b)| (x.apply(a), y.apply(b)))),
+        lines: points.rows.iter().map(|p| p.0).collect(),
+        source: Source::default(),
+        metadata: header.other.clone(),
+    };
+    Ok(Some((measurement, points.findings)))
+}
+
+/// The test that two columns and the header agree on.
+fn test_of(pair: &Pair, context: &Context<'_>) -> Result<Test, ReadError> {
+    let header = pair.header.known.get(&Key::Test);
+    let stated = header.and_then(|e| context.vocabulary.test(&e.text));
+    let elsewhere = context.label.test.or(context.dialect.and_then(|d| d.test));
+    let unclear = |found: String| {
+        let (line, column) = header.map_or((pair.x.line, pair.x.column), |e| (e.line, e.column));
+        context.error(line, column, Problem::TestUnclear { found })
+    };
+    let by_x = match pair.x.role {
+        Role::Strain => Some(Test::Tensile),
+        Role::Angle => Some(Test::Shear),
+        Role::Curvature => Some(Test::Bending),
+        Role::Thickness => Some(Test::Compression),
+        _ => None,
+    };
+    let by_y = match pair.y.role {
+        Role::ShearForce => Some(Test::Shear),
+        Role::Moment => Some(Test::Bending),
+        Role::Pressure => Some(Test::Compression),
+        _ => None,
+    };
+    let columns = match (by_x, by_y) {
+        (Some(a), Some(b)) if a != b => {
+            let found = format!(
+                "columns {:?} and {:?} belong to different tests ({} and {})",
+                pair.x.name,
+                pair.y.name,
+                a.name(),
+                b.name()
+            );
+            return Err(context.error(pair.x.line, pair.x.column, Problem::IncompletePair { found }));
+        }
+        (a, b) => a.or(b),
+    };
+    match (columns, stated.or(elsewhere)) {
+        (Some(c), Some(s)) if c != s => Err(unclear(format!(
+            "the columns {:?} and {:?} are those of a {} test, but {} is stated",
+            pair.x.name,
+            pair.y.name,
+            c.name(),
+            s.name()
+        ))),
+        (Some(test), _) | (None, Some(test)) => Ok(test),
+        (None, None) => Err(unclear(format!(
+            "columns {:?} and {:?} occur in several tests, and the file does not say which",
+            pair.x.name, pair.y.name
+        ))),
+    }
+}
+
+fn direction(pair: &Pair, context: &Context<'_>) -> Result<Direction, ReadError> {
+    match pair.header.known.get(&Key::Direction) {
+        Some(entry) => context.vocabulary.direction(&entry.text).ok_or_else(|| {
+            let reason = format!("{:?} is not a direction (warp, weft or bias)", entry.text);
+            context.error(entry.line, entry.column, Problem::BadValue { key: "direction".into(), reason })
+        }),
+        None => context
+            .label
+            .direction
+            .ok_or_else(|| context.error(pair.x.line, pair.x.column, Problem::DirectionMissing)),
+    }
+}
+
+fn specimen(header: &Header, context: &Context<'_>) -> Result<Option<usize>, ReadError> {
+    let Some(entry) = header.known.get(&Key::Specimen) else { return Ok(context.label.specimen) };
+    let digits: String =
+        entry.text.chars().skip_while(|c| !c.is_ascii_digit()).take_while(char::is_ascii_digit).collect();
+    match digits.parse() {
+        Ok(n) if n > 0 => Ok(Some(n)),
+        _ => {
+            let reason = format!("{:?} is not a specimen number (1, 2, 3 ...)", entry.text);
+            Err(context.error(entry.line, entry.column, Problem::BadValue { key: "specimen".into(), reason }))
+        }
+    }
+}
+
+/// Conditions: the header, else what was stated elsewhere, else the standard set.
+fn conditions(
+    test: Test,
+    header: &Header,
+    context: &Context<'_>,
+    log: &mut Vec<String>,
+) -> Result<Conditions, ReadError> {
+    let mut c = context.conditions.over_standard(test);
+    let value = |key: Key, name: &str| quantity_of::<Length>(header, key, name, "mm", context);
+    match value(Key::Width, "width")? {
+        Some(width) => c.width = positive(width.si(), Key::Width, header, context)?,
+        None => log.push(format!("{}: width {} m (not in the file)", test.name(), c.width)),
+    }
+    if test != Test::Compression {
+        match value(Key::Gauge, "gauge")? {
+            Some(gauge) => c.gauge = positive(gauge.si(), Key::Gauge, header, context)?,
+            None => log.push(format!("{}: gauge {} m (not in the file)", test.name(), c.gauge)),
+        }
+    }
+    let maximum =
+        |unit| {
+            Ok::<_, ReadError>(match test {
+                Test::Tensile => quantity_of::<LineForce>(header, Key::Maximum, "maximum", unit, context)?
+                    .map(LineForce::si),
+                Test::Shear => {
+                    quantity_of::<Angle>(header, Key::Maximum, "maximum", unit, context)?.map(Angle::si)
+                }
+                Test::Bending => quantity_of::<Curvature>(header, Key::Maximum, "maximum", unit, context)?
+                    .map(Curvature::si),
+                Test::Compression => {
+                    quantity_of::<Pressure>(header, Key::Maximum, "maximum", unit, context)?.map(Pressure::si)
+                }
+            })
+        };
+    let unit = match test {
+        Test::Tensile => Role::Force,
+        Test::Shear => Role::Angle,
+        Test::Bending => Role::Curvature,
+        Test::Compression => Role::Pressure,
+    }
+    .kes_unit();
+    if let Some(m) = maximum(unit)? {
+        c.maximum = positive(m.abs(), Key::Maximum, header, context)?;
+    }
+    if test == Test::Shear
+        && let Some(w) = quantity_of::<LineForce>(header, Key::Pretension, "pretension", "gf/cm", context)?
+    {
+        c.pretension = w.si();
+    }
+    Ok(c)
+}
+
+fn positive(value: f64, key: Key, header: &Header, context: &Context<'_>) -> Result<f64, ReadError> {
+    if value.is_finite() && value > 0.0 {
+        return Ok(value);
+    }
+    let (line, column, text) = header.known.get(&key).map_or((0, 0, ""), |e| (e.line, e.column, &e.text));
+    let reason = format!("{text:?} must be greater than zero");
+    Err(context.error(line, column, Problem::BadValue { key: format!("{key:?}").to_lowercase(), reason }))
+}
+
+/// A header value as a quantity. Without a unit it is refused, unless KES units are taken.
+fn quantity_of<Q: FromStr<Err = QuantityError>>(
+    header: &Header,
+    key: Key,
+    name: &str,
+    kes_unit: &str,
+    context: &Context<'_>,
+) -> Result<Option<Q>, ReadError> {
+    let Some(entry) = header.known.get(&key) else { return Ok(None) };
+    quantity(entry, name, kes_unit, context).map(Some)
+}
+
+/// See [`quantity_of`].
+pub(super) fn quantity<Q: FromStr<Err = QuantityError>>(
+    entry: &Entry,
+    name: &str,
+    kes_unit: &str,
+    context: &Context<'_>,
+) -> Result<Q, ReadError> {
+    let mut text =
+        folded(&entry.text).trim_start_matches(['±', '<', '=', ' ']).trim_start_matches("+-").to_string();
+    if context.decimal == ',' {
+        text = text.replace(',', ".");
+    }
+    if context.kes_units && matches!(number(&text, '.'), Number::Value(_)) {
+        text = format!("{text} {kes_unit}");
+    }
+    text.parse().map_err(|e: QuantityError| {
+        let problem = match e {
+            QuantityError::NoUnit { found, .. } => {
+                Problem::UnitMissing { found: format!("{name} {found}"), expected: kes_unit.to_string() }
+            }
+            e => Problem::BadValue { key: name.to_string(), reason: e.to_string() },
+        };
+        context.error(entry.line, entry.column, problem)
+    })
+}
+
+/// How the numbers of a column become the SI axis of the test.
+fn scale(
+    column: &Column,
+    test: Test,
+    abscissa: bool,
+    conditions: &Conditions,
+    header: &Header,
+    context: &Context<'_>,
+) -> Result<Scale, ReadError> {
+    let error = |problem| context.error(column.line, column.column, problem);
+    let Some(text) = column.unit.clone().or_else(|| context.default_unit(column.role)) else {
+        let expected = column.role.kes_unit().to_string();
+        return Err(error(Problem::UnitMissing { found: column.name.clone(), expected }));
+    };
+    if is_volt(&text) {
+        // An analogue output of 10 V is the full scale that the range setting states.
+        let key = if abscissa { Key::SensX } else { Key::Sens };
+        let Some(entry) = header.known.get(&key) else {
+            return Err(error(Problem::NoRange { found: column.name.clone() }));
+        };
+        let (value, unit) = full_scale(entry, context)?;
+        let volts = if text == "mV" { 1e-3 } else { 1.0 };
+        let at = |problem| context.error(entry.line, entry.column, problem);
+        let scale = axis(test, abscissa, unit, &entry.text, &column.name, conditions, header, context, &at)?;
+        return Ok(scale.times(value * volts / 10.0));
+    }
+    let unit = known_unit(&text).map_err(error)?;
+    axis(test, abscissa, unit, &text, &column.name, conditions, header, context, &error)
+}
+
+fn full_scale(entry: &Entry, context: &Context<'_>) -> Result<(f64, Unit), ReadError> {
+    let mut text = folded(&entry.text).into_owned();
+    if context.decimal == ',' {
+        text = text.replace(',', ".");
+    }
+    crate::quantity::parse_quantity(&text, "50 gf/cm").map_err(|e| {
+        let problem = Problem::BadValue { key: "sens".into(), reason: e.to_string() };
+        context.error(entry.line, entry.column, problem)
+    })
+}
+
+/// The axis of a test from a unit: directly, or from raw force, moment or travel and the geometry.
+#[allow(clippy::too_many_arguments)] // one caller, and every argument is another fact of the file
+fn axis(
+    test: Test,
+    abscissa: bool,
+    unit: Unit,
+    text: &str,
+    name: &str,
+    conditions: &Conditions,
+    header: &Header,
+    context: &Context<'_>,
+    error: &dyn Fn(Problem) -> ReadError,
+) -> Result<Scale, ReadError> {
+    let is_angle = text.contains("deg") || text.contains('°') || text.contains('度') || text.contains("rad");
+    let f = unit.factor;
+    let wrong = |expected: &str| {
+        error(Problem::UnitWrong {
+            found: text.to_string(),
+            of: name.to_string(),
+            expected: expected.to_string(),
+        })
+    };
+    Ok(match (test, abscissa, unit.dimension) {
+        (Test::Tensile, true, RATIO) if !is_angle => Scale::Linear(f),
+        (Test::Tensile, true, LENGTH) => Scale::Linear(f / conditions.gauge),
+        (Test::Tensile, true, _) => return Err(wrong("% or mm")),
+        (Test::Shear, true, RATIO) if is_angle => Scale::Linear(f),
+        (Test::Shear, true, LENGTH) => Scale::Atan(f / conditions.gauge),
+        (Test::Shear, true, _) => return Err(wrong("deg, rad or mm")),
+        (Test::Bending, true, PER_LENGTH) => Scale::Linear(f),
+        (Test::Bending, true, _) => return Err(wrong("1/cm")),
+        (Test::Compression, true, LENGTH) => Scale::Linear(f),
+        (Test::Compression, true, _) => return Err(wrong("mm")),
+        (Test::Tensile | Test::Shear, false, LINE_FORCE) => Scale::Linear(f),
+        (Test::Tensile | Test::Shear, false, FORCE) => Scale::Linear(f / conditions.width),
+        (Test::Tensile | Test::Shear, false, _) => return Err(wrong("gf/cm or gf")),
+        (Test::Bending, false, FORCE) => Scale::Linear(f),
+        (Test::Bending, false, MOMENT) => Scale::Linear(f / conditions.width),
+        (Test::Bending, false, _) => return Err(wrong("gf·cm/cm or gf·cm")),
+        (Test::Compression, false, PRESSURE) => Scale::Linear(f),
+        (Test::Compression, false, FORCE) => Scale::Linear(f / foot_area(header, context)?),
+        (Test::Compression, false, _) => return Err(wrong("gf/cm² or gf")),
+    })
+}
+
+/// Area of the compression foot: the header, else 2 cm².
+fn foot_area(header: &Header, context: &Context<'_>) -> Result<f64, ReadError> {
+    let Some(entry) = header.known.get(&Key::Area) else { return Ok(FOOT_AREA) };
+    let (value, unit) = full_scale(entry, context)?;
+    if unit.dimension != (Dimension { kg: 0, m: 2, s: 0 }) {
+        let problem =
+            Problem::UnitWrong { found: entry.text.clone(), of: "area".into(), expected: "cm²".into() };
+        return Err(context.error(entry.line, entry.column, problem));
+    }
+    positive(value * unit.factor, Key::Area, header, context)
+}
+
+struct Points {
+    /// Line, abscissa, ordinate, in the units of the file.
+    rows: Vec<(usize, f64, f64)>,
+    findings: Vec<Finding>,
+}
+
+/// The numbers of a pair. Rows in which both cells are empty belong to longer neighbours.
+fn points(
+    pair: &Pair,
+    rows: &[&Row<'_>],
+    ends_file: bool,
+    context: &Context<'_>,
+) -> Result<Points, ReadError> {
+    let mut out = Points { rows: Vec::with_capacity(rows.len()), findings: Vec::new() };
+    for (i, row) in rows.iter().enumerate() {
+        let cells = [row.get(pair.x.index), row.get(pair.y.index)];
+        let last = ends_file && i + 1 == rows.len();
+        match cells {
+            [None, None] => {}
+            [Some(x), Some(y)] => {
+                let cut = |c: &str| matches!(number(c, context.decimal), Number::Broken);
+                if last && cut(y) && !cut(x) && y.trim_matches(['+', '-', '.', ',']).is_empty() {
+                    out.findings.push(truncated(row, context));
+                    continue;
+                }
+                let x = finite(row, pair.x.index, x, context)?;
+                let y = finite(row, pair.y.index, y, context)?;
+                out.rows.push((row.line, x, y));
+            }
+            _ if last => out.findings.push(truncated(row, context)),
+            [x, _] => {
+                let (column, index) =
+                    if x.is_none() { (&pair.x, pair.x.index) } else { (&pair.y, pair.y.index) };
+                let found = format!("the row has no value of {:?}", column.name);
+                return Err(context.error(row.line, row.column(index), Problem::RaggedRow { found }));
+            }
+        }
+    }
+    Ok(out)
+}
+
+fn truncated(row: &Row<'_>, context: &Context<'_>) -> Finding {
+    Finding::new("R102", "the last row is incomplete and was left out").at(Place::at(
+        context.path,
+        row.line,
+        0,
+    ))
+}
+
+/// A cell as a finite number, or the error that names its place.
+pub(super) fn finite(
+    row: &Row<'_>,
+    index: usize,
+    cell: &str,
+    context: &Context<'_>,
+) -> Result<f64, ReadError> {
+    let problem = match number(cell, context.decimal) {
+        Number::Value(value) => return Ok(value),
+        Number::NotFinite => Problem::NotFinite { found: cell.to_string() },
+        Number::Broken | Number::Text => {
+            Problem::NotANumber { found: cell.to_string(), decimal: context.decimal }
+        }
+    };
+    Err(context.error(row.line, row.column(index), problem))
+}

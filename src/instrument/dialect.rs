@@ -1,0 +1,226 @@
+//! Layouts as data: the words, marks and units of a laboratory's files.
+
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+use serde::{Deserialize, Deserializer};
+
+use super::conditions::StatedConditions;
+use super::words::normalised;
+use super::{Direction, Test};
+
+/// What a column of a curve holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// Tensile strain, or extension between the jaws.
+    Strain,
+    /// Shear angle, or shear displacement of the moving jaw.
+    Angle,
+    /// Curvature.
+    Curvature,
+    /// Thickness between the compression plates.
+    Thickness,
+    /// A travel whose meaning follows from the test.
+    Displacement,
+    /// Force, or force per width.
+    Force,
+    /// Shear force, or shear force per width.
+    ShearForce,
+    /// Bending moment, or moment per width.
+    Moment,
+    /// Pressure on the foot.
+    Pressure,
+    /// Known and not needed: time, counter, branch.
+    Ignored,
+}
+
+impl Role {
+    /// Whether it is the abscissa of a curve.
+    pub fn is_abscissa(self) -> bool {
+        matches!(self, Self::Strain | Self::Angle | Self::Curvature | Self::Thickness | Self::Displacement)
+    }
+
+    /// The customary KES unit.
+    pub fn kes_unit(self) -> &'static str {
+        match self {
+            Self::Strain => "%",
+            Self::Angle => "deg",
+            Self::Curvature => "1/cm",
+            Self::Thickness | Self::Displacement => "mm",
+            Self::Force | Self::ShearForce => "gf/cm",
+            Self::Moment => "gf·cm/cm",
+            Self::Pressure => "gf/cm²",
+            Self::Ignored => "1",
+        }
+    }
+}
+
+/// What a header line states.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Key {
+    /// Name of the fabric.
+    Sample,
+    /// Number of the specimen.
+    Specimen,
+    /// Instrument or test.
+    Test,
+    /// Yarn direction.
+    Direction,
+    /// Specimen width.
+    Width,
+    /// Distance between jaws or clamps.
+    Gauge,
+    /// Area of the compression foot.
+    Area,
+    /// Set maximum of the drive or load.
+    Maximum,
+    /// Constant tension during shear.
+    Pretension,
+    /// Full scale (10 V) of the ordinate.
+    Sens,
+    /// Full scale (10 V) of the abscissa.
+    SensX,
+    /// Areal density from a balance.
+    Weight,
+    /// Known and kept as text: date, operator, speed, side, remarks.
+    Remark,
+}
+
+/// What a column of a result table holds, apart from parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TableColumn {
+    /// Identifier of the fabric; goes before `Fabric`.
+    Id,
+    /// Name of the fabric.
+    Fabric,
+    /// Number of the specimen: its rows are averaged.
+    Specimen,
+    /// Symbol of the parameter (long form).
+    Parameter,
+    /// Value (long form).
+    Value,
+    /// Unit of the row (long form).
+    Unit,
+    /// Direction of the row.
+    Direction,
+    /// Standard deviation of the row (long form).
+    Sd,
+    /// Number of repeats of the row.
+    N,
+}
+
+/// The words and marks of one kind of file. A laboratory with a layout of its own writes one.
+///
+/// Words are compared after NFKC in lower case, without accents, blanks and punctuation.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Dialect {
+    /// Short name, e.g. `kes-japanese`.
+    pub name: String,
+    /// One line about it.
+    pub title: String,
+    /// Texts that a file must contain, all of them, for the settings below to apply; empty: every file.
+    #[serde(rename = "match")]
+    pub matches: Vec<String>,
+    /// Encoding label (WHATWG), e.g. `shift_jis`; decided from the bytes if absent.
+    pub encoding: Option<String>,
+    /// Cell delimiter, e.g. `"\t"`; decided from the rows if absent.
+    pub delimiter: Option<char>,
+    /// Decimal mark, `.` or `,`; decided from the rows if absent.
+    pub decimal: Option<char>,
+    /// Whether numbers without a unit are in the customary KES unit. Otherwise they are refused.
+    pub kes_units: bool,
+    /// The test, where files do not say.
+    pub test: Option<Test>,
+    /// Columns in order, for files without headings.
+    pub column_order: Vec<Role>,
+    /// Units of columns that state none.
+    pub units: BTreeMap<Role, String>,
+    /// Heading words of curve columns.
+    #[serde(deserialize_with = "words")]
+    pub columns: BTreeMap<Role, Vec<String>>,
+    /// Words of header lines.
+    #[serde(deserialize_with = "words")]
+    pub keys: BTreeMap<Key, Vec<String>>,
+    /// Words of directions.
+    #[serde(deserialize_with = "words")]
+    pub directions: BTreeMap<Direction, Vec<String>>,
+    /// Words of tests.
+    #[serde(deserialize_with = "words")]
+    pub tests: BTreeMap<Test, Vec<String>>,
+    /// Heading words of result tables.
+    #[serde(deserialize_with = "words")]
+    pub table: BTreeMap<TableColumn, Vec<String>>,
+    /// Other names of parameters, by symbol.
+    #[serde(deserialize_with = "words")]
+    pub symbols: BTreeMap<String, Vec<String>>,
+    /// Conditions that the files leave out.
+    pub conditions: StatedConditions,
+}
+
+fn words<'de, D, K>(d: D) -> Result<BTreeMap<K, Vec<String>>, D::Error>
+where
+    D: Deserializer<'de>,
+    K: Deserialize<'de> + Ord,
+{
+    let map = BTreeMap::<K, Vec<String>>::deserialize(d)?;
+    Ok(map.into_iter().map(|(k, v)| (k, v.iter().map(|w| normalised(w)).collect())).collect())
+}
+
+impl Dialect {
+    /// Reads a dialect from TOML.
+    ///
+    /// # Errors
+    /// The parser's, with its position in the text.
+    pub fn from_toml(text: &str) -> Result<Self, toml::de::Error> {
+        toml::from_str(text)
+    }
+
+    /// Whether its settings apply to a file of this text.
+    pub(super) fn applies_to(&self, text: &str) -> bool {
+        self.matches.iter().all(|m| text.contains(m.as_str()))
+    }
+
+    /// Every heading and key word, for naming the closest dialect.
+    pub(super) fn vocabulary(&self) -> impl Iterator<Item = &str> {
+        let columns = self.columns.values().chain(self.keys.values()).chain(self.table.values());
+        columns.chain(self.symbols.values()).flatten().map(String::as_str)
+    }
+}
+
+/// The dialects that are built in: their words are known for every file.
+///
+/// # Panics
+/// Only if the files that are compiled into the program are malformed; a test reads them.
+pub fn dialects() -> &'static [Dialect] {
+    static TABLE: OnceLock<Vec<Dialect>> = OnceLock::new();
+    TABLE.get_or_init(|| {
+        [
+            include_str!("dialects/kesf.toml"),
+            include_str!("dialects/kes-japanese.toml"),
+            include_str!("dialects/kes-european.toml"),
+        ]
+        .into_iter()
+        .map(|text| Dialect::from_toml(text).expect("built-in dialect"))
+        .collect()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_built_in_dialects_parse_and_have_names() {
+        assert!(dialects().iter().all(|d| !d.name.is_empty() && !d.title.is_empty()));
+        assert!(dialects().iter().all(|d| d.vocabulary().count() > 5));
+    }
+
+    #[test]
+    fn an_unknown_key_of_a_dialect_is_refused() {
+        assert!(Dialect::from_toml("name = \"x\"\ndelimeter = \";\"").is_err());
+    }
+}

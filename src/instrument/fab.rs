@@ -1,0 +1,209 @@
+//! FAB strips: force against clamp distance in the raw data of U3M files (Browzwear FAB).
+//!
+//! `raw_data.{L|W|B}.{S1|S2|D1|D2|U1}` are stretch tests at 2 and 8 cm clamp distance, down-bends
+//! at 2 and 8 cm and an up-bend at 2 cm; `samplesTree` holds branches (load, unload, load ...),
+//! each a flat list distance (cm), force (gf), distance, force ... `T` is a thickness test, `M` the
+//! mass (g/m²). Numbers may be strings. Nothing is corrected here: zero, slack and offset are the
+//! characterisation's.
+
+use std::path::Path;
+
+use serde::Serialize;
+use serde_json::Value;
+
+use super::error::{Problem, ReadError};
+use super::{Direction, Source};
+use crate::finding::{Finding, Place};
+use crate::quantity::{Curve, STANDARD_GRAVITY};
+
+/// What a FAB test does to the strip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FabKind {
+    /// Stretch at the short clamp distance (about 2 cm).
+    S1,
+    /// Stretch at the long clamp distance (about 8 cm).
+    S2,
+    /// Bend downwards, short distance.
+    D1,
+    /// Bend downwards, long distance.
+    D2,
+    /// Bend upwards, short distance.
+    U1,
+}
+
+impl FabKind {
+    /// Every kind, in output order.
+    pub const ALL: [Self; 5] = [Self::S1, Self::S2, Self::D1, Self::D2, Self::U1];
+
+    /// The key in the file, e.g. `S1`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::S1 => "S1",
+            Self::S2 => "S2",
+            Self::D1 => "D1",
+            Self::D2 => "D2",
+            Self::U1 => "U1",
+        }
+    }
+
+    /// Whether the strip is stretched; otherwise it buckles as the clamps approach.
+    pub fn is_stretch(self) -> bool {
+        matches!(self, Self::S1 | Self::S2)
+    }
+}
+
+/// One strip test: clamp distance against force.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FabTest {
+    /// Direction of the strip: length is warp, width is weft.
+    pub direction: Direction,
+    /// What was done.
+    pub kind: FabKind,
+    /// Length of the strip between the clamps as the file states it (m).
+    pub length: f64,
+    /// Width of the strip (m).
+    pub width: f64,
+    /// Clamp distance (m) and force (N) of each branch, in recorded order: load, unload, load ...
+    pub branches: Vec<Curve>,
+}
+
+impl FabTest {
+    /// Clamp distance of the first sample (m): where the drive started.
+    pub fn gap(&self) -> f64 {
+        self.branches.iter().find_map(|b| b.x.first().copied()).unwrap_or(self.length)
+    }
+}
+
+/// The raw data of a FAB measurement.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct FabFile {
+    /// Name of the fabric, where the file has one.
+    pub name: Option<String>,
+    /// Strip tests, by direction (warp, weft, bias) and kind.
+    pub tests: Vec<FabTest>,
+    /// Thickness of each contact of the thickness test (m), in recorded order.
+    pub thickness: Vec<f64>,
+    /// Areal density (kg/m²).
+    pub areal_density: Option<f64>,
+    /// Warnings of the instrument's own program, each with the test that it speaks of.
+    pub warnings: Vec<String>,
+    /// The file.
+    pub source: Source,
+}
+
+/// Reads the raw data of a U3M physics file.
+///
+/// # Errors
+/// `R022` if it is not JSON, `R023` if it holds no FAB raw data or a broken test.
+pub(super) fn parse(path: &Path, text: &str) -> Result<(FabFile, Vec<Finding>), ReadError> {
+    let document: Value = serde_json::from_str(text).map_err(|e| ReadError {
+        place: Place::at(path, e.line(), e.column()),
+        problem: Problem::BadJson { reason: e.to_string() },
+    })?;
+    let raw = document.get("raw_data").filter(|r| r.is_object());
+    let raw = raw.ok_or_else(|| bad(path, "the document has no `raw_data` object".into()))?;
+    let mut file = FabFile::default();
+    for (key, direction) in [("L", Direction::Warp), ("W", Direction::Weft), ("B", Direction::Bias)] {
+        for kind in FabKind::ALL {
+            if let Some(test) = raw.get(key).and_then(|d| d.get(kind.name())) {
+                let at = format!("raw_data.{key}.{}", kind.name());
+                file.tests.push(strip(test, raw.get(key), direction, kind, path, &at)?);
+            }
+        }
+    }
+    if let Some(test) = raw.get("T") {
+        // A contact is one sample: thickness (cm), force (gf).
+        let contacts = branches(test, path, "raw_data.T")?;
+        file.thickness = contacts.iter().filter_map(|c| c.x.last().copied()).collect();
+    }
+    if let Some(mass) = raw.get("M") {
+        file.areal_density = Some(number(mass, path, "raw_data.M")? * 1e-3);
+    }
+    if file.tests.is_empty() {
+        return Err(bad(path, "`raw_data` has no test of L, W or B".into()));
+    }
+    file.name = document.pointer("/custom/browzwear/name").and_then(Value::as_str).map(str::to_string);
+    warnings(raw, "raw_data", &mut file.warnings);
+    let finding = |w: &String| {
+        Finding::new("R108", format!("the instrument's program warned: {w}")).at(Place::file(path))
+    };
+    let findings = file.warnings.iter().map(finding).collect();
+    Ok((file, findings))
+}
+
+fn bad(path: &Path, reason: String) -> ReadError {
+    ReadError { place: Place::file(path), problem: Problem::BadFab { reason } }
+}
+
+fn strip(
+    test: &Value,
+    parent: Option<&Value>,
+    direction: Direction,
+    kind: FabKind,
+    path: &Path,
+    at: &str,
+) -> Result<FabTest, ReadError> {
+    let length_of = |key: &str| {
+        let value = test.get(key).or_else(|| parent?.get(key));
+        let value = value.ok_or_else(|| bad(path, format!("{at}.{key} is missing")))?;
+        let metres = number(value, path, &format!("{at}.{key}"))? * 1e-2;
+        if metres > 0.0 {
+            Ok(metres)
+        } else {
+            Err(bad(path, format!("{at}.{key} must be greater than zero")))
+        }
+    };
+    Ok(FabTest {
+        direction,
+        kind,
+        length: length_of("length")?,
+        width: length_of("width")?,
+        branches: branches(test, path, at)?,
+    })
+}
+
+/// Branches of flat lists: distance (cm), force (gf), distance, force ...
+fn branches(test: &Value, path: &Path, at: &str) -> Result<Vec<Curve>, ReadError> {
+    let tree = test.get("samplesTree").and_then(Value::as_array);
+    let tree = tree.ok_or_else(|| bad(path, format!("{at}.samplesTree is not a list")))?;
+    let branch = |(i, list): (usize, &Value)| {
+        let at = format!("{at}.samplesTree[{i}]");
+        let list = list.as_array().ok_or_else(|| bad(path, format!("{at} is not a list")))?;
+        if list.len() % 2 != 0 {
+            return Err(bad(path, format!("{at} holds {} numbers: a distance lacks its force", list.len())));
+        }
+        let mut curve = Curve::default();
+        for (j, pair) in list.chunks_exact(2).enumerate() {
+            curve.x.push(number(&pair[0], path, &format!("{at}[{}]", 2 * j))? * 1e-2);
+            curve.y.push(number(&pair[1], path, &format!("{at}[{}]", 2 * j + 1))? * 1e-3 * STANDARD_GRAVITY);
+        }
+        Ok(curve)
+    };
+    tree.iter().enumerate().map(branch).collect()
+}
+
+/// A JSON number, or a string that holds one.
+fn number(value: &Value, path: &Path, at: &str) -> Result<f64, ReadError> {
+    let number = value.as_f64().or_else(|| value.as_str().and_then(|s| s.trim().parse().ok()));
+    number.filter(|v| v.is_finite()).ok_or_else(|| bad(path, format!("{at} is not a number: {value}")))
+}
+
+/// Texts under any key that begins with `warning`, wherever they stand.
+fn warnings(value: &Value, at: &str, out: &mut Vec<String>) {
+    let Some(object) = value.as_object() else { return };
+    for (key, inner) in object {
+        if !key.to_lowercase().starts_with("warning") {
+            warnings(inner, &format!("{at}.{key}"), out);
+            continue;
+        }
+        match inner {
+            Value::String(text) if !text.is_empty() => out.push(format!("{at}: {text}")),
+            Value::Array(list) => out.extend(list.iter().map(|w| {
+                let text = w.as_str().map_or_else(|| w.to_string(), str::to_string);
+                format!("{at}: {text}")
+            })),
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,416 @@
+//! Rows to blocks: header lines, then curves in column pairs or a result table; repeated.
+//!
+//! Blocks may be stacked (each with its own header lines, which override those before) and stand
+//! side by side (column pairs under one heading row, told apart by rows above the headings).
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::conditions::StatedConditions;
+use super::dialect::{Dialect, Key, Role};
+use super::error::{Problem, ReadError};
+use super::raw::Row;
+use super::result_table;
+use super::sniff::{Number, folded, number};
+use super::words::{Label, Vocabulary, is_volt, split_unit, unit};
+use crate::finding::Place;
+
+/// What is known of a file before its rows are read.
+pub(super) struct Context<'a> {
+    pub path: &'a Path,
+    pub vocabulary: Vocabulary<'a>,
+    /// The user's dialect whose settings apply.
+    pub dialect: Option<&'a Dialect>,
+    pub delimiter: char,
+    pub decimal: char,
+    pub kes_units: bool,
+    pub conditions: StatedConditions,
+    /// What the file name says.
+    pub label: Label,
+}
+
+impl Context<'_> {
+    pub fn error(&self, line: usize, column: usize, problem: Problem) -> ReadError {
+        ReadError { place: Place::at(self.path, line, column), problem }
+    }
+
+    /// The unit of a column that states none.
+    pub fn default_unit(&self, role: Role) -> Option<String> {
+        let of_dialect = self.dialect.and_then(|d| d.units.get(&role).cloned());
+        of_dialect.or_else(|| self.kes_units.then(|| role.kes_unit().to_string()))
+    }
+}
+
+/// A header value and where it stands.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Entry {
+    pub text: String,
+    pub line: usize,
+    pub column: usize,
+}
+
+/// Header lines in force: those that have a meaning here, and the rest untouched.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Header {
+    pub known: BTreeMap<Key, Entry>,
+    pub other: BTreeMap<String, String>,
+}
+
+/// A column of a curve.
+#[derive(Clone, Debug)]
+pub(super) struct Column {
+    pub index: usize,
+    pub role: Role,
+    pub name: String,
+    pub unit: Option<String>,
+    pub line: usize,
+    pub column: usize,
+}
+
+/// The two columns of one curve and the header that holds for it.
+#[derive(Clone, Debug)]
+pub(super) struct Pair {
+    pub x: Column,
+    pub y: Column,
+    pub header: Header,
+}
+
+/// A part of the file that holds values.
+pub(super) enum Block<'t> {
+    Curves { pairs: Vec<Pair>, rows: Vec<&'t Row<'t>> },
+    Table { header: Header, heading: &'t Row<'t>, rows: Vec<&'t Row<'t>> },
+}
+
+/// Splits rows into blocks.
+///
+/// # Errors
+/// `R002`, `R005`, `R006`, `R007` and `R013`.
+pub(super) fn blocks<'t>(rows: &'t [Row<'t>], context: &Context<'_>) -> Result<Vec<Block<'t>>, ReadError> {
+    let mut scanner = Scanner { rows, context, at: 0, header: Header::default(), lists: Vec::new() };
+    let mut blocks = Vec::new();
+    let mut words: Vec<String> = Vec::new();
+    while let Some(row) = rows.get(scanner.at) {
+        if row.is_blank() {
+            scanner.at += 1;
+        } else if let Some(columns) = scanner.headings(row) {
+            blocks.push(scanner.curves(columns)?);
+        } else if result_table::is_heading(row, context.vocabulary) {
+            blocks.push(scanner.table());
+        } else if scanner.labels(row) {
+            scanner.at += 1;
+        } else if is_numeric(row, context.decimal) {
+            return Err(scanner.unknown_layout(row, &words));
+        } else {
+            words = row.filled().map(|(_, c)| folded(&c.text).into_owned()).collect();
+            scanner.header_line(row);
+            scanner.at += 1;
+        }
+    }
+    if blocks.is_empty() { Err(context.error(0, 0, Problem::Empty)) } else { Ok(blocks) }
+}
+
+fn is_numeric(row: &Row<'_>, decimal: char) -> bool {
+    row.filled().count() > 1 && row.filled().all(|(_, c)| number(&c.text, decimal) != Number::Text)
+}
+
+struct Scanner<'t, 'a> {
+    rows: &'t [Row<'t>],
+    context: &'a Context<'a>,
+    at: usize,
+    header: Header,
+    /// Header lines with several values, one for each column pair of the next headings.
+    lists: Vec<(Key, Vec<Entry>)>,
+}
+
+impl<'t> Scanner<'t, '_> {
+    /// The columns of a heading row: at least an abscissa and an ordinate.
+    fn headings(&self, row: &Row<'_>) -> Option<Vec<Column>> {
+        let column = |(index, cell): (usize, &super::raw::Cell<'_>)| {
+            let (name, unit) = split_unit(&cell.text);
+            let role = self.context.vocabulary.role(&name)?;
+            Some(Column { index, role, name, unit, line: row.line, column: cell.column })
+        };
+        let columns: Vec<Column> = row.filled().filter_map(column).collect();
+        let abscissa = columns.iter().any(|c| c.role.is_abscissa());
+        let ordinate = columns.iter().any(|c| !c.role.is_abscissa() && c.role != Role::Ignored);
+        // A result table may have columns named thickness and pressure too; then it has symbols.
+        let curve = abscissa && ordinate && !result_table::is_heading(row, self.context.vocabulary);
+        let curve = curve || self.half_pair(row, &columns);
+        if curve {
+            return Some(columns);
+        }
+        self.headless(row)
+    }
+
+    /// A single known column over numbers: a heading row that lacks its other half.
+    fn half_pair(&self, row: &Row<'_>, columns: &[Column]) -> bool {
+        let below = self.rows[self.at + 1..].iter().find(|r| !r.is_blank());
+        columns.iter().any(|c| c.role != Role::Ignored)
+            && columns.len() == row.filled().count()
+            && columns.iter().all(|c| c.unit.is_some())
+            && below.is_some_and(|r| {
+                r.filled().all(|(_, c)| number(&c.text, self.context.decimal) != Number::Text)
+            })
+    }
+
+    /// The columns that the dialect states for files without headings.
+    fn headless(&self, row: &Row<'_>) -> Option<Vec<Column>> {
+        let order = &self.context.dialect?.column_order;
+        if order.is_empty() || !is_numeric(row, self.context.decimal) {
+            return None;
+        }
+        let column = |(index, role): (usize, &Role)| Column {
+            index,
+            role: *role,
+            name: format!("column {}", index + 1),
+            unit: None,
+            line: row.line,
+            column: row.column(index),
+        };
+        Some(order.iter().enumerate().map(column).collect())
+    }
+
+    fn curves(&mut self, mut columns: Vec<Column>) -> Result<Block<'t>, ReadError> {
+        let heading = &self.rows[self.at];
+        if !is_numeric(heading, self.context.decimal) {
+            self.at += 1;
+            self.unit_row(&mut columns);
+        }
+        let rows = self.data_rows(&columns);
+        self.check_width(heading, &rows)?;
+        let mut pairs = self.pairs(columns)?;
+        self.distribute(&mut pairs)?;
+        Ok(Block::Curves { pairs, rows })
+    }
+
+    /// A row of units below headings that have none.
+    fn unit_row(&mut self, columns: &mut [Column]) {
+        let Some(row) = self.rows.get(self.at) else { return };
+        let bare =
+            |i: usize| row.get(i).map(|t| folded(t).trim_matches(['(', ')', '[', ']']).trim().to_string());
+        let is_unit =
+            |t: &str| !t.starts_with(|c: char| c.is_ascii_digit()) && (is_volt(t) || unit(t).is_ok());
+        if columns.iter().any(|c| c.unit.is_some()) || row.is_blank() {
+            return;
+        }
+        if row.filled().all(|(i, _)| bare(i).is_some_and(|t| is_unit(&t) || t == "1/cm")) {
+            for column in columns {
+                column.unit = bare(column.index);
+                (column.line, column.column) = (row.line, row.column(column.index));
+            }
+            self.at += 1;
+        }
+    }
+
+    /// Rows up to the next header line, heading or text.
+    fn data_rows(&mut self, columns: &[Column]) -> Vec<&'t Row<'t>> {
+        let mut out = Vec::new();
+        let mut after_blank = false;
+        while let Some(row) = self.rows.get(self.at) {
+            if row.is_blank() {
+                after_blank = true;
+            } else if self.ends_data(row, columns, after_blank) {
+                break;
+            } else {
+                out.push(row);
+                after_blank = false;
+            }
+            self.at += 1;
+        }
+        out
+    }
+
+    fn ends_data(&self, row: &Row<'_>, columns: &[Column], after_blank: bool) -> bool {
+        let used = |i: usize| columns.iter().any(|c| c.index == i && c.role != Role::Ignored);
+        let Some((first, cell)) = row.filled().next() else { return false };
+        let text = |cell: &str| number(cell, self.context.decimal) == Number::Text;
+        if !text(&cell.text) {
+            return false;
+        }
+        let key = split_unit(cell.text.split([':', '=']).next().unwrap_or_default()).0;
+        let known = self.context.vocabulary.key(&key).is_some() || self.headings(row).is_some();
+        let no_number = row.filled().filter(|(i, _)| used(*i)).all(|(_, c)| text(&c.text));
+        known || no_number || (after_blank && used(first))
+    }
+
+    /// Comma as delimiter and as decimal mark at once: twice as many cells as headings.
+    fn check_width(&self, heading: &Row<'_>, rows: &[&Row<'_>]) -> Result<(), ReadError> {
+        let named = heading.filled().last().map_or(0, |(i, _)| i + 1);
+        let Some(row) = rows.iter().find(|r| r.filled().last().is_some_and(|(i, _)| i >= named)) else {
+            return Ok(());
+        };
+        let cells = row.filled().count();
+        let problem = if self.context.delimiter == ',' && named < cells {
+            Problem::Ambiguous {
+                found: format!("{named} headings over {cells} cells: ',' is delimiter or decimal mark"),
+            }
+        } else {
+            Problem::RaggedRow { found: format!("the row has {cells} cells under {named} headings") }
+        };
+        Err(self.context.error(row.line, row.column(named), problem))
+    }
+
+    /// Abscissa and ordinate of each curve: a new pair begins where a kind of column comes again.
+    /// A single abscissa serves all ordinates.
+    fn pairs(&self, columns: Vec<Column>) -> Result<Vec<Pair>, ReadError> {
+        let mut halves: Vec<(Option<Column>, Option<Column>)> = vec![(None, None)];
+        let shared = columns.iter().filter(|c| c.role.is_abscissa()).count() == 1;
+        for column in columns.into_iter().filter(|c| c.role != Role::Ignored) {
+            let abscissa = column.role.is_abscissa();
+            let full = halves.last().is_none_or(|(x, y)| if abscissa { x.is_some() } else { y.is_some() });
+            if full {
+                halves.push((None, None));
+            }
+            if let Some((x, y)) = halves.last_mut() {
+                *if abscissa { x } else { y } = Some(column);
+            }
+        }
+        let first = halves.iter().find_map(|(x, _)| x.clone()).filter(|_| shared);
+        let pair = |(x, y): (Option<Column>, Option<Column>)| match (x.or(first.clone()), y) {
+            (Some(x), Some(y)) => Ok(Pair { x, y, header: self.header.clone() }),
+            (Some(c), None) => Err(self.lacks(&c, "an ordinate (force, moment or pressure)")),
+            (None, Some(c)) => Err(self.lacks(&c, "an abscissa (strain, angle, curvature or thickness)")),
+            (None, None) => Err(self.context.error(0, 0, Problem::Empty)),
+        };
+        halves.into_iter().map(pair).collect()
+    }
+
+    fn lacks(&self, column: &Column, other: &str) -> ReadError {
+        let found = format!("column {:?} has no partner: {other} is missing", column.name);
+        self.context.error(column.line, column.column, Problem::IncompletePair { found })
+    }
+
+    /// Gives every pair its own of the header values that were listed for all of them.
+    fn distribute(&mut self, pairs: &mut [Pair]) -> Result<(), ReadError> {
+        for (key, entries) in std::mem::take(&mut self.lists) {
+            if entries.len() != pairs.len() {
+                let (n, m) = (entries.len(), pairs.len());
+                let reason = format!("{n} values stand over {m} curves");
+                let (line, column) = entries.first().map_or((0, 0), |e| (e.line, e.column));
+                let key = format!("{key:?}").to_lowercase();
+                return Err(self.context.error(line, column, Problem::BadValue { key, reason }));
+            }
+            for (pair, entry) in pairs.iter_mut().zip(entries) {
+                pair.header.known.insert(key, entry);
+            }
+        }
+        Ok(())
+    }
+
+    fn table(&mut self) -> Block<'t> {
+        let heading = &self.rows[self.at];
+        self.at += 1;
+        let start = self.at;
+        while self.rows.get(self.at).is_some_and(|r| !r.is_blank()) {
+            self.at += 1;
+        }
+        let rows = self.rows[start..self.at].iter().collect();
+        Block::Table { header: self.header.clone(), heading, rows }
+    }
+
+    /// A row of labels over column blocks: `1,,2,,3`, `経-1 … 経-2` or `試料番号 1 … 試料番号 2`.
+    fn labels(&mut self, row: &Row<'_>) -> bool {
+        let labels: Vec<(Label, Entry)> = row
+            .filled()
+            .map(|(_, c)| {
+                let entry = Entry { text: folded(&c.text).into_owned(), line: row.line, column: c.column };
+                (Label::parse(&c.text, self.context.vocabulary), entry)
+            })
+            .collect();
+        let complete = labels.iter().all(|(l, _)| l.specimen.is_some() && l.sample.is_none());
+        let above = self.rows[self.at + 1..].iter().find(|r| !r.is_blank());
+        if labels.len() < 2 || !complete || above.is_none_or(|r| self.headings(r).is_none()) {
+            return false;
+        }
+        let with = |text: String, e: &Entry| Entry { text, ..e.clone() };
+        let numbers = labels.iter().filter_map(|(l, e)| l.specimen.map(|n| with(n.to_string(), e))).collect();
+        self.lists.push((Key::Specimen, numbers));
+        let directions: Vec<Entry> =
+            labels.iter().filter_map(|(l, e)| l.direction.map(|d| with(d.to_string(), e))).collect();
+        if directions.len() == labels.len() {
+            self.lists.push((Key::Direction, directions));
+        }
+        true
+    }
+
+    /// Keeps what a header line says: `key,value`, `key: value`, several pairs, or a list of values.
+    fn header_line(&mut self, row: &Row<'_>) {
+        let filled: Vec<(String, usize)> =
+            row.filled().map(|(_, c)| (folded(&c.text).into_owned(), c.column)).collect();
+        let vocabulary = self.context.vocabulary;
+        let key_of = |text: &str| vocabulary.key(&split_unit(text.trim_start_matches('#')).0);
+        let keys: Vec<Key> = filled.iter().filter_map(|(t, _)| key_of(t)).collect();
+        // `試料番号,1,試料番号,2`: one value for each column block.
+        if let [first, rest @ ..] = &keys[..]
+            && !rest.is_empty()
+            && *first != Key::Remark
+            && filled.len() == 2 * keys.len()
+            && rest.iter().all(|k| k == first)
+        {
+            let entry = |(text, column): &(String, usize)| Entry {
+                text: text.clone(),
+                line: row.line,
+                column: *column,
+            };
+            self.lists.push((*first, filled.iter().skip(1).step_by(2).map(entry).collect()));
+            return;
+        }
+        let mut i = 0;
+        while i < filled.len() {
+            let (cell, column) = &filled[i];
+            // `key: value` in one cell.
+            if let Some((name, value)) = cell.split_once([':', '=']).filter(|(_, v)| !v.trim().is_empty()) {
+                let offset = cell.chars().count() - value.trim_start().chars().count();
+                self.keep(name, vec![(value.trim().to_string(), column + offset)], row.line);
+                i += 1;
+                continue;
+            }
+            let more = filled[i + 1..].iter().take_while(|(t, _)| key_of(t).is_none()).count();
+            // The first value may be spelt like a key (`direction,width`).
+            let count = if more == 0 && i + 1 < filled.len() { 1 } else { more };
+            self.keep(cell, filled[i + 1..i + 1 + count].to_vec(), row.line);
+            i += 1 + count;
+        }
+    }
+
+    fn keep(&mut self, name: &str, mut values: Vec<(String, usize)>, line: usize) {
+        let (plain, own_unit) = split_unit(name.trim_start_matches('#'));
+        let plain = plain.trim().trim_end_matches([':', '=']).trim().to_string();
+        // `width,20,cm` and `幅(cm),20`: the unit goes with the number.
+        let is_number = |t: &str| matches!(number(t, self.context.decimal), Number::Value(_));
+        if let [(value, _), (unit_text, _)] = &values[..]
+            && is_number(value)
+            && !is_number(unit_text)
+            && unit(unit_text).is_ok()
+        {
+            values = vec![(format!("{value} {unit_text}"), values[0].1)];
+        }
+        if let (Some(unit_text), [(value, _)]) = (&own_unit, &mut values[..])
+            && is_number(value)
+        {
+            *value = format!("{value} {unit_text}");
+        }
+        let entry = |(text, column): (String, usize)| Entry { text, line, column };
+        match (self.context.vocabulary.key(&plain), values.len()) {
+            (Some(Key::Remark) | None, _) => {
+                let text: Vec<String> = values.into_iter().map(|(t, _)| t).collect();
+                self.header.other.insert(plain, text.join(", "));
+            }
+            (Some(_), 0) => {}
+            (Some(key), 1) => {
+                self.header.known.extend(values.into_iter().map(|v| (key, entry(v))));
+            }
+            (Some(key), _) => self.lists.push((key, values.into_iter().map(entry).collect())),
+        }
+    }
+
+    fn unknown_layout(&self, row: &Row<'_>, words: &[String]) -> ReadError {
+        let found = if words.is_empty() {
+            "numbers stand without a heading row".to_string()
+        } else {
+            let (closest, unknown) = self.context.vocabulary.closest(words);
+            format!("dialect {closest:?} comes closest, but it does not know {}", unknown.join(", "))
+        };
+        self.context.error(row.line, row.column(0), Problem::UnknownLayout { found })
+    }
+}

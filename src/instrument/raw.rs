@@ -1,0 +1,225 @@
+//! Bytes to text to cells. Nothing is interpreted here, and every cell keeps its place.
+
+use std::borrow::Cow;
+
+use encoding_rs::{Encoding, SHIFT_JIS, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
+
+use super::error::Problem;
+
+/// Decoded text and the name of the encoding that was decided.
+pub(super) struct Text {
+    pub text: String,
+    pub encoding: &'static str,
+}
+
+/// One cell as it stands in the file.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Cell<'a> {
+    pub text: Cow<'a, str>,
+    /// Column of its first character, from 1 (in a workbook: the cell's column).
+    pub column: usize,
+}
+
+/// One line of the file.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Row<'a> {
+    /// From 1.
+    pub line: usize,
+    pub cells: Vec<Cell<'a>>,
+}
+
+impl Row<'_> {
+    pub fn is_blank(&self) -> bool {
+        self.cells.iter().all(|c| c.text.trim().is_empty())
+    }
+
+    /// Index and cell of those that hold anything.
+    pub fn filled(&self) -> impl Iterator<Item = (usize, &Cell<'_>)> {
+        self.cells.iter().enumerate().filter(|(_, c)| !c.text.trim().is_empty())
+    }
+
+    /// The trimmed text of a cell, if there is any.
+    pub fn get(&self, index: usize) -> Option<&str> {
+        self.cells.get(index).map(|c| c.text.trim()).filter(|t| !t.is_empty())
+    }
+
+    /// The column of a cell; past the end, the column after the last one.
+    pub fn column(&self, index: usize) -> usize {
+        let end = || self.cells.last().map_or(1, |c| c.column + c.text.chars().count());
+        self.cells.get(index).map_or_else(end, |c| c.column)
+    }
+}
+
+/// Decodes a whole file: byte order mark, strict UTF-8, UTF-16 by its NUL pattern, strict CP932
+/// where it looks like Japanese, else Windows-1252. `label` (of a dialect) settles it at once.
+///
+/// The whole file is decoded before anything is split, because the second byte of a CP932
+/// character can be `|` or a backslash. The error carries line and column.
+pub(super) fn decode(bytes: &[u8], label: Option<&str>) -> Result<Text, (usize, usize, Problem)> {
+    let encoding = match label.and_then(|l| Encoding::for_label(l.as_bytes())) {
+        Some(encoding) => encoding,
+        None => guess(bytes),
+    };
+    let body = Encoding::for_bom(bytes).map_or(bytes, |(_, n)| &bytes[n..]);
+    let Some(decoded) = encoding.decode_without_bom_handling_and_without_replacement(body) else {
+        return Err((0, 0, not_text(format!("its bytes are not valid {}", encoding.name()))));
+    };
+    // DOS programs end a file with Ctrl-Z.
+    let text = decoded.trim_end_matches('\u{1a}');
+    if let Some(at) = text.find(|c: char| c.is_control() && !matches!(c, '\t' | '\r' | '\n' | '\u{c}')) {
+        let line = text[..at].matches('\n').count() + 1;
+        let column = text[..at].rsplit('\n').next().map_or(0, |l| l.chars().count()) + 1;
+        let code = text[at..].chars().next().map_or(0, u32::from);
+        return Err((line, column, not_text(format!("control character U+{code:04X}"))));
+    }
+    Ok(Text { text: text.to_string(), encoding: encoding.name() })
+}
+
+fn not_text(found: String) -> Problem {
+    Problem::NotText { found }
+}
+
+fn guess(bytes: &[u8]) -> &'static Encoding {
+    if let Some((encoding, _)) = Encoding::for_bom(bytes) {
+        return encoding;
+    }
+    let nuls = |offset: usize| bytes.iter().skip(offset).step_by(2).take(2000).filter(|&&b| b == 0).count();
+    match (std::str::from_utf8(bytes).is_ok(), nuls(0), nuls(1)) {
+        (true, 0, 0) => UTF_8,
+        // ASCII characters of UTF-16 have a NUL in every second byte, always on the same side.
+        (_, even, odd) if odd > 10 * even && odd > 3 => UTF_16LE,
+        (_, even, odd) if even > 10 * odd && even > 3 => UTF_16BE,
+        (true, ..) => UTF_8,
+        _ if looks_japanese(bytes) => SHIFT_JIS,
+        _ => WINDOWS_1252,
+    }
+}
+
+/// Whether bytes are CP932 rather than Windows-1252, of which nearly every file is valid CP932
+/// too: `ão` is a pair of it. Japanese text has lead bytes 81..9F (kana, everyday kanji) and runs
+/// of half-width katakana; accented Latin letters and `° ² µ` fall on E0..FC and on single A1..DF.
+fn looks_japanese(bytes: &[u8]) -> bool {
+    if SHIFT_JIS.decode_without_bom_handling_and_without_replacement(bytes).is_none() {
+        return false;
+    }
+    let (mut japanese, mut latin, mut i) = (0, 0, 0);
+    while i < bytes.len() {
+        match bytes[i] {
+            0x81..=0x9f => (japanese, i) = (japanese + 1, i + 2),
+            0xe0..=0xfc => (latin, i) = (latin + 1, i + 2),
+            0xa1..=0xdf => {
+                let run = bytes[i..].iter().take_while(|b| (0xa1..=0xdf).contains(*b)).count();
+                if run > 1 {
+                    japanese += run;
+                } else {
+                    latin += 1;
+                }
+                i += run;
+            }
+            _ => i += 1,
+        }
+    }
+    japanese > latin
+}
+
+/// Splits text into rows and cells. A cell in double quotes may hold the delimiter.
+///
+/// Hand-written because the csv crate gives no position of a field and skips blank lines, which
+/// separate blocks here.
+pub(super) fn rows(text: &str, delimiter: char) -> Vec<Row<'_>> {
+    text.split('\n')
+        .enumerate()
+        .map(|(i, line)| Row {
+            line: i + 1,
+            cells: cells(line.strip_suffix('\r').unwrap_or(line), delimiter),
+        })
+        .collect()
+}
+
+fn cells(line: &str, delimiter: char) -> Vec<Cell<'_>> {
+    let mut out = Vec::new();
+    let (mut rest, mut column) = (line, 1);
+    loop {
+        let end = cell_end(rest, delimiter);
+        let raw = &rest[..end];
+        let trimmed = raw.trim_matches(' ');
+        let lead = raw.len() - raw.trim_start_matches(' ').len();
+        out.push(Cell { text: unquoted(trimmed), column: column + lead });
+        if end == rest.len() {
+            return out;
+        }
+        column += raw.chars().count() + 1;
+        rest = &rest[end + delimiter.len_utf8()..];
+    }
+}
+
+fn cell_end(rest: &str, delimiter: char) -> usize {
+    // A quote only protects at the start of a cell; elsewhere it is an inch mark or a slip.
+    let mut quoted = false;
+    let starts_quoted = rest.trim_start_matches(' ').starts_with('"');
+    for (i, c) in rest.char_indices() {
+        if c == '"' && starts_quoted {
+            quoted = !quoted;
+        } else if c == delimiter && !quoted {
+            return i;
+        }
+    }
+    if quoted { rest.find(delimiter).unwrap_or(rest.len()) } else { rest.len() }
+}
+
+fn unquoted(cell: &str) -> Cow<'_, str> {
+    match cell.strip_prefix('"').and_then(|c| c.strip_suffix('"')) {
+        Some(inner) if inner.contains("\"\"") => Cow::Owned(inner.replace("\"\"", "\"")),
+        Some(inner) => Cow::Borrowed(inner),
+        None => Cow::Borrowed(cell),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn encoding(bytes: &[u8]) -> &'static str {
+        decode(bytes, None).map(|t| t.encoding).unwrap()
+    }
+
+    #[test]
+    fn each_encoding_is_recognised() {
+        let japanese = "試料名\t綿ブロード\r\n曲率(㎝-1)\t曲げモーメント(ｇｆ・㎝/㎝)\r\n1\t2\r\n";
+        assert_eq!(encoding(japanese.as_bytes()), "UTF-8");
+        assert_eq!(encoding(&[b"\xef\xbb\xbf", japanese.as_bytes()].concat()), "UTF-8");
+        assert_eq!(encoding(&SHIFT_JIS.encode(japanese).0), "Shift_JIS");
+        let little: Vec<u8> = japanese.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let big: Vec<u8> = japanese.encode_utf16().flat_map(u16::to_be_bytes).collect();
+        assert_eq!(encoding(&little), "UTF-16LE");
+        assert_eq!(encoding(&big), "UTF-16BE");
+        assert_eq!(encoding(&[b"\xff\xfe", &little[..]].concat()), "UTF-16LE");
+        let portuguese = "extensão (mm);força (gf/cm²)\r\nângulo (°);direção\r\n";
+        assert_eq!(encoding(&WINDOWS_1252.encode(portuguese).0), "windows-1252");
+        // Half-width katakana, as old instruments write it.
+        assert_eq!(encoding(&SHIFT_JIS.encode("ﾀﾃ,ﾖｺ\n1,2\n").0), "Shift_JIS");
+    }
+
+    /// The second byte of 表 in CP932 is a backslash, of the full-width minus a '|'.
+    #[test]
+    fn cells_are_split_after_decoding() {
+        let bytes = SHIFT_JIS.encode("表\t−１\n").0.into_owned();
+        let text = decode(&bytes, None).map(|t| t.text).unwrap();
+        let rows = rows(&text, '\t');
+        assert_eq!(rows[0].get(0), Some("表"));
+        assert_eq!(rows[0].cells[1].column, 3);
+    }
+
+    #[test]
+    fn binary_is_refused_with_its_place() {
+        let (line, column, problem) = decode(b"a,b\n1,\x012", None).err().unwrap();
+        assert_eq!((line, column, problem.code()), (2, 3, "R003"));
+    }
+
+    #[test]
+    fn quotes_protect_the_delimiter_and_columns_count_characters() {
+        let row = &rows("\"a, b\", é ,\"c \"\"d\"\"\",", ',')[0];
+        let cells: Vec<_> = row.cells.iter().map(|c| (c.text.as_ref(), c.column)).collect();
+        assert_eq!(cells, [("a, b", 1), ("é", 9), ("c \"d\"", 12), ("", 22)]);
+    }
+}

@@ -1,0 +1,235 @@
+//! One file: bytes to measurements, result values or a FAB record.
+
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+
+use super::conditions::StatedConditions;
+use super::curves;
+use super::dialect::{Dialect, Key};
+use super::error::{Problem, ReadError};
+use super::fab::{self, FabFile};
+use super::layout::{self, Block, Context, Header};
+use super::raw::{self, Row};
+use super::result_table::{self, Values};
+use super::sniff::sniff;
+use super::words::{Label, Vocabulary};
+use super::{Measurement, Parameter, ResultValue, Source};
+use crate::finding::{Finding, Place};
+use crate::quantity::ArealDensity;
+
+/// What a reader may be told beforehand. The default infers everything and assumes no unit.
+#[derive(Clone, Debug, Default)]
+pub struct ReadSettings {
+    /// Dialects of the user, tried first.
+    pub dialects: Vec<Dialect>,
+    /// Cell delimiter, instead of the inferred one.
+    pub delimiter: Option<char>,
+    /// Decimal mark, instead of the inferred one.
+    pub decimal: Option<char>,
+    /// Takes numbers without a unit as being in the customary KES unit, instead of refusing them.
+    pub kes_units: bool,
+    /// Conditions that files leave out.
+    pub conditions: StatedConditions,
+}
+
+/// What one file holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FileContent {
+    /// Curves, in file order.
+    pub measurements: Vec<Measurement>,
+    /// Values of result tables, each with the fabric that the table names.
+    pub results: Values,
+    /// A FAB record.
+    pub fab: Option<FabFile>,
+    /// What a reader of the data must know.
+    pub findings: Vec<Finding>,
+    /// The file.
+    pub source: Source,
+    /// What was inferred and why, for people (`kesf check -v`).
+    pub inference: Vec<String>,
+}
+
+/// Reads a file.
+///
+/// # Errors
+/// See [`Problem`].
+pub fn read(path: &Path, settings: &ReadSettings) -> Result<FileContent, ReadError> {
+    let bytes = std::fs::read(path).map_err(|e| ReadError {
+        place: Place::file(path),
+        problem: Problem::Unreadable { reason: e.to_string() },
+    })?;
+    parse(path, &bytes, settings)
+}
+
+/// Reads the bytes of a file. `path` serves for its name and for messages only.
+///
+/// # Errors
+/// See [`Problem`]; one error, the first in the file.
+pub fn parse(path: &Path, bytes: &[u8], settings: &ReadSettings) -> Result<FileContent, ReadError> {
+    let source = Source {
+        path: path.to_path_buf(),
+        sha256: Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect(),
+        ..Source::default()
+    };
+    let mut content = text(path, bytes, settings, source)?;
+    number_specimens(path, &mut content);
+    for m in &mut content.measurements {
+        m.source = content.source.clone();
+    }
+    Ok(content)
+}
+
+fn text(
+    path: &Path,
+    bytes: &[u8],
+    settings: &ReadSettings,
+    source: Source,
+) -> Result<FileContent, ReadError> {
+    let error = |(line, column, problem)| ReadError { place: Place::at(path, line, column), problem };
+    let label = settings.dialects.iter().find_map(|d| d.encoding.as_deref());
+    let raw::Text { text, encoding } = raw::decode(bytes, label).map_err(error)?;
+    let mut content = FileContent { source, ..FileContent::default() };
+    content.source.encoding = encoding.to_string();
+    content.inference.push(format!("encoding {encoding}"));
+    if text.trim().is_empty() {
+        return Err(error((0, 0, Problem::Empty)));
+    }
+    if text.trim_start().starts_with('{') {
+        let (mut file, findings) = fab::parse(path, &text)?;
+        content.source.dialect = "u3m-fab".to_string();
+        content.inference.push("JSON with raw_data: a FAB record".to_string());
+        file.source = content.source.clone();
+        (content.fab, content.findings) = (Some(file), findings);
+        return Ok(content);
+    }
+    let dialect = settings.dialects.iter().find(|d| d.applies_to(&text));
+    let delimiter = settings.delimiter.or(dialect.and_then(|d| d.delimiter));
+    let decimal = settings.decimal.or(dialect.and_then(|d| d.decimal));
+    let format = sniff(&text, delimiter, decimal).map_err(|p| error((0, 0, p)))?;
+    let stated = if delimiter.is_some() { "stated" } else { "gives most numbers" };
+    content
+        .inference
+        .push(format!("delimiter {:?}, decimal mark {:?}: {stated}", format.delimiter, format.decimal));
+    let rows = raw::rows(&text, format.delimiter);
+    let context = context(path, settings, dialect, format.delimiter, format.decimal);
+    table(&rows, &context, text.ends_with('\n'), &mut content)?;
+    Ok(content)
+}
+
+fn context<'a>(
+    path: &'a Path,
+    settings: &'a ReadSettings,
+    dialect: Option<&'a Dialect>,
+    delimiter: char,
+    decimal: char,
+) -> Context<'a> {
+    let vocabulary = Vocabulary::new(&settings.dialects);
+    let of_dialect = dialect.map(|d| d.conditions.clone()).unwrap_or_default();
+    Context {
+        path,
+        vocabulary,
+        dialect,
+        delimiter,
+        decimal,
+        kes_units: settings.kes_units || dialect.is_some_and(|d| d.kes_units),
+        conditions: settings.conditions.or(&of_dialect),
+        label: path.file_stem().map(|s| Label::parse(&s.to_string_lossy(), vocabulary)).unwrap_or_default(),
+    }
+}
+
+/// Reads a table of cells into `content`; `complete` says that its last row ended properly.
+fn table(
+    rows: &[Row<'_>],
+    context: &Context<'_>,
+    complete: bool,
+    content: &mut FileContent,
+) -> Result<(), ReadError> {
+    let blocks = layout::blocks(rows, context)?;
+    content.source.dialect = dialect_name(rows, context);
+    content.inference.push(format!("dialect {}: knows most of the headings", content.source.dialect));
+    let count = blocks.len();
+    for (i, block) in blocks.into_iter().enumerate() {
+        let ends_file = !complete && i + 1 == count;
+        match block {
+            Block::Curves { pairs, rows } => {
+                let before = content.measurements.len();
+                for pair in &pairs {
+                    let read = curves::measurement(pair, &rows, ends_file, context, &mut content.inference)?;
+                    if let Some((measurement, findings)) = read {
+                        content.measurements.push(measurement);
+                        content.findings.extend(findings);
+                    }
+                    weight(&pair.header, context, content)?;
+                }
+                if content.measurements.len() == before {
+                    let (line, column) = pairs.first().map_or((0, 0), |p| (p.x.line, p.x.column));
+                    return Err(context.error(line, column, Problem::Empty));
+                }
+            }
+            Block::Table { header, heading, rows } => {
+                let (values, findings) = result_table::read(&header, heading, &rows, context)?;
+                content.results.extend(values);
+                content.findings.extend(findings);
+            }
+        }
+    }
+    content.inference.dedup();
+    content.findings.dedup();
+    Ok(())
+}
+
+/// An areal density in the header of a curve file is a result value of its own.
+fn weight(header: &Header, context: &Context<'_>, content: &mut FileContent) -> Result<(), ReadError> {
+    let Some(entry) = header.known.get(&Key::Weight) else { return Ok(()) };
+    let value: ArealDensity = curves::quantity(entry, "weight", "mg/cm²", context)?;
+    let known = |(_, v): &(Option<String>, ResultValue)| v.parameter == Parameter::W && v.mean == value.si();
+    if !content.results.iter().any(known) {
+        let place = Place::at(context.path, entry.line, entry.column);
+        let result = ResultValue {
+            parameter: Parameter::W,
+            direction: None,
+            mean: value.si(),
+            sd: None,
+            n: 1,
+            inferred: false,
+            place,
+        };
+        content.results.push((None, result));
+    }
+    Ok(())
+}
+
+/// The dialect that knows most words of the rows that are not numbers.
+fn dialect_name(rows: &[Row<'_>], context: &Context<'_>) -> String {
+    let is_text = |t: &str| t.chars().any(char::is_alphabetic);
+    let words: Vec<String> = rows
+        .iter()
+        .filter(|r| r.filled().next().is_some_and(|(_, c)| is_text(&c.text)))
+        .take(40)
+        .flat_map(|r| r.filled().map(|(_, c)| c.text.to_string()).collect::<Vec<_>>())
+        .collect();
+    context.vocabulary.closest(&words).0
+}
+
+/// Numbers the specimens that the file leaves unnumbered, per test and direction, in file order.
+fn number_specimens(path: &Path, content: &mut FileContent) {
+    let unnumbered = content.measurements.iter().filter(|m| m.specimen == 0).count();
+    for i in 0..content.measurements.len() {
+        let (before, rest) = content.measurements.split_at_mut(i);
+        let m = &mut rest[0];
+        let same = |o: &&Measurement| (o.test, o.direction, &o.sample) == (m.test, m.direction, &m.sample);
+        let taken: Vec<usize> = before.iter().filter(same).map(|o| o.specimen).collect();
+        if m.specimen == 0 {
+            m.specimen = taken.iter().max().map_or(1, |n| n + 1);
+        } else if taken.contains(&m.specimen) {
+            let next = taken.iter().max().map_or(1, |n| n + 1);
+            let message = format!("specimen {} occurs twice; the later one is numbered {next}", m.specimen);
+            content.findings.push(Finding::new("R103", message).at(Place::at(path, m.lines[0], 0)));
+            m.specimen = next;
+        }
+    }
+    if unnumbered > 1 {
+        content.inference.push(format!("{unnumbered} specimens numbered in file order"));
+    }
+}

@@ -1,0 +1,182 @@
+//! Delimiter and decimal mark, decided together over all rows.
+
+use std::borrow::Cow;
+
+use unicode_normalization::UnicodeNormalization;
+
+use super::error::Problem;
+use super::raw;
+
+/// How a text table is to be split and its numbers read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Format {
+    pub delimiter: char,
+    pub decimal: char,
+}
+
+/// What a cell is, seen as a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Number {
+    /// A finite number.
+    Value(f64),
+    /// `NaN`, `inf`, `#N/A` and the like.
+    NotFinite,
+    /// Begins like a number, but is none with this decimal mark.
+    Broken,
+    /// Anything else.
+    Text,
+}
+
+/// NFKC and one kind of minus: full-width digits and signs become ASCII.
+pub(super) fn folded(cell: &str) -> Cow<'_, str> {
+    if cell.is_ascii() {
+        return Cow::Borrowed(cell.trim());
+    }
+    let text: String = cell.nfkc().map(|c| if matches!(c, '−' | '‐' | '–') { '-' } else { c }).collect();
+    Cow::Owned(text.trim().to_string())
+}
+
+/// Reads a cell as a number.
+pub(super) fn number(cell: &str, decimal: char) -> Number {
+    let text = folded(cell);
+    let allowed = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | 'e' | 'E') || c == decimal;
+    if text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-') || c == decimal)
+        && text.chars().all(allowed)
+    {
+        let parsed = if decimal == ',' { text.replace(',', ".").parse() } else { text.parse::<f64>() };
+        return match parsed {
+            Ok(value) if value.is_finite() => Number::Value(value),
+            Ok(_) => Number::NotFinite,
+            Err(_) => Number::Broken,
+        };
+    }
+    let lower = text.trim_start_matches(['+', '-']).to_ascii_lowercase();
+    if matches!(
+        lower.as_str(),
+        "nan"
+            | "inf"
+            | "infinity"
+            | "#n/a"
+            | "n/a"
+            | "#num!"
+            | "#div/0!"
+            | "#value!"
+            | "1.#inf"
+            | "1.#qnan"
+            | "1.#ind"
+    ) {
+        return Number::NotFinite;
+    }
+    let starts = text.trim_start_matches(['+', '-', '.', ',']).starts_with(|c: char| c.is_ascii_digit());
+    // "20 cm" and "2024-01-05" are not meant as numbers; "0,35" and "1.2.3" are.
+    let numberish =
+        |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',' | ';' | '\t' | 'e' | 'E');
+    if starts && text.chars().all(numberish) { Number::Broken } else { Number::Text }
+}
+
+/// Decides the format of a text, within what is already `delimiter`/`decimal` known.
+///
+/// # Errors
+/// `R005` where two readings are equally good.
+pub(super) fn sniff(text: &str, delimiter: Option<char>, decimal: Option<char>) -> Result<Format, Problem> {
+    let mut best: Vec<(i64, Format)> = Vec::new();
+    for d in ['\t', ';', ','].into_iter().filter(|d| delimiter.is_none_or(|known| known == *d)) {
+        for m in ['.', ','].into_iter().filter(|m| decimal.is_none_or(|known| known == *m)) {
+            if d != m {
+                best.push((score(text, d, m), Format { delimiter: d, decimal: m }));
+            }
+        }
+    }
+    // A stable sort: among equals the first, and so '.' before ','.
+    best.sort_by_key(|(score, _)| -score);
+    let Some(&(top, format)) = best.first() else {
+        return Err(Problem::Ambiguous { found: "delimiter and decimal mark are both ','".into() });
+    };
+    if let Some((_, other)) = best.iter().find(|(s, f)| *s == top && f.delimiter != format.delimiter)
+        && top > 0
+    {
+        let found = format!("split at {:?} or at {:?}", format.delimiter, other.delimiter);
+        return Err(Problem::Ambiguous { found });
+    }
+    if decimal.is_none() && format.decimal == ',' {
+        thousands(text, format)?;
+    }
+    Ok(format)
+}
+
+/// Numbers won minus numbers broken, counted over the cells of rows that have several.
+fn score(text: &str, delimiter: char, decimal: char) -> i64 {
+    let mut score = 0;
+    for line in text.lines().filter(|l| l.contains(delimiter)) {
+        for cell in line.split(delimiter) {
+            match number(cell, decimal) {
+                Number::Value(_) | Number::NotFinite => score += 1,
+                Number::Broken => score -= 10,
+                Number::Text => {}
+            }
+        }
+    }
+    score
+}
+
+/// Refuses `1,234` where every number with a comma could as well be a count of thousands.
+fn thousands(text: &str, format: Format) -> Result<(), Problem> {
+    let mut example = None;
+    for row in raw::rows(text, format.delimiter) {
+        for (_, cell) in row.filled() {
+            let cell = folded(&cell.text).into_owned();
+            if !cell.contains(',') || !matches!(number(&cell, ','), Number::Value(_)) {
+                continue;
+            }
+            let digits = cell.trim_start_matches(['+', '-']);
+            let (whole, part) = digits.split_once(',').unwrap_or((digits, ""));
+            let grouped = part.len() == 3 && (1..=3).contains(&whole.len()) && !whole.starts_with('0');
+            if !grouped {
+                return Ok(());
+            }
+            example.get_or_insert(cell);
+        }
+    }
+    match example {
+        Some(cell) => {
+            let found = format!("{cell:?} is {} or {}", cell.replace(',', "."), cell.replace(',', ""));
+            Err(Problem::Ambiguous { found })
+        }
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_in_every_spelling() {
+        assert_eq!(number("１．５", '.'), Number::Value(1.5));
+        assert_eq!(number("−0.5", '.'), Number::Value(-0.5));
+        assert_eq!(number("1,5e-3", ','), Number::Value(1.5e-3));
+        assert_eq!(number(".5", '.'), Number::Value(0.5));
+        assert_eq!(number("0,35", '.'), Number::Broken);
+        assert_eq!(number("NaN", '.'), Number::NotFinite);
+        assert_eq!(number("1e999", '.'), Number::NotFinite);
+        assert_eq!(number("20 cm", '.'), Number::Text);
+        assert_eq!(number("", '.'), Number::Text);
+    }
+
+    #[test]
+    fn delimiter_and_decimal_mark_are_found_together() {
+        let f = |text| sniff(text, None, None).map(|f| (f.delimiter, f.decimal));
+        assert_eq!(f("a,b\n0.5,1.5\n"), Ok((',', '.')));
+        assert_eq!(f("a;b\n0,5;1,5\n"), Ok((';', ',')));
+        assert_eq!(f("a\tb\n0,5\t1,5\n"), Ok(('\t', ',')));
+        assert_eq!(f("a;b, c\n1;2\n3;4\n"), Ok((';', '.')));
+        assert_eq!(f("a\tb\n1\t2\n"), Ok(('\t', '.')));
+    }
+
+    #[test]
+    fn what_can_be_read_in_two_ways_is_refused_until_it_is_settled() {
+        let text = "a;b\n1,234;2,345\n3,456;4,567\n";
+        assert!(matches!(sniff(text, None, None), Err(Problem::Ambiguous { .. })));
+        assert_eq!(sniff(text, None, Some(',')), Ok(Format { delimiter: ';', decimal: ',' }));
+    }
+}

@@ -1,0 +1,284 @@
+//! Words to meanings: normalisation, vocabulary, headings and their units, labels.
+
+use std::borrow::Borrow;
+use std::collections::BTreeMap;
+
+use unicode_normalization::UnicodeNormalization;
+use unicode_normalization::char::is_combining_mark;
+
+use super::dialect::{Dialect, Key, Role, TableColumn, dialects};
+use super::error::Problem;
+use super::sniff::folded;
+use super::{Direction, Parameter, Test};
+use crate::quantity::{QuantityError, Unit};
+
+/// A word as it is compared: NFKC, lower case, without Latin accents, blanks and punctuation.
+pub(super) fn normalised(text: &str) -> String {
+    if text.is_ascii() {
+        return text.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect();
+    }
+    // Only accents of the Latin block go: the voicing marks of kana are part of the word.
+    text.nfkd()
+        .filter(|c| !(is_combining_mark(*c) && *c < '\u{370}'))
+        .nfc()
+        .filter(|c| c.is_alphanumeric())
+        .flat_map(char::to_lowercase)
+        .collect()
+}
+
+/// The words of the user's dialects, then of the built-in ones.
+#[derive(Clone, Copy)]
+pub(super) struct Vocabulary<'a> {
+    user: &'a [Dialect],
+}
+
+impl<'a> Vocabulary<'a> {
+    pub fn new(user: &'a [Dialect]) -> Self {
+        Self { user }
+    }
+
+    pub fn dialects(self) -> impl Iterator<Item = &'a Dialect> {
+        self.user.iter().chain(dialects())
+    }
+
+    /// The meaning of a word: exactly, else that of the longest known word within it.
+    fn find<K: 'a + Clone>(
+        self,
+        text: &str,
+        inside: bool,
+        map: impl Fn(&'a Dialect) -> &'a BTreeMap<K, Vec<String>>,
+    ) -> Option<K> {
+        let word = normalised(text);
+        if word.is_empty() {
+            return None;
+        }
+        let entries = || self.dialects().flat_map(&map).flat_map(|(k, v)| v.iter().map(move |w| (k, w)));
+        if let Some((key, _)) = entries().find(|(_, w)| **w == word) {
+            return Some(key.clone());
+        }
+        let long_enough = |w: &str| if w.is_ascii() { w.len() >= 4 } else { !w.is_empty() };
+        entries()
+            .filter(|(_, w)| inside && long_enough(w) && word.contains(w.as_str()))
+            .max_by_key(|(_, w)| w.chars().count())
+            .map(|(key, _)| key.clone())
+    }
+
+    pub fn role(self, name: &str) -> Option<Role> {
+        self.find(name, true, |d| &d.columns)
+    }
+
+    pub fn key(self, name: &str) -> Option<Key> {
+        self.find(name, false, |d| &d.keys)
+    }
+
+    pub fn direction(self, text: &str) -> Option<Direction> {
+        self.find(text, true, |d| &d.directions)
+    }
+
+    pub fn test(self, text: &str) -> Option<Test> {
+        // "KES-FB1 せん断": the longest word decides, and FB1 alone decides nothing.
+        let word = normalised(text);
+        self.find(&word, true, |d| &d.tests).or_else(|| {
+            let instrument = [("fb2", Test::Bending), ("fb3", Test::Compression)];
+            instrument.into_iter().find(|(w, _)| word.contains(w)).map(|(_, t)| t)
+        })
+    }
+
+    pub fn table_column(self, name: &str) -> Option<TableColumn> {
+        self.find(name, false, |d| &d.table)
+    }
+
+    pub fn parameter(self, name: &str) -> Option<Parameter> {
+        Parameter::from_symbol(name).or_else(|| {
+            self.find(name, false, |d| &d.symbols).and_then(|s| Parameter::from_symbol(s.borrow()))
+        })
+    }
+
+    /// The dialect that knows most of these words, and the words that it does not know.
+    pub fn closest(self, words: &[String]) -> (String, Vec<String>) {
+        let unknown = |d: &Dialect| -> Vec<String> {
+            let knows = |w: &str| d.vocabulary().any(|v| v == normalised(w));
+            words.iter().filter(|w| !knows(split_unit(w).0.as_str())).cloned().collect()
+        };
+        self.dialects()
+            .map(|d| (d.name.clone(), unknown(d)))
+            .min_by_key(|(_, unknown)| unknown.len())
+            .unwrap_or_default()
+    }
+}
+
+/// A heading split into its name and the unit text, if it has one: `name (unit)`, `name [unit]`,
+/// `name/unit`, `name, unit` or `name unit`.
+pub(super) fn split_unit(cell: &str) -> (String, Option<String>) {
+    let text = folded(cell).replace('[', "(").replace(']', ")");
+    if let Some(open) = text.ends_with(')').then(|| matching_open(&text)).flatten() {
+        let inner = text[open + 1..text.len() - 1].trim().to_string();
+        // "1/(cm)": the bracket belongs to the unit, not to a name.
+        if !inner.is_empty() && open > 0 && !text[..open].trim_end().ends_with(['/', '·']) {
+            return (text[..open].trim().to_string(), Some(inner));
+        }
+    }
+    for (i, c) in text.char_indices().filter(|(_, c)| matches!(c, ' ' | '/' | ',' | ':' | '_')) {
+        let rest = text[i + c.len_utf8()..].trim();
+        let name = text[..i].trim();
+        if !name.is_empty()
+            && !rest.starts_with(|c: char| c.is_ascii_digit())
+            && (is_volt(rest) || unit(rest).is_ok())
+        {
+            return (name.to_string(), Some(rest.to_string()));
+        }
+    }
+    (text, None)
+}
+
+fn matching_open(text: &str) -> Option<usize> {
+    let mut depth = 0;
+    for (i, c) in text.char_indices().rev() {
+        match c {
+            ')' => depth += 1,
+            '(' => depth -= 1,
+            _ => {}
+        }
+        if depth == 0 {
+            return Some(i);
+        }
+    }
+    None
+}
+
+/// Spellings of units that occur in headings and that the unit table rightly refuses elsewhere.
+const SPELLINGS: &[(&str, &str)] = &[
+    ("gf/cm·deg", "gf/(cm·deg)"),
+    ("gf/cm°", "gf/(cm·deg)"),
+    ("gf/cm·°", "gf/(cm·deg)"),
+    ("n/m·deg", "N/(m·deg)"),
+    ("percent", "%"),
+    ("degrees", "deg"),
+    ("deg.", "deg"),
+    ("度", "deg"),
+    ("micron", "um"),
+    ("-", "1"),
+];
+
+/// The unit of a heading: the unit table, and the spellings of G that print uses.
+pub(super) fn unit(text: &str) -> Result<Unit, QuantityError> {
+    Unit::parse(text).or_else(|error| {
+        let plain =
+            folded(text).to_lowercase().replace(['*', '⋅', '・', ' '], "·").replace("cm.deg", "cm·deg");
+        match SPELLINGS.iter().find(|(spelling, _)| *spelling == plain) {
+            Some((_, meant)) => Unit::parse(meant),
+            None => Err(error),
+        }
+    })
+}
+
+/// [`unit`] with the error of the readers.
+pub(super) fn known_unit(text: &str) -> Result<Unit, Problem> {
+    unit(text).map_err(|e| Problem::UnitUnknown { reason: e.to_string() })
+}
+
+/// Volts of an analogue output; not in the unit table, since they only mean something with a range.
+pub(super) fn is_volt(text: &str) -> bool {
+    matches!(text, "V" | "mV")
+}
+
+/// Metadata in a file name or over a block of columns: `F01_warp_FB2_1`, `経-1`, `タテ`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Label {
+    pub sample: Option<String>,
+    pub test: Option<Test>,
+    pub direction: Option<Direction>,
+    pub specimen: Option<usize>,
+}
+
+impl Label {
+    /// Reads what the parts of a text mean; unknown parts before the first known one are the sample.
+    pub fn parse(text: &str, vocabulary: Vocabulary<'_>) -> Self {
+        let mut label = Self::default();
+        let mut sample: Vec<&str> = Vec::new();
+        let text = folded(text).into_owned();
+        for part in text.split(|c: char| !c.is_alphanumeric()).filter(|p| !p.is_empty()) {
+            let known = label.take(part, vocabulary) || label.take_with_number(part, vocabulary);
+            let first = label == Self::default();
+            if !known && first {
+                sample.push(part);
+            }
+        }
+        label.sample = (!sample.is_empty()).then(|| sample.join("-"));
+        label
+    }
+
+    fn take(&mut self, part: &str, vocabulary: Vocabulary<'_>) -> bool {
+        if let Some(direction) = vocabulary.find(part, false, |d| &d.directions) {
+            self.direction = self.direction.or(Some(direction));
+        } else if let Some(test) = vocabulary.find(part, false, |d| &d.tests) {
+            self.test = self.test.or(Some(test));
+        } else if let Ok(number) = part.parse::<usize>() {
+            self.specimen = Some(number);
+        } else {
+            let word = normalised(part);
+            return matches!(word.as_str(), "kes" | "kesf" | "fb1" | "no")
+                || vocabulary.key(part) == Some(Key::Specimen);
+        }
+        true
+    }
+
+    /// `経1`, `warp2`: a direction or "specimen" with a number behind it.
+    fn take_with_number(&mut self, part: &str, vocabulary: Vocabulary<'_>) -> bool {
+        let word = part.trim_end_matches(|c: char| c.is_ascii_digit());
+        let known = word != part
+            && (vocabulary.find(word, false, |d| &d.directions).is_some()
+                || vocabulary.key(word) == Some(Key::Specimen));
+        known && self.take(word, vocabulary) && self.take(&part[word.len()..], vocabulary)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WORDS: Vocabulary<'static> = Vocabulary { user: &[] };
+
+    #[test]
+    fn words_are_compared_without_case_width_accents_and_blanks() {
+        assert_eq!(normalised("Direção do Ensaio"), "direcaodoensaio");
+        assert_eq!(normalised("ｶﾞｰｾﾞ"), normalised("ガーゼ"));
+        assert_eq!(normalised("Specimen No."), "specimenno");
+        assert_eq!(WORDS.role("曲げモーメント"), Some(Role::Moment));
+        assert_eq!(WORDS.role("Bending moment per width"), Some(Role::Moment));
+        assert_eq!(WORDS.role("força"), Some(Role::Force));
+        assert_eq!(WORDS.role("せん断力"), Some(Role::ShearForce));
+        assert_eq!(WORDS.test("KES-FB1 せん断"), Some(Test::Shear));
+        assert_eq!(WORDS.test("KES-FB2"), Some(Test::Bending));
+        assert_eq!(WORDS.test("KES-FB1"), None);
+        assert_eq!(WORDS.direction("経方向"), Some(Direction::Warp));
+        assert_eq!(WORDS.parameter("2hb"), Some(Parameter::Hb));
+        assert_eq!(WORDS.parameter("目付"), Some(Parameter::W));
+    }
+
+    #[test]
+    fn headings_are_split_from_their_units() {
+        let split = |t| split_unit(t);
+        let pair = |n: &str, u: &str| (n.to_string(), Some(u.to_string()));
+        assert_eq!(split("curvature (1/cm)"), pair("curvature", "1/cm"));
+        assert_eq!(split("荷重(ｇｆ/㎝)"), pair("荷重", "gf/cm"));
+        assert_eq!(split("G [gf/(cm·deg)]"), pair("G", "gf/(cm·deg)"));
+        assert_eq!(split("force gf/cm"), pair("force", "gf/cm"));
+        assert_eq!(split("strain/%"), pair("strain", "%"));
+        assert_eq!(split("bending moment"), ("bending moment".to_string(), None));
+        assert!((unit("gf/cm·deg").unwrap().factor - 56.187_965_62).abs() < 1e-8);
+        assert!((unit("gf/cm*deg").unwrap().factor - 56.187_965_62).abs() < 1e-8);
+    }
+
+    #[test]
+    fn file_names_carry_metadata() {
+        let label = |t| Label::parse(t, WORDS);
+        let l = label("F01_warp_FB2_1");
+        assert_eq!(l.sample.as_deref(), Some("F01"));
+        assert_eq!((l.test, l.direction, l.specimen), (Some(Test::Bending), Some(Direction::Warp), Some(1)));
+        assert_eq!((label("経-1").direction, label("経-1").specimen), (Some(Direction::Warp), Some(1)));
+        assert_eq!((label("タテ2").direction, label("タテ2").specimen), (Some(Direction::Warp), Some(2)));
+        assert_eq!(label("試料番号 3").specimen, Some(3));
+        assert_eq!(label("fb1-shear-weft-2").test, Some(Test::Shear));
+    }
+}
