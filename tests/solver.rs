@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-const PATHS: [Path; 2] = [Path::Auto, Path::Faer];
+const PATHS: [Path; 3] = [Path::Auto, Path::Faer, Path::Multifrontal];
 
 fn grid(nx: u32, ny: u32) -> (Arc<BlockGraph>, Vec<[f64; 3]>) {
     let mut quads = Vec::new();

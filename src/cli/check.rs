@@ -41,7 +41,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let exit = Exit::of_batch(fabrics.len() + cases.len(), &failures)
         .unless(options.strict && ui.diagnostics.findings() > 0);
     if fabrics.is_empty() && cases.is_empty() && failures.is_empty() {
-        return Err(Failure::new("O006", "there is neither a measurement nor a case in the inputs")
+        return Err(Failure::new("O025", "there is neither a measurement nor a case in the inputs")
             .hint("name a fabric folder, a measurement file or a case file"));
     }
     if ui.json {

@@ -47,7 +47,7 @@ impl Failure {
 
     /// Ctrl-C.
     pub fn interrupted() -> Self {
-        Self { exit: Exit::Interrupted, ..Self::new("O005", "interrupted: nothing more was written") }
+        Self { exit: Exit::Interrupted, ..Self::new("O024", "interrupted: nothing more was written") }
     }
 
     /// A layer's error whose text begins with its code.

@@ -95,7 +95,7 @@ fn from_stdin(settings: &ReadSettings) -> Result<FabricInput, Failure> {
     let path = Path::new("<stdin>");
     let mut bytes = Vec::new();
     std::io::stdin().read_to_end(&mut bytes).map_err(|e| {
-        Failure::new("O003", format!("standard input cannot be read: {e}")).at(Place::file(path))
+        Failure::new("O022", format!("standard input cannot be read: {e}")).at(Place::file(path))
     })?;
     let content = parse(path, &bytes, settings)?;
     let sample = content.measurements.iter().find_map(|m| m.sample.clone());

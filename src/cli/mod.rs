@@ -97,13 +97,13 @@ fn prepare(cli: &Cli) -> Result<(), Failure> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build_global()
-        .map_err(|e| Failure::new("O004", format!("the threads cannot be started: {e}")))?;
+        .map_err(|e| Failure::new("O023", format!("the threads cannot be started: {e}")))?;
     ctrlc::set_handler(|| {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
             std::process::exit(Exit::Interrupted as i32);
         }
     })
-    .map_err(|e| Failure::new("O004", format!("Ctrl-C cannot be caught: {e}")))
+    .map_err(|e| Failure::new("O023", format!("Ctrl-C cannot be caught: {e}")))
 }
 
 fn dispatch(command: &Command, ui: &mut Ui) -> Result<Exit, Failure> {
@@ -121,7 +121,7 @@ fn usage(error: &clap::Error, json: bool) -> Exit {
     if json && !asked {
         let text = error.to_string();
         let message = text.strip_prefix("error: ").unwrap_or(&text).split("\n\n").next().unwrap_or_default();
-        let failure = Failure::new("O001", message.trim()).hint("see `kesf help`");
+        let failure = Failure::new("O020", message.trim()).hint("see `kesf help`");
         Diagnostics::json_only().error(&failure);
         return Exit::Bad;
     }

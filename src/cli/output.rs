@@ -11,7 +11,7 @@ pub fn to_stdout(bytes: &[u8]) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::new("O002", format!("standard output cannot be written: {e}")))
+            Err(Failure::new("O021", format!("standard output cannot be written: {e}")))
         }
         _ => Ok(()),
     }

@@ -1,1 +1,6 @@
-//! (skeleton)
+//! Everything that people see as files.
+
+mod number;
+
+#[cfg(feature = "charts")]
+pub mod chart;

@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use nalgebra::Point3;
+use nalgebra::{Matrix3, Point3, SMatrix, Vector3};
 
 use super::sparse::{BlockGraph, BlockMatrix};
-use crate::element::{MaterialAxisError, Prepared};
+use crate::element::{MaterialAxisError, Prepared, consistent_mass, lumped_mass};
 use crate::model::{DofGroup, Model};
+use crate::section::ShellSection;
 
 /// The node graph of a mesh and the place of every element's blocks in it: computed once per mesh.
 #[derive(Clone, Debug)]
@@ -39,18 +40,31 @@ impl Pattern {
     }
 }
 
-/// Element stiffness matrices of a model in one dof group; equal elements in a row are computed once.
-pub struct ElementStiffness<'a> {
+/// Which matrix of an element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Stiffness.
+    Stiffness,
+    /// Mass, Eq. (12).
+    Mass {
+        /// Row sums on the diagonal instead of the consistent matrix.
+        lumped: bool,
+    },
+}
+
+/// Element matrices of a model in one dof group; equal elements in a row are computed once.
+pub struct ElementMatrices<'a> {
     model: &'a Model,
     group: DofGroup,
+    kind: Kind,
     last: Option<([Point3<f64>; 4], f64)>,
     matrix: Vec<f64>,
 }
 
-impl<'a> ElementStiffness<'a> {
-    /// Element matrices of `model` restricted to `group`.
-    pub fn new(model: &'a Model, group: DofGroup) -> Self {
-        Self { model, group, last: None, matrix: Vec::new() }
+impl<'a> ElementMatrices<'a> {
+    /// Matrices of one kind of `model` restricted to `group`.
+    pub fn new(model: &'a Model, group: DofGroup, kind: Kind) -> Self {
+        Self { model, group, kind, last: None, matrix: Vec::new() }
     }
 
     /// The matrix of a quad, column-major, `4 b` square with `b` dofs a node.
@@ -63,10 +77,19 @@ impl<'a> ElementStiffness<'a> {
             let flat = self.group != DofGroup::Shell;
             let element: Prepared = self.model.element(quad, flat)?;
             self.matrix.clear();
-            match self.group {
-                DofGroup::Plate => self.matrix.extend_from_slice(element.plate_stiffness().as_slice()),
-                DofGroup::Membrane => self.matrix.extend_from_slice(element.membrane_stiffness().as_slice()),
-                DofGroup::Shell => self.matrix.extend_from_slice(element.stiffness().as_slice()),
+            match (self.kind, self.group) {
+                (Kind::Stiffness, DofGroup::Plate) => {
+                    self.matrix.extend_from_slice(element.plate_stiffness().as_slice());
+                }
+                (Kind::Stiffness, DofGroup::Membrane) => {
+                    self.matrix.extend_from_slice(element.membrane_stiffness().as_slice());
+                }
+                (Kind::Stiffness, DofGroup::Shell) => {
+                    self.matrix.extend_from_slice(element.stiffness().as_slice());
+                }
+                (Kind::Mass { lumped }, group) => {
+                    self.matrix = mass(&element, &self.model.section, group, lumped);
+                }
             }
             let size = (corners[2] - corners[0]).norm();
             self.last = Some((corners, size));
@@ -81,69 +104,65 @@ impl<'a> ElementStiffness<'a> {
     }
 }
 
-/// An assembled system in one dof group: held dofs are unit rows scaled to the diagonal.
-#[derive(Clone, Debug)]
-pub struct Assembly {
-    /// The stiffness.
-    pub matrix: BlockMatrix,
-    /// Right-hand side: loads on free dofs less the forces of the prescribed values; the scaled
-    /// prescribed value on held dofs.
-    pub rhs: Vec<f64>,
+/// Mass of an element in global axes: `ρ ∫ N_i N_j` times `diag(1, 1, 1, t²/12, t²/12, 0)` in its own.
+fn mass(element: &Prepared, section: &ShellSection, group: DofGroup, lumped: bool) -> Vec<f64> {
+    let pairs = if lumped {
+        SMatrix::<f64, 4, 4>::from_diagonal(&lumped_mass(&element.frame, section).into())
+    } else {
+        consistent_mass(&element.frame, section)
+    };
+    let rotary = section.thickness * section.thickness / 12.0;
+    let r = element.frame.rotation;
+    let rotation = r.transpose() * Matrix3::from_diagonal(&Vector3::new(rotary, rotary, 0.0)) * r;
+    let mut node = SMatrix::<f64, 6, 6>::identity();
+    node.fixed_view_mut::<3, 3>(3, 3).copy_from(&rotation);
+    let dofs = group.dofs();
+    let n = 4 * dofs.len();
+    let mut m = vec![0.0; n * n];
+    for (k, value) in m.iter_mut().enumerate() {
+        let (column, row) = (k / n, k % n);
+        let (a, b) = (dofs[row % dofs.len()] as usize, dofs[column % dofs.len()] as usize);
+        *value = pairs[(row / dofs.len(), column / dofs.len())] * node[(a, b)];
+    }
+    m
 }
 
-impl Assembly {
-    /// Assembles the stiffness of `model` for the group, with `held` values and `load` (both of
-    /// the group, `b` a node).
-    ///
-    /// # Errors
-    /// M008 if the warp direction is normal to an element.
-    pub fn stiffness(
-        model: &Model,
-        group: DofGroup,
-        pattern: &Pattern,
-        held: &[Option<f64>],
-        load: &[f64],
-    ) -> Result<Self, MaterialAxisError> {
-        let b = group.dofs().len();
-        let mut matrix = BlockMatrix::zeros(Arc::clone(&pattern.graph), b);
-        let mut rhs = load.to_vec();
-        let mut elements = ElementStiffness::new(model, group);
-        let mut copy = vec![0.0; 16 * b * b];
+/// The sum of `factor` times each kind of matrix, with rows and columns of held dofs empty.
+///
+/// `held` says of each dof of the group (`b` a node) whether it is held.
+///
+/// # Errors
+/// M008 if the warp direction is normal to an element.
+pub fn assemble(
+    model: &Model,
+    group: DofGroup,
+    pattern: &Pattern,
+    terms: &[(Kind, f64)],
+    held: &[bool],
+) -> Result<BlockMatrix, MaterialAxisError> {
+    let b = group.dofs().len();
+    let mut matrix = BlockMatrix::zeros(Arc::clone(&pattern.graph), b);
+    let mut copy = vec![0.0; 16 * b * b];
+    for &(kind, factor) in terms {
+        let mut elements = ElementMatrices::new(model, group, kind);
         for (quad, nodes) in model.mesh.quads.iter().enumerate() {
             let k = elements.of(quad)?;
             let is_held = |dof: usize| held[nodes[dof / b] as usize * b + dof % b];
-            if nodes.iter().any(|n| held[*n as usize * b..][..b].iter().any(Option::is_some)) {
-                copy.copy_from_slice(k);
-                remove_held(&mut copy, 4 * b, &is_held, |dof, force| {
-                    rhs[nodes[dof / b] as usize * b + dof % b] -= force;
-                });
-                scatter(&copy, b, nodes, &pattern.blocks[quad], &mut matrix);
-            } else {
+            if factor == 1.0 && !(0..4 * b).any(is_held) {
                 scatter(k, b, nodes, &pattern.blocks[quad], &mut matrix);
+                continue;
             }
-        }
-        unit_rows(&mut matrix, &mut rhs, held);
-        Ok(Self { matrix, rhs })
-    }
-}
-
-/// Clears rows and columns of held dofs and hands the force of each prescribed value to `subtract`.
-fn remove_held(
-    k: &mut [f64],
-    n: usize,
-    held: &impl Fn(usize) -> Option<f64>,
-    mut subtract: impl FnMut(usize, f64),
-) {
-    for j in 0..n {
-        let Some(value) = held(j) else { continue };
-        for i in 0..n {
-            if value != 0.0 && held(i).is_none() {
-                subtract(i, k[j * n + i] * value);
+            copy.iter_mut().zip(k).for_each(|(c, k)| *c = factor * k);
+            for j in (0..4 * b).filter(|j| is_held(*j)) {
+                for i in 0..4 * b {
+                    copy[j * 4 * b + i] = 0.0;
+                    copy[i * 4 * b + j] = 0.0;
+                }
             }
-            k[j * n + i] = 0.0;
-            k[i * n + j] = 0.0;
+            scatter(&copy, b, nodes, &pattern.blocks[quad], &mut matrix);
         }
     }
+    Ok(matrix)
 }
 
 /// Adds an element matrix to the blocks of the lower triangle.
@@ -160,22 +179,51 @@ fn scatter(k: &[f64], b: usize, nodes: &[u32; 4], blocks: &[u32; 10], matrix: &m
     }
 }
 
-/// Puts the largest diagonal entry of its kind on the diagonal of each held dof.
-fn unit_rows(matrix: &mut BlockMatrix, rhs: &mut [f64], held: &[Option<f64>]) {
+/// Puts the largest diagonal entry of its kind on the diagonal of each held dof, so that the
+/// factorisation sees a unit row of ordinary size.
+pub fn unit_rows(matrix: &mut BlockMatrix, held: &[bool]) {
     let b = matrix.block;
-    let diagonal = |node: usize, dof: usize| matrix.graph.col_ptr[node] * b * b + dof * b + dof;
+    let diagonal = |col_ptr: &[usize], k: usize| col_ptr[k / b] * b * b + (k % b) * (b + 1);
+    let graph = Arc::clone(&matrix.graph);
     let mut scale = vec![0.0f64; b];
-    for node in 0..matrix.graph.nodes {
-        for (dof, s) in scale.iter_mut().enumerate() {
-            *s = s.max(matrix.values[diagonal(node, dof)]);
+    for k in 0..graph.nodes * b {
+        scale[k % b] = scale[k % b].max(matrix.values[diagonal(&graph.col_ptr, k)]);
+    }
+    for k in (0..held.len()).filter(|k| held[*k]) {
+        // A kind of dof that is held everywhere has no scale of its own.
+        let s = if scale[k % b] > 0.0 { scale[k % b] } else { 1.0 };
+        matrix.values[diagonal(&graph.col_ptr, k)] = s;
+    }
+}
+
+/// A matrix of the model times a vector of the group, by a loop over the elements: independent of
+/// the assembled matrix, held dofs included.
+///
+/// # Errors
+/// M008 if the warp direction is normal to an element.
+pub fn multiply(
+    model: &Model,
+    group: DofGroup,
+    kind: Kind,
+    u: &[f64],
+) -> Result<Vec<f64>, MaterialAxisError> {
+    let b = group.dofs().len();
+    let n = 4 * b;
+    let mut elements = ElementMatrices::new(model, group, kind);
+    let mut product = vec![0.0; u.len()];
+    let (mut local, mut f) = (vec![0.0; n], vec![0.0; n]);
+    for (quad, nodes) in model.mesh.quads.iter().enumerate() {
+        let k = elements.of(quad)?;
+        for (i, node) in nodes.iter().enumerate() {
+            local[i * b..][..b].copy_from_slice(&u[*node as usize * b..][..b]);
+        }
+        f.fill(0.0);
+        for (j, value) in local.iter().enumerate() {
+            f.iter_mut().zip(&k[j * n..][..n]).for_each(|(f, k)| *f += k * value);
+        }
+        for (i, node) in nodes.iter().enumerate() {
+            product[*node as usize * b..][..b].iter_mut().zip(&f[i * b..]).for_each(|(a, f)| *a += f);
         }
     }
-    for (k, value) in held.iter().enumerate() {
-        let Some(value) = value else { continue };
-        // A group with every dof of a kind held has no scale of its own.
-        let s = if scale[k % b] > 0.0 { scale[k % b] } else { 1.0 };
-        let at = matrix.graph.col_ptr[k / b] * b * b + (k % b) * b + k % b;
-        matrix.values[at] = s;
-        rhs[k] = s * value;
-    }
+    Ok(product)
 }

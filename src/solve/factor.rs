@@ -8,6 +8,7 @@ mod general;
 
 use std::sync::Arc;
 
+use super::multifrontal;
 use super::ordering::{Ordering, nested_dissection};
 use super::sparse::{BlockGraph, BlockMatrix};
 
@@ -22,6 +23,8 @@ pub enum Path {
     Auto,
     /// The general sparse factorisation of the crate `faer`: the permanent cross-check.
     Faer,
+    /// The multifrontal factorisation on the graph of nodes, over `faer`'s dense kernels.
+    Multifrontal,
 }
 
 /// Why there is no factor.
@@ -78,6 +81,7 @@ pub struct Analysis {
 #[derive(Debug)]
 enum Symbolic {
     General(Arc<general::Symbolic>),
+    Multifrontal(Arc<multifrontal::Tree>),
 }
 
 /// Orders the nodes and finds the structure of the factor.
@@ -96,10 +100,29 @@ pub fn analyse(
     coordinates: Option<&[[f64; 3]]>,
     path: Path,
 ) -> Result<Analysis, FactorError> {
+    analyse_ordered(graph, block, &order(graph, coordinates)?, path)
+}
+
+/// [`analyse`] with a given order of elimination.
+///
+/// # Errors
+/// [`FactorError::OutOfMemory`].
+///
+/// # Panics
+/// If `block` is not 1 to [`MAX_BLOCK`], or the order is not of the graph's nodes.
+pub fn analyse_ordered(
+    graph: &Arc<BlockGraph>,
+    block: usize,
+    order: &Ordering,
+    path: Path,
+) -> Result<Analysis, FactorError> {
     assert!((1..=MAX_BLOCK).contains(&block), "{block} dofs per node");
-    let order = order(graph, coordinates)?;
+    assert_eq!(order.node_at.len(), graph.nodes, "an order of the graph's nodes");
     let symbolic = match path {
-        Path::Auto | Path::Faer => Symbolic::General(Arc::new(general::Symbolic::new(graph, block, &order)?)),
+        Path::Faer => Symbolic::General(Arc::new(general::Symbolic::new(graph, block, order)?)),
+        Path::Auto | Path::Multifrontal => {
+            Symbolic::Multifrontal(Arc::new(multifrontal::Tree::new(graph, block, order)))
+        }
     };
     Ok(Analysis { graph: Arc::clone(graph), block, symbolic })
 }
@@ -131,6 +154,7 @@ impl Analysis {
             Symbolic::General(symbolic) => {
                 Ok(Factor(Numeric::General(symbolic.factorise(a, threads.max(1))?)))
             }
+            Symbolic::Multifrontal(tree) => Ok(Factor(Numeric::Multifrontal(tree.factorise(a, threads)?))),
         }
     }
 
@@ -139,6 +163,7 @@ impl Analysis {
         let square = self.block * self.block;
         let counts = match &self.symbolic {
             Symbolic::General(symbolic) => symbolic.counts(),
+            Symbolic::Multifrontal(tree) => tree.counts(),
         };
         Counts {
             rows: self.graph.nodes * self.block,
@@ -156,6 +181,7 @@ pub struct Factor(Numeric);
 #[derive(Debug)]
 enum Numeric {
     General(general::Numeric),
+    Multifrontal(multifrontal::Numeric),
 }
 
 impl Factor {
@@ -166,6 +192,7 @@ impl Factor {
     pub fn solve(&self, x: &mut [f64], columns: usize) {
         match &self.0 {
             Numeric::General(numeric) => numeric.solve(x, columns),
+            Numeric::Multifrontal(numeric) => numeric.solve(x, columns),
         }
     }
 }

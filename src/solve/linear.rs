@@ -4,10 +4,10 @@ use std::time::Instant;
 
 use thiserror::Error;
 
-use super::assemble::{Assembly, ElementStiffness, Pattern};
-use super::factor::{self, Analysis, Counts, FactorError, Path};
-use crate::mesh::QuadMesh;
-use crate::model::{Dof, DofGroup, Model, ModelError};
+use super::assemble::{Kind, Pattern, assemble, multiply, unit_rows};
+use super::factor::{Analysis, Counts, FactorError, Path};
+use super::plan::Plan;
+use crate::model::{DofGroup, Model, ModelError};
 
 /// How to solve; the result does not depend on it beyond rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,6 +64,22 @@ pub enum SolveError {
         /// What is accepted.
         limit: f64,
     },
+    /// N004: the subspace iteration did not settle.
+    #[error(
+        "N004 the modes did not settle in {rounds} rounds: ask for more modes, so that a cluster is not cut in two"
+    )]
+    ModesNotSettled {
+        /// Rounds done.
+        rounds: usize,
+    },
+    /// N005: the adaptive time step went to nothing.
+    #[error(
+        "N005 the time step vanished at t = {time} s: loosen the tolerance, or ramp the load instead of a step"
+    )]
+    StepVanished {
+        /// Time reached (s).
+        time: f64,
+    },
 }
 
 impl SolveError {
@@ -74,51 +90,9 @@ impl SolveError {
             Self::Singular { .. } => "N001",
             Self::Factor(_) => "N002",
             Self::Residual { .. } => "N003",
+            Self::ModesNotSettled { .. } => "N004",
+            Self::StepVanished { .. } => "N005",
         }
-    }
-}
-
-/// What depends on the mesh only: pattern, ordering and symbolic factorisation. Shared by every
-/// fabric on one mesh.
-#[derive(Debug)]
-pub struct Plan {
-    pattern: Pattern,
-    groups: Vec<(DofGroup, Analysis)>,
-}
-
-impl Plan {
-    /// Analyses the mesh for the dof groups that will be solved.
-    ///
-    /// # Errors
-    /// N002 when the ordering or symbolic phase fails (out of memory).
-    pub fn new(mesh: &QuadMesh, groups: &[DofGroup], path: Path) -> Result<Self, SolveError> {
-        let pattern = Pattern::new(mesh.nodes.len(), &mesh.quads);
-        let coordinates: Vec<[f64; 3]> = mesh.nodes.iter().map(|p| [p.x, p.y, p.z]).collect();
-        let groups = groups
-            .iter()
-            .map(|&group| {
-                factor::analyse(&pattern.graph, group.dofs().len(), Some(&coordinates), path)
-                    .map(|analysis| (group, analysis))
-            })
-            .collect::<Result<_, _>>()
-            .map_err(SolveError::Factor)?;
-        Ok(Self { pattern, groups })
-    }
-
-    /// The groups of a model that its loads and prescribed values set in motion.
-    pub fn groups(model: &Model, options: &Options) -> Vec<DofGroup> {
-        if options.coupled || !model.mesh.is_flat() {
-            return vec![DofGroup::Shell];
-        }
-        let (load, held) = (model.load_vector(), model.constraints());
-        let moves = |dof: &Dof| {
-            load.iter().skip(*dof as usize).step_by(6).any(|f| *f != 0.0)
-                || held.iter().skip(*dof as usize).step_by(6).any(|h| h.is_some_and(|v| v != 0.0))
-        };
-        [DofGroup::Plate, DofGroup::Membrane]
-            .into_iter()
-            .filter(|group| group.dofs().iter().any(moves))
-            .collect()
     }
 }
 
@@ -210,8 +184,15 @@ fn solve_group(
         held.chunks_exact(6).flat_map(|node| group.dofs().iter().map(|d| node[*d as usize])).collect();
 
     let start = Instant::now();
-    let Assembly { matrix, rhs } =
-        Assembly::stiffness(model, group, pattern, &held, &load).map_err(ModelError::from)?;
+    let is_held: Vec<bool> = held.iter().map(Option::is_some).collect();
+    let stiffness = |u: &[f64]| multiply(model, group, Kind::Stiffness, u).map_err(ModelError::from);
+    let mut matrix =
+        assemble(model, group, pattern, &[(Kind::Stiffness, 1.0)], &is_held).map_err(ModelError::from)?;
+    unit_rows(&mut matrix, &is_held);
+    // Prescribed values act on the free dofs as forces.
+    let prescribed: Vec<f64> = held.iter().map(|h| h.unwrap_or(0.0)).collect();
+    let forces =
+        if prescribed.iter().any(|v| *v != 0.0) { stiffness(&prescribed)? } else { vec![0.0; load.len()] };
     solution.timings.assemble_s += start.elapsed().as_secs_f64();
 
     let start = Instant::now();
@@ -232,17 +213,22 @@ fn solve_group(
     solution.timings.factor_s += start.elapsed().as_secs_f64();
 
     let start = Instant::now();
-    let mut u = rhs.clone();
-    factor.solve(&mut u, 1);
-    let mut internal = internal_forces(model, group, &u)?;
+    // Free dofs from the factor, held dofs as prescribed.
+    let correct = |internal: &[f64], u: &mut [f64]| {
+        let mut step: Vec<f64> =
+            (0..u.len()).map(|k| if is_held[k] { 0.0 } else { load[k] - internal[k] }).collect();
+        factor.solve(&mut step, 1);
+        u.iter_mut().zip(&step).for_each(|(u, s)| *u += s);
+    };
+    let mut u = prescribed;
+    correct(&forces, &mut u);
+    let mut internal = stiffness(&u)?;
     let mut residual = relative_residual(&internal, &load, &held);
     if residual > REFINE {
         // One step of iterative refinement with the residual of the elements themselves.
-        let mut correction: Vec<f64> =
-            (0..u.len()).map(|k| if held[k].is_some() { 0.0 } else { load[k] - internal[k] }).collect();
-        factor.solve(&mut correction, 1);
-        let refined: Vec<f64> = u.iter().zip(&correction).map(|(a, c)| a + c).collect();
-        let refined_internal = internal_forces(model, group, &refined)?;
+        let mut refined = u.clone();
+        correct(&internal, &mut refined);
+        let refined_internal = stiffness(&refined)?;
         let refined_residual = relative_residual(&refined_internal, &load, &held);
         if refined_residual < residual {
             (u, internal, residual) = (refined, refined_internal, refined_residual);
@@ -260,29 +246,6 @@ fn solve_group(
     group.scatter(&reaction, &mut solution.reaction);
     solution.timings.solve_s += start.elapsed().as_secs_f64();
     Ok(())
-}
-
-/// `K u` by a loop over the elements, independent of the assembled matrix.
-pub(super) fn internal_forces(model: &Model, group: DofGroup, u: &[f64]) -> Result<Vec<f64>, SolveError> {
-    let b = group.dofs().len();
-    let n = 4 * b;
-    let mut elements = ElementStiffness::new(model, group);
-    let mut forces = vec![0.0; u.len()];
-    let (mut local, mut f) = (vec![0.0; n], vec![0.0; n]);
-    for (quad, nodes) in model.mesh.quads.iter().enumerate() {
-        let k = elements.of(quad).map_err(ModelError::from)?;
-        for (i, node) in nodes.iter().enumerate() {
-            local[i * b..][..b].copy_from_slice(&u[*node as usize * b..][..b]);
-        }
-        f.fill(0.0);
-        for (j, value) in local.iter().enumerate() {
-            f.iter_mut().zip(&k[j * n..][..n]).for_each(|(f, k)| *f += k * value);
-        }
-        for (i, node) in nodes.iter().enumerate() {
-            forces[*node as usize * b..][..b].iter_mut().zip(&f[i * b..]).for_each(|(a, f)| *a += f);
-        }
-    }
-    Ok(forces)
 }
 
 fn relative_residual(internal: &[f64], load: &[f64], held: &[Option<f64>]) -> f64 {

@@ -3,7 +3,13 @@
 pub mod assemble;
 pub mod factor;
 pub mod linear;
+pub mod modal;
+mod multifrontal;
+pub mod newmark;
 pub mod ordering;
+pub mod plan;
 pub mod sparse;
 
-pub use linear::{Options, Plan, Solution, SolveError, Timings, solve, solve_with};
+pub use linear::{Options, Solution, SolveError, Timings, solve, solve_with};
+pub use modal::{Mode, modes};
+pub use plan::Plan;

@@ -1,0 +1,90 @@
+//! Charts as PNG files: 300 dpi, 6 in x 4.5 in, built-in font, no date in the file.
+//!
+//! Warp is blue and solid, weft vermillion and dashed (Okabe-Ito colours), so that a chart is read
+//! by every eye and on a grey printer. KES units stand at the left and bottom, SI at the right and top.
+//! The legend, the values and the errors have a column of their own beside the plot.
+//!
+//! Every function returns the bytes of the file; `report::OutputFolder` writes them.
+
+mod axes;
+mod canvas;
+mod contour;
+mod fabric;
+mod field;
+mod loops;
+mod marks;
+mod palette;
+mod panel;
+mod parity;
+mod schematic;
+
+use thiserror::Error;
+
+pub use fabric::{SimulatedCurve, bending, compression, shear, tensile};
+pub use field::{FieldPlot, field};
+pub use parity::{ParityPoint, parity};
+
+/// Why there is no chart.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ChartError {
+    /// O010: neither a curve nor the parameters that a schematic needs.
+    #[error("O010 no {chart} chart of {name}: {missing}")]
+    NothingToDraw {
+        /// Which chart.
+        chart: String,
+        /// The fabric or case.
+        name: String,
+        /// What would be needed.
+        missing: String,
+    },
+    /// O011: lists that belong together have different lengths, or an index points past the nodes.
+    #[error("O011 the data of the chart {name} do not fit together: {problem}")]
+    Inconsistent {
+        /// The chart's title.
+        name: String,
+        /// What does not fit.
+        problem: String,
+    },
+    /// O012: the drawing library or the PNG encoder failed.
+    #[error("O012 drawing failed: {0}")]
+    Drawing(String),
+}
+
+/// Title, subtitle and the mark of origin that every chart carries above the plot.
+struct Head<'a> {
+    title: &'a str,
+    /// Follows the title, and stays where a long title is cut short.
+    kind: &'a str,
+    subtitle: &'a str,
+    /// `measured data`, `synthetic data` ...; empty for none.
+    origin: &'a str,
+}
+
+impl Head<'_> {
+    fn draw(&self, canvas: &mut canvas::Canvas) -> Result<(), ChartError> {
+        use canvas::{Align, Type, WIDTH};
+        let right = WIDTH as f64 - 40.0;
+        let mark = Type::new(26.0, palette::INK).bold().align(Align::Right);
+        let mut room = right - 40.0;
+        if !self.origin.is_empty() {
+            let width = canvas.text_width(self.origin, mark)?;
+            canvas.rectangle(
+                (right - width - 32.0, 28.0),
+                (right, 74.0),
+                palette::lighter(palette::GROUPS[4], 0.6),
+            )?;
+            canvas.text((right - 16.0, 60.0), self.origin, mark)?;
+            room -= width + 60.0;
+        }
+        let title = Type::new(40.0, palette::INK).bold();
+        let room = room - canvas.text_width(self.kind, title)?;
+        let text = panel::fitted(canvas, self.title, title, room)?;
+        canvas.text((40.0, 66.0), &format!("{text}{}", self.kind), title)?;
+        let subtitle = Type::new(27.0, palette::GREY);
+        let text = panel::fitted(canvas, self.subtitle, subtitle, right - 40.0)?;
+        canvas.text((40.0, 112.0), &text, subtitle)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,142 @@
+//! The column beside a plot: legend, values, errors. Nothing in it can lie over data.
+
+use plotters::prelude::RGBColor;
+
+use super::ChartError;
+use super::canvas::{Align, Canvas, Point, Stroke, Type};
+use super::palette::{GREY, GROUPS, INK};
+
+/// One line of the column.
+#[derive(Clone, Debug)]
+pub(super) enum Row {
+    /// A heading over what follows.
+    Heading(String),
+    /// A sample of a line and what it stands for.
+    Sample(Stroke, String),
+    /// The marker of a group (by number) and what it stands for.
+    Marker(usize, String),
+    /// A name, and a value at the right edge.
+    Value(String, String),
+    /// A remark, broken into lines as needed.
+    Remark(String, RGBColor),
+    /// Half a line of nothing.
+    Gap,
+}
+
+const LINE: f64 = 37.0;
+const SIZE: f64 = 25.0;
+const SAMPLE: f64 = 66.0;
+
+/// Draws the rows from `top` down, between `left` and `right`, closer together if they must be to end
+/// above `bottom`.
+pub(super) fn draw(
+    canvas: &mut Canvas,
+    rows: &[Row],
+    [left, right]: [f64; 2],
+    [top, bottom]: [f64; 2],
+) -> Result<(), ChartError> {
+    let mut broken = Vec::new();
+    for row in rows {
+        match row {
+            Row::Remark(text, color) => {
+                let lines = wrap(canvas, text, Type::new(SIZE * 0.92, *color), right - left)?;
+                broken.extend(lines.into_iter().map(|line| Row::Remark(line, *color)));
+            }
+            row => broken.push(row.clone()),
+        }
+    }
+    let lines: f64 = broken.iter().map(|r| if matches!(r, Row::Gap) { 0.5 } else { 1.0 }).sum();
+    let shrink = ((bottom - top) / (lines * LINE)).min(1.0);
+    let size = SIZE * shrink.max(0.7);
+    let mut y = top;
+    for row in &broken {
+        if matches!(row, Row::Gap) {
+            y += 0.5 * LINE * shrink;
+            continue;
+        }
+        y += LINE * shrink;
+        let baseline = y - 0.3 * LINE * shrink;
+        draw_row(canvas, row, [left, right], baseline, size)?;
+    }
+    Ok(())
+}
+
+fn draw_row(
+    canvas: &mut Canvas,
+    row: &Row,
+    [left, right]: [f64; 2],
+    baseline: f64,
+    size: f64,
+) -> Result<(), ChartError> {
+    let text = Type::new(size, INK);
+    let middle = baseline - 0.36 * size;
+    match row {
+        Row::Heading(heading) => canvas.text((left, baseline), heading, text.bold()),
+        Row::Sample(stroke, name) => {
+            canvas.line(&[(left, middle), (left + SAMPLE, middle)], *stroke)?;
+            let name = fitted(canvas, name, text, right - left - SAMPLE - 14.0)?;
+            canvas.text((left + SAMPLE + 14.0, baseline), &name, text)
+        }
+        Row::Marker(group, name) => {
+            marker(canvas, (left + 12.0, middle), 10.0, *group)?;
+            let name = fitted(canvas, name, text, right - left - 34.0)?;
+            canvas.text((left + 34.0, baseline), &name, text)
+        }
+        Row::Value(name, value) => {
+            let width = canvas.text_width(value, text)?;
+            let name = fitted(canvas, name, text, right - left - width - 12.0)?;
+            canvas.text((left, baseline), &name, Type { color: GREY, ..text })?;
+            canvas.text((right, baseline), value, text.align(Align::Right))
+        }
+        Row::Remark(line, color) => canvas.text((left, baseline), line, Type::new(size * 0.92, *color)),
+        Row::Gap => Ok(()),
+    }
+}
+
+/// The marker of a group: colour and shape differ, so that groups are told apart in grey too.
+pub(super) fn marker(canvas: &mut Canvas, at: Point, radius: f64, group: usize) -> Result<(), ChartError> {
+    let color = GROUPS[group % GROUPS.len()];
+    let around = |corners: &[(f64, f64)]| -> Vec<Point> {
+        corners.iter().map(|(x, y)| (at.0 + radius * x, at.1 + radius * y)).collect()
+    };
+    match group % 4 {
+        0 => canvas.dot(at, radius, color),
+        1 => canvas.polygon(&around(&[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)]), color),
+        2 => canvas.polygon(&around(&[(0.0, -1.2), (1.1, 0.8), (-1.1, 0.8)]), color),
+        _ => canvas.polygon(&around(&[(0.0, -1.3), (1.2, 0.0), (0.0, 1.3), (-1.2, 0.0)]), color),
+    }
+}
+
+/// Breaks a text at blanks into lines that fit; a single word that is too long is shortened.
+pub(super) fn wrap(canvas: &Canvas, text: &str, kind: Type, width: f64) -> Result<Vec<String>, ChartError> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        let candidate = match lines.last() {
+            Some(line) => format!("{line} {word}"),
+            None => word.to_string(),
+        };
+        if canvas.text_width(&candidate, kind)? <= width && !lines.is_empty() {
+            if let Some(line) = lines.last_mut() {
+                *line = candidate;
+            }
+        } else {
+            lines.push(fitted(canvas, word, kind, width)?);
+        }
+    }
+    Ok(lines)
+}
+
+/// The text itself, or its beginning with an ellipsis where it would not fit.
+pub(super) fn fitted(canvas: &Canvas, text: &str, kind: Type, width: f64) -> Result<String, ChartError> {
+    if canvas.text_width(text, kind)? <= width {
+        return Ok(text.to_string());
+    }
+    let mut kept: Vec<char> = text.chars().collect();
+    while kept.pop().is_some() {
+        let shorter: String = kept.iter().chain(&['…']).collect();
+        if canvas.text_width(&shorter, kind)? <= width {
+            return Ok(shorter);
+        }
+    }
+    Ok("…".to_string())
+}

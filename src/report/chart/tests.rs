@@ -1,0 +1,381 @@
+//! Goal: every chart is drawn from ordinary and from extreme data, twice with the same bytes.
+//!
+//! Data: loops made from stated parameters with noise. With `KESF_GALLERY=dir` the files are kept for
+//! looking at, which no assertion replaces.
+
+use std::collections::BTreeMap;
+
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+use super::*;
+use crate::characterise::{Branch, FabricSheet, Key, SpecimenResult, Window};
+use crate::instrument::{Conditions, Direction, FabricInfo, Measurement, Origin, Parameter, Source, Test};
+use crate::quantity::{Curve, Estimate};
+
+const WARP: Option<Direction> = Some(Direction::Warp);
+const WEFT: Option<Direction> = Some(Direction::Weft);
+
+fn keep(name: &str, bytes: &[u8]) {
+    if let Some(folder) = std::env::var_os("KESF_GALLERY") {
+        std::fs::write(std::path::Path::new(&folder).join(name), bytes).unwrap();
+    }
+}
+
+/// The file, drawn twice to see that the bytes are the same, and its size on the page.
+fn drawn(name: &str, draw: impl Fn() -> Result<Vec<u8>, ChartError>) {
+    let bytes = draw().unwrap();
+    assert_eq!(bytes, draw().unwrap(), "{name}: same data, same bytes");
+    let reader = png::Decoder::new(bytes.as_slice()).read_info().unwrap();
+    assert_eq!((reader.info().width, reader.info().height), (1800, 1350));
+    keep(name, &bytes);
+}
+
+struct Mock {
+    sheet: FabricSheet,
+    random: Pcg64,
+    noise: f64,
+}
+
+impl Mock {
+    fn new(name: &str, origin: Origin) -> Self {
+        let info = FabricInfo {
+            title: name.into(),
+            origin,
+            weave: Some("plain".into()),
+            composition: Some("100 % cotton".into()),
+            ..FabricInfo::default()
+        };
+        let sheet = FabricSheet { name: name.to_lowercase(), info, ..FabricSheet::default() };
+        Self { sheet, random: Pcg64::seed_from_u64(7), noise: 0.004 }
+    }
+
+    fn value(&mut self, p: Parameter, direction: Option<Direction>, kes: f64) {
+        let f = p.kes_factor();
+        let values = [0.97 * kes * f, kes * f, 1.035 * kes * f];
+        self.sheet.values.insert(Key { parameter: p, direction }, Estimate::of(&values).unwrap());
+    }
+
+    fn specimen(
+        &mut self,
+        test: Test,
+        direction: Option<Direction>,
+        specimen: usize,
+        parts: Vec<(bool, Vec<(f64, f64)>)>,
+        windows: Vec<Window>,
+    ) {
+        let peak = parts.iter().flat_map(|p| &p.1).fold(0f64, |a, p| a.max(p.1.abs()));
+        let mut branches = Vec::new();
+        for (outgoing, points) in parts {
+            let noisy = points
+                .into_iter()
+                .map(|(x, y)| (x, y + peak * self.noise * (self.random.random::<f64>() - 0.5) * 2.0));
+            branches.push(Branch { cycle: 0, outgoing, curve: Curve::from_points(noisy) });
+        }
+        self.sheet.specimens.push(SpecimenResult {
+            measurement: Measurement {
+                test,
+                sample: None,
+                direction,
+                specimen,
+                conditions: Conditions::default(),
+                curve: Curve::default(),
+                lines: vec![],
+                source: Source::default(),
+                metadata: BTreeMap::new(),
+            },
+            branches,
+            correction: [0.0; 2],
+            windows,
+            values: BTreeMap::new(),
+            moduli: BTreeMap::new(),
+        });
+    }
+
+    fn bending(&mut self, direction: Option<Direction>, b: f64, hb: f64, specimens: usize) {
+        for (p, v) in [
+            (Parameter::B, b),
+            (Parameter::Bf, 1.03 * b),
+            (Parameter::Bb, 0.97 * b),
+            (Parameter::Hb, hb),
+            (Parameter::Hb05, 0.93 * hb),
+        ] {
+            self.value(p, direction, v);
+        }
+        for s in 1..=specimens {
+            let (b, h) = (b * 9.80665e-5 * (0.94 + 0.03 * s as f64), 0.5 * hb * 9.80665e-3);
+            let side =
+                |k: f64, sign: f64| b * k + sign * h * (1.0 - (-(250.0 - sign * -k).abs() / 30.0).exp());
+            let sweep = |from: f64, to: f64| (0..=120).map(move |i| from + (to - from) * i as f64 / 120.0);
+            let parts = vec![
+                (true, sweep(0.0, 250.0).map(|k| (k, b * k + h * (1.0 - (-k / 20.0).exp()))).collect()),
+                (false, sweep(250.0, 0.0).map(|k| (k, side(k, -1.0))).collect()),
+                (true, sweep(0.0, -250.0).map(|k| (k, side(k, -1.0))).collect()),
+                (false, sweep(-250.0, 0.0).map(|k| (k, side(k, 1.0))).collect()),
+            ];
+            let line = |p, from: f64, to: f64, sign: f64| Window {
+                parameter: p,
+                from,
+                to,
+                ordinates: [b * from + sign * h, b * to + sign * h],
+            };
+            let width = |p, at: f64, part: f64| Window {
+                parameter: p,
+                from: at,
+                to: at,
+                ordinates: [b * at - part * h, b * at + part * h],
+            };
+            let windows = vec![
+                line(Parameter::Bf, 50.0, 150.0, 1.0),
+                line(Parameter::Bb, -50.0, -150.0, -1.0),
+                width(Parameter::Hb, 100.0, 1.0),
+                width(Parameter::Hb, -100.0, 1.0),
+                width(Parameter::Hb05, 50.0, 1.0),
+                width(Parameter::Hb05, -50.0, 1.0),
+            ];
+            self.specimen(Test::Bending, direction, s, parts, windows);
+        }
+    }
+
+    fn shear(&mut self, direction: Option<Direction>, g: f64, hg: f64) {
+        let degree = std::f64::consts::PI / 180.0;
+        self.value(Parameter::G, direction, g);
+        self.value(Parameter::Hg, direction, hg);
+        self.value(Parameter::Hg5, direction, 1.6 * hg);
+        for s in 1..=3 {
+            let g = g * 56.188 * (0.94 + 0.03 * s as f64);
+            let half = |phi: f64| 0.5 * hg * 0.980_665 * (1.0 + 0.6 * (phi / (5.0 * degree)).powi(2));
+            let sweep =
+                |from: f64, to: f64| (0..=160).map(move |i| (from + (to - from) * i as f64 / 160.0) * degree);
+            let parts = vec![
+                (true, sweep(0.0, 8.0).map(|p| (p, g * p + half(p) * (p / degree / 0.4).min(1.0))).collect()),
+                (false, sweep(8.0, 0.0).map(|p| (p, g * p - half(p))).collect()),
+                (true, sweep(0.0, -8.0).map(|p| (p, g * p - half(p))).collect()),
+                (false, sweep(-8.0, 0.0).map(|p| (p, g * p + half(p))).collect()),
+            ];
+            let mut windows = Vec::new();
+            for sign in [1.0, -1.0] {
+                let [from, to] = [0.5 * degree * sign, 2.5 * degree * sign];
+                let ordinates = [from, to].map(|p| g * p + sign * half(p));
+                windows.push(Window { parameter: Parameter::G, from, to, ordinates });
+                for (p, at) in [(Parameter::Hg, 0.5), (Parameter::Hg5, 5.0)] {
+                    let at = at * degree * sign;
+                    let ordinates = [g * at - half(at), g * at + half(at)];
+                    windows.push(Window { parameter: p, from: at, to: at, ordinates });
+                }
+            }
+            self.specimen(Test::Shear, direction, s, parts, windows);
+        }
+    }
+
+    fn tensile(&mut self, direction: Option<Direction>, em: f64) {
+        for (p, v) in [
+            (Parameter::Lt, 0.62),
+            (Parameter::Wt, 155.0 * em),
+            (Parameter::Rt, 58.0),
+            (Parameter::Emt, 100.0 * em),
+        ] {
+            self.value(p, direction, v);
+        }
+        for s in 1..=3 {
+            let em = em * (0.94 + 0.03 * s as f64);
+            let sweep = || (0..=150).map(|i| f64::from(i) / 150.0);
+            let parts = vec![
+                (true, sweep().map(|t| (em * t, 490.3325 * t.powf(2.2))).collect()),
+                (
+                    false,
+                    sweep()
+                        .map(|t| 1.0 - t)
+                        .map(|t| (em * (0.12 + 0.88 * t), 490.3325 * t.powf(3.6)))
+                        .collect(),
+                ),
+            ];
+            self.specimen(Test::Tensile, direction, s, parts, vec![]);
+        }
+    }
+
+    fn compression(&mut self) {
+        for (p, v) in [
+            (Parameter::Lc, 0.38),
+            (Parameter::Wc, 0.11),
+            (Parameter::Rc, 44.0),
+            (Parameter::T0, 0.62),
+            (Parameter::Tm, 0.44),
+            (Parameter::Emc, 29.0),
+        ] {
+            self.value(p, None, v);
+        }
+        for s in 1..=3 {
+            let t0 = 6.2e-4 * (0.97 + 0.015 * s as f64);
+            let sweep = || (0..=100).map(|i| f64::from(i) / 100.0);
+            let law = |t: f64, n: f64| (t0 - 1.8e-4 * t, 49.0 + 4854.0 * t.powf(n));
+            let parts = vec![
+                (true, sweep().map(|t| law(t, 4.0)).collect()),
+                (false, sweep().map(|t| law(1.0 - t, 8.0)).collect()),
+            ];
+            self.specimen(Test::Compression, None, s, parts, vec![]);
+        }
+    }
+}
+
+fn simulated(direction: Option<Direction>, points: impl IntoIterator<Item = (f64, f64)>) -> SimulatedCurve {
+    SimulatedCurve {
+        label: "simulated".into(),
+        direction,
+        curve: Curve::from_points(points),
+        rmse: Some(1.3e-5),
+        nrmse: Some(0.021),
+        r2: Some(0.9942),
+    }
+}
+
+#[test]
+fn the_four_charts_of_a_measured_fabric() {
+    let mut mock = Mock::new("Cotton poplin", Origin::Synthetic);
+    mock.tensile(WARP, 0.041);
+    mock.tensile(WEFT, 0.092);
+    mock.shear(WARP, 0.82, 1.3);
+    mock.shear(WEFT, 0.74, 1.1);
+    mock.bending(WARP, 0.092, 0.058, 3);
+    mock.bending(WEFT, 0.051, 0.031, 3);
+    mock.compression();
+    let sheet = &mock.sheet;
+    drawn("tensile.png", || tensile(sheet, &[]));
+    drawn("shear.png", || shear(sheet, &[]));
+    drawn("bending.png", || bending(sheet, &[]));
+    drawn("compression.png", || compression(sheet, &[]));
+    let line =
+        |b: f64| (0..=50).map(move |i| (f64::from(i) * 10.0 - 250.0, b * (f64::from(i) * 10.0 - 250.0)));
+    let over = [simulated(WARP, line(0.092 * 9.80665e-5)), simulated(WEFT, line(0.051 * 9.80665e-5))];
+    drawn("bending-simulated.png", || bending(sheet, &over));
+    let pull = |em: f64| (0..=20).map(move |i| f64::from(i) / 20.0).map(move |t| (em * t, 490.0 * t * t));
+    drawn("tensile-simulated.png", || {
+        tensile(sheet, &[simulated(WARP, pull(0.041)), simulated(WEFT, pull(0.09))])
+    });
+}
+
+#[test]
+fn extremes_stiff_tiny_single_weft_only_and_long_names() {
+    let mut mock = Mock::new(
+        "A very long name of a polyester filament membrane with a coating on both of its sides, lot 2026-11",
+        Origin::Measured,
+    );
+    mock.sheet.info.source = Some("laboratory of a university with a long name, unpublished".into());
+    mock.noise = 0.03;
+    mock.bending(WEFT, 250.0, 12.0, 1);
+    drawn("stiff.png", || bending(&mock.sheet, &[]));
+    let mut mock = Mock::new("Tiny", Origin::Measured);
+    mock.bending(WARP, 2.0e-5, 1.1e-5, 1);
+    drawn("tiny.png", || bending(&mock.sheet, &[]));
+}
+
+#[test]
+fn a_table_without_curves_is_drawn_and_says_so() {
+    let mut mock = Mock::new("Wool serge B", Origin::Published);
+    for (d, f) in [(WARP, 1.0), (WEFT, 0.7)] {
+        for (p, v) in [
+            (Parameter::B, 0.11),
+            (Parameter::Hb, 0.04),
+            (Parameter::G, 0.9),
+            (Parameter::Hg, 1.2),
+            (Parameter::Hg5, 2.1),
+            (Parameter::Lt, 0.65),
+            (Parameter::Wt, 8.0),
+            (Parameter::Rt, 60.0),
+            (Parameter::Emt, 5.0),
+        ] {
+            let estimate = Estimate { values: vec![], ..Estimate::single(v * f * p.kes_factor()) };
+            mock.sheet.values.insert(Key { parameter: p, direction: d }, estimate);
+        }
+    }
+    mock.value(Parameter::Lt, WEFT, 0.6);
+    mock.value(Parameter::Rt, WEFT, 55.0);
+    let sheet = &mock.sheet;
+    drawn("published-bending.png", || bending(sheet, &[]));
+    drawn("published-shear.png", || shear(sheet, &[]));
+    drawn("published-tensile.png", || tensile(sheet, &[]));
+    assert!(matches!(compression(sheet, &[]), Err(ChartError::NothingToDraw { .. })));
+}
+
+fn plate(nx: u32, ny: u32, size: [f64; 2]) -> (Vec<[f64; 3]>, Vec<[u32; 4]>) {
+    let mut nodes = Vec::new();
+    for j in 0..=ny {
+        for i in 0..=nx {
+            nodes.push([size[0] * f64::from(i) / f64::from(nx), size[1] * f64::from(j) / f64::from(ny), 0.0]);
+        }
+    }
+    let corner = |i: u32, j: u32| j * (nx + 1) + i;
+    let quads = (0..ny)
+        .flat_map(|j| {
+            (0..nx).map(move |i| [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)])
+        })
+        .collect();
+    (nodes, quads)
+}
+
+#[test]
+fn fields_of_a_square_a_strip_and_a_constant() {
+    let pi = std::f64::consts::PI;
+    let (nodes, quads) = plate(40, 40, [0.2, 0.2]);
+    let w = |x: f64, y: f64| -3.07e-3 * ((pi * x / 0.2).sin() * (pi * y / 0.2).sin()).powi(2);
+    let values: Vec<f64> = nodes.iter().map(|n| w(n[0], n[1])).collect();
+    let line = |n: i32| {
+        Curve::from_points((0..=n).map(|i| 0.2 * f64::from(i) / f64::from(n)).map(|x| (x, w(x, 0.1))))
+    };
+    let square = FieldPlot {
+        title: "Clamped square under uniform pressure".into(),
+        subtitle: "Cotton poplin  ·  40 × 40 cells, 4 subcells  ·  q = 0.5 Pa".into(),
+        origin: "synthetic data".into(),
+        quantity: "Deflection w".into(),
+        unit: "m".into(),
+        nodes: &nodes,
+        quads: &quads,
+        values: &values,
+        profile_along: "x at y = 10 cm".into(),
+        profile: line(40),
+        profile_reference: Some(line(10)),
+        reference_label: "series solution".into(),
+        notes: vec!["Linear solve outside its validity: w / t = 1600; the shape is qualitative only, use the nonlinear analysis.".into()],
+    };
+    drawn("field-square.png", || field(&square));
+    let mut wrong = square.clone();
+    wrong.values = &values[1..];
+    assert!(matches!(field(&wrong), Err(ChartError::Inconsistent { .. })));
+
+    let (nodes, quads) = plate(100, 5, [0.2, 0.01]);
+    let values: Vec<f64> = nodes.iter().map(|n| 4e-7 * (3.0 * pi * n[0] / 0.2).sin()).collect();
+    let strip = FieldPlot { nodes: &nodes, quads: &quads, values: &values, notes: vec![], ..square.clone() };
+    drawn("field-strip.png", || field(&strip));
+    let zero = vec![0.0; nodes.len()];
+    drawn("field-zero.png", || {
+        field(&FieldPlot { values: &zero, profile: Curve::default(), ..strip.clone() })
+    });
+    let none: &[[u32; 4]] = &[];
+    assert!(matches!(field(&FieldPlot { quads: none, ..strip }), Err(ChartError::NothingToDraw { .. })));
+}
+
+#[test]
+fn parity_of_one_and_of_four_quantities() {
+    let names = ["A", "B", "C", "D", "serge", "denim", "voile", "poplin", "satin", "twill"];
+    let point = |i: usize, quantity: &str, unit: &str, scale: f64| ParityPoint {
+        label: names[i].into(),
+        group: if i.is_multiple_of(2) { "warp" } else { "weft" }.into(),
+        quantity: quantity.into(),
+        unit: unit.into(),
+        measured: scale * (1.0 + 0.9 * i as f64),
+        measured_sd: Some(0.06 * scale * (1.0 + 0.9 * i as f64)),
+        simulated: scale * (1.0 + 0.9 * i as f64) * (1.0 + 0.17 * (i as f64 * 2.1).sin()),
+    };
+    let one: Vec<ParityPoint> = (0..10).map(|i| point(i, "Bending rigidity B", "N·m", 1.1e-6)).collect();
+    drawn("parity-one.png", || parity(&one, "Simulated against measured", "ten fabrics"));
+    let mut four = one.clone();
+    four.extend((0..10).map(|i| ParityPoint {
+        simulated: 0.4 * 8f64.powf(0.45 * i as f64),
+        measured: 0.45 * 8f64.powf(0.44 * i as f64),
+        measured_sd: None,
+        ..point(i, "Shear stiffness G", "gf/(cm·°)", 0.3)
+    }));
+    four.extend((0..4).map(|i| point(i, "Drape coefficient", "%", 22.0)));
+    four.extend((0..1).map(|i| point(i, "Bending length", "m", 0.021)));
+    drawn("parity-four.png", || parity(&four, "Simulated against measured", "ten fabrics"));
+}

@@ -1,0 +1,172 @@
+//! Natural frequencies and modes: subspace iteration on the sparse factorisation.
+
+use nalgebra::{DMatrix, SymmetricEigen};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+use super::SolveError;
+use super::assemble::{Kind, Pattern, assemble, unit_rows};
+use super::factor::{Analysis, FactorError};
+use super::linear::Options;
+use super::plan::Plan;
+use super::sparse::BlockMatrix;
+use crate::model::{DofGroup, Model, ModelError};
+
+/// One mode of vibration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    /// Angular frequency (rad/s); 0 for a rigid motion.
+    pub angular_frequency: f64,
+    /// Shape, six a node, with unit modal mass and a positive largest displacement.
+    pub shape: Vec<f64>,
+    /// Which dofs move.
+    pub group: DofGroup,
+}
+
+impl Mode {
+    /// Frequency (Hz).
+    pub fn frequency(&self) -> f64 {
+        self.angular_frequency / std::f64::consts::TAU
+    }
+}
+
+/// Relative change of an eigenvalue at which the iteration stops, and its limit of rounds.
+const TOLERANCE: f64 = 1e-11;
+const ROUNDS: usize = 200;
+
+/// The lowest `count` modes of the model, in order of frequency; prescribed values count as zero.
+///
+/// `lumped` takes row sums as mass matrix instead of the consistent one of Eq. (12). Fewer modes
+/// come back when the model has fewer. Rigid motions are found like any other mode.
+///
+/// # Errors
+/// N001, N002 from the factorisation; N004 when the iteration does not settle.
+pub fn modes(model: &Model, count: usize, lumped: bool, options: &Options) -> Result<Vec<Mode>, SolveError> {
+    let groups = if options.coupled { vec![DofGroup::Shell] } else { Plan::all_groups(model) };
+    let plan = Plan::new(&model.mesh, &groups, options.path)?;
+    let mut all = Vec::new();
+    for (group, analysis) in &plan.groups {
+        all.extend(group_modes(model, (&plan.pattern, *group, analysis), count, lumped, options)?);
+    }
+    all.sort_by(|a, b| a.angular_frequency.total_cmp(&b.angular_frequency));
+    all.truncate(count);
+    Ok(all)
+}
+
+fn group_modes(
+    model: &Model,
+    (pattern, group, analysis): (&Pattern, DofGroup, &Analysis),
+    count: usize,
+    lumped: bool,
+    options: &Options,
+) -> Result<Vec<Mode>, SolveError> {
+    let held: Vec<bool> = model
+        .constraints()
+        .chunks_exact(6)
+        .flat_map(|node| group.dofs().iter().map(|d| node[*d as usize].is_some()))
+        .collect();
+    let kind = Kind::Mass { lumped };
+    let mass = assemble(model, group, pattern, &[(kind, 1.0)], &held).map_err(ModelError::from)?;
+    // A small shift makes rigid motions regular; it is taken off the eigenvalues again.
+    let shift = shift(model, group);
+    let mut stiffness = assemble(model, group, pattern, &[(Kind::Stiffness, 1.0), (kind, shift)], &held)
+        .map_err(ModelError::from)?;
+    unit_rows(&mut stiffness, &held);
+    let factor = analysis.factorise(&stiffness, options.threads).map_err(SolveError::Factor)?;
+
+    let with_mass = massive_dofs(&mass, &held);
+    let columns = (2 * count).max(count + 8).min(with_mass);
+    let count = count.min(with_mass);
+    if count == 0 {
+        return Ok(Vec::new());
+    }
+    let n = held.len();
+    let mut random = Pcg64Mcg::seed_from_u64(1);
+    let mut x =
+        DMatrix::from_fn(n, columns, |i, _| if held[i] { 0.0 } else { random.random_range(-1.0..1.0) });
+    let mut previous = vec![f64::INFINITY; count];
+    for _ in 0..ROUNDS {
+        let y = times(&mass, &x);
+        let mut z = y.clone();
+        factor.solve(z.as_mut_slice(), columns);
+        let (values, vectors) = rayleigh_ritz(z.tr_mul(&y), z.tr_mul(&times(&mass, &z)))?;
+        x = z * vectors;
+        let settled =
+            previous.iter().zip(values.iter()).all(|(old, new)| (old - new).abs() <= TOLERANCE * new.abs());
+        previous.copy_from_slice(&values.as_slice()[..count]);
+        if settled {
+            return Ok((0..count)
+                .map(|k| mode(group, previous[k] - shift, shift, x.column(k).as_slice()))
+                .collect());
+        }
+    }
+    Err(SolveError::ModesNotSettled { rounds: ROUNDS })
+}
+
+/// Eigenvalues (ascending) and coefficients of the small problem `a c = λ b c`, `bᵀ`-orthonormal.
+fn rayleigh_ritz(a: DMatrix<f64>, b: DMatrix<f64>) -> Result<(DMatrix<f64>, DMatrix<f64>), SolveError> {
+    let symmetric = |m: DMatrix<f64>| 0.5 * (&m + m.transpose());
+    // Scale first: columns of the iterate differ by orders of magnitude in the first rounds.
+    let scale: Vec<f64> = (0..b.nrows()).map(|i| 1.0 / b[(i, i)].max(f64::MIN_POSITIVE).sqrt()).collect();
+    let scaled =
+        |m: DMatrix<f64>| DMatrix::from_fn(m.nrows(), m.ncols(), |i, j| m[(i, j)] * scale[i] * scale[j]);
+    let (a, b) = (scaled(symmetric(a)), scaled(symmetric(b)));
+    let dependent = || SolveError::Factor(FactorError::NotPositiveDefinite { node: 0, dof: 0, pivot: 0.0 });
+    let l = b.cholesky().ok_or_else(dependent)?.l();
+    let left = l.solve_lower_triangular(&a).ok_or_else(dependent)?;
+    let reduced = l.solve_lower_triangular(&left.transpose()).ok_or_else(dependent)?;
+    let eigen = SymmetricEigen::new(symmetric(reduced));
+    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
+    order.sort_by(|i, j| eigen.eigenvalues[*i].total_cmp(&eigen.eigenvalues[*j]));
+    let values = DMatrix::from_iterator(order.len(), 1, order.iter().map(|k| eigen.eigenvalues[*k]));
+    let sorted = DMatrix::from_fn(order.len(), order.len(), |i, k| eigen.eigenvectors[(i, order[k])]);
+    let mut vectors = l.tr_solve_lower_triangular(&sorted).ok_or_else(dependent)?;
+    for (i, mut row) in vectors.row_iter_mut().enumerate() {
+        row *= scale[i];
+    }
+    Ok((values, vectors))
+}
+
+fn times(matrix: &BlockMatrix, x: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut y = DMatrix::zeros(x.nrows(), x.ncols());
+    for (x, y) in
+        x.as_slice().chunks_exact(matrix.rows()).zip(y.as_mut_slice().chunks_exact_mut(matrix.rows()))
+    {
+        matrix.mul(x, y);
+    }
+    y
+}
+
+/// Free dofs with mass: there are that many modes of finite frequency.
+fn massive_dofs(mass: &BlockMatrix, held: &[bool]) -> usize {
+    let b = mass.block;
+    (0..held.len())
+        .filter(|&k| !held[k] && mass.values[mass.graph.col_ptr[k / b] * b * b + (k % b) * (b + 1)] > 0.0)
+        .count()
+}
+
+/// A hundredth of the order of the lowest eigenvalue: stiffness over mass at the size of the sheet.
+fn shift(model: &Model, group: DofGroup) -> f64 {
+    let first = model.mesh.nodes.first().copied().unwrap_or_default();
+    let (low, high) = model.mesh.nodes.iter().fold((first, first), |(l, h), p| (l.inf(p), h.sup(p)));
+    let size = (high - low).norm();
+    let s = &model.section;
+    let bending = s.d_b[(0, 0)].max(s.d_b[(1, 1)]) / size.powi(4);
+    let membrane = s.d_m[(0, 0)].max(s.d_m[(1, 1)]) / (size * size);
+    let stiffness = if group == DofGroup::Membrane { membrane } else { bending };
+    stiffness / s.areal_density
+}
+
+fn mode(group: DofGroup, eigenvalue: f64, shift: f64, part: &[f64]) -> Mode {
+    let n = part.len() / group.dofs().len();
+    let mut shape = vec![0.0; 6 * n];
+    group.scatter(part, &mut shape);
+    let translations = shape.chunks_exact(6).flat_map(|node| &node[..3]);
+    let largest = translations.fold(0.0, |m: f64, v| if v.abs() > m.abs() { *v } else { m });
+    if largest < 0.0 {
+        shape.iter_mut().for_each(|v| *v = -*v);
+    }
+    // What is left of the shift by rounding is a rigid motion.
+    let eigenvalue = if eigenvalue.abs() < 1e-6 * shift { 0.0 } else { eigenvalue.max(0.0) };
+    Mode { angular_frequency: eigenvalue.sqrt(), shape, group }
+}

@@ -1,0 +1,307 @@
+//! Linear dynamics by Newmark's method, Eq. (25): `M ü + C u̇ + K u = f(t)`, from rest.
+
+use std::ops::ControlFlow;
+
+use super::SolveError;
+use super::assemble::{Kind, Pattern, assemble, unit_rows};
+use super::factor::{Analysis, Factor};
+use super::linear::Options;
+use super::plan::Plan;
+use super::sparse::BlockMatrix;
+use crate::model::{DofGroup, Model, ModelError};
+
+/// β and γ of the average acceleration method: second order, no numerical damping.
+const BETA: f64 = 0.25;
+const GAMMA: f64 = 0.5;
+
+/// How the load varies in time: a factor on all loads of the model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LoadHistory {
+    /// 1 from the first instant.
+    Step,
+    /// From 0 to 1 linearly until this time (s), then 1.
+    Ramp(f64),
+    /// sin(2π f t) with this frequency f (Hz).
+    Sine(f64),
+}
+
+impl LoadHistory {
+    /// The factor at a time (s).
+    pub fn at(self, t: f64) -> f64 {
+        match self {
+            Self::Step => 1.0,
+            Self::Ramp(until) => (t / until).min(1.0),
+            Self::Sine(frequency) => (std::f64::consts::TAU * frequency * t).sin(),
+        }
+    }
+}
+
+/// Rayleigh damping, `C = alpha M + beta K`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rayleigh {
+    /// Factor of the mass (1/s).
+    pub alpha: f64,
+    /// Factor of the stiffness (s).
+    pub beta: f64,
+}
+
+impl Rayleigh {
+    /// The factors that give the damping ratios `ratio` at two angular frequencies (rad/s).
+    ///
+    /// With equal frequencies the first ratio holds, by mass and stiffness in equal parts.
+    pub fn from_ratios(ratio: [f64; 2], omega: [f64; 2]) -> Self {
+        let [w1, w2] = omega;
+        let difference = w2 * w2 - w1 * w1;
+        if difference.abs() <= 1e-12 * w1 * w1 {
+            return Self { alpha: ratio[0] * w1, beta: ratio[0] / w1 };
+        }
+        let beta = 2.0 * (ratio[1] * w2 - ratio[0] * w1) / difference;
+        Self { alpha: 2.0 * ratio[0] * w1 - beta * w1 * w1, beta }
+    }
+}
+
+/// What to integrate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// End of the time range (s).
+    pub duration: f64,
+    /// Time step (s); the first one when adaptive.
+    pub step: f64,
+    /// Relative local error of the displacement at which the step is halved or doubled; `None`
+    /// keeps it constant.
+    pub tolerance: Option<f64>,
+    /// Damping.
+    pub damping: Rayleigh,
+    /// The load in time.
+    pub load: LoadHistory,
+    /// Row sums as mass matrix.
+    pub lumped: bool,
+}
+
+/// Energies of the sheet at one instant (J).
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Energy {
+    /// ½ u̇ᵀ M u̇.
+    pub kinetic: f64,
+    /// ½ uᵀ K u.
+    pub strain: f64,
+    /// Work of the damping forces since the start.
+    pub dissipated: f64,
+    /// Work of the loads since the start.
+    pub work: f64,
+}
+
+impl Energy {
+    /// What the balance misses; 0 in exact arithmetic.
+    pub fn imbalance(&self) -> f64 {
+        self.kinetic + self.strain + self.dissipated - self.work
+    }
+}
+
+/// The state at one instant, handed to the observer.
+#[derive(Clone, Copy, Debug)]
+pub struct Instant<'a> {
+    /// Time (s).
+    pub time: f64,
+    /// Displacements, six a node (m, rad).
+    pub displacement: &'a [f64],
+    /// Energies.
+    pub energy: Energy,
+}
+
+/// Integrates from rest and shows every instant, the start included, to `observe`, which may stop it.
+///
+/// Prescribed values other than zero are not part of a dynamic run: they count as zero.
+///
+/// # Errors
+/// N001, N002 from the factorisation; N005 when the adaptive step vanishes.
+pub fn newmark(
+    model: &Model,
+    settings: &Settings,
+    options: &Options,
+    mut observe: impl FnMut(&Instant<'_>) -> ControlFlow<()>,
+) -> Result<(), SolveError> {
+    let plan = Plan::new(&model.mesh, &Plan::groups(model, options), options.path)?;
+    let mut systems = plan
+        .groups
+        .iter()
+        .map(|(group, analysis)| System::new(model, (&plan.pattern, *group, analysis), settings, options))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut full = vec![0.0; 6 * model.mesh.nodes.len()];
+    let mut show = |time: f64, systems: &[System<'_>]| {
+        let mut energy = Energy::default();
+        for s in systems {
+            s.group.scatter(&s.u, &mut full);
+            energy.kinetic += s.energy.kinetic;
+            energy.strain += s.energy.strain;
+            energy.dissipated += s.energy.dissipated;
+            energy.work += s.energy.work;
+        }
+        observe(&Instant { time, displacement: &full, energy })
+    };
+    if show(0.0, &systems).is_break() {
+        return Ok(());
+    }
+    let (mut time, mut step) = (0.0, settings.step);
+    // A remainder below a millionth of a step is rounding of the sum of steps.
+    while settings.duration - time > 1e-6 * step {
+        let dt = step.min(settings.duration - time);
+        let factors = (settings.load.at(time), settings.load.at(time + dt));
+        let trials = systems.iter_mut().map(|s| s.trial(dt, factors.1)).collect::<Result<Vec<_>, _>>()?;
+        let error = systems.iter().zip(&trials).map(|(s, t)| s.error(t, dt)).fold(0.0, f64::max);
+        if settings.tolerance.is_some_and(|tolerance| error > tolerance) {
+            step = 0.5 * dt;
+            if step < 1e-9 * settings.duration {
+                return Err(SolveError::StepVanished { time });
+            }
+            continue;
+        }
+        for (s, t) in systems.iter_mut().zip(trials) {
+            s.commit(t, factors);
+        }
+        time += dt;
+        // The error is of third order in the step: doubling it needs a margin of eight, and some.
+        if settings.tolerance.is_some_and(|tolerance| error < tolerance / 20.0) {
+            step *= 2.0;
+        }
+        if show(time, &systems).is_break() {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// One dof group: matrices, state, and the factor of the current step.
+struct System<'a> {
+    group: DofGroup,
+    analysis: &'a Analysis,
+    threads: usize,
+    stiffness: BlockMatrix,
+    mass: BlockMatrix,
+    damping: Rayleigh,
+    held: Vec<bool>,
+    load: Vec<f64>,
+    u: Vec<f64>,
+    v: Vec<f64>,
+    a: Vec<f64>,
+    largest: f64,
+    factor: Option<(f64, Factor)>,
+    energy: Energy,
+}
+
+/// A step that has not been accepted yet.
+struct Trial {
+    u: Vec<f64>,
+    v: Vec<f64>,
+    a: Vec<f64>,
+}
+
+impl<'a> System<'a> {
+    fn new(
+        model: &Model,
+        (pattern, group, analysis): (&Pattern, DofGroup, &'a Analysis),
+        settings: &Settings,
+        options: &Options,
+    ) -> Result<Self, SolveError> {
+        let held: Vec<bool> = model
+            .constraints()
+            .chunks_exact(6)
+            .flat_map(|node| group.dofs().iter().map(|d| node[*d as usize].is_some()))
+            .collect();
+        let matrix = |kind| assemble(model, group, pattern, &[(kind, 1.0)], &held).map_err(ModelError::from);
+        let mut load = group.gather(&model.load_vector());
+        load.iter_mut().zip(&held).filter(|(_, h)| **h).for_each(|(f, _)| *f = 0.0);
+        let n = load.len();
+        let mut system = Self {
+            group,
+            analysis,
+            threads: options.threads,
+            stiffness: matrix(Kind::Stiffness)?,
+            mass: matrix(Kind::Mass { lumped: settings.lumped })?,
+            damping: settings.damping,
+            held,
+            load,
+            u: vec![0.0; n],
+            v: vec![0.0; n],
+            a: vec![0.0; n],
+            largest: 0.0,
+            factor: None,
+            energy: Energy::default(),
+        };
+        let start = settings.load.at(0.0);
+        if start != 0.0 {
+            // M a = f at the first instant; drilling rotations have no mass, so a trace of the
+            // stiffness (a step a thousand times shorter) keeps the system regular.
+            let tiny = 1e-3 * settings.step;
+            let factor = system.factorise(tiny)?;
+            system.a = system.load.iter().map(|f| f * start).collect();
+            factor.solve(&mut system.a, 1);
+        }
+        Ok(system)
+    }
+
+    /// Factor of `M + γ Δt C + β Δt² K`.
+    fn factorise(&self, dt: f64) -> Result<Factor, SolveError> {
+        let m = 1.0 + GAMMA * dt * self.damping.alpha;
+        let k = BETA * dt * dt + GAMMA * dt * self.damping.beta;
+        let mut matrix = self.mass.clone();
+        matrix.values.iter_mut().zip(&self.stiffness.values).for_each(|(a, b)| *a = m * *a + k * b);
+        unit_rows(&mut matrix, &self.held);
+        self.analysis.factorise(&matrix, self.threads).map_err(SolveError::Factor)
+    }
+
+    fn trial(&mut self, dt: f64, load_factor: f64) -> Result<Trial, SolveError> {
+        let factor = match self.factor.take() {
+            Some((step, factor)) if step == dt => factor,
+            _ => self.factorise(dt)?,
+        };
+        let n = self.u.len();
+        let predicted_u: Vec<f64> =
+            (0..n).map(|i| self.u[i] + dt * self.v[i] + (0.5 - BETA) * dt * dt * self.a[i]).collect();
+        let predicted_v: Vec<f64> = (0..n).map(|i| self.v[i] + (1.0 - GAMMA) * dt * self.a[i]).collect();
+        let Rayleigh { alpha, beta } = self.damping;
+        let elastic: Vec<f64> = (0..n).map(|i| predicted_u[i] + beta * predicted_v[i]).collect();
+        let viscous: Vec<f64> = predicted_v.iter().map(|v| alpha * v).collect();
+        let (ku, mv) = (product(&self.stiffness, &elastic), product(&self.mass, &viscous));
+        let mut a: Vec<f64> = (0..n).map(|i| load_factor * self.load[i] - ku[i] - mv[i]).collect();
+        factor.solve(&mut a, 1);
+        let u = (0..n).map(|i| predicted_u[i] + BETA * dt * dt * a[i]).collect();
+        let v = (0..n).map(|i| predicted_v[i] + GAMMA * dt * a[i]).collect();
+        self.factor = Some((dt, factor));
+        Ok(Trial { u, v, a })
+    }
+
+    /// Local error of the displacement relative to the largest so far (Zienkiewicz and Xie 1991):
+    /// `(β - 1/6) Δt² |Δa|`.
+    fn error(&self, trial: &Trial, dt: f64) -> f64 {
+        let norm = |v: &mut dyn Iterator<Item = f64>| v.fold(0.0f64, |m, x| m.max(x.abs()));
+        let jump = norm(&mut trial.a.iter().zip(&self.a).map(|(new, old)| new - old));
+        let largest = norm(&mut trial.u.iter().copied()).max(self.largest);
+        if largest == 0.0 { 0.0 } else { (BETA - 1.0 / 6.0) * dt * dt * jump / largest }
+    }
+
+    fn commit(&mut self, trial: Trial, (before, after): (f64, f64)) {
+        let mean = 0.5 * (before + after);
+        let n = self.u.len();
+        let du: Vec<f64> = (0..n).map(|i| trial.u[i] - self.u[i]).collect();
+        let mean_v: Vec<f64> = (0..n).map(|i| 0.5 * (trial.v[i] + self.v[i])).collect();
+        let Rayleigh { alpha, beta } = self.damping;
+        self.energy.work += mean * dot(&self.load, &du);
+        self.energy.dissipated += alpha * dot(&du, &product(&self.mass, &mean_v))
+            + beta * dot(&du, &product(&self.stiffness, &mean_v));
+        self.energy.kinetic = 0.5 * dot(&trial.v, &product(&self.mass, &trial.v));
+        self.energy.strain = 0.5 * dot(&trial.u, &product(&self.stiffness, &trial.u));
+        self.largest = trial.u.iter().fold(self.largest, |m, x| m.max(x.abs()));
+        (self.u, self.v, self.a) = (trial.u, trial.v, trial.a);
+    }
+}
+
+fn product(matrix: &BlockMatrix, x: &[f64]) -> Vec<f64> {
+    let mut y = vec![0.0; x.len()];
+    matrix.mul(x, &mut y);
+    y
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
