@@ -89,6 +89,7 @@ impl Mock {
             windows,
             values: BTreeMap::new(),
             moduli: BTreeMap::new(),
+            fits: Vec::new(),
         });
     }
 
