@@ -1,11 +1,10 @@
 //! What can be typed. Each command's own options stand beside it.
 
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
 
 use clap::{Args, ColorChoice, Parser, Subcommand};
 
-use super::{check, completions, explain, list};
+use super::{characterise, check, completions, explain, list, read, section};
 
 /// Kawabata (KES-F) measurements in; fabric parameters, shell sections, predictions and charts out.
 ///
@@ -44,19 +43,11 @@ pub struct Global {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    Read(read::Options),
+    Characterise(characterise::Options),
+    Section(section::Options),
     Check(check::Options),
     List(list::Options),
     Explain(explain::Options),
     Completions(completions::Options),
-}
-
-/// Where a single result goes.
-#[derive(Debug, Args)]
-pub struct OutputArgs {
-    /// Write to this file instead of standard output (`-`)
-    #[arg(short, long, value_name = "FILE", default_value = "-", hide_default_value = true)]
-    pub output: PathBuf,
-    /// Overwrite a file that this tool did not write
-    #[arg(long)]
-    pub force: bool,
 }

@@ -41,7 +41,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let exit = Exit::of_batch(fabrics.len() + cases.len(), &failures)
         .unless(options.strict && ui.diagnostics.findings() > 0);
     if fabrics.is_empty() && cases.is_empty() && failures.is_empty() {
-        return Err(Failure::new("O025", "there is neither a measurement nor a case in the inputs")
+        return Err(Failure::new("O055", "there is neither a measurement nor a case in the inputs")
             .hint("name a fabric folder, a measurement file or a case file"));
     }
     if ui.json {
@@ -53,7 +53,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
 }
 
 fn text(fabrics: &[FabricInput], cases: &[Case], failures: usize) -> String {
-    let mut columns = Columns::new(&["input", "kind", "files", "curves", "values", "findings"]);
+    let mut columns = Columns::new(["input", "kind", "files", "curves", "values", "findings"]);
     for f in fabrics {
         let curves = f.measurements.len() + f.fab.iter().map(|fab| fab.tests.len()).sum::<usize>();
         let numbers = [f.sources.len(), curves, f.results.len(), f.findings.len()];

@@ -10,6 +10,8 @@ use super::exit::Exit;
 use crate::constitutive::ConstitutiveError;
 use crate::finding::{Finding, Place};
 use crate::instrument::ReadError;
+use crate::report::OutputError;
+use crate::report::table::TableError;
 use crate::study::{CaseError, StudyError};
 
 /// Why an input or the whole task failed: one line, whatever layer it comes from.
@@ -47,7 +49,7 @@ impl Failure {
 
     /// Ctrl-C.
     pub fn interrupted() -> Self {
-        Self { exit: Exit::Interrupted, ..Self::new("O024", "interrupted: nothing more was written") }
+        Self { exit: Exit::Interrupted, ..Self::new("O054", "interrupted: nothing more was written") }
     }
 
     /// A layer's error whose text begins with its code.
@@ -108,6 +110,29 @@ impl From<StudyError> for Failure {
         if numeric { Self { exit: Exit::Numerics, ..failure } } else { failure }
     }
 }
+
+impl From<OutputError> for Failure {
+    fn from(e: OutputError) -> Self {
+        let text = e.to_string();
+        let (place, text) = match e.path() {
+            Some(path) => (Some(Place::file(path)), text.split_once(": ").map_or("", |t| t.1).to_string()),
+            None => (None, text),
+        };
+        Self { place, ..Self::coded(e.code(), &text) }
+    }
+}
+
+/// Encoders of results: they fail only when memory does, or on a defect of this program.
+macro_rules! encoder_failures {
+    ($($error:ty: $code:literal),*) => {$(
+        impl From<$error> for Failure {
+            fn from(e: $error) -> Self {
+                Self::coded($code, &e.to_string())
+            }
+        }
+    )*};
+}
+encoder_failures!(TableError: "O030", serde_json::Error: "O057");
 
 /// The voice of the program on standard error.
 #[derive(Debug)]

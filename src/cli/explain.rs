@@ -24,7 +24,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
             continue;
         }
         found.push(explain(code).ok_or_else(|| {
-            Failure::new("O020", format!("`{code}` is not a diagnostic code"))
+            Failure::new("O050", format!("`{code}` is not a diagnostic code"))
                 .hint("`kesf list codes` shows them all")
         })?);
     }

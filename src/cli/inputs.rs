@@ -1,14 +1,18 @@
 //! What the arguments name: fabrics (folders, files, `-`) and cases (`.toml`).
 
+use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
+use rayon::prelude::*;
 
 use super::Ui;
 use super::diagnostics::Failure;
-use crate::finding::Place;
+use crate::characterise::{FabricSheet, Modulus, Settings, characterise};
+use crate::finding::{Finding, Place};
 use crate::instrument::{Batch, FabricInput, ReadSettings, ResultValue, parse, read_dialect, read_fabrics};
+use crate::report::table::UnitSystem;
 use crate::study::Case;
 
 /// How instrument files are read where they do not say it themselves.
@@ -86,6 +90,99 @@ impl ReadArgs {
     }
 }
 
+/// How curves are evaluated.
+#[derive(Debug, Args)]
+pub struct EvaluateArgs {
+    #[command(flatten)]
+    reading: ReadArgs,
+    /// Windows and thresholds of the evaluation (TOML) [default: the customary ones]
+    #[arg(long, value_name = "FILE", help_heading = "Reading")]
+    settings: Option<PathBuf>,
+}
+
+/// A characterised fabric and where it was found.
+pub struct Fabric {
+    /// Its folder or file.
+    pub path: PathBuf,
+    /// Its parameters.
+    pub sheet: FabricSheet,
+}
+
+impl EvaluateArgs {
+    /// The sheets of all fabrics below the inputs, in name order, each with a name of its own.
+    /// `moduli` are evaluated beside those of the settings.
+    pub fn sheets(
+        &self,
+        inputs: &[PathBuf],
+        moduli: &[Modulus],
+        ui: &mut Ui,
+    ) -> Result<(Vec<Fabric>, Vec<Failure>), Failure> {
+        let mut settings = self.settings()?;
+        for modulus in moduli {
+            if !settings.moduli.contains(modulus) {
+                settings.moduli.push(*modulus);
+            }
+        }
+        let (inputs, failures) = self.reading.fabrics(inputs, ui)?;
+        let bar = ui.bar("characterising", inputs.len());
+        let mut fabrics: Vec<Fabric> = inputs
+            .into_par_iter()
+            .map(|input| {
+                let sheet = characterise(&input, &settings);
+                bar.inc(1);
+                Fabric { path: input.path, sheet }
+            })
+            .collect();
+        bar.finish_and_clear();
+        ui.go_on()?;
+        distinguish(&mut fabrics);
+        Ok((fabrics, failures))
+    }
+
+    fn settings(&self) -> Result<Settings, Failure> {
+        let Some(path) = &self.settings else { return Ok(Settings::default()) };
+        let wrong = |reason: String| {
+            Failure::new("O050", format!("the settings cannot be used: {reason}")).at(Place::file(path))
+        };
+        let text = std::fs::read_to_string(path).map_err(|e| wrong(e.to_string()))?;
+        toml::from_str(&text).map_err(|e| wrong(e.message().to_string()))
+    }
+}
+
+/// Numbers fabrics that share a name, so that none hides another.
+fn distinguish(fabrics: &mut [Fabric]) {
+    let mut seen: BTreeMap<String, usize> = BTreeMap::new();
+    for Fabric { path, sheet } in fabrics {
+        let count = seen.entry(sheet.name.clone()).or_default();
+        *count += 1;
+        if *count > 1 {
+            let name = format!("{}-{count}", sheet.name);
+            let text = format!("another fabric is named {} too; this one is called {name}", sheet.name);
+            sheet.findings.push(Finding::new("O056", text).at(Place::file(path)));
+            sheet.name = name;
+        }
+    }
+}
+
+/// Units of tables.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum Units {
+    /// The customary units of KES
+    #[default]
+    Kes,
+    /// SI
+    Si,
+}
+
+impl From<Units> for UnitSystem {
+    fn from(units: Units) -> Self {
+        match units {
+            Units::Kes => Self::Kes,
+            Units::Si => Self::Si,
+        }
+    }
+}
+
 /// Whether an argument means standard input or output.
 pub fn is_stdin(path: &Path) -> bool {
     path.as_os_str() == "-"
@@ -95,7 +192,7 @@ fn from_stdin(settings: &ReadSettings) -> Result<FabricInput, Failure> {
     let path = Path::new("<stdin>");
     let mut bytes = Vec::new();
     std::io::stdin().read_to_end(&mut bytes).map_err(|e| {
-        Failure::new("O022", format!("standard input cannot be read: {e}")).at(Place::file(path))
+        Failure::new("O052", format!("standard input cannot be read: {e}")).at(Place::file(path))
     })?;
     let content = parse(path, &bytes, settings)?;
     let sample = content.measurements.iter().find_map(|m| m.sample.clone());
@@ -113,12 +210,12 @@ fn from_stdin(settings: &ReadSettings) -> Result<FabricInput, Failure> {
     })
 }
 
-/// The cases among the inputs: `.toml` files, and those directly in a folder or below it, in name
-/// order. `fabric.toml` and `dialect.toml` are none.
+/// The cases among the inputs: `.toml` files, and those in a folder or below it, in name order.
+/// `fabric.toml` and `dialect.toml` are none, and a fabric's folder holds none.
 pub fn cases(inputs: &[PathBuf]) -> (Vec<Case>, Vec<Failure>) {
     let mut files = Vec::new();
     for input in inputs {
-        if input.is_dir() {
+        if input.is_dir() && !input.join("fabric.toml").exists() {
             below(input, &mut files);
         } else if is_case(input) {
             files.push(input.clone());
@@ -146,9 +243,9 @@ fn below(folder: &Path, files: &mut Vec<PathBuf>) {
     let mut paths: Vec<PathBuf> = entries.filter_map(|e| Some(e.ok()?.path())).collect();
     paths.sort();
     for path in paths {
-        if path.is_dir() {
+        if path.is_dir() && !path.join("fabric.toml").exists() {
             below(&path, files);
-        } else if is_case(&path) {
+        } else if is_case(&path) && path.is_file() {
             files.push(path);
         }
     }

@@ -38,7 +38,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         let items: Vec<Value> = rows.iter().map(object).collect();
         return ui.document(&json!({"schema": "kesf.list/1", "items": items}));
     }
-    let mut columns = Columns::new(headings);
+    let mut columns = Columns::new(headings.iter().copied());
     for row in &rows {
         columns.row(row.iter().map(|v| v.as_str().map_or_else(|| v.to_string(), str::to_string)));
     }

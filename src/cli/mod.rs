@@ -4,6 +4,7 @@
 //! `exit` the exit codes. Nothing is computed here.
 
 mod args;
+mod characterise;
 mod check;
 mod completions;
 mod diagnostics;
@@ -12,6 +13,8 @@ mod explain;
 mod inputs;
 mod list;
 mod output;
+mod read;
+mod section;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -24,6 +27,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use args::{Cli, Command};
 use diagnostics::{Diagnostics, Failure};
 use exit::Exit;
+
+use crate::report::json::text;
 
 /// Set by Ctrl-C, read between items of work.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -43,7 +48,7 @@ impl Ui {
 
     /// Prints a JSON document.
     fn document(&mut self, document: &serde_json::Value) -> Result<Exit, Failure> {
-        self.print(&format!("{document:#}\n"))
+        self.print(&text(document)?)
     }
 
     /// A running count on a terminal; nothing elsewhere.
@@ -97,17 +102,20 @@ fn prepare(cli: &Cli) -> Result<(), Failure> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build_global()
-        .map_err(|e| Failure::new("O023", format!("the threads cannot be started: {e}")))?;
+        .map_err(|e| Failure::new("O053", format!("the threads cannot be started: {e}")))?;
     ctrlc::set_handler(|| {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
             std::process::exit(Exit::Interrupted as i32);
         }
     })
-    .map_err(|e| Failure::new("O023", format!("Ctrl-C cannot be caught: {e}")))
+    .map_err(|e| Failure::new("O053", format!("Ctrl-C cannot be caught: {e}")))
 }
 
 fn dispatch(command: &Command, ui: &mut Ui) -> Result<Exit, Failure> {
     match command {
+        Command::Read(options) => read::run(options, ui),
+        Command::Characterise(options) => characterise::run(options, ui),
+        Command::Section(options) => section::run(options, ui),
         Command::Check(options) => check::run(options, ui),
         Command::List(options) => list::run(options, ui),
         Command::Explain(options) => explain::run(options, ui),
@@ -121,7 +129,7 @@ fn usage(error: &clap::Error, json: bool) -> Exit {
     if json && !asked {
         let text = error.to_string();
         let message = text.strip_prefix("error: ").unwrap_or(&text).split("\n\n").next().unwrap_or_default();
-        let failure = Failure::new("O020", message.trim()).hint("see `kesf help`");
+        let failure = Failure::new("O050", message.trim()).hint("see `kesf help`");
         Diagnostics::json_only().error(&failure);
         return Exit::Bad;
     }
