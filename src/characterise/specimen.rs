@@ -6,7 +6,7 @@ use super::graph::LineFit;
 use super::{Branch, Settings, SpecimenResult, Window, closed_loop, compression, tensile};
 use crate::finding::{Finding, Place};
 use crate::instrument::{Measurement, Parameter, Test};
-use crate::quantity::{Curve, Unit};
+use crate::quantity::{Curve, Unit, significant};
 
 /// What a test's evaluation yields.
 #[derive(Debug, Default)]
@@ -90,7 +90,7 @@ impl Notes<'_> {
 /// `value` (SI) in a unit, for messages.
 pub(super) fn in_unit(value: f64, unit: &str) -> String {
     let factor = Unit::parse(unit).map_or(f64::NAN, |u| u.factor);
-    format!("{:.4} {unit}", value / factor)
+    format!("{} {unit}", significant(value / factor))
 }
 
 /// The evaluated specimen; `None`, with a finding, if nothing can be evaluated.

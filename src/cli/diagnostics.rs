@@ -113,12 +113,20 @@ impl From<StudyError> for Failure {
 
 impl From<OutputError> for Failure {
     fn from(e: OutputError) -> Self {
-        let text = e.to_string();
-        let (place, text) = match e.path() {
-            Some(path) => (Some(Place::file(path)), text.split_once(": ").map_or("", |t| t.1).to_string()),
-            None => (None, text),
+        let (code, path, message) = match e {
+            OutputError::Write { path, source } => {
+                ("O001", Some(path), format!("cannot be written: {source}"))
+            }
+            OutputError::NotOurs { path } => {
+                ("O002", Some(path), "exists and is not as this program left it".into())
+            }
+            OutputError::Manifest { path, problem } => {
+                ("O004", Some(path), format!("the list of our own files cannot be read: {problem}"))
+            }
+            other @ OutputError::Name { .. } => return Self::coded("O003", &other.to_string()),
         };
-        Self { place, ..Self::coded(e.code(), &text) }
+        let failure = Self::new(code, message).hint("write elsewhere with -o, or overwrite it with --force");
+        Self { place: path.map(Place::file), ..failure }
     }
 }
 
