@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 
 use clap::{Args, ColorChoice, Parser, Subcommand};
 
-use super::{characterise, check, completions, explain, list, read, section};
+use super::{characterise, check, compare, completions, explain, list, read, run, section, solve};
 
 /// Kawabata (KES-F) measurements in; fabric parameters, shell sections, predictions and charts out.
 ///
@@ -43,9 +43,12 @@ pub struct Global {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    Run(run::Options),
     Read(read::Options),
     Characterise(characterise::Options),
     Section(section::Options),
+    Solve(solve::Options),
+    Compare(compare::Options),
     Check(check::Options),
     List(list::Options),
     Explain(explain::Options),

@@ -11,7 +11,9 @@ use crate::constitutive::ConstitutiveError;
 use crate::finding::{Finding, Place};
 use crate::instrument::ReadError;
 use crate::report::OutputError;
-use crate::report::table::TableError;
+use crate::report::chart::ChartError;
+use crate::report::table::{ProblemRow, TableError};
+use crate::report::vtu::VtuError;
 use crate::study::{CaseError, StudyError};
 
 /// Why an input or the whole task failed: one line, whatever layer it comes from.
@@ -62,6 +64,15 @@ impl Failure {
     pub fn of(mut self, whose: &str) -> Self {
         self.message = format!("{whose}: {}", self.message);
         self
+    }
+
+    /// The row of `problems.csv`.
+    pub fn row(&self) -> ProblemRow {
+        ProblemRow {
+            place: self.place.as_ref().map_or_else(|| "kesf".to_string(), ToString::to_string),
+            code: self.code.clone(),
+            message: self.message.clone(),
+        }
     }
 
     fn json(&self) -> serde_json::Value {
@@ -142,6 +153,19 @@ macro_rules! encoder_failures {
 }
 encoder_failures!(TableError: "O030", serde_json::Error: "O057");
 
+/// Errors whose text begins with their code.
+macro_rules! coded_failures {
+    ($($error:ty),*) => {$(
+        impl From<$error> for Failure {
+            fn from(e: $error) -> Self {
+                let text = e.to_string();
+                Self::coded(text.split(' ').next().unwrap_or_default(), &text)
+            }
+        }
+    )*};
+}
+coded_failures!(ChartError, VtuError);
+
 /// The voice of the program on standard error.
 #[derive(Debug)]
 pub struct Diagnostics {
@@ -167,11 +191,6 @@ impl Diagnostics {
     /// For errors in the options themselves, which are not known then.
     pub fn json_only() -> Self {
         Self { json: true, quiet: true, verbose: false, color: false, findings: 0 }
-    }
-
-    /// Whether more than usual is to be said.
-    pub fn verbose(&self) -> bool {
-        self.verbose
     }
 
     /// Whether a progress bar may be drawn.

@@ -6,6 +6,7 @@
 mod args;
 mod characterise;
 mod check;
+mod compare;
 mod completions;
 mod diagnostics;
 mod exit;
@@ -14,7 +15,12 @@ mod inputs;
 mod list;
 mod output;
 mod read;
+mod run;
 mod section;
+mod solve;
+mod summary;
+mod task;
+mod tree;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -113,9 +119,12 @@ fn prepare(cli: &Cli) -> Result<(), Failure> {
 
 fn dispatch(command: &Command, ui: &mut Ui) -> Result<Exit, Failure> {
     match command {
+        Command::Run(options) => run::run(options, ui),
         Command::Read(options) => read::run(options, ui),
         Command::Characterise(options) => characterise::run(options, ui),
         Command::Section(options) => section::run(options, ui),
+        Command::Solve(options) => solve::run(options, ui),
+        Command::Compare(options) => compare::run(options, ui),
         Command::Check(options) => check::run(options, ui),
         Command::List(options) => list::run(options, ui),
         Command::Explain(options) => explain::run(options, ui),

@@ -110,7 +110,6 @@ mod tests {
             fits: Vec::new(),
             values: Default::default(),
             moduli: Default::default(),
-            fits: Default::default(),
         };
         let sheet = FabricSheet { specimens: vec![specimen], ..Default::default() };
         let line = VirtualCurve::line(Test::Bending, Some(Direction::Warp), 3.0);

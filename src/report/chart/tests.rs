@@ -90,7 +90,6 @@ impl Mock {
             fits: Vec::new(),
             values: BTreeMap::new(),
             moduli: BTreeMap::new(),
-            fits: Vec::new(),
         });
     }
 
