@@ -134,7 +134,7 @@ impl Mesh {
         let mesh = &result.model.mesh;
         Self {
             nodes: mesh.nodes.iter().map(|p| [p.x, p.y, p.z]).collect(),
-            quads: mesh.quads.iter().map(|q| q.map(|n| n as u32)).collect(),
+            quads: mesh.quads.clone(),
             w: result.solution.displacement.iter().skip(2).step_by(6).copied().collect(),
         }
     }
