@@ -29,7 +29,7 @@ const LAYERS: &[(&str, &[&str], &[&str])] = &[
         &ABOVE_REPORT,
         &["base64", "csv", "dejavu", "percent_encoding", "plotters", "png", "polars", "vtkio"],
     ),
-    ("cli", &ABOVE_CLI, &["clap", "clap_complete", "indicatif", "ctrlc"]),
+    ("cli", &ABOVE_CLI, &["clap", "clap_complete", "indicatif", "ctrlc", "toml"]),
 ];
 
 const ABOVE_STUDY: [&str; 12] = [
@@ -59,13 +59,14 @@ const ABOVE_REPORT: [&str; 9] = [
     "study",
 ];
 
-const ABOVE_CLI: [&str; 9] = [
+const ABOVE_CLI: [&str; 10] = [
     "finding",
     "quantity",
     "instrument",
     "characterise",
     "section",
     "constitutive",
+    "solve",
     "fields",
     "study",
     "report",
