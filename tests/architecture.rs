@@ -24,7 +24,11 @@ const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("fields", &["finding", "quantity", "section", "mesh", "element", "model", "solve"], &[]),
     ("constitutive", &["finding", "quantity", "instrument", "characterise", "section"], &[]),
     ("study", &ABOVE_STUDY, &["toml"]),
-    ("report", &ABOVE_REPORT, &["csv", "polars", "plotters", "plotters_backend", "dejavu", "vtkio"]),
+    (
+        "report",
+        &ABOVE_REPORT,
+        &["base64", "csv", "dejavu", "percent_encoding", "plotters", "png", "polars", "vtkio"],
+    ),
     ("cli", &ABOVE_CLI, &["clap", "clap_complete", "indicatif", "ctrlc", "toml"]),
 ];
 
