@@ -24,6 +24,7 @@ const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("fields", &["finding", "quantity", "section", "mesh", "element", "model", "solve"], &[]),
     ("constitutive", &["finding", "quantity", "instrument", "characterise", "section"], &[]),
     ("study", &ABOVE_STUDY, &["toml"]),
+    ("verify", &["section", "analytical", "mesh", "element", "model", "solve", "fields"], &["toml"]),
     ("report", &ABOVE_REPORT, &["polars", "plotters", "plotters_backend", "dejavu", "vtkio"]),
     ("cli", &ABOVE_CLI, &["clap", "clap_complete", "indicatif", "ctrlc"]),
 ];
@@ -55,7 +56,7 @@ const ABOVE_REPORT: [&str; 9] = [
     "study",
 ];
 
-const ABOVE_CLI: [&str; 9] = [
+const ABOVE_CLI: [&str; 10] = [
     "finding",
     "quantity",
     "instrument",
@@ -64,6 +65,7 @@ const ABOVE_CLI: [&str; 9] = [
     "constitutive",
     "fields",
     "study",
+    "verify",
     "report",
 ];
 
