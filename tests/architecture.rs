@@ -25,8 +25,8 @@ const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("constitutive", &["finding", "quantity", "instrument", "characterise", "section"], &[]),
     ("study", &ABOVE_STUDY, &["toml"]),
     ("verify", &["section", "analytical", "mesh", "element", "model", "solve", "fields"], &["toml"]),
-    ("report", &ABOVE_REPORT, &["polars", "plotters", "plotters_backend", "dejavu", "vtkio"]),
-    ("cli", &ABOVE_CLI, &["clap", "clap_complete", "indicatif", "ctrlc"]),
+    ("report", &ABOVE_REPORT, &["csv", "polars", "plotters", "plotters_backend", "dejavu", "vtkio"]),
+    ("cli", &ABOVE_CLI, &["clap", "clap_complete", "indicatif", "ctrlc", "toml"]),
 ];
 
 const ABOVE_STUDY: [&str; 12] = [
@@ -56,13 +56,14 @@ const ABOVE_REPORT: [&str; 9] = [
     "study",
 ];
 
-const ABOVE_CLI: [&str; 10] = [
+const ABOVE_CLI: [&str; 11] = [
     "finding",
     "quantity",
     "instrument",
     "characterise",
     "section",
     "constitutive",
+    "solve",
     "fields",
     "study",
     "verify",

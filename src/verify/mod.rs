@@ -9,6 +9,8 @@
 mod problem;
 mod suite;
 
+use std::ops::ControlFlow;
+
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -201,13 +203,12 @@ impl Tolerance {
     }
 }
 
-/// Checks the lines on all threads; the outcomes are in the order of the lines. `done` is called after
-/// each line, in any order.
-pub fn run(lines: &[Line], done: impl Fn(&Outcome) + Sync) -> Vec<Outcome> {
+/// Checks the lines on all threads; the outcomes are in the order of the lines. `observe` sees each
+/// outcome, in any order, and may stop the work: then there is no result.
+pub fn run(lines: &[Line], observe: impl Fn(&Outcome) -> ControlFlow<()> + Sync) -> Option<Vec<Outcome>> {
     let check = |line: &Line| {
         let outcome = line.check();
-        done(&outcome);
-        outcome
+        observe(&outcome).is_continue().then_some(outcome)
     };
     // One line at a time: their costs differ by four orders of magnitude.
     lines.par_iter().with_max_len(1).map(check).collect()
