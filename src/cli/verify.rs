@@ -56,7 +56,7 @@ fn text(all: &[(&Line, &Outcome)], failed: usize) -> String {
         let relative = matches!(line.tolerance, Tolerance::Relative(_));
         let share = |v: f64| if relative { format!("{:.4} %", 100.0 * v) } else { format!("{v:.1e}") };
         let numbers = match &outcome.result {
-            Ok(c) => [format!("{:.6e}", c.value), format!("{:.6e}", c.reference), share(c.error)],
+            Ok(c) => [digits(c.value), digits(c.reference), share(c.error)],
             Err(e) => [e.code().to_string(), String::new(), String::new()],
         };
         let end = [
@@ -68,6 +68,19 @@ fn text(all: &[(&Line, &Outcome)], failed: usize) -> String {
         columns.row([line.id.clone()].into_iter().chain(numbers).chain(end));
     }
     format!("{}{} of {} lines hold, {failed} fail\n", columns.text(), all.len() - failed, all.len())
+}
+
+/// Seven significant digits; whole numbers plain.
+fn digits(value: f64) -> String {
+    let magnitude = value.abs();
+    if value == value.trunc() && magnitude < 1e6 {
+        return format!("{value}");
+    }
+    if (1e-3..1e5).contains(&magnitude) {
+        let decimals = 6 - magnitude.log10().floor() as i32;
+        return format!("{value:.*}", decimals.max(0) as usize);
+    }
+    format!("{value:.6e}")
 }
 
 fn document(line: &Line, outcome: &Outcome) -> serde_json::Value {

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, Matrix3, Point3, Rotation3, SMatrix, Vector3};
 use serde::Deserialize;
 
 use super::super::VerifyError;
-use super::{DrillingChoice, default_alpha, formulation, four, isotropic};
+use super::{DrillingChoice, Layout, default_alpha, formulation, isotropic};
 use crate::element::{Prepared, Vector24};
 use crate::section::ShellSection;
 
@@ -13,7 +13,7 @@ use crate::section::ShellSection;
 #[serde(deny_unknown_fields)]
 pub struct ZeroModes {
     /// Smoothing cells.
-    cells: u32,
+    cells: Layout,
     /// Shape of the element.
     shape: Shape,
     /// Which of its matrices.
@@ -105,8 +105,8 @@ fn zeros(k: &DMatrix<f64>) -> usize {
 #[serde(deny_unknown_fields)]
 pub struct RigidMotion {
     /// Smoothing cells.
-    #[serde(default = "four")]
-    cells: u32,
+    #[serde(default)]
+    cells: Layout,
     /// Shear stabilisation.
     #[serde(default = "default_alpha")]
     alpha: f64,

@@ -1,5 +1,6 @@
 //! The problem families: each a function from parameters to one value.
 
+mod disc;
 mod dynamics;
 mod element;
 mod patch;
@@ -33,6 +34,8 @@ pub enum Problem {
     Mechanisms(plate::Mechanisms),
     /// A clamped square of 4 x 4 elements, nodes moved.
     Distorted(quad_plate::Distorted),
+    /// A circular plate.
+    Disc(disc::Disc),
     /// A rhombic plate.
     Skew(quad_plate::Skew),
     /// Curved shells.
@@ -53,6 +56,7 @@ impl Problem {
             Self::RigidMotion(p) => p.value().map(nowhere),
             Self::Mechanisms(p) => p.value().map(nowhere),
             Self::Distorted(p) => p.value().map(nowhere),
+            Self::Disc(p) => p.value().map(nowhere),
             Self::Skew(p) => p.value().map(nowhere),
             Self::Shell(p) => p.value().map(nowhere),
             Self::Newmark(p) => p.value().map(nowhere),
@@ -152,11 +156,28 @@ pub enum DrillingChoice {
     Seed,
 }
 
-/// A formulation; `cells` outside of the known layouts falls back to the nearest square below.
-fn formulation(cells: u32, alpha: f64, drilling: DrillingChoice) -> Formulation {
-    let side = cells.isqrt().clamp(1, 64) as u8;
+/// Smoothing cells by their number.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(try_from = "u32")]
+struct Layout(Cells);
+
+impl TryFrom<u32> for Layout {
+    type Error = String;
+
+    fn try_from(nc: u32) -> Result<Self, String> {
+        Cells::from_count(nc).map(Self).ok_or_else(|| format!("there is no layout of {nc} cells"))
+    }
+}
+
+impl Default for Layout {
+    fn default() -> Self {
+        Self(Cells::grid(2, 2))
+    }
+}
+
+fn formulation(cells: Layout, alpha: f64, drilling: DrillingChoice) -> Formulation {
     Formulation {
-        cells: Cells::from_count(cells).unwrap_or(Cells::grid(side, side)),
+        cells: cells.0,
         shear_stabilisation: alpha,
         drilling: match drilling {
             DrillingChoice::Scaled => Drilling::Scaled,
@@ -171,10 +192,6 @@ fn nearest(mesh: &QuadMesh, point: Point3<f64>) -> usize {
     let distance = |n: &Point3<f64>| (n - point).norm_squared();
     let pairs = mesh.nodes.iter().map(distance).enumerate();
     pairs.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(node, _)| node)
-}
-
-fn four() -> u32 {
-    4
 }
 
 fn unit() -> f64 {

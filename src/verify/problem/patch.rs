@@ -4,7 +4,7 @@ use nalgebra::{Matrix2, Matrix3, Point3, Rotation3, Vector2, Vector3};
 use serde::Deserialize;
 
 use super::super::VerifyError;
-use super::{DrillingChoice, default_alpha, formulation, isotropic};
+use super::{DrillingChoice, Layout, default_alpha, formulation, isotropic};
 use crate::fields::{Resultants, element_means};
 use crate::mesh::{QuadMesh, distorted, rectangle};
 use crate::model::{Dof, Model, Support};
@@ -22,7 +22,7 @@ pub struct Patch {
     /// The section; its warp at 23 degrees from x.
     law: PatchLaw,
     /// Smoothing cells; the worst counts.
-    cells: Vec<u32>,
+    cells: Vec<Layout>,
     /// Whether the sheet is turned in space.
     turned: bool,
     /// Shear stabilisation.
@@ -166,7 +166,7 @@ impl Patch {
         Ok(errors.into_iter().fold(0.0, f64::max))
     }
 
-    fn error(&self, cells: u32) -> Result<f64, VerifyError> {
+    fn error(&self, cells: Layout) -> Result<f64, VerifyError> {
         let angle = 23f64.to_radians();
         let turn =
             if self.turned { Rotation3::from_euler_angles(0.4, -1.1, 2.3) } else { Rotation3::identity() };

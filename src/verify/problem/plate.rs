@@ -4,7 +4,7 @@ use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
 use super::super::{Function, VerifyError};
-use super::{Law, default_alpha, formulation, four, nearest, unit};
+use super::{Law, Layout, default_alpha, formulation, nearest, unit};
 use crate::analytical::levy::Edge;
 use crate::analytical::mindlin::MindlinPlate;
 use crate::analytical::{Plate, PlateState};
@@ -30,8 +30,8 @@ pub struct PlateProblem {
     /// How the edges x = 0, y = 0, x = a, y = b are held.
     edges: Edges,
     /// Smoothing cells.
-    #[serde(default = "four")]
-    cells: u32,
+    #[serde(default)]
+    cells: Layout,
     /// Shear stabilisation.
     #[serde(default = "default_alpha")]
     alpha: f64,

@@ -4,10 +4,10 @@ use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
 use super::super::VerifyError;
-use super::{DrillingChoice, Law, default_alpha, formulation, four, nearest};
+use super::{DrillingChoice, Law, Layout, default_alpha, formulation, nearest};
 use crate::fields;
 use crate::mesh::rectangle;
-use crate::model::{Dof, Load, Model, Support};
+use crate::model::{Load, Model, Support};
 use crate::solve::{self, Options};
 
 /// A clamped square plate of side 10, t = 0.01, ν = 0.3: a quarter of it with 2 x 2 elements, whose middle
@@ -18,7 +18,7 @@ pub struct Distorted {
     /// How far the middle node is moved.
     s: f64,
     /// Smoothing cells.
-    cells: u32,
+    cells: Layout,
     /// Shear stabilisation.
     #[serde(default = "default_alpha")]
     alpha: f64,
@@ -68,8 +68,8 @@ pub struct Skew {
     #[serde(default)]
     sides_free: bool,
     /// Smoothing cells.
-    #[serde(default = "four")]
-    cells: u32,
+    #[serde(default)]
+    cells: Layout,
     /// Shear stabilisation.
     #[serde(default = "default_alpha")]
     alpha: f64,
@@ -97,7 +97,7 @@ impl Skew {
         let sets: &[&str] = if self.sides_free { &["bottom", "top"] } else { &["boundary"] };
         let mut supports = Vec::new();
         for set in sets {
-            supports.push(Support::fix(mesh.set(set)?, &[Dof::W]));
+            supports.extend(Support::simple(&mesh, set, false)?);
         }
         let centre = nearest(&mesh, Point3::new(0.5 * (1.0 + cos), 0.5 * sin, 0.0));
         let model = Model {

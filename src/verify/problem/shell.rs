@@ -6,7 +6,7 @@ use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
 use super::super::VerifyError;
-use super::{DrillingChoice, default_alpha, formulation, four, isotropic, unit};
+use super::{DrillingChoice, Layout, default_alpha, formulation, isotropic, unit};
 use crate::mesh::{QuadMesh, rectangle};
 use crate::model::{Dof, Load, Model, Support};
 use crate::section::ShellSection;
@@ -26,8 +26,8 @@ pub struct Shell {
     /// Elements along the second direction; `n` if not given.
     m: Option<usize>,
     /// Smoothing cells.
-    #[serde(default = "four")]
-    cells: u32,
+    #[serde(default)]
+    cells: Layout,
     /// Shear stabilisation.
     #[serde(default = "default_alpha")]
     alpha: f64,
