@@ -34,6 +34,8 @@ pub mod constitutive;
 
 pub mod study;
 
+pub mod verify;
+
 pub mod report;
 
 #[cfg(feature = "cli")]
