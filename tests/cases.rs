@@ -82,3 +82,40 @@ fn a_dynamic_case_swings_about_the_static_deflection() {
     assert!(history.imbalance < 1e-9);
     assert_eq!(history.time.len(), history.probes[0].len());
 }
+
+/// The quadrilateral mesh of a file gives what the generated one gives: 2 x 2 cells of a clamped strip.
+#[test]
+fn a_mesh_file_is_used_with_its_unit_and_its_groups() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut msh = String::from(
+        "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n1 7 \"held\"\n$EndPhysicalNames\n",
+    );
+    msh += "$Entities\n0 1 1 0\n3 0 0 0 0 100 0 1 7 0\n1 0 0 0 100 100 0 0 0\n$EndEntities\n$Nodes\n1 9 1 9\n2 1 0 9\n";
+    (1..=9).for_each(|k| msh += &format!("{k}\n"));
+    (0..9).for_each(|k| msh += &format!("{} {} 0\n", 50 * (k % 3), 50 * (k / 3)));
+    msh += "$EndNodes\n$Elements\n2 6 1 6\n1 3 1 2\n1 1 4\n2 4 7\n2 1 3 4\n";
+    for (k, n) in [1, 2, 4, 5].into_iter().enumerate() {
+        msh += &format!("{} {n} {} {} {}\n", k + 3, n + 1, n + 4, n + 3);
+    }
+    msh += "$EndElements\n";
+    std::fs::write(folder.path().join("part.msh"), msh).unwrap();
+    let base = std::fs::read_to_string(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/benchmark_clamped_orthotropic.toml"),
+    )
+    .unwrap();
+    let head = &base[..base.find("[sheet]").unwrap()];
+    let rest = "[[loads]]\nkind = \"gravity\"\n[element]\nprofile = \"seed\"\n";
+    let solve = |sheet: &str, set: &str| {
+        let text =
+            format!("{head}[sheet]\n{sheet}\n[[supports]]\nset = \"{set}\"\nkind = \"clamped\"\n{rest}");
+        let case = Case::parse(&folder.path().join("c.toml"), &text).unwrap();
+        let s = section(case.section.as_ref().unwrap()).unwrap();
+        solve_case(&case, s, None, &Options::default()).map(|r| r.w_max)
+    };
+    let from_file = solve("file = \"part.msh\"\nunit = \"mm\"", "held").unwrap();
+    let generated =
+        solve("shape = \"rectangle\"\nwidth = \"10 cm\"\nheight = \"10 cm\"\ncells = [2, 2]", "left")
+            .unwrap();
+    assert!((from_file / generated - 1.0).abs() < 1e-12, "{from_file} {generated}");
+    assert!(solve("file = \"part.msh\"", "held").unwrap_err().to_string().contains("unit = \"mm\""));
+}

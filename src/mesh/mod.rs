@@ -1,6 +1,7 @@
 //! Quadrilateral meshes with named node sets, and the checks that a mesh must pass.
 
 mod generate;
+mod gmsh;
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -8,6 +9,9 @@ use nalgebra::{Point3, Vector3};
 use thiserror::Error;
 
 pub use generate::{annulus, disc, distorted, rectangle};
+pub use gmsh::parse_gmsh;
+
+use crate::finding::Place;
 
 /// A mesh of four-node quadrilaterals.
 ///
@@ -89,6 +93,14 @@ pub enum MeshError {
         /// The names that exist.
         known: String,
     },
+    /// M011: a mesh file that cannot be used.
+    #[error("{place}: M011 {message}")]
+    File {
+        /// File and line.
+        place: Place,
+        /// What was found, what is expected, what to do.
+        message: String,
+    },
 }
 
 impl MeshError {
@@ -102,6 +114,7 @@ impl MeshError {
             Self::NotFinite { .. } => "M005",
             Self::Parameters { .. } => "M006",
             Self::NoSuchSet { .. } => "M007",
+            Self::File { .. } => "M011",
         }
     }
 }

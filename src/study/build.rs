@@ -1,15 +1,17 @@
 //! A case and a section become a model.
 
+use std::path::Path;
 use std::str::FromStr;
 
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
 use super::StudyError;
 use super::case::{
-    Case, DrillingChoice, LoadTable, SectionTable, Shape, Sheet, Subcells, SupportKind, SupportTable,
+    Case, DrillingChoice, LoadTable, Profile, SectionTable, Shape, Sheet, Subcells, SupportKind, SupportTable,
 };
 use crate::element::{Cells, Drilling, Formulation};
-use crate::mesh::{self, QuadMesh};
+use crate::finding::Place;
+use crate::mesh::{self, MeshError, QuadMesh};
 use crate::model::{Dof, Load, Model, Support};
 use crate::quantity::{Angle, Force, Length, Moment, STANDARD_GRAVITY};
 use crate::section::ShellSection;
@@ -39,29 +41,37 @@ pub fn section(table: &SectionTable) -> Result<ShellSection, StudyError> {
 /// # Errors
 /// S003 for a number of smoothing cells that has no layout.
 pub fn formulation(case: &Case) -> Result<Formulation, StudyError> {
-    let cells = match case.element.subcells {
-        Subcells::Count(nc) => Cells::from_count(nc).ok_or_else(|| {
-            case.inconsistent(format!(
-                "subcells = {nc} has no layout: take 1, 2, 3, 4, 9, 16 ... or [nx, ny]"
-            ))
-        })?,
-        Subcells::Grid([nx, ny]) if nx > 0 && ny > 0 => Cells::grid(nx, ny),
-        Subcells::Grid(_) => {
+    let mut formulation = match case.element.profile {
+        Some(Profile::Seed) => Formulation::seed(),
+        None => Formulation::default(),
+    };
+    match case.element.subcells {
+        None => {}
+        Some(Subcells::Count(nc)) => {
+            formulation.cells = Cells::from_count(nc).ok_or_else(|| {
+                case.inconsistent(format!(
+                    "subcells = {nc} has no layout: take 1, 2, 3, 4, 9, 16 ... or [nx, ny]"
+                ))
+            })?;
+        }
+        Some(Subcells::Grid([nx, ny])) if nx > 0 && ny > 0 => formulation.cells = Cells::grid(nx, ny),
+        Some(Subcells::Grid(_)) => {
             return Err(case.inconsistent("subcells = [nx, ny] needs two positive numbers".into()));
         }
-    };
-    let drilling = match case.element.drilling {
-        DrillingChoice::Scaled => Drilling::Scaled,
-        DrillingChoice::HughesBrezzi => Drilling::HughesBrezzi,
-        DrillingChoice::Seed => Drilling::Seed(1e-3),
-    };
-    let shear_stabilisation = case.element.shear_stabilisation;
-    if !(0.0..=1.0).contains(&shear_stabilisation) {
-        return Err(
-            case.inconsistent(format!("shear_stabilisation = {shear_stabilisation}: it must be 0 to 1"))
-        );
     }
-    Ok(Formulation { cells, shear_stabilisation, drilling })
+    match case.element.drilling {
+        None => {}
+        Some(DrillingChoice::Scaled) => formulation.drilling = Drilling::Scaled,
+        Some(DrillingChoice::HughesBrezzi) => formulation.drilling = Drilling::HughesBrezzi,
+        Some(DrillingChoice::Seed) => formulation.drilling = Drilling::Seed(1e-3),
+    }
+    if let Some(alpha) = case.element.shear_stabilisation {
+        if !(0.0..=1.0).contains(&alpha) {
+            return Err(case.inconsistent(format!("shear_stabilisation = {alpha}: it must be 0 to 1")));
+        }
+        formulation.shear_stabilisation = alpha;
+    }
+    Ok(formulation)
 }
 
 /// The model of a case with a `[sheet]`.
@@ -94,24 +104,60 @@ pub fn model(case: &Case, sheet: &Sheet, section: ShellSection) -> Result<Model,
 }
 
 fn sheet_mesh(case: &Case, sheet: &Sheet) -> Result<QuadMesh, StudyError> {
-    let need = |value: Option<Length>, key: &str| {
-        value.map(Length::si).ok_or_else(|| {
-            case.inconsistent(format!("[sheet] shape = {:?} needs `{key}`", sheet.shape).to_lowercase())
-        })
+    let mesh = match (sheet.shape, &sheet.file) {
+        (Some(shape), None) => outline(case, sheet, shape)?,
+        (None, Some(file)) => mesh_file(case, sheet, file)?,
+        _ => return Err(case.inconsistent("[sheet] needs either `shape` or `file`, and not both".into())),
     };
-    let [a, b] = sheet.cells;
-    let unused = match sheet.shape {
-        Shape::Rectangle | Shape::Strip => sheet.diameter.or(sheet.inner_diameter).map(|_| "diameter"),
+    let mesh = mesh::distorted(mesh, sheet.distortion, sheet.seed)?;
+    mesh.check()?;
+    Ok(mesh)
+}
+
+fn mesh_file(case: &Case, sheet: &Sheet, file: &Path) -> Result<QuadMesh, StudyError> {
+    let sizes = [sheet.width, sheet.height, sheet.diameter, sheet.inner_diameter];
+    if sizes.iter().any(Option::is_some) || sheet.cells.is_some() {
+        return Err(case.inconsistent(
+            "[sheet] file brings its own sizes: remove width, height, diameters and cells".into(),
+        ));
+    }
+    let unit = sheet.unit.as_deref().ok_or_else(|| {
+        case.inconsistent(
+            "[sheet] file needs `unit`, the unit of its coordinates, such as unit = \"mm\"".into(),
+        )
+    })?;
+    let scale =
+        format!("1 {unit}").parse::<Length>().map_err(|e| case.inconsistent(format!("[sheet] unit: {e}")))?;
+    let path = case.path.parent().unwrap_or(Path::new("")).join(file);
+    let text = std::fs::read_to_string(&path).map_err(|e| MeshError::File {
+        place: Place::file(&path),
+        message: format!("the mesh cannot be read: {e}"),
+    })?;
+    Ok(mesh::parse_gmsh(&path, &text, scale.si())?)
+}
+
+fn outline(case: &Case, sheet: &Sheet, shape: Shape) -> Result<QuadMesh, StudyError> {
+    let word = format!("{shape:?}").to_lowercase();
+    let need = |value: Option<Length>, key: &str| {
+        value
+            .map(Length::si)
+            .ok_or_else(|| case.inconsistent(format!("[sheet] shape = \"{word}\" needs `{key}`")))
+    };
+    let [a, b] = sheet.cells.ok_or_else(|| {
+        case.inconsistent(format!("[sheet] shape = \"{word}\" needs `cells`, such as [40, 40]"))
+    })?;
+    let unused = match shape {
+        _ if sheet.unit.is_some() => Some("unit"),
+        Shape::Rectangle | Shape::Strip => sheet.diameter.or(sheet.inner_diameter).map(|_| "diameters"),
         Shape::Disc => {
             sheet.width.or(sheet.height).or(sheet.inner_diameter).map(|_| "width, height, inner_diameter")
         }
         Shape::Annulus => sheet.width.or(sheet.height).map(|_| "width, height"),
     };
     if let Some(keys) = unused {
-        let shape = format!("{:?}", sheet.shape).to_lowercase();
-        return Err(case.inconsistent(format!("[sheet] shape = \"{shape}\" does not use {keys}: remove it")));
+        return Err(case.inconsistent(format!("[sheet] shape = \"{word}\" does not use {keys}: remove it")));
     }
-    let mesh = match sheet.shape {
+    Ok(match shape {
         Shape::Rectangle | Shape::Strip => {
             mesh::rectangle(need(sheet.width, "width")?, need(sheet.height, "height")?, a, b)?
         }
@@ -125,10 +171,7 @@ fn sheet_mesh(case: &Case, sheet: &Sheet) -> Result<QuadMesh, StudyError> {
             a,
             b,
         )?,
-    };
-    let mesh = mesh::distorted(mesh, sheet.distortion, sheet.seed)?;
-    mesh.check()?;
-    Ok(mesh)
+    })
 }
 
 fn dof_named(case: &Case, name: &str) -> Result<Dof, StudyError> {

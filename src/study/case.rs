@@ -89,8 +89,12 @@ pub struct SectionTable {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sheet {
-    /// Which outline.
-    pub shape: Shape,
+    /// Which outline; left out when the mesh comes from a file.
+    pub shape: Option<Shape>,
+    /// A Gmsh mesh (MSH 4.1, ASCII, quads), relative to the case file.
+    pub file: Option<PathBuf>,
+    /// Unit of the coordinates in the file, such as `"mm"`.
+    pub unit: Option<String>,
     /// Along x (`rectangle`), or the length of a `strip` along x.
     pub width: Option<Length>,
     /// Along y (`rectangle`), or the breadth of a `strip` along y.
@@ -101,7 +105,7 @@ pub struct Sheet {
     pub inner_diameter: Option<Length>,
     /// Cells along x and y; across the core of a disc (one number twice); along the radius and
     /// around an annulus.
-    pub cells: [usize; 2],
+    pub cells: Option<[usize; 2]>,
     /// Angle of the warp from x.
     #[serde(default)]
     pub warp_angle_deg: f64,
@@ -127,22 +131,26 @@ pub enum Shape {
     Annulus,
 }
 
-/// `[element]`.
-#[derive(Clone, Debug, Deserialize)]
+/// `[element]`; what is left out is as in the profile, and that is the default one when left out.
+#[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ElementTable {
-    /// Smoothing cells: a number (1, 2, 3, 4, 9, 16 ...) or `[along_xi, along_eta]`.
-    pub subcells: Subcells,
-    /// α of the transverse shear.
-    pub shear_stabilisation: f64,
-    /// What holds the drilling rotation.
-    pub drilling: DrillingChoice,
+    /// A named formulation to start from.
+    pub profile: Option<Profile>,
+    /// Smoothing cells: a number (1, 2, 3, 4, 9, 16 ...) or `[along_xi, along_eta]`; 4.
+    pub subcells: Option<Subcells>,
+    /// α of the transverse shear; 0.05, seed 0.
+    pub shear_stabilisation: Option<f64>,
+    /// What holds the drilling rotation; `scaled`, seed `seed`.
+    pub drilling: Option<DrillingChoice>,
 }
 
-impl Default for ElementTable {
-    fn default() -> Self {
-        Self { subcells: Subcells::Count(4), shear_stabilisation: 0.05, drilling: DrillingChoice::Scaled }
-    }
+/// Named formulations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Profile {
+    /// The paper's: nc = 4, no shear stabilisation, drilling spring 1e-3.
+    Seed,
 }
 
 /// Smoothing cells as written.
@@ -514,7 +522,7 @@ value = "0.5 Pa"
     fn a_case_is_read_and_named_after_its_file() {
         let case = Case::parse(Path::new("cases/plate.toml"), GOOD).unwrap();
         assert_eq!(case.name, "plate");
-        assert_eq!(case.element.subcells, Subcells::Count(4));
+        assert_eq!(case.element.subcells, None);
     }
 
     #[test]

@@ -60,6 +60,7 @@ impl StudyError {
     pub fn place(&self) -> Option<&Place> {
         match self {
             Self::Case(e) => Some(e.place()),
+            Self::Mesh(MeshError::File { place, .. }) => Some(place),
             _ => None,
         }
     }
