@@ -25,7 +25,11 @@ const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("constitutive", &["finding", "quantity", "instrument", "characterise", "section"], &[]),
     ("study", &ABOVE_STUDY, &["toml"]),
     ("verify", &["section", "analytical", "mesh", "element", "model", "solve", "fields"], &["toml"]),
-    ("report", &ABOVE_REPORT, &["csv", "polars", "plotters", "plotters_backend", "dejavu", "vtkio"]),
+    (
+        "report",
+        &ABOVE_REPORT,
+        &["base64", "csv", "dejavu", "percent_encoding", "plotters", "png", "polars", "vtkio"],
+    ),
     ("cli", &ABOVE_CLI, &["clap", "clap_complete", "indicatif", "ctrlc", "toml"]),
 ];
 
