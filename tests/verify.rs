@@ -46,19 +46,18 @@ fn every_kind_of_reference_takes_part_and_an_observer_can_stop() {
     assert!(run(&lines[..4], |_| ControlFlow::Break(())).is_none());
 }
 
-fn kesf(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_kesf")).args(arguments).output().unwrap()
-}
-
 #[test]
 fn the_command_prints_a_table_and_a_count() {
-    let out = kesf(&["verify", "--filter", "rigid_motion"]);
-    assert!(out.status.success());
-    let text = String::from_utf8(out.stdout).unwrap();
+    let kesf = |arguments: &[&str]| -> Output {
+        Command::new(env!("CARGO_BIN_EXE_kesf")).args(arguments).output().unwrap()
+    };
+    let output = kesf(&["verify", "--filter", "rigid_motion"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(0));
     assert!(text.ends_with("10 of 10 lines hold, 0 fail\n"), "{text}");
     assert_eq!(text.matches("PASS").count(), 10);
-    let out = kesf(&["verify", "--filter", "rigid_motion", "--json"]);
-    let document: serde_json::Value = serde_json::from_slice(&out.stdout).unwrap();
+    let output = kesf(&["verify", "--filter", "rigid_motion", "--json"]);
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(document["schema"], "kesf.verify/1");
     assert_eq!(document["lines"].as_array().unwrap().len(), 10);
     assert_eq!(kesf(&["verify", "--filter", "no such line"]).status.code(), Some(2));

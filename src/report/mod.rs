@@ -1,6 +1,6 @@
 //! Everything that people see as files: charts, tables, JSON, VTU, a page, and how they are put in place.
 //!
-//! The makers are pure: they return bytes, the same for the same data. [`write`] is the only part that
+//! The makers are pure: they return bytes, the same for the same data. [`mod@write`] is the only part that
 //! touches the disk.
 
 pub mod html;
