@@ -191,7 +191,110 @@ fn the_error_names_the_node_the_dof_and_the_pivot() {
                     }
                     other => panic!("{other}"),
                 }
+                // The memory that the failure leaves behind does no harm.
+                let mut sound = a.clone();
+                sound.values[graph.col_ptr[20] * 9 + 4] = 4.0;
+                let mut x = vec![1.0; a.rows()];
+                analysis.factorise(&sound, threads).unwrap().solve(&mut x, 1);
+                assert!(x.iter().enumerate().all(|(i, x)| *x == if i == 61 { 0.25 } else { 1.0 }));
             }
         }
+    }
+}
+
+#[test]
+fn the_factor_does_not_depend_on_the_number_of_threads() {
+    let mut rng = Pcg64::seed_from_u64(4);
+    let (graph, points) = grid(60, 50);
+    for block in [2, 3, 6] {
+        let a = random_spd(&graph, block, &mut rng);
+        let b = random_vector(a.rows(), &mut rng);
+        let analysis = analyse(&graph, block, Some(&points), Path::Multifrontal).unwrap();
+        let mut first = b.clone();
+        analysis.factorise(&a, 1).unwrap().solve(&mut first, 1);
+        for threads in [2, 3, 8] {
+            let mut x = b.clone();
+            analysis.factorise(&a, threads).unwrap().solve(&mut x, 1);
+            assert!(x == first, "block {block}, {threads} threads");
+        }
+    }
+}
+
+#[test]
+fn indefinite_matrices_against_dense_elimination_and_eigenvalues() {
+    let mut rng = Pcg64::seed_from_u64(5);
+    let (graph, points) = grid(9, 7);
+    for block in 1..=6 {
+        // A dominant diagonal of both signs: elimination without pivoting is stable.
+        let mut a = random_spd(&graph, block, &mut rng);
+        for j in 0..graph.nodes {
+            for c in 0..block {
+                if rng.random_range(0.0..1.0) < 0.2 {
+                    a.values[(graph.col_ptr[j] * block + c) * block + c] *= -1.0;
+                }
+            }
+        }
+        let whole = dense(&a);
+        let negative = whole.symmetric_eigenvalues().iter().filter(|value| **value < 0.0).count();
+        let b = random_vector(a.rows() * 2, &mut rng);
+        let want = whole.lu().solve(&DMatrix::from_column_slice(a.rows(), 2, &b)).unwrap();
+        for path in PATHS {
+            let analysis = analyse(&graph, block, Some(&points), path).unwrap();
+            assert!(analysis.factorise(&a, 1).is_err());
+            for threads in [1, 2] {
+                let factor = analysis.factorise_indefinite(&a, threads).unwrap();
+                assert_eq!(factor.negative_pivots(), negative, "block {block}, {path:?}");
+                let mut x = b.clone();
+                factor.solve(&mut x, 2);
+                assert_close(&x, want.as_slice(), &format!("block {block}, {path:?}"));
+                let first = &mut x[..a.rows()];
+                first.copy_from_slice(&b[..a.rows()]);
+                factor.solve(first, 1);
+                assert_close(&x, want.as_slice(), &format!("block {block}, {path:?}, one column"));
+            }
+        }
+    }
+}
+
+/// The chain of n masses between walls, stiffness tridiag(-1, 2, -1), has the eigenvalues
+/// 4 sin^2(k pi / (2 n + 2)), k = 1 to n (analytical).
+#[test]
+fn negative_pivots_count_the_eigenvalues_below_a_shift() {
+    let n = 200;
+    let bars: Vec<[u32; 2]> = (1..n as u32).map(|i| [i - 1, i]).collect();
+    let graph = Arc::new(BlockGraph::from_elements(n, &bars));
+    let points: Vec<[f64; 3]> = (0..n).map(|i| [0.0, i as f64, 0.0]).collect();
+    for path in PATHS {
+        for coordinates in [Some(&points[..]), None] {
+            let analysis = analyse(&graph, 1, coordinates, path).unwrap();
+            for shift in [0.0, 1e-3, 0.1, 1.3, 3.9, 4.0] {
+                let mut a = BlockMatrix::zeros(Arc::clone(&graph), 1);
+                a.values.fill(-1.0);
+                graph.col_ptr[..n].iter().for_each(|&k| a.values[k] = 2.0 - shift);
+                let below = (1..=n)
+                    .map(|k| 4.0 * (k as f64 * std::f64::consts::PI / (2 * n + 2) as f64).sin().powi(2))
+                    .filter(|value| *value < shift)
+                    .count();
+                let factor = analysis.factorise_indefinite(&a, 1).unwrap();
+                assert_eq!(factor.negative_pivots(), below, "{path:?}, shift {shift}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_zero_pivot_of_an_indefinite_matrix_is_named() {
+    let (graph, points) = grid(6, 6);
+    let mut a = BlockMatrix::zeros(Arc::clone(&graph), 3);
+    for j in 0..graph.nodes {
+        for c in 0..3 {
+            let zero = j == 20 && c == 1;
+            a.values[(graph.col_ptr[j] * 3 + c) * 3 + c] = if zero { 0.0 } else { -1.0 };
+        }
+    }
+    for path in PATHS {
+        let analysis = analyse(&graph, 3, Some(&points), path).unwrap();
+        let error = analysis.factorise_indefinite(&a, 1).unwrap_err();
+        assert_eq!(error, FactorError::Singular { node: 20, dof: 1, pivot: 0.0 }, "{path:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! Cholesky factorisation of symmetric block matrices: analyse a graph once, factorise any
+//! Factorisation of symmetric block matrices: analyse a graph once, factorise any
 //! number of matrices on it, solve with any number of right-hand sides.
 //!
 //! Constrained dofs stay in the matrix as unit rows (zero row and column, a positive
@@ -43,12 +43,44 @@ pub enum FactorError {
         /// The pivot that should have been positive.
         pivot: f64,
     },
+    /// A pivot of an indefinite matrix is zero or not a number.
+    #[error(
+        "N006 the tangent is singular: pivot {pivot:e} at node {node}, dof {dof}; \
+         it stands at a limit or bifurcation point, or something is not supported"
+    )]
+    Singular {
+        /// Node of the pivot, from 0.
+        node: usize,
+        /// Dof of that node, from 0.
+        dof: usize,
+        /// The pivot: zero or not a number.
+        pivot: f64,
+    },
     /// The factor does not fit in memory.
     #[error("N002 no memory for a factor of {bytes} bytes; use a coarser mesh or the iterative solver")]
     OutOfMemory {
         /// Bytes of the factor; 0 where even the analysis did not fit.
         bytes: usize,
     },
+}
+
+/// What a matrix is taken for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Form {
+    /// Positive definite: `A = L L^T`.
+    Definite,
+    /// Any symmetric matrix whose leading minors do not vanish: `A = L D L^T`.
+    Indefinite,
+}
+
+impl Form {
+    /// The error of a pivot that the form does not allow.
+    pub(super) fn bad_pivot(self, node: usize, dof: usize, pivot: f64) -> FactorError {
+        match self {
+            Self::Definite => FactorError::NotPositiveDefinite { node, dof, pivot },
+            Self::Indefinite => FactorError::Singular { node, dof, pivot },
+        }
+    }
 }
 
 /// Absolute counts of a factorisation, for comparison with other solvers.
@@ -81,7 +113,7 @@ pub struct Analysis {
 #[derive(Debug)]
 enum Symbolic {
     General(Arc<general::Symbolic>),
-    Multifrontal(Arc<multifrontal::Tree>),
+    Multifrontal(Arc<multifrontal::Symbolic>),
 }
 
 /// Orders the nodes and finds the structure of the factor.
@@ -121,7 +153,7 @@ pub fn analyse_ordered(
     let symbolic = match path {
         Path::Faer => Symbolic::General(Arc::new(general::Symbolic::new(graph, block, order)?)),
         Path::Auto | Path::Multifrontal => {
-            Symbolic::Multifrontal(Arc::new(multifrontal::Tree::new(graph, block, order)))
+            Symbolic::Multifrontal(Arc::new(multifrontal::Symbolic::new(graph, block, order)))
         }
     };
     Ok(Analysis { graph: Arc::clone(graph), block, symbolic })
@@ -148,14 +180,35 @@ impl Analysis {
     /// # Panics
     /// If the matrix has another block size or number of blocks than was analysed.
     pub fn factorise(&self, a: &BlockMatrix, threads: usize) -> Result<Factor, FactorError> {
+        self.factorise_as(Form::Definite, a, threads)
+    }
+
+    /// Factorises a symmetric matrix that need not be positive definite, as `L D L^T` without
+    /// pivoting: for tangents beyond a limit point, whose number of negative pivots tells
+    /// stable from unstable equilibria. Small pivots cost accuracy: check the residual.
+    ///
+    /// # Errors
+    /// [`FactorError::Singular`] at the first pivot that is zero or not a number,
+    /// [`FactorError::OutOfMemory`].
+    ///
+    /// # Panics
+    /// If the matrix has another block size or number of blocks than was analysed.
+    pub fn factorise_indefinite(&self, a: &BlockMatrix, threads: usize) -> Result<Factor, FactorError> {
+        self.factorise_as(Form::Indefinite, a, threads)
+    }
+
+    fn factorise_as(&self, form: Form, a: &BlockMatrix, threads: usize) -> Result<Factor, FactorError> {
         assert_eq!(a.block, self.block, "the block size that was analysed");
+        assert_eq!(
+            a.values.len(),
+            self.graph.row_idx.len() * self.block * self.block,
+            "a value for every entry"
+        );
         assert!(Arc::ptr_eq(&a.graph, &self.graph) || *a.graph == *self.graph, "the graph that was analysed");
-        match &self.symbolic {
-            Symbolic::General(symbolic) => {
-                Ok(Factor(Numeric::General(symbolic.factorise(a, threads.max(1))?)))
-            }
-            Symbolic::Multifrontal(tree) => Ok(Factor(Numeric::Multifrontal(tree.factorise(a, threads)?))),
-        }
+        Ok(Factor(match &self.symbolic {
+            Symbolic::General(symbolic) => Numeric::General(symbolic.factorise(a, form, threads)?),
+            Symbolic::Multifrontal(symbolic) => Numeric::Multifrontal(symbolic.factorise(a, form, threads)?),
+        }))
     }
 
     /// Counts of the factorisation.
@@ -163,7 +216,7 @@ impl Analysis {
         let square = self.block * self.block;
         let counts = match &self.symbolic {
             Symbolic::General(symbolic) => symbolic.counts(),
-            Symbolic::Multifrontal(tree) => tree.counts(),
+            Symbolic::Multifrontal(symbolic) => symbolic.counts(),
         };
         Counts {
             rows: self.graph.nodes * self.block,
@@ -193,6 +246,15 @@ impl Factor {
         match &self.0 {
             Numeric::General(numeric) => numeric.solve(x, columns),
             Numeric::Multifrontal(numeric) => numeric.solve(x, columns),
+        }
+    }
+
+    /// Number of negative pivots, which is that of negative eigenvalues (Sylvester's law of
+    /// inertia); 0 for a matrix factorised as positive definite.
+    pub fn negative_pivots(&self) -> usize {
+        match &self.0 {
+            Numeric::General(numeric) => numeric.negative_pivots(),
+            Numeric::Multifrontal(numeric) => numeric.negative_pivots(),
         }
     }
 }

@@ -7,6 +7,7 @@
 //! adds in the same order whoever does it, so the factor does not depend on the number of
 //! threads, bit by bit.
 
+mod assemble;
 mod front;
 mod substitution;
 mod symbolic;
@@ -14,23 +15,43 @@ mod symbolic;
 use std::sync::atomic::{AtomicUsize, Ordering::AcqRel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use self::front::{BadPivot, Workspace, eliminate};
-pub use self::symbolic::Tree;
-use super::factor::{Counts, FactorError};
-use super::sparse::BlockMatrix;
+use self::assemble::Update;
+use self::front::{BadPivot, Input, Workspace, eliminate};
+use self::symbolic::Tree;
+use super::factor::{Counts, FactorError, Form};
+use super::ordering::Ordering;
+use super::sparse::{BlockGraph, BlockMatrix};
 
 /// Operations below which a subtree is one task: about 20 microseconds.
 const GRAIN: f64 = 5e5;
 
+/// A tree and the memory that its factors leave to the next: fresh pages cost as much as the
+/// arithmetic.
+#[derive(Debug)]
+pub struct Symbolic {
+    tree: Tree,
+    /// Widest front, in dofs.
+    width: usize,
+    /// Panels of dropped factors, at most one per thread of the pool.
+    panels: Mutex<Vec<Vec<f64>>>,
+    workspaces: Mutex<Vec<Workspace>>,
+}
+
 /// The values of L over its tree.
 #[derive(Debug)]
 pub struct Numeric {
-    tree: Arc<Tree>,
+    symbolic: Arc<Symbolic>,
     l: Vec<f64>,
 }
 
-/// The update that a front leaves, by the number of the front.
-type Update = (usize, Vec<f64>);
+impl Drop for Numeric {
+    fn drop(&mut self) {
+        let mut panels = lock(&self.symbolic.panels);
+        if panels.len() < rayon::current_num_threads() {
+            panels.push(std::mem::take(&mut self.l));
+        }
+    }
+}
 
 /// A part of the tree that one thread eliminates without waiting: a subtree, or one of the
 /// fronts above the subtrees.
@@ -47,41 +68,65 @@ struct Task<'a> {
     updates: Mutex<Vec<Update>>,
 }
 
-impl Tree {
+impl Symbolic {
+    /// Analyses the graph for blocks of `block` dofs and an order of elimination.
+    pub fn new(graph: &BlockGraph, block: usize, order: &Ordering) -> Self {
+        let tree = Tree::new(graph, block, order);
+        let width = tree.supernodes.iter().map(|node| node.width).max().unwrap_or(0) * block;
+        Self { tree, width, panels: Mutex::default(), workspaces: Mutex::default() }
+    }
+
     /// Counts of the factorisation.
     pub fn counts(&self) -> Counts {
-        Counts { nnz_l: self.nnz_l, stored: self.stored, flops: self.flops, ..Counts::default() }
+        let tree = &self.tree;
+        Counts { nnz_l: tree.nnz_l, stored: tree.stored, flops: tree.flops, ..Counts::default() }
     }
 
     /// Factorises a matrix on the analysed graph.
-    pub fn factorise(self: &Arc<Self>, a: &BlockMatrix, threads: usize) -> Result<Numeric, FactorError> {
-        let mut l = Vec::new();
-        let bytes = self.stored * size_of::<f64>();
-        l.try_reserve_exact(self.stored).map_err(|_| FactorError::OutOfMemory { bytes })?;
-        l.resize(self.stored, 0.0);
+    pub fn factorise(
+        self: &Arc<Self>,
+        a: &BlockMatrix,
+        form: Form,
+        threads: usize,
+    ) -> Result<Numeric, FactorError> {
+        let mut l = self.storage()?;
+        let input = Input { values: &a.values, form };
         let result = if threads > 1 {
-            self.eliminate_tasks(&a.values, &mut l, threads)
+            self.eliminate_tasks(input, &mut l, threads)
         } else {
-            self.eliminate_all(&a.values, &mut l)
+            self.eliminate_all(input, &mut l)
         };
-        match result {
-            Ok(()) => Ok(Numeric { tree: Arc::clone(self), l }),
-            Err((s, pivot)) => {
-                let node = self.node_at[self.supernodes[s].begin + pivot.row / self.block] as usize;
-                let dof = pivot.row % self.block;
-                Err(FactorError::NotPositiveDefinite { node, dof, pivot: pivot.value })
-            }
+        // Also on failure: the panels go back when this is dropped.
+        let numeric = Numeric { symbolic: Arc::clone(self), l };
+        let Err((s, pivot)) = result else { return Ok(numeric) };
+        let (tree, b) = (&self.tree, self.tree.block);
+        let node = tree.node_at[tree.supernodes[s].begin + pivot.row / b] as usize;
+        Err(form.bad_pivot(node, pivot.row % b, pivot.value))
+    }
+
+    /// Memory for the panels, holding any values.
+    fn storage(&self) -> Result<Vec<f64>, FactorError> {
+        if let Some(l) = lock(&self.panels).pop() {
+            return Ok(l);
         }
+        let bytes = self.tree.stored * size_of::<f64>();
+        // Ask first: `vec!` takes pages that are zero already, but does not survive a refusal.
+        let mut probe: Vec<f64> = Vec::new();
+        probe.try_reserve_exact(self.tree.stored).map_err(|_| FactorError::OutOfMemory { bytes })?;
+        drop(probe);
+        Ok(vec![0.0; self.tree.stored])
     }
 
     fn workspace(&self) -> Workspace {
-        Workspace::new(self.supernodes.iter().map(|node| node.width).max().unwrap_or(0) * self.block)
+        lock(&self.workspaces).pop().unwrap_or_else(|| Workspace::new(self.width))
     }
 
-    fn eliminate_all(&self, values: &[f64], l: &mut [f64]) -> Result<(), (usize, BadPivot)> {
+    fn eliminate_all(&self, input: Input<'_>, l: &mut [f64]) -> Result<(), (usize, BadPivot)> {
         let mut workspace = self.workspace();
-        let last = self.supernodes.len().saturating_sub(1);
-        self.eliminate_range((0, last), values, l, Vec::new(), &mut workspace).map(|_| ())
+        let last = self.tree.supernodes.len().saturating_sub(1);
+        let result = self.eliminate_range((0, last), input, l, Vec::new(), &mut workspace);
+        lock(&self.workspaces).push(workspace);
+        result.map(|_| ())
     }
 
     /// Eliminates fronts in order. `waiting` are updates of children that came before; the
@@ -89,17 +134,17 @@ impl Tree {
     fn eliminate_range(
         &self,
         (first, last): (usize, usize),
-        values: &[f64],
+        input: Input<'_>,
         mut panels: &mut [f64],
         mut waiting: Vec<Update>,
         workspace: &mut Workspace,
     ) -> Result<Vec<Update>, (usize, BadPivot)> {
-        for (s, node) in self.supernodes.iter().enumerate().take(last + 1).skip(first) {
+        for (s, node) in self.tree.supernodes.iter().enumerate().take(last + 1).skip(first) {
             let (panel, rest) =
-                panels.split_at_mut(node.width * (node.width + node.border) * self.block.pow(2));
+                panels.split_at_mut(node.width * (node.width + node.border) * self.tree.block.pow(2));
             panels = rest;
             let children = waiting.len() - node.children;
-            let update = eliminate(self, node, values, panel, &waiting[children..], workspace)
+            let update = eliminate(&self.tree, node, input, panel, &waiting[children..], workspace)
                 .map_err(|pivot| (s, pivot))?;
             waiting.drain(children..).for_each(|(_, update)| workspace.give(update));
             if node.parent.is_some() {
@@ -111,21 +156,20 @@ impl Tree {
 
     fn eliminate_tasks(
         &self,
-        values: &[f64],
+        input: Input<'_>,
         l: &mut [f64],
         threads: usize,
     ) -> Result<(), (usize, BadPivot)> {
         let tasks = self.tasks(l);
-        let workspaces = Mutex::new(Vec::new());
         let failed: Mutex<Option<(usize, BadPivot)>> = Mutex::new(None);
         let run = |mut t: usize| {
-            let mut workspace = lock(&workspaces).pop().unwrap_or_else(|| self.workspace());
+            let mut workspace = self.workspace();
             loop {
                 let task = &tasks[t];
                 let mut waiting = std::mem::take(&mut *lock(&task.updates));
                 waiting.sort_unstable_by_key(|(s, _)| *s);
                 let mut panels = lock(&task.panels);
-                match self.eliminate_range(task.fronts, values, &mut panels, waiting, &mut workspace) {
+                match self.eliminate_range(task.fronts, input, &mut panels, waiting, &mut workspace) {
                     Ok(updates) => {
                         let Some(parent) = task.parent else { break };
                         lock(&tasks[parent].updates).extend(updates);
@@ -146,13 +190,13 @@ impl Tree {
                     }
                 }
             }
-            lock(&workspaces).push(workspace);
+            lock(&self.workspaces).push(workspace);
         };
         let run = &run;
         in_pool(threads, || {
             rayon::scope(|scope| {
                 for (t, task) in tasks.iter().enumerate() {
-                    if self.supernodes[task.fronts.1].first == task.fronts.0 {
+                    if self.tree.supernodes[task.fronts.1].first == task.fronts.0 {
                         scope.spawn(move |_| run(t));
                     }
                 }
@@ -164,15 +208,15 @@ impl Tree {
     /// Cuts the tree into tasks, in order of their fronts.
     fn tasks<'a>(&self, mut l: &'a mut [f64]) -> Vec<Task<'a>> {
         let mut tasks: Vec<Task<'a>> = Vec::new();
-        let mut task_of = vec![usize::MAX; self.supernodes.len()];
-        for (s, node) in self.supernodes.iter().enumerate() {
+        let mut task_of = vec![usize::MAX; self.tree.supernodes.len()];
+        for (s, node) in self.tree.supernodes.iter().enumerate() {
             let whole = node.work <= GRAIN;
-            if whole && node.parent.is_some_and(|parent| self.supernodes[parent].work <= GRAIN) {
+            if whole && node.parent.is_some_and(|parent| self.tree.supernodes[parent].work <= GRAIN) {
                 continue; // inside the subtree of its parent
             }
             let first = if whole { node.first } else { s };
-            let begin = self.supernodes[first].panel;
-            let end = self.supernodes.get(s + 1).map_or(self.stored, |next| next.panel);
+            let begin = self.tree.supernodes[first].panel;
+            let end = self.tree.supernodes.get(s + 1).map_or(self.tree.stored, |next| next.panel);
             let (panels, rest) = l.split_at_mut(end - begin);
             l = rest;
             task_of[s] = tasks.len();
@@ -185,7 +229,7 @@ impl Tree {
             });
         }
         for task in &mut tasks {
-            task.parent = self.supernodes[task.fronts.1].parent.map(|parent| task_of[parent]);
+            task.parent = self.tree.supernodes[task.fronts.1].parent.map(|parent| task_of[parent]);
         }
         tasks
     }

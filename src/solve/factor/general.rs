@@ -3,19 +3,19 @@
 use std::sync::Arc;
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
-use faer::linalg::solvers::LltError;
+use faer::linalg::solvers::{LdltError, LltError};
 use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::amd;
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    CholeskySymbolicParams, LdltRef, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
-use super::{Counts, FactorError};
+use super::{Counts, FactorError, Form};
 use crate::solve::ordering::Ordering;
 use crate::solve::sparse::{BlockGraph, BlockMatrix};
 
@@ -93,7 +93,12 @@ impl Symbolic {
         }
     }
 
-    pub fn factorise(self: &Arc<Self>, a: &BlockMatrix, threads: usize) -> Result<Numeric, FactorError> {
+    pub fn factorise(
+        self: &Arc<Self>,
+        a: &BlockMatrix,
+        form: Form,
+        threads: usize,
+    ) -> Result<Numeric, FactorError> {
         let n = self.col_ptr.len() - 1;
         let mut values = Vec::with_capacity(self.row_idx.len());
         for j in 0..a.graph.nodes {
@@ -102,42 +107,55 @@ impl Symbolic {
             }
         }
         let pattern = SymbolicSparseColMatRef::new_checked(n, n, &self.col_ptr, None, &self.row_idx);
-        let parallel = parallel(threads);
-        let mut l = Vec::new();
+        let matrix = SparseColMatRef::new(pattern, &values);
+        let par = if threads > 1 { Par::rayon(threads) } else { Par::Seq };
         let len = self.cholesky.len_val();
+        let mut l = Vec::new();
         l.try_reserve_exact(len).map_err(|_| FactorError::OutOfMemory { bytes: len * size_of::<f64>() })?;
         l.resize(len, 0.0);
-        let mut memory =
-            scratch(self.cholesky.factorize_numeric_llt_scratch::<f64>(parallel, Default::default()))?;
-        let result = self
-            .cholesky
-            .factorize_numeric_llt(
-                &mut l,
-                SparseColMatRef::new(pattern, &values),
-                Side::Lower,
-                Default::default(),
-                parallel,
-                MemStack::new(&mut memory),
-                Default::default(),
-            )
-            .map(|_| ());
-        match result {
-            Ok(()) => Ok(Numeric { symbolic: Arc::clone(self), l }),
-            Err(LltError::NonPositivePivot { index }) => Err(self.not_positive(index, &l)),
+        let cholesky = &self.cholesky;
+        let bad_pivot = match form {
+            Form::Definite => {
+                let need = cholesky.factorize_numeric_llt_scratch::<f64>(par, Default::default());
+                let (mut memory, no) = (scratch(need)?, Default::default());
+                let stack = MemStack::new(&mut memory);
+                cholesky
+                    .factorize_numeric_llt(&mut l, matrix, Side::Lower, no, par, stack, Default::default())
+                    .err()
+                    .map(|LltError::NonPositivePivot { index }| index)
+            }
+            Form::Indefinite => {
+                let need = cholesky.factorize_numeric_ldlt_scratch::<f64>(par, Default::default());
+                let (mut memory, no) = (scratch(need)?, Default::default());
+                let stack = MemStack::new(&mut memory);
+                cholesky
+                    .factorize_numeric_ldlt(&mut l, matrix, Side::Lower, no, par, stack, Default::default())
+                    .err()
+                    .map(|LdltError::ZeroPivot { index }| index)
+            }
+        };
+        match bad_pivot {
+            None => Ok(Numeric { symbolic: Arc::clone(self), form, l }),
+            Some(step) => Err(self.bad_pivot(form, step, &l)),
         }
     }
 
-    /// The error of a pivot that is not positive: the factorisation stops with the pivot in
-    /// its place on the diagonal of its supernode.
-    fn not_positive(&self, step: usize, l: &[f64]) -> FactorError {
-        let pivot = self.supernodes().map_or(f64::NAN, |supernodes| {
-            let s = supernodes.supernode_begin().partition_point(|&begin| begin <= step) - 1;
-            let (begin, end) = (supernodes.supernode_begin()[s], supernodes.supernode_end()[s]);
-            let height = end - begin + supernodes.supernode(s).pattern().len();
-            l[supernodes.col_ptr_for_val()[s] + (step - begin) * (height + 1)]
-        });
+    /// The error of a bad pivot: the factorisation stops with it in its place on the diagonal.
+    fn bad_pivot(&self, form: Form, step: usize, l: &[f64]) -> FactorError {
+        let pivot = self.diagonal(l).nth(step).unwrap_or(f64::NAN);
         let dof = self.cholesky.perm().map_or(step, |perm| perm.arrays().0[step]);
-        FactorError::NotPositiveDefinite { node: dof / self.block, dof: dof % self.block, pivot }
+        form.bad_pivot(dof / self.block, dof % self.block, pivot)
+    }
+
+    /// The diagonal of the factor, in order of elimination.
+    fn diagonal<'a>(&'a self, l: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        self.supernodes().into_iter().flat_map(move |supernodes| {
+            (0..supernodes.n_supernodes()).flat_map(move |s| {
+                let width = supernodes.supernode_end()[s] - supernodes.supernode_begin()[s];
+                let height = width + supernodes.supernode(s).pattern().len();
+                (0..width).map(move |j| l[supernodes.col_ptr_for_val()[s] + j * (height + 1)])
+            })
+        })
     }
 
     /// `nnz_l`, `stored` and `flops`. The counts without padding are not known here: they are
@@ -158,14 +176,11 @@ impl Symbolic {
     }
 }
 
-fn parallel(threads: usize) -> Par {
-    if threads > 1 { Par::rayon(threads) } else { Par::Seq }
-}
-
-/// The values of L.
+/// The values of L, and of D on the diagonal of an indefinite matrix.
 #[derive(Debug)]
 pub struct Numeric {
     symbolic: Arc<Symbolic>,
+    form: Form,
     l: Vec<f64>,
 }
 
@@ -174,11 +189,19 @@ impl Numeric {
         let n = self.symbolic.col_ptr.len() - 1;
         let cholesky = &self.symbolic.cholesky;
         let mut memory = MemBuffer::new(cholesky.solve_in_place_scratch::<f64>(columns, Par::Seq));
-        LltRef::new(cholesky, &self.l).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(x, n, columns),
-            Par::Seq,
-            MemStack::new(&mut memory),
-        );
+        let (x, stack) = (MatMut::from_column_major_slice_mut(x, n, columns), MemStack::new(&mut memory));
+        match self.form {
+            Form::Definite => {
+                LltRef::new(cholesky, &self.l).solve_in_place_with_conj(Conj::No, x, Par::Seq, stack);
+            }
+            Form::Indefinite => {
+                LdltRef::new(cholesky, &self.l).solve_in_place_with_conj(Conj::No, x, Par::Seq, stack);
+            }
+        }
+    }
+
+    /// Number of negative pivots.
+    pub fn negative_pivots(&self) -> usize {
+        self.symbolic.diagonal(&self.l).filter(|pivot| *pivot < 0.0).count()
     }
 }

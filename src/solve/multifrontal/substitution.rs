@@ -14,7 +14,7 @@ const TOGETHER: usize = 32;
 impl Numeric {
     /// Solves in place for `columns` right-hand sides, one after the other in `x`.
     pub fn solve(&self, x: &mut [f64], columns: usize) {
-        let n = self.tree.node_at.len() * self.tree.block;
+        let n = self.symbolic.tree.node_at.len() * self.symbolic.tree.block;
         assert_eq!(x.len(), n * columns, "right-hand sides as long as the matrix");
         for x in x.chunks_mut((n * TOGETHER).max(1)) {
             let columns = x.len() / n;
@@ -38,27 +38,37 @@ impl Numeric {
         }
     }
 
+    /// Number of negative pivots.
+    pub fn negative_pivots(&self) -> usize {
+        let b = self.symbolic.tree.block;
+        let negative = |node: &Supernode| {
+            let below = (node.width + node.border) * b;
+            self.panel(node).0.iter().step_by(below + 1).take(node.width * b).filter(|l| **l < 0.0).count()
+        };
+        self.symbolic.tree.supernodes.iter().map(negative).sum()
+    }
+
     /// Calls `f(row of the matrix, row in the order of elimination)` for every row.
     fn permute(&self, mut f: impl FnMut(usize, usize)) {
-        let b = self.tree.block;
-        for (step, &node) in self.tree.node_at.iter().enumerate() {
+        let b = self.symbolic.tree.block;
+        for (step, &node) in self.symbolic.tree.node_at.iter().enumerate() {
             (0..b).for_each(|d| f(node as usize * b + d, step * b + d));
         }
     }
 
     /// The panel of a front and the dofs of its border, in nodes.
     fn panel(&self, node: &Supernode) -> (&[f64], &[u32]) {
-        let height = (node.width + node.border) * self.tree.block;
+        let height = (node.width + node.border) * self.symbolic.tree.block;
         (
-            &self.l[node.panel..][..node.width * self.tree.block * height],
-            &self.tree.rows[node.rows..][..node.border],
+            &self.l[node.panel..][..node.width * self.symbolic.tree.block * height],
+            &self.symbolic.tree.rows[node.rows..][..node.border],
         )
     }
 
     fn solve_one(&self, y: &mut [f64]) {
-        let b = self.tree.block;
+        let b = self.symbolic.tree.block;
         let mut border = Vec::new();
-        for node in &self.tree.supernodes {
+        for node in &self.symbolic.tree.supernodes {
             let (panel, rows) = self.panel(node);
             let width = node.width * b;
             let top = &mut y[node.begin * b..][..width];
@@ -76,7 +86,7 @@ impl Numeric {
                 }
             }
         }
-        for node in self.tree.supernodes.iter().rev() {
+        for node in self.symbolic.tree.supernodes.iter().rev() {
             let (panel, rows) = self.panel(node);
             let width = node.width * b;
             border.clear();
@@ -86,15 +96,16 @@ impl Numeric {
             let top = &mut y[node.begin * b..][..width];
             for (j, column) in panel.chunks_exact(width + border.len()).enumerate().rev() {
                 let sum = dot(&column[j + 1..width], &top[j + 1..]) + dot(&column[width..], &border);
-                top[j] = (top[j] - sum) / column[j];
+                // S: the sign of the pivot.
+                top[j] = (top[j] * column[j].signum() - sum) / column[j];
             }
         }
     }
 
     fn solve_some(&self, y: &mut [f64], columns: usize) {
-        let b = self.tree.block;
+        let b = self.symbolic.tree.block;
         let mut border = Vec::new();
-        for node in &self.tree.supernodes {
+        for node in &self.symbolic.tree.supernodes {
             let (panel, rows) = self.panel(node);
             let width = node.width * b;
             let (l11, l21) =
@@ -112,7 +123,7 @@ impl Numeric {
                 }
             }
         }
-        for node in self.tree.supernodes.iter().rev() {
+        for node in self.symbolic.tree.supernodes.iter().rev() {
             let (panel, rows) = self.panel(node);
             let width = node.width * b;
             let (l11, l21) =
@@ -123,6 +134,11 @@ impl Numeric {
             }
             let below = MatRef::from_row_major_slice(&border, rows.len() * b, columns);
             let top = &mut y[node.begin * b * columns..][..width * columns];
+            for (j, top) in top.chunks_exact_mut(columns).enumerate() {
+                if l11[(j, j)] < 0.0 {
+                    top.iter_mut().for_each(|y| *y = -*y); // S
+                }
+            }
             let mut top = MatMut::from_row_major_slice_mut(top, width, columns);
             matmul(top.as_mut(), Accum::Add, l21.transpose(), below, -1.0, Par::Seq);
             solve_upper_triangular_in_place(l11.transpose(), top, Par::Seq);
