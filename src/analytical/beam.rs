@@ -62,7 +62,7 @@ pub fn bending_length(b: f64, w: f64) -> f64 {
 
 /// `w L³/B` of a heart loop whose height is `(1 + z)` times the weightless one:
 /// `z (231.62 + 88.55 z - 4.44 z² + 48.49 z³)`, a polynomial fit, not exact; the exact relation is
-/// [`super::elastica::loop_height`]. To 0.2 % for `0 < z < 1.05` (loads up to 400).
+/// [`super::hanging::loop_height`]. To 0.2 % for `0 < z < 1.05` (loads up to 400).
 pub fn heart_load(z: f64) -> f64 {
     z * (231.62 + z * (88.55 + z * (-4.44 + z * 48.49)))
 }

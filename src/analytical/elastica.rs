@@ -1,18 +1,18 @@
-//! Inextensible strips in large planar deflection: cantilevers under a tip load and their own
-//! weight, and hanging loops. All lengths are ratios to the strip's.
+//! Inextensible cantilevers in large planar deflection, under a tip load and their own weight. All
+//! lengths are ratios to the strip's.
 //!
 //! `B θ'' = -(P + w (L - s)) cos θ`, `θ(0) = 0`, `θ'(L) = 0` (Euler's elastica; for the heavy strip
 //! F. T. Peirce, *J. Textile Inst.* 21 (1930) T377, and Bickley, *Phil. Mag.* 17 (1934) 603), with
 //! `alpha = P L²/B` and `gamma = w L³/B`; B bending rigidity per width, P and w force and weight
 //! per width.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::FRAC_PI_2;
 
 use super::beam::peirce_ratio;
 use super::rod::{End, Law, Rod, Shape};
 
 /// Collocation points, tried in this order until the shape is resolved.
-const POINTS: [usize; 3] = [48, 96, 160];
+pub(super) const POINTS: [usize; 3] = [48, 96, 160];
 
 /// Factor of the load from one Newton solution to the next; 10 works as well, 100 does not.
 const GROWTH: f64 = 4.0;
@@ -77,7 +77,7 @@ fn ends(rod: &Rod, shape: &Shape) -> Cantilever {
 }
 
 /// Load factors that grow to 1, so that the first load is at most 1.
-fn load_factors(total: f64) -> impl Iterator<Item = f64> {
+pub(super) fn load_factors(total: f64) -> impl Iterator<Item = f64> {
     let steps = (total.max(1.0).ln() / GROWTH.ln()).ceil() as i32;
     (0..=steps).map(move |step| GROWTH.powi(step - steps))
 }
@@ -122,60 +122,8 @@ pub fn bending_length_ratio(chord_angle: f64) -> Option<f64> {
     })
 }
 
-/// How the two ends of a strip are clamped together to form a hanging loop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Loop {
-    /// Both ends point upwards: the strip folds over on both sides.
-    Heart,
-    /// The ends point away from each other.
-    Ring,
-    /// Both ends point downwards.
-    Pear,
-}
-
-/// Height of a hanging loop, from the clamp to its lowest point, over the length of the strip (both
-/// halves), under its own weight `gamma = w L³/B`. To about 1e-11; weightless: heart 0.133860,
-/// ring 1/π, pear 0.424308.
-///
-/// By symmetry half of it is a rod with `B θ'' = w (L/2 - s) cos θ + R sin θ` that arrives
-/// horizontally under the clamp; the unknown R is the tension at the lowest point.
-/// `None` if `gamma` is negative or so large (above about 1e5) that the shape is not resolved.
-pub fn loop_height(shape: Loop, gamma: f64) -> Option<f64> {
-    if gamma.is_nan() || gamma < 0.0 {
-        return None;
-    }
-    let start = match shape {
-        Loop::Heart => FRAC_PI_2,
-        Loop::Ring => 0.0,
-        Loop::Pear => -FRAC_PI_2,
-    };
-    // On the unit half-length the load is w (L/2)³/B.
-    let weight = gamma / 8.0;
-    let above = |angle: f64| [angle.cos(), -angle.sin()];
-    POINTS.iter().find_map(|points| {
-        let rod = Rod::new(*points, start, End::Angle(-PI));
-        let bend = |from: Shape, weight: f64| {
-            let law = |s: f64, angle: f64, tension: f64| {
-                let (sine, cosine) = angle.sin_cos();
-                let w = weight * (1.0 - s);
-                Law {
-                    value: w * cosine + tension * sine,
-                    by_angle: tension * cosine - w * sine,
-                    by_parameter: sine,
-                }
-            };
-            rod.solve(&from, law, Some(&above))
-        };
-        let weightless = bend(rod.even(0.0), 0.0)?;
-        let hung = load_factors(weight).try_fold(weightless, |from, factor| bend(from, factor * weight))?;
-        let (_, rise) = rod.end(&hung);
-        rod.resolves(&hung).then_some(-0.5 * rise)
-    })
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::legendre::gauss;
     use super::*;
     use approx::{assert_abs_diff_eq, assert_relative_eq};
 
@@ -256,39 +204,6 @@ mod tests {
         }
     }
 
-    /// The weightless heart from the first integral `θ'²/2 = C - R cos θ` of its half, by quadrature and
-    /// bisection; the ring is a circle; the pear and the fit to the heavy heart are published to the
-    /// digits used.
-    #[test]
-    fn loops_have_their_heights() {
-        let rule = gauss(200);
-        let (middle, half) = (-0.25 * PI, 0.75 * PI);
-        let integral = |f: &dyn Fn(f64) -> f64| -> f64 {
-            rule.iter().map(|(x, w)| half * w * f(middle + half * x)).sum()
-        };
-        // k = R/C such that the half ends under the clamp.
-        let (mut low, mut high) = (-0.999, 0.999);
-        for _ in 0..60 {
-            let k = 0.5 * (low + high);
-            if integral(&|t| t.cos() / (1.0 - k * t.cos()).sqrt()) > 0.0 {
-                high = k;
-            } else {
-                low = k;
-            }
-        }
-        let length = integral(&|t| 1.0 / (1.0 - low * t.cos()).sqrt());
-        let height = -0.5 * integral(&|t| t.sin() / (1.0 - low * t.cos()).sqrt()) / length;
-        let heart = loop_height(Loop::Heart, 0.0).unwrap();
-        assert_relative_eq!(heart, height, max_relative = 1e-11);
-        assert_relative_eq!(loop_height(Loop::Ring, 0.0).unwrap(), 1.0 / PI, max_relative = 1e-12);
-        // Peirce 1930: 0.4243.
-        assert_abs_diff_eq!(loop_height(Loop::Pear, 0.0).unwrap(), 0.4243, epsilon = 0.51e-4);
-        for gamma in [10.0, 50.0, 100.0, 200.0, 400.0] {
-            let z = loop_height(Loop::Heart, gamma).unwrap() / heart - 1.0;
-            assert_relative_eq!(super::super::beam::heart_load(z), gamma, max_relative = 2e-3);
-        }
-    }
-
     #[test]
     fn what_cannot_be_answered_is_none() {
         assert_eq!(heavy_elastica(0.0), None);
@@ -298,6 +213,5 @@ mod tests {
         assert_eq!(tip_loaded(1e9), None);
         assert_eq!(bending_length_ratio(0.0), None);
         assert_eq!(bending_length_ratio(FRAC_PI_2), None);
-        assert_eq!(loop_height(Loop::Ring, -1.0), None);
     }
 }

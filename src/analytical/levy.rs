@@ -29,7 +29,7 @@ const WAVES: usize = 4001;
 
 impl Plate {
     /// Simply supported at `x = 0, a`, held as `edge` says at `y = 0, b`, under uniform pressure
-    /// `q` (Pa), at `(x, y)` (m). Lévy's series (Timoshenko and Woinowsky-Krieger, sections 31 and 45),
+    /// `q` (Pa), at `(x, y)` (m). Lévy's series (Timoshenko and Woinowsky-Krieger, sections 30, 42 and 48),
     /// its particular part summed to the beam's `q x (a³ - 2 a x² + x³) / (24 D11)`.
     ///
     /// Exact to rounding inside; towards `y = 0, b` the series turn algebraic and the last digits of

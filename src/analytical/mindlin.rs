@@ -49,7 +49,7 @@ impl MindlinPlate {
     /// Simply supported on four edges, hard (`w`, normal moment and tangential rotation are zero), under
     /// uniform pressure `q` (Pa), at `(x, y)` (m): Navier's double series `w = Σ Σ W sin αx sin βy`,
     /// `β_x = Σ Σ X cos αx sin βy`, `β_y = Σ Σ Y sin αx cos βy` (Reddy, *Mechanics of Laminated Composite
-    /// Plates and Shells*, section 6.3), summed with a smooth cut-off.
+    /// Plates and Shells*, chapter 7), summed with a smooth cut-off.
     ///
     /// Good to 1e-10 farther than a twentieth of the side from the edges.
     pub fn supported(&self, x: f64, y: f64, q: f64) -> PlateState {
@@ -92,8 +92,9 @@ impl MindlinPlate {
     }
 
     /// Clamped on four edges (`w = β_x = β_y = 0`) under uniform pressure `q` (Pa), by Ritz's method with
-    /// `count` polynomials per direction and unknown (degree `2 count + 1`): 10 give seven digits of the
-    /// deflection of a square down to `t/L = 0.01`. `None` if the stiffness is not positive definite.
+    /// `count` polynomials per direction and unknown (degree `2 count + 1`). For the deflection of a square
+    /// 10 give about 1e-8 from `t/L = 0.05` on and 1e-6 at 0.01, 15 give 2e-8 there.
+    /// `None` if the stiffness is not positive definite.
     pub fn clamped(&self, q: f64, count: usize) -> Option<ClampedMindlinPlate> {
         let x = Bubbles::new(self.plate.a, count);
         let y = Bubbles::new(self.plate.b, count);
@@ -273,7 +274,7 @@ mod tests {
     }
 
     /// A plate with straight supported edges deflects by the thin plate's `(M_x + M_y) / (1 + nu) / S` more
-    /// (Wang, *J. Struct. Eng.* 121 (1995) 1331): two methods for thick isotropic rectangles.
+    /// (Wang and Alwis, *J. Eng. Mech.* 121, 1995): two methods for thick isotropic rectangles.
     #[test]
     fn thick_supported_plates_follow_from_thin_ones() {
         for (a, t, nu, x, y) in

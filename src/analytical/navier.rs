@@ -11,7 +11,7 @@ impl Plate {
     /// Simply supported on four edges, under uniform pressure `q` (Pa), at `(x, y)` (m).
     ///
     /// `w = Σ Σ 16 q / (π² m n S(α, β)) sin αx sin βy`, m and n odd, `α = mπ/a`, `β = nπ/b`,
-    /// `S = D11 α⁴ + 2 T α² β² + D22 β⁴` (Timoshenko and Woinowsky-Krieger, section 30 and Eq. (247)).
+    /// `S = D11 α⁴ + 2 T α² β² + D22 β⁴` (Timoshenko and Woinowsky-Krieger, sections 28 and 88).
     ///
     /// The series is cut off smoothly: exact to 1e-13 farther than a tenth of the side from the edges, to
     /// 1e-10 (relative to the largest) at a twentieth. Nearer to an edge the deflection is still good to

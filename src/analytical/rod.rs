@@ -89,6 +89,12 @@ impl Rod {
         Shape { second: DVector::zeros(self.points.len()), angles: self.base.clone(), parameter }
     }
 
+    /// The rod with a given `θ''(s)`, as a start.
+    pub fn shaped(&self, second: impl Fn(f64) -> f64, parameter: f64) -> Shape {
+        let second = DVector::from_iterator(self.points.len(), self.points.iter().map(|s| second(*s)));
+        Shape { angles: &self.base + &self.angle_of * &second, second, parameter }
+    }
+
     /// Newton's method from `start`. Without a condition the parameter stays as it is. `None` if it does
     /// not converge.
     pub fn solve(

@@ -10,8 +10,8 @@ const FUNCTIONS: usize = 10;
 
 impl Plate {
     /// The lowest `count` angular frequencies (rad/s) of the plate that is simply supported on four edges,
-    /// ascending: `ω² = S(mπ/a, nπ/b) / ρ`, `S = D11 α⁴ + 2 T α² β² + D22 β⁴` (Timoshenko and
-    /// Woinowsky-Krieger's operator; Leissa, *Vibration of Plates*, Eq. (9.13)). `areal_density` in kg/m².
+    /// ascending: `ω² = S(mπ/a, nπ/b) / ρ`, `S = D11 α⁴ + 2 T α² β² + D22 β⁴` (Leissa,
+    /// *Vibration of Plates*, chapter 9). `areal_density` in kg/m².
     pub fn supported_frequencies(&self, areal_density: f64, count: usize) -> Vec<f64> {
         // With T >= 0 the symbol grows with m and n; 4 count covers T < 0 unless it is nearly -sqrt(D11 D22).
         let waves = 1..=4 * count;

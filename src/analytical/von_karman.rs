@@ -2,7 +2,7 @@
 //!
 //! Membrane strains `u,x + ½ w,x²`, `v,y + ½ w,y²`, `u,y + v,x + w,x w,y`; energy
 //! `½ ∫ ε·A ε + κ·D κ - ∫ q w`, minimised over polynomials of high degree that keep the symmetry
-//! about both middle lines (Timoshenko and Woinowsky-Krieger, sections 100-102; the load stays
+//! about both middle lines (Timoshenko and Woinowsky-Krieger, chapter 13; the load stays
 //! vertical and rotations are moderate).
 
 use nalgebra::{DMatrix, DVector, Matrix3};

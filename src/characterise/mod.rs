@@ -1,5 +1,59 @@
 //! Measurements in, KES parameters with statistics out.
+//!
+//! Definitions and windows follow Kawabata's standard conditions; everything that laboratories do
+//! differently is a field of [`Settings`]. Raw curves are never altered: corrected branches, the
+//! correction itself and the fitted lines stand beside them in [`SpecimenResult`].
 
+mod branch;
+mod checks;
+mod closed_loop;
+mod compression;
+mod graph;
+mod onset;
+#[cfg(test)]
+mod oracles;
+mod settings;
 mod sheet;
+mod specimen;
+mod statistics;
+mod tables;
+mod tensile;
 
+pub use graph::LineFit;
+pub use settings::{CycleChoice, Modulus, Settings};
 pub use sheet::{Branch, FabricSheet, Key, SpecimenResult, Window};
+
+use crate::instrument::FabricInput;
+
+/// The parameter sheet of a fabric.
+///
+/// Never fails: what cannot be evaluated is left out and told in [`FabricSheet::findings`]
+/// (codes `K001` ...), which begin with the findings of reading. Values of result tables pass
+/// into the sheet as they are, unless curves give the same parameter.
+pub fn characterise(input: &FabricInput, settings: &Settings) -> FabricSheet {
+    let mut findings = input.findings.clone();
+    findings.extend(checks::records(input));
+    let mut measurements: Vec<_> = input.measurements.iter().collect();
+    measurements.sort_by_key(|m| (m.test, m.direction, m.specimen));
+    let specimens =
+        measurements.into_iter().filter_map(|m| specimen::evaluate(m, settings, &mut findings)).collect();
+    let mut sheet = FabricSheet {
+        name: input.name.clone(),
+        info: input.info.clone(),
+        specimens,
+        sources: input.sources.clone(),
+        findings,
+        ..Default::default()
+    };
+    statistics::pool(&mut sheet);
+    let mut found = statistics::outliers(&sheet, settings);
+    found.extend(statistics::swapped(&sheet));
+    sheet.findings.append(&mut found);
+    tables::merge(&mut sheet, input);
+    tables::metadata(&mut sheet, input);
+    tables::moduli(&mut sheet, settings);
+    let mut found = checks::plausibility(&sheet);
+    found.extend(checks::shear_directions(&sheet, settings));
+    sheet.findings.append(&mut found);
+    sheet
+}

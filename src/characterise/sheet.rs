@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::LineFit;
 use crate::finding::Finding;
 use crate::instrument::{Direction, FabricInfo, Measurement, Parameter, Source};
 use crate::quantity::{Curve, Estimate};
@@ -53,6 +54,8 @@ pub struct SpecimenResult {
     pub correction: [f64; 2],
     /// Windows and readings, for charts.
     pub windows: Vec<Window>,
+    /// Straight lines behind the slopes, with R², n and the two-point slope.
+    pub fits: Vec<LineFit>,
     /// Parameters of this specimen (SI).
     pub values: BTreeMap<Parameter, f64>,
     /// Tangent stiffness over the low-load window and other moduli, by name (SI N/m):

@@ -196,6 +196,7 @@ impl SpecimenOf {
             branches: vec![Branch { cycle: 0, outgoing: true, curve }],
             correction: [0.0; 2],
             windows: Vec::new(),
+            fits: Vec::new(),
             values: BTreeMap::new(),
             moduli: BTreeMap::new(),
         }

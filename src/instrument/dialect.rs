@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-use serde::{Deserialize, Deserializer};
+use serde::{Deserialize, Deserializer, de};
 
 use super::conditions::StatedConditions;
 use super::words::normalised;
@@ -110,6 +110,8 @@ pub enum TableColumn {
     Sd,
     /// Number of repeats of the row.
     N,
+    /// How the row was had: `inferred` marks a value that was not measured (long form).
+    Status,
 }
 
 /// The words and marks of one kind of file. A laboratory with a layout of its own writes one.
@@ -126,10 +128,12 @@ pub struct Dialect {
     #[serde(rename = "match")]
     pub matches: Vec<String>,
     /// Encoding label (WHATWG), e.g. `shift_jis`; decided from the bytes if absent.
+    #[serde(deserialize_with = "encoding")]
     pub encoding: Option<String>,
     /// Cell delimiter, e.g. `"\t"`; decided from the rows if absent.
     pub delimiter: Option<char>,
     /// Decimal mark, `.` or `,`; decided from the rows if absent.
+    #[serde(deserialize_with = "decimal_mark")]
     pub decimal: Option<char>,
     /// Whether numbers without a unit are in the customary KES unit. Otherwise they are refused.
     pub kes_units: bool,
@@ -168,6 +172,21 @@ where
 {
     let map = BTreeMap::<K, Vec<String>>::deserialize(d)?;
     Ok(map.into_iter().map(|(k, v)| (k, v.iter().map(|w| normalised(w)).collect())).collect())
+}
+
+fn encoding<'de, D: Deserializer<'de>>(d: D) -> Result<Option<String>, D::Error> {
+    let label = String::deserialize(d)?;
+    if encoding_rs::Encoding::for_label(label.as_bytes()).is_none() {
+        return Err(de::Error::custom(format!("`{label}` is not an encoding label such as \"shift_jis\"")));
+    }
+    Ok(Some(label))
+}
+
+fn decimal_mark<'de, D: Deserializer<'de>>(d: D) -> Result<Option<char>, D::Error> {
+    match char::deserialize(d)? {
+        mark @ ('.' | ',') => Ok(Some(mark)),
+        other => Err(de::Error::custom(format!("`{other}` is not a decimal mark: \".\" or \",\""))),
+    }
 }
 
 impl Dialect {

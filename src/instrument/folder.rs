@@ -1,6 +1,6 @@
 //! Folders to fabrics: `fabric.toml`, the files beside it, and batches that no bad file stops.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
@@ -247,55 +247,70 @@ fn fabrics(group: Group, contents: Vec<FileContent>) -> Vec<FabricInput> {
     if contents.is_empty() && group.name.is_none() {
         return Vec::new(); // the single file failed, and the failure says so
     }
-    let mut named: BTreeMap<String, Vec<ResultValue>> = BTreeMap::new();
-    let mut main = FabricInput {
-        path: group.path.clone(),
-        info: group.info,
-        findings: group.findings,
-        ..FabricInput::default()
-    };
-    for content in contents {
-        for (name, value) in content.results {
-            match name {
-                Some(name) => named.entry(name).or_default().push(value),
-                None => main.results.push(value),
-            }
-        }
-        main.measurements.extend(content.measurements);
-        main.fab.extend(content.fab);
-        main.findings.extend(content.findings);
-        main.sources.push(content.source);
-    }
+    let names: BTreeSet<&String> =
+        contents.iter().flat_map(|c| c.results.iter().filter_map(|(name, _)| name.as_ref())).collect();
+    let sample = contents.iter().flat_map(|c| &c.measurements).find_map(|m| m.sample.clone());
+    let of_fab = contents.iter().find_map(|c| c.fab.as_ref()?.name.clone());
+    let only = if names.len() == 1 { names.first().map(|n| (*n).clone()) } else { None };
     let stem = || group.path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    let sample = main.measurements.iter().find_map(|m| m.sample.clone());
-    let of_fab = main.fab.iter().find_map(|f| f.name.clone());
-    let only = if named.len() == 1 { named.keys().next().cloned() } else { None };
-    main.name = group.name.or(sample).or(only).or(of_fab).unwrap_or_else(stem);
-    renumber(&mut main);
-    main.measurements.sort_by_key(|m| (m.test, m.direction, m.specimen));
-    let single = named.len() <= 1 || (named.len() == 1 && !main.measurements.is_empty());
-    if single {
-        main.results.extend(named.into_values().flatten());
-        entitle(&mut main);
-        return vec![main];
+    let name = group.name.clone().or(sample).or(only).or(of_fab).unwrap_or_else(stem);
+    let several = names.len() > 1;
+    let mut out: BTreeMap<String, FabricInput> = BTreeMap::new();
+    if !several {
+        out.insert(name.clone(), blank(&name, &group));
     }
-    let own = !main.measurements.is_empty() || !main.results.is_empty() || !main.fab.is_empty();
-    let each = named.into_iter().map(|(name, results)| {
-        let info = FabricInfo { title: String::new(), ..main.info.clone() };
-        FabricInput { name, info, results, measurements: Vec::new(), fab: Vec::new(), ..main.clone() }
-    });
-    let mut out: Vec<FabricInput> = each.collect();
-    if own {
-        out.insert(0, main);
+    for content in contents {
+        // Values without a name, and the values of a folder's only fabric, belong to the folder.
+        let mut of: BTreeMap<String, Vec<ResultValue>> = BTreeMap::new();
+        for (fabric, value) in content.results {
+            of.entry(fabric.filter(|_| several).unwrap_or_else(|| name.clone())).or_default().push(value);
+        }
+        if !content.measurements.is_empty() || content.fab.is_some() {
+            of.entry(name.clone()).or_default();
+        }
+        for (fabric, results) in of {
+            let input = out.entry(fabric.clone()).or_insert_with(|| blank(&fabric, &group));
+            input.results.extend(results);
+            input.findings.extend(content.findings.iter().cloned());
+            input.sources.push(content.source.clone());
+        }
+        if let Some(input) = out.get_mut(&name) {
+            input.measurements.extend(content.measurements);
+            input.fab.extend(content.fab);
+        }
     }
-    out.iter_mut().for_each(entitle);
-    out
+    out.into_values().map(finished).collect()
 }
 
-fn entitle(fabric: &mut FabricInput) {
+fn blank(name: &str, group: &Group) -> FabricInput {
+    let mut info = group.info.clone();
+    if group.name.as_deref() != Some(name) {
+        // One of several in a table: the title is the folder's, not its own.
+        info.title.clear();
+    }
+    FabricInput {
+        name: name.to_string(),
+        path: group.path.clone(),
+        info,
+        findings: group.findings.clone(),
+        ..FabricInput::default()
+    }
+}
+
+/// Orders the measurements, numbers the specimens, and says when several samples were mixed.
+fn finished(mut fabric: FabricInput) -> FabricInput {
     if fabric.info.title.is_empty() {
         fabric.info.title.clone_from(&fabric.name);
     }
+    let samples: BTreeSet<&str> = fabric.measurements.iter().filter_map(|m| m.sample.as_deref()).collect();
+    if samples.len() > 1 {
+        let named = samples.into_iter().collect::<Vec<_>>().join(", ");
+        let message = format!("several samples are read as one fabric: {named}; give each its own folder");
+        fabric.findings.push(Finding::new("R105", message).at(Place::file(&fabric.path)));
+    }
+    renumber(&mut fabric);
+    fabric.measurements.sort_by_key(|m| (m.test, m.direction, m.specimen));
+    fabric
 }
 
 /// Gives specimens of different files that carry the same number numbers of their own.

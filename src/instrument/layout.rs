@@ -9,8 +9,8 @@ use std::path::Path;
 use super::conditions::StatedConditions;
 use super::dialect::{Dialect, Key, Role};
 use super::error::{Problem, ReadError};
+use super::heading;
 use super::raw::Row;
-use super::result_table;
 use super::sniff::{Number, folded, number};
 use super::words::{Label, Vocabulary, is_volt, split_unit, unit};
 use crate::finding::Place;
@@ -94,7 +94,7 @@ pub(super) fn blocks<'t>(rows: &'t [Row<'t>], context: &Context<'_>) -> Result<V
             scanner.at += 1;
         } else if let Some(columns) = scanner.headings(row) {
             blocks.push(scanner.curves(columns)?);
-        } else if result_table::is_heading(row, context.vocabulary) {
+        } else if heading::is_heading(row, context.vocabulary) {
             blocks.push(scanner.table());
         } else if scanner.labels(row) {
             scanner.at += 1;
@@ -134,7 +134,7 @@ impl<'t> Scanner<'t, '_> {
         let abscissa = columns.iter().any(|c| c.role.is_abscissa());
         let ordinate = columns.iter().any(|c| !c.role.is_abscissa() && c.role != Role::Ignored);
         // A result table may have columns named thickness and pressure too; then it has symbols.
-        let curve = abscissa && ordinate && !result_table::is_heading(row, self.context.vocabulary);
+        let curve = abscissa && ordinate && !heading::is_heading(row, self.context.vocabulary);
         let curve = curve || self.half_pair(row, &columns);
         if curve {
             return Some(columns);

@@ -4,12 +4,15 @@
 //! and `result_table` turn cells into [`Measurement`]s and [`ResultValue`]s. Nothing here computes a
 //! parameter, and raw data are never altered beyond their units.
 
+mod axis;
 mod conditions;
 mod curves;
 mod dialect;
 mod error;
 pub mod fab;
+mod fast;
 mod folder;
+mod heading;
 mod layout;
 mod measurement;
 mod parameter;
@@ -18,6 +21,7 @@ mod read;
 mod result_table;
 mod sniff;
 mod words;
+mod workbook;
 
 pub use conditions::{
     BendingConditions, CompressionConditions, ShearConditions, StatedConditions, TensileConditions,

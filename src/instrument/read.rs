@@ -1,6 +1,6 @@
 //! One file: bytes to measurements, result values or a FAB record.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
@@ -14,6 +14,7 @@ use super::raw::{self, Row};
 use super::result_table::{self, Values};
 use super::sniff::sniff;
 use super::words::{Label, Vocabulary};
+use super::workbook;
 use super::{Measurement, Parameter, ResultValue, Source};
 use crate::finding::{Finding, Place};
 use crate::quantity::ArealDensity;
@@ -72,7 +73,11 @@ pub fn parse(path: &Path, bytes: &[u8], settings: &ReadSettings) -> Result<FileC
         sha256: Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect(),
         ..Source::default()
     };
-    let mut content = text(path, bytes, settings, source)?;
+    let mut content = if workbook::is_workbook(bytes) {
+        sheets(path, bytes, settings, source)?
+    } else {
+        text(path, bytes, settings, source)?
+    };
     number_specimens(path, &mut content);
     for m in &mut content.measurements {
         m.source = content.source.clone();
@@ -87,8 +92,13 @@ fn text(
     source: Source,
 ) -> Result<FileContent, ReadError> {
     let error = |(line, column, problem)| ReadError { place: Place::at(path, line, column), problem };
-    let label = settings.dialects.iter().find_map(|d| d.encoding.as_deref());
-    let raw::Text { text, encoding } = raw::decode(bytes, label).map_err(error)?;
+    let mut decoded = raw::decode(bytes, None);
+    let as_guessed = decoded.as_ref().map_or("", |t| t.text.as_str());
+    let dialect = settings.dialects.iter().find(|d| d.applies_to(as_guessed));
+    if let Some(label) = dialect.and_then(|d| d.encoding.as_deref()) {
+        decoded = raw::decode(bytes, Some(label));
+    }
+    let raw::Text { text, encoding } = decoded.map_err(error)?;
     let mut content = FileContent { source, ..FileContent::default() };
     content.source.encoding = encoding.to_string();
     content.inference.push(format!("encoding {encoding}"));
@@ -103,7 +113,6 @@ fn text(
         (content.fab, content.findings) = (Some(file), findings);
         return Ok(content);
     }
-    let dialect = settings.dialects.iter().find(|d| d.applies_to(&text));
     let delimiter = settings.delimiter.or(dialect.and_then(|d| d.delimiter));
     let decimal = settings.decimal.or(dialect.and_then(|d| d.decimal));
     let format = sniff(&text, delimiter, decimal).map_err(|p| error((0, 0, p)))?;
@@ -136,6 +145,39 @@ fn context<'a>(
         conditions: settings.conditions.or(&of_dialect),
         label: path.file_stem().map(|s| Label::parse(&s.to_string_lossy(), vocabulary)).unwrap_or_default(),
     }
+}
+
+/// A workbook: every sheet is a table, and its name may carry metadata as a file name does.
+fn sheets(
+    path: &Path,
+    bytes: &[u8],
+    settings: &ReadSettings,
+    source: Source,
+) -> Result<FileContent, ReadError> {
+    let error = |problem| ReadError { place: Place::file(path), problem };
+    let decimal = settings.decimal.or_else(|| settings.dialects.iter().find_map(|d| d.decimal));
+    let (sheets, decimal) = workbook::sheets(bytes, decimal).map_err(error)?;
+    let mut content = FileContent { source, ..FileContent::default() };
+    let several = sheets.len() > 1;
+    for sheet in &sheets {
+        // The place of a cell needs its sheet: `book.xlsx[sheet]:line:column`.
+        let named = PathBuf::from(format!("{}[{}]", path.display(), sheet.name));
+        let at = if several { named.as_path() } else { path };
+        let dialect = settings.dialects.iter().find(|d| d.matches.is_empty());
+        let mut context = context(path, settings, dialect, '\t', decimal);
+        context.path = at;
+        context.label = Label::parse(&sheet.name, context.vocabulary).or(context.label);
+        let before = content.inference.len();
+        match table(&sheet.rows, &context, true, &mut content) {
+            // A sheet of remarks or charts among others.
+            Err(e) if several && e.problem == Problem::Empty => content.inference.truncate(before),
+            result => result?,
+        }
+    }
+    if content.measurements.is_empty() && content.results.is_empty() {
+        return Err(error(Problem::Empty));
+    }
+    Ok(content)
 }
 
 /// Reads a table of cells into `content`; `complete` says that its last row ended properly.

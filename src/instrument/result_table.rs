@@ -3,116 +3,23 @@
 //! `fabric,direction,B (gf·cm²/cm),2HB (gf·cm/cm)`, `id,B_warp_uN_m,EMT_weft_percent_inferred`,
 //! `parameter,unit,warp,weft` and `fabric,parameter,direction,mean,sd,n,unit` are all read.
 
+use std::collections::BTreeMap;
+
 use super::curves::finite;
 use super::dialect::TableColumn;
 use super::error::{Problem, ReadError};
+use super::fast::FastValue;
+use super::heading::{Column, ParameterColumn, columns, parameter_column};
 use super::layout::{Context, Header};
 use super::raw::Row;
 use super::sniff::{Number, folded, number};
-use super::words::{Vocabulary, known_unit, normalised, split_unit, unit};
+use super::words::{known_unit, normalised, unit};
 use super::{Direction, Parameter, ResultValue};
 use crate::finding::{Finding, Place};
 use crate::quantity::{Estimate, Unit};
 
 /// Values with the fabric that each belongs to.
 pub(super) type Values = Vec<(Option<String>, ResultValue)>;
-
-/// A column of a result table.
-#[derive(Clone, Debug, PartialEq)]
-enum Column {
-    Meta(TableColumn),
-    Parameter(ParameterColumn),
-    /// Values of one direction (long form).
-    Of(Direction),
-}
-
-/// A parameter in a heading: `B_warp_uN_m`, `EMT weft (%)`, `2HB sd`.
-#[derive(Clone, Debug, PartialEq)]
-struct ParameterColumn {
-    parameter: Parameter,
-    direction: Option<Direction>,
-    unit: Option<String>,
-    sd: bool,
-    inferred: bool,
-}
-
-/// Whether a row is the heading of a result table.
-pub(super) fn is_heading(row: &Row<'_>, vocabulary: Vocabulary<'_>) -> bool {
-    // Header lines carry values; headings never do.
-    let value =
-        |t: &str| t.starts_with(|c: char| c.is_ascii_digit()) && parameter_column(t, vocabulary).is_none();
-    if row.filled().any(|(_, c)| value(&folded(&c.text))) {
-        return false;
-    }
-    let columns: Vec<Column> = row.filled().filter_map(|(_, c)| column(&c.text, vocabulary)).collect();
-    let filled = row.filled().count();
-    let has = |t| columns.contains(&Column::Meta(t));
-    let parameters: Vec<_> =
-        columns.iter().filter_map(|c| if let Column::Parameter(p) = c { Some(p) } else { None }).collect();
-    let long = has(TableColumn::Parameter)
-        && columns.iter().any(|c| matches!(c, Column::Meta(TableColumn::Value) | Column::Of(_)));
-    let named = [TableColumn::Id, TableColumn::Fabric, TableColumn::Direction].into_iter().any(has);
-    // `sample,B` is a header line of a fabric called B.
-    let wide = parameters.len() >= 2
-        || (parameters.len() == 1 && named && (filled > 2 || parameters.iter().any(|p| p.unit.is_some())));
-    long || wide
-}
-
-fn column(cell: &str, vocabulary: Vocabulary<'_>) -> Option<Column> {
-    let (name, _) = split_unit(cell);
-    if let Some(meta) = vocabulary.table_column(&name) {
-        return Some(Column::Meta(meta));
-    }
-    if let Some(parameter) = parameter_column(cell, vocabulary) {
-        return Some(Column::Parameter(parameter));
-    }
-    vocabulary.direction(&name).filter(|_| name.chars().count() < 12).map(Column::Of)
-}
-
-fn parameter_column(cell: &str, vocabulary: Vocabulary<'_>) -> Option<ParameterColumn> {
-    let text = folded(cell).into_owned();
-    let (name, mut unit) = if text.contains('_') { (text, None) } else { split_unit(&text) };
-    let mut found =
-        ParameterColumn { parameter: Parameter::B, direction: None, unit: None, sd: false, inferred: false };
-    if let Some(parameter) = vocabulary.parameter(&name) {
-        found.parameter = parameter;
-        found.unit = unit;
-        return Some(found);
-    }
-    let mut symbol: Vec<&str> = Vec::new();
-    let mut unit_parts: Vec<&str> = Vec::new();
-    let mut parameter = None;
-    for part in name.split(['_', ' ', '(', ')', '-', ',']).filter(|p| !p.is_empty()) {
-        match normalised(part).as_str() {
-            "sd" | "std" | "stdev" => found.sd = true,
-            "inferred" => found.inferred = true,
-            "mean" | "average" => {}
-            _ if parameter.is_some() && vocabulary.direction(part).is_some() => {
-                found.direction = vocabulary.direction(part);
-            }
-            _ if parameter.is_some() => unit_parts.push(part),
-            _ => {
-                symbol.push(part);
-                parameter = vocabulary.parameter(&symbol.join(" "));
-            }
-        }
-    }
-    if !unit_parts.is_empty() {
-        unit = unit.or_else(|| Some(spelt_out(&unit_parts)));
-    }
-    found.parameter = parameter?;
-    found.unit = unit;
-    Some(found)
-}
-
-/// `gf cm2 per cm` as a unit: `gf·cm2/cm`; several divisors go in brackets.
-fn spelt_out(parts: &[&str]) -> String {
-    let at = parts.iter().position(|p| *p == "per").unwrap_or(parts.len());
-    let symbols =
-        |p: &[&str]| p.iter().map(|s| if *s == "percent" { "%" } else { s }).collect::<Vec<_>>().join("·");
-    let above = if at == 0 { "1".to_string() } else { symbols(&parts[..at]) };
-    if at >= parts.len() { above } else { format!("{above}/({})", symbols(&parts[at + 1..])) }
-}
 
 /// Reads the rows of a table.
 ///
@@ -124,24 +31,37 @@ pub(super) fn read(
     rows: &[&Row<'_>],
     context: &Context<'_>,
 ) -> Result<(Values, Vec<Finding>), ReadError> {
-    let columns: Vec<Option<Column>> = heading
-        .cells
-        .iter()
-        .map(|c| Some(&c.text).filter(|t| !t.trim().is_empty()).and_then(|t| column(t, context.vocabulary)))
-        .collect();
-    let mut table = Table { header, heading, columns, context, values: Vec::new(), ignored: Vec::new() };
+    let columns = columns(heading, context.vocabulary);
+    let mut table = Table {
+        header,
+        heading,
+        columns,
+        context,
+        values: Vec::new(),
+        fast: Vec::new(),
+        ignored: Vec::new(),
+        findings: Vec::new(),
+    };
     let long = table.meta(TableColumn::Parameter).is_some();
     let rows = if long { rows } else { table.unit_row(rows) };
     for row in rows {
         if long { table.long_row(row)? } else { table.wide_row(row)? }
     }
     if !long {
-        let unknown =
-            table.heading.filled().filter(|(i, _)| table.columns.get(*i).is_none_or(Option::is_none));
-        let unknown: Vec<_> = unknown.map(|(i, c)| (c.text.to_string(), heading.column(i))).collect();
-        table.ignored.extend(unknown.into_iter().map(|(text, column)| (text, heading.line, column)));
+        table.ignored = table.unused(rows);
     }
+    table.derive_from_fast();
     table.finish()
+}
+
+/// A FAST value (SI) that is not a KES parameter itself.
+struct FastCell {
+    fabric: Option<String>,
+    value: FastValue,
+    direction: Option<Direction>,
+    si: f64,
+    line: usize,
+    column: usize,
 }
 
 struct Table<'t, 'a> {
@@ -150,8 +70,10 @@ struct Table<'t, 'a> {
     columns: Vec<Option<Column>>,
     context: &'a Context<'a>,
     values: Values,
-    /// What is not a KES parameter: text, line, column.
-    ignored: Vec<(String, usize, usize)>,
+    fast: Vec<FastCell>,
+    /// Texts that name no KES parameter.
+    ignored: Vec<String>,
+    findings: Vec<Finding>,
 }
 
 impl Table<'_, '_> {
@@ -168,15 +90,15 @@ impl Table<'_, '_> {
         let Some((first, rest)) = rows.split_first() else { return rows };
         let bare = |i: usize| first.get(i).map(|t| folded(t).trim_matches(['(', ')', '[', ']']).to_string());
         let is_unit = |t: &str| t == "-" || (!matches!(number(t, '.'), Number::Value(_)) && unit(t).is_ok());
-        let parameters = |c: &Option<Column>| matches!(c, Some(Column::Parameter(_)));
+        let parameters = |c: &Option<Column>| matches!(c, Some(Column::Parameter(_) | Column::Fast(..)));
         let indices = || self.columns.iter().enumerate().filter(|(_, c)| parameters(c)).map(|(i, _)| i);
         let any = indices().any(|i| bare(i).is_some_and(|t| is_unit(&t) && t != "-"));
         if !any || !indices().all(|i| bare(i).is_none_or(|t| is_unit(&t))) {
             return rows;
         }
         for (i, column) in self.columns.iter_mut().enumerate() {
-            if let Some(Column::Parameter(p)) = column {
-                p.unit = p.unit.take().or_else(|| bare(i));
+            if let Some(Column::Parameter(ParameterColumn { unit, .. }) | Column::Fast(_, _, unit)) = column {
+                *unit = unit.take().or_else(|| bare(i));
             }
         }
         rest
@@ -212,22 +134,51 @@ impl Table<'_, '_> {
         Err(self.context.error(row.line, row.column(index), Problem::BadTable { found }))
     }
 
+    /// Heading texts of columns with numbers that name no parameter; words describe and need no remark.
+    fn unused(&self, rows: &[&Row<'_>]) -> Vec<String> {
+        let is_number = |t: &str| matches!(number(t, self.context.decimal), Number::Value(_));
+        let numeric = |i: usize| rows.iter().any(|r| r.get(i).is_some_and(is_number));
+        let unknown = |i: usize| self.columns.get(i).is_none_or(Option::is_none);
+        let unused = self.heading.filled().filter(|(i, _)| unknown(*i) && numeric(*i));
+        unused.map(|(_, c)| c.text.to_string()).collect()
+    }
+
     fn wide_row(&mut self, row: &Row<'_>) -> Result<(), ReadError> {
         let (fabric, direction, n) = (self.fabric(row), self.direction(row)?, self.repeats(row)?);
-        for (i, column) in self.columns.clone().iter().enumerate() {
-            let (Some(Column::Parameter(p)), Some(cell)) = (column, row.get(i)) else { continue };
-            if matches!(cell, "-" | "–" | "—") {
-                continue;
+        let columns = self.columns.clone();
+        let mut spreads = Vec::new();
+        for (i, column) in columns.iter().enumerate() {
+            let Some(cell) = row.get(i).filter(|c| !is_gap(c)) else { continue };
+            let heading = (self.heading.line, self.heading.column(i));
+            match column {
+                Some(Column::Parameter(p)) => {
+                    let unit = self.unit(p.parameter, p.unit.as_deref(), heading)?;
+                    let value = finite(row, i, cell, self.context)? * unit.factor;
+                    let of = p.direction.or(direction).filter(|_| p.parameter.is_directional());
+                    if p.sd {
+                        spreads.push((p.parameter, of, value));
+                    } else {
+                        self.push(fabric.clone(), p, of, value, n, (row.line, row.column(i)));
+                    }
+                }
+                Some(Column::Fast(value, of, unit)) => {
+                    let factor = self.fast_unit(*value, unit.as_deref(), heading)?.factor;
+                    let si = finite(row, i, cell, self.context)? * factor;
+                    let (fabric, direction) = (fabric.clone(), of.or(direction));
+                    self.fast.push(FastCell {
+                        fabric,
+                        value: *value,
+                        direction,
+                        si,
+                        line: row.line,
+                        column: row.column(i),
+                    });
+                }
+                _ => {}
             }
-            let unit =
-                self.unit(p.parameter, p.unit.as_deref(), self.heading.line, self.heading.column(i))?;
-            let value = finite(row, i, cell, self.context)? * unit.factor;
-            let direction = p.direction.or(direction).filter(|_| p.parameter.is_directional());
-            if p.sd {
-                self.spread(&fabric, p.parameter, direction, value);
-            } else {
-                self.push(fabric.clone(), p, direction, value, n, (row.line, row.column(i)));
-            }
+        }
+        for (parameter, of, sd) in spreads {
+            self.spread(&fabric, parameter, of, sd);
         }
         Ok(())
     }
@@ -235,21 +186,22 @@ impl Table<'_, '_> {
     fn long_row(&mut self, row: &Row<'_>) -> Result<(), ReadError> {
         let Some(index) = self.meta(TableColumn::Parameter) else { return Ok(()) };
         let Some(name) = row.get(index) else { return Ok(()) };
-        let Some(p) = parameter_column(name, self.context.vocabulary) else {
-            self.ignored.push((name.to_string(), row.line, row.column(index)));
+        let Some(mut p) = parameter_column(name, self.context.vocabulary) else {
+            self.ignored.push(name.to_string());
             return Ok(());
         };
+        p.inferred |= self.text(row, TableColumn::Status).is_some_and(|t| normalised(t) == "inferred");
         let (fabric, direction, n) = (self.fabric(row), self.direction(row)?, self.repeats(row)?);
         let unit_at = self.meta(TableColumn::Unit).unwrap_or(index);
         let text = self.text(row, TableColumn::Unit).or(p.unit.as_deref());
-        let unit = self.unit(p.parameter, text, row.line, row.column(unit_at))?;
+        let unit = self.unit(p.parameter, text, (row.line, row.column(unit_at)))?;
         for (i, column) in self.columns.clone().iter().enumerate() {
             let of = match column {
                 Some(Column::Meta(TableColumn::Value)) => p.direction.or(direction),
                 Some(Column::Of(d)) => Some(*d),
                 _ => continue,
             };
-            let Some(cell) = row.get(i).filter(|c| !matches!(*c, "-" | "–" | "—")) else { continue };
+            let Some(cell) = row.get(i).filter(|c| !is_gap(c)) else { continue };
             let value = finite(row, i, cell, self.context)? * unit.factor;
             let of = of.filter(|_| p.parameter.is_directional());
             self.push(fabric.clone(), &p, of, value, n, (row.line, row.column(i)));
@@ -264,7 +216,12 @@ impl Table<'_, '_> {
     }
 
     /// The unit of a value; dimensionless parameters need none.
-    fn unit(&self, p: Parameter, text: Option<&str>, line: usize, column: usize) -> Result<Unit, ReadError> {
+    fn unit(
+        &self,
+        p: Parameter,
+        text: Option<&str>,
+        (line, column): (usize, usize),
+    ) -> Result<Unit, ReadError> {
         let error = |problem| self.context.error(line, column, problem);
         let text = match text {
             Some(text) if text != "-" || p.kes_unit() == "1" => text,
@@ -283,6 +240,24 @@ impl Table<'_, '_> {
         if unit.dimension != expected.dimension || per_angle {
             let of = p.symbol().to_string();
             let expected = p.kes_unit().to_string();
+            return Err(error(Problem::UnitWrong { found: text.to_string(), of, expected }));
+        }
+        Ok(unit)
+    }
+
+    fn fast_unit(
+        &self,
+        value: FastValue,
+        text: Option<&str>,
+        (line, column): (usize, usize),
+    ) -> Result<Unit, ReadError> {
+        let error = |problem| self.context.error(line, column, problem);
+        let (of, expected) = (value.symbol().to_string(), value.unit().to_string());
+        let Some(text) = text else {
+            return Err(error(Problem::UnitMissing { found: of, expected }));
+        };
+        let unit = known_unit(text).map_err(error)?;
+        if unit.dimension != known_unit(value.unit()).map_err(error)?.dimension {
             return Err(error(Problem::UnitWrong { found: text.to_string(), of, expected }));
         }
         Ok(unit)
@@ -319,28 +294,60 @@ impl Table<'_, '_> {
         }
     }
 
+    /// B from the bending length and G from EB5, where the table does not state them.
+    fn derive_from_fast(&mut self) {
+        for cell in std::mem::take(&mut self.fast) {
+            let parameter = cell.value.parameter();
+            let of_fabric = |v: &&(Option<String>, ResultValue)| v.0 == cell.fabric;
+            let has = |p: Parameter| self.values.iter().filter(of_fabric).find(|(_, v)| v.parameter == p);
+            let areal_density = has(Parameter::W).map(|(_, v)| v.mean);
+            let stated = has(parameter).is_some_and(|(_, v)| !v.inferred);
+            let derived = cell.value.derive(cell.si, areal_density).filter(|_| !stated);
+            let Some(mean) = derived else {
+                self.ignored.push(cell.value.symbol().to_string());
+                continue;
+            };
+            // EB5 is one bias test: its G holds for both directions.
+            let direction = if cell.value == FastValue::Eb5 { None } else { cell.direction };
+            let place = Place::at(self.context.path, cell.line, cell.column);
+            let value = ResultValue {
+                parameter,
+                direction,
+                mean,
+                sd: None,
+                n: 1,
+                inferred: true,
+                place: place.clone(),
+            };
+            let message = format!("{parameter} was calculated from the FAST value {}", cell.value.symbol());
+            self.findings.push(Finding::new("R107", message).at(place));
+            self.values.push((cell.fabric, value));
+        }
+    }
+
     /// Averages repeated rows, refuses contradictions, and says what was left out.
-    fn finish(self) -> Result<(Values, Vec<Finding>), ReadError> {
+    fn finish(mut self) -> Result<(Values, Vec<Finding>), ReadError> {
         let repeats = self.meta(TableColumn::Specimen).is_some();
         let mut out: Vec<(Option<String>, ResultValue, Vec<f64>)> = Vec::new();
+        let mut known: BTreeMap<_, usize> = BTreeMap::new();
         for (fabric, value) in self.values {
-            let same = |(f, v, _): &&mut (Option<String>, ResultValue, Vec<f64>)| {
-                *f == fabric && v.parameter == value.parameter && v.direction == value.direction
+            let key = (fabric.clone(), value.parameter, value.direction);
+            let Some(&at) = known.get(&key) else {
+                known.insert(key, out.len());
+                let mean = value.mean;
+                out.push((fabric, value, vec![mean]));
+                continue;
             };
-            match out.iter_mut().find(same) {
-                None => out.push((fabric, value.clone(), vec![value.mean])),
-                // One thickness per direction row: the fabric has one.
-                Some((_, known, means)) if repeats || !value.parameter.is_directional() => {
-                    if repeats || !means.contains(&value.mean) {
-                        means.push(value.mean);
-                    }
-                    known.mean = means.iter().sum::<f64>() / means.len() as f64;
-                }
-                Some((_, known, _)) => {
-                    let found =
-                        format!("{} is given twice (first in line {})", value.parameter, known.place.line);
-                    return Err(ReadError { place: value.place, problem: Problem::BadTable { found } });
-                }
+            let means = &mut out[at].2;
+            if repeats {
+                means.push(value.mean);
+            } else if value.parameter.is_directional() {
+                let found =
+                    format!("{} is given twice (first in line {})", value.parameter, out[at].1.place.line);
+                return Err(ReadError { place: value.place, problem: Problem::BadTable { found } });
+            } else if !means.contains(&value.mean) {
+                // A thickness in each direction's row: the fabric has one.
+                means.push(value.mean);
             }
         }
         if out.is_empty() {
@@ -353,11 +360,17 @@ impl Table<'_, '_> {
             }
             (fabric, value)
         };
-        let ignored =
-            |(text, line, column): (String, usize, usize)| {
-                Finding::new("R104", format!("{text:?} is not a KES parameter and was left out"))
-                    .at(Place::at(self.context.path, line, column))
-            };
-        Ok((out.into_iter().map(averaged).collect(), self.ignored.into_iter().map(ignored).collect()))
+        self.ignored.dedup();
+        if !self.ignored.is_empty() {
+            let message = format!("no KES parameters, and left out: {}", self.ignored.join(", "));
+            let place = Place::at(self.context.path, self.heading.line, 0);
+            self.findings.push(Finding::new("R104", message).at(place));
+        }
+        Ok((out.into_iter().map(averaged).collect(), self.findings))
     }
+}
+
+/// A cell that stands for "not measured".
+fn is_gap(cell: &str) -> bool {
+    matches!(cell, "-" | "–" | "—")
 }

@@ -80,7 +80,7 @@ pub(super) fn number(cell: &str, decimal: char) -> Number {
 /// `R005` where two readings are equally good.
 pub(super) fn sniff(text: &str, delimiter: Option<char>, decimal: Option<char>) -> Result<Format, Problem> {
     let mut best: Vec<(i64, Format)> = Vec::new();
-    for d in ['\t', ';', ','].into_iter().filter(|d| delimiter.is_none_or(|known| known == *d)) {
+    for d in delimiter.map_or_else(|| vec!['\t', ';', ','], |known| vec![known]) {
         for m in ['.', ','].into_iter().filter(|m| decimal.is_none_or(|known| known == *m)) {
             if d != m {
                 best.push((score(text, d, m), Format { delimiter: d, decimal: m }));

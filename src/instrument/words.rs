@@ -96,9 +96,10 @@ impl<'a> Vocabulary<'a> {
 
     /// The dialect that knows most of these words, and the words that it does not know.
     pub fn closest(self, words: &[String]) -> (String, Vec<String>) {
+        let words: Vec<(&String, String)> = words.iter().map(|w| (w, normalised(&split_unit(w).0))).collect();
         let unknown = |d: &Dialect| -> Vec<String> {
-            let knows = |w: &str| d.vocabulary().any(|v| v == normalised(w));
-            words.iter().filter(|w| !knows(split_unit(w).0.as_str())).cloned().collect()
+            let knows = |word: &str| d.vocabulary().any(|v| v == word);
+            words.iter().filter(|(_, word)| !knows(word)).map(|(w, _)| (*w).clone()).collect()
         };
         self.dialects()
             .map(|d| (d.name.clone(), unknown(d)))
@@ -206,6 +207,16 @@ impl Label {
         }
         label.sample = (!sample.is_empty()).then(|| sample.join("-"));
         label
+    }
+
+    /// `self` where it says something, else `other`; the sample is a file name's, not a sheet's.
+    pub fn or(self, other: Self) -> Self {
+        Self {
+            sample: other.sample,
+            test: self.test.or(other.test),
+            direction: self.direction.or(other.direction),
+            specimen: self.specimen.or(other.specimen),
+        }
     }
 
     fn take(&mut self, part: &str, vocabulary: Vocabulary<'_>) -> bool {

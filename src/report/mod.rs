@@ -1,6 +1,18 @@
-//! Everything that people see as files.
+//! Everything that people see as files: charts, tables, JSON, VTU, a page, and how they are put in place.
+//!
+//! The makers are pure: they return bytes, the same for the same data. [`write`] is the only part that
+//! touches the disk.
 
+pub mod html;
+pub mod json;
+pub mod table;
+pub mod vtu;
+pub mod write;
+
+#[cfg(feature = "charts")]
 mod number;
 
 #[cfg(feature = "charts")]
 pub mod chart;
+
+pub use write::{OutputError, OutputFolder};

@@ -45,7 +45,7 @@ pub enum FactorError {
     },
     /// A pivot of an indefinite matrix is zero or not a number.
     #[error(
-        "N006 the tangent is singular: pivot {pivot:e} at node {node}, dof {dof}; \
+        "N003 the tangent is singular: pivot {pivot:e} at node {node}, dof {dof}; \
          it stands at a limit or bifurcation point, or something is not supported"
     )]
     Singular {

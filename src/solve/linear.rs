@@ -54,9 +54,9 @@ pub enum SolveError {
     /// N002: the factorisation itself failed.
     #[error(transparent)]
     Factor(FactorError),
-    /// N003: the answer does not satisfy the equations.
+    /// N006: the answer does not satisfy the equations.
     #[error(
-        "N003 the residual is {residual:e} of the load, above {limit:e}: the model is nearly singular or too badly scaled"
+        "N006 the residual is {residual:e} of the load, above {limit:e}: the model is nearly singular or too badly scaled"
     )]
     Residual {
         /// |K u - f| / |f|.
@@ -89,7 +89,7 @@ impl SolveError {
             Self::Model(e) => e.code(),
             Self::Singular { .. } => "N001",
             Self::Factor(_) => "N002",
-            Self::Residual { .. } => "N003",
+            Self::Residual { .. } => "N006",
             Self::ModesNotSettled { .. } => "N004",
             Self::StepVanished { .. } => "N005",
         }

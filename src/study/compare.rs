@@ -107,6 +107,7 @@ mod tests {
             branches: vec![Branch { cycle: 0, outgoing: true, curve }],
             correction: [0.0; 2],
             windows: Vec::new(),
+            fits: Vec::new(),
             values: Default::default(),
             moduli: Default::default(),
         };

@@ -87,6 +87,7 @@ impl Mock {
             branches,
             correction: [0.0; 2],
             windows,
+            fits: Vec::new(),
             values: BTreeMap::new(),
             moduli: BTreeMap::new(),
         });

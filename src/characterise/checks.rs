@@ -1,0 +1,102 @@
+//! Findings about the fabric as a whole.
+
+use super::statistics::name;
+use super::{FabricSheet, Settings};
+use crate::finding::{Finding, Place};
+use crate::instrument::{Direction, FabricInput, Measurement, Parameter, Test};
+
+/// Plausible means of woven apparel fabrics in KES units; a value outside is a question, not an error.
+const PLAUSIBLE: [(Parameter, f64, f64); 9] = [
+    (Parameter::B, 0.01, 1.0),
+    (Parameter::G, 0.3, 3.0),
+    (Parameter::Lt, 0.4, 1.0),
+    (Parameter::Emt, 1.0, 30.0),
+    (Parameter::Rt, 30.0, 80.0),
+    (Parameter::T0, 0.1, 2.0),
+    (Parameter::W, 3.0, 50.0),
+    (Parameter::Lc, 0.1, 1.0),
+    (Parameter::Rc, 20.0, 100.0),
+];
+
+/// Loop widths: a negative one means that the branches were taken for each other.
+const WIDTHS: [Parameter; 4] = [Parameter::Hg, Parameter::Hg5, Parameter::Hb, Parameter::Hb05];
+
+/// K011: values that no woven apparel fabric has; usually a unit.
+pub(super) fn plausibility(sheet: &FabricSheet) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for (key, estimate) in &sheet.values {
+        let value = estimate.mean / key.parameter.kes_factor();
+        let unit = key.parameter.kes_unit();
+        if let Some((_, low, high)) = PLAUSIBLE.iter().find(|p| p.0 == key.parameter)
+            && !(*low..=*high).contains(&value)
+        {
+            findings.push(Finding::new(
+                "K011",
+                format!("{} = {value:.4} {unit} is outside {low} to {high}, the range of woven apparel fabrics: check unit, specimen width and conditions", name(*key)),
+            ));
+        }
+        if WIDTHS.contains(&key.parameter) && value < 0.0 {
+            findings.push(Finding::new(
+                "K011",
+                format!("{} = {value:.4} {unit} is negative: the loop runs backwards", name(*key)),
+            ));
+        }
+    }
+    findings
+}
+
+/// K012: both shear tests measure one constant.
+pub(super) fn shear_directions(sheet: &FabricSheet, settings: &Settings) -> Option<Finding> {
+    let [warp, weft] = [Direction::Warp, Direction::Weft].map(|d| sheet.get(Parameter::G, Some(d)));
+    let (warp, weft) = (warp?.mean, weft?.mean);
+    let difference = (warp - weft).abs() / (0.5 * (warp + weft)).abs();
+    (difference > settings.shear_difference.si()).then(|| {
+        let text = format!(
+            "G differs by {:.0} % between warp and weft, although both tests measure one constant",
+            100.0 * difference
+        );
+        Finding::new("K012", text)
+    })
+}
+
+/// K006, K007, K015, K019: what the set of records says about itself.
+pub(super) fn records(input: &FabricInput) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let at = |m: &Measurement| Place::at(&m.source.path, m.lines.first().copied().unwrap_or(0), 0);
+    for test in Test::ALL {
+        let set: Vec<&Measurement> = input.measurements.iter().filter(|m| m.test == test).collect();
+        for (i, m) in set.iter().enumerate() {
+            if m.direction.is_none() && test != Test::Compression {
+                let text = format!(
+                    "{} specimen {}: no yarn direction is stated; its values stand for the fabric as a whole",
+                    test.name(),
+                    m.specimen
+                );
+                findings.push(Finding::new("K015", text).at(at(m)));
+            }
+            if set[..i].iter().any(|o| o.direction == m.direction && o.specimen == m.specimen) {
+                let direction = m.direction.map_or(String::new(), |d| format!(" {d}"));
+                let text = format!(
+                    "{}{direction}: specimen {} occurs twice; both are used",
+                    test.name(),
+                    m.specimen
+                );
+                findings.push(Finding::new("K019", text).at(at(m)));
+            }
+        }
+        let Some(first) = set.first() else { continue };
+        let (a, b) = (first.conditions.maximum, first.conditions.pretension);
+        let differs = |x: f64, y: f64| (x - y).abs() > 1e-6 * x.abs().max(y.abs());
+        let other =
+            set.iter().find(|m| differs(m.conditions.maximum, a) || differs(m.conditions.pretension, b));
+        if let Some(other) = other {
+            let text = format!(
+                "the {} records were not taken under the same conditions (maximum or tension differ from those of {})",
+                test.name(),
+                first.source.path.display()
+            );
+            findings.push(Finding::new("K007", text).at(at(other)));
+        }
+    }
+    findings
+}

@@ -1,0 +1,195 @@
+//! FB1 shear and FB2 bending: slopes and loop widths of a cycle to both sides of zero.
+
+use super::graph::Graph;
+use super::specimen::{Evaluation, Notes, in_unit};
+use super::tensile::shift;
+use super::{Branch, CycleChoice, Settings, Window, branch};
+use crate::instrument::Parameter;
+use crate::quantity::Curve;
+
+/// What is read from the loop.
+struct Readings {
+    /// The mean slope of both sides.
+    mean: Parameter,
+    /// Parameter and name of the slope on the positive and on the negative side.
+    sides: [(Parameter, &'static str); 2],
+    /// Abscissae (absolute) between which the slopes are fitted.
+    slope: [f64; 2],
+    /// Loop widths and the abscissae (absolute) at which they are read.
+    widths: [(Parameter, f64); 2],
+    /// Units of abscissa and ordinate in messages.
+    units: [&'static str; 2],
+}
+
+/// Parameters of a shear record (x = rad, y = N/m): G, 2HG, 2HG5.
+pub(super) fn shear(curve: &Curve, settings: &Settings, notes: &mut Notes<'_>) -> Result<Evaluation, String> {
+    let [near, far] = settings.shear_readings.map(|a| a.si());
+    let readings = Readings {
+        mean: Parameter::G,
+        sides: [(Parameter::G, "G+"), (Parameter::G, "G-")],
+        slope: settings.shear_slope.map(|a| a.si()),
+        widths: [(Parameter::Hg, near), (Parameter::Hg5, far)],
+        units: ["deg", "gf/cm"],
+    };
+    if settings.tension_correction {
+        // Part of the constant tension W along the sheared specimen: W tan φ.
+        let tension = notes.measurement.conditions.pretension;
+        let corrected = Curve::from_points(curve.points().map(|(x, y)| (x, y - tension * x.tan())));
+        return evaluate(&corrected, &readings, settings, notes);
+    }
+    evaluate(curve, &readings, settings, notes)
+}
+
+/// Parameters of a bending record (x = 1/m, y = N): B, Bf, Bb, 2HB, 2HB05.
+pub(super) fn bending(
+    curve: &Curve,
+    settings: &Settings,
+    notes: &mut Notes<'_>,
+) -> Result<Evaluation, String> {
+    let [at_one, at_half] = settings.bending_readings.map(|k| k.si());
+    let readings = Readings {
+        mean: Parameter::B,
+        sides: [(Parameter::Bf, "Bf"), (Parameter::Bb, "Bb")],
+        slope: settings.bending_slope.map(|k| k.si()),
+        widths: [(Parameter::Hb, at_one), (Parameter::Hb05, at_half)],
+        units: ["1/cm", "gf·cm/cm"],
+    };
+    evaluate(curve, &readings, settings, notes)
+}
+
+/// Outgoing and return branch on one side of the chosen cycle.
+struct Side {
+    sign: f64,
+    out: Graph,
+    back: Graph,
+}
+
+fn evaluate(
+    curve: &Curve,
+    readings: &Readings,
+    settings: &Settings,
+    notes: &mut Notes<'_>,
+) -> Result<Evaluation, String> {
+    let mut branches =
+        branch::two_sided(curve, settings.reversal.si()).ok_or("the drive does not move".to_string())?;
+    let correction = correct(&mut branches, readings, settings, notes);
+    let sides = [1.0, -1.0].map(|sign| side(&branches, sign, settings.cycle));
+    let mut e = Evaluation { branches, correction, ..Default::default() };
+    if sides.iter().flatten().count() == 0 {
+        return Err("no branch leads away from zero".into());
+    }
+    slopes(&mut e, &sides, readings, settings, notes);
+    for &(parameter, at) in &readings.widths {
+        width(&mut e, &sides, (parameter, at), notes);
+    }
+    for side in sides.iter().flatten() {
+        let observed = side.out.x.iter().copied().map(f64::abs).fold(0.0, f64::max);
+        notes.maximum(observed, readings.units[0], settings);
+    }
+    Ok(e)
+}
+
+/// Takes off the ordinate offset: the loop's two passages of zero are symmetric about the true zero.
+fn correct(
+    branches: &mut [Branch],
+    readings: &Readings,
+    settings: &Settings,
+    notes: &mut Notes<'_>,
+) -> [f64; 2] {
+    let top = branches.iter().flat_map(|b| &b.curve.x).copied().map(f64::abs).fold(0.0, f64::max);
+    // The first branch starts in virgin cloth, inside the loop. Falling and rising passage of zero:
+    let passage = |rising: bool| {
+        let ends = |b: &Branch| Some((*b.curve.x.first()?, *b.curve.x.last()?, *b.curve.y.last()?));
+        let same = || branches[1..].iter().filter(|b| ends(b).is_some_and(|(a, z, _)| (z > a) == rising));
+        // A record that stops just short of zero is taken at its last sample.
+        let nearly = |b: &Branch| ends(b).filter(|e| !b.outgoing && e.1.abs() < 0.02 * top).map(|e| e.2);
+        same().find_map(|b| Graph::of(&b.curve).at(0.0)).or_else(|| same().find_map(nearly))
+    };
+    let (Some(fall), Some(rise), true) = (passage(false), passage(true), settings.correct_zero) else {
+        return [0.0; 2];
+    };
+    let offset = 0.5 * (fall + rise);
+    let high = branches.iter().flat_map(|b| &b.curve.y).map(|y| (y - offset).abs()).fold(0.0, f64::max);
+    if offset.abs() > settings.large_correction.si() * high {
+        notes.add("K008", format!("a zero offset of {} was taken off", in_unit(offset, readings.units[1])));
+    }
+    shift(branches, [0.0, -offset]);
+    [0.0, 0.0 - offset]
+}
+
+/// The branches of the chosen cycle on the side of `sign`; `None` if the drive did not go there.
+fn side(branches: &[Branch], sign: f64, choice: CycleChoice) -> Option<Side> {
+    let on_side = |b: &&Branch| {
+        let extreme = b.curve.x.iter().copied().fold(0.0, |a: f64, x| if x.abs() > a.abs() { x } else { a });
+        extreme * sign > 0.0
+    };
+    let mut found = branches.iter().filter(|b| b.outgoing).filter(on_side);
+    let out = match choice {
+        CycleChoice::First => found.next(),
+        CycleChoice::Last => found.next_back(),
+    }?;
+    let back = branches.iter().filter(|b| !b.outgoing && b.cycle == out.cycle).find(on_side);
+    let back = back.map_or_else(Graph::default, |b| Graph::of(&b.curve));
+    Some(Side { sign, out: Graph::of(&out.curve), back })
+}
+
+fn slopes(
+    e: &mut Evaluation,
+    sides: &[Option<Side>; 2],
+    readings: &Readings,
+    settings: &Settings,
+    notes: &mut Notes<'_>,
+) {
+    let mut found = Vec::new();
+    for (side, (parameter, name)) in sides.iter().zip(readings.sides) {
+        let Some(side) = side else { continue };
+        let ends = readings.slope.map(|x| side.sign * x);
+        let (from, to) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+        let Some(fit) = side.out.fit(name, from, to) else {
+            notes.missing(name, "the outgoing branch does not cover its window");
+            continue;
+        };
+        notes.judge(&fit, settings);
+        let line = |x: f64| fit.intercept + fit.slope * x;
+        e.windows.push(Window { parameter, from, to, ordinates: [line(from), line(to)] });
+        if parameter != readings.mean {
+            e.values.insert(parameter, fit.slope);
+        }
+        found.push(fit.slope);
+        e.fits.push(fit);
+    }
+    one_side_only(found.len(), readings.mean, notes);
+    if !found.is_empty() {
+        e.values.insert(readings.mean, found.iter().sum::<f64>() / found.len() as f64);
+    }
+}
+
+fn width(
+    e: &mut Evaluation,
+    sides: &[Option<Side>; 2],
+    (parameter, at): (Parameter, f64),
+    notes: &mut Notes<'_>,
+) {
+    let mut found = Vec::new();
+    for side in sides.iter().flatten() {
+        let x = side.sign * at;
+        let (Some(out), Some(back)) = (side.out.at(x), side.back.at(x)) else {
+            let place = if side.sign > 0.0 { "positive" } else { "negative" };
+            notes
+                .missing(&format!("{parameter} on the {place} side"), "the loop does not cover its abscissa");
+            continue;
+        };
+        found.push(side.sign * (out - back));
+        e.windows.push(Window { parameter, from: x, to: x, ordinates: [out.min(back), out.max(back)] });
+    }
+    one_side_only(found.len(), parameter, notes);
+    if !found.is_empty() {
+        e.values.insert(parameter, found.iter().sum::<f64>() / found.len() as f64);
+    }
+}
+
+fn one_side_only(sides: usize, parameter: Parameter, notes: &mut Notes<'_>) {
+    if sides == 1 {
+        notes.add("K018", format!("{parameter} comes from one side only, not from the mean of both"));
+    }
+}

@@ -1,0 +1,234 @@
+//! Windows, readings and thresholds of the evaluation.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize, Serializer, de};
+
+use crate::quantity::{Angle, Curvature, LineForce, Pressure, QuantityError, Ratio, STANDARD_GRAVITY};
+
+/// gf/cm in N/m.
+const GF_PER_CM: f64 = STANDARD_GRAVITY * 0.1;
+/// One degree in rad.
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// How a stiffness is taken from the loading branch of a tensile test.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Modulus {
+    /// Slope over [`Settings::tangent_low`]: the load range of cloth under its own weight.
+    TangentLow,
+    /// Fm / e_m.
+    Secant,
+    /// 2 WT / e_m² = LT · secant.
+    Energy,
+    /// Slope between two forces per width.
+    Window(LineForce, LineForce),
+}
+
+impl Modulus {
+    /// `tangent_low`, `secant`, `energy` or `window(20 gf/cm, 100 gf/cm)`: the key in sheets.
+    pub fn name(self) -> String {
+        match self {
+            Self::TangentLow => "tangent_low".into(),
+            Self::Secant => "secant".into(),
+            Self::Energy => "energy".into(),
+            Self::Window(a, b) => format!("window({}, {})", in_gf_per_cm(a), in_gf_per_cm(b)),
+        }
+    }
+}
+
+impl fmt::Display for Modulus {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.name())
+    }
+}
+
+impl FromStr for Modulus {
+    type Err = QuantityError;
+
+    fn from_str(text: &str) -> Result<Self, QuantityError> {
+        match text.trim() {
+            "tangent_low" => Ok(Self::TangentLow),
+            "secant" => Ok(Self::Secant),
+            "energy" => Ok(Self::Energy),
+            other => other
+                .strip_prefix("window(")
+                .and_then(|rest| rest.strip_suffix(')'))
+                .and_then(|rest| rest.split_once(','))
+                .ok_or_else(|| QuantityError::NoNumber {
+                    found: other.to_string(),
+                    example: "tangent_low, secant, energy or window(5 gf/cm, 20 gf/cm)",
+                })
+                .and_then(|(a, b)| Ok(Self::Window(a.parse()?, b.parse()?))),
+        }
+    }
+}
+
+impl Serialize for Modulus {
+    fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
+        s.collect_str(self)
+    }
+}
+
+impl<'de> Deserialize<'de> for Modulus {
+    fn deserialize<D: de::Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        String::deserialize(d)?.parse().map_err(de::Error::custom)
+    }
+}
+
+/// Which cycle of a repeated test the parameters are taken from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum CycleChoice {
+    /// The first: virgin cloth, as the KES parameters are defined.
+    #[default]
+    First,
+    /// The last: conditioned cloth.
+    Last,
+}
+
+/// Everything in the evaluation that a laboratory may do differently. The defaults are the
+/// customary ones (Kawabata's standard conditions); they are printed beside every sheet.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// Angles between which G is fitted, on both sides (0.5 to 2.5 deg; the literature also uses 0.5 to 5 deg).
+    pub shear_slope: [Angle; 2],
+    /// Angles at which 2HG and 2HG5 are read (0.5 and 5 deg).
+    pub shear_readings: [Angle; 2],
+    /// Whether the part of the constant tension, W tan φ, is taken off the shear force (off: published G contain it).
+    pub tension_correction: bool,
+    /// Curvatures between which B is fitted, on both sides (0.5 to 1.5 1/cm).
+    pub bending_slope: [Curvature; 2],
+    /// Curvatures at which 2HB and 2HB05 are read (1.0 and 0.5 1/cm).
+    pub bending_readings: [Curvature; 2],
+    /// Forces between which the modulus `tangent_low` is fitted (5 to 20 gf/cm).
+    pub tangent_low: [LineForce; 2],
+    /// The moduli that are evaluated.
+    pub moduli: Vec<Modulus>,
+    /// Maximum tensile force behind a published EMT or LT that comes without conditions (500 gf/cm).
+    pub table_maximum: LineForce,
+    /// Pressure at which thickness counts as begun: T0 (0.5 gf/cm²).
+    pub compression_start: Pressure,
+    /// Which cycle the parameters are taken from.
+    pub cycle: CycleChoice,
+    /// Whether zero, offset and slack are corrected.
+    pub correct_zero: bool,
+    /// A drive reversal counts when it is longer than this part of the range of the abscissa; less is jitter.
+    pub reversal: Ratio,
+    /// A zero or slack correction larger than this part of the maximum is reported.
+    pub large_correction: Ratio,
+    /// Difference between the fitted and the two-point slope that is reported.
+    pub slope_difference: Ratio,
+    /// Difference between the observed and the set maximum that is reported.
+    pub maximum_difference: Ratio,
+    /// Noise, as a part of the range of the ordinate, that is reported.
+    pub noise: Ratio,
+    /// Difference of G between warp and weft that is reported.
+    pub shear_difference: Ratio,
+    /// Deviation from the median below which a repeat is never called an outlier by its MAD.
+    pub outlier_floor: Ratio,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            shear_slope: [Angle(0.5 * DEGREE), Angle(2.5 * DEGREE)],
+            shear_readings: [Angle(0.5 * DEGREE), Angle(5.0 * DEGREE)],
+            tension_correction: false,
+            bending_slope: [Curvature(50.0), Curvature(150.0)],
+            bending_readings: [Curvature(100.0), Curvature(50.0)],
+            tangent_low: [LineForce(5.0 * GF_PER_CM), LineForce(20.0 * GF_PER_CM)],
+            moduli: vec![Modulus::TangentLow, Modulus::Secant, Modulus::Energy],
+            table_maximum: LineForce(500.0 * GF_PER_CM),
+            compression_start: Pressure(0.5 * STANDARD_GRAVITY * 10.0),
+            cycle: CycleChoice::First,
+            correct_zero: true,
+            reversal: Ratio(0.05),
+            large_correction: Ratio(0.10),
+            slope_difference: Ratio(0.05),
+            maximum_difference: Ratio(0.02),
+            noise: Ratio(0.01),
+            shear_difference: Ratio(0.15),
+            outlier_floor: Ratio(0.10),
+        }
+    }
+}
+
+impl Settings {
+    /// Name and value of each setting that enters a parameter, in KES units, for printing beside a result.
+    pub fn describe(&self) -> Vec<(&'static str, String)> {
+        let degrees = |a: Angle| format!("{} deg", round(a.si() / DEGREE));
+        let per_cm = |k: Curvature| format!("{} 1/cm", round(k.si() / 100.0));
+        let range = |a: String, b: String| format!("{a} .. {b}");
+        let [g0, g1] = self.shear_slope.map(degrees);
+        let [h0, h1] = self.shear_readings.map(degrees);
+        let [b0, b1] = self.bending_slope.map(per_cm);
+        let [r0, r1] = self.bending_readings.map(per_cm);
+        let [t0, t1] = self.tangent_low.map(in_gf_per_cm);
+        vec![
+            ("G fitted over", range(g0, g1)),
+            ("2HG, 2HG5 read at", format!("{h0}, {h1}")),
+            ("W tan(phi) taken off the shear force", yes_no(self.tension_correction)),
+            ("B fitted over", range(b0, b1)),
+            ("2HB, 2HB05 read at", format!("{r0}, {r1}")),
+            ("tangent_low fitted over", range(t0, t1)),
+            (
+                "T0 read at",
+                format!("{} gf/cm²", round(self.compression_start.si() / (STANDARD_GRAVITY * 10.0))),
+            ),
+            ("cycle", if self.cycle == CycleChoice::First { "first" } else { "last" }.to_string()),
+            ("zero, offset and slack corrected", yes_no(self.correct_zero)),
+        ]
+    }
+}
+
+fn yes_no(flag: bool) -> String {
+    if flag { "yes" } else { "no" }.to_string()
+}
+
+fn in_gf_per_cm(force: LineForce) -> String {
+    format!("{} gf/cm", round(force.si() / GF_PER_CM))
+}
+
+/// Nine significant digits are past every setting: this removes the last-bit noise of a conversion.
+fn round(value: f64) -> f64 {
+    format!("{value:.8e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_read_from_toml_with_units_and_unknown_keys_are_refused() {
+        let s: Settings = toml::from_str(
+            "shear_slope = [\"0.5 deg\", \"5 deg\"]\ntension_correction = true\ncycle = \"last\"\n\
+             moduli = [\"secant\", \"window(20 gf/cm, 100 gf/cm)\"]",
+        )
+        .unwrap();
+        assert!((s.shear_slope[1].si() - 5.0 * DEGREE).abs() < 1e-15);
+        assert_eq!(s.cycle, CycleChoice::Last);
+        assert_eq!(s.moduli[1].name(), "window(20 gf/cm, 100 gf/cm)");
+        assert_eq!(s.bending_slope, Settings::default().bending_slope);
+        assert!(toml::from_str::<Settings>("shear_window = 3").is_err());
+        assert!(toml::from_str::<Settings>("noise = 0.1").is_err(), "a bare number is refused");
+    }
+
+    #[test]
+    fn the_defaults_print_in_kes_units() {
+        let text: Vec<_> =
+            Settings::default().describe().into_iter().map(|(k, v)| format!("{k}: {v}")).collect();
+        assert!(text.contains(&"G fitted over: 0.5 deg .. 2.5 deg".to_string()), "{text:?}");
+        assert!(text.contains(&"B fitted over: 0.5 1/cm .. 1.5 1/cm".to_string()), "{text:?}");
+        assert!(text.contains(&"T0 read at: 0.5 gf/cm²".to_string()), "{text:?}");
+    }
+
+    #[test]
+    fn a_modulus_comes_back_from_its_name() {
+        for m in [Modulus::TangentLow, Modulus::Secant, Modulus::Energy] {
+            assert_eq!(m.name().parse::<Modulus>().unwrap(), m);
+        }
+        assert!("tangent".parse::<Modulus>().is_err());
+    }
+}

@@ -1,0 +1,156 @@
+//! One specimen in one test: the record checked, split, corrected and evaluated.
+
+use std::collections::BTreeMap;
+
+use super::graph::LineFit;
+use super::{Branch, Settings, SpecimenResult, Window, closed_loop, compression, tensile};
+use crate::finding::{Finding, Place};
+use crate::instrument::{Measurement, Parameter, Test};
+use crate::quantity::{Curve, Unit, significant};
+
+/// What a test's evaluation yields.
+#[derive(Debug, Default)]
+pub(super) struct Evaluation {
+    pub branches: Vec<Branch>,
+    pub correction: [f64; 2],
+    pub windows: Vec<Window>,
+    pub fits: Vec<LineFit>,
+    pub values: BTreeMap<Parameter, f64>,
+    pub moduli: BTreeMap<String, f64>,
+}
+
+/// Findings about one specimen: each names it and points at its file.
+pub(super) struct Notes<'a> {
+    pub measurement: &'a Measurement,
+    pub findings: &'a mut Vec<Finding>,
+}
+
+impl Notes<'_> {
+    pub fn add(&mut self, code: &'static str, message: impl AsRef<str>) {
+        let m = self.measurement;
+        let direction = m.direction.map_or(String::new(), |d| format!(" {d}"));
+        let text = format!("{}{direction}, specimen {}: {}", m.test.name(), m.specimen, message.as_ref());
+        let line = m.lines.first().copied().unwrap_or(0);
+        self.findings.push(Finding::new(code, text).at(Place::at(&m.source.path, line, 0)));
+    }
+
+    /// K002: something of the record that a parameter needs is not there.
+    pub fn missing(&mut self, what: &str, why: &str) {
+        self.add("K002", format!("{what} is left out: {why}"));
+    }
+
+    /// Checks the observed maximum against the set one and returns what the parameters are to be read at:
+    /// the set maximum, or the observed one where the record ends short of it.
+    pub fn maximum(&mut self, observed: f64, unit: &str, settings: &Settings) -> f64 {
+        let set = self.measurement.conditions.maximum;
+        let allowed = settings.maximum_difference.si();
+        let show = |v: f64| in_unit(v, unit);
+        if !(set.is_finite() && set > 0.0) {
+            return observed;
+        }
+        if observed < (1.0 - allowed) * set {
+            self.add(
+                "K005",
+                format!(
+                    "the record ends at {}, short of the set maximum of {}; the values are not comparable with those at the full maximum",
+                    show(observed),
+                    show(set)
+                ),
+            );
+        } else if observed > (1.0 + 5.0 * allowed) * set {
+            self.add(
+                "K006",
+                format!("the record goes to {}, beyond the set maximum of {}: check the stated conditions and units", show(observed), show(set)),
+            );
+        }
+        set.min(observed)
+    }
+
+    /// K003, K004: how far a fitted slope can be trusted.
+    pub fn judge(&mut self, fit: &LineFit, settings: &Settings) {
+        if fit.n < 5 {
+            self.add("K004", format!("{} rests on {} samples only", fit.name, fit.n));
+        }
+        let difference = (fit.two_point - fit.slope).abs() / fit.slope.abs();
+        if difference > settings.slope_difference.si() {
+            self.add(
+                "K003",
+                format!(
+                    "{}: the two-point slope differs by {:.0} % from the fitted one (R² = {:.3}, n = {}); the curve bends or is noisy in this window",
+                    fit.name,
+                    100.0 * difference,
+                    fit.r_squared,
+                    fit.n
+                ),
+            );
+        }
+    }
+}
+
+/// `value` (SI) in a unit, for messages.
+pub(super) fn in_unit(value: f64, unit: &str) -> String {
+    let factor = Unit::parse(unit).map_or(f64::NAN, |u| u.factor);
+    format!("{} {unit}", significant(value / factor))
+}
+
+/// The evaluated specimen; `None`, with a finding, if nothing can be evaluated.
+pub(super) fn evaluate(
+    measurement: &Measurement,
+    settings: &Settings,
+    findings: &mut Vec<Finding>,
+) -> Option<SpecimenResult> {
+    let mut notes = Notes { measurement, findings };
+    let curve = finite(&measurement.curve, &mut notes);
+    let outcome = if curve.len() < 8 {
+        Err(format!("the record has {} usable samples, at least 8 are needed", curve.len()))
+    } else {
+        noise(&curve, settings, &mut notes);
+        match measurement.test {
+            Test::Tensile => tensile::evaluate(&curve, settings, &mut notes),
+            Test::Shear => closed_loop::shear(&curve, settings, &mut notes),
+            Test::Bending => closed_loop::bending(&curve, settings, &mut notes),
+            Test::Compression => compression::evaluate(&curve, settings, &mut notes),
+        }
+    };
+    match outcome {
+        Ok(e) => Some(SpecimenResult {
+            measurement: measurement.clone(),
+            branches: e.branches,
+            correction: e.correction,
+            windows: e.windows,
+            fits: e.fits,
+            values: e.values,
+            moduli: e.moduli,
+        }),
+        Err(reason) => {
+            notes.add("K001", format!("the specimen is left out: {reason}"));
+            None
+        }
+    }
+}
+
+/// The curve without samples that are not numbers.
+fn finite(curve: &Curve, notes: &mut Notes<'_>) -> Curve {
+    let clean = Curve::from_points(curve.points().filter(|(x, y)| x.is_finite() && y.is_finite()));
+    if clean.len() < curve.len() {
+        notes.add(
+            "K022",
+            format!("{} samples that are not numbers are passed over", curve.len() - clean.len()),
+        );
+    }
+    clean
+}
+
+/// K009: the noise of the ordinate, from the median second difference, against its range.
+fn noise(curve: &Curve, settings: &Settings, notes: &mut Notes<'_>) {
+    let mut bends: Vec<f64> = curve.y.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).abs()).collect();
+    bends.sort_by(f64::total_cmp);
+    // SD of white noise s: second differences have SD s √6, their median absolute value is 0.6745 of it.
+    let sd = bends[bends.len() / 2] / (0.6745 * 6f64.sqrt());
+    let low = curve.y.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = curve.y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let part = sd / (high - low);
+    if part > settings.noise.si() {
+        notes.add("K009", format!("the noise is {:.1} % of the range of the record", 100.0 * part));
+    }
+}

@@ -1,0 +1,102 @@
+//! Values that come from result tables and from `fabric.toml`.
+
+use std::collections::BTreeMap;
+
+use super::statistics::name;
+use super::{FabricSheet, Key, Modulus, Settings};
+use crate::finding::Finding;
+use crate::instrument::{Direction, FabricInput, Parameter, ResultValue};
+use crate::quantity::Estimate;
+
+/// Difference between a table and the curves that is reported.
+const DISAGREEMENT: f64 = 0.05;
+
+/// Adds table values to the sheet. What was evaluated from curves stays; where the two differ, both are told.
+pub(super) fn merge(sheet: &mut FabricSheet, input: &FabricInput) {
+    let mut cells: BTreeMap<Key, Vec<&ResultValue>> = BTreeMap::new();
+    for value in &input.results {
+        let key = Key { parameter: value.parameter, direction: value.direction };
+        cells.entry(key).or_default().push(value);
+    }
+    for (key, values) in cells {
+        for value in values.iter().filter(|v| v.inferred) {
+            let text = format!("{} is inferred by its source, not measured", name(key));
+            sheet.findings.push(Finding::new("K014", text).at(value.place.clone()));
+        }
+        let Some(estimate) = together(&values) else { continue };
+        match sheet.values.get(&key) {
+            None => {
+                sheet.values.insert(key, estimate);
+            }
+            Some(own) if (own.mean - estimate.mean).abs() > DISAGREEMENT * own.mean.abs() => {
+                let text = format!(
+                    "{}: the table gives {}, the curves give {} {}; the curves are used",
+                    name(key),
+                    kes(key.parameter, estimate.mean),
+                    kes(key.parameter, own.mean),
+                    key.parameter.kes_unit()
+                );
+                sheet.findings.push(Finding::new("K016", text).at(values[0].place.clone()));
+            }
+            Some(_) => {}
+        }
+    }
+}
+
+fn kes(parameter: Parameter, value: f64) -> String {
+    format!("{:.4}", value / parameter.kes_factor())
+}
+
+/// One cell as it stands; several cells of one key are repeats.
+fn together(values: &[&ResultValue]) -> Option<Estimate> {
+    match values {
+        [one] => Some(Estimate { mean: one.mean, sd: one.sd, n: one.n, values: Vec::new() }),
+        _ => Estimate::of(&values.iter().map(|v| v.mean).collect::<Vec<_>>()),
+    }
+}
+
+/// Areal density and thickness from `fabric.toml`, where nothing better is known.
+pub(super) fn metadata(sheet: &mut FabricSheet, input: &FabricInput) {
+    let key = |parameter| Key { parameter, direction: None };
+    if let Some(w) = input.info.areal_density {
+        sheet.values.entry(key(Parameter::W)).or_insert_with(|| Estimate::single(w));
+    } else if !sheet.values.contains_key(&key(Parameter::W)) {
+        sheet.findings.push(Finding::new(
+            "K017",
+            "no areal density: FB3 does not measure it; state areal_density in fabric.toml (mass of a 20 x 20 cm specimen)",
+        ));
+    }
+    if let (Some(t), false) = (input.info.thickness, sheet.values.contains_key(&key(Parameter::T0))) {
+        sheet
+            .findings
+            .push(Finding::new("K021", "T0 is the thickness of fabric.toml, whose pressure is not known"));
+        sheet.values.insert(key(Parameter::T0), Estimate::single(t));
+    }
+}
+
+/// Secant and energy modulus where only a table is known: Fm / e_m and LT Fm / e_m (or 2 WT / e_m²).
+pub(super) fn moduli(sheet: &mut FabricSheet, settings: &Settings) {
+    let maximum = settings.table_maximum.si();
+    let mut used = false;
+    for direction in Direction::ALL {
+        let mean = |p| sheet.get(p, Some(direction)).map(|e| e.mean);
+        let known = sheet.moduli.keys().any(|(_, d)| *d == direction);
+        let (Some(strain), false) = (mean(Parameter::Emt).filter(|e| *e > 0.0), known) else { continue };
+        let secant = maximum / strain;
+        let energy = (mean(Parameter::Lt).map(|lt| lt * secant))
+            .or_else(|| mean(Parameter::Wt).map(|wt| 2.0 * wt / (strain * strain)));
+        for (modulus, value) in [(Modulus::Secant, Some(secant)), (Modulus::Energy, energy)] {
+            if let (Some(value), true) = (value, settings.moduli.contains(&modulus)) {
+                sheet.moduli.insert((modulus.name(), direction), Estimate::single(value));
+                used = true;
+            }
+        }
+    }
+    if used {
+        let text = format!(
+            "tensile moduli come from the table's EMT, taken at {:.4} gf/cm; the low-load tangent cannot be told from a table",
+            maximum / Parameter::Hg.kes_factor()
+        );
+        sheet.findings.push(Finding::new("K020", text));
+    }
+}

@@ -1,0 +1,127 @@
+//! FB1 tensile: EMT, WT, LT, RT and moduli from force per width against strain.
+
+use super::graph::Graph;
+use super::onset::onset;
+use super::specimen::{Evaluation, Notes, in_unit};
+use super::{Branch, CycleChoice, Modulus, Settings, Window, branch};
+use crate::instrument::Parameter;
+use crate::quantity::Curve;
+
+/// Parameters of a tensile record (x = strain, y = N/m).
+pub(super) fn evaluate(
+    curve: &Curve,
+    settings: &Settings,
+    notes: &mut Notes<'_>,
+) -> Result<Evaluation, String> {
+    let mut branches = branch::one_sided(curve, 1.0, settings.reversal.si())
+        .filter(|b| b.first().is_some_and(|b| b.outgoing))
+        .ok_or("the strain does not rise from the start, so there is no loading branch")?;
+    let correction = correct(&mut branches, settings, notes);
+    let (load, back) = cycle(&branches, settings.cycle);
+    let peak = load.y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if peak <= 0.0 {
+        return Err("no force above zero on the loading branch".into());
+    }
+    let fm = notes.maximum(peak, "gf/cm", settings);
+    let strain = load.first_rise_to(fm).filter(|e| *e > 0.0);
+    let strain = strain.ok_or("the force is at its maximum from the start")?;
+    let start = load.x[0].max(0.0);
+    let work = load.area(start, strain).ok_or("the loading branch has no area")?;
+
+    let mut e = Evaluation { branches, correction, ..Default::default() };
+    e.values.insert(Parameter::Emt, strain);
+    e.values.insert(Parameter::Wt, work);
+    e.values.insert(Parameter::Lt, work / (0.5 * fm * strain));
+    match recovered(&back, strain) {
+        Some(regained) => {
+            e.values.insert(Parameter::Rt, regained / work);
+        }
+        None => notes.missing("RT", "there is no unloading branch"),
+    }
+    e.windows.push(Window { parameter: Parameter::Emt, from: strain, to: strain, ordinates: [0.0, fm] });
+    for &modulus in &settings.moduli {
+        let [low, high] = match modulus {
+            Modulus::Secant => {
+                e.moduli.insert(modulus.name(), fm / strain);
+                continue;
+            }
+            Modulus::Energy => {
+                e.moduli.insert(modulus.name(), 2.0 * work / (strain * strain));
+                continue;
+            }
+            Modulus::TangentLow => settings.tangent_low,
+            Modulus::Window(low, high) => [low, high],
+        };
+        match load.fit_between_ordinates(&modulus.name(), low.si(), high.si()) {
+            Some(fit) => {
+                notes.judge(&fit, settings);
+                e.moduli.insert(modulus.name(), fit.slope);
+                e.fits.push(fit);
+            }
+            None => notes.missing(&modulus.name(), "the loading branch does not cover its window"),
+        }
+    }
+    Ok(e)
+}
+
+/// Moves strain zero to the onset of load and force zero to the baseline before it; returns what was added.
+fn correct(branches: &mut [Branch], settings: &Settings, notes: &mut Notes<'_>) -> [f64; 2] {
+    if !settings.correct_zero {
+        return [0.0; 2];
+    }
+    let first = &branches[0].curve;
+    let onset = onset(&first.x, &first.y);
+    let (slack, offset) = (first.x[onset.index], onset.baseline);
+    let top = first.points().fold((0.0f64, 0.0f64), |t, (x, y)| (t.0.max(x), t.1.max(y)));
+    let large = settings.large_correction.si();
+    if slack.abs() > large * (top.0 - slack) {
+        notes.add(
+            "K008",
+            format!(
+                "slack of {} was taken off, more than {:.0} % of the strain at the maximum",
+                in_unit(slack, "%"),
+                100.0 * large
+            ),
+        );
+    }
+    if offset.abs() > large * (top.1 - offset) {
+        notes.add("K008", format!("a zero offset of {} was taken off the force", in_unit(offset, "gf/cm")));
+    }
+    shift(branches, [-slack, -offset]);
+    // 0 - x, so that no correction reads as 0 and not as -0.
+    [0.0 - slack, 0.0 - offset]
+}
+
+/// Adds a constant to the abscissae and to the ordinates.
+pub(super) fn shift(branches: &mut [Branch], by: [f64; 2]) {
+    for branch in branches {
+        branch.curve.x.iter_mut().for_each(|x| *x += by[0]);
+        branch.curve.y.iter_mut().for_each(|y| *y += by[1]);
+    }
+}
+
+/// The outgoing and the return branch of the chosen cycle; the latter is empty where it was not recorded.
+pub(super) fn cycle(branches: &[Branch], choice: CycleChoice) -> (Graph, Graph) {
+    let wanted = match choice {
+        CycleChoice::First => 0,
+        CycleChoice::Last => branches.last().map_or(0, |b| b.cycle),
+    };
+    let graph = |outgoing| {
+        let found = branches.iter().find(|b| b.cycle == wanted && b.outgoing == outgoing);
+        found.map_or_else(Graph::default, |b| Graph::of(&b.curve))
+    };
+    (graph(true), graph(false))
+}
+
+/// Work on the unloading branch from strain `top` down to where the force is gone.
+fn recovered(back: &Graph, top: f64) -> Option<f64> {
+    let below = back.x.partition_point(|x| *x <= top);
+    let end = match back.y[..below].iter().rposition(|y| *y <= 0.0) {
+        Some(i) if i + 1 < back.x.len() => {
+            let part = -back.y[i] / (back.y[i + 1] - back.y[i]);
+            back.x[i] + part * (back.x[i + 1] - back.x[i])
+        }
+        _ => *back.x.first()?,
+    };
+    back.area(end, top.min(*back.x.last()?))
+}

@@ -1,0 +1,283 @@
+//! The JSON documents `kesf.sheet/1` and `kesf.section/1`: SI with unit strings, keys in a fixed order.
+//!
+//! Numbers that are not finite become `null`, as JSON has no other word for them.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{Matrix2, Matrix3};
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+
+use crate::characterise::FabricSheet;
+use crate::finding::Finding;
+use crate::instrument::Parameter;
+use crate::quantity::Estimate;
+use crate::section::ShellSection;
+
+/// `kesf.sheet/1`: the parameters of fabrics.
+#[derive(Clone, Debug, Serialize)]
+pub struct SheetDocument {
+    /// `kesf.sheet/1`.
+    pub schema: &'static str,
+    /// Version of this program.
+    pub version: &'static str,
+    /// Every file behind the sheets.
+    pub inputs: Vec<InputEntry>,
+    /// One entry per fabric.
+    pub fabrics: Vec<SheetEntry>,
+    /// What a reader must know.
+    pub findings: Vec<FindingEntry>,
+}
+
+/// A file and its hash.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub struct InputEntry {
+    /// As it was named to us, with `/`.
+    pub path: String,
+    /// SHA-256, lower-case hexadecimal.
+    pub sha256: String,
+}
+
+/// One fabric of a [`SheetDocument`].
+#[derive(Clone, Debug, Serialize)]
+pub struct SheetEntry {
+    /// Identifier.
+    pub name: String,
+    /// Name for people.
+    pub title: String,
+    /// `measured`, `published` or `synthetic`.
+    pub origin: &'static str,
+    /// By symbol: `{"mean","sd","n","unit"}`, or one such object each for `warp`, `weft`, `bias` and
+    /// `fabric` (a directional parameter known for the fabric as a whole only).
+    pub parameters: Map<String, Value>,
+    /// Tensile moduli (N/m) by name and direction.
+    pub moduli: Map<String, Value>,
+}
+
+/// A finding of a document.
+#[derive(Clone, Debug, Serialize)]
+pub struct FindingEntry {
+    /// The fabric it belongs to.
+    pub fabric: String,
+    /// Code for `kesf explain`.
+    pub code: &'static str,
+    /// One sentence.
+    pub message: String,
+    /// File, where there is one.
+    pub path: Option<String>,
+    /// Line from 1, where there is one.
+    pub line: Option<usize>,
+}
+
+/// `kesf.section/1`: shell sections with the assumptions behind them.
+#[derive(Clone, Debug, Serialize)]
+pub struct SectionDocument {
+    /// `kesf.section/1`.
+    pub schema: &'static str,
+    /// Version of this program.
+    pub version: &'static str,
+    /// Unit of each key of a section.
+    pub units: BTreeMap<&'static str, &'static str>,
+    /// One entry per section.
+    pub sections: Vec<SectionEntry>,
+}
+
+/// One section of a [`SectionDocument`]; material axes, x = warp.
+#[derive(Clone, Debug, Serialize)]
+pub struct SectionEntry {
+    /// The fabric, or the case that states the section.
+    pub fabric: String,
+    /// Membrane stiffness, rows (N/m).
+    pub d_m: [[f64; 3]; 3],
+    /// Bending stiffness, rows (N·m).
+    pub d_b: [[f64; 3]; 3],
+    /// Transverse shear stiffness, rows (N/m).
+    pub d_s: [[f64; 2]; 2],
+    /// Mass per area (kg/m²).
+    pub areal_density: f64,
+    /// Thickness (m).
+    pub thickness: f64,
+    /// How the constants were found, as an object.
+    pub assumptions: Value,
+}
+
+/// The document of some sheets.
+pub fn sheet_document<'a>(sheets: impl IntoIterator<Item = &'a FabricSheet>) -> SheetDocument {
+    let mut document = SheetDocument {
+        schema: "kesf.sheet/1",
+        version: env!("CARGO_PKG_VERSION"),
+        inputs: Vec::new(),
+        fabrics: Vec::new(),
+        findings: Vec::new(),
+    };
+    for sheet in sheets {
+        document.inputs.extend(
+            sheet.sources.iter().map(|s| InputEntry { path: slashes(&s.path), sha256: s.sha256.clone() }),
+        );
+        document.findings.extend(sheet.findings.iter().map(|f| finding_entry(&sheet.name, f)));
+        document.fabrics.push(SheetEntry {
+            name: sheet.name.clone(),
+            title: sheet.info.title.clone(),
+            origin: sheet.info.origin.name(),
+            parameters: parameters(sheet),
+            moduli: moduli(sheet),
+        });
+    }
+    // Two fabrics may come from one file.
+    document.inputs.sort();
+    document.inputs.dedup();
+    document
+}
+
+/// The document of some sections: name, section and assumptions of each.
+pub fn section_document<'a>(
+    sections: impl IntoIterator<Item = (&'a str, &'a ShellSection, Value)>,
+) -> SectionDocument {
+    let entry = |(fabric, section, assumptions): (&str, &ShellSection, Value)| SectionEntry {
+        fabric: fabric.into(),
+        d_m: rows3(&section.d_m),
+        d_b: rows3(&section.d_b),
+        d_s: rows2(&section.d_s),
+        areal_density: section.areal_density,
+        thickness: section.thickness,
+        assumptions,
+    };
+    SectionDocument {
+        schema: "kesf.section/1",
+        version: env!("CARGO_PKG_VERSION"),
+        units: BTreeMap::from([
+            ("d_m", "N/m"),
+            ("d_b", "N·m"),
+            ("d_s", "N/m"),
+            ("areal_density", "kg/m²"),
+            ("thickness", "m"),
+        ]),
+        sections: sections.into_iter().map(entry).collect(),
+    }
+}
+
+/// A document as text: two blanks of indentation and a final newline.
+///
+/// # Errors
+/// Only if `document` serialises to something that JSON cannot hold, such as a map with non-text keys.
+pub fn text<T: Serialize>(document: &T) -> Result<String, serde_json::Error> {
+    let mut text = serde_json::to_string_pretty(document)?;
+    text.push('\n');
+    Ok(text)
+}
+
+fn parameters(sheet: &FabricSheet) -> Map<String, Value> {
+    let mut all = Map::new();
+    for &parameter in Parameter::ALL {
+        let mut found = sheet.values.iter().filter(|(key, _)| key.parameter == parameter).peekable();
+        if found.peek().is_none() {
+            continue;
+        }
+        let unit = parameter.si_unit();
+        if !parameter.is_directional() {
+            found.for_each(|(_, e)| drop(all.insert(parameter.symbol().into(), estimate(e, unit))));
+            continue;
+        }
+        let directions: Map<String, Value> = found
+            .map(|(key, e)| (key.direction.map_or("fabric", |d| d.name()).to_string(), estimate(e, unit)))
+            .collect();
+        all.insert(parameter.symbol().into(), directions.into());
+    }
+    all
+}
+
+fn moduli(sheet: &FabricSheet) -> Map<String, Value> {
+    let mut all: Map<String, Value> = Map::new();
+    for ((name, direction), e) in &sheet.moduli {
+        let entry = all.entry(name.clone()).or_insert_with(|| Map::new().into());
+        if let Value::Object(directions) = entry {
+            directions.insert(direction.name().into(), estimate(e, "N/m"));
+        }
+    }
+    all
+}
+
+fn estimate(e: &Estimate, unit: &str) -> Value {
+    json!({ "mean": e.mean, "sd": e.sd, "n": e.n, "unit": unit })
+}
+
+fn finding_entry(fabric: &str, finding: &Finding) -> FindingEntry {
+    let place = finding.place.as_ref();
+    FindingEntry {
+        fabric: fabric.into(),
+        code: finding.code,
+        message: finding.message.clone(),
+        path: place.map(|p| slashes(&p.path)),
+        line: place.map(|p| p.line).filter(|&line| line > 0),
+    }
+}
+
+/// A path with `/`, so that documents do not depend on the system.
+fn slashes(path: &std::path::Path) -> String {
+    let text = path.display().to_string();
+    if std::path::MAIN_SEPARATOR == '/' { text } else { text.replace(std::path::MAIN_SEPARATOR, "/") }
+}
+
+fn rows3(m: &Matrix3<f64>) -> [[f64; 3]; 3] {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| m[(i, j)]))
+}
+
+fn rows2(m: &Matrix2<f64>) -> [[f64; 2]; 2] {
+    [0, 1].map(|i| [0, 1].map(|j| m[(i, j)]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::characterise::Key;
+    use crate::finding::Place;
+    use crate::instrument::{Direction, Source};
+
+    #[test]
+    fn a_sheet_has_the_keys_of_the_contract_in_their_order() {
+        let mut sheet = FabricSheet { name: "poplin".into(), ..FabricSheet::default() };
+        let mut put = |parameter, direction, e| drop(sheet.values.insert(Key { parameter, direction }, e));
+        put(Parameter::W, None, Estimate::single(0.15));
+        let b = Estimate { mean: 5e-6, sd: Some(1e-7), n: 3, values: vec![] };
+        put(Parameter::B, Some(Direction::Weft), Estimate::single(3e-6));
+        put(Parameter::B, Some(Direction::Warp), b);
+        put(Parameter::Lt, None, Estimate::single(f64::NAN));
+        sheet.moduli.insert(("secant".into(), Direction::Warp), Estimate::single(9e3));
+        let source = Source { path: "p/b.csv".into(), sha256: "00".into(), ..Source::default() };
+        sheet.sources = vec![source.clone(), source];
+        sheet.findings = vec![Finding::new("K003", "odd").at(Place::at("p/b.csv", 3, 0))];
+        let text = text(&sheet_document([&sheet])).unwrap();
+        assert!(text.ends_with("}\n"));
+        let v: Value = serde_json::from_str(&text).unwrap();
+        let keys: Vec<&String> = v.as_object().unwrap().keys().collect();
+        assert_eq!(keys, ["schema", "version", "inputs", "fabrics", "findings"]);
+        assert_eq!(v["inputs"], json!([{ "path": "p/b.csv", "sha256": "00" }]));
+        let parameters = &v["fabrics"][0]["parameters"];
+        let symbols: Vec<&String> = parameters.as_object().unwrap().keys().collect();
+        assert_eq!(symbols, ["LT", "B", "W"], "the order of sheets");
+        assert_eq!(parameters["B"]["warp"], json!({ "mean": 5e-6, "sd": 1e-7, "n": 3, "unit": "N·m" }));
+        assert_eq!(parameters["B"]["weft"]["sd"], Value::Null);
+        assert_eq!(parameters["W"]["mean"], json!(0.15));
+        assert_eq!(parameters["LT"]["fabric"]["mean"], Value::Null);
+        assert_eq!(v["fabrics"][0]["moduli"]["secant"]["warp"]["mean"], json!(9e3));
+        assert_eq!(v["findings"][0]["line"], json!(3));
+    }
+
+    #[test]
+    fn a_section_is_written_by_rows() {
+        let section = ShellSection {
+            d_m: Matrix3::new(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0),
+            d_b: Matrix3::identity(),
+            d_s: Matrix2::new(1.0, 2.0, 3.0, 4.0),
+            areal_density: 0.2,
+            thickness: 4e-4,
+        };
+        let document = section_document([("poplin", &section, json!({ "poisson": "geometric" }))]);
+        let v = serde_json::to_value(&document).unwrap();
+        assert_eq!(v["schema"], "kesf.section/1");
+        assert_eq!(v["sections"][0]["d_m"], json!([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 9.0]]));
+        assert_eq!(v["sections"][0]["d_s"], json!([[1.0, 2.0], [3.0, 4.0]]));
+        assert_eq!(v["sections"][0]["assumptions"]["poisson"], "geometric");
+        assert_eq!(v["units"]["d_b"], "N·m");
+    }
+}

@@ -1,0 +1,340 @@
+//! Tidy tables: one observation a row, with its unit; as CSV, and as Parquet with the feature `tables`.
+
+use serde::Serialize;
+use thiserror::Error;
+
+use crate::characterise::FabricSheet;
+use crate::finding::Finding;
+use crate::instrument::{FabricInput, Measurement, Parameter, Test};
+
+/// Why there is no table.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum TableError {
+    /// O030: the CSV or Parquet writer refused.
+    #[error("O030 the {format} table could not be made: {problem}")]
+    Encode {
+        /// `CSV` or `Parquet`.
+        format: &'static str,
+        /// What the writer said.
+        problem: String,
+    },
+}
+
+/// A row of a table: a plain struct whose field names are the column names.
+pub trait Row: Serialize {
+    /// Column names in order.
+    const HEADER: &'static [&'static str];
+
+    /// The columns of the rows.
+    #[cfg(feature = "tables")]
+    fn columns(rows: &[Self]) -> Vec<polars::prelude::Column>
+    where
+        Self: Sized;
+}
+
+macro_rules! row {
+    ($(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident: $type:ty,)* }) => {
+        $(#[$doc])*
+        #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+        pub struct $name {
+            $($(#[$field_doc])* pub $field: $type,)*
+        }
+
+        impl Row for $name {
+            const HEADER: &'static [&'static str] = &[$(stringify!($field)),*];
+
+            #[cfg(feature = "tables")]
+            fn columns(rows: &[Self]) -> Vec<polars::prelude::Column> {
+                vec![$({
+                    let values: Vec<$type> = rows.iter().map(|row| row.$field.clone()).collect();
+                    polars::prelude::Column::new(stringify!($field).into(), values)
+                }),*]
+            }
+        }
+    };
+}
+
+row! {
+    /// A parameter of a fabric (`fabrics.csv`).
+    FabricRow {
+        /// Identifier of the fabric.
+        fabric: String,
+        /// Symbol, e.g. `2HB`.
+        parameter: String,
+        /// `warp`, `weft`, `bias`, or nothing for the fabric as a whole.
+        direction: Option<String>,
+        /// Mean over the repeats.
+        mean: Option<f64>,
+        /// Sample standard deviation.
+        sd: Option<f64>,
+        /// Number of repeats.
+        n: u64,
+        /// Unit of mean and sd.
+        unit: String,
+        /// `ok`, or the code of what went wrong.
+        status: String,
+    }
+}
+
+row! {
+    /// A simulated quantity, beside its measured value where there is one (`predictions.csv`).
+    PredictionRow {
+        /// Identifier of the fabric.
+        fabric: String,
+        /// Name of the case.
+        case: String,
+        /// What was predicted, e.g. `w_max`.
+        quantity: String,
+        /// Simulated value.
+        simulated: Option<f64>,
+        /// Measured value.
+        measured: Option<f64>,
+        /// Unit of both.
+        unit: String,
+        /// (simulated - measured) / measured; see [`relative_error`].
+        error: Option<f64>,
+    }
+}
+
+row! {
+    /// Something that a reader of the results must know (`problems.csv`).
+    ProblemRow {
+        /// `file:line:column`, or the fabric or case.
+        place: String,
+        /// Code for `kesf explain`.
+        code: String,
+        /// One sentence.
+        message: String,
+    }
+}
+
+row! {
+    /// A point of a measured curve, as read (`kesf read`).
+    CurveRow {
+        /// Identifier of the fabric.
+        fabric: String,
+        /// `tensile`, `shear`, `bending` or `compression`.
+        test: String,
+        /// `warp`, `weft` or `bias`; nothing for compression.
+        direction: Option<String>,
+        /// Specimen number, from 1.
+        specimen: u64,
+        /// Place in recorded order, from 0.
+        index: u64,
+        /// Abscissa.
+        x: f64,
+        /// Its unit.
+        x_unit: String,
+        /// Ordinate.
+        y: f64,
+        /// Its unit.
+        y_unit: String,
+    }
+}
+
+/// The units of a table of parameters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum UnitSystem {
+    /// The customary units of the KES literature.
+    #[default]
+    Kes,
+    /// SI.
+    Si,
+}
+
+impl UnitSystem {
+    /// Unit text of a parameter and its SI value.
+    pub fn of(self, parameter: Parameter) -> (&'static str, f64) {
+        match self {
+            Self::Kes => (parameter.kes_unit(), parameter.kes_factor()),
+            Self::Si => (parameter.si_unit(), 1.0),
+        }
+    }
+}
+
+/// An SI value in another unit, to 12 significant digits: what was 0.1 gf·cm²/cm in a file is that again, not
+/// 0.09999999999999999.
+fn in_unit(value: f64, factor: f64) -> f64 {
+    if factor == 1.0 {
+        return value;
+    }
+    let value = value / factor;
+    format!("{value:.11e}").parse().unwrap_or(value)
+}
+
+/// (simulated - measured) / measured, where that is a number.
+pub fn relative_error(simulated: f64, measured: f64) -> Option<f64> {
+    Some((simulated - measured) / measured).filter(|e| e.is_finite())
+}
+
+/// The rows of a sheet, in the order of its parameters and directions.
+pub fn fabric_rows(sheet: &FabricSheet, units: UnitSystem) -> Vec<FabricRow> {
+    sheet
+        .values
+        .iter()
+        .map(|(key, estimate)| {
+            let (unit, factor) = units.of(key.parameter);
+            FabricRow {
+                fabric: sheet.name.clone(),
+                parameter: key.parameter.symbol().into(),
+                direction: key.direction.map(|d| d.name().into()),
+                mean: Some(in_unit(estimate.mean, factor)),
+                sd: estimate.sd.map(|sd| in_unit(sd, factor)),
+                n: estimate.n as u64,
+                unit: unit.into(),
+                status: "ok".into(),
+            }
+        })
+        .collect()
+}
+
+/// The row that stands for a fabric that could not be characterised.
+pub fn failed_fabric_row(fabric: &str, code: &str) -> FabricRow {
+    FabricRow { fabric: fabric.into(), status: code.into(), ..FabricRow::default() }
+}
+
+/// The row of a finding; `otherwise` is the place of a finding that has none.
+pub fn problem_row(finding: &Finding, otherwise: &str) -> ProblemRow {
+    ProblemRow {
+        place: finding.place.as_ref().map_or(otherwise.to_string(), ToString::to_string),
+        code: finding.code.into(),
+        message: finding.message.clone(),
+    }
+}
+
+/// Every point of every curve of a fabric, in SI or in KES units.
+pub fn curve_rows(fabric: &FabricInput, units: UnitSystem) -> Vec<CurveRow> {
+    fabric.measurements.iter().flat_map(|m| measurement_rows(&fabric.name, m, units)).collect()
+}
+
+fn measurement_rows<'a>(
+    fabric: &'a str,
+    measurement: &'a Measurement,
+    units: UnitSystem,
+) -> impl Iterator<Item = CurveRow> + 'a {
+    let [(x_unit, x_factor), (y_unit, y_factor)] = curve_units(measurement.test, units);
+    measurement.curve.points().enumerate().map(move |(index, (x, y))| CurveRow {
+        fabric: fabric.into(),
+        test: measurement.test.name().into(),
+        direction: measurement.direction.map(|d| d.name().into()),
+        specimen: measurement.specimen as u64,
+        index: index as u64,
+        x: in_unit(x, x_factor),
+        x_unit: x_unit.into(),
+        y: in_unit(y, y_factor),
+        y_unit: y_unit.into(),
+    })
+}
+
+/// Units of abscissa and ordinate of a test, each with its SI value.
+pub fn curve_units(test: Test, units: UnitSystem) -> [(&'static str, f64); 2] {
+    let (kes, si) = match test {
+        Test::Tensile => (["%", "gf/cm"], ["1", "N/m"]),
+        Test::Shear => (["deg", "gf/cm"], ["rad", "N/m"]),
+        Test::Bending => (["1/cm", "gf·cm/cm"], ["1/m", "N"]),
+        Test::Compression => (["mm", "gf/cm²"], ["m", "Pa"]),
+    };
+    let names = if units == UnitSystem::Kes { kes } else { si };
+    // Every name is in the table of units; a test reads them all.
+    names.map(|name| (name, crate::quantity::Unit::parse(name).map_or(f64::NAN, |u| u.factor)))
+}
+
+/// A table as CSV: UTF-8, comma, point, LF, with a header even if there are no rows.
+///
+/// # Errors
+/// [`TableError::Encode`].
+pub fn csv<R: Row>(rows: &[R]) -> Result<Vec<u8>, TableError> {
+    let failed = |e: &dyn std::fmt::Display| TableError::Encode { format: "CSV", problem: e.to_string() };
+    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+    writer.write_record(R::HEADER).map_err(|e| failed(&e))?;
+    for row in rows {
+        writer.serialize(row).map_err(|e| failed(&e))?;
+    }
+    writer.into_inner().map_err(|e| failed(&e))
+}
+
+/// A table as Parquet: UTF-8 and 64-bit columns, absent values are null.
+///
+/// # Errors
+/// [`TableError::Encode`].
+#[cfg(feature = "tables")]
+pub fn parquet<R: Row>(rows: &[R]) -> Result<Vec<u8>, TableError> {
+    use polars::prelude::{DataFrame, ParquetCompression, ParquetWriter, PolarsError};
+    let failed = |e: PolarsError| TableError::Encode { format: "Parquet", problem: e.to_string() };
+    let mut frame = DataFrame::new(rows.len(), R::columns(rows)).map_err(failed)?;
+    let mut bytes = Vec::new();
+    ParquetWriter::new(&mut bytes)
+        // Snappy is what every reader of Parquet knows.
+        .with_compression(ParquetCompression::Snappy)
+        .set_parallel(false)
+        .finish(&mut frame)
+        .map_err(failed)?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::characterise::Key;
+    use crate::instrument::Direction;
+    use crate::quantity::Estimate;
+
+    fn sheet() -> FabricSheet {
+        let mut sheet = FabricSheet { name: "poplin, \"A\"".into(), ..FabricSheet::default() };
+        let b = Estimate { mean: 9.80665e-6, sd: Some(9.80665e-8), n: 3, values: vec![] };
+        sheet.values.insert(Key { parameter: Parameter::B, direction: Some(Direction::Warp) }, b);
+        sheet.values.insert(Key { parameter: Parameter::T0, direction: None }, Estimate::single(4e-4));
+        sheet
+    }
+
+    #[test]
+    fn fabrics_as_csv() {
+        // B: 9.80665e-6 N·m is 0.1 gf·cm²/cm.
+        let text = String::from_utf8(csv(&fabric_rows(&sheet(), UnitSystem::Kes)).unwrap()).unwrap();
+        let mut lines = text.lines();
+        assert_eq!(lines.next(), Some("fabric,parameter,direction,mean,sd,n,unit,status"));
+        let b = lines.next().unwrap();
+        assert_eq!(b, "\"poplin, \"\"A\"\"\",B,warp,0.1,0.001,3,gf·cm²/cm,ok");
+        assert!(lines.next().unwrap().ends_with(",T0,,0.4,,1,mm,ok"));
+        let si = String::from_utf8(csv(&fabric_rows(&sheet(), UnitSystem::Si)).unwrap()).unwrap();
+        assert!(si.contains(",B,warp,9.80665e-6,9.80665e-8,3,N·m,ok"), "{si}");
+    }
+
+    #[test]
+    fn an_empty_table_keeps_its_header() {
+        assert_eq!(csv::<ProblemRow>(&[]).unwrap(), b"place,code,message\n");
+    }
+
+    #[test]
+    fn units_of_curves_are_known_and_belong_together() {
+        for test in Test::ALL {
+            let kes = curve_units(test, UnitSystem::Kes);
+            for (axis, (name, factor)) in curve_units(test, UnitSystem::Si).into_iter().enumerate() {
+                assert_eq!(factor, 1.0, "{name}");
+                let dimension = |u: &str| crate::quantity::Unit::parse(u).unwrap().dimension;
+                assert_eq!(dimension(name), dimension(kes[axis].0), "{test:?}");
+            }
+        }
+        assert_eq!(relative_error(1.1, 0.0), None);
+        assert!((relative_error(1.1, 1.0).unwrap() - 0.1).abs() < 1e-12);
+    }
+
+    #[cfg(feature = "tables")]
+    #[test]
+    fn parquet_reads_back_to_the_same_table() {
+        use polars::prelude::{ParquetReader, SerReader};
+        let mut rows = fabric_rows(&sheet(), UnitSystem::Si);
+        rows.push(failed_fabric_row("bad", "R004"));
+        let bytes = parquet(&rows).unwrap();
+        assert_eq!(bytes, parquet(&rows).unwrap(), "same rows, same bytes");
+        let frame = ParquetReader::new(std::io::Cursor::new(bytes)).finish().unwrap();
+        let names: Vec<String> = frame.get_column_names().iter().map(ToString::to_string).collect();
+        assert_eq!(names, FabricRow::HEADER);
+        let mean = frame.column("mean").unwrap().f64().unwrap();
+        assert_eq!(mean.iter().collect::<Vec<_>>(), [Some(9.80665e-6), Some(4e-4), None]);
+        let direction = frame.column("direction").unwrap().str().unwrap();
+        assert_eq!(direction.iter().collect::<Vec<_>>(), [Some("warp"), None, None]);
+        assert_eq!(frame.column("n").unwrap().u64().unwrap().get(0), Some(3));
+        assert!(parquet::<ProblemRow>(&[]).is_ok(), "an empty table is a table");
+    }
+}

@@ -1,0 +1,88 @@
+//! One malformed file for every reading code: the code and the place that it must be given.
+//!
+//! Kind: own. The files are small and written by hand; the places were counted in an editor.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use kesf::finding::{explain, explanations};
+use kesf::instrument::{Problem, ReadSettings, read_fabrics};
+
+/// Code, input below tests/malformed, and the place, below it too.
+const CASES: &[(&str, &str, &str)] = &[
+    ("R001", "r001-there-is-no-such-file.csv", "r001-there-is-no-such-file.csv"),
+    ("R002", "r002-empty.csv", "r002-empty.csv:6:1"),
+    ("R003", "r003-binary.dat", "r003-binary.dat:1:4"),
+    ("R004", "r004-comma-in-cell.csv", "r004-comma-in-cell.csv:9:5"),
+    ("R005", "r005-thousands.csv", "r005-thousands.csv"),
+    ("R006", "r006-unknown-words.csv", "r006-unknown-words.csv:3:1"),
+    ("R007", "r007-one-column.csv", "r007-one-column.csv:6:1"),
+    ("R008", "r008-no-unit.csv", "r008-no-unit.csv:6:18"),
+    ("R009", "r009-unknown-unit.csv", "r009-unknown-unit.csv:6:1"),
+    ("R010", "r010-mass-for-force.csv", "r010-mass-for-force.csv:2:12"),
+    ("R011", "r011-other-test.csv", "r011-other-test.csv:2:6"),
+    ("R012", "r012-no-direction.csv", "r012-no-direction.csv:3:1"),
+    ("R013", "r013-width.csv", "r013-width.csv:3:7"),
+    ("R014", "r014-two-points.csv", "r014-two-points.csv:7:1"),
+    ("R015", "r015-volts.csv", "r015-volts.csv:6:18"),
+    ("R016", "r016-hole.csv", "r016-hole.csv:9:5"),
+    ("R017", "r017-nan.csv", "r017-nan.csv:9:5"),
+    ("R018", "r018-twice.csv", "r018-twice.csv:3:13"),
+    ("R019", "r019-fabric", "r019-fabric/fabric.toml:3:17"),
+    ("R020", "r020-dialect", "r020-dialect/dialect.toml:2:1"),
+    ("R021", "r021-not-a-workbook.xlsx", "r021-not-a-workbook.xlsx"),
+    ("R022", "r022-cut.json", "r022-cut.json:3:31"),
+    ("R023", "r023-odd.json", "r023-odd.json"),
+    ("R101", "r101-no-fabric-toml", "r101-no-fabric-toml"),
+    ("R102", "r102-cut.csv", "r102-cut.csv:11"),
+    ("R103", "r103-twice", "r103-twice/b.csv"),
+    ("R104", "r104-other-columns.csv", "r104-other-columns.csv:1"),
+    ("R105", "r105-samples", "r105-samples"),
+    ("R106", "r106_weft_FB2_1.csv", "r106_weft_FB2_1.csv:6"),
+    ("R107", "r107-fast.csv", "r107-fast.csv:2:11"),
+    ("R108", "r108-warning.json", "r108-warning.json"),
+];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/malformed")
+}
+
+#[test]
+fn every_code_is_given_at_its_place() {
+    for (code, input, place) in CASES {
+        let batch = read_fabrics(&[root().join(input)], &ReadSettings::default(), &|_: &Path| ());
+        let failures = batch.failures.iter().map(|e| (e.code(), e.place().to_string(), e.to_string()));
+        let findings = batch.fabrics.iter().flat_map(|f| &f.findings);
+        let findings = findings
+            .map(|f| (f.code, f.place.as_ref().map(ToString::to_string).unwrap_or_default(), f.to_string()));
+        let all: Vec<_> = failures.chain(findings).collect();
+        let expected = root().join(place).display().to_string();
+        let found = all.iter().find(|(c, p, _)| c == code && *p == expected);
+        let Some((_, _, text)) = found else { panic!("{code} at {place} is not among {all:#?}") };
+        assert!(text.starts_with(&format!("{expected}: {code} ")) && !text.contains('\n'), "{text}");
+        // An error is the only thing that its file gives; a finding comes with the data.
+        let is_error = explain(code).is_some_and(|e| e.kind == "error");
+        assert_eq!(is_error, batch.failures.len() == 1, "{code}: {:?}", batch.failures);
+        assert_eq!(is_error, batch.fabrics.is_empty(), "{code}");
+    }
+}
+
+#[test]
+fn every_code_has_an_explanation_and_a_file() {
+    let explained: BTreeSet<&str> =
+        explanations().iter().map(|e| e.code.as_str()).filter(|c| c.starts_with('R')).collect();
+    let tested: BTreeSet<&str> = CASES.iter().map(|c| c.0).collect();
+    assert_eq!(explained, tested);
+    assert!(Problem::CODES.iter().all(|c| explained.contains(c)));
+}
+
+/// One bad file among good ones costs that file only.
+#[test]
+fn a_bad_file_does_not_stop_a_batch() {
+    let batch = read_fabrics(&[root()], &ReadSettings::default(), &|_: &Path| ());
+    // The folder itself is a fabric of the readable files in it; the folders in it are others.
+    let main = batch.fabrics.iter().find(|f| f.name == "malformed").expect("the folder");
+    assert!(main.measurements.len() >= 2);
+    assert!(batch.failures.len() >= 20);
+    assert!(batch.fabrics.iter().any(|f| f.name == "r103-twice" && f.measurements.len() == 2));
+}
