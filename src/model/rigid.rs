@@ -36,11 +36,7 @@ pub enum RigidBodyError {
 ///
 /// # Errors
 /// M010 if a node is in two bodies, or a node that does not lead is held (`held`: six a node).
-pub fn leads(
-    nodes: usize,
-    bodies: &[RigidBody],
-    held: &[Option<f64>],
-) -> Result<Vec<u32>, RigidBodyError> {
+pub fn leads(nodes: usize, bodies: &[RigidBody], held: &[Option<f64>]) -> Result<Vec<u32>, RigidBodyError> {
     let mut leads: Vec<u32> = (0..nodes as u32).collect();
     let mut taken = vec![false; nodes];
     for body in bodies {

@@ -172,13 +172,16 @@ impl<'a> System<'a> {
             locals.push(local);
         }
         let unbalanced = self.to_leads(state, &nodal);
-        let square = |d: usize, f: f64| if d % 6 < 3 { f * f } else { (f / self.side).powi(2) };
-        let sum = |held: bool| -> f64 {
-            (0..unbalanced.len()).filter(|d| self.held[*d] == held).map(|d| square(d, unbalanced[d])).sum()
-        };
-        let loads: f64 = external.iter().enumerate().map(|(d, f)| square(d, *f)).sum();
-        let (residual, scale) = (sum(false).sqrt(), sum(true).max(loads).sqrt());
+        let residual = self.norm(&unbalanced, false);
+        let loads = self.to_leads(state, &external);
+        let scale = self.norm(&unbalanced, true).max(self.norm(&loads, false));
         Balance { motions, local: locals, nodal, unbalanced, energy, residual, scale }
+    }
+
+    /// Norm of the forces on the held or the free dofs (N), moments over the side of an element.
+    pub fn norm(&self, forces: &[f64], held: bool) -> f64 {
+        let square = |(d, f): (usize, &f64)| if d % 6 < 3 { f * f } else { (f / self.side).powi(2) };
+        forces.iter().enumerate().filter(|(d, _)| self.held[*d] == held).map(square).sum::<f64>().sqrt()
     }
 
     /// Adds the forces of followers to their leads.
@@ -200,6 +203,16 @@ impl<'a> System<'a> {
     /// The loads at factor 1, by dof.
     pub fn reference_load(&self, state: &State) -> Vec<f64> {
         self.to_leads(state, &self.load)
+    }
+
+    /// Sum of the sizes of the nodal loads at factor 1 (N).
+    pub fn total_load(&self) -> f64 {
+        self.load.chunks_exact(6).map(|n| n[0].hypot(n[1]).hypot(n[2])).sum()
+    }
+
+    /// The order of the largest eigenvalue per area: the membrane of an element (N/m³).
+    pub fn stiffest(&self) -> f64 {
+        self.model.section.d_m.diagonal().max() / (self.side * self.side)
     }
 
     /// Tangent with `shift` times the metric added, held dofs as unit rows, and the forces that the
@@ -317,7 +330,8 @@ impl<'a> System<'a> {
         for node in 0..before.len() {
             let lead = self.leads[node] as usize;
             let turn = UnitQuaternion::from_scaled_axis(vector(step, 6 * lead + 3));
-            state.position[node] = before[lead] + vector(step, 6 * lead) + turn * (before[node] - before[lead]);
+            state.position[node] =
+                before[lead] + vector(step, 6 * lead) + turn * (before[node] - before[lead]);
             let mut rotation = turn * state.rotation[node];
             rotation.renormalize();
             state.rotation[node] = rotation;
