@@ -126,7 +126,7 @@ fn main() {
     println!(
         "   n block         path     rows nnz(L)/M stored  GFLOP  MB(L) |   order symbol    first  numeric  2 thr.   solve | GF/s   of C 2 thr. others residual   (times in ms)"
     );
-    for n in [40, 80, 160, 320, 640] {
+    for n in [10, 40, 80, 160, 320, 640] {
         for block in [3, 6] {
             for path in [Path::Auto, Path::Faer] {
                 if n <= largest {

@@ -337,9 +337,9 @@ fn tensile(yarns: &Yarns, noise: &mut Noise) -> Record {
     let (low, high) = (strain_at(5.0), strain_at(20.0));
     let tangent = slope(force, low, high) * 100.0;
 
-    // Onset of load: two samples, and the strain at which load leaves the noise.
+    // Onset of load: one sampling step, and the strain at which load leaves the noise.
     let step = (top + slack) / LOADING as f64;
-    let onset = 2.0 * step + strain_at(4.0 * TENSILE.noise);
+    let onset = step + strain_at(TENSILE.noise);
     let area = emt / 100.0 * (4.0 * TENSILE.noise + TENSILE.drift);
     let samples = (high - low) / step;
     let truth = vec![

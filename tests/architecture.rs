@@ -24,8 +24,12 @@ const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("fields", &["finding", "quantity", "section", "mesh", "element", "model", "solve"], &[]),
     ("constitutive", &["finding", "quantity", "instrument", "characterise", "section"], &[]),
     ("study", &ABOVE_STUDY, &["toml"]),
-    ("report", &ABOVE_REPORT, &["polars", "plotters", "plotters_backend", "dejavu", "vtkio"]),
-    ("cli", &ABOVE_CLI, &["clap", "clap_complete", "indicatif", "ctrlc"]),
+    (
+        "report",
+        &ABOVE_REPORT,
+        &["base64", "csv", "dejavu", "percent_encoding", "plotters", "png", "polars", "vtkio"],
+    ),
+    ("cli", &ABOVE_CLI, &["clap", "clap_complete", "indicatif", "ctrlc", "toml"]),
 ];
 
 const ABOVE_STUDY: [&str; 12] = [
@@ -55,13 +59,14 @@ const ABOVE_REPORT: [&str; 9] = [
     "study",
 ];
 
-const ABOVE_CLI: [&str; 9] = [
+const ABOVE_CLI: [&str; 10] = [
     "finding",
     "quantity",
     "instrument",
     "characterise",
     "section",
     "constitutive",
+    "solve",
     "fields",
     "study",
     "report",

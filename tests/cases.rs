@@ -42,3 +42,43 @@ fn decoupled_and_coupled_solutions_are_equal() {
         assert!((a - b).abs() < 1e-9 * scale.max(a.abs()));
     }
 }
+
+fn parsed(analysis: &str, load: &str) -> Case {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/benchmark_clamped_isotropic.toml");
+    let text = std::fs::read_to_string(path).unwrap().replace("cells = [40, 40]", "cells = [12, 12]");
+    let end = text.find("[[checks]]").unwrap();
+    let loads = text.find("[[loads]]").unwrap();
+    let probes = text.find("[[probes]]").unwrap();
+    let text = format!("{}{load}{}[analysis]\n{analysis}\n", &text[..loads], &text[probes..end]);
+    Case::parse(Path::new("inline.toml"), &text).unwrap()
+}
+
+const PRESSURE: &str = "[[loads]]\nkind = \"pressure\"\nvalue = \"1e-6 Pa\"\n";
+
+/// Clamped isotropic square: ω1 = 35.98519 √(D/ρ)/L² (p-Ritz), here with D = ρ = L = 1.
+#[test]
+fn a_modal_case_gives_frequencies_and_the_first_shape() {
+    let case = parsed("kind = \"modal\"\nmodes = 3", "");
+    let s = section(case.section.as_ref().unwrap()).unwrap();
+    let result = solve_case(&case, s, None, &Options::default()).unwrap();
+    assert_eq!(result.frequencies.len(), 3);
+    let omega = result.frequencies[0] * std::f64::consts::TAU;
+    assert!((omega / 35.98519 - 1.0).abs() < 0.02, "{omega}");
+    assert!((result.w_max.abs() - 1.0).abs() < 1e-12 && result.findings.is_empty());
+}
+
+/// A suddenly applied load swings to about twice the static deflection and conserves energy. The
+/// first mode alone would give 2 times its share (a few percent above the static deflection); the
+/// others add a few percent when their swings coincide, so the bound is 2.2.
+#[test]
+fn a_dynamic_case_swings_about_the_static_deflection() {
+    let case = parsed("kind = \"newmark\"\nduration = \"0.175 s\"\nstep = \"0.5 ms\"", PRESSURE);
+    let s = section(case.section.as_ref().unwrap()).unwrap();
+    let dynamic = solve_case(&case, s.clone(), None, &Options::default()).unwrap();
+    let still = solve_case(&parsed("kind = \"linear\"", PRESSURE), s, None, &Options::default()).unwrap();
+    let ratio = dynamic.w_max / still.w_max;
+    assert!((1.9..2.2).contains(&ratio), "{ratio}");
+    let history = dynamic.history.unwrap();
+    assert!(history.imbalance < 1e-9);
+    assert_eq!(history.time.len(), history.probes[0].len());
+}

@@ -125,3 +125,51 @@ fn synthetic_fabrics_are_sampled_and_labelled() {
         }
     }
 }
+
+/// The real FAB record of a cupro weave, where it is present. References: chords over the same
+/// windows computed independently from the file (measured), the mass
+/// in the file, and B identified with a full
+/// hysteresis law in a large-rotation beam (4.7 and 7.6 µN·m), which lies inside the 95 % interval.
+#[test]
+fn a_real_fab_record() {
+    let path = std::env::var_os("KESF_FAB").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/u3m/physics_example2.json"),
+        PathBuf::from,
+    );
+    if !path.is_file() {
+        println!("skipped: no {}", path.display());
+        return;
+    }
+    let batch = read_fabrics(&[path], &ReadSettings::default(), &|_: &Path| ());
+    let sheet = characterise(&batch.fabrics[0], &Settings::default());
+    let warp = |name: &str| sheet.moduli[&(name.to_string(), Direction::Warp)].mean;
+    for (name, expected) in [
+        ("window(2 gf/cm, 5 gf/cm)", 1140.0),
+        ("tangent_low", 1589.0),
+        ("window(20 gf/cm, 100 gf/cm)", 3453.0),
+        ("secant", 2738.0),
+    ] {
+        // The references are rounded to 1 N/m.
+        assert!((warp(name) / expected - 1.0).abs() < 2e-3, "{name}: {}", warp(name));
+    }
+    let w = sheet.get(Parameter::W, None).unwrap();
+    assert!((w.mean - 0.1056).abs() < 1e-6);
+    for (direction, reference) in [(Direction::Warp, 4.7e-6), (Direction::Weft, 7.6e-6)] {
+        let b = sheet.get(Parameter::B, Some(direction)).unwrap();
+        println!("B {direction}: {:.2} ± {:.2} µN·m", 1e6 * b.mean, 1e6 * b.ci95().unwrap());
+        assert!((b.mean - reference).abs() < b.ci95().unwrap());
+        assert!(b.mean < 2.0 * reference);
+    }
+    // 1.3 to 9.5 mm of slack, more in the last cycle than in the first.
+    for strip in &sheet.strips {
+        assert_eq!(strip.cycles.len(), 4);
+        let slack: Vec<f64> = strip.cycles.iter().map(|c| 1e3 * c.slack).collect();
+        assert!(slack.iter().all(|s| (1.2..11.0).contains(s)), "{slack:?}");
+    }
+    for f in &sheet.findings {
+        println!("{f}");
+    }
+    for code in ["K030", "K031", "K032"] {
+        assert!(sheet.findings.iter().any(|f| f.code == code), "{code}");
+    }
+}

@@ -16,12 +16,14 @@ mod settings;
 mod sheet;
 mod specimen;
 mod statistics;
+mod strip;
 mod tables;
 mod tensile;
 
 pub use graph::LineFit;
 pub use settings::{CycleChoice, Modulus, Settings};
 pub use sheet::{Branch, FabricSheet, Key, SpecimenResult, Window};
+pub use strip::{Strip, StripCycle};
 
 use crate::instrument::FabricInput;
 
@@ -50,6 +52,7 @@ pub fn characterise(input: &FabricInput, settings: &Settings) -> FabricSheet {
     found.extend(statistics::swapped(&sheet));
     sheet.findings.append(&mut found);
     tables::merge(&mut sheet, input);
+    strip::add(&mut sheet, &input.fab, settings);
     tables::metadata(&mut sheet, input);
     tables::moduli(&mut sheet, settings);
     let mut found = checks::plausibility(&sheet);

@@ -297,6 +297,20 @@ proptest! {
         prop_assert!((value(&sheet, P::Hb) / 6e-4 - 1.0).abs() < 1e-9);
     }
 
+    /// Whatever the samples are, the evaluation ends and every value that it gives is a number.
+    #[test]
+    fn any_record_is_evaluated_or_told(
+        points in prop::collection::vec((-300.0f64..300.0, -600.0f64..600.0), 0..60),
+        test in prop::sample::select(Test::ALL.to_vec()),
+        maximum in prop::sample::select(vec![0.0, f64::NAN, 250.0, 1e9]),
+    ) {
+        let sheet = evaluate(measurement(test, maximum, points));
+        prop_assert!(!sheet.specimens.is_empty() || codes(&sheet).contains(&"K001"));
+        for specimen in &sheet.specimens {
+            prop_assert!(specimen.values.values().chain(specimen.moduli.values()).all(|v| v.is_finite()));
+        }
+    }
+
     /// Ordinates scaled (another unit of the same record): every parameter scales with its power.
     #[test]
     fn parameters_scale_with_the_ordinate(factor in 0.1f64..10.0) {
@@ -320,4 +334,99 @@ fn the_shear_window_is_a_setting() {
     let settings = Settings { shear_slope: [Angle(0.5 * DEG), Angle(5.0 * DEG)], ..Settings::default() };
     let sheet = sheet_of(vec![m], &settings);
     assert_relative_eq!(value(&sheet, P::G), 45.0 + b * 2.75 * DEG, max_relative = 1e-10);
+}
+
+/// A bending record of rigidity `b` (N·m) in a direction.
+fn bent(b: f64, direction: Direction, specimen: usize) -> Measurement {
+    let points = cycle(250.0, 60, |k, s| b * k + 3e-4 * s);
+    let mut m = measurement(Test::Bending, 250.0, points);
+    (m.direction, m.specimen) = (Some(direction), specimen);
+    m
+}
+
+#[test]
+fn what_the_set_of_records_says_about_itself() {
+    use Direction::{Warp, Weft};
+    // One warp specimen among the weft ones, and twice the number 1.
+    let mut set: Vec<_> = [(8e-6, 1), (8.1e-6, 2), (3.02e-6, 3)].map(|(b, i)| bent(b, Warp, i)).into();
+    set.extend([(3e-6, 1), (3.05e-6, 1), (2.98e-6, 3)].map(|(b, i)| bent(b, Weft, i)));
+    let sheet = sheet_of(set, &Settings::default());
+    assert_eq!(codes(&sheet), ["K019", "K010", "K010", "K010", "K013"], "{:#?}", sheet.findings);
+    let swapped = sheet.findings.last().unwrap();
+    assert!(swapped.message.contains("warp specimen 3"), "{swapped}");
+
+    // No direction, another maximum.
+    let mut odd = bent(8e-6, Warp, 1);
+    odd.direction = None;
+    odd.conditions.maximum = 251.0;
+    let sheet = sheet_of(vec![bent(8e-6, Warp, 1), odd], &Settings::default());
+    assert_eq!(codes(&sheet), ["K015", "K007"]);
+    assert!(sheet.get(P::B, None).is_some());
+
+    // G of warp and weft: 45 and 70 N/m per rad.
+    let sheared = |g: f64, direction| {
+        let mut m = measurement(Test::Shear, 8.0 * DEG, cycle(8.0 * DEG, 60, |x, s| g * x + 0.5 * s));
+        m.direction = Some(direction);
+        m
+    };
+    let sheet = sheet_of(vec![sheared(45.0, Warp), sheared(70.0, Weft)], &Settings::default());
+    assert_eq!(codes(&sheet), ["K012"]);
+}
+
+#[test]
+fn tables_stand_beside_curves() {
+    use crate::finding::Place;
+    use crate::instrument::ResultValue;
+    let cell = |parameter, direction, mean, inferred| ResultValue {
+        parameter,
+        direction,
+        mean,
+        sd: Some(0.1 * mean),
+        n: 5,
+        inferred,
+        place: Place::at("results.csv", 2, 3),
+    };
+    let warp = Some(Direction::Warp);
+    let mut input =
+        FabricInput { measurements: vec![bent(8e-6, Direction::Warp, 1)], ..FabricInput::default() };
+    input.info.thickness = Some(4e-4);
+    input.results = vec![
+        cell(P::B, warp, 9e-6, false),
+        cell(P::Hb, warp, 6.1e-4, false),
+        cell(P::Emt, warp, 0.05, true),
+        cell(P::Lt, warp, 0.8, false),
+        cell(P::B, None, 8.5e-6, false),
+    ];
+    let sheet = characterise(&input, &Settings::default());
+    assert_eq!(codes(&sheet), ["K014", "K016", "K017", "K021", "K020"], "{:#?}", sheet.findings);
+    assert_relative_eq!(value(&sheet, P::B), 8e-6, max_relative = 1e-10);
+    assert_relative_eq!(sheet.get(P::B, None).unwrap().mean, 8.5e-6);
+    let emt = sheet.get(P::Emt, warp).unwrap();
+    assert_eq!(emt.n, 5);
+    assert_relative_eq!(emt.sd.unwrap(), 0.005, max_relative = 1e-12);
+    let modulus = |name: &str| sheet.moduli[&(name.to_string(), Direction::Warp)].mean;
+    assert_relative_eq!(modulus("secant"), FM / 0.05, max_relative = 1e-12);
+    assert_relative_eq!(modulus("energy"), 0.8 * FM / 0.05, max_relative = 1e-12);
+    assert!(!sheet.moduli.contains_key(&("tangent_low".to_string(), Direction::Warp)));
+}
+
+#[test]
+fn noise_and_few_samples_are_told() {
+    let noisy = cycle(250.0, 60, |k, s| 8e-6 * k + 3e-4 * s);
+    let mut sign = 1.0;
+    let noisy = noisy.into_iter().map(|(k, m)| {
+        sign = -sign;
+        (k, m + 1e-4 * sign)
+    });
+    let sheet = evaluate(measurement(Test::Bending, 250.0, noisy.collect()));
+    assert!(codes(&sheet).contains(&"K009"), "{:?}", sheet.findings);
+    let coarse = cycle(250.0, 6, |k, s| 8e-6 * k + 3e-4 * s);
+    let sheet = evaluate(measurement(Test::Bending, 250.0, coarse));
+    assert!(codes(&sheet).contains(&"K004"), "{:?}", sheet.findings);
+    let bent = cycle(250.0, 60, |k, s| 1e-12 * k.powi(3) * k.abs() + 3e-4 * s);
+    let sheet = evaluate(measurement(Test::Bending, 250.0, bent));
+    assert!(codes(&sheet).contains(&"K003"), "{:?}", sheet.findings);
+    let mut gaps = cycle(250.0, 60, |k, s| 8e-6 * k + 3e-4 * s);
+    gaps[30].1 = f64::NAN;
+    assert_eq!(codes(&evaluate(measurement(Test::Bending, 250.0, gaps))), ["K022"]);
 }

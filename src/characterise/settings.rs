@@ -112,6 +112,12 @@ pub struct Settings {
     pub compression_start: Pressure,
     /// Which cycle the parameters are taken from.
     pub cycle: CycleChoice,
+    /// Force at which a FAB strip counts as under load: its strain zero (1 gf/cm).
+    pub strip_onset: LineForce,
+    /// Forces between which tangents of FAB strips are taken, beside `tangent_low` (2 to 5, 20 to 100 gf/cm).
+    pub strip_windows: Vec<[LineForce; 2]>,
+    /// Force at which the secant of FAB strips is taken (100 gf/cm).
+    pub strip_secant: LineForce,
     /// Whether zero, offset and slack are corrected.
     pub correct_zero: bool,
     /// A drive reversal counts when it is longer than this part of the range of the abscissa; less is jitter.
@@ -143,6 +149,9 @@ impl Default for Settings {
             table_maximum: LineForce(500.0 * GF_PER_CM),
             compression_start: Pressure(0.5 * STANDARD_GRAVITY * 10.0),
             cycle: CycleChoice::First,
+            strip_onset: LineForce(GF_PER_CM),
+            strip_windows: [[2.0, 5.0], [20.0, 100.0]].map(|w| w.map(|f| LineForce(f * GF_PER_CM))).to_vec(),
+            strip_secant: LineForce(100.0 * GF_PER_CM),
             correct_zero: true,
             reversal: Ratio(0.05),
             large_correction: Ratio(0.10),

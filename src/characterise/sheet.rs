@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::LineFit;
+use super::{LineFit, Strip};
 use crate::finding::Finding;
 use crate::instrument::{Direction, FabricInfo, Measurement, Parameter, Source};
 use crate::quantity::{Curve, Estimate};
@@ -76,6 +76,8 @@ pub struct FabricSheet {
     pub moduli: BTreeMap<(String, Direction), Estimate>,
     /// Specimens in order of test, direction, number; empty for fabrics known from tables only.
     pub specimens: Vec<SpecimenResult>,
+    /// Stretch tests of FAB strips, in file order.
+    pub strips: Vec<Strip>,
     /// Files behind the sheet.
     pub sources: Vec<Source>,
     /// What a reader of the sheet must know.

@@ -113,15 +113,24 @@ pub(super) fn evaluate(
         }
     };
     match outcome {
-        Ok(e) => Some(SpecimenResult {
-            measurement: measurement.clone(),
-            branches: e.branches,
-            correction: e.correction,
-            windows: e.windows,
-            fits: e.fits,
-            values: e.values,
-            moduli: e.moduli,
-        }),
+        Ok(mut e) => {
+            let infinite: Vec<Parameter> =
+                e.values.iter().filter(|(_, v)| !v.is_finite()).map(|(p, _)| *p).collect();
+            for parameter in infinite {
+                e.values.remove(&parameter);
+                notes.missing(parameter.symbol(), "the record gives no finite value");
+            }
+            e.moduli.retain(|_, v| v.is_finite());
+            Some(SpecimenResult {
+                measurement: measurement.clone(),
+                branches: e.branches,
+                correction: e.correction,
+                windows: e.windows,
+                fits: e.fits,
+                values: e.values,
+                moduli: e.moduli,
+            })
+        }
         Err(reason) => {
             notes.add("K001", format!("the specimen is left out: {reason}"));
             None

@@ -1,1 +1,148 @@
-//! (skeleton)
+//! The command `kesf`: options in, one call of the library, text or JSON out.
+//!
+//! Standard output carries the result and nothing else; `diagnostics` owns standard error and
+//! `exit` the exit codes. Nothing is computed here.
+
+mod args;
+mod characterise;
+mod check;
+mod compare;
+mod completions;
+mod diagnostics;
+mod exit;
+mod explain;
+mod inputs;
+mod list;
+mod output;
+mod read;
+mod run;
+mod section;
+mod solve;
+mod summary;
+mod task;
+mod tree;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use clap::Parser;
+use clap::error::ErrorKind;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use args::{Cli, Command};
+use diagnostics::{Diagnostics, Failure};
+use exit::Exit;
+
+use crate::report::json::text;
+
+/// Set by Ctrl-C, read between items of work.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// What a command may use to speak: the format of the result and the diagnostics.
+struct Ui {
+    json: bool,
+    diagnostics: Diagnostics,
+}
+
+impl Ui {
+    /// Prints a result as it is.
+    fn print(&mut self, text: &str) -> Result<Exit, Failure> {
+        output::to_stdout(text.as_bytes())?;
+        Ok(Exit::Done)
+    }
+
+    /// Prints a JSON document.
+    fn document(&mut self, document: &serde_json::Value) -> Result<Exit, Failure> {
+        self.print(&text(document)?)
+    }
+
+    /// A running count on a terminal; nothing elsewhere.
+    fn spinner(&self, what: &'static str) -> ProgressBar {
+        if !self.diagnostics.progress() {
+            return ProgressBar::hidden();
+        }
+        let style =
+            ProgressStyle::with_template("{spinner} {msg} {pos}").unwrap_or(ProgressStyle::default_spinner());
+        ProgressBar::new_spinner().with_style(style).with_message(what)
+    }
+
+    /// A bar over `length` items on a terminal; nothing elsewhere.
+    fn bar(&self, what: &'static str, length: usize) -> ProgressBar {
+        if !self.diagnostics.progress() {
+            return ProgressBar::hidden();
+        }
+        let style = ProgressStyle::with_template("{msg} [{bar:40}] {pos}/{len} {eta}")
+            .unwrap_or(ProgressStyle::default_bar());
+        ProgressBar::new(length as u64).with_style(style).with_message(what)
+    }
+
+    /// An error if Ctrl-C was pressed.
+    fn go_on(&self) -> Result<(), Failure> {
+        if INTERRUPTED.load(Ordering::Relaxed) { Err(Failure::interrupted()) } else { Ok(()) }
+    }
+}
+
+/// Runs the program with these arguments (the first is its name) and says how it ended.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let cli = match Cli::try_parse_from(&arguments) {
+        Ok(cli) => cli,
+        Err(error) => return usage(&error, arguments.iter().any(|a| a == "--json")).into(),
+    };
+    let mut ui = Ui { json: cli.global.json, diagnostics: Diagnostics::new(&cli.global) };
+    if let Err(failure) = prepare(&cli) {
+        ui.diagnostics.error(&failure);
+        return failure.exit.into();
+    }
+    let exit = dispatch(&cli.command, &mut ui).unwrap_or_else(|failure| {
+        ui.diagnostics.error(&failure);
+        failure.exit
+    });
+    exit.into()
+}
+
+/// Threads and Ctrl-C. The first Ctrl-C ends the work at the next item, the second at once.
+fn prepare(cli: &Cli) -> Result<(), Failure> {
+    let threads = cli.global.threads.map_or(0, std::num::NonZero::get);
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build_global()
+        .map_err(|e| Failure::new("O053", format!("the threads cannot be started: {e}")))?;
+    ctrlc::set_handler(|| {
+        if INTERRUPTED.swap(true, Ordering::Relaxed) {
+            std::process::exit(Exit::Interrupted as i32);
+        }
+    })
+    .map_err(|e| Failure::new("O053", format!("Ctrl-C cannot be caught: {e}")))
+}
+
+fn dispatch(command: &Command, ui: &mut Ui) -> Result<Exit, Failure> {
+    match command {
+        Command::Run(options) => run::run(options, ui),
+        Command::Read(options) => read::run(options, ui),
+        Command::Characterise(options) => characterise::run(options, ui),
+        Command::Section(options) => section::run(options, ui),
+        Command::Solve(options) => solve::run(options, ui),
+        Command::Compare(options) => compare::run(options, ui),
+        Command::Check(options) => check::run(options, ui),
+        Command::List(options) => list::run(options, ui),
+        Command::Explain(options) => explain::run(options, ui),
+        Command::Completions(options) => completions::run(options, ui),
+    }
+}
+
+/// Help and version go to standard output; anything else is bad usage.
+fn usage(error: &clap::Error, json: bool) -> Exit {
+    let asked = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
+    if json && !asked {
+        let text = error.to_string();
+        let message = text.strip_prefix("error: ").unwrap_or(&text).split("\n\n").next().unwrap_or_default();
+        let failure = Failure::new("O050", message.trim()).hint("see `kesf help`");
+        Diagnostics::json_only().error(&failure);
+        return Exit::Bad;
+    }
+    // If the reader has left there is nobody to tell.
+    let _ = error.print();
+    if asked { Exit::Done } else { Exit::Bad }
+}

@@ -9,13 +9,10 @@
 
 use nalgebra::Matrix3;
 
-use super::{Assumptions, ConstitutiveError, Modulus, Notes, PoissonRule};
-use crate::characterise::SpecimenResult;
-use crate::instrument::{Direction, Parameter, Test};
-use crate::quantity::{Estimate, LineForce, significant};
-
-/// The standard maximum force of KES-FB1, 500 gf/cm, in N/m: assumed where a table does not say.
-const STANDARD_MAXIMUM: f64 = 490.3325;
+use super::{Assumptions, ConstitutiveError, Notes, PoissonRule};
+use crate::characterise::Modulus;
+use crate::instrument::Direction;
+use crate::quantity::significant;
 
 /// D_m (N/m) with the in-plane shear stiffness `g` (N/m).
 pub(super) fn matrix(
@@ -54,23 +51,23 @@ pub(super) fn matrix(
 /// E1 t and E2 t (N/m): the chosen slope, else the next that the sheet allows, else the stand-in.
 fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], ConstitutiveError> {
     let chosen = assumptions.modulus;
-    if let Some((e, source)) = measured(chosen, notes) {
-        record(e, format!("measured: {source}"), notes);
+    if let Some(e) = known(chosen, notes) {
+        record(e, format!("measured: {chosen}"), notes);
         return Ok(e);
     }
-    if let Modulus::Window(from, to) = chosen {
+    if let Modulus::Window(..) = chosen {
         return Err(notes.missing(
-            format!("tensile curve with three samples or more between {from} and {to} in warp and weft"),
+            format!("{chosen} modulus in warp and weft"),
             "widen the window, or choose tangent_low, secant or energy",
         ));
     }
     for other in [Modulus::Secant, Modulus::Energy].into_iter().filter(|m| *m != chosen) {
-        if let Some((e, source)) = measured(other, notes) {
+        if let Some(e) = known(other, notes) {
             notes.finding(
                 "C011",
                 format!("there is no {chosen} modulus; the {other} modulus is used instead"),
             );
-            record(e, format!("measured: {source}, because there is no {chosen} modulus"), notes);
+            record(e, format!("measured: {other}, because there is no {chosen} modulus"), notes);
             return Ok(e);
         }
     }
@@ -78,11 +75,11 @@ fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], Cons
     notes.finding(
         "C012",
         format!(
-            "no tensile test is known; {e} stands in for both moduli (linear bending of a flat sheet \
+            "no tensile modulus is known; {e} stands in for both (linear bending of a flat sheet \
              does not depend on it, membrane results and the limit of linear theory do)"
         ),
     );
-    record([e.si(); 2], "assumed: no tensile test".into(), notes);
+    record([e.si(); 2], "assumed: not measured".into(), notes);
     Ok([e.si(); 2])
 }
 
@@ -91,55 +88,8 @@ fn record([e1, e2]: [f64; 2], source: String, notes: &mut Notes) {
     notes.used("tensile modulus", value, source);
 }
 
-/// The modulus by its definition in both directions, and how it was had.
-fn measured(modulus: Modulus, notes: &mut Notes) -> Option<([f64; 2], String)> {
-    let sheet = notes.sheet;
-    if let Modulus::Window(from, to) = modulus {
-        let e = [Direction::Warp, Direction::Weft].map(|d| window_slope(&sheet.specimens, d, from, to));
-        return Some(([e[0]?, e[1]?], format!("slope from {from} to {to}")));
-    }
-    let of = |d| sheet.moduli.get(&(modulus.to_string(), d)).map(|e| e.mean);
-    if let (Some(warp), Some(weft)) = (of(Direction::Warp), of(Direction::Weft)) {
-        return Some(([warp, weft], modulus.to_string()));
-    }
-    // From table values: E = F_m/e_m, and LT times that for the energy modulus (identity).
-    if modulus == Modulus::TangentLow {
-        return None;
-    }
-    let emt = notes.warp_weft(Parameter::Emt)?;
-    let factor = if modulus == Modulus::Energy { notes.warp_weft(Parameter::Lt)? } else { [1.0; 2] };
-    let e = [0, 1].map(|i| factor[i] * STANDARD_MAXIMUM / emt[i]);
-    notes.finding("C015", format!("the {modulus} modulus is computed from EMT with F_m = 500 gf/cm assumed"));
-    Some((e, format!("{modulus} from EMT at 500 gf/cm")))
-}
-
-/// Mean over the specimens of the slope of F (N/m) over strain on the first loading branch.
-fn window_slope(
-    specimens: &[SpecimenResult],
-    direction: Direction,
-    from: LineForce,
-    to: LineForce,
-) -> Option<f64> {
-    let slopes: Vec<f64> = specimens
-        .iter()
-        .filter(|s| s.measurement.test == Test::Tensile && s.measurement.direction == Some(direction))
-        .filter_map(|s| {
-            let loading = s.branches.iter().find(|b| b.outgoing)?;
-            let inside = |&(_, f): &(f64, f64)| from.si() <= f && f <= to.si();
-            least_squares(&loading.curve.points().filter(inside).collect::<Vec<_>>())
-        })
-        .collect();
-    Estimate::of(&slopes).map(|e| e.mean)
-}
-
-/// Slope of the least-squares line; `None` for fewer than three points or a single abscissa.
-fn least_squares(points: &[(f64, f64)]) -> Option<f64> {
-    if points.len() < 3 {
-        return None;
-    }
-    let n = points.len() as f64;
-    let (mx, my) = (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);
-    let sxx: f64 = points.iter().map(|p| (p.0 - mx).powi(2)).sum();
-    let sxy: f64 = points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum();
-    (sxx > 0.0).then(|| sxy / sxx)
+/// The modulus of the sheet in both directions.
+fn known(modulus: Modulus, notes: &Notes) -> Option<[f64; 2]> {
+    let of = |direction| Some(notes.sheet.moduli.get(&(modulus.name(), direction))?.mean);
+    Some([of(Direction::Warp)?, of(Direction::Weft)?])
 }

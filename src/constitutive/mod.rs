@@ -24,9 +24,7 @@ use crate::instrument::{Direction, Parameter};
 use crate::quantity::significant;
 use crate::section::{SectionError, ShellSection};
 
-pub use assumptions::{
-    Assumptions, BendingCoupling, ChoiceError, Modulus, PoissonRule, Torsion, TransverseShear,
-};
+pub use assumptions::{Assumptions, BendingCoupling, ChoiceError, PoissonRule, Torsion, TransverseShear};
 
 /// A section with everything that went into it.
 #[derive(Clone, Debug, PartialEq)]

@@ -15,10 +15,6 @@ use crate::quantity::significant;
 /// Shear correction factor of a homogeneous plate.
 const CHI: f64 = 5.0 / 6.0;
 
-/// Warp and weft values of G that differ by more than this part of their mean are reported:
-/// about three times the usual spread between specimens.
-const DIFFERENCE: f64 = 0.2;
-
 /// G (N/m per rad).
 pub(super) fn in_plane(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, ConstitutiveError> {
     let sheet = notes.sheet;
@@ -26,13 +22,8 @@ pub(super) fn in_plane(assumptions: &Assumptions, notes: &mut Notes) -> Result<f
     let [warp, weft, mean] = directions.map(|d| sheet.get(Parameter::G, d).map(|e| e.mean));
     let (g, source) = match (warp, weft) {
         (Some(warp), Some(weft)) => {
-            let (g, difference) = ((warp + weft) / 2.0, (warp - weft).abs());
-            if difference > DIFFERENCE * g.abs() {
-                let percent = significant(100.0 * difference / g.abs());
-                notes.finding("C017", format!("G of warp and weft differ by {percent} % of their mean"));
-            }
             let values = format!("{} and {} N/m", significant(warp), significant(weft));
-            (g, format!("measured: mean of G warp and weft, {values}"))
+            ((warp + weft) / 2.0, format!("measured: mean of G warp and weft, {values}"))
         }
         _ => match warp.or(weft).or(mean) {
             Some(g) => (g, "measured: G".to_string()),

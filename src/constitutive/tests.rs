@@ -1,12 +1,10 @@
 //! References: the closed forms of orthotropic plates; published table values with the exact
-//! factor of the gram-force; a straight line as tensile curve.
+//! factor of the gram-force.
 
 use super::*;
-use crate::characterise::{Branch, Key};
-use crate::instrument::{Conditions, Measurement, Source, Test};
-use crate::quantity::{BendingRigidity, Curve, Estimate, LineForce};
+use crate::characterise::{Key, Modulus};
+use crate::quantity::{BendingRigidity, Estimate, LineForce};
 use approx::assert_relative_eq;
-use std::collections::BTreeMap;
 
 const WARP: Option<Direction> = Some(Direction::Warp);
 const WEFT: Option<Direction> = Some(Direction::Weft);
@@ -112,24 +110,26 @@ fn the_other_sources_of_torsion_and_coupling() {
     assert_eq!(error.code(), "C003");
 }
 
-/// Petrak et al. 2025, fabric M1: B 1.95/0.61 µN·m, G 41 N/m, EMT 2.75/6.92 %, no curves.
 #[test]
-fn a_result_table_falls_back_to_the_secant_modulus_and_says_so() {
-    let table = sheet(&[
-        (Parameter::B, WARP, 1.95e-6),
-        (Parameter::B, WEFT, 0.61e-6),
-        (Parameter::G, None, 41.0),
-        (Parameter::Emt, WARP, 0.0275),
-        (Parameter::Emt, WEFT, 0.0692),
-        (Parameter::T0, None, 3.1e-4),
-        (Parameter::W, None, 0.13517),
-    ]);
+fn without_a_tangent_the_secant_modulus_is_used_and_that_is_said() {
+    let mut table = cloth();
+    table.moduli.clear();
+    for (direction, e) in [(Direction::Warp, 6000.0), (Direction::Weft, 2000.0)] {
+        table.moduli.insert(("secant".into(), direction), Estimate::single(e));
+    }
     let assumptions = Assumptions { poisson_rule: PoissonRule::Zero, ..Default::default() };
     let c = section(&table, &assumptions).unwrap();
-    // 500 gf/cm = 490.3325 N/m over the strain.
-    assert_relative_eq!(c.section.d_m[(0, 0)], 490.3325 / 0.0275, max_relative = 1e-12);
-    assert_relative_eq!(c.section.d_m[(1, 1)], 490.3325 / 0.0692, max_relative = 1e-12);
-    assert_eq!(codes(&c), ["C015", "C011"]);
+    assert_eq!((c.section.d_m[(0, 0)], c.section.d_m[(1, 1)]), (6000.0, 2000.0));
+    assert_eq!(codes(&c), ["C011"]);
+    // A window is chosen on purpose: nothing replaces it.
+    let modulus = Modulus::Window(LineForce(10.0), LineForce(40.0));
+    let error = section(&table, &Assumptions { modulus, ..assumptions.clone() }).unwrap_err();
+    assert_eq!(error.code(), "C004");
+    for (direction, e) in [(Direction::Warp, 3000.0), (Direction::Weft, 1500.0)] {
+        table.moduli.insert((modulus.name(), direction), Estimate::single(e));
+    }
+    let c = section(&table, &Assumptions { modulus, ..assumptions }).unwrap();
+    assert_eq!((c.section.d_m[(0, 0)], c.section.d_m[(1, 1)]), (3000.0, 1500.0));
 }
 
 /// Matsudaira et al. 2015, fabric A: B 0.118 gf·cm²/cm, W 12.38 mg/cm², T 0.497 mm and nothing else.
@@ -155,50 +155,4 @@ fn what_cannot_be_assumed_is_an_error() {
     let mut bad = cloth();
     bad.values.insert(Key { parameter: Parameter::B, direction: WARP }, Estimate::single(-1e-6));
     assert_eq!(section(&bad, &assumptions).unwrap_err().code(), "C005");
-}
-
-#[test]
-fn a_window_takes_the_slope_of_the_curve_between_two_forces() {
-    // F = 1000 e up to 10 N/m, then 3000 e: slope 3000 N/m between 12 and 40 N/m.
-    let bilinear = |e: f64| if e < 0.01 { 1000.0 * e } else { 10.0 + 3000.0 * (e - 0.01) };
-    let specimen = |direction| SpecimenOf { direction }.with(bilinear);
-    let mut cloth = cloth();
-    cloth.specimens = vec![specimen(Direction::Warp), specimen(Direction::Weft)];
-    let window = |from, to| Assumptions {
-        modulus: Modulus::Window(LineForce(from), LineForce(to)),
-        poisson_rule: PoissonRule::Zero,
-        ..Default::default()
-    };
-    let s = section(&cloth, &window(12.0, 40.0)).unwrap().section;
-    assert_relative_eq!(s.d_m[(0, 0)], 3000.0, max_relative = 1e-10);
-    assert_eq!(section(&cloth, &window(1e3, 2e3)).unwrap_err().code(), "C004");
-}
-
-struct SpecimenOf {
-    direction: Direction,
-}
-
-impl SpecimenOf {
-    fn with(&self, law: impl Fn(f64) -> f64) -> crate::characterise::SpecimenResult {
-        let curve = Curve::from_points((0..=40).map(|i| f64::from(i) * 5e-4).map(|e| (e, law(e))));
-        crate::characterise::SpecimenResult {
-            measurement: Measurement {
-                test: Test::Tensile,
-                sample: None,
-                direction: Some(self.direction),
-                specimen: 1,
-                conditions: Conditions::default(),
-                curve: curve.clone(),
-                lines: Vec::new(),
-                source: Source::default(),
-                metadata: BTreeMap::new(),
-            },
-            branches: vec![Branch { cycle: 0, outgoing: true, curve }],
-            correction: [0.0; 2],
-            windows: Vec::new(),
-            fits: Vec::new(),
-            values: BTreeMap::new(),
-            moduli: BTreeMap::new(),
-        }
-    }
 }

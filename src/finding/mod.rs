@@ -122,6 +122,7 @@ pub fn explanations() -> &'static [Explanation] {
             include_str!("codes/mechanics.toml"),
             include_str!("codes/study.toml"),
             include_str!("codes/output.toml"),
+            include_str!("codes/usage.toml"),
         ]
         .into_iter()
         .flat_map(|text| toml::from_str::<CodeFile>(text).expect("built-in code table").code)

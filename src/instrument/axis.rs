@@ -38,106 +38,102 @@ impl Scale {
 
 const RATIO: Dimension = Dimension { kg: 0, m: 0, s: 0 };
 const LENGTH: Dimension = Dimension { kg: 0, m: 1, s: 0 };
+const AREA: Dimension = Dimension { kg: 0, m: 2, s: 0 };
 const PER_LENGTH: Dimension = Dimension { kg: 0, m: -1, s: 0 };
 const FORCE: Dimension = Dimension { kg: 1, m: 1, s: -2 };
 const LINE_FORCE: Dimension = Dimension { kg: 1, m: 0, s: -2 };
 const MOMENT: Dimension = Dimension { kg: 1, m: 2, s: -2 };
 const PRESSURE: Dimension = Dimension { kg: 1, m: -1, s: -2 };
 
-/// How the numbers of a column become the SI axis of the test.
-pub(super) fn scale(
-    column: &Column,
-    test: Test,
-    abscissa: bool,
-    conditions: &Conditions,
-    header: &Header,
-    context: &Context<'_>,
-) -> Result<Scale, ReadError> {
-    let error = |problem| context.error(column.line, column.column, problem);
-    let Some(text) = column.unit.clone().or_else(|| context.default_unit(column.role)) else {
-        let expected = column.role.kes_unit().to_string();
-        return Err(error(Problem::UnitMissing { found: column.name.clone(), expected }));
-    };
-    if is_volt(&text) {
-        // An analogue output of 10 V is the full scale that the range setting states.
-        let key = if abscissa { Key::SensX } else { Key::Sens };
-        let Some(entry) = header.known.get(&key) else {
-            return Err(error(Problem::NoRange { found: column.name.clone() }));
-        };
-        let (value, unit) = full_scale(entry, context)?;
-        let volts = if text == "mV" { 1e-3 } else { 1.0 };
-        let at = |problem| context.error(entry.line, entry.column, problem);
-        let scale = axis(test, abscissa, unit, &entry.text, &column.name, conditions, header, context, &at)?;
-        return Ok(scale.times(value * volts / 10.0));
-    }
-    let unit = known_unit(&text).map_err(error)?;
-    axis(test, abscissa, unit, &text, &column.name, conditions, header, context, &error)
+/// What the axes of a curve depend on beside the column itself.
+pub(super) struct Axes<'a> {
+    pub test: Test,
+    pub conditions: &'a Conditions,
+    pub header: &'a Header,
+    pub context: &'a Context<'a>,
 }
 
+impl Axes<'_> {
+    /// How the numbers of a column become the abscissa or the ordinate of the test.
+    ///
+    /// # Errors
+    /// `R008`, `R009`, `R010`, `R013`, `R015`.
+    pub fn scale(&self, column: &Column, abscissa: bool) -> Result<Scale, ReadError> {
+        let error = |problem| self.context.error(column.line, column.column, problem);
+        let Some(text) = column.unit.clone().or_else(|| self.context.default_unit(column.role)) else {
+            let expected = column.role.kes_unit().to_string();
+            return Err(error(Problem::UnitMissing { found: column.name.clone(), expected }));
+        };
+        let wrong = |found: &str, expected: &str| Problem::UnitWrong {
+            found: found.to_string(),
+            of: column.name.clone(),
+            expected: expected.to_string(),
+        };
+        if !is_volt(&text) {
+            let unit = known_unit(&text).map_err(error)?;
+            return self.axis(abscissa, unit, &text)?.map_err(|expected| error(wrong(&text, expected)));
+        }
+        // An analogue output of 10 V is the full scale that the range setting states.
+        let key = if abscissa { Key::SensX } else { Key::Sens };
+        let Some(entry) = self.header.known.get(&key) else {
+            return Err(error(Problem::NoRange { found: column.name.clone() }));
+        };
+        let (value, unit) = full_scale(entry, self.context)?;
+        let at_entry = |expected| self.context.error(entry.line, entry.column, wrong(&entry.text, expected));
+        let scale = self.axis(abscissa, unit, &entry.text)?.map_err(at_entry)?;
+        let volts = if text == "mV" { 1e-3 } else { 1.0 };
+        Ok(scale.times(value * volts / 10.0))
+    }
+
+    /// The axis from a unit: directly, or from raw force, moment or travel and the geometry. The
+    /// inner error is a unit that would do.
+    fn axis(&self, abscissa: bool, unit: Unit, text: &str) -> Result<Result<Scale, &'static str>, ReadError> {
+        let is_angle = ["deg", "°", "度", "rad"].iter().any(|a| text.contains(a));
+        let (f, Conditions { width, gauge, .. }) = (unit.factor, self.conditions);
+        Ok(Ok(match (self.test, abscissa, unit.dimension) {
+            (Test::Tensile, true, RATIO) if !is_angle => Scale::Linear(f),
+            (Test::Tensile, true, LENGTH) => Scale::Linear(f / gauge),
+            (Test::Tensile, true, _) => return Ok(Err("% or mm")),
+            (Test::Shear, true, RATIO) if is_angle => Scale::Linear(f),
+            (Test::Shear, true, LENGTH) => Scale::Atan(f / gauge),
+            (Test::Shear, true, _) => return Ok(Err("deg, rad or mm")),
+            (Test::Bending, true, PER_LENGTH) => Scale::Linear(f),
+            (Test::Bending, true, _) => return Ok(Err("1/cm")),
+            (Test::Compression, true, LENGTH) => Scale::Linear(f),
+            (Test::Compression, true, _) => return Ok(Err("mm")),
+            (Test::Tensile | Test::Shear, false, LINE_FORCE) => Scale::Linear(f),
+            (Test::Tensile | Test::Shear, false, FORCE) => Scale::Linear(f / width),
+            (Test::Tensile | Test::Shear, false, _) => return Ok(Err("gf/cm or gf")),
+            (Test::Bending, false, FORCE) => Scale::Linear(f),
+            (Test::Bending, false, MOMENT) => Scale::Linear(f / width),
+            (Test::Bending, false, _) => return Ok(Err("gf·cm/cm or gf·cm")),
+            (Test::Compression, false, PRESSURE) => Scale::Linear(f),
+            (Test::Compression, false, FORCE) => Scale::Linear(f / self.foot_area()?),
+            (Test::Compression, false, _) => return Ok(Err("gf/cm² or gf")),
+        }))
+    }
+
+    /// Area of the compression foot: the header, else 2 cm².
+    fn foot_area(&self) -> Result<f64, ReadError> {
+        let Some(entry) = self.header.known.get(&Key::Area) else { return Ok(FOOT_AREA) };
+        let (value, unit) = full_scale(entry, self.context)?;
+        if unit.dimension != AREA {
+            let (found, of) = (entry.text.clone(), "area".to_string());
+            let problem = Problem::UnitWrong { found, of, expected: "cm²".to_string() };
+            return Err(self.context.error(entry.line, entry.column, problem));
+        }
+        positive(value * unit.factor, Key::Area, self.header, self.context)
+    }
+}
+
+/// A header value of any dimension: the full scale of a range, or an area.
 fn full_scale(entry: &Entry, context: &Context<'_>) -> Result<(f64, Unit), ReadError> {
     let mut text = folded(&entry.text).into_owned();
     if context.decimal == ',' {
         text = text.replace(',', ".");
     }
     parse_quantity(&text, "50 gf/cm").map_err(|e| {
-        let problem = Problem::BadValue { key: "sens".into(), reason: e.to_string() };
+        let problem = Problem::BadValue { key: "full scale".into(), reason: e.to_string() };
         context.error(entry.line, entry.column, problem)
     })
-}
-
-/// The axis of a test from a unit: directly, or from raw force, moment or travel and the geometry.
-#[allow(clippy::too_many_arguments)] // one caller, and every argument is another fact of the file
-fn axis(
-    test: Test,
-    abscissa: bool,
-    unit: Unit,
-    text: &str,
-    name: &str,
-    conditions: &Conditions,
-    header: &Header,
-    context: &Context<'_>,
-    error: &dyn Fn(Problem) -> ReadError,
-) -> Result<Scale, ReadError> {
-    let is_angle = text.contains("deg") || text.contains('°') || text.contains('度') || text.contains("rad");
-    let f = unit.factor;
-    let wrong = |expected: &str| {
-        error(Problem::UnitWrong {
-            found: text.to_string(),
-            of: name.to_string(),
-            expected: expected.to_string(),
-        })
-    };
-    Ok(match (test, abscissa, unit.dimension) {
-        (Test::Tensile, true, RATIO) if !is_angle => Scale::Linear(f),
-        (Test::Tensile, true, LENGTH) => Scale::Linear(f / conditions.gauge),
-        (Test::Tensile, true, _) => return Err(wrong("% or mm")),
-        (Test::Shear, true, RATIO) if is_angle => Scale::Linear(f),
-        (Test::Shear, true, LENGTH) => Scale::Atan(f / conditions.gauge),
-        (Test::Shear, true, _) => return Err(wrong("deg, rad or mm")),
-        (Test::Bending, true, PER_LENGTH) => Scale::Linear(f),
-        (Test::Bending, true, _) => return Err(wrong("1/cm")),
-        (Test::Compression, true, LENGTH) => Scale::Linear(f),
-        (Test::Compression, true, _) => return Err(wrong("mm")),
-        (Test::Tensile | Test::Shear, false, LINE_FORCE) => Scale::Linear(f),
-        (Test::Tensile | Test::Shear, false, FORCE) => Scale::Linear(f / conditions.width),
-        (Test::Tensile | Test::Shear, false, _) => return Err(wrong("gf/cm or gf")),
-        (Test::Bending, false, FORCE) => Scale::Linear(f),
-        (Test::Bending, false, MOMENT) => Scale::Linear(f / conditions.width),
-        (Test::Bending, false, _) => return Err(wrong("gf·cm/cm or gf·cm")),
-        (Test::Compression, false, PRESSURE) => Scale::Linear(f),
-        (Test::Compression, false, FORCE) => Scale::Linear(f / foot_area(header, context)?),
-        (Test::Compression, false, _) => return Err(wrong("gf/cm² or gf")),
-    })
-}
-
-/// Area of the compression foot: the header, else 2 cm².
-fn foot_area(header: &Header, context: &Context<'_>) -> Result<f64, ReadError> {
-    let Some(entry) = header.known.get(&Key::Area) else { return Ok(FOOT_AREA) };
-    let (value, unit) = full_scale(entry, context)?;
-    if unit.dimension != (Dimension { kg: 0, m: 2, s: 0 }) {
-        let problem =
-            Problem::UnitWrong { found: entry.text.clone(), of: "area".into(), expected: "cm²".into() };
-        return Err(context.error(entry.line, entry.column, problem));
-    }
-    positive(value * unit.factor, Key::Area, header, context)
 }

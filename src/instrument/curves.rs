@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use super::axis::scale;
+use super::axis::Axes;
 use super::dialect::{Key, Role};
 use super::error::{Problem, ReadError};
 use super::layout::{Context, Entry, Header, Pair};
@@ -22,10 +22,11 @@ pub(super) fn measurement(
     log: &mut Vec<String>,
 ) -> Result<Option<(Measurement, Vec<Finding>)>, ReadError> {
     let test = test_of(pair, context)?;
+    log.push(format!("columns {:?} and {:?}: {}", pair.x.name, pair.y.name, test.name()));
     let header = &pair.header;
     let conditions = conditions(test, header, context, log)?;
-    let x = scale(&pair.x, test, true, &conditions, header, context)?;
-    let y = scale(&pair.y, test, false, &conditions, header, context)?;
+    let axes = Axes { test, conditions: &conditions, header, context };
+    let (x, y) = (axes.scale(&pair.x, true)?, axes.scale(&pair.y, false)?);
     let points = points(pair, rows, ends_file, context)?;
     if points.rows.is_empty() {
         return Ok(None);
@@ -266,8 +267,9 @@ fn points(
         match cells {
             [None, None] => {}
             [Some(x), Some(y)] => {
-                let cut = |c: &str| matches!(number(c, context.decimal), Number::Broken);
-                if last && cut(y) && !cut(x) && y.trim_matches(['+', '-', '.', ',']).is_empty() {
+                // The file ends behind the sign or the mark of its last number.
+                let cut = |c: &str| c.trim_matches(['+', '-', '.', ',']).is_empty();
+                if last && cut(y) && !cut(x) {
                     out.findings.push(truncated(row, context));
                     continue;
                 }

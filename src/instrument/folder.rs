@@ -308,6 +308,17 @@ fn finished(mut fabric: FabricInput) -> FabricInput {
         let message = format!("several samples are read as one fabric: {named}; give each its own folder");
         fabric.findings.push(Finding::new("R105", message).at(Place::file(&fabric.path)));
     }
+    // The areal density stands in the header of every file; once is enough.
+    let mut known: Vec<ResultValue> = Vec::new();
+    fabric.results.retain(|value| {
+        let same = |k: &ResultValue| {
+            (k.parameter, k.direction, k.mean, k.sd, k.n)
+                == (value.parameter, value.direction, value.mean, value.sd, value.n)
+        };
+        let new = !known.iter().any(same);
+        known.extend(new.then(|| value.clone()));
+        new
+    });
     renumber(&mut fabric);
     fabric.measurements.sort_by_key(|m| (m.test, m.direction, m.specimen));
     fabric

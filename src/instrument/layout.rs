@@ -240,7 +240,8 @@ impl<'t> Scanner<'t, '_> {
             return Ok(());
         };
         let cells = row.filled().count();
-        let problem = if self.context.delimiter == ',' && named < cells {
+        let whole = row.filled().all(|(_, c)| !c.text.contains('.'));
+        let problem = if self.context.delimiter == ',' && named < cells && whole {
             Problem::Ambiguous {
                 found: format!("{named} headings over {cells} cells: ',' is delimiter or decimal mark"),
             }

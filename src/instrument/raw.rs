@@ -66,7 +66,14 @@ pub(super) fn decode(bytes: &[u8], label: Option<&str>) -> Result<Text, (usize, 
     };
     // DOS programs end a file with Ctrl-Z.
     let text = decoded.trim_end_matches('\u{1a}');
-    if let Some(at) = text.find(|c: char| c.is_control() && !matches!(c, '\t' | '\r' | '\n' | '\u{c}')) {
+    // C0 controls and DEL are single bytes; the C1 controls are C2 80 to C2 9F.
+    let bytes = text.as_bytes();
+    let control = |i: usize| match bytes[i] {
+        b'\t' | b'\r' | b'\n' | 0x0c => false,
+        0xc2 => bytes.get(i + 1).is_some_and(|b| *b < 0xa0),
+        b => b < 0x20 || b == 0x7f,
+    };
+    if let Some(at) = (0..bytes.len()).find(|&i| control(i)) {
         let line = text[..at].matches('\n').count() + 1;
         let column = text[..at].rsplit('\n').next().map_or(0, |l| l.chars().count()) + 1;
         let code = text[at..].chars().next().map_or(0, u32::from);
@@ -139,8 +146,9 @@ pub(super) fn rows(text: &str, delimiter: char) -> Vec<Row<'_>> {
 fn cells(line: &str, delimiter: char) -> Vec<Cell<'_>> {
     let mut out = Vec::new();
     let (mut rest, mut column) = (line, 1);
+    let plain = !line.contains('"');
     loop {
-        let end = cell_end(rest, delimiter);
+        let end = if plain { rest.find(delimiter).unwrap_or(rest.len()) } else { cell_end(rest, delimiter) };
         let raw = &rest[..end];
         let trimmed = raw.trim_matches(' ');
         let lead = raw.len() - raw.trim_start_matches(' ').len();

@@ -1,5 +1,6 @@
 //! One file: bytes to measurements, result values or a FAB record.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
@@ -216,7 +217,8 @@ fn table(
             }
         }
     }
-    content.inference.dedup();
+    let mut seen = BTreeSet::new();
+    content.inference.retain(|line| seen.insert(line.clone()));
     content.findings.dedup();
     Ok(())
 }

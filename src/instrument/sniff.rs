@@ -39,10 +39,19 @@ pub(super) fn folded(cell: &str) -> Cow<'_, str> {
 /// Reads a cell as a number.
 pub(super) fn number(cell: &str, decimal: char) -> Number {
     let text = folded(cell);
-    let allowed = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | 'e' | 'E') || c == decimal;
-    if text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-') || c == decimal)
-        && text.chars().all(allowed)
-    {
+    let bytes = text.as_bytes();
+    let sign = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
+    let first = bytes.get(sign).copied();
+    // One test on the first byte settles most cells that are words.
+    if !first.is_some_and(|b| b.is_ascii_digit() || matches!(b, b'.' | b',')) {
+        return if is_not_finite(&text[sign..]) { Number::NotFinite } else { Number::Text };
+    }
+    if !bytes.iter().any(u8::is_ascii_digit) || is_date(&text) {
+        return Number::Text;
+    }
+    let in_number =
+        |b: u8| b.is_ascii_digit() || matches!(b, b'+' | b'-' | b'e' | b'E') || char::from(b) == decimal;
+    if bytes.iter().all(|&b| in_number(b)) {
         let parsed = if decimal == ',' { text.replace(',', ".").parse() } else { text.parse::<f64>() };
         return match parsed {
             Ok(value) if value.is_finite() => Number::Value(value),
@@ -50,28 +59,22 @@ pub(super) fn number(cell: &str, decimal: char) -> Number {
             Err(_) => Number::Broken,
         };
     }
-    let lower = text.trim_start_matches(['+', '-']).to_ascii_lowercase();
-    if matches!(
-        lower.as_str(),
-        "nan"
-            | "inf"
-            | "infinity"
-            | "#n/a"
-            | "n/a"
-            | "#num!"
-            | "#div/0!"
-            | "#value!"
-            | "1.#inf"
-            | "1.#qnan"
-            | "1.#ind"
-    ) {
-        return Number::NotFinite;
+    // "20 cm" is not meant as a number; "0,35" and "1.2.3" are.
+    if bytes.iter().all(|&b| in_number(b) || matches!(b, b'.' | b',' | b';' | b'\t')) {
+        return Number::Broken;
     }
-    let starts = text.trim_start_matches(['+', '-', '.', ',']).starts_with(|c: char| c.is_ascii_digit());
-    // "20 cm" and "2024-01-05" are not meant as numbers; "0,35" and "1.2.3" are.
-    let numberish =
-        |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',' | ';' | '\t' | 'e' | 'E');
-    if starts && text.chars().all(numberish) { Number::Broken } else { Number::Text }
+    Number::Text
+}
+
+/// The names that programs give to values that are none.
+fn is_not_finite(text: &str) -> bool {
+    const NAMES: &[&str] = &["nan", "inf", "infinity", "#n/a", "n/a", "#num!", "#div/0!", "#value!"];
+    NAMES.iter().any(|name| text.eq_ignore_ascii_case(name))
+}
+
+/// Digits, a dash, digits: a date or a range, not a number with an exponent.
+fn is_date(text: &str) -> bool {
+    text.as_bytes().windows(2).any(|w| w[0].is_ascii_digit() && w[1] == b'-')
 }
 
 /// Decides the format of a text, within what is already `delimiter`/`decimal` known.
@@ -80,9 +83,16 @@ pub(super) fn number(cell: &str, decimal: char) -> Number {
 /// `R005` where two readings are equally good.
 pub(super) fn sniff(text: &str, delimiter: Option<char>, decimal: Option<char>) -> Result<Format, Problem> {
     let mut best: Vec<(i64, Format)> = Vec::new();
-    for d in delimiter.map_or_else(|| vec!['\t', ';', ','], |known| vec![known]) {
+    // Marks that do not occur cannot win, and need not be tried unless they are stated.
+    let occurs = |c: char| text.contains(c);
+    let delimiters: Vec<char> = match delimiter {
+        Some(known) => vec![known],
+        None => ['\t', ';', ','].into_iter().filter(|d| occurs(*d)).collect(),
+    };
+    for d in if delimiters.is_empty() { vec!['\t'] } else { delimiters } {
         for m in ['.', ','].into_iter().filter(|m| decimal.is_none_or(|known| known == *m)) {
-            if d != m {
+            let used = m == '.' || decimal.is_some() || occurs(',');
+            if d != m && used {
                 best.push((score(text, d, m), Format { delimiter: d, decimal: m }));
             }
         }
@@ -160,6 +170,8 @@ mod tests {
         assert_eq!(number("NaN", '.'), Number::NotFinite);
         assert_eq!(number("1e999", '.'), Number::NotFinite);
         assert_eq!(number("20 cm", '.'), Number::Text);
+        assert_eq!(number("2024-01-05", '.'), Number::Text);
+        assert_eq!(number("-", '.'), Number::Text);
         assert_eq!(number("", '.'), Number::Text);
     }
 

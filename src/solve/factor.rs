@@ -18,7 +18,8 @@ pub const MAX_BLOCK: usize = 6;
 /// Which factorisation an [`Analysis`] prepares.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Path {
-    /// The faster one of the others for the graph at hand.
+    /// [`Multifrontal`](Self::Multifrontal): on grids of 10 to 320 elements a side it was the
+    /// faster in analysis and factorisation throughout (`benches/solver.rs`).
     #[default]
     Auto,
     /// The general sparse factorisation of the crate `faer`: the permanent cross-check.
@@ -103,6 +104,8 @@ pub struct Counts {
 
 /// An order of elimination and the structure of the factor, for every matrix with the same
 /// graph and block size. Share it between threads by reference or `Arc`.
+///
+/// It keeps the memory of a dropped factor, or of several small ones, for the next.
 #[derive(Debug)]
 pub struct Analysis {
     graph: Arc<BlockGraph>,
@@ -118,8 +121,8 @@ enum Symbolic {
 
 /// Orders the nodes and finds the structure of the factor.
 ///
-/// With `coordinates` (one point per node, any unit) the order is a nested dissection, else an
-/// approximate minimum degree of the graph of nodes.
+/// The order is that of [`order`]: with `coordinates` (one point per node, any unit) a nested
+/// dissection in general, else an approximate minimum degree of the graph of nodes.
 ///
 /// # Errors
 /// [`FactorError::OutOfMemory`].
@@ -159,15 +162,28 @@ pub fn analyse_ordered(
     Ok(Analysis { graph: Arc::clone(graph), block, symbolic })
 }
 
-/// The order of elimination that [`analyse`] takes.
+/// Work of a good dissection in two dimensions, per (nodes)^1.5, in blocks: 17 to 19 on square
+/// grids of 100 to 320 elements a side.
+const GOOD_WORK: f64 = 22.0;
+
+/// The order of elimination that [`analyse`] takes. Where a dissection turns out worse than is
+/// usual in two dimensions (curved or distorted meshes), the minimum degree is tried as well
+/// and the one with less work taken.
 ///
 /// # Errors
 /// [`FactorError::OutOfMemory`].
+///
+/// # Panics
+/// If there are not as many points as nodes.
 pub fn order(graph: &BlockGraph, coordinates: Option<&[[f64; 3]]>) -> Result<Ordering, FactorError> {
-    match coordinates {
-        Some(points) => Ok(nested_dissection(graph, points)),
-        None => general::minimum_degree(graph),
+    let Some(points) = coordinates else { return general::minimum_degree(graph) };
+    let dissected = nested_dissection(graph, points);
+    let work = multifrontal::work(graph, &dissected);
+    if work <= GOOD_WORK * (graph.nodes as f64).powf(1.5) {
+        return Ok(dissected);
     }
+    let by_degree = general::minimum_degree(graph)?;
+    Ok(if multifrontal::work(graph, &by_degree) < work { by_degree } else { dissected })
 }
 
 impl Analysis {

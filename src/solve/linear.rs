@@ -128,6 +128,22 @@ pub struct Solution {
     pub timings: Timings,
 }
 
+impl Solution {
+    /// Nothing moved, nothing solved.
+    pub fn at_rest(model: &Model) -> Self {
+        let n = 6 * model.mesh.nodes.len();
+        Self {
+            displacement: vec![0.0; n],
+            reaction: vec![0.0; n],
+            strain_energy: 0.0,
+            residual: 0.0,
+            dofs: 0,
+            counts: Vec::new(),
+            timings: Timings::default(),
+        }
+    }
+}
+
 /// Residual that is accepted; iterative refinement is tried above `REFINE`.
 const RESIDUAL_LIMIT: f64 = 1e-6;
 const REFINE: f64 = 1e-10;
@@ -153,17 +169,8 @@ fn sum(t: &Timings) -> f64 {
 /// # Errors
 /// See [`SolveError`].
 pub fn solve_with(model: &Model, plan: &Plan, options: &Options) -> Result<Solution, SolveError> {
-    let n = 6 * model.mesh.nodes.len();
     let (load, held) = (model.load_vector(), model.constraints());
-    let mut solution = Solution {
-        displacement: vec![0.0; n],
-        reaction: vec![0.0; n],
-        strain_energy: 0.0,
-        residual: 0.0,
-        dofs: 0,
-        counts: Vec::new(),
-        timings: Timings::default(),
-    };
+    let mut solution = Solution::at_rest(model);
     for (group, analysis) in &plan.groups {
         solve_group(model, (&plan.pattern, *group, analysis), options, &load, &held, &mut solution)?;
     }

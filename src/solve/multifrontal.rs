@@ -18,12 +18,17 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use self::assemble::Update;
 use self::front::{BadPivot, Input, Workspace, eliminate};
 use self::symbolic::Tree;
+pub use self::symbolic::work;
 use super::factor::{Counts, FactorError, Form};
 use super::ordering::Ordering;
 use super::sparse::{BlockGraph, BlockMatrix};
 
 /// Operations below which a subtree is one task: about 20 microseconds.
 const GRAIN: f64 = 5e5;
+
+/// Numbers that the panels of dropped factors may hold beyond the first: 256 MB, the factors
+/// of many threads that solve small problems side by side.
+const SPARE: usize = 1 << 25;
 
 /// A tree and the memory that its factors leave to the next: fresh pages cost as much as the
 /// arithmetic.
@@ -32,7 +37,7 @@ pub struct Symbolic {
     tree: Tree,
     /// Widest front, in dofs.
     width: usize,
-    /// Panels of dropped factors, at most one per thread of the pool.
+    /// Panels of dropped factors: one, or as many as [`SPARE`] allows.
     panels: Mutex<Vec<Vec<f64>>>,
     workspaces: Mutex<Vec<Workspace>>,
 }
@@ -47,7 +52,7 @@ pub struct Numeric {
 impl Drop for Numeric {
     fn drop(&mut self) {
         let mut panels = lock(&self.symbolic.panels);
-        if panels.len() < rayon::current_num_threads() {
+        if panels.is_empty() || (panels.len() + 1) * self.l.len() <= SPARE {
             panels.push(std::mem::take(&mut self.l));
         }
     }

@@ -9,7 +9,7 @@ use crate::constitutive::Assumptions;
 use crate::finding::Place;
 use crate::instrument::Test;
 use crate::quantity::{
-    Acceleration, ArealDensity, BendingRigidity, Curvature, Length, LineForce, LineMoment, Pressure,
+    Acceleration, ArealDensity, BendingRigidity, Curvature, Length, LineForce, LineMoment, Pressure, Time,
 };
 
 /// A case as it is written in its file; unknown keys are refused.
@@ -258,6 +258,40 @@ pub enum Analysis {
     /// Small displacements, one solve.
     #[default]
     Linear,
+    /// Natural frequencies and modes; loads are not used.
+    Modal {
+        /// How many of the lowest.
+        #[serde(default = "default_modes")]
+        modes: usize,
+        /// Row sums as mass matrix instead of the consistent one.
+        #[serde(default)]
+        lumped: bool,
+    },
+    /// Linear dynamics from rest (Newmark, average acceleration).
+    Newmark {
+        /// End of the time range.
+        duration: Time,
+        /// Time step; the first one when a tolerance is given.
+        step: Time,
+        /// Relative local error at which the step adapts; constant step when left out.
+        tolerance: Option<f64>,
+        /// Damping ratios of the first and the third natural frequency; undamped when left out.
+        damping: Option<[f64; 2]>,
+        /// `"step"`, `"ramp until 0.1 s"` or `"sine 5 Hz"`.
+        #[serde(default = "default_load_history")]
+        load: String,
+        /// Row sums as mass matrix.
+        #[serde(default)]
+        lumped: bool,
+    },
+}
+
+fn default_modes() -> usize {
+    6
+}
+
+fn default_load_history() -> String {
+    "step".into()
 }
 
 /// `[virtual_test]`: an instrument's test as a model, once along the warp and once along the weft.
@@ -428,7 +462,12 @@ impl Case {
             (Some(_), None) if self.supports.is_empty() => {
                 refuse("nothing holds the sheet: add [[supports]] (kind = \"free\" says that this is meant)")
             }
-            (Some(_), None) if self.loads.is_empty() => refuse("nothing acts on the sheet: add [[loads]]"),
+            (Some(_), None) if self.loads.is_empty() && !matches!(self.analysis, Analysis::Modal { .. }) => {
+                refuse("nothing acts on the sheet: add [[loads]]")
+            }
+            (Some(_), None) if !self.loads.is_empty() && matches!(self.analysis, Analysis::Modal { .. }) => {
+                refuse("a modal analysis has no loads: remove [[loads]]")
+            }
             _ => Ok(()),
         }
     }

@@ -15,7 +15,7 @@ pub use case::{
     VirtualTest,
 };
 pub use compare::{Comparison, compare_curves, measured_curve};
-pub use run::{CaseResult, CheckResult, Probe, Status, solve_case};
+pub use run::{CaseResult, CheckResult, History, Probe, Status, solve_case};
 pub use virtual_test::{VirtualCurve, compression, simulate};
 
 use crate::finding::Place;

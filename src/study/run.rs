@@ -1,15 +1,18 @@
 //! Solving a case and reading its results.
 
+use std::ops::ControlFlow;
+
 use nalgebra::Point3;
 use serde::Serialize;
 
-use super::case::{Case, Check, Reference};
+use super::case::{Analysis, Case, Check, Reference};
 use super::{StudyError, build};
 use crate::fields::{self, Locator, ProbeValue, Resultants, profile};
 use crate::finding::{Finding, Place};
 use crate::model::Model;
-use crate::quantity::{Curve, Unit, parse_quantity};
+use crate::quantity::{Curve, Frequency, Time, Unit, parse_quantity};
 use crate::section::ShellSection;
+use crate::solve::newmark::{self, Energy, LoadHistory, Rayleigh};
 use crate::solve::{self, Options, Plan, Solution};
 
 /// How a case ended.
@@ -85,8 +88,34 @@ pub struct CaseResult {
     pub checks: Vec<CheckResult>,
     /// Deflection along the middle line, x = distance (m), y = w (m).
     pub profile: Curve,
+    /// Natural frequencies (Hz), ascending; of a modal analysis only, whose displacements are the
+    /// first mode with a largest displacement of 1 m.
+    pub frequencies: Vec<f64>,
+    /// What happened in time; of a dynamic analysis only, whose displacements are those at the end.
+    pub history: Option<History>,
     /// What a reader of the result must know.
     pub findings: Vec<Finding>,
+}
+
+/// A dynamic analysis in time.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct History {
+    /// Instants (s), the start included.
+    pub time: Vec<f64>,
+    /// Deflection w of each probe at each instant (m), in the order of the case's probes.
+    pub probes: Vec<Vec<f64>>,
+    /// Energies at each instant (J).
+    pub energy: Vec<Energy>,
+    /// The largest |w| anywhere at any instant, with its sign (m).
+    pub w_max: f64,
+    /// What the energy balance misses at most, over the largest work of the loads.
+    pub imbalance: f64,
+}
+
+struct Outcome {
+    solution: Solution,
+    frequencies: Vec<f64>,
+    history: Option<History>,
 }
 
 /// Above this ratio of deflection to bending thickness the sheet's own stretching carries part of
@@ -112,25 +141,22 @@ pub fn solve_case(
         );
     };
     let model = build::model(case, sheet, section)?;
-    let solution = match plan {
-        Some(plan) => solve::solve_with(&model, plan, options)?,
-        None => solve::solve(&model, options)?,
-    };
+    let Outcome { solution, frequencies, history } = analyse(case, &model, plan, options)?;
     let nodal = fields::nodal(&model, &solution.displacement)?;
     let w = |n: usize| solution.displacement[6 * n + 2];
     let w_max =
         (0..model.mesh.nodes.len()).map(w).fold(0.0, |m: f64, v| if v.abs() > m.abs() { v } else { m });
+    let w_max = history.as_ref().map_or(w_max, |h| h.w_max);
     let w_over_thickness = w_max.abs() / model.section.bending_thickness_squared().sqrt();
     let probes = probes(case, &model, &solution, &nodal)?;
-    let checks = case
-        .checks
-        .iter()
-        .map(|c| check(case, c, w_max, &solution, &probes))
-        .collect::<Result<Vec<_>, _>>()?;
-    let findings = findings(case, &model, w_max, w_over_thickness);
+    let readings = Readings { w_max, solution: &solution, frequencies: &frequencies, probes: &probes };
+    let checks = case.checks.iter().map(|c| check(case, c, &readings)).collect::<Result<Vec<_>, _>>()?;
+    let is_mode = !frequencies.is_empty();
+    let beyond_linear = !is_mode && w_over_thickness > LINEAR_LIMIT;
+    let findings = findings(case, &model, beyond_linear.then_some((w_max, w_over_thickness)));
     let status = if checks.iter().any(|c| !c.passed) {
         Status::CheckFailed
-    } else if w_over_thickness > LINEAR_LIMIT {
+    } else if beyond_linear {
         Status::BeyondLinear
     } else {
         Status::Ok
@@ -149,8 +175,111 @@ pub fn solve_case(
         probes,
         checks,
         profile,
+        frequencies,
+        history,
         findings,
     })
+}
+
+fn analyse(
+    case: &Case,
+    model: &Model,
+    plan: Option<&Plan>,
+    options: &Options,
+) -> Result<Outcome, StudyError> {
+    match &case.analysis {
+        Analysis::Linear => {
+            let solution = match plan {
+                Some(plan) => solve::solve_with(model, plan, options)?,
+                None => solve::solve(model, options)?,
+            };
+            Ok(Outcome { solution, frequencies: Vec::new(), history: None })
+        }
+        Analysis::Modal { modes, lumped } => {
+            let modes = solve::modes(model, *modes, *lumped, options)?;
+            let mut solution = Solution::at_rest(model);
+            if let Some(first) = modes.first() {
+                let translations = first.shape.chunks_exact(6).flat_map(|node| &node[..3]);
+                let largest = translations.fold(0.0f64, |m, v| m.max(v.abs()));
+                solution.displacement = first.shape.iter().map(|v| v / largest).collect();
+            }
+            let frequencies = modes.iter().map(solve::Mode::frequency).collect();
+            Ok(Outcome { solution, frequencies, history: None })
+        }
+        Analysis::Newmark { duration, step, tolerance, damping, load, lumped } => {
+            let settings = newmark::Settings {
+                duration: duration.si(),
+                step: step.si(),
+                tolerance: *tolerance,
+                damping: rayleigh(model, *damping, options)?,
+                load: load_history(case, load)?,
+                lumped: *lumped,
+            };
+            if !(settings.step > 0.0 && settings.duration >= settings.step) {
+                return Err(case.inconsistent("newmark needs 0 < step <= duration".into()));
+            }
+            dynamics(case, model, &settings, options)
+        }
+    }
+}
+
+/// Damping ratios at the first and the third natural frequency become Rayleigh factors.
+fn rayleigh(model: &Model, ratios: Option<[f64; 2]>, options: &Options) -> Result<Rayleigh, StudyError> {
+    let Some(ratios) = ratios else { return Ok(Rayleigh::default()) };
+    let modes = solve::modes(model, 3, false, options)?;
+    let omega: Vec<f64> = modes.iter().map(|m| m.angular_frequency).filter(|w| *w > 0.0).collect();
+    Ok(match (omega.first(), omega.last()) {
+        (Some(first), Some(last)) => Rayleigh::from_ratios(ratios, [*first, *last]),
+        _ => Rayleigh::default(),
+    })
+}
+
+fn load_history(case: &Case, text: &str) -> Result<LoadHistory, StudyError> {
+    let unknown = |reason: String| {
+        case.inconsistent(format!(
+            "load = \"{text}\": {reason}; write \"step\", \"ramp until 0.1 s\" or \"sine 5 Hz\""
+        ))
+    };
+    if text == "step" {
+        return Ok(LoadHistory::Step);
+    }
+    if let Some(until) = text.strip_prefix("ramp until ") {
+        return until.parse::<Time>().map(|t| LoadHistory::Ramp(t.si())).map_err(|e| unknown(e.to_string()));
+    }
+    if let Some(frequency) = text.strip_prefix("sine ") {
+        return frequency
+            .parse::<Frequency>()
+            .map(|f| LoadHistory::Sine(f.si()))
+            .map_err(|e| unknown(e.to_string()));
+    }
+    Err(unknown("no such history".into()))
+}
+
+fn dynamics(
+    case: &Case,
+    model: &Model,
+    settings: &newmark::Settings,
+    options: &Options,
+) -> Result<Outcome, StudyError> {
+    let locators = locators(case, model)?;
+    let mut history = History { probes: vec![Vec::new(); locators.len()], ..History::default() };
+    let mut solution = Solution::at_rest(model);
+    newmark::newmark(model, settings, options, |at| {
+        history.time.push(at.time);
+        history.energy.push(at.energy);
+        let w = |n: usize| at.displacement[6 * n + 2];
+        for (locator, out) in locators.iter().zip(&mut history.probes) {
+            out.push(locator.interpolate(&model.mesh, w));
+        }
+        let largest = (0..model.mesh.nodes.len()).map(w);
+        history.w_max = largest.fold(history.w_max, |m, v| if v.abs() > m.abs() { v } else { m });
+        solution.displacement.copy_from_slice(at.displacement);
+        solution.strain_energy = at.energy.strain;
+        ControlFlow::Continue(())
+    })?;
+    let work = history.energy.iter().map(|e| e.work.abs()).fold(f64::MIN_POSITIVE, f64::max);
+    history.imbalance = history.energy.iter().map(|e| e.imbalance().abs()).fold(0.0, f64::max) / work;
+    Ok(Outcome { solution, frequencies: Vec::new(), history: Some(history) })
 }
 
 /// Ends of the middle line along x.
@@ -161,10 +290,10 @@ fn middle_line(model: &Model) -> [Point3<f64>; 2] {
     [Point3::new(low.x, middle.y, middle.z), Point3::new(high.x, middle.y, middle.z)]
 }
 
-fn findings(case: &Case, model: &Model, w_max: f64, ratio: f64) -> Vec<Finding> {
+fn findings(case: &Case, model: &Model, beyond_linear: Option<(f64, f64)>) -> Vec<Finding> {
     let mut findings = Vec::new();
     let place = || Place::file(&case.path);
-    if ratio > LINEAR_LIMIT {
+    if let Some((w_max, ratio)) = beyond_linear {
         let message = format!(
             "the deflection of {:.3e} m is {ratio:.2e} bending thicknesses: a linear solve is meaningful below {LINEAR_LIMIT} only; \
              lower the load until it is, or read the result as a stiffness, not as a shape",
@@ -188,37 +317,58 @@ fn findings(case: &Case, model: &Model, w_max: f64, ratio: f64) -> Vec<Finding> 
     findings
 }
 
+fn locators(case: &Case, model: &Model) -> Result<Vec<Locator>, StudyError> {
+    case.probes
+        .iter()
+        .map(|p| {
+            let [x, y] = p.at.map(|c| c.si());
+            Locator::find(&model.mesh, &Point3::new(x, y, 0.0)).ok_or_else(|| {
+                case.inconsistent(format!("probe `{}` at ({x}, {y}) m lies outside the sheet", p.name))
+            })
+        })
+        .collect()
+}
+
 fn probes(
     case: &Case,
     model: &Model,
     solution: &Solution,
     nodal: &[Resultants],
 ) -> Result<Vec<Probe>, StudyError> {
-    case.probes
+    let locators = locators(case, model)?;
+    Ok(case
+        .probes
         .iter()
-        .map(|p| {
-            let at = p.at.map(|c| c.si());
-            let locator = Locator::find(&model.mesh, &Point3::new(at[0], at[1], 0.0)).ok_or_else(|| {
-                case.inconsistent(format!(
-                    "probe `{}` at ({}, {}) m lies outside the sheet",
-                    p.name, at[0], at[1]
-                ))
-            })?;
-            let value = locator.value(&model.mesh, &solution.displacement, nodal);
-            Ok(Probe { name: p.name.clone(), at, value })
+        .zip(locators)
+        .map(|(p, locator)| Probe {
+            name: p.name.clone(),
+            at: p.at.map(|c| c.si()),
+            value: locator.value(&model.mesh, &solution.displacement, nodal),
         })
-        .collect()
+        .collect())
+}
+
+/// What a check may ask for.
+struct Readings<'a> {
+    w_max: f64,
+    solution: &'a Solution,
+    frequencies: &'a [f64],
+    probes: &'a [Probe],
 }
 
 /// Value and SI unit of a quantity by name.
-fn lookup(quantity: &str, w_max: f64, solution: &Solution, probes: &[Probe]) -> Option<(f64, &'static str)> {
+fn lookup(quantity: &str, results: &Readings<'_>) -> Option<(f64, &'static str)> {
     match quantity {
-        "w_max" => return Some((w_max, "m")),
-        "strain_energy" => return Some((solution.strain_energy, "J")),
+        "w_max" => return Some((results.w_max, "m")),
+        "strain_energy" => return Some((results.solution.strain_energy, "J")),
         _ => {}
     }
+    if let Some(number) = quantity.strip_prefix("frequency_") {
+        let index = number.parse::<usize>().ok()?.checked_sub(1)?;
+        return results.frequencies.get(index).map(|f| (*f, "1/s"));
+    }
     let (name, component) = quantity.split_once('.')?;
-    let v = &probes.iter().find(|p| p.name == name)?.value;
+    let v = &results.probes.iter().find(|p| p.name == name)?.value;
     let r = &v.resultants;
     Some(match component {
         "u" => (v.u[0], "m"),
@@ -239,17 +389,11 @@ fn lookup(quantity: &str, w_max: f64, solution: &Solution, probes: &[Probe]) -> 
     })
 }
 
-fn check(
-    case: &Case,
-    check: &Check,
-    w_max: f64,
-    solution: &Solution,
-    probes: &[Probe],
-) -> Result<CheckResult, StudyError> {
-    let (value, unit) = lookup(&check.quantity, w_max, solution, probes).ok_or_else(|| {
-        let names: Vec<&str> = probes.iter().map(|p| p.name.as_str()).collect();
+fn check(case: &Case, check: &Check, results: &Readings<'_>) -> Result<CheckResult, StudyError> {
+    let (value, unit) = lookup(&check.quantity, results).ok_or_else(|| {
+        let names: Vec<&str> = results.probes.iter().map(|p| p.name.as_str()).collect();
         case.inconsistent(format!(
-            "there is no quantity `{}` to check: take w_max, strain_energy, or PROBE.COMPONENT with the probes [{}] and \
+            "there is no quantity `{}` to check: take w_max, strain_energy, frequency_1 ..., or PROBE.COMPONENT with the probes [{}] and \
              u v w theta_x theta_y theta_z moment_x moment_y moment_xy membrane_x membrane_y membrane_xy shear_x shear_y",
             check.quantity,
             names.join(", ")

@@ -4,11 +4,12 @@ use crate::characterise::FabricSheet;
 use crate::instrument::{Direction, Origin, Parameter, Test};
 use crate::quantity::{Curve, Estimate};
 use crate::report::number::{fixed, plain_exponent, power_of_ten, significant, unit_text, with_spread};
+use crate::study::Comparison;
 
 use super::axes::{Frame, Range};
 use super::canvas::{Canvas, HEIGHT, Point, Stroke, WIDTH};
 use super::loops::{self, TestAxes, Trace};
-use super::marks::{Marks, reading_stroke};
+use super::marks::{Marks, has_readings, reading_stroke};
 use super::palette::{self, darker, lighter};
 use super::panel::{self, Row};
 use super::{ChartError, Head, schematic};
@@ -28,6 +29,25 @@ pub struct SimulatedCurve {
     pub nrmse: Option<f64>,
     /// Coefficient of determination (1).
     pub r2: Option<f64>,
+}
+
+impl From<&Comparison> for SimulatedCurve {
+    /// The simulated ordinates of a comparison in order of their abscissae, so that a law without hysteresis
+    /// is one line however often the measured loops pass over it.
+    fn from(comparison: &Comparison) -> Self {
+        let mut points: Vec<(f64, f64)> = comparison.simulated.points().collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points.dedup();
+        let finite = |v: f64| v.is_finite().then_some(v);
+        Self {
+            label: "simulated".into(),
+            direction: comparison.direction,
+            curve: Curve::from_points(points),
+            rmse: finite(comparison.rmse),
+            nrmse: finite(comparison.nrmse),
+            r2: finite(comparison.r2),
+        }
+    }
 }
 
 /// KES-FB1 tensile: force per width against strain, with WT and WT' and the strain at maximum force.
@@ -81,7 +101,7 @@ fn draw(sheet: &FabricSheet, test: Test, simulated: &[SimulatedCurve]) -> Result
 
     let mut canvas = Canvas::new()?;
     let name = if sheet.info.title.is_empty() { &sheet.name } else { &sheet.info.title };
-    let kind = format!(": {}", test.name());
+    let kind = format!(", {}", test.name());
     Head {
         title: name,
         kind: &kind,
@@ -213,7 +233,7 @@ fn legend(sheet: &FabricSheet, traces: &[Trace], simulated: &[SimulatedCurve], r
         let direction = curve.direction.map_or(String::new(), |d| format!("{d}, "));
         rows.push(Row::Sample(simulated_stroke(curve.direction), format!("{direction}{}", curve.label)));
     }
-    if let Some(trace) = traces.iter().find(|t| t.emphasised && !t.windows.is_empty()) {
+    if let Some(trace) = traces.iter().find(|t| has_readings(t)) {
         rows.push(Row::Sample(reading_stroke(trace), "fitted or read here".into()));
     }
     if !recorded {

@@ -57,8 +57,9 @@ impl Marks<'_> {
     pub(super) fn readings(&self, canvas: &mut Canvas, traces: &[Trace]) -> Result<(), ChartError> {
         for (i, trace) in traces.iter().filter(|t| t.emphasised).enumerate() {
             for window in trace.windows.iter().filter(|w| !is_thickness(w)) {
-                // Widths are read at the same abscissa in every direction: the bars stand side by side.
-                let aside = if window.from == window.to { 9.0 * i as f64 } else { 0.0 };
+                // Loop widths are read at the same abscissa in every direction: the bars stand side by side.
+                let same = window.from == window.to && self.test != Test::Tensile;
+                let aside = if same { 9.0 * i as f64 } else { 0.0 };
                 let ends = self.ends(window).map(|p| (p.0 + aside, p.1));
                 self.window(canvas, ends, reading_stroke(trace))?;
             }
@@ -137,13 +138,14 @@ impl Marks<'_> {
         let Some(loading) = trace.parts.iter().rfind(|p| p.0) else { return Ok(()) };
         let Some((first, last)) = loading.1.first().zip(loading.1.last()) else { return Ok(()) };
         let at = |part: f64| first.0 + part * (last.0 - first.0);
-        let Some(upper) = height_at(true, at(0.74)) else { return Ok(()) };
-        let lower = height_at(false, at(0.74)).unwrap_or(0.0);
-        labels.place(canvas, names[0], self.frame.at(at(0.74), 0.5 * (upper + lower)), 0.0)?;
-        if let Some(height) = height_at(false, at(0.88)) {
-            labels.place(canvas, names[1], self.frame.at(at(0.88), 0.4 * height), 0.0)?;
-        }
-        Ok(())
+        // Between the branches, and below the unloading one; somewhere in the middle there may be room.
+        let parts = || (0..14).map(|i| 0.92 - 0.04 * f64::from(i));
+        let between = parts().filter_map(|t| {
+            Some((at(t), 0.5 * (height_at(true, at(t))? + height_at(false, at(t)).unwrap_or(0.0))))
+        });
+        labels.place_in(canvas, names[0], &between.map(|p| self.frame.at(p.0, p.1)).collect::<Vec<_>>())?;
+        let below = parts().filter_map(|t| Some((at(t), 0.4 * height_at(false, at(t))?)));
+        labels.place_in(canvas, names[1], &below.map(|p| self.frame.at(p.0, p.1)).collect::<Vec<_>>())
     }
 
     /// A dashed line from the top down to the axis at a thickness.
@@ -169,6 +171,11 @@ impl Marks<'_> {
 /// The colour of a direction, dark, so that a fit is told from the curve below it.
 pub(super) fn reading_stroke(trace: &Trace) -> Stroke {
     Stroke::solid(darker(palette::direction(trace.direction, 1.0).color, 0.55), 3.6)
+}
+
+/// Whether a trace has windows that are drawn with [`reading_stroke`].
+pub(super) fn has_readings(trace: &Trace) -> bool {
+    trace.emphasised && trace.windows.iter().any(|w| !is_thickness(w))
 }
 
 /// Thicknesses are drawn as lines down to the axis instead.
@@ -226,6 +233,16 @@ impl Labels<'_> {
         }
         self.taken.push(place);
         canvas.text((centre.0, centre.1 + 0.36 * LABEL), text, kind)
+    }
+
+    /// Sets the symbol of an area at the first of some inner points where it has room; else near the middle one.
+    fn place_in(&mut self, canvas: &mut Canvas, text: &str, inner: &[Point]) -> Result<(), ChartError> {
+        let half = 0.5 * canvas.text_width(text, Type::new(LABEL, INK).bold())? + 8.0;
+        let roomy = inner.iter().find(|c| self.is_free([c.0 - half, c.1 - 22.0, c.0 + half, c.1 + 22.0]));
+        match roomy.or(inner.get(inner.len() / 2)) {
+            Some(anchor) => self.place(canvas, text, *anchor, 0.0),
+            None => Ok(()),
+        }
     }
 
     fn is_free(&self, place: [f64; 4]) -> bool {

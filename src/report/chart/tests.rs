@@ -9,9 +9,12 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 use super::*;
-use crate::characterise::{Branch, FabricSheet, Key, SpecimenResult, Window};
-use crate::instrument::{Conditions, Direction, FabricInfo, Measurement, Origin, Parameter, Source, Test};
+use crate::characterise::{self, Branch, FabricSheet, Key, SpecimenResult, Window};
+use crate::instrument::{
+    self, Conditions, Direction, FabricInfo, Measurement, Origin, Parameter, Source, Test,
+};
 use crate::quantity::{Curve, Estimate};
+use crate::study;
 
 const WARP: Option<Direction> = Some(Direction::Warp);
 const WEFT: Option<Direction> = Some(Direction::Weft);
@@ -253,6 +256,53 @@ fn the_four_charts_of_a_measured_fabric() {
     drawn("tensile-simulated.png", || {
         tensile(sheet, &[simulated(WARP, pull(0.041)), simulated(WEFT, pull(0.09))])
     });
+}
+
+/// The package that goes to a registry leaves `kesf_data` out; then there is nothing to draw here.
+#[test]
+fn every_shipped_fabric_has_the_charts_that_its_data_allow() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("kesf_data");
+    if !folder.is_dir() {
+        println!("skipped: no kesf_data");
+        return;
+    }
+    let batch = instrument::read_fabrics(&[folder], &instrument::ReadSettings::default(), &|_| {});
+    for fabric in &batch.fabrics {
+        let sheet = characterise::characterise(fabric, &characterise::Settings::default());
+        for test in Test::ALL {
+            let chart = match test {
+                Test::Tensile => tensile(&sheet, &[]),
+                Test::Shear => shear(&sheet, &[]),
+                Test::Bending => bending(&sheet, &[]),
+                Test::Compression => compression(&sheet, &[]),
+            };
+            let curves = sheet.specimens.iter().any(|s| s.measurement.test == test);
+            match chart {
+                Ok(bytes) => keep(&format!("{}-{}.png", sheet.name, test.name()), &bytes),
+                Err(ChartError::NothingToDraw { .. }) if !curves => {}
+                Err(e) => panic!("{e}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn a_comparison_is_drawn_as_one_line() {
+    let comparison = study::Comparison {
+        name: "bending warp".into(),
+        test: Test::Bending,
+        direction: WARP,
+        rmse: 1e-5,
+        nrmse: 0.02,
+        r2: f64::NAN,
+        n: 4,
+        unit: "N",
+        simulated: Curve::from_points([(0.0, 0.0), (2.0, 4.0), (1.0, 2.0), (2.0, 4.0)]),
+        measured: Curve::default(),
+    };
+    let curve = SimulatedCurve::from(&comparison);
+    assert_eq!(curve.curve, Curve::from_points([(0.0, 0.0), (1.0, 2.0), (2.0, 4.0)]));
+    assert_eq!((curve.rmse, curve.r2), (Some(1e-5), None));
 }
 
 #[test]

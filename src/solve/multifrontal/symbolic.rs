@@ -328,6 +328,14 @@ fn postorder(parent: &[u32], counts: &[u32]) -> Vec<u32> {
     order
 }
 
+/// Work of the factorisation in an order, in blocks: the sum over the columns of L of the
+/// square of their nodes.
+pub fn work(graph: &BlockGraph, order: &Ordering) -> f64 {
+    let (ptr, neighbours) = graph.adjacency();
+    let adjacent = |node: u32| &neighbours[ptr[node as usize]..ptr[node as usize + 1]];
+    exact_counts(&elimination_tree(order, adjacent).1, 1).1
+}
+
 /// Entries of L and operations in dofs, from the number of nodes in each column.
 fn exact_counts(counts: &[u32], block: usize) -> (usize, f64) {
     let (mut nnz, mut flops) = (0, 0.0);

@@ -1,0 +1,307 @@
+//! FAB strips: stiffness from the onset of load, cycle by cycle, and an estimate of B.
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+use serde::Serialize;
+
+use super::graph::{Graph, LineFit};
+use super::{Branch, FabricSheet, Key, Modulus, Settings};
+use crate::finding::{Finding, Place};
+use crate::instrument::fab::{FabFile, FabKind, FabTest};
+use crate::instrument::{Direction, Parameter};
+use crate::quantity::{Curve, Estimate, significant};
+
+/// A stretch test of a strip after processing.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Strip {
+    /// Direction of the strip.
+    pub direction: Direction,
+    /// Which test: short or long clamp distance.
+    pub kind: FabKind,
+    /// Width (m).
+    pub width: f64,
+    /// The cycles, in order.
+    pub cycles: Vec<StripCycle>,
+}
+
+/// One cycle of a stretch test. Strain counts from the cycle's own onset of load.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StripCycle {
+    /// Clamp distance at which the strip begins to carry load (m); the gauge length of the cycle.
+    pub onset: f64,
+    /// Travel from the first sample to the onset: slack (m).
+    pub slack: f64,
+    /// Growth of the onset since the first cycle over its onset: residual strain.
+    pub residual: f64,
+    /// Zero of the load, taken off (N/m).
+    pub offset: f64,
+    /// Loading and unloading branch: strain and force per width (N/m).
+    pub branches: Vec<Branch>,
+    /// Stiffness (N/m) by the name of [`Modulus`]. Tangents are the slopes between the ends of
+    /// their window: few samples, unevenly spread over a J curve, would pull a fitted line to one end.
+    pub moduli: BTreeMap<String, f64>,
+    /// The lines behind the tangents, with the fitted slope, R² and n.
+    pub fits: Vec<LineFit>,
+}
+
+/// Adds what FAB files tell to the sheet, where no KES record or table does.
+pub(super) fn add(sheet: &mut FabricSheet, files: &[FabFile], settings: &Settings) {
+    let Some(first) = files.first() else { return };
+    let place = Place::file(&first.source.path);
+    sheet.strips = (files.iter().flat_map(|f| &f.tests))
+        .filter(|t| t.kind.is_stretch())
+        .filter_map(|t| {
+            let strip = stretch(t, settings);
+            if strip.is_none() {
+                let text = format!(
+                    "{} {}: the strip is left out, it never carries load",
+                    t.direction,
+                    t.kind.name()
+                );
+                sheet.findings.push(Finding::new("K001", text).at(place.clone()));
+            }
+            strip
+        })
+        .collect();
+    stiffness(sheet, settings, &place);
+    for direction in Direction::ALL {
+        bending(sheet, files, direction, &place);
+    }
+    let whole = |parameter| Key { parameter, direction: None };
+    let masses: Vec<f64> = files.iter().filter_map(|f| f.areal_density).collect();
+    if let Some(w) = Estimate::of(&masses) {
+        sheet.values.entry(whole(Parameter::W)).or_insert(w);
+    }
+    let contacts: Vec<f64> = files.iter().flat_map(|f| &f.thickness).copied().collect();
+    if let (Some(t), false) = (Estimate::of(&contacts), sheet.values.contains_key(&whole(Parameter::T0))) {
+        let text = format!(
+            "T0 is the thickness of the FAB instrument, {} mm over {} contacts, whose pressure is not that of FB3",
+            significant(1e3 * t.mean),
+            t.n
+        );
+        sheet.findings.push(Finding::new("K032", text).at(place));
+        sheet.values.insert(whole(Parameter::T0), t);
+    }
+}
+
+/// The cycles of a stretch test; `None` if the first never carries load.
+fn stretch(test: &FabTest, settings: &Settings) -> Option<Strip> {
+    let mut cycles: Vec<StripCycle> = Vec::new();
+    for (i, pair) in test.branches.chunks(2).enumerate() {
+        let first_onset = cycles.first().map(|c| c.onset);
+        match cycle(i, pair, test.width, first_onset, settings) {
+            Some(cycle) => cycles.push(cycle),
+            None => break,
+        }
+    }
+    (!cycles.is_empty()).then_some(Strip {
+        direction: test.direction,
+        kind: test.kind,
+        width: test.width,
+        cycles,
+    })
+}
+
+fn cycle(
+    index: usize,
+    pair: &[Curve],
+    width: f64,
+    first_onset: Option<f64>,
+    settings: &Settings,
+) -> Option<StripCycle> {
+    let load = pair.first()?;
+    // The zero of the load differs from test to test; the first samples are taken on the slack strip.
+    let mut rest: Vec<f64> = load.y.iter().take(5).copied().collect();
+    rest.sort_by(f64::total_cmp);
+    let zero = *rest.get(rest.len() / 2)?;
+    let per_width = |c: &Curve| Curve::from_points(c.points().map(|(d, f)| (d, (f - zero) / width)));
+    let onset = Graph::of(&per_width(load)).first_rise_to(settings.strip_onset.si()).filter(|d| *d > 0.0)?;
+    let strained = |c: &Curve| Curve::from_points(per_width(c).points().map(|(d, f)| (d / onset - 1.0, f)));
+    let branches: Vec<Branch> = (pair.iter().enumerate())
+        .map(|(k, c)| Branch { cycle: index, outgoing: k == 0, curve: strained(c) })
+        .collect();
+    let graph = Graph::of(&branches[0].curve);
+    let (mut moduli, mut fits) = (BTreeMap::new(), Vec::new());
+    let windows = settings.strip_windows.iter().map(|[a, b]| Modulus::Window(*a, *b));
+    for modulus in [Modulus::TangentLow].into_iter().chain(windows) {
+        let [low, high] = match modulus {
+            Modulus::Window(low, high) => [low, high],
+            _ => settings.tangent_low,
+        };
+        if let Some(fit) = graph.fit_between_ordinates(&modulus.name(), low.si(), high.si()) {
+            moduli.insert(modulus.name(), fit.two_point);
+            fits.push(fit);
+        }
+    }
+    if let Some(strain) = graph.first_rise_to(settings.strip_secant.si()).filter(|e| *e > 0.0) {
+        moduli.insert(Modulus::Secant.name(), settings.strip_secant.si() / strain);
+    }
+    let residual = first_onset.map_or(0.0, |first| onset / first - 1.0);
+    let slack = onset - load.x.first()?;
+    Some(StripCycle { onset, slack, residual, offset: zero / width, branches, moduli, fits })
+}
+
+/// Moduli of the long strips (short ones where there is no other), last cycle.
+fn stiffness(sheet: &mut FabricSheet, settings: &Settings, place: &Place) {
+    for direction in Direction::ALL {
+        if sheet.moduli.keys().any(|(_, d)| *d == direction) {
+            continue;
+        }
+        let of = |kind| -> Vec<&Strip> {
+            sheet.strips.iter().filter(|s| s.direction == direction && s.kind == kind).collect()
+        };
+        let strips = Some(of(FabKind::S2)).filter(|s| !s.is_empty()).unwrap_or_else(|| of(FabKind::S1));
+        let last: Vec<&StripCycle> = strips.iter().filter_map(|s| s.cycles.last()).collect();
+        let Some(shown) = last.first() else { continue };
+        let text = format!(
+            "{direction}: moduli of a strip of {} cm from the onset of load, cycle {}; the secant is at {} gf/cm",
+            significant(100.0 * shown.onset),
+            strips[0].cycles.len(),
+            significant(settings.strip_secant.si() / Parameter::Hg.kes_factor()),
+        );
+        let mut names: Vec<&String> = last.iter().flat_map(|c| c.moduli.keys()).collect();
+        names.sort();
+        names.dedup();
+        let estimates: Vec<_> = (names.into_iter())
+            .filter_map(|name| {
+                let values: Vec<f64> = last.iter().filter_map(|c| c.moduli.get(name).copied()).collect();
+                Some(((name.clone(), direction), Estimate::of(&values)?))
+            })
+            .collect();
+        sheet.moduli.extend(estimates);
+        sheet.findings.push(Finding::new("K030", text).at(place.clone()));
+    }
+}
+
+/// B from the short strips bent downwards and upwards, last cycle; the two differ by the weight of
+/// the strip and by friction, so their spread is the uncertainty.
+fn bending(sheet: &mut FabricSheet, files: &[FabFile], direction: Direction, place: &Place) {
+    let key = Key { parameter: Parameter::B, direction: Some(direction) };
+    if sheet.values.contains_key(&key) {
+        return;
+    }
+    let values: Vec<f64> = (files.iter().flat_map(|f| &f.tests))
+        .filter(|t| t.direction == direction && matches!(t.kind, FabKind::D1 | FabKind::U1))
+        .filter_map(rigidity)
+        .collect();
+    let Some(estimate) = Estimate::of(&values) else { return };
+    let each: Vec<String> = values.iter().map(|b| significant(1e6 * b)).collect();
+    let text = format!(
+        "B {direction} is an estimate from buckled strips ({} µN·m down and up): friction and an unknown load zero are in it, expect it up to twice too high",
+        each.join(", ")
+    );
+    sheet.findings.push(Finding::new("K031", text).at(place.clone()));
+    sheet.values.insert(key, estimate);
+}
+
+/// B (N·m) of a clamped strip that buckles as its clamps approach: least squares of the mean of
+/// approach and return against the load of the elastica, the zero of the load unknown.
+fn rigidity(test: &FabTest) -> Option<f64> {
+    const POINTS: usize = 41;
+    let pair = test.branches.chunks_exact(2).last()?;
+    let [approach, back] = [&pair[0], &pair[1]].map(Graph::of);
+    let low = approach.x.first()?.max(*back.x.first()?);
+    let high = approach.x.last()?.min(*back.x.last()?);
+    // The fifth at each end is the turn from sticking to sliding.
+    let points: Option<Vec<(f64, f64)>> = (0..POINTS)
+        .map(|i| low + (high - low) * (0.2 + 0.6 * i as f64 / (POINTS - 1) as f64))
+        .map(|d| {
+            let push = -0.5 * (approach.at(d)? + back.at(d)?);
+            let shortening = 1.0 - d / test.length;
+            (0.0..0.8)
+                .contains(&shortening)
+                .then(|| (elastica_load(shortening) * test.width / (test.length * test.length), push))
+        })
+        .collect();
+    let line = Graph::of(&Curve::from_points(points?));
+    let fit = line.fit("B", *line.x.first()?, *line.x.last()?)?;
+    (fit.slope.is_finite() && fit.slope > 0.0).then_some(fit.slope)
+}
+
+/// P L²/B of a clamped-clamped elastica whose ends have approached by `shortening` of its length:
+/// 16 K², with shortening = 2 - 2 E/K (four quarter waves of the pinned elastica; Timoshenko and
+/// Gere (1961), Theory of Elastic Stability, article 2.7).
+fn elastica_load(shortening: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 0.999);
+    for _ in 0..60 {
+        let m = 0.5 * (low + high);
+        let (k, e) = complete_elliptic(m);
+        if 2.0 - 2.0 * e / k < shortening { low = m } else { high = m }
+    }
+    let (k, _) = complete_elliptic(low);
+    16.0 * k * k
+}
+
+/// Complete elliptic integrals K(m) and E(m) of parameter m < 1 by the arithmetic-geometric mean
+/// (Abramowitz and Stegun 17.6).
+fn complete_elliptic(m: f64) -> (f64, f64) {
+    let (mut a, mut b, mut c, mut power) = (1.0, (1.0 - m).sqrt(), m.sqrt(), 0.5);
+    let mut sum = power * c * c;
+    // Converges quadratically: seven steps are past the last bit for m <= 0.999.
+    for _ in 0..7 {
+        (a, b, c) = (0.5 * (a + b), (a * b).sqrt(), 0.5 * (a - b));
+        power *= 2.0;
+        sum += power * c * c;
+    }
+    let k = PI / (2.0 * a);
+    (k, k * (1.0 - sum))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// Abramowitz and Stegun, Table 17.1.
+    #[test]
+    fn elliptic_integrals() {
+        let (k, e) = complete_elliptic(0.5);
+        assert_relative_eq!(k, 1.854_074_677_301_372, max_relative = 1e-14);
+        assert_relative_eq!(e, 1.350_643_881_047_675, max_relative = 1e-14);
+    }
+
+    /// Euler's load of a clamped column, 4 π² B/L², and its initial rise by half the shortening
+    /// (from K and E to second order in m).
+    #[test]
+    fn buckling_load() {
+        assert_relative_eq!(elastica_load(0.0), 4.0 * PI * PI, max_relative = 1e-12);
+        assert_relative_eq!(elastica_load(1e-4) / elastica_load(0.0) - 1.0, 0.5e-4, max_relative = 1e-3);
+    }
+
+    fn test_of(kind: FabKind, branches: Vec<Curve>) -> FabTest {
+        FabTest { direction: Direction::Warp, kind, length: 0.02, width: 0.05, branches }
+    }
+
+    #[test]
+    fn an_elastic_strip_gives_its_rigidity_whatever_the_zero_of_the_load() {
+        let b = 6e-6;
+        let at = |d: f64, friction: f64| 0.03 - elastica_load(1.0 - d / 0.02) * b * 0.05 / 4e-4 + friction;
+        let d = (0..=16).map(|i| 0.0195 - 0.0005 * f64::from(i));
+        let approach = Curve::from_points(d.clone().map(|d| (d, at(d, -1e-3))));
+        let back = Curve::from_points(d.rev().map(|d| (d, at(d, 1e-3))));
+        let found = rigidity(&test_of(FabKind::D1, vec![approach, back])).unwrap();
+        // Linear interpolation between 17 samples of the elastica.
+        assert_relative_eq!(found, b, max_relative = 2e-3);
+    }
+
+    /// 1 mm of slack, an offset of -20 mN and 2000 N/m over the length at the onset.
+    #[test]
+    fn slack_and_offset_do_not_enter_the_stiffness() {
+        let force = |d: f64| -0.02 + 0.05 * 2000.0 * (d - 0.021).max(0.0) / 0.021;
+        let curve = Curve::from_points((0..=200).map(|i| 0.02 + 2e-5 * f64::from(i)).map(|d| (d, force(d))));
+        let strip = stretch(&test_of(FabKind::S1, vec![curve]), &Settings::default()).unwrap();
+        let cycle = &strip.cycles[0];
+        assert_relative_eq!(cycle.offset, -0.4, max_relative = 1e-12);
+        // The onset is where the load passes 1 gf/cm, 0.05 % of strain late.
+        assert_relative_eq!(cycle.onset, 0.021 * (1.0 + 0.980665 / 2000.0), max_relative = 1e-12);
+        assert_relative_eq!(cycle.moduli["tangent_low"], 2000.0, max_relative = 1e-3);
+    }
+
+    #[test]
+    fn a_strip_without_load_is_left_out() {
+        let flat = Curve::from_points((0..20).map(|i| (0.02 + 1e-4 * f64::from(i), 0.0)));
+        assert_eq!(stretch(&test_of(FabKind::S2, vec![flat]), &Settings::default()), None);
+        assert_eq!(rigidity(&test_of(FabKind::D1, vec![])), None);
+    }
+}

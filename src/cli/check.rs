@@ -1,0 +1,82 @@
+//! `kesf check`: reads everything, computes nothing.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde_json::json;
+
+use super::diagnostics::Failure;
+use super::inputs::{self, ReadArgs};
+use super::output::Columns;
+use super::{Exit, Ui};
+use crate::instrument::FabricInput;
+use crate::study::Case;
+
+/// Validate measurement files and cases, compute nothing
+#[derive(Debug, Args)]
+#[command(after_help = "Example: kesf check kesf_data cases")]
+pub struct Options {
+    /// Fabric folders, measurement files, case files, or folders of them
+    #[arg(value_name = "INPUT", default_values = ["kesf_data", "cases"])]
+    inputs: Vec<PathBuf>,
+    /// Exit with 1 if there is a finding
+    #[arg(long)]
+    strict: bool,
+    #[command(flatten)]
+    reading: ReadArgs,
+}
+
+pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
+    let (cases, mut failures) = inputs::cases(&options.inputs);
+    for failure in &failures {
+        ui.diagnostics.error(failure);
+    }
+    let others: Vec<_> =
+        options.inputs.iter().filter(|p| p.is_dir() || !inputs::is_case(p)).cloned().collect();
+    let (fabrics, unread) = options.reading.fabrics(&others, ui)?;
+    failures.extend(unread);
+    for finding in fabrics.iter().flat_map(|f| &f.findings) {
+        ui.diagnostics.finding(finding);
+    }
+    let exit = Exit::of_batch(fabrics.len() + cases.len(), &failures)
+        .unless(options.strict && ui.diagnostics.findings() > 0);
+    if fabrics.is_empty() && cases.is_empty() && failures.is_empty() {
+        return Err(Failure::new("O055", "there is neither a measurement nor a case in the inputs")
+            .hint("name a fabric folder, a measurement file or a case file"));
+    }
+    if ui.json {
+        ui.document(&document(&fabrics, &cases, failures.len()))?;
+    } else {
+        ui.print(&text(&fabrics, &cases, failures.len()))?;
+    }
+    Ok(exit)
+}
+
+fn text(fabrics: &[FabricInput], cases: &[Case], failures: usize) -> String {
+    let mut columns = Columns::new(["input", "kind", "files", "curves", "values", "findings"]);
+    for f in fabrics {
+        let curves = f.measurements.len() + f.fab.iter().map(|fab| fab.tests.len()).sum::<usize>();
+        let numbers = [f.sources.len(), curves, f.results.len(), f.findings.len()];
+        let name = [f.name.clone(), "fabric".to_string()];
+        columns.row(name.into_iter().chain(numbers.map(|n| n.to_string())));
+    }
+    for case in cases {
+        columns.row([case.name.as_str(), "case"]);
+    }
+    format!("{}{} fabrics, {} cases, {failures} errors\n", columns.text(), fabrics.len(), cases.len())
+}
+
+fn document(fabrics: &[FabricInput], cases: &[Case], failures: usize) -> serde_json::Value {
+    let fabric = |f: &FabricInput| {
+        json!({
+            "name": f.name, "path": f.path, "files": f.sources, "curves": f.measurements.len(),
+            "values": f.results.len(), "findings": f.findings,
+        })
+    };
+    json!({
+        "schema": "kesf.check/1",
+        "fabrics": fabrics.iter().map(fabric).collect::<Vec<_>>(),
+        "cases": cases.iter().map(|c| json!({"name": c.name, "path": c.path, "title": c.title})).collect::<Vec<_>>(),
+        "errors": failures,
+    })
+}

@@ -1,0 +1,60 @@
+//! How the program ends.
+
+use std::process::ExitCode;
+
+use super::diagnostics::Failure;
+
+/// Exit codes; rename or renumber never.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exit {
+    /// Done.
+    Done = 0,
+    /// Done, but some inputs failed, a check did not hold, or `--strict` met a finding.
+    Partly = 1,
+    /// Bad usage, input, or I/O: nothing useful was done.
+    Bad = 2,
+    /// Singular or not converged, and nothing else was done.
+    Numerics = 3,
+    /// Ctrl-C.
+    Interrupted = 130,
+}
+
+impl Exit {
+    /// The end of a batch with this many useful results and these failures.
+    pub fn of_batch(useful: usize, failures: &[Failure]) -> Self {
+        match failures {
+            [] => Self::Done,
+            _ if useful > 0 => Self::Partly,
+            all if all.iter().all(|f| f.exit == Self::Numerics) => Self::Numerics,
+            _ => Self::Bad,
+        }
+    }
+
+    /// `Partly` instead of `Done` when something did not hold.
+    pub fn unless(self, failed: bool) -> Self {
+        if failed && self == Self::Done { Self::Partly } else { self }
+    }
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        Self::from(exit as u8)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_batch_ends_by_what_was_useful() {
+        let input = Failure::new("R004", "x");
+        let singular = Failure { exit: Exit::Numerics, ..Failure::new("N001", "x") };
+        assert_eq!(Exit::of_batch(0, &[]), Exit::Done);
+        assert_eq!(Exit::of_batch(2, std::slice::from_ref(&input)), Exit::Partly);
+        assert_eq!(Exit::of_batch(0, &[input, singular.clone()]), Exit::Bad);
+        assert_eq!(Exit::of_batch(0, &[singular]), Exit::Numerics);
+        assert_eq!(Exit::Done.unless(true), Exit::Partly);
+        assert_eq!(Exit::Bad.unless(true), Exit::Bad);
+    }
+}

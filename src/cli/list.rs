@@ -1,0 +1,71 @@
+//! `kesf list`: what the program knows.
+
+use clap::{Args, ValueEnum};
+use serde_json::{Value, json};
+
+use super::diagnostics::Failure;
+use super::output::Columns;
+use super::{Exit, Ui};
+use crate::finding::explanations;
+use crate::quantity::UNITS;
+
+/// List the units, codes, ... that the program knows
+#[derive(Debug, Args)]
+#[command(after_help = "Example: kesf list units")]
+pub struct Options {
+    /// What to list
+    #[arg(value_enum)]
+    topic: Topic,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Topic {
+    /// Unit symbols with their SI values; products, quotients and powers of them are units too
+    Units,
+    /// Diagnostic codes
+    Codes,
+}
+
+pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
+    let (headings, rows) = match options.topic {
+        Topic::Units => units(),
+        Topic::Codes => codes(),
+    };
+    if ui.json {
+        let object = |row: &Vec<Value>| -> Value {
+            headings.iter().map(ToString::to_string).zip(row.iter().cloned()).collect()
+        };
+        let items: Vec<Value> = rows.iter().map(object).collect();
+        return ui.document(&json!({"schema": "kesf.list/1", "items": items}));
+    }
+    let mut columns = Columns::new(headings.iter().copied());
+    for row in &rows {
+        columns.row(row.iter().map(|v| v.as_str().map_or_else(|| v.to_string(), str::to_string)));
+    }
+    ui.print(&columns.text())
+}
+
+type Rows = (&'static [&'static str], Vec<Vec<Value>>);
+
+fn units() -> Rows {
+    let rows = UNITS.iter().map(|&(symbol, factor, [kg, m, s], name)| {
+        vec![json!(symbol), json!(factor), json!(dimension(kg, m, s)), json!(name)]
+    });
+    (&["symbol", "si", "dimension", "name"], rows.collect())
+}
+
+/// `kg·m·s^-2`; `1` without a dimension.
+fn dimension(kg: i8, m: i8, s: i8) -> String {
+    let power = |(symbol, n): (&str, i8)| match n {
+        0 => None,
+        1 => Some(symbol.to_string()),
+        n => Some(format!("{symbol}^{n}")),
+    };
+    let factors: Vec<_> = [("kg", kg), ("m", m), ("s", s)].into_iter().filter_map(power).collect();
+    if factors.is_empty() { "1".into() } else { factors.join("·") }
+}
+
+fn codes() -> Rows {
+    let rows = explanations().iter().map(|e| vec![json!(e.code), json!(e.kind), json!(e.title)]);
+    (&["code", "kind", "title"], rows.collect())
+}

@@ -1,0 +1,152 @@
+//! `kesf run`: the whole chain for every fabric and every case.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use rayon::prelude::*;
+use serde_json::json;
+
+use super::diagnostics::Failure;
+use super::output::Columns;
+use super::summary::{FabricReport, page, summary};
+use super::task::{Task, TaskArgs, Work};
+use super::tree::Tree;
+use super::{Exit, Ui};
+use crate::report::chart;
+use crate::report::html::html;
+use crate::report::json::text;
+use crate::report::table::{FabricRow, PredictionRow, ProblemRow, Row, csv, parquet};
+use crate::study::CaseResult;
+
+/// Do everything: read fabrics, evaluate, solve and compare every case, draw charts, write tables
+#[derive(Debug, Args)]
+#[command(after_help = "Example: kesf run kesf_data cases -o results")]
+pub struct Options {
+    /// Fabrics and cases
+    #[arg(value_name = "INPUT", default_values = ["kesf_data", "cases"])]
+    inputs: Vec<PathBuf>,
+    /// Folder of the results
+    #[arg(short, long, value_name = "FOLDER", default_value = "results")]
+    output: PathBuf,
+    #[command(flatten)]
+    task: TaskArgs,
+}
+
+pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
+    let work = options.task.load(&options.inputs, ui)?;
+    if work.fabrics.is_empty() && work.cases.is_empty() {
+        if work.failures.is_empty() {
+            return Err(Failure::new("O055", "there is neither a fabric nor a case in the inputs")
+                .hint("run where kesf_data and cases are, or name fabric folders and case files"));
+        }
+        return Ok(Exit::Bad);
+    }
+    let (tasks, homeless) = work.tasks();
+    let tree = Tree::open(&options.output, &options.task)?;
+    let reports = fabrics(&work, &tasks, &tree, ui)?;
+    let own: Vec<Task> =
+        tasks.iter().filter(|t| t.fabric.is_none() && t.case.sheet.is_some()).copied().collect();
+    let benchmarks: Vec<(Task, Result<CaseResult, Failure>)> = own
+        .into_par_iter()
+        .map(|task| (task, task.solve().and_then(|r| tree.solved(&task, &r).map(|()| r))))
+        .collect();
+    ui.go_on()?;
+
+    let mut failures = homeless;
+    failures.extend(reports.iter().flat_map(|r| r.failures.clone()));
+    failures.extend(benchmarks.iter().filter_map(|(_, r)| r.as_ref().err().cloned()));
+    failures.iter().for_each(|f| ui.diagnostics.error(f));
+    failures.splice(0..0, work.failures.iter().cloned());
+    let findings = reports.iter().flat_map(|r| &r.findings);
+    let of_cases = benchmarks.iter().filter_map(|(_, r)| r.as_ref().ok()).flat_map(|r| &r.findings);
+    findings.chain(of_cases.clone()).for_each(|f| ui.diagnostics.finding_of_batch(f));
+
+    let solved: Vec<(&Task, &CaseResult)> =
+        benchmarks.iter().filter_map(|(t, r)| Some((t, r.as_ref().ok()?))).collect();
+    let mut problems: Vec<ProblemRow> = failures.iter().map(Failure::row).collect();
+    problems.extend(reports.iter().flat_map(|r| r.problems.clone()));
+    problems.extend(solved.iter().flat_map(|(t, r)| super::summary::problems(&r.findings, &t.case.name)));
+    let fabric_rows: Vec<FabricRow> = reports.iter().flat_map(|r| r.rows.clone()).collect();
+    let mut predictions: Vec<PredictionRow> = reports.iter().flat_map(|r| r.predictions.clone()).collect();
+    predictions.extend(solved.iter().flat_map(|(t, r)| super::summary::predictions(t, r)));
+    table(&tree, "fabrics", &fabric_rows)?;
+    table(&tree, "predictions", &predictions)?;
+    tree.write("problems.csv", &csv(&problems)?)?;
+    if tree.charts() {
+        let points: Vec<_> = reports.iter().flat_map(|r| r.parity.clone()).collect();
+        let subtitle = "stiffness that a simulated instrument test shows, against the measured value";
+        tree.chart("parity.png", chart::parity(&points, "Simulated against measured", subtitle))?;
+    }
+    tree.write("run.json", text(&about(options, &work))?.as_bytes())?;
+    tree.write("index.html", html(&page(&reports, &solved, &failures, tree.charts())).as_bytes())?;
+    let shown = summary(&reports, &work);
+    let checks = super::solve::checks(solved.iter().map(|(_, r)| *r));
+    tree.finish()?;
+    tell(options, ui, &shown, checks.as_ref(), &predictions)?;
+    let unmet = reports.iter().any(|r| r.unmet) || solved.iter().any(|(_, r)| super::summary::unmet(r));
+    let strict = options.task.strict && ui.diagnostics.findings() > 0;
+    Ok(Exit::of_batch(reports.iter().filter(|r| r.useful).count() + solved.len(), &failures)
+        .unless(unmet || strict))
+}
+
+/// Every fabric with its cases, in parallel; reports in name order.
+fn fabrics(work: &Work, tasks: &[Task], tree: &Tree, ui: &Ui) -> Result<Vec<FabricReport>, Failure> {
+    let bar = ui.bar("fabrics", work.fabrics.len());
+    let reports: Vec<FabricReport> = work
+        .fabrics
+        .par_iter()
+        .filter_map(|fabric| {
+            ui.go_on().ok()?;
+            let mine = |t: &&Task| t.fabric.is_some_and(|f| std::ptr::eq(f, &raw const fabric.sheet));
+            let mine: Vec<Task> = tasks.iter().filter(mine).copied().collect();
+            let report = FabricReport::of(fabric, &mine, tree);
+            bar.inc(1);
+            Some(report)
+        })
+        .collect();
+    bar.finish_and_clear();
+    ui.go_on()?;
+    Ok(reports)
+}
+
+fn table<R: Row>(tree: &Tree, name: &str, rows: &[R]) -> Result<(), Failure> {
+    tree.write(&format!("{name}.csv"), &csv(rows)?)?;
+    tree.write(&format!("{name}.parquet"), &parquet(rows)?)
+}
+
+/// Version, options and the hashes of what was read; no date, so that a second run is the same.
+fn about(options: &Options, work: &Work) -> serde_json::Value {
+    let sources: Vec<_> = work.fabrics.iter().flat_map(|f| &f.sheet.sources).collect();
+    json!({
+        "schema": "kesf.run/1",
+        "version": env!("CARGO_PKG_VERSION"),
+        "options": {"inputs": options.inputs, "charts": !options.task.no_charts},
+        "inputs": sources,
+        "cases": work.cases.iter().map(|c| json!({"name": c.name, "path": c.path})).collect::<Vec<_>>(),
+    })
+}
+
+/// The table of fabrics, the checks, and where the rest is.
+fn tell(
+    options: &Options,
+    ui: &mut Ui,
+    shown: &Columns,
+    checks: Option<&Columns>,
+    predictions: &[PredictionRow],
+) -> Result<(), Failure> {
+    if ui.json {
+        return ui
+            .document(
+                &json!({"schema": "kesf.results/1", "output": options.output, "predictions": predictions}),
+            )
+            .map(drop);
+    }
+    let parts: Vec<String> = Some(shown).into_iter().chain(checks).map(Columns::text).collect();
+    ui.print(&parts.join("\n"))?;
+    let folder = options.output.display();
+    let findings = ui.diagnostics.findings();
+    ui.diagnostics.note(&format!(
+        "{folder}: index.html, fabrics.csv, predictions.csv, charts; {findings} findings in problems.csv"
+    ));
+    Ok(())
+}

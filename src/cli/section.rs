@@ -1,0 +1,142 @@
+//! `kesf section`: sheets to the matrices of a shell, with every assumption.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use clap::Args;
+use nalgebra::Matrix3;
+use serde_json::{Value, json};
+
+use super::diagnostics::Failure;
+use super::inputs::EvaluateArgs;
+use super::output::{Columns, Format, OutputArgs};
+use super::{Exit, Ui};
+use crate::characterise::Modulus;
+use crate::constitutive::{
+    Assumptions, BendingCoupling, Constitutive, PoissonRule, Torsion, TransverseShear, Used, section,
+};
+use crate::quantity::{ArealDensity, Length, LineForce, significant};
+use crate::report::json::{section_document, text};
+
+/// Compute the membrane, bending and shear stiffness of fabrics, with the assumptions used
+#[derive(Debug, Args)]
+#[command(after_help = "Example: kesf section kesf_data/poplin --poisson 0.3")]
+pub struct Options {
+    /// Fabric folders or measurement files; `-` is a file on standard input
+    #[arg(value_name = "INPUT", required = true)]
+    inputs: Vec<PathBuf>,
+    #[command(flatten)]
+    output: OutputArgs,
+    #[command(flatten)]
+    assume: AssumptionArgs,
+    #[command(flatten)]
+    evaluate: EvaluateArgs,
+}
+
+/// One option for each field of [`Assumptions`].
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Assumptions")]
+struct AssumptionArgs {
+    /// Slope of the tensile curve: tangent_low, secant, energy or "window(5 gf/cm, 20 gf/cm)"
+    #[arg(long, value_name = "CHOICE", default_value_t = Assumptions::default().modulus)]
+    modulus: Modulus,
+    /// Poisson's ratio
+    #[arg(long, value_name = "NU", default_value_t = Assumptions::default().poisson)]
+    poisson: f64,
+    /// What the ratio is: geometric (the root of nu12 nu21), major (nu12) or zero
+    #[arg(long, value_name = "RULE", default_value_t = Assumptions::default().poisson_rule)]
+    poisson_rule: PoissonRule,
+    /// Torsional rigidity D66: huber, bias, shear, neglect or a value such as "3e-6 N·m"
+    #[arg(long, value_name = "CHOICE", default_value_t = Assumptions::default().torsion)]
+    torsion: Torsion,
+    /// Coupling D12: a ratio (of the root of B1 B2) or a value such as "1e-6 N·m"
+    #[arg(long, value_name = "CHOICE", default_value_t = Assumptions::default().bending_coupling)]
+    bending_coupling: BendingCoupling,
+    /// Transverse shear stiffness: in_plane (5/6 of G) or a value such as "416 N/m"
+    #[arg(long, value_name = "CHOICE", default_value_t = Assumptions::default().transverse_shear)]
+    transverse_shear: TransverseShear,
+    /// Stands in for a tensile modulus that was not measured
+    #[arg(long, value_name = "VALUE", default_value_t = Assumptions::default().tensile)]
+    tensile: LineForce,
+    /// Stands in for a shear stiffness that was not measured
+    #[arg(long, value_name = "VALUE", default_value_t = Assumptions::default().shear)]
+    shear: LineForce,
+    /// Stands in for a thickness that was not measured
+    #[arg(long, value_name = "VALUE", default_value_t = Assumptions::default().thickness)]
+    thickness: Length,
+    /// Stands in for an areal density that was not measured, such as "150 g/m²"
+    #[arg(long, value_name = "VALUE")]
+    areal_density: Option<ArealDensity>,
+}
+
+impl From<&AssumptionArgs> for Assumptions {
+    fn from(a: &AssumptionArgs) -> Self {
+        Self {
+            modulus: a.modulus,
+            poisson: a.poisson,
+            poisson_rule: a.poisson_rule,
+            torsion: a.torsion,
+            bending_coupling: a.bending_coupling,
+            transverse_shear: a.transverse_shear,
+            tensile: a.tensile,
+            shear: a.shear,
+            thickness: a.thickness,
+            areal_density: a.areal_density,
+        }
+    }
+}
+
+pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
+    let format = options.output.format(ui.json)?;
+    let assumptions = Assumptions::from(&options.assume);
+    let (fabrics, mut failures) = options.evaluate.sheets(&options.inputs, &[assumptions.modulus], ui)?;
+    let mut sections: Vec<(&str, Constitutive)> = Vec::new();
+    for fabric in &fabrics {
+        match section(&fabric.sheet, &assumptions) {
+            Ok(c) => {
+                c.findings.iter().for_each(|f| ui.diagnostics.finding(f));
+                sections.push((&fabric.sheet.name, c));
+            }
+            Err(error) => {
+                let failure = Failure::from(error);
+                ui.diagnostics.error(&failure);
+                failures.push(failure);
+            }
+        }
+    }
+    if sections.is_empty() {
+        return Ok(Exit::of_batch(0, &failures));
+    }
+    let entries = || sections.iter().map(|(name, c)| (*name, &c.section, used(&c.used)));
+    let bytes = match format {
+        Format::Text => sections.iter().map(|(n, c)| page(n, c)).collect::<Vec<_>>().join("\n").into_bytes(),
+        Format::Json => text(&section_document(entries()))?.into_bytes(),
+        Format::Csv | Format::Parquet => return Err(options.output.no_such_format(".txt or .json")),
+    };
+    options.output.emit(&bytes)?;
+    Ok(Exit::of_batch(sections.len(), &failures))
+}
+
+/// `{"tensile modulus": {"value": .., "source": ..}, ..}` in the order of use.
+pub fn used(used: &[Used]) -> Value {
+    used.iter().map(|u| (u.name.to_string(), json!({"value": u.value, "source": u.source}))).collect()
+}
+
+fn page(name: &str, c: &Constitutive) -> String {
+    let mut page = format!("{name}\n");
+    for (symbol, unit, d) in [("D_m", "N/m", &c.section.d_m), ("D_b", "N·m", &c.section.d_b)] {
+        let _ = writeln!(page, "\n{symbol} ({unit}), x = warp, y = weft\n{}", matrix(d));
+    }
+    let (x, y) = (c.section.d_s[(0, 0)], c.section.d_s[(1, 1)]);
+    let _ = writeln!(page, "\nD_s (N/m)\n  {}  {}\n", significant(x), significant(y));
+    let mut columns = Columns::new(["input", "value", "source"]);
+    for u in &c.used {
+        columns.row([u.name, &u.value, &u.source]);
+    }
+    page + &columns.text()
+}
+
+fn matrix(d: &Matrix3<f64>) -> String {
+    let row = |i: usize| (0..3).map(|j| format!("{:>11}", significant(d[(i, j)]))).collect::<String>();
+    (0..3).map(row).collect::<Vec<_>>().join("\n")
+}

@@ -1,0 +1,302 @@
+//! What `run` keeps of a fabric once its files are written, and the overview made of it.
+
+use super::diagnostics::Failure;
+use super::inputs::Fabric;
+use super::output::Columns;
+use super::solve::status;
+use super::task::{Task, Tested, Work};
+use super::tree::Tree;
+use crate::characterise::FabricSheet;
+use crate::constitutive::{Assumptions, section};
+use crate::finding::Finding;
+use crate::instrument::{Direction, Parameter, Test};
+use crate::quantity::significant;
+use crate::report::chart::ParityPoint;
+use crate::report::html::{Block, Figure, Page, Picture, Section};
+use crate::report::table::{
+    FabricRow, PredictionRow, ProblemRow, UnitSystem, fabric_rows, problem_row, relative_error,
+};
+use crate::study::{CaseResult, Status};
+
+/// What is left of a fabric.
+#[derive(Default)]
+pub struct FabricReport {
+    /// Its name.
+    pub name: String,
+    /// Whether it has a section.
+    pub useful: bool,
+    /// Whether a check of one of its cases does not hold.
+    pub unmet: bool,
+    /// B, G, E, T, W as shown.
+    pub cells: Vec<String>,
+    /// Case and largest deflection (m).
+    pub deflections: Vec<(String, f64)>,
+    /// `ok`, or what is the matter.
+    pub status: String,
+    /// Rows of the tables.
+    pub rows: Vec<FabricRow>,
+    /// See `rows`.
+    pub predictions: Vec<PredictionRow>,
+    /// See `rows`.
+    pub problems: Vec<ProblemRow>,
+    /// Points of the parity chart.
+    pub parity: Vec<ParityPoint>,
+    /// Findings of sheet, section and cases.
+    pub findings: Vec<Finding>,
+    /// What failed.
+    pub failures: Vec<Failure>,
+}
+
+impl FabricReport {
+    /// Does all of the work for one fabric and writes its files.
+    pub fn of(fabric: &Fabric, tasks: &[Task], tree: &Tree) -> Self {
+        let sheet = &fabric.sheet;
+        let mut report = Self { name: sheet.name.clone(), status: "ok".into(), ..Self::default() };
+        report.findings.clone_from(&sheet.findings);
+        report.rows = fabric_rows(sheet, UnitSystem::Si);
+        report.cells = cells(sheet);
+        report.keep(tree.sheet(sheet));
+        match section(sheet, &Assumptions::default()) {
+            Ok(c) => {
+                report.useful = true;
+                report.findings.extend(c.findings.iter().cloned());
+                report.keep(tree.section(&sheet.name, &c));
+                report.cases(sheet, tasks, tree);
+            }
+            Err(error) => {
+                // Every case needs the section: one line, not one for each of them.
+                report.keep(Err(error.into()));
+                report.charts(sheet, &[], tree);
+            }
+        }
+        report.problems = problems(&report.findings, &sheet.name);
+        if let Some(failure) = report.failures.first() {
+            report.status.clone_from(&failure.code);
+        }
+        report
+    }
+
+    fn keep(&mut self, result: Result<(), Failure>) {
+        self.failures.extend(result.err());
+    }
+
+    fn cases(&mut self, sheet: &FabricSheet, tasks: &[Task], tree: &Tree) {
+        let mut simulated: Vec<Tested> = Vec::new();
+        for task in tasks {
+            if let Some(spec) = &task.case.virtual_test {
+                let tested = task.test(spec).and_then(|t| tree.tested(task, &t).map(|()| t));
+                match tested {
+                    Ok(tested) => simulated.extend(tested),
+                    Err(failure) => self.failures.push(failure),
+                }
+                continue;
+            }
+            match task.solve().and_then(|r| tree.solved(task, &r).map(|()| r)) {
+                Ok(result) => self.solved(task, &result),
+                Err(failure) => self.failures.push(failure),
+            }
+        }
+        simulated.iter().for_each(|t| self.tested(t));
+        self.charts(sheet, &simulated, tree);
+    }
+
+    fn charts(&mut self, sheet: &FabricSheet, simulated: &[Tested], tree: &Tree) {
+        if tree.charts() {
+            self.keep(tree.fabric_charts(sheet, simulated));
+        }
+    }
+
+    fn solved(&mut self, task: &Task, result: &CaseResult) {
+        self.deflections.push((result.case.clone(), result.w_max));
+        self.findings.extend(result.findings.iter().cloned());
+        self.predictions.extend(predictions(task, result));
+        self.unmet |= unmet(result);
+        if result.status != Status::Ok && self.status == "ok" {
+            self.status = status(result.status).into();
+        }
+    }
+
+    fn tested(&mut self, t: &Tested) {
+        let Some((symbol, unit, measured)) = &t.stiffness else { return };
+        let direction = t.simulated.direction.map_or("", Direction::name);
+        let simulated = t.simulated.apparent;
+        let mean = measured.as_ref().map(|e| e.mean);
+        self.predictions.push(PredictionRow {
+            fabric: self.name.clone(),
+            case: t.case.clone(),
+            quantity: format!("{symbol} {direction}"),
+            simulated: Some(simulated),
+            measured: mean,
+            unit: (*unit).into(),
+            error: mean.and_then(|m| relative_error(simulated, m)),
+        });
+        if let Some(measured) = measured {
+            self.parity.push(ParityPoint {
+                label: self.name.clone(),
+                group: direction.into(),
+                quantity: quantity(t.simulated.test).into(),
+                unit: (*unit).into(),
+                measured: measured.mean,
+                measured_sd: measured.sd,
+                simulated,
+            });
+        }
+    }
+}
+
+fn quantity(test: Test) -> &'static str {
+    match test {
+        Test::Tensile => "Tensile stiffness",
+        Test::Shear => "Shear stiffness G",
+        Test::Bending => "Bending rigidity B",
+        Test::Compression => "Compression",
+    }
+}
+
+/// Whether a check does not hold.
+pub fn unmet(result: &CaseResult) -> bool {
+    result.status == Status::CheckFailed
+}
+
+/// The largest deflection, and the deflection of each probe.
+pub fn predictions(task: &Task, result: &CaseResult) -> Vec<PredictionRow> {
+    let row = |quantity: String, value: f64| PredictionRow {
+        fabric: task.fabric_name().unwrap_or_default().into(),
+        case: result.case.clone(),
+        quantity,
+        simulated: Some(value),
+        unit: "m".into(),
+        ..PredictionRow::default()
+    };
+    let probes = result.probes.iter().map(|p| row(format!("{}.w", p.name), p.value.u[2]));
+    std::iter::once(row("w_max".into(), result.w_max)).chain(probes).collect()
+}
+
+/// Findings as rows of `problems.csv`; `otherwise` is the place of one without a place.
+pub fn problems(findings: &[Finding], otherwise: &str) -> Vec<ProblemRow> {
+    findings.iter().map(|f| problem_row(f, otherwise)).collect()
+}
+
+/// Headings of the overview before the deflections, in KES units.
+const HEADINGS: [&str; 9] = [
+    "fabric",
+    "B warp",
+    "B weft",
+    "G warp",
+    "G weft",
+    "E warp (N/m)",
+    "E weft (N/m)",
+    "T (mm)",
+    "W (mg/cm²)",
+];
+
+/// B, G, E, T, W: KES units, except E in N/m.
+fn cells(sheet: &FabricSheet) -> Vec<String> {
+    let kes = |p: Parameter, d: Option<Direction>| {
+        let e = sheet.get(p, d).or_else(|| sheet.get(p, None));
+        e.map_or("-".into(), |e| significant(e.mean / p.kes_factor()))
+    };
+    let modulus = |d: Direction| {
+        let of = |name: &str| sheet.moduli.get(&(name.to_string(), d));
+        of("tangent_low").or_else(|| of("secant")).map_or("-".into(), |e| significant(e.mean))
+    };
+    let (warp, weft) = (Direction::Warp, Direction::Weft);
+    let both = |p| [kes(p, Some(warp)), kes(p, Some(weft))];
+    let [b, g] = [Parameter::B, Parameter::G].map(both);
+    let rest = [modulus(warp), modulus(weft), kes(Parameter::T0, None), kes(Parameter::W, None)];
+    [b.to_vec(), g.to_vec(), rest.to_vec()].concat()
+}
+
+/// The table on standard output: one line a fabric, one column of deflections a case.
+pub fn summary(reports: &[FabricReport], work: &Work) -> Columns {
+    let cases: Vec<&str> = work
+        .cases
+        .iter()
+        .filter(|c| c.sheet.is_some() && c.section.is_none())
+        .map(|c| c.name.as_str())
+        .collect();
+    let deflections = cases.iter().map(|c| format!("w_max {c} (mm)"));
+    let headings = HEADINGS.map(String::from).into_iter().chain(deflections).chain(["status".to_string()]);
+    let mut table = Columns::new(headings);
+    for r in reports {
+        let w = cases.iter().map(|c| {
+            let found = r.deflections.iter().find(|(case, _)| case == c);
+            found.map_or("-".into(), |(_, w)| significant(1e3 * w))
+        });
+        let cells = std::iter::once(r.name.clone()).chain(r.cells.iter().cloned()).chain(w);
+        table.row(cells.chain([r.status.clone()]));
+    }
+    table
+}
+
+/// The page of a results folder.
+pub fn page(
+    reports: &[FabricReport],
+    benchmarks: &[(&Task, &CaseResult)],
+    failures: &[Failure],
+    charts: bool,
+) -> Page {
+    let mut sections = vec![Section { heading: "Overview".into(), blocks: overview(failures, charts) }];
+    sections.extend(reports.iter().map(|r| fabric_section(r, charts)));
+    let mut blocks = Vec::new();
+    for (task, result) in benchmarks {
+        let w = format!(
+            "{}: w_max = {} mm, {}",
+            task.case.title,
+            significant(1e3 * result.w_max),
+            status(result.status)
+        );
+        blocks.push(Block::Text(w));
+        if charts {
+            blocks.push(Block::Figures(vec![figure(&task.case.title, &format!("{}.png", task.stem()))]));
+        }
+    }
+    if !blocks.is_empty() {
+        sections.push(Section { heading: "Cases with constants of their own".into(), blocks });
+    }
+    Page {
+        title: "KES-F results".into(),
+        lead: format!("kesf {}; inputs and their hashes are in run.json.", env!("CARGO_PKG_VERSION")),
+        sections,
+    }
+}
+
+fn overview(failures: &[Failure], charts: bool) -> Vec<Block> {
+    let names = [
+        "fabrics.csv",
+        "fabrics.parquet",
+        "predictions.csv",
+        "predictions.parquet",
+        "problems.csv",
+        "run.json",
+    ];
+    let mut blocks = vec![Block::Files(names.map(String::from).to_vec())];
+    if charts {
+        blocks.push(Block::Figures(vec![figure("Simulated against measured stiffness", "parity.png")]));
+    }
+    blocks.extend(failures.iter().map(|f| {
+        let row = f.row();
+        Block::Text(format!("{}: {} {}", row.place, row.code, row.message))
+    }));
+    blocks
+}
+
+fn fabric_section(r: &FabricReport, charts: bool) -> Section {
+    let table = Block::Table {
+        caption: "B in gf·cm²/cm, G in gf/(cm·deg)".into(),
+        header: HEADINGS[1..].iter().map(ToString::to_string).collect(),
+        rows: vec![r.cells.clone()],
+    };
+    let mut blocks = vec![table];
+    if charts {
+        let tests = Test::ALL.map(|t| figure(t.name(), &format!("{}/{}.png", r.name, t.name())));
+        let cases = r.deflections.iter().map(|(case, _)| figure(case, &format!("{}/{case}.png", r.name)));
+        blocks.push(Block::Figures(tests.into_iter().chain(cases).collect()));
+    }
+    blocks.push(Block::Findings(r.findings.clone()));
+    Section { heading: r.name.clone(), blocks }
+}
+
+fn figure(caption: &str, file: &str) -> Figure {
+    Figure { caption: caption.into(), picture: Picture::File(file.into()) }
+}

@@ -1,0 +1,285 @@
+//! A case together with the fabric it is for: what solve, compare and run have in common.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::Ui;
+use super::diagnostics::Failure;
+use super::inputs::{self, EvaluateArgs, Fabric};
+use crate::characterise::FabricSheet;
+use crate::constitutive::{self, Constitutive};
+use crate::instrument::{Direction, Parameter, Test};
+use crate::quantity::{Curve, Estimate};
+use crate::section::ShellSection;
+use crate::solve::Options as SolveOptions;
+use crate::study::{
+    self, Case, CaseResult, Comparison, VirtualCurve, VirtualTest, compare_curves, measured_curve,
+};
+
+/// Cases and fabrics on the command line.
+#[derive(Debug, Args)]
+pub struct TaskArgs {
+    /// Overwrite files in the output folder that this tool did not write
+    #[arg(long)]
+    pub force: bool,
+    /// Draw no charts
+    #[arg(long)]
+    pub no_charts: bool,
+    /// Exit with 1 if there is a finding
+    #[arg(long)]
+    pub strict: bool,
+    #[command(flatten)]
+    pub evaluate: EvaluateArgs,
+}
+
+/// The cases and fabrics that the inputs name, and what could not be read (already told).
+pub struct Work {
+    /// In name order.
+    pub cases: Vec<Case>,
+    /// In name order; those that only a case names come last.
+    pub fabrics: Vec<Fabric>,
+    /// Told already.
+    pub failures: Vec<Failure>,
+}
+
+/// A case and its fabric; none for a case with constants of its own.
+#[derive(Clone, Copy)]
+pub struct Task<'a> {
+    pub case: &'a Case,
+    pub fabric: Option<&'a FabricSheet>,
+}
+
+/// A simulated test with what was measured.
+pub struct Tested {
+    /// E.g. `bending warp`.
+    pub name: String,
+    /// Name of its case.
+    pub case: String,
+    /// The simulated curve over the measured range.
+    pub curve: Curve,
+    /// The simulated test.
+    pub simulated: VirtualCurve,
+    /// The distance from the measured curves, where there are any.
+    pub comparison: Option<Comparison>,
+    /// Symbol and unit of the stiffness, and its estimate in the sheet.
+    pub stiffness: Option<(&'static str, &'static str, Option<Estimate>)>,
+}
+
+impl TaskArgs {
+    /// Reads everything that the inputs name, and the fabrics that only cases name.
+    pub fn load(&self, inputs: &[PathBuf], ui: &mut Ui) -> Result<Work, Failure> {
+        let (cases, mut failures) = inputs::cases(inputs);
+        failures.iter().for_each(|f| ui.diagnostics.error(f));
+        let mut folders: Vec<PathBuf> =
+            inputs.iter().filter(|p| p.is_dir() || !inputs::is_case(p)).cloned().collect();
+        for named in cases.iter().filter_map(named_fabric) {
+            let known = folders.iter().any(|f| is_within(&named, f));
+            if !known {
+                folders.push(named);
+            }
+        }
+        let moduli: Vec<_> = cases.iter().map(|c| c.assumptions.modulus).collect();
+        let (fabrics, unread) = self.evaluate.sheets(&folders, &moduli, ui)?;
+        failures.extend(unread);
+        Ok(Work { cases, fabrics, failures })
+    }
+}
+
+/// The folder that a case names: as it stands, else beside the case file.
+fn named_fabric(case: &Case) -> Option<PathBuf> {
+    let path = PathBuf::from(case.fabric.as_deref().filter(|f| *f != "*")?);
+    let beside = case.path.parent().map(|p| p.join(&path)).filter(|p| p.exists());
+    Some(if path.exists() { path } else { beside.unwrap_or(path) })
+}
+
+fn is_within(path: &Path, folder: &Path) -> bool {
+    match (path.canonicalize(), folder.canonicalize()) {
+        (Ok(path), Ok(folder)) => path.starts_with(folder),
+        _ => path == folder,
+    }
+}
+
+impl Work {
+    /// Every case with every fabric it is for, cases in order; a case that finds none is a failure.
+    pub fn tasks(&self) -> (Vec<Task<'_>>, Vec<Failure>) {
+        let (mut tasks, mut failures) = (Vec::new(), Vec::new());
+        for case in &self.cases {
+            if case.section.is_some() {
+                tasks.push(Task { case, fabric: None });
+                continue;
+            }
+            let named = named_fabric(case);
+            let is_for = |f: &&Fabric| named.as_ref().is_none_or(|n| is_within(&f.path, n));
+            let before = tasks.len();
+            tasks.extend(self.fabrics.iter().filter(is_for).map(|f| Task { case, fabric: Some(&f.sheet) }));
+            if tasks.len() == before {
+                let text = format!("{} is for a fabric, and none is there", case.name);
+                failures.push(
+                    Failure::new("O055", text).hint("name one, as in `kesf solve CASE kesf_data/poplin`"),
+                );
+            }
+        }
+        (tasks, failures)
+    }
+}
+
+impl Task<'_> {
+    /// Names the task in messages: `case`, or `case of fabric`.
+    pub fn name(&self) -> String {
+        match self.fabric {
+            Some(fabric) => format!("{} of {}", self.case.name, fabric.name),
+            None => self.case.name.clone(),
+        }
+    }
+
+    /// Where its files go in a results tree, without ending: `<fabric>/<case>`, or `cases/<case>`.
+    pub fn stem(&self) -> String {
+        format!("{}/{}", self.fabric.map_or("cases", |f| &f.name), self.case.name)
+    }
+
+    /// Name of its fabric, if it has one.
+    pub fn fabric_name(&self) -> Option<&str> {
+        self.fabric.map(|f| f.name.as_str())
+    }
+
+    /// The section, with the assumptions where it comes from a sheet.
+    pub fn section(&self) -> Result<(ShellSection, Option<Constitutive>), Failure> {
+        match (self.fabric, &self.case.section) {
+            (Some(sheet), _) => {
+                let c = constitutive::section(sheet, &self.case.assumptions)?;
+                Ok((c.section.clone(), Some(c)))
+            }
+            (None, Some(table)) => Ok((study::section(table)?, None)),
+            // `Case::read` refuses a case with neither.
+            (None, None) => Err(Failure::new("O055", format!("{} has no section", self.case.name))),
+        }
+    }
+
+    /// Solves a case with a `[sheet]`.
+    pub fn solve(&self) -> Result<CaseResult, Failure> {
+        let solved = self.section().and_then(|(section, _)| {
+            Ok(study::solve_case(self.case, section, None, &SolveOptions::default())?)
+        });
+        solved.map_err(|f| f.of(&self.name()))
+    }
+
+    /// Simulates a `[virtual_test]` along warp and weft and compares it with the sheet.
+    pub fn test(&self, spec: &VirtualTest) -> Result<Vec<Tested>, Failure> {
+        self.simulate(spec).map_err(|f| f.of(&self.name()))
+    }
+
+    fn simulate(&self, spec: &VirtualTest) -> Result<Vec<Tested>, Failure> {
+        let nothing = FabricSheet::default();
+        let sheet = self.fabric.unwrap_or(&nothing);
+        let curves = if spec.test == Test::Compression {
+            study::compression(sheet).into_iter().collect()
+        } else {
+            let (section, _) = self.section()?;
+            [Direction::Warp, Direction::Weft]
+                .into_iter()
+                .map(|d| study::simulate(self.case, spec, d, &section))
+                .collect::<Result<Vec<_>, _>>()?
+        };
+        Ok(curves.into_iter().map(|c| self.tested(sheet, c)).collect())
+    }
+
+    fn tested(&self, sheet: &FabricSheet, simulated: VirtualCurve) -> Tested {
+        let (test, direction) = (simulated.test, simulated.direction);
+        let measured = measured_curve(sheet, test, direction);
+        let fold = |f: fn(f64, f64) -> f64, start| measured.x.iter().copied().fold(start, f);
+        let [from, to] = match test {
+            _ if measured.len() > 1 => [fold(f64::min, f64::INFINITY), fold(f64::max, f64::NEG_INFINITY)],
+            Test::Tensile => [0.0, 0.05],
+            Test::Shear => [-8f64.to_radians(), 8f64.to_radians()],
+            Test::Bending => [-250.0, 250.0],
+            Test::Compression => [0.0, 0.0],
+        };
+        let of = |p: Parameter| sheet.get(p, direction).or_else(|| sheet.get(p, None)).cloned();
+        let modulus = || {
+            let name = self.case.assumptions.modulus.name();
+            direction.and_then(|d| sheet.moduli.get(&(name, d)).cloned())
+        };
+        let stiffness = match test {
+            Test::Tensile => Some(("E", "N/m", modulus())),
+            Test::Shear => Some(("G", "N/m", of(Parameter::G))),
+            Test::Bending => Some(("B", "N·m", of(Parameter::B))),
+            Test::Compression => None,
+        };
+        let name = match direction {
+            Some(direction) => format!("{} {direction}", test.name()),
+            None => test.name().to_string(),
+        };
+        let comparison = compare_curves(sheet, &simulated);
+        let curve = if from < to { simulated.curve(from, to) } else { Curve::default() };
+        Tested { name, case: self.case.name.clone(), curve, simulated, comparison, stiffness }
+    }
+}
+
+/// An entry of `kesf.solution/1`. Seconds differ from run to run: they are left out of files.
+pub fn solution(task: &Task, result: &CaseResult, timings: bool) -> Value {
+    let s = &result.solution;
+    let probes: serde_json::Map<String, Value> = result
+        .probes
+        .iter()
+        .map(|p| {
+            let (v, r) = (&p.value, &p.value.resultants);
+            let value = json!({
+                "at": p.at, "u": v.u, "theta": v.theta,
+                "moment": r.moment, "membrane": r.membrane, "shear": r.shear,
+            });
+            (p.name.clone(), value)
+        })
+        .collect();
+    let sum = |dof: usize| s.reaction.iter().skip(dof).step_by(6).sum::<f64>();
+    let mesh = &result.model.mesh;
+    let mut entry = json!({
+        "case": result.case,
+        "fabric": task.fabric_name(),
+        "status": result.status,
+        "model": {"nodes": mesh.nodes.len(), "elements": mesh.quads.len(), "dofs": s.dofs},
+        "results": {
+            "w_max": {"value": result.w_max, "unit": "m"},
+            "w_over_bending_thickness": result.w_over_thickness,
+            "probes": probes,
+            "reactions": [sum(0), sum(1), sum(2)],
+            "strain_energy": s.strain_energy,
+        },
+        "checks": result.checks,
+        "findings": result.findings,
+    });
+    if timings {
+        let t = &s.timings;
+        entry["timings"] = json!({
+            "analyse_s": t.analyse_s, "assemble_s": t.assemble_s,
+            "factor_s": t.factor_s, "solve_s": t.solve_s,
+        });
+    }
+    entry
+}
+
+/// An entry of `kesf.comparison/1`.
+pub fn comparison(task: &Task, tested: &Tested) -> Value {
+    let c = tested.comparison.as_ref();
+    let stiffness = tested.stiffness.as_ref().map(|(symbol, unit, measured)| {
+        json!({
+            "symbol": symbol, "unit": unit, "simulated": tested.simulated.apparent,
+            "measured": measured.as_ref().map(|e| e.mean), "sd": measured.as_ref().and_then(|e| e.sd),
+        })
+    });
+    json!({
+        "name": tested.name,
+        "case": task.case.name,
+        "fabric": task.fabric_name(),
+        "rmse": c.map(|c| c.rmse),
+        "nrmse": c.map(|c| c.nrmse),
+        "r2": c.map(|c| c.r2),
+        "n": c.map_or(0, |c| c.n),
+        "unit": c.map(|c| c.unit),
+        "stiffness": stiffness,
+        "x": c.map(|c| &c.measured.x),
+        "simulated": c.map(|c| &c.simulated.y),
+        "measured": c.map(|c| &c.measured.y),
+    })
+}

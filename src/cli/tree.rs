@@ -1,0 +1,185 @@
+//! The results tree: where each file of a fabric or case goes, and what is in it.
+
+use std::path::Path;
+
+use serde_json::json;
+
+use super::diagnostics::Failure;
+use super::section::used;
+use super::task::{Task, TaskArgs, Tested, comparison, solution};
+use crate::characterise::FabricSheet;
+use crate::constitutive::Constitutive;
+use crate::instrument::{Origin, Test};
+use crate::report::OutputFolder;
+use crate::report::chart::{self, ChartError, FieldPlot, SimulatedCurve};
+use crate::report::json::{section_document, sheet_document, text};
+use crate::report::vtu::{MeshField, vtu};
+use crate::study::CaseResult;
+
+/// A folder of results that several threads may write to.
+pub struct Tree {
+    folder: OutputFolder,
+    charts: bool,
+}
+
+impl Tree {
+    /// Opens the folder before the long work.
+    pub fn open(root: &Path, options: &TaskArgs) -> Result<Self, Failure> {
+        Ok(Self { folder: OutputFolder::open(root, options.force)?, charts: !options.no_charts })
+    }
+
+    /// Writes one file.
+    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+        Ok(self.folder.write(name, bytes)?)
+    }
+
+    /// Whether charts are wanted.
+    pub fn charts(&self) -> bool {
+        self.charts
+    }
+
+    /// Notes which files are ours.
+    pub fn finish(self) -> Result<(), Failure> {
+        self.folder.finish()?;
+        Ok(())
+    }
+
+    /// `<fabric>/sheet.json`.
+    pub fn sheet(&self, sheet: &FabricSheet) -> Result<(), Failure> {
+        self.write(&format!("{}/sheet.json", sheet.name), text(&sheet_document([sheet]))?.as_bytes())
+    }
+
+    /// `<fabric>/section.json`.
+    pub fn section(&self, fabric: &str, c: &Constitutive) -> Result<(), Failure> {
+        let document = section_document([(fabric, &c.section, used(&c.used))]);
+        self.write(&format!("{fabric}/section.json"), text(&document)?.as_bytes())
+    }
+
+    /// `<fabric>/<case>.json`, `.vtu` and `.png` of a solved case.
+    pub fn solved(&self, task: &Task, result: &CaseResult) -> Result<(), Failure> {
+        let stem = task.stem();
+        let document = json!({"schema": "kesf.solution/1", "solutions": [solution(task, result, false)]});
+        self.write(&format!("{stem}.json"), text(&document)?.as_bytes())?;
+        let mesh = Mesh::of(result);
+        self.write(&format!("{stem}.vtu"), &mesh.vtu(result)?)?;
+        if self.charts {
+            self.chart(&format!("{stem}.png"), chart::field(&mesh.plot(task, result)))?;
+        }
+        Ok(())
+    }
+
+    /// `<fabric>/<case>.json` and `.png` of a simulated test.
+    pub fn tested(&self, task: &Task, tested: &[Tested]) -> Result<(), Failure> {
+        let stem = task.stem();
+        let entries: Vec<_> = tested.iter().map(|t| comparison(task, t)).collect();
+        let document = json!({"schema": "kesf.comparison/1", "comparisons": entries});
+        self.write(&format!("{stem}.json"), text(&document)?.as_bytes())?;
+        let (Some(sheet), Some(first), true) = (task.fabric, tested.first(), self.charts) else {
+            return Ok(());
+        };
+        let test = first.simulated.test;
+        self.chart(&format!("{stem}.png"), draw(sheet, test, &curves(tested.iter(), test)))
+    }
+
+    /// `<fabric>/tensile.png` ..., with the simulated curves of its cases on top.
+    pub fn fabric_charts(&self, sheet: &FabricSheet, tested: &[Tested]) -> Result<(), Failure> {
+        for test in Test::ALL {
+            let picture = draw(sheet, test, &curves(tested.iter(), test));
+            self.chart(&format!("{}/{}.png", sheet.name, test.name()), picture)?;
+        }
+        Ok(())
+    }
+
+    /// Writes a chart; one without data is simply not there.
+    pub fn chart(&self, name: &str, picture: Result<Vec<u8>, ChartError>) -> Result<(), Failure> {
+        match picture {
+            Err(ChartError::NothingToDraw { .. }) => Ok(()),
+            other => self.write(name, &other?),
+        }
+    }
+}
+
+fn draw(sheet: &FabricSheet, test: Test, simulated: &[SimulatedCurve]) -> Result<Vec<u8>, ChartError> {
+    match test {
+        Test::Tensile => chart::tensile(sheet, simulated),
+        Test::Shear => chart::shear(sheet, simulated),
+        Test::Bending => chart::bending(sheet, simulated),
+        Test::Compression => chart::compression(sheet, simulated),
+    }
+}
+
+fn curves<'a>(tested: impl Iterator<Item = &'a Tested>, test: Test) -> Vec<SimulatedCurve> {
+    tested
+        .filter(|t| t.simulated.test == test && !t.curve.is_empty())
+        .map(|t| SimulatedCurve {
+            label: "simulated".into(),
+            direction: t.simulated.direction,
+            curve: t.curve.clone(),
+            rmse: t.comparison.as_ref().map(|c| c.rmse),
+            nrmse: t.comparison.as_ref().map(|c| c.nrmse),
+            r2: t.comparison.as_ref().map(|c| c.r2).filter(|r| r.is_finite()),
+        })
+        .collect()
+}
+
+/// The mesh and the deflection of a result, as the files want them.
+struct Mesh {
+    nodes: Vec<[f64; 3]>,
+    quads: Vec<[u32; 4]>,
+    w: Vec<f64>,
+}
+
+impl Mesh {
+    fn of(result: &CaseResult) -> Self {
+        let mesh = &result.model.mesh;
+        Self {
+            nodes: mesh.nodes.iter().map(|p| [p.x, p.y, p.z]).collect(),
+            quads: mesh.quads.clone(),
+            w: result.solution.displacement.iter().skip(2).step_by(6).copied().collect(),
+        }
+    }
+
+    fn vtu(&self, result: &CaseResult) -> Result<Vec<u8>, Failure> {
+        let six = |values: &[f64], from: usize| -> Vec<f64> {
+            values.chunks_exact(6).flat_map(|v| v[from..from + 3].to_vec()).collect()
+        };
+        let (u, r) = (&result.solution.displacement, &result.solution.reaction);
+        let fields = [
+            ("displacement", 3, six(u, 0)),
+            ("rotation", 3, six(u, 3)),
+            ("reaction_force", 3, six(r, 0)),
+            ("membrane_force", 3, result.nodal.iter().flat_map(|n| n.membrane).collect()),
+            ("moment", 3, result.nodal.iter().flat_map(|n| n.moment).collect()),
+            ("shear_force", 2, result.nodal.iter().flat_map(|n| n.shear).collect()),
+        ];
+        let fields: Vec<_> = fields
+            .iter()
+            .map(|(name, components, values)| MeshField { name, components: *components, values })
+            .collect();
+        Ok(vtu(&self.nodes, &self.quads, &fields, &[])?)
+    }
+
+    fn plot(&self, task: &Task, result: &CaseResult) -> FieldPlot<'_> {
+        let fabric = task.fabric_name().unwrap_or("section of the case");
+        let cells = result.model.formulation.cells.count();
+        let origin = task.fabric.map_or("", |f| match f.info.origin {
+            Origin::Measured => "measured data",
+            Origin::Published => "published data",
+            Origin::Synthetic => "synthetic data",
+        });
+        FieldPlot {
+            title: task.case.title.clone(),
+            subtitle: format!("{fabric}; {} elements, {cells} smoothing cells each", self.quads.len()),
+            origin: origin.into(),
+            quantity: "Deflection w".into(),
+            unit: "m".into(),
+            nodes: &self.nodes,
+            quads: &self.quads,
+            values: &self.w,
+            profile_along: "x on the centre line".into(),
+            profile: result.profile.clone(),
+            notes: result.findings.iter().map(|f| f.message.clone()).collect(),
+            ..FieldPlot::default()
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! The command from outside: exit codes, streams, documents, and one bad file among good ones.
+//!
+//! Inputs are the folders that ship with the package and small files written here; expected
+//! numbers are the exact factor of the gram-force (1 gf·cm²/cm = 9.80665e-5 N·m) and closed forms.
+
+use std::fs;
+use std::io::{Read, Write};
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+
+fn kesf() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_kesf"));
+    command.current_dir(env!("CARGO_MANIFEST_DIR")).env_remove("NO_COLOR").stdin(Stdio::null());
+    command
+}
+
+fn run(arguments: &[&str]) -> Output {
+    kesf().args(arguments).output().unwrap()
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().unwrap()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{e}: {}", stderr(output)))
+}
+
+fn write(folder: &Path, name: &str, text: &str) {
+    let path = folder.join(name);
+    fs::create_dir_all(path.parent().unwrap()).unwrap();
+    fs::write(path, text).unwrap();
+}
+
+const FABRIC: &str = "name = \"Cloth\"\norigin = \"synthetic\"\nareal_density = \"150 g/m²\"\n";
+
+/// M = 0.1 K gf·cm/cm: B is 0.1 gf·cm²/cm.
+fn bending(direction: &str) -> String {
+    let mut text =
+        format!("instrument,KES-FB2\ndirection,{direction}\n\ncurvature (1/cm),moment (gf·cm/cm)\n");
+    let path = (0..=25).chain((-25..25).rev()).chain(-24..=0);
+    for k in path.map(|k| f64::from(k) / 10.0) {
+        text += &format!("{k},{:.4}\n", 0.1 * k);
+    }
+    text
+}
+
+#[test]
+fn help_version_and_usage() {
+    let help = run(&["--help"]);
+    assert_eq!(code(&help), 0);
+    for command in ["run", "read", "characterise", "section", "solve", "compare", "check", "list", "explain"]
+    {
+        assert!(stdout(&help).contains(&format!("\n  {command} ")), "{command}");
+        let own = run(&[command, "--help"]);
+        assert_eq!(code(&own), 0);
+        assert!(stdout(&own).contains("Example: kesf") || command == "help", "{command}");
+    }
+    assert!(stdout(&run(&["--version"])).starts_with("kesf "));
+    let wrong = run(&["characterise", "--no-such-option"]);
+    assert_eq!((code(&wrong), wrong.stdout.len()), (2, 0));
+    let wrong = run(&["--json", "no-such-command"]);
+    let error: Value = serde_json::from_slice(&wrong.stderr).unwrap();
+    assert_eq!((code(&wrong), error["error"]["code"].as_str()), (2, Some("O050")));
+}
+
+#[test]
+fn explain_and_list_know_the_codes_and_units() {
+    let explained = run(&["explain", "r004"]);
+    assert_eq!(code(&explained), 0);
+    assert!(stdout(&explained).starts_with("R004 ") && stdout(&explained).contains("Cure"));
+    assert_eq!(code(&run(&["explain", "X999"])), 2);
+    let units = json(&run(&["--json", "list", "units"]));
+    let gf = units["items"].as_array().unwrap().iter().find(|u| u["symbol"] == "gf").unwrap();
+    assert_eq!(gf["si"], 9.80665e-3);
+    assert!(stdout(&run(&["list", "codes"])).contains("\nC004 "));
+    assert!(stdout(&run(&["completions", "bash"])).contains("complete -F"));
+}
+
+#[test]
+fn a_published_table_comes_out_as_it_went_in() {
+    let sheet = run(&["--json", "characterise", "kesf_data/matsudaira_a_cotton_broad"]);
+    assert_eq!(code(&sheet), 0);
+    let sheet = json(&sheet);
+    assert_eq!(sheet["schema"], "kesf.sheet/1");
+    // B = 0.118 gf·cm²/cm.
+    let b = sheet["fabrics"][0]["parameters"]["B"]["fabric"]["mean"].as_f64().unwrap();
+    assert!((b / (0.118 * 9.80665e-5) - 1.0).abs() < 1e-12);
+    let section = json(&run(&["--json", "section", "kesf_data/matsudaira_a_cotton_broad"]));
+    assert_eq!(section["schema"], "kesf.section/1");
+    let d11 = section["sections"][0]["d_b"][0][0].as_f64().unwrap();
+    assert_eq!(d11, b, "B of KES-FB2 is D11 itself");
+    assert!(section["sections"][0]["assumptions"]["Poisson's ratio"]["source"].is_string());
+}
+
+#[test]
+fn a_bad_file_among_good_ones_is_one_line_and_exit_code_1() {
+    let folder = tempfile::tempdir().unwrap();
+    for fabric in ["good", "bad"] {
+        write(folder.path(), &format!("{fabric}/fabric.toml"), FABRIC);
+        for direction in ["warp", "weft"] {
+            write(folder.path(), &format!("{fabric}/{direction}_FB2_1.csv"), &bending(direction));
+        }
+    }
+    let broken = bending("warp").replacen("\n0.3,0.0300\n", "\n0.3,0..03\n", 1);
+    write(folder.path(), "bad/warp_FB2_1.csv", &broken);
+    let input = folder.path().to_str().unwrap();
+    let output = run(&["--json", "characterise", input]);
+    assert_eq!(code(&output), 1);
+    let line = stderr(&output);
+    assert_eq!(line.lines().count(), 1, "{line}");
+    let error = &serde_json::from_str::<Value>(&line).unwrap()["error"];
+    // The fifth value row of the file: three header rows, a blank, the headings.
+    assert!(error["file"].as_str().unwrap().ends_with("bad/warp_FB2_1.csv"));
+    assert_eq!((error["code"].as_str(), error["line"].as_u64()), (Some("R004"), Some(8)));
+    assert_eq!(error["column"].as_u64(), Some(5));
+    assert!(!error["hint"].as_str().unwrap().is_empty());
+    let sheet = json(&output);
+    let names: Vec<_> = sheet["fabrics"].as_array().unwrap().iter().map(|f| f["name"].as_str()).collect();
+    assert_eq!(names, [Some("bad"), Some("good")]);
+    for (fabric, direction) in [(0, "weft"), (1, "warp"), (1, "weft")] {
+        let b = sheet["fabrics"][fabric]["parameters"]["B"][direction]["mean"].as_f64().unwrap();
+        // Moments are written with four decimals: 5e-5 of 0.1.
+        assert!((b / 9.80665e-6 - 1.0).abs() < 1e-3, "{b}");
+    }
+    let text = stderr(&run(&["-q", "characterise", input]));
+    assert!(text.contains("bad/warp_FB2_1.csv:8:5: R004 "), "{text}");
+    // Nothing readable at all is 2.
+    let alone = folder.path().join("bad/warp_FB2_1.csv");
+    assert_eq!(code(&run(&["-q", "characterise", alone.to_str().unwrap()])), 2);
+}
+
+#[test]
+fn a_dash_is_standard_input_and_output() {
+    let mut child = kesf()
+        .args(["-q", "read", "-", "-o", "-"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(bending("warp").as_bytes()).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((code(&output), stderr(&output).as_str()), (0, ""));
+    let text = stdout(&output);
+    assert!(text.starts_with("fabric,test,direction,specimen,index,x,x_unit,y,y_unit\n"), "{text}");
+    assert!(text.contains(",bending,warp,1,1,0.1,1/cm,0.01,gf·cm/cm\n"), "{text}");
+}
+
+#[test]
+fn a_reader_that_leaves_is_no_error() {
+    let mut child = kesf()
+        .args(["-q", "read", "kesf_data/poplin", "kesf_data/satin", "kesf_data/twill"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut first = [0; 10];
+    child.stdout.as_mut().unwrap().read_exact(&mut first).unwrap();
+    drop(child.stdout.take());
+    assert_eq!(code(&child.wait_with_output().unwrap()), 0);
+}
+
+#[test]
+fn a_foreign_file_is_not_overwritten() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "sheet.json", "mine");
+    let path = folder.path().join("sheet.json");
+    let arguments = ["-q", "characterise", "kesf_data/petrak_m1", "-o", path.to_str().unwrap()];
+    let output = run(&arguments);
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("sheet.json: O002 "), "{}", stderr(&output));
+    assert_eq!(fs::read_to_string(&path).unwrap(), "mine");
+    assert_eq!(code(&run(&[&arguments[..], &["--force"]].concat())), 0);
+    assert!(fs::read_to_string(&path).unwrap().contains("kesf.sheet/1"));
+}
+
+#[test]
+fn a_case_holds_its_checks_and_a_wrong_expectation_is_exit_code_1() {
+    let case = "cases/benchmark_clamped_orthotropic.toml";
+    let output = run(&["--json", "solve", case]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let solution = &json(&output)["solutions"][0];
+    assert_eq!(solution["status"], "ok");
+    assert_eq!(solution["results"]["w_max"]["unit"], "m");
+    assert!(solution["timings"]["factor_s"].is_number());
+    assert!(solution["checks"].as_array().unwrap().iter().all(|c| c["passed"] == true));
+
+    let folder = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(case)).unwrap();
+    let wrong = text.replace("relative_tolerance = ", "relative_tolerance = 1e-12 # ");
+    write(folder.path(), "case.toml", &wrong);
+    let wrong = folder.path().join("case.toml");
+    let output = run(&["solve", wrong.to_str().unwrap()]);
+    assert_eq!(code(&output), 1);
+    assert!(stdout(&output).contains("fails"));
+    // Without supports the sheet floats: numerics, exit code 3.
+    let free = text.replace("kind = \"clamped\"", "kind = \"free\"");
+    write(folder.path(), "case.toml", &free);
+    let output = run(&["solve", wrong.to_str().unwrap()]);
+    assert_eq!((code(&output), output.stdout.len()), (3, 0), "{}", stderr(&output));
+    assert!(stderr(&output).starts_with("kesf: N00"), "{}", stderr(&output));
+    // A misspelt key names its place.
+    write(folder.path(), "case.toml", &text.replace("[sheet]", "[shet]"));
+    let output = run(&["check", wrong.to_str().unwrap()]);
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("case.toml:") && stderr(&output).contains("S002"));
+}
+
+#[test]
+fn a_comparison_states_its_distance() {
+    let output = run(&["--json", "compare", "cases/virtual_bending.toml", "kesf_data/poplin"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let document = json(&output);
+    let all = document["comparisons"].as_array().unwrap();
+    assert_eq!(all.len(), 2);
+    for c in all {
+        assert!(c["rmse"].as_f64().unwrap() > 0.0 && c["n"].as_u64().unwrap() > 100);
+        assert_eq!(c["simulated"].as_array().unwrap().len(), c["measured"].as_array().unwrap().len());
+        // The strip bends cylindrically: the simulated test shows B itself.
+        let stiffness = &c["stiffness"];
+        let ratio = stiffness["simulated"].as_f64().unwrap() / stiffness["measured"].as_f64().unwrap();
+        assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
+    }
+}
+
+#[test]
+fn a_second_run_writes_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let tree = |name: &str, threads: &str| {
+        let out = folder.path().join(name);
+        let cases = ["cases/cantilever_strip.toml", "cases/virtual_bending.toml"];
+        let options = ["-j", threads, "run", "--no-charts", "kesf_data/poplin", "kesf_data/petrak_m1", "-o"];
+        let arguments = [&options[..], &[out.to_str().unwrap()], &cases].concat();
+        let output = run(&arguments);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        assert!(stdout(&output).contains("poplin") && stdout(&output).contains("status"));
+        let mut files: Vec<(String, Vec<u8>)> = Vec::new();
+        let mut folders = vec![out.clone()];
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else {
+                    let name = path.strip_prefix(&out).unwrap().to_string_lossy().into_owned();
+                    files.push((name, fs::read(&path).unwrap()));
+                }
+            }
+        }
+        files.sort();
+        files
+    };
+    let (first, second, again) = (tree("a", "1"), tree("b", "2"), tree("a", "2"));
+    let names: Vec<_> = first.iter().map(|f| f.0.as_str()).collect();
+    for name in [
+        "fabrics.parquet",
+        "predictions.csv",
+        "problems.csv",
+        "run.json",
+        "index.html",
+        "poplin/section.json",
+    ] {
+        assert!(names.contains(&name), "{name} is missing among {names:?}");
+    }
+    assert!(names.contains(&"petrak_m1/cantilever_strip.vtu"));
+    for ((name, a), ((_, b), (_, c))) in first.iter().zip(second.iter().zip(&again)) {
+        assert!(a == b && a == c, "{name} differs between runs");
+    }
+    assert_eq!((first.len(), second.len()), (again.len(), first.len()));
+}
