@@ -14,7 +14,9 @@
 //!
 //! Loads are dead: they keep their direction and size, pressure the normals and areas at rest. A
 //! moment is conjugate to the spin about fixed axes. A held rotation is a spin about a global
-//! axis: it may grow beyond π, and about one axis it is the angle itself.
+//! axis: it may grow beyond π, and about one axis it is the angle itself. A held rotation or a
+//! moment at a node that is free to turn about both other axes is not conservative: the symmetric
+//! tangent then converges linearly; hold a plane of symmetry by both of its rotations.
 
 mod arc;
 mod flow;

@@ -131,9 +131,7 @@ fn advance(
         }
         let at_rest = is_rounding(&step, system.size);
         if part == 1.0 && (at_rest || balance.residual <= settings.tolerance * balance.scale) {
-            let negative_pivots = tangent.negative_pivots();
-            let converged = Converged { state, balance, iterations, negative_pivots, at_rest };
-            return Ok((converged, travelled, length));
+            return Ok((Converged { state, balance, iterations, at_rest }, travelled, length));
         }
     }
     Err(Failure { iterations: settings.iterations, residual: balance.relative_residual(), cause: None })

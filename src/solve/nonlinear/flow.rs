@@ -34,7 +34,10 @@ impl Default for Flow {
 const SETTLING: f64 = 1e-3;
 
 /// An inner Newton iteration that needs more than this is dragged more strongly.
-const INNER_ITERATIONS: usize = 12;
+const INNER_ITERATIONS: usize = 8;
+
+/// Unbalanced forces that a step of the flow leaves, relative to those that drive it.
+const INNER_TOLERANCE: f64 = 0.01;
 
 /// Drag over the first one at which the search is given up.
 const LARGEST_RISE: f64 = 1e8;
@@ -62,32 +65,33 @@ pub fn relax(
     let mut state = State::rest(&model.mesh);
     let first = first_rate(&system, model, &state);
     let noise = noise(&system, flow);
-    let inner = Settings { iterations: INNER_ITERATIONS, ..settings.clone() };
-    let (mut rate, mut perturbed, mut kicks) = (first, flow.perturbation > 0.0, 0);
+    let mut inner = Settings { iterations: INNER_ITERATIONS, ..settings.clone() };
+    let (mut pace, mut perturbed, mut kicks) = (Pace::new(first), flow.perturbation > 0.0, 0);
     let mut progress = Progress::default();
     loop {
-        let drag = Drag { rate, extra: perturbed.then_some(&noise[..]) };
+        let drag = Drag { rate: pace.rate, extra: perturbed.then_some(&noise[..]) };
         let step = match newton(&system, &state, 1.0, &inner, &drag) {
-            Ok(step) if step.negative_pivots == 0 => step,
-            attempt => {
-                let failure = attempt.map_or_else(|failure| failure, Failure::uphill);
+            Ok(step) => step,
+            Err(failure) => {
                 progress.iterations += failure.iterations;
-                rate *= 5.0;
-                if rate > LARGEST_RISE * first {
+                pace.slow();
+                if pace.rate > LARGEST_RISE * first {
                     return Err(failure.ends(progress.steps + 1, settings, state));
                 }
                 continue;
             }
         };
         let stop = progress.show(&system, &step, &mut observe).is_break();
+        pace.quicken(step.iterations);
         let residual = step.balance.relative_residual();
-        rate /= if step.iterations <= 4 { 3.0 } else { 1.7 };
+        // The flow itself needs no more digits than it has yet to go.
+        inner.tolerance = (INNER_TOLERANCE * residual).clamp(settings.tolerance, INNER_TOLERANCE);
         let at_rest = residual <= settings.tolerance || (step.at_rest && step.iterations == 1);
         if stop {
             return progress.finish(&system, step.state, &step.balance);
         }
         if progress.steps >= flow.steps {
-            return Err(Failure::uphill(step).ends(progress.steps, settings, state));
+            return Err(Failure::unfinished(step).ends(progress.steps, settings, state));
         }
         state = step.state;
         if perturbed && (at_rest || residual <= SETTLING) {
@@ -99,8 +103,35 @@ pub fn relax(
             }
             kicks += 1;
             system.advance(&mut state, &kick(system.size, &shape));
-            rate = -2.0 * stability.lowest_eigenvalue;
+            pace = Pace::new(-2.0 * stability.lowest_eigenvalue);
         }
+    }
+}
+
+/// How strongly the sheet is dragged.
+struct Pace {
+    /// Force per displacement and area, 1/Δτ (N/m³).
+    rate: f64,
+    /// After a rejected step the drag stays as it is for one step.
+    rejected: bool,
+}
+
+impl Pace {
+    fn new(rate: f64) -> Self {
+        Self { rate, rejected: false }
+    }
+
+    fn slow(&mut self) {
+        *self = Self { rate: 4.0 * self.rate, rejected: true };
+    }
+
+    fn quicken(&mut self, iterations: usize) {
+        let growth = match iterations {
+            _ if self.rejected => 1.0,
+            0..=4 => 3.0,
+            _ => 1.7,
+        };
+        *self = Self::new(self.rate / growth);
     }
 }
 

@@ -21,8 +21,6 @@ pub(super) struct Converged {
     pub state: State,
     pub balance: Balance,
     pub iterations: usize,
-    /// Negative pivots of the last tangent, drag included.
-    pub negative_pivots: usize,
     /// Whether the last iteration moved nothing beyond rounding.
     pub at_rest: bool,
 }
@@ -36,8 +34,8 @@ pub(super) struct Failure {
 }
 
 impl Failure {
-    /// An equilibrium that is not wanted.
-    pub fn uphill(step: Converged) -> Self {
+    /// A step of a search that has no more steps.
+    pub fn unfinished(step: Converged) -> Self {
         Self { iterations: step.iterations, residual: step.balance.relative_residual(), cause: None }
     }
 
@@ -90,6 +88,10 @@ pub(super) fn newton(
         let failure = |residual, cause| Failure { iterations, residual, cause };
         let (matrix, push) = system.tangent(&state, &balance, &local, drag.rate);
         let tangent = system.factorise(&matrix).map_err(|e| failure(balance.relative_residual(), Some(e)))?;
+        if iterations == 1 && drag.rate > 0.0 && tangent.negative_pivots() > 0 {
+            // The flow would go uphill.
+            return Err(failure(balance.relative_residual(), None));
+        }
         let mut step: Vec<f64> = (0..travelled.len())
             .map(|d| {
                 let forces = balance.unbalanced[d] + drag.rate * system.metric[d] * travelled[d];
@@ -115,8 +117,7 @@ pub(super) fn newton(
             if System::largest_rotation(&balance) > LARGEST_FOLD {
                 return Err(failure(balance.relative_residual(), None));
             }
-            let negative_pivots = tangent.negative_pivots();
-            return Ok(Converged { state, balance, iterations, negative_pivots, at_rest });
+            return Ok(Converged { state, balance, iterations, at_rest });
         }
     }
     Err(Failure { iterations: settings.iterations, residual: balance.relative_residual(), cause: None })
