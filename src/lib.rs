@@ -1,5 +1,6 @@
-//! Kawabata (KES-F) measurements of cloth in; characterised fabrics, shell sections,
-//! smoothed-finite-element predictions and comparison charts out.
+#![doc = include_str!("../README.md")]
+//!
+//! # Layers
 //!
 //! The list of modules below is the layering: a module may use the ones above it only
 //! (`tests/architecture.rs` holds the exact table). Two arms meet in one type:
@@ -32,6 +33,8 @@ pub mod fields;
 pub mod constitutive;
 
 pub mod study;
+
+pub mod verify;
 
 pub mod report;
 

@@ -24,6 +24,7 @@ const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("fields", &["finding", "quantity", "section", "mesh", "element", "model", "solve"], &[]),
     ("constitutive", &["finding", "quantity", "instrument", "characterise", "section"], &[]),
     ("study", &ABOVE_STUDY, &["toml"]),
+    ("verify", &["section", "analytical", "mesh", "element", "model", "solve", "fields"], &["toml"]),
     (
         "report",
         &ABOVE_REPORT,
@@ -59,7 +60,7 @@ const ABOVE_REPORT: [&str; 9] = [
     "study",
 ];
 
-const ABOVE_CLI: [&str; 10] = [
+const ABOVE_CLI: [&str; 11] = [
     "finding",
     "quantity",
     "instrument",
@@ -69,6 +70,7 @@ const ABOVE_CLI: [&str; 10] = [
     "solve",
     "fields",
     "study",
+    "verify",
     "report",
 ];
 

@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 
 use clap::{Args, ColorChoice, Parser, Subcommand};
 
-use super::{characterise, check, compare, completions, explain, list, read, run, section, solve};
+use super::{characterise, check, compare, completions, explain, list, read, run, section, solve, verify};
 
 /// Kawabata (KES-F) measurements in; fabric parameters, shell sections, predictions and charts out.
 ///
@@ -49,6 +49,7 @@ pub enum Command {
     Section(section::Options),
     Solve(solve::Options),
     Compare(compare::Options),
+    Verify(verify::Options),
     Check(check::Options),
     List(list::Options),
     Explain(explain::Options),

@@ -7,9 +7,10 @@ use super::diagnostics::Failure;
 use super::output::Columns;
 use super::{Exit, Ui};
 use crate::finding::explanations;
+use crate::instrument::dialects;
 use crate::quantity::UNITS;
 
-/// List the units, codes, ... that the program knows
+/// List the formats, dialects, units, analyses and codes that the program knows
 #[derive(Debug, Args)]
 #[command(after_help = "Example: kesf list units")]
 pub struct Options {
@@ -20,6 +21,12 @@ pub struct Options {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Topic {
+    /// Kinds of files that are read
+    Formats,
+    /// Layouts of measurement files that are known without a dialect file
+    Dialects,
+    /// What a case can compute
+    Analyses,
     /// Unit symbols with their SI values; products, quotients and powers of them are units too
     Units,
     /// Diagnostic codes
@@ -28,6 +35,9 @@ enum Topic {
 
 pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let (headings, rows) = match options.topic {
+        Topic::Formats => fixed(&["endings", "format"], FORMATS),
+        Topic::Dialects => dialect_rows(),
+        Topic::Analyses => fixed(&["name", "in the case file", "meaning"], ANALYSES),
         Topic::Units => units(),
         Topic::Codes => codes(),
     };
@@ -46,6 +56,30 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
 }
 
 type Rows = (&'static [&'static str], Vec<Vec<Value>>);
+
+const FORMATS: &[&[&str]] = &[
+    &["csv tsv txt dat asc prn kes fb1 fb2 fb3", "text tables: curves of FB1, FB2, FB3, and result tables"],
+    &["xlsx xlsm xls ods", "workbooks with the same tables"],
+    &["json u3m", "FAB strip measurements inside U3M 1.1"],
+    &["fabric.toml", "what people know of a fabric: name, weave, origin, areal density, measured results"],
+    &["dialect.toml", "a laboratory's own words and marks, beside its files"],
+];
+
+const ANALYSES: &[&[&str]] = &[
+    &["linear", "[analysis] kind = \"linear\" (default)", "small displacements, one solve; for [sheet]"],
+    &["tensile", "[virtual_test] test = \"tensile\"", "KES-FB1 specimen between jaws"],
+    &["shear", "[virtual_test] test = \"shear\"", "KES-FB1 specimen, sheared"],
+    &["bending", "[virtual_test] test = \"bending\"", "KES-FB2 specimen, bent to an arc"],
+    &["compression", "[virtual_test] test = \"compression\"", "exponential through T0 and Tm; not a shell"],
+];
+
+fn fixed(headings: &'static [&'static str], rows: &[&[&str]]) -> Rows {
+    (headings, rows.iter().map(|row| row.iter().map(|cell| json!(cell)).collect()).collect())
+}
+
+fn dialect_rows() -> Rows {
+    (&["name", "title"], dialects().iter().map(|d| vec![json!(d.name), json!(d.title)]).collect())
+}
 
 fn units() -> Rows {
     let rows = UNITS.iter().map(|&(symbol, factor, [kg, m, s], name)| {

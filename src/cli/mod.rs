@@ -21,6 +21,7 @@ mod solve;
 mod summary;
 mod task;
 mod tree;
+mod verify;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -125,6 +126,7 @@ fn dispatch(command: &Command, ui: &mut Ui) -> Result<Exit, Failure> {
         Command::Section(options) => section::run(options, ui),
         Command::Solve(options) => solve::run(options, ui),
         Command::Compare(options) => compare::run(options, ui),
+        Command::Verify(options) => verify::run(options, ui),
         Command::Check(options) => check::run(options, ui),
         Command::List(options) => list::run(options, ui),
         Command::Explain(options) => explain::run(options, ui),

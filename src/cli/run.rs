@@ -74,7 +74,8 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     tree.write("problems.csv", &csv(&problems)?)?;
     if tree.charts() {
         let points: Vec<_> = reports.iter().flat_map(|r| r.parity.clone()).collect();
-        let subtitle = "stiffness that a simulated instrument test shows, against the measured value";
+        // The section is made of the measured value, so this is a closed loop and must say so.
+        let subtitle = "closed loop: the measured stiffness, seen again through a simulated test (clamps, edges, element)";
         tree.chart("parity.png", chart::parity(&points, "Simulated against measured", subtitle))?;
     }
     tree.write("run.json", text(&about(options, &work))?.as_bytes())?;

@@ -56,13 +56,24 @@ pub enum SolveError {
     Factor(FactorError),
     /// N006: the answer does not satisfy the equations.
     #[error(
-        "N006 the residual is {residual:e} of the load, above {limit:e}: the model is nearly singular or too badly scaled"
+        "N006 the residual is {residual:.1e} of the load, above {limit:e}: a support is missing, or the stiffnesses are too far \
+         apart; what moves most is {dof} of node {node} at ({x:.4}, {y:.4}, {z:.4}) m: look there first"
     )]
     Residual {
         /// |K u - f| / |f|.
         residual: f64,
         /// What is accepted.
         limit: f64,
+        /// Node that moves most, from 0.
+        node: usize,
+        /// Name of its dof.
+        dof: &'static str,
+        /// Its x (m).
+        x: f64,
+        /// Its y (m).
+        y: f64,
+        /// Its z (m).
+        z: f64,
     },
     /// N004: the subspace iteration did not settle.
     #[error(
@@ -242,7 +253,19 @@ fn solve_group(
         }
     }
     if residual.is_nan() || residual > RESIDUAL_LIMIT {
-        return Err(SolveError::Residual { residual, limit: RESIDUAL_LIMIT });
+        // A motion that nothing resists swamps every other, so the largest displacement is part of it.
+        let most = (0..u.len()).max_by(|a, b| u[*a].abs().total_cmp(&u[*b].abs())).unwrap_or(0);
+        let (node, dof) = (most / b, group.dofs()[most % b].name());
+        let p = model.mesh.nodes[node];
+        return Err(SolveError::Residual {
+            residual,
+            limit: RESIDUAL_LIMIT,
+            node,
+            dof,
+            x: p.x,
+            y: p.y,
+            z: p.z,
+        });
     }
     let reaction: Vec<f64> =
         (0..u.len()).map(|k| if held[k].is_some() { internal[k] - load[k] } else { 0.0 }).collect();

@@ -165,7 +165,11 @@ fn measured_stroke(trace: &Trace, under_simulation: bool) -> Stroke {
     let stroke = palette::direction(trace.direction, 5.0);
     match (trace.emphasised, under_simulation) {
         (true, false) => stroke,
-        (true, true) => Stroke { color: lighter(stroke.color, 0.5), width: 10.0, dash: None },
+        (true, true) => Stroke {
+            color: lighter(stroke.color, 0.5),
+            width: 10.0,
+            dash: stroke.dash.map(|[on, off]| [2.0 * on, off]),
+        },
         (false, _) => {
             let dash = stroke.dash.map(|[on, off]| [0.6 * on, 0.6 * off]);
             Stroke { color: lighter(stroke.color, 0.45), width: 2.0, dash }
@@ -201,7 +205,7 @@ fn rows(
     let mut rows = legend(sheet, traces, simulated, recorded);
     rows.push(Row::Gap);
     rows.extend(value_rows(sheet, test));
-    for curve in simulated {
+    for curve in simulated.iter().filter(|c| c.rmse.or(c.nrmse).or(c.r2).is_some()) {
         rows.push(Row::Gap);
         let direction = curve.direction.map_or(String::new(), |d| format!(" {d}"));
         rows.push(Row::Heading(format!("Simulated{direction}")));

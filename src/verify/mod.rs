@@ -1,0 +1,215 @@
+//! The public verification suite: problems with known answers, solved by this program as anyone
+//! would solve them.
+//!
+//! The lines are data, `suite/*.toml`; each names a [`Problem`] with its parameters, a reference with
+//! its kind and citation, and a tolerance. A reference is never an output of this program: it is a closed
+//! form (the [`analytical`](crate::analytical) module), a value that an independent implementation of the
+//! same element gave, or a published one.
+
+mod problem;
+mod suite;
+
+use std::ops::ControlFlow;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+pub use problem::Problem;
+pub use suite::suite;
+
+use crate::element::MaterialAxisError;
+use crate::mesh::MeshError;
+use crate::model::ModelError;
+use crate::solve::SolveError;
+
+/// One comparison of the suite.
+#[derive(Clone, Debug)]
+pub struct Line {
+    /// Name, unique, its parts separated by full stops.
+    pub id: String,
+    /// What the value is, with its normalisation.
+    pub quantity: String,
+    /// The problem that gives the value.
+    pub problem: Problem,
+    /// What the value is compared with.
+    pub reference: Reference,
+    /// How far from the reference it may be.
+    pub tolerance: Tolerance,
+    /// Where the reference comes from.
+    pub kind: Kind,
+    /// Author and place, or method, of the reference.
+    pub citation: String,
+}
+
+/// What a value is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(untagged)]
+pub enum Reference {
+    /// A number.
+    Number(f64),
+    /// A function of the analytical module, for the parameters of the problem.
+    Function(Function),
+}
+
+/// The functions of [`analytical`](crate::analytical) that serve as references.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Function {
+    /// Navier's double series: thin, SSSS.
+    Navier,
+    /// Lévy's single series: thin, S.S. with any two other edges.
+    Levy,
+    /// Hencky's superposition: thin, CCCC.
+    Superposition,
+    /// Ritz's method: thin, CFFF.
+    Ritz,
+    /// Double series (SSSS) or Ritz's method (CCCC) for plates flexible in shear.
+    ShearFlexible,
+    /// Navier's (SSSS) or Ritz's (CCCC, CFFF) frequencies: thin.
+    Frequencies,
+}
+
+/// How far from the reference a value may be, inclusive.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Tolerance {
+    /// Of `(value - reference) / |reference|`.
+    Relative(f64),
+    /// Of `value - reference`.
+    Absolute(f64),
+}
+
+/// Where a reference comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// A closed form, a convergent series, or a property that follows from theory.
+    Analytical,
+    /// An independent implementation of the same element on the same mesh.
+    Independent,
+    /// A published value.
+    Published,
+}
+
+impl Kind {
+    /// `analytical`, `independent` or `published`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Analytical => "analytical",
+            Self::Independent => "independent",
+            Self::Published => "published",
+        }
+    }
+}
+
+/// Why a line has no value.
+#[derive(Clone, Debug, Error)]
+pub enum VerifyError {
+    /// The model cannot be solved.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    /// S201: the reference function does not cover the problem.
+    #[error("S201 the reference function {function:?} does not cover this problem")]
+    NoReference {
+        /// The function.
+        function: Function,
+    },
+}
+
+impl VerifyError {
+    /// The stable code.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Solve(e) => e.code(),
+            Self::NoReference { .. } => "S201",
+        }
+    }
+}
+
+impl From<ModelError> for VerifyError {
+    fn from(e: ModelError) -> Self {
+        Self::Solve(e.into())
+    }
+}
+
+impl From<MeshError> for VerifyError {
+    fn from(e: MeshError) -> Self {
+        ModelError::from(e).into()
+    }
+}
+
+impl From<MaterialAxisError> for VerifyError {
+    fn from(e: MaterialAxisError) -> Self {
+        ModelError::from(e).into()
+    }
+}
+
+/// How a line came out.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The value, the reference and their difference; or why there are none.
+    pub result: Result<Comparison, VerifyError>,
+    /// Whether the difference is within the tolerance.
+    pub pass: bool,
+    /// Time taken (s).
+    pub seconds: f64,
+}
+
+/// A value beside its reference.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Comparison {
+    /// What this program gives.
+    pub value: f64,
+    /// What it should be.
+    pub reference: f64,
+    /// Signed difference, relative to the reference when the tolerance is relative.
+    pub error: f64,
+}
+
+impl Line {
+    /// Solves the problem and compares.
+    pub fn check(&self) -> Outcome {
+        let start = std::time::Instant::now();
+        let result = self.compare();
+        // A value that is not a number compares as false.
+        let pass = result.as_ref().is_ok_and(|c| c.error.abs() <= self.tolerance.limit());
+        Outcome { result, pass, seconds: start.elapsed().as_secs_f64() }
+    }
+
+    fn compare(&self) -> Result<Comparison, VerifyError> {
+        let (value, at) = self.problem.value()?;
+        let reference = match self.reference {
+            Reference::Number(number) => number,
+            Reference::Function(function) => {
+                self.problem.exact(function, at).ok_or(VerifyError::NoReference { function })?
+            }
+        };
+        let difference = value - reference;
+        let error = match self.tolerance {
+            Tolerance::Relative(_) => difference / reference.abs(),
+            Tolerance::Absolute(_) => difference,
+        };
+        Ok(Comparison { value, reference, error })
+    }
+}
+
+impl Tolerance {
+    /// The number.
+    pub fn limit(self) -> f64 {
+        match self {
+            Self::Relative(limit) | Self::Absolute(limit) => limit,
+        }
+    }
+}
+
+/// Checks the lines on all threads; the outcomes are in the order of the lines. `observe` sees each
+/// outcome, in any order, and may stop the work: then there is no result.
+pub fn run(lines: &[Line], observe: impl Fn(&Outcome) -> ControlFlow<()> + Sync) -> Option<Vec<Outcome>> {
+    let check = |line: &Line| {
+        let outcome = line.check();
+        observe(&outcome).is_continue().then_some(outcome)
+    };
+    // One line at a time: their costs differ by four orders of magnitude.
+    lines.par_iter().with_max_len(1).map(check).collect()
+}

@@ -1,0 +1,50 @@
+//! Circular plates on a mesh without right angles.
+
+use nalgebra::Vector3;
+use serde::Deserialize;
+
+use super::super::VerifyError;
+use super::{DrillingChoice, Law, Layout, default_alpha, formulation};
+use crate::mesh::disc;
+use crate::model::{Load, Model, Support};
+use crate::solve::{self, Options};
+
+/// A clamped or simply supported (soft) disc of radius 1, rigidity 1, t = 1e-3, under unit pressure.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Disc {
+    /// Elements across the core; even.
+    n: usize,
+    /// Poisson's ratio.
+    nu: f64,
+    /// Whether the rim is clamped.
+    clamped: bool,
+    /// Smoothing cells.
+    #[serde(default)]
+    cells: Layout,
+    /// Shear stabilisation.
+    #[serde(default = "default_alpha")]
+    alpha: f64,
+}
+
+impl Disc {
+    /// `w D / (q R⁴)` at the centre.
+    pub fn value(&self) -> Result<f64, VerifyError> {
+        let mesh = disc(1.0, self.n)?;
+        let supports = if self.clamped {
+            vec![Support::clamped(mesh.set("outer")?)]
+        } else {
+            Support::simple(&mesh, "outer", false)?
+        };
+        let centre = mesh.set("centre")?[0] as usize;
+        let model = Model {
+            mesh,
+            section: Law::Isotropic { nu: self.nu, thickness: 1e-3 }.section(),
+            warp: Vector3::x(),
+            formulation: formulation(self.cells, self.alpha, DrillingChoice::Scaled),
+            supports,
+            loads: vec![Load::Pressure(1.0)],
+        };
+        Ok(solve::solve(&model, &Options::default())?.displacement[6 * centre + 2])
+    }
+}

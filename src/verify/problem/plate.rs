@@ -1,0 +1,232 @@
+//! Rectangular plates under unit pressure, or vibrating.
+
+use nalgebra::{Point3, Vector3};
+use serde::Deserialize;
+
+use super::super::{Function, VerifyError};
+use super::{Law, Layout, default_alpha, formulation, nearest, unit};
+use crate::analytical::levy::Edge;
+use crate::analytical::mindlin::MindlinPlate;
+use crate::analytical::{Plate, PlateState};
+use crate::fields;
+use crate::mesh::{distorted, rectangle};
+use crate::model::{DofGroup, Load, Model, Support};
+use crate::solve::{self, Options, modes};
+
+/// A rectangle `[0, a] x [0, b]`, one section, unit pressure.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlateProblem {
+    /// Length along x (m).
+    #[serde(default = "unit")]
+    a: f64,
+    /// Length along y (m).
+    #[serde(default = "unit")]
+    b: f64,
+    /// Elements along x and along y.
+    n: usize,
+    /// The section.
+    law: Law,
+    /// How the edges x = 0, y = 0, x = a, y = b are held.
+    edges: Edges,
+    /// Smoothing cells.
+    #[serde(default)]
+    cells: Layout,
+    /// Shear stabilisation.
+    #[serde(default = "default_alpha")]
+    alpha: f64,
+    /// Random distortion of the mesh, 0 to 0.5.
+    #[serde(default)]
+    distortion: f64,
+    /// What is taken.
+    measure: Measure,
+    /// Where: fractions of a and b; the nearest node.
+    #[serde(default = "middle")]
+    at: [f64; 2],
+}
+
+fn middle() -> [f64; 2] {
+    [0.5, 0.5]
+}
+
+/// Four letters, for x = 0, y = 0, x = a, y = b: `C` clamped, `S` simply supported (hard), `s` (soft), `F` free.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(try_from = "String")]
+struct Edges([u8; 4]);
+
+impl TryFrom<String> for Edges {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        let letters: [u8; 4] =
+            text.as_bytes().try_into().map_err(|_| format!("`{text}` is not four letters"))?;
+        let known = letters.iter().all(|l| b"CSsF".contains(l));
+        known.then_some(Self(letters)).ok_or_else(|| format!("`{text}` has a letter other than C, S, s, F"))
+    }
+}
+
+/// What is taken from the solution.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Measure {
+    /// `w D22 / (q a⁴)`.
+    Deflection,
+    /// `M_x / (q a²)` from the nodal recovery.
+    MomentX,
+    /// `M_y / (q a²)` from the nodal recovery.
+    MomentY,
+    /// `M_x / (q a²)` on the edge x = 0, from its reactions.
+    EdgeMoment,
+    /// `ω_k a² √(ρ/D22)` of this mode, from 1, consistent mass.
+    Frequency(usize),
+    /// The same with lumped mass.
+    FrequencyLumped(usize),
+}
+
+impl PlateProblem {
+    fn model(&self) -> Result<Model, VerifyError> {
+        let mesh = distorted(rectangle(self.a, self.b, self.n, self.n)?, self.distortion, 1)?;
+        let mut supports = Vec::new();
+        for (set, letter) in ["left", "bottom", "right", "top"].into_iter().zip(self.edges.0) {
+            match letter {
+                b'C' => supports.push(Support::clamped(mesh.set(set)?)),
+                b'S' => supports.extend(Support::simple(&mesh, set, true)?),
+                b's' => supports.extend(Support::simple(&mesh, set, false)?),
+                _ => {}
+            }
+        }
+        Ok(Model {
+            mesh,
+            section: self.law.section(),
+            warp: Vector3::x(),
+            formulation: formulation(self.cells, self.alpha, super::DrillingChoice::Scaled),
+            supports,
+            loads: vec![Load::Pressure(1.0)],
+        })
+    }
+
+    /// The value, and the coordinates of the node at which it was taken.
+    pub fn value(&self) -> Result<(f64, [f64; 2]), VerifyError> {
+        let model = self.model()?;
+        let node = nearest(&model.mesh, Point3::new(self.a * self.at[0], self.b * self.at[1], 0.0));
+        let at = [model.mesh.nodes[node].x, model.mesh.nodes[node].y];
+        Ok((self.measure_at(&model, node)? * self.unit(), at))
+    }
+
+    fn measure_at(&self, model: &Model, node: usize) -> Result<f64, VerifyError> {
+        if let Measure::Frequency(k) | Measure::FrequencyLumped(k) = self.measure {
+            let lumped = matches!(self.measure, Measure::FrequencyLumped(_));
+            let found = modes(model, k, lumped, &Options::default())?;
+            return Ok(found.get(k - 1).map_or(f64::NAN, |m| m.angular_frequency));
+        }
+        let solution = solve::solve(model, &Options::default())?;
+        Ok(match self.measure {
+            Measure::MomentX => fields::nodal(model, &solution.displacement)?[node].moment[0],
+            Measure::MomentY => fields::nodal(model, &solution.displacement)?[node].moment[1],
+            Measure::EdgeMoment => {
+                let edges = model.mesh.set_edges("left")?;
+                let moments = fields::edge_moments(&model.mesh, &solution.reaction, &edges);
+                let ends = edges.iter().zip(&moments).flat_map(|(e, m)| e.iter().zip(m));
+                ends.filter(|(n, _)| **n as usize == node).map(|(_, m)| *m).next().unwrap_or(f64::NAN)
+            }
+            _ => solution.displacement[6 * node + 2],
+        })
+    }
+
+    /// What makes the value a number of the plate's shape and support alone.
+    fn unit(&self) -> f64 {
+        let d22 = self.law.section().d_b[(1, 1)];
+        match self.measure {
+            Measure::Deflection => d22 / self.a.powi(4),
+            Measure::MomentX | Measure::MomentY | Measure::EdgeMoment => self.a.powi(-2),
+            Measure::Frequency(_) | Measure::FrequencyLumped(_) => self.a.powi(2) / d22.sqrt(),
+        }
+    }
+
+    /// The analytical value at a point.
+    pub fn exact(&self, function: Function, [x, y]: [f64; 2]) -> Option<f64> {
+        let section = self.law.section();
+        let plate = Plate::of_section(self.a, self.b, &section);
+        let pick = |s: PlateState| match self.measure {
+            Measure::Deflection => Some(s.deflection),
+            Measure::MomentX | Measure::EdgeMoment => Some(s.mx),
+            Measure::MomentY => Some(s.my),
+            Measure::Frequency(_) | Measure::FrequencyLumped(_) => None,
+        };
+        let value = match (function, &self.edges.0) {
+            (Function::Navier, b"SSSS") => pick(plate.navier(x, y, 1.0)),
+            (Function::Levy, b"SSSS") => pick(plate.levy(Edge::Supported, x, y, 1.0)),
+            (Function::Levy, b"SCSC") => pick(plate.levy(Edge::Clamped, x, y, 1.0)),
+            (Function::Levy, b"SFSF") => pick(plate.levy(Edge::Free, x, y, 1.0)),
+            (Function::Superposition, b"CCCC") => {
+                let solved = plate.clamped(1.0)?;
+                if x == 0.0 { Some(solved.edge_moment_x(y)) } else { pick(solved.state(x, y)) }
+            }
+            (Function::Ritz, b"CFFF") => pick(plate.cantilever_ritz(1.0, 20)?.state(x, y)),
+            (Function::ShearFlexible, edges) => {
+                let thick = MindlinPlate::of_section(self.a, self.b, &section);
+                match edges {
+                    b"SSSS" => pick(thick.supported(x, y, 1.0)),
+                    b"CCCC" => pick(thick.clamped(1.0, 10)?.state(x, y)),
+                    _ => None,
+                }
+            }
+            (Function::Frequencies, _) => self.exact_frequency(&plate),
+            _ => None,
+        };
+        value.map(|v| v * self.unit())
+    }
+
+    fn exact_frequency(&self, plate: &Plate) -> Option<f64> {
+        let (Measure::Frequency(k) | Measure::FrequencyLumped(k)) = self.measure else { return None };
+        let all = match &self.edges.0 {
+            b"SSSS" => plate.supported_frequencies(1.0, k),
+            b"CCCC" => plate.clamped_frequencies(1.0, k)?,
+            b"CFFF" => plate.cantilever_frequencies(1.0, k)?,
+            _ => return None,
+        };
+        all.get(k - 1).copied()
+    }
+}
+
+/// Slope of the error of a plate in a log-log plot, from `n` to `2 n` elements.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Convergence {
+    /// The plate on its coarse mesh.
+    plate: PlateProblem,
+    /// Its exact solution.
+    exact: Function,
+}
+
+impl Convergence {
+    /// `log2(error(n) / error(2n))`.
+    pub fn value(&self) -> Result<f64, VerifyError> {
+        let error = |plate: &PlateProblem| {
+            let (value, at) = plate.value()?;
+            let exact =
+                plate.exact(self.exact, at).ok_or(VerifyError::NoReference { function: self.exact })?;
+            Ok::<f64, VerifyError>((value - exact).abs())
+        };
+        let fine = PlateProblem { n: 2 * self.plate.n, ..self.plate.clone() };
+        Ok((error(&self.plate)? / error(&fine)?).log2())
+    }
+}
+
+/// Plate motions without energy, counted.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mechanisms {
+    /// The plate.
+    plate: PlateProblem,
+}
+
+impl Mechanisms {
+    /// Number of zero frequencies among the lowest eight. Rounding leaves them below 1e-2 rad/s where it
+    /// meets the small rotary inertia; the lowest elastic ones are above 1 rad/s.
+    pub fn value(&self) -> Result<f64, VerifyError> {
+        let found = modes(&self.plate.model()?, 8, false, &Options::default())?;
+        let free = found.iter().filter(|m| m.group == DofGroup::Plate && m.angular_frequency < 1e-2);
+        Ok(free.count() as f64)
+    }
+}

@@ -1,0 +1,118 @@
+//! Plates whose elements are not rectangles: a distorted quarter, rhombic plates.
+
+use nalgebra::{Point3, Vector3};
+use serde::Deserialize;
+
+use super::super::VerifyError;
+use super::{DrillingChoice, Law, Layout, default_alpha, formulation, nearest};
+use crate::fields;
+use crate::mesh::rectangle;
+use crate::model::{Load, Model, Support};
+use crate::solve::{self, Options};
+
+/// A clamped square plate of side 10, t = 0.01, ν = 0.3: a quarter of it with 2 x 2 elements, whose middle
+/// node is moved to (2.5 + s, 2.5 + s); uniform pressure.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Distorted {
+    /// How far the middle node is moved.
+    s: f64,
+    /// Smoothing cells.
+    cells: Layout,
+    /// Shear stabilisation.
+    #[serde(default = "default_alpha")]
+    alpha: f64,
+}
+
+/// `w D / (q L⁴)` of the clamped thin square (Hencky's superposition).
+const CLAMPED_SQUARE: f64 = 1.265_319_087_48e-3;
+
+impl Distorted {
+    /// Central deflection over the exact one.
+    pub fn value(&self) -> Result<f64, VerifyError> {
+        // The corner at (0, 0) is clamped; the plate's centre is at (5, 5).
+        let mut mesh = rectangle(5.0, 5.0, 2, 2)?;
+        mesh.nodes[4] = Point3::new(2.5 + self.s, 2.5 + self.s, 0.0);
+        let supports = vec![
+            Support::symmetry_x(mesh.set("right")?),
+            Support::symmetry_y(mesh.set("top")?),
+            Support::clamped(mesh.set("left")?),
+            Support::clamped(mesh.set("bottom")?),
+        ];
+        let model = Model {
+            mesh,
+            section: Law::Isotropic { nu: 0.3, thickness: 0.01 }.section(),
+            warp: Vector3::x(),
+            formulation: formulation(self.cells, self.alpha, DrillingChoice::Scaled),
+            supports,
+            loads: vec![Load::Pressure(1.0)],
+        };
+        let w = solve::solve(&model, &Options::default())?.displacement[6 * 8 + 2];
+        Ok(w / 1e4 / CLAMPED_SQUARE)
+    }
+}
+
+/// A rhombic plate of side 1 under unit pressure, simply supported (soft) on all edges or on two.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Skew {
+    /// Acute angle of the sides (degrees).
+    angle: f64,
+    /// Elements along a side.
+    n: usize,
+    /// Thickness.
+    thickness: f64,
+    /// Poisson's ratio.
+    nu: f64,
+    /// Whether the two inclined sides are free.
+    #[serde(default)]
+    sides_free: bool,
+    /// Smoothing cells.
+    #[serde(default)]
+    cells: Layout,
+    /// Shear stabilisation.
+    #[serde(default = "default_alpha")]
+    alpha: f64,
+    /// What is taken at the centre.
+    measure: SkewMeasure,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum SkewMeasure {
+    /// `w D / (q L⁴)`.
+    Deflection,
+    /// `M_x / (q L²)`, x along the supported sides' normal projection (global x).
+    MomentX,
+    /// `M_y / (q L²)`.
+    MomentY,
+}
+
+impl Skew {
+    /// The value at the centre.
+    pub fn value(&self) -> Result<f64, VerifyError> {
+        let mut mesh = rectangle(1.0, 1.0, self.n, self.n)?;
+        let (sin, cos) = self.angle.to_radians().sin_cos();
+        mesh.nodes.iter_mut().for_each(|p| *p = Point3::new(p.x + p.y * cos, p.y * sin, 0.0));
+        let sets: &[&str] = if self.sides_free { &["bottom", "top"] } else { &["boundary"] };
+        let mut supports = Vec::new();
+        for set in sets {
+            supports.extend(Support::simple(&mesh, set, false)?);
+        }
+        let centre = nearest(&mesh, Point3::new(0.5 * (1.0 + cos), 0.5 * sin, 0.0));
+        let model = Model {
+            mesh,
+            section: Law::Isotropic { nu: self.nu, thickness: self.thickness }.section(),
+            warp: Vector3::x(),
+            formulation: formulation(self.cells, self.alpha, DrillingChoice::Scaled),
+            supports,
+            loads: vec![Load::Pressure(1.0)],
+        };
+        let displacement = solve::solve(&model, &Options::default())?.displacement;
+        Ok(match self.measure {
+            SkewMeasure::Deflection => displacement[6 * centre + 2],
+            SkewMeasure::MomentX => fields::nodal(&model, &displacement)?[centre].moment[0],
+            SkewMeasure::MomentY => fields::nodal(&model, &displacement)?[centre].moment[1],
+        })
+    }
+}
