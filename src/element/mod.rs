@@ -6,6 +6,7 @@
 //! right-hand rule.
 #![doc = include_str!("theory.md")]
 
+pub mod corotational;
 mod drilling;
 mod load;
 mod mass;

@@ -110,6 +110,16 @@ impl Prepared {
 
     /// Stiffness of the shell, global axes, dofs `(u, v, w, θx, θy, θz)` node by node.
     pub fn stiffness(&self) -> Matrix24 {
+        self.linked_stiffness(&self.to_local())
+    }
+
+    /// The same in the axes of the frame, rigid links included.
+    pub fn local_stiffness(&self) -> Matrix24 {
+        self.linked_stiffness(&self.links(&Matrix3::identity()))
+    }
+
+    /// `tᵀ k t` of the stiffness `k` of the element plane.
+    fn linked_stiffness(&self, t: &Matrix24) -> Matrix24 {
         let mut k = Matrix24::zeros();
         for (part, dofs) in [(self.membrane_stiffness(), MEMBRANE_DOFS), (self.plate_stiffness(), PLATE_DOFS)]
         {
@@ -118,18 +128,21 @@ impl Prepared {
                 k[(row, column)] = part[(i, j)];
             }
         }
-        let t = self.to_local();
         let product = t.transpose() * k * t;
         0.5 * (product + product.transpose())
     }
 
     /// Global nodal displacements to those of the element plane: rotation, then rigid links.
     pub fn to_local(&self) -> Matrix24 {
+        self.links(&self.frame.rotation)
+    }
+
+    /// The axes `r`, then rigid links from the corners to the plane.
+    fn links(&self, r: &Matrix3<f64>) -> Matrix24 {
         let mut t = Matrix24::zeros();
-        let r = self.frame.rotation;
         for i in 0..4 {
-            t.fixed_view_mut::<3, 3>(6 * i, 6 * i).copy_from(&r);
-            t.fixed_view_mut::<3, 3>(6 * i + 3, 6 * i + 3).copy_from(&r);
+            t.fixed_view_mut::<3, 3>(6 * i, 6 * i).copy_from(r);
+            t.fixed_view_mut::<3, 3>(6 * i + 3, 6 * i + 3).copy_from(r);
             // u' = u - z θy, v' = v + z θx.
             let z = self.frame.z[i];
             let (rx, ry) = (r.row(0) * z, r.row(1) * z);

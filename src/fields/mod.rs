@@ -88,6 +88,20 @@ fn for_each_element(
     Ok(())
 }
 
+/// Membrane forces and moments of every smoothing cell, element by element, in the order of the
+/// cells; transverse shear is not constant in a cell and is left at zero.
+///
+/// # Errors
+/// M008 if the warp direction is normal to an element.
+pub fn cells(model: &Model, displacement: &[f64]) -> Result<Vec<Vec<Resultants>>, ModelError> {
+    let mut all = vec![Vec::new(); model.mesh.quads.len()];
+    for_each_element(model, displacement, |quad, e| {
+        let of_cell = |(_, membrane, moment)| Resultants { membrane, moment, shear: [0.0; 2] };
+        all[quad] = e.cells.into_iter().map(of_cell).collect();
+    })?;
+    Ok(all)
+}
+
 /// Resultants of each element: the mean over its smoothing cells, shear at its centre.
 ///
 /// # Errors

@@ -1,11 +1,13 @@
 //! A mesh with section, supports and loads; constraints, load vector and assembly.
 
 mod dof;
+pub mod rigid;
 
 use nalgebra::{Point3, Vector3};
 use thiserror::Error;
 
 pub use dof::{Dof, DofGroup};
+pub use rigid::{RigidBody, RigidBodyError};
 
 use crate::element::{Formulation, Frame, MaterialAxisError, Prepared, gravity_load, pressure_load};
 use crate::mesh::{MeshError, QuadMesh};

@@ -15,7 +15,7 @@ pub struct Pattern {
     /// Neighbouring nodes.
     pub graph: Arc<BlockGraph>,
     /// Block index of each of the ten node pairs of every quad, in the order of [`PAIRS`].
-    blocks: Vec<[u32; 10]>,
+    pub(super) blocks: Vec<[u32; 10]>,
 }
 
 /// Pairs (i, j), i >= j, of local nodes.
@@ -165,16 +165,23 @@ pub fn assemble(
     Ok(matrix)
 }
 
-/// Adds an element matrix to the blocks of the lower triangle.
-fn scatter(k: &[f64], b: usize, nodes: &[u32; 4], blocks: &[u32; 10], matrix: &mut BlockMatrix) {
+/// Adds an element matrix to the blocks of the lower triangle. Nodes of the element may coincide.
+pub(super) fn scatter(k: &[f64], b: usize, nodes: &[u32; 4], blocks: &[u32; 10], matrix: &mut BlockMatrix) {
     let n = 4 * b;
-    for (&(i, j), &block) in PAIRS.iter().zip(blocks) {
-        // The stored block has the greater node as row; element matrices are symmetric.
-        let (row, column) = if nodes[i] >= nodes[j] { (i, j) } else { (j, i) };
+    let mut add = |row: usize, column: usize, block: u32| {
         let target = &mut matrix.values[block as usize * b * b..][..b * b];
         for c in 0..b {
             let source = &k[(column * b + c) * n + row * b..][..b];
             target[c * b..][..b].iter_mut().zip(source).for_each(|(t, s)| *t += s);
+        }
+    };
+    for (&(i, j), &block) in PAIRS.iter().zip(blocks) {
+        // The stored block has the greater node as row; element matrices are symmetric.
+        let (row, column) = if nodes[i] >= nodes[j] { (i, j) } else { (j, i) };
+        add(row, column, block);
+        if i != j && nodes[i] == nodes[j] {
+            // On the diagonal both halves are stored.
+            add(column, row, block);
         }
     }
 }

@@ -6,6 +6,7 @@ pub mod linear;
 pub mod modal;
 mod multifrontal;
 pub mod newmark;
+pub mod nonlinear;
 pub mod ordering;
 pub mod plan;
 pub mod sparse;

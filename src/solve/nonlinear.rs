@@ -1,0 +1,267 @@
+//! Statics in large rotations: load steps, arc length, gradient flow, and whether an equilibrium
+//! is stable.
+//!
+//! The element is the corotational one around the linear element
+//! ([`corotational`](crate::element::corotational)). Newton's method takes the geometric stiffness
+//! from element forces that are predicted linearly by the last step, not from those of the new
+//! state (the mixed integration point of Magisano, Leonetti and Garcea, *Int. J. Numer. Methods
+//! Eng.* 109 (2017) 1237): sheets that hardly stretch then converge in a few iterations even when
+//! the whole load comes in one step. Three ways to an equilibrium, from quick to robust:
+//!
+//! 1. [`solve`]: loads and held values grow together by a factor from 0 to 1, in adaptive steps;
+//! 2. [`relax`]: the implicit gradient flow of the energy, which ends in a stable equilibrium;
+//! 3. [`follow`]: arc length, through limit points of the load.
+//!
+//! Loads are dead: they keep their direction and size, pressure the normals and areas at rest. A
+//! moment is conjugate to the spin about fixed axes. A held rotation is a spin about a global
+//! axis: it may grow beyond π, and about one axis it is the angle itself. A held rotation or a
+//! moment at a node that is free to turn about both other axes is not conservative: the symmetric
+//! tangent then converges linearly; hold a plane of symmetry by both of its rotations.
+
+mod arc;
+mod flow;
+mod newton;
+mod stability;
+mod system;
+
+use std::ops::ControlFlow;
+
+use nalgebra::{Point3, UnitQuaternion};
+use thiserror::Error;
+
+pub use arc::{ArcLength, follow};
+pub use flow::{Flow, relax};
+pub use stability::Stability;
+
+use self::newton::{Converged, Drag, newton};
+use self::system::{Balance, System};
+use super::SolveError;
+use super::linear::Options;
+use crate::mesh::QuadMesh;
+use crate::model::{Model, RigidBody, RigidBodyError};
+
+/// Places and rotations of the nodes under a part of the load.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Where the nodes are (m).
+    pub position: Vec<Point3<f64>>,
+    /// How they have turned since the rest.
+    pub rotation: Vec<UnitQuaternion<f64>>,
+    /// Factor of the loads and held values.
+    pub factor: f64,
+}
+
+impl State {
+    /// The sheet at rest.
+    pub fn rest(mesh: &QuadMesh) -> Self {
+        Self {
+            position: mesh.nodes.clone(),
+            rotation: vec![UnitQuaternion::identity(); mesh.nodes.len()],
+            factor: 0.0,
+        }
+    }
+
+    /// Displacements and rotation vectors, six a node (m, rad); a rotation vector is at most π long.
+    pub fn displacement(&self, mesh: &QuadMesh) -> Vec<f64> {
+        let nodes = self.position.iter().zip(&mesh.nodes).zip(&self.rotation);
+        nodes
+            .flat_map(|((now, rest), turn)| {
+                let (u, r) = (now - rest, turn.scaled_axis());
+                [u.x, u.y, u.z, r.x, r.y, r.z]
+            })
+            .collect()
+    }
+}
+
+/// How to solve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Unbalanced forces that are accepted, relative to the loads or reactions.
+    pub tolerance: f64,
+    /// Iterations in a step before it counts as failed.
+    pub iterations: usize,
+    /// The first step of the load factor; 1 takes the whole load at once.
+    pub first_step: f64,
+    /// The largest step of the load factor.
+    pub largest_step: f64,
+    /// A step that has been halved below this one ends the search.
+    pub smallest_step: f64,
+    /// Nodes that move as rigid bodies.
+    pub bodies: Vec<RigidBody>,
+}
+
+impl Default for Settings {
+    /// Tolerance 1e-8, at most 25 iterations a step, the whole load at once.
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-8,
+            iterations: 25,
+            first_step: 1.0,
+            largest_step: 1.0,
+            smallest_step: 1e-5,
+            bodies: Vec::new(),
+        }
+    }
+}
+
+/// An equilibrium on the way, handed to the observer.
+#[derive(Clone, Copy, Debug)]
+pub struct Step<'a> {
+    /// Number of the step, from 1.
+    pub number: usize,
+    /// Iterations that it took.
+    pub iterations: usize,
+    /// Unbalanced forces relative to loads or reactions.
+    pub residual: f64,
+    /// Strain energy (J).
+    pub energy: f64,
+    /// The nodes.
+    pub state: &'a State,
+    /// Forces and moments of the supports on the sheet, six a node; 0 at free dofs.
+    pub reaction: &'a [f64],
+}
+
+/// Where a search ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// The nodes; the factor is below 1 if the observer stopped the search.
+    pub state: State,
+    /// Forces and moments of the supports on the sheet, six a node; 0 at free dofs.
+    pub reaction: Vec<f64>,
+    /// Strain energy (J).
+    pub energy: f64,
+    /// Unbalanced forces relative to loads or reactions.
+    pub residual: f64,
+    /// Steps that converged.
+    pub steps: usize,
+    /// Iterations of all steps, failed ones included.
+    pub iterations: usize,
+    /// Whether the equilibrium is stable.
+    pub stability: Stability,
+}
+
+/// Why there is no equilibrium.
+#[derive(Clone, Debug, Error)]
+pub enum NonlinearError {
+    /// The model cannot be assembled or its tangent not be factorised.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    /// M010.
+    #[error(transparent)]
+    Body(#[from] RigidBodyError),
+    /// N007: Newton's method did not converge, and steps cannot be made smaller.
+    #[error(
+        "N007 step {step} did not converge: after {iterations} iterations the residual is {residual:.1e} of the loads, \
+         above {tolerance:.0e}, at {factor:.4} of the load; relax to a stable equilibrium by gradient flow, follow \
+         the path by arc length, or refine the mesh", factor = last.factor
+    )]
+    NotConverged {
+        /// The step that failed, from 1.
+        step: usize,
+        /// Iterations of its last attempt.
+        iterations: usize,
+        /// Unbalanced forces relative to loads or reactions at the end of it.
+        residual: f64,
+        /// What would have been accepted.
+        tolerance: f64,
+        /// The last equilibrium.
+        last: Box<State>,
+    },
+}
+
+impl NonlinearError {
+    /// The stable code.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Solve(e) => e.code(),
+            Self::Body(_) => "M010",
+            Self::NotConverged { .. } => "N007",
+        }
+    }
+}
+
+/// What a search has done so far.
+#[derive(Default)]
+struct Progress {
+    steps: usize,
+    iterations: usize,
+}
+
+impl Progress {
+    /// Counts a step and shows it.
+    fn show(
+        &mut self,
+        system: &System<'_>,
+        step: &Converged,
+        observe: &mut impl FnMut(&Step<'_>) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        self.steps += 1;
+        self.iterations += step.iterations;
+        observe(&Step {
+            number: self.steps,
+            iterations: step.iterations,
+            residual: step.balance.relative_residual(),
+            energy: step.balance.energy,
+            state: &step.state,
+            reaction: &system.reactions(&step.balance),
+        })
+    }
+
+    fn finish(
+        self,
+        system: &System<'_>,
+        state: State,
+        balance: &Balance,
+    ) -> Result<Solution, NonlinearError> {
+        Ok(Solution {
+            reaction: system.reactions(balance),
+            energy: balance.energy,
+            residual: balance.relative_residual(),
+            steps: self.steps,
+            iterations: self.iterations,
+            stability: stability::check(system, &state, balance)?.0,
+            state,
+        })
+    }
+}
+
+/// Grows loads and held values from 0 to 1 in adaptive steps and shows every equilibrium to
+/// `observe`, which may stop.
+///
+/// # Errors
+/// M008, M010 for the model; N002 for memory; N007 with the last equilibrium.
+pub fn solve(
+    model: &Model,
+    settings: &Settings,
+    options: &Options,
+    mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
+) -> Result<Solution, NonlinearError> {
+    let system = System::new(model, settings, options)?;
+    let mut state = State::rest(&model.mesh);
+    let mut balance = system.balance(&state, None);
+    let (mut step, mut progress) = (settings.first_step, Progress::default());
+    while state.factor < 1.0 {
+        // The last step ends at 1 exactly, without a sliver after it.
+        let factor = if state.factor + 1.001 * step >= 1.0 { 1.0 } else { state.factor + step };
+        match newton(&system, &state, factor, settings, &Drag::default()) {
+            Ok(converged) => {
+                let flow = progress.show(&system, &converged, &mut observe);
+                if converged.iterations <= settings.iterations / 3 {
+                    step = (1.5 * step).min(settings.largest_step);
+                }
+                (state, balance) = (converged.state, converged.balance);
+                if flow.is_break() {
+                    break;
+                }
+            }
+            Err(failure) => {
+                progress.iterations += failure.iterations;
+                step = 0.5 * (factor - state.factor);
+                if step < settings.smallest_step {
+                    return Err(failure.ends(progress.steps + 1, settings, state));
+                }
+            }
+        }
+    }
+    progress.finish(&system, state, &balance)
+}

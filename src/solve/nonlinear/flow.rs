@@ -1,0 +1,168 @@
+//! Implicit gradient flow: a viscous sheet comes to rest in a stable equilibrium.
+
+use std::ops::ControlFlow;
+
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+use super::newton::{Drag, Failure, newton};
+use super::system::System;
+use super::{NonlinearError, Progress, Settings, Solution, State, Step, stability};
+use crate::model::Model;
+use crate::solve::linear::Options;
+
+/// How to flow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flow {
+    /// Random loads that break the symmetry, relative to the mean load per area; they are taken
+    /// away before the end.
+    pub perturbation: f64,
+    /// Seed of the random loads.
+    pub seed: u64,
+    /// Steps before the search is given up.
+    pub steps: usize,
+}
+
+impl Default for Flow {
+    /// A perturbation of 1e-3, at most 400 steps.
+    fn default() -> Self {
+        Self { perturbation: 1e-3, seed: 1, steps: 400 }
+    }
+}
+
+/// The random loads are taken away at this residual.
+const SETTLING: f64 = 1e-3;
+
+/// An inner Newton iteration that needs more than this is dragged more strongly.
+const INNER_ITERATIONS: usize = 8;
+
+/// Unbalanced forces that a step of the flow leaves, relative to those that drive it.
+const INNER_TOLERANCE: f64 = 0.01;
+
+/// Drag over the first one at which the search is given up.
+const LARGEST_RISE: f64 = 1e8;
+
+/// Unstable equilibria that may be left before the search is given up.
+const KICKS: usize = 20;
+
+/// Lets the sheet flow under its full loads and held values until it is in a stable equilibrium.
+///
+/// `c (q - q_n)/Δτ = f_ext - f_int`, with c the area of the nodes and the pseudo-time step Δτ growing
+/// from step to step as long as the tangent of the dragged sheet is positive definite: the flow then
+/// goes downhill and leaves saddles. An equilibrium that turns out to be unstable is left along its
+/// lowest eigenvector. Every step is shown to `observe`, which may stop.
+///
+/// # Errors
+/// M008, M010 for the model; N002 for memory; N007 with the last state.
+pub fn relax(
+    model: &Model,
+    settings: &Settings,
+    flow: &Flow,
+    options: &Options,
+    mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
+) -> Result<Solution, NonlinearError> {
+    let system = System::new(model, settings, options)?;
+    let mut state = State::rest(&model.mesh);
+    let first = first_rate(&system, model, &state);
+    let noise = noise(&system, flow);
+    let mut inner = Settings { iterations: INNER_ITERATIONS, ..settings.clone() };
+    let (mut pace, mut perturbed, mut kicks) = (Pace::new(first), flow.perturbation > 0.0, 0);
+    let mut progress = Progress::default();
+    loop {
+        let drag = Drag { rate: pace.rate, extra: perturbed.then_some(&noise[..]) };
+        let step = match newton(&system, &state, 1.0, &inner, &drag) {
+            Ok(step) => step,
+            Err(failure) => {
+                progress.iterations += failure.iterations;
+                pace.slow();
+                if pace.rate > LARGEST_RISE * first {
+                    return Err(failure.ends(progress.steps + 1, settings, state));
+                }
+                continue;
+            }
+        };
+        let stop = progress.show(&system, &step, &mut observe).is_break();
+        pace.quicken(step.iterations);
+        let residual = step.balance.relative_residual();
+        // The flow itself needs no more digits than it has yet to go.
+        inner.tolerance = (INNER_TOLERANCE * residual).clamp(settings.tolerance, INNER_TOLERANCE);
+        let at_rest = residual <= settings.tolerance || (step.at_rest && step.iterations == 1);
+        if stop {
+            return progress.finish(&system, step.state, &step.balance);
+        }
+        if progress.steps >= flow.steps {
+            return Err(Failure::unfinished(step).ends(progress.steps, settings, state));
+        }
+        state = step.state;
+        if perturbed && (at_rest || residual <= SETTLING) {
+            perturbed = false;
+        } else if !perturbed && at_rest {
+            let (stability, shape) = stability::check(&system, &state, &step.balance)?;
+            if stability.is_stable() || kicks == KICKS {
+                return progress.finish(&system, state, &step.balance);
+            }
+            kicks += 1;
+            system.advance(&mut state, &kick(system.size, &shape));
+            pace = Pace::new(-2.0 * stability.lowest_eigenvalue);
+        }
+    }
+}
+
+/// How strongly the sheet is dragged.
+struct Pace {
+    /// Force per displacement and area, 1/Δτ (N/m³).
+    rate: f64,
+    /// After a rejected step the drag stays as it is for one step.
+    rejected: bool,
+}
+
+impl Pace {
+    fn new(rate: f64) -> Self {
+        Self { rate, rejected: false }
+    }
+
+    fn slow(&mut self) {
+        *self = Self { rate: 4.0 * self.rate, rejected: true };
+    }
+
+    fn quicken(&mut self, iterations: usize) {
+        let growth = match iterations {
+            _ if self.rejected => 1.0,
+            0..=4 => 3.0,
+            _ => 1.7,
+        };
+        *self = Self::new(self.rate / growth);
+    }
+}
+
+/// The drag under which the load moves the sheet by a hundredth of its size in the first step.
+fn first_rate(system: &System<'_>, model: &Model, rest: &State) -> f64 {
+    let balance = system.balance(&State { factor: 1.0, ..rest.clone() }, None);
+    let area: f64 = system.metric.iter().step_by(6).sum();
+    let force: f64 = balance.unbalanced.chunks_exact(6).map(|n| n[0].hypot(n[1]).hypot(n[2])).sum();
+    let bending = model.section.d_b[(0, 0)].max(model.section.d_b[(1, 1)]) / system.size.powi(4);
+    (force / area / (0.01 * system.size)).max(bending)
+}
+
+/// A step along a shape that moves the sheet by a thousandth of its size and turns it by 0.1 rad, at most.
+fn kick(size: f64, shape: &[f64]) -> Vec<f64> {
+    let largest = shape
+        .iter()
+        .enumerate()
+        .fold(0.0, |m: f64, (d, s)| m.max(s.abs() / if d % 6 < 3 { 1e-3 * size } else { 0.1 }));
+    shape.iter().map(|s| s / largest).collect()
+}
+
+/// Random forces on the free displacements, of the flow's part of the mean load per area.
+fn noise(system: &System<'_>, flow: &Flow) -> Vec<f64> {
+    let mut random = Pcg64Mcg::seed_from_u64(flow.seed);
+    let area: f64 = system.metric.iter().step_by(6).sum();
+    let load = system.total_load() / area;
+    (0..system.held.len())
+        .map(|d| {
+            let part: f64 = random.random_range(-1.0..1.0);
+            let moves = d % 6 < 3 && !system.held[d];
+            if moves { flow.perturbation * load * system.metric[d] * part } else { 0.0 }
+        })
+        .collect()
+}

@@ -1,0 +1,152 @@
+//! Newton's method with predicted element forces in the geometric stiffness.
+
+use super::system::{Balance, System};
+use super::{NonlinearError, Settings, State};
+use crate::solve::SolveError;
+use crate::solve::factor::FactorError;
+
+/// Largest spin of a node in one iteration (rad).
+const LARGEST_SPIN: f64 = 1.0;
+
+/// A step this small, relative to the size of the sheet and to a radian, is the end of what
+/// rounding allows.
+const ROUNDING: f64 = 1e-11;
+
+/// A node may turn so far against its element in an equilibrium (rad); more is a fold that the
+/// mesh cannot show.
+const LARGEST_FOLD: f64 = std::f64::consts::FRAC_PI_2;
+
+/// An equilibrium.
+pub(super) struct Converged {
+    pub state: State,
+    pub balance: Balance,
+    pub iterations: usize,
+    /// Whether the last iteration moved nothing beyond rounding.
+    pub at_rest: bool,
+}
+
+/// Why an attempt was given up.
+pub(super) struct Failure {
+    pub iterations: usize,
+    pub residual: f64,
+    /// What the factorisation said, if that was the reason.
+    pub cause: Option<FactorError>,
+}
+
+impl Failure {
+    /// A step of a search that has no more steps.
+    pub fn unfinished(step: Converged) -> Self {
+        Self { iterations: step.iterations, residual: step.balance.relative_residual(), cause: None }
+    }
+
+    /// The error when no smaller step is left.
+    pub fn ends(self, step: usize, settings: &Settings, last: State) -> NonlinearError {
+        match self.cause {
+            Some(cause @ FactorError::OutOfMemory { .. }) => SolveError::Factor(cause).into(),
+            _ => NonlinearError::NotConverged {
+                step,
+                iterations: self.iterations,
+                residual: self.residual,
+                tolerance: settings.tolerance,
+                last: Box::new(last),
+            },
+        }
+    }
+}
+
+/// A resistance against the motion away from the start of a step, and loads on top of the model's.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Drag<'a> {
+    /// Force per displacement and area (N/m³).
+    pub rate: f64,
+    /// Loads, six a node.
+    pub extra: Option<&'a [f64]>,
+}
+
+impl Balance {
+    /// Unbalanced forces relative to loads or reactions.
+    pub fn relative_residual(&self) -> f64 {
+        if self.residual == 0.0 { 0.0 } else { self.residual / self.scale }
+    }
+}
+
+/// From an equilibrium to that at another factor.
+pub(super) fn newton(
+    system: &System<'_>,
+    start: &State,
+    factor: f64,
+    settings: &Settings,
+    drag: &Drag<'_>,
+) -> Result<Converged, Failure> {
+    let mut state = State { factor, ..start.clone() };
+    // Part of the held values that is still to come.
+    let mut remaining = factor - start.factor;
+    let mut travelled = vec![0.0; system.held.len()];
+    let mut balance = system.balance(&state, drag.extra);
+    let mut local = balance.local.clone();
+    for iterations in 1..=settings.iterations {
+        let failure = |residual, cause| Failure { iterations, residual, cause };
+        let (matrix, push) = system.tangent(&state, &balance, &local, drag.rate);
+        let tangent = system.factorise(&matrix).map_err(|e| failure(balance.relative_residual(), Some(e)))?;
+        if iterations == 1 && drag.rate > 0.0 && tangent.negative_pivots() > 0 {
+            // The flow would go uphill.
+            return Err(failure(balance.relative_residual(), None));
+        }
+        let mut step: Vec<f64> = (0..travelled.len())
+            .map(|d| {
+                let forces = balance.unbalanced[d] + drag.rate * system.metric[d] * travelled[d];
+                if system.held[d] { 0.0 } else { -forces - remaining * push[d] }
+            })
+            .collect();
+        tangent.solve(&mut step, 1);
+        for d in (0..step.len()).filter(|d| system.held[*d]) {
+            step[d] = remaining * system.values[d];
+        }
+        let part = limit(&mut step);
+        remaining -= part * remaining;
+        local = system.predict(&state, &balance, &step);
+        system.advance(&mut state, &step);
+        travelled.iter_mut().zip(&step).for_each(|(t, s)| *t += s);
+        balance = system.balance(&state, drag.extra);
+        let residual = dragged_residual(system, &balance, &travelled, drag.rate);
+        if !residual.is_finite() {
+            return Err(failure(residual, None));
+        }
+        let at_rest = is_rounding(&step, system.size);
+        if remaining == 0.0 && (at_rest || residual <= settings.tolerance * balance.scale) {
+            if System::largest_rotation(&balance) > LARGEST_FOLD {
+                return Err(failure(balance.relative_residual(), None));
+            }
+            return Ok(Converged { state, balance, iterations, at_rest });
+        }
+    }
+    Err(Failure { iterations: settings.iterations, residual: balance.relative_residual(), cause: None })
+}
+
+/// Shortens a step whose spins are too large; the part that is left of it.
+pub(super) fn limit(step: &mut [f64]) -> f64 {
+    let spin = |node: &[f64]| node[3].hypot(node[4]).hypot(node[5]);
+    let largest = step.chunks_exact(6).map(spin).fold(0.0, f64::max);
+    if largest <= LARGEST_SPIN {
+        return 1.0;
+    }
+    let part = LARGEST_SPIN / largest;
+    step.iter_mut().for_each(|s| *s *= part);
+    part
+}
+
+/// Whether a step moves nothing beyond rounding.
+pub(super) fn is_rounding(step: &[f64], size: f64) -> bool {
+    step.iter().enumerate().all(|(d, s)| s.abs() <= ROUNDING * if d % 6 < 3 { size } else { 1.0 })
+}
+
+/// Norm of what must vanish, drag included (N).
+fn dragged_residual(system: &System<'_>, balance: &Balance, travelled: &[f64], rate: f64) -> f64 {
+    if rate == 0.0 {
+        return balance.residual;
+    }
+    let forces: Vec<f64> = (0..travelled.len())
+        .map(|d| balance.unbalanced[d] + rate * system.metric[d] * travelled[d])
+        .collect();
+    system.norm(&forces, false)
+}

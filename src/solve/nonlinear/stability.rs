@@ -1,0 +1,83 @@
+//! Whether an equilibrium is stable: the lowest eigenvalue of its tangent.
+
+use super::system::{Balance, System};
+use super::{NonlinearError, State};
+use crate::solve::SolveError;
+use crate::solve::factor::{Factor, FactorError};
+use crate::solve::sparse::BlockMatrix;
+
+/// Inverse iterations, and the relative change that ends them: an eigenvalue to three digits.
+const ROUNDS: usize = 60;
+const SETTLED: f64 = 1e-4;
+
+/// How an equilibrium answers to a small push.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stability {
+    /// Directions in which the energy falls: negative pivots of the tangent. 0 is stable.
+    pub negative_pivots: usize,
+    /// Lowest eigenvalue of the tangent per area of the sheet (N/m³), to about three digits;
+    /// rotations count with the area times a twelfth of the element's area.
+    pub lowest_eigenvalue: f64,
+}
+
+impl Stability {
+    /// Whether the energy grows in every direction.
+    pub fn is_stable(&self) -> bool {
+        self.negative_pivots == 0
+    }
+}
+
+/// The stability of an equilibrium, and the shape of the lowest eigenvalue with largest entry 1.
+pub(super) fn check(
+    system: &System<'_>,
+    state: &State,
+    balance: &Balance,
+) -> Result<(Stability, Vec<f64>), NonlinearError> {
+    let tangent = |shift: f64| -> Result<(BlockMatrix, Factor), FactorError> {
+        let (matrix, _) = system.tangent(state, balance, &balance.local, shift);
+        let factor = system.factorise(&matrix)?;
+        Ok((matrix, factor))
+    };
+    let factorised = tangent(0.0).or_else(|e| match e {
+        // On the very point of losing stability: a shift that only rounding knows.
+        FactorError::Singular { .. } => tangent(1e-14 * system.stiffest()),
+        other => Err(other),
+    });
+    let (matrix, mut factor) = factorised.map_err(SolveError::Factor)?;
+    let negative_pivots = factor.negative_pivots();
+    // The iteration goes to the eigenvalue nearest to minus the shift: below all of them.
+    let mut shift = 0.0;
+    while factor.negative_pivots() > 0 {
+        shift = if shift == 0.0 { 1e-12 * system.stiffest() } else { 4.0 * shift };
+        factor = tangent(shift).map_err(SolveError::Factor)?.1;
+    }
+    let (lowest_eigenvalue, shape) = inverse_iteration(system, &matrix, &factor);
+    Ok((Stability { negative_pivots, lowest_eigenvalue }, shape))
+}
+
+fn inverse_iteration(system: &System<'_>, matrix: &BlockMatrix, factor: &Factor) -> (f64, Vec<f64>) {
+    let free: Vec<f64> =
+        system.metric.iter().zip(&system.held).map(|(m, held)| if *held { 0.0 } else { *m }).collect();
+    // A start without symmetry, so that no shape is missed; not random, so that it is the same always.
+    let mut x: Vec<f64> = (0..free.len()).map(|d| 1.0 + (d as f64 * 0.618_034).fract()).collect();
+    let (mut value, mut product) = (f64::INFINITY, vec![0.0; x.len()]);
+    for _ in 0..ROUNDS {
+        x.iter_mut().zip(&free).for_each(|(x, m)| *x *= m);
+        factor.solve(&mut x, 1);
+        let largest = x.iter().fold(0.0f64, |m, v| if v.abs() > m.abs() { *v } else { m });
+        if largest == 0.0 {
+            // Nothing is free to move.
+            return (f64::INFINITY, x);
+        }
+        x.iter_mut().for_each(|x| *x /= largest);
+        matrix.mul(&x, &mut product);
+        let energy: f64 = (0..x.len()).filter(|d| free[*d] > 0.0).map(|d| x[d] * product[d]).sum();
+        let next = energy / x.iter().zip(&free).map(|(x, m)| m * x * x).sum::<f64>();
+        let settled = (next - value).abs() <= SETTLED * next.abs();
+        value = next;
+        if settled {
+            break;
+        }
+    }
+    (value, x)
+}

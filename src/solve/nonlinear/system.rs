@@ -1,0 +1,355 @@
+//! The equations of a model in large rotations: forces, tangent, and the motion of the nodes.
+
+use std::sync::Arc;
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use rayon::prelude::*;
+
+use super::{NonlinearError, Settings, State};
+use crate::element::corotational::{Motion, Reference};
+use crate::element::{Matrix24, Vector24, lumped_mass};
+use crate::model::rigid::{leads, lever};
+use crate::model::{DofGroup, Model, ModelError};
+use crate::solve::SolveError;
+use crate::solve::assemble::{Pattern, scatter, unit_rows};
+use crate::solve::factor::{self, Analysis, Factor, FactorError};
+use crate::solve::linear::Options;
+use crate::solve::sparse::BlockMatrix;
+
+/// Elements whose tangents are held at a time before they are added up in order.
+const BATCH: usize = 512;
+
+/// What does not change while a model deforms. Vectors hold six numbers a node; followers of a
+/// rigid body have theirs added to the lead's and count as held.
+pub(super) struct System<'a> {
+    model: &'a Model,
+    threads: usize,
+    references: Vec<Reference>,
+    /// Which stiffness each element has.
+    kinds: Vec<u32>,
+    stiffnesses: Vec<Matrix24>,
+    /// Nodes of each element, followers replaced by their leads.
+    quads: Vec<[u32; 4]>,
+    leads: Vec<u32>,
+    pattern: Pattern,
+    analysis: Analysis,
+    /// Loads at factor 1.
+    load: Vec<f64>,
+    /// Whether a dof is held.
+    pub held: Vec<bool>,
+    /// Values of the held dofs at factor 1.
+    pub values: Vec<f64>,
+    /// Area of each node (m²), and that times h²/12 for its rotations: the metric of the flow and
+    /// of the eigenvalues.
+    pub metric: Vec<f64>,
+    /// Length that makes moments comparable with forces: the mean side of an element (m).
+    side: f64,
+    /// Diagonal of the sheet at rest (m).
+    pub size: f64,
+}
+
+/// The forces in a state.
+pub(super) struct Balance {
+    motions: Vec<Motion>,
+    /// Element forces in their frames.
+    pub local: Vec<Vector24>,
+    /// Internal minus external forces at each node, followers not yet added to their leads.
+    nodal: Vec<f64>,
+    /// Internal minus external forces by dof: the reactions where held, what must vanish elsewhere.
+    pub unbalanced: Vec<f64>,
+    /// Strain energy (J).
+    pub energy: f64,
+    /// Norm of what must vanish (N).
+    pub residual: f64,
+    /// Norm of loads or reactions, whichever is larger (N).
+    pub scale: f64,
+}
+
+impl<'a> System<'a> {
+    pub fn new(model: &'a Model, settings: &Settings, options: &Options) -> Result<Self, NonlinearError> {
+        let nodes = model.mesh.nodes.len();
+        let mut constraints = model.constraints();
+        let leads = leads(nodes, &settings.bodies, &constraints)?;
+        for node in (0..nodes).filter(|n| leads[*n] as usize != *n) {
+            constraints[6 * node..][..6].fill(Some(0.0));
+        }
+        let quads: Vec<[u32; 4]> =
+            model.mesh.quads.iter().map(|quad| quad.map(|n| leads[n as usize])).collect();
+        let pattern = Pattern::new(nodes, &quads);
+        let coordinates: Vec<[f64; 3]> = model.mesh.nodes.iter().map(|p| [p.x, p.y, p.z]).collect();
+        let analysis =
+            factor::analyse(&pattern.graph, DofGroup::Shell.dofs().len(), Some(&coordinates), options.path)
+                .map_err(SolveError::Factor)?;
+        let first = model.mesh.nodes.first().copied().unwrap_or_default();
+        let (low, high) = model.mesh.nodes.iter().fold((first, first), |(l, h), p| (l.inf(p), h.sup(p)));
+        let mut system = Self {
+            model,
+            threads: options.threads,
+            references: Vec::with_capacity(quads.len()),
+            kinds: Vec::with_capacity(quads.len()),
+            stiffnesses: Vec::new(),
+            quads,
+            leads,
+            pattern,
+            analysis,
+            load: model.load_vector(),
+            held: constraints.iter().map(Option::is_some).collect(),
+            values: constraints.iter().map(|c| c.unwrap_or(0.0)).collect(),
+            metric: vec![0.0; 6 * nodes],
+            side: 0.0,
+            size: (high - low).norm(),
+        };
+        system.prepare_elements()?;
+        Ok(system)
+    }
+
+    /// Elements at rest; equal ones in a row share a stiffness.
+    fn prepare_elements(&mut self) -> Result<(), SolveError> {
+        let (mesh, mut area) = (&self.model.mesh, 0.0);
+        let unit = crate::section::ShellSection { areal_density: 1.0, ..self.model.section.clone() };
+        for quad in 0..mesh.quads.len() {
+            let element = self.model.element(quad, false).map_err(ModelError::from)?;
+            let same = quad > 0 && {
+                let (now, last) = (mesh.corners(quad), mesh.corners(quad - 1));
+                let off = |i: usize| ((now[i] - now[0]) - (last[i] - last[0])).amax();
+                (1..4).map(off).fold(0.0, f64::max) <= 1e-12 * element.frame.longest_side()
+            };
+            if !same {
+                self.stiffnesses.push(element.local_stiffness());
+            }
+            self.kinds.push(self.stiffnesses.len() as u32 - 1);
+            self.references.push(Reference::of(&element.frame));
+            let rotary = element.frame.area() / 12.0;
+            for (node, share) in self.quads[quad].iter().zip(lumped_mass(&element.frame, &unit)) {
+                for d in 0..6 {
+                    self.metric[6 * *node as usize + d] += if d < 3 { share } else { share * rotary };
+                }
+            }
+            area += element.frame.area();
+        }
+        self.side = (area / mesh.quads.len().max(1) as f64).sqrt();
+        Ok(())
+    }
+
+    /// Applies `f` to every index, in parallel if asked for; the results are in order.
+    fn each<T: Send>(&self, range: std::ops::Range<usize>, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+        if self.threads > 1 { range.into_par_iter().map(f).collect() } else { range.map(f).collect() }
+    }
+
+    fn stiffness(&self, quad: usize) -> &Matrix24 {
+        &self.stiffnesses[self.kinds[quad] as usize]
+    }
+
+    /// Forces in a state, with the loads times its factor and `extra` loads on top.
+    pub fn balance(&self, state: &State, extra: Option<&[f64]>) -> Balance {
+        let mesh = &self.model.mesh;
+        let parts = self.each(0..mesh.quads.len(), |q| {
+            let nodes = mesh.quads[q].map(|n| n as usize);
+            let motion = Motion::of(
+                &self.references[q],
+                &nodes.map(|n| state.position[n]),
+                &nodes.map(|n| state.rotation[n]),
+            );
+            let local = self.stiffness(q) * motion.deformation;
+            let force = motion.force(&local);
+            (motion, local, force)
+        });
+        let mut external: Vec<f64> = self.load.iter().map(|f| f * state.factor).collect();
+        if let Some(extra) = extra {
+            external.iter_mut().zip(extra).for_each(|(f, e)| *f += e);
+        }
+        let mut nodal: Vec<f64> = external.iter().map(|f| -f).collect();
+        let (mut motions, mut locals) = (Vec::with_capacity(parts.len()), Vec::with_capacity(parts.len()));
+        let mut energy = 0.0;
+        for (quad, (motion, local, force)) in mesh.quads.iter().zip(parts) {
+            for (i, node) in quad.iter().enumerate() {
+                for d in 0..6 {
+                    nodal[6 * *node as usize + d] += force[6 * i + d];
+                }
+            }
+            energy += 0.5 * local.dot(&motion.deformation);
+            motions.push(motion);
+            locals.push(local);
+        }
+        let unbalanced = self.to_leads(state, &nodal);
+        let residual = self.norm(&unbalanced, false);
+        let loads = self.to_leads(state, &external);
+        let scale = self.norm(&unbalanced, true).max(self.norm(&loads, false));
+        Balance { motions, local: locals, nodal, unbalanced, energy, residual, scale }
+    }
+
+    /// Norm of the forces on the held or the free dofs (N), moments over the side of an element.
+    pub fn norm(&self, forces: &[f64], held: bool) -> f64 {
+        let square = |(d, f): (usize, &f64)| if d % 6 < 3 { f * f } else { (f / self.side).powi(2) };
+        forces.iter().enumerate().filter(|(d, _)| self.held[*d] == held).map(square).sum::<f64>().sqrt()
+    }
+
+    /// Adds the forces of followers to their leads.
+    fn to_leads(&self, state: &State, nodal: &[f64]) -> Vec<f64> {
+        let mut reduced = nodal.to_vec();
+        for node in (0..self.leads.len()).filter(|n| self.leads[*n] as usize != *n) {
+            let (force, moment) = (vector(nodal, 6 * node), vector(nodal, 6 * node + 3));
+            let moment = moment + lever(&state.position, &self.leads, node).cross(&force);
+            let at = 6 * self.leads[node] as usize;
+            reduced[6 * node..][..6].fill(0.0);
+            for d in 0..3 {
+                reduced[at + d] += force[d];
+                reduced[at + 3 + d] += moment[d];
+            }
+        }
+        reduced
+    }
+
+    /// The loads at factor 1, by dof.
+    pub fn reference_load(&self, state: &State) -> Vec<f64> {
+        self.to_leads(state, &self.load)
+    }
+
+    /// Sum of the sizes of the nodal loads at factor 1 (N).
+    pub fn total_load(&self) -> f64 {
+        self.load.chunks_exact(6).map(|n| n[0].hypot(n[1]).hypot(n[2])).sum()
+    }
+
+    /// The order of the largest eigenvalue per area: the membrane of an element (N/m³).
+    pub fn stiffest(&self) -> f64 {
+        self.model.section.d_m.diagonal().max() / (self.side * self.side)
+    }
+
+    /// Tangent with `shift` times the metric added, held dofs as unit rows, and the forces that the
+    /// held values at factor 1 exert on the free dofs.
+    ///
+    /// `local` are the element forces that enter the geometric stiffness.
+    pub fn tangent(
+        &self,
+        state: &State,
+        balance: &Balance,
+        local: &[Vector24],
+        shift: f64,
+    ) -> (BlockMatrix, Vec<f64>) {
+        let mut matrix = BlockMatrix::zeros(Arc::clone(&self.pattern.graph), 6);
+        let mut push = vec![0.0; self.held.len()];
+        let pushes = self.values.iter().any(|v| *v != 0.0);
+        for start in (0..self.quads.len()).step_by(BATCH) {
+            let batch = start..(start + BATCH).min(self.quads.len());
+            let tangents = self.each(batch.clone(), |q| {
+                let k = balance.motions[q].tangent(self.stiffness(q), &local[q]);
+                self.constrain(state, q, k, pushes)
+            });
+            for (q, (k, forces)) in batch.zip(tangents) {
+                let nodes = &self.quads[q];
+                scatter(k.as_slice(), 6, nodes, &self.pattern.blocks[q], &mut matrix);
+                for (i, node) in nodes.iter().enumerate() {
+                    for d in 0..6 {
+                        push[6 * *node as usize + d] += forces[6 * i + d];
+                    }
+                }
+            }
+        }
+        self.add_body_terms(state, balance, &mut matrix);
+        let graph = Arc::clone(&self.pattern.graph);
+        for dof in (0..self.held.len()).filter(|d| !self.held[*d]) {
+            matrix.values[graph.col_ptr[dof / 6] * 36 + (dof % 6) * 7] += shift * self.metric[dof];
+        }
+        unit_rows(&mut matrix, &self.held);
+        (matrix, push)
+    }
+
+    /// Moves the stiffness of followers to their leads, empties the rows and columns of held dofs,
+    /// and returns the forces of their values.
+    fn constrain(&self, state: &State, q: usize, mut k: Matrix24, pushes: bool) -> (Matrix24, Vector24) {
+        let nodes = &self.model.mesh.quads[q];
+        for (i, node) in nodes.iter().enumerate() {
+            if self.leads[*node as usize] == *node {
+                continue;
+            }
+            // du = du_lead + dω x r.
+            let lever = lever(&state.position, &self.leads, *node as usize).cross_matrix();
+            let columns = k.fixed_columns::<3>(6 * i + 3) - k.fixed_columns::<3>(6 * i) * lever;
+            k.fixed_columns_mut::<3>(6 * i + 3).copy_from(&columns);
+            let rows = k.fixed_rows::<3>(6 * i + 3) + lever * k.fixed_rows::<3>(6 * i);
+            k.fixed_rows_mut::<3>(6 * i + 3).copy_from(&rows);
+        }
+        let dof = |a: usize| 6 * self.quads[q][a / 6] as usize + a % 6;
+        let mut push = Vector24::zeros();
+        if pushes {
+            let values = Vector24::from_fn(|a, _| self.values[dof(a)]);
+            push = k * values;
+        }
+        for a in (0..24).filter(|a| self.held[dof(*a)]) {
+            k.row_mut(a).fill(0.0);
+            k.column_mut(a).fill(0.0);
+            push[a] = 0.0;
+        }
+        (k, push)
+    }
+
+    /// Forces on followers turn with the body: `n (r · dω) - ...` on the rotation of the lead.
+    fn add_body_terms(&self, state: &State, balance: &Balance, matrix: &mut BlockMatrix) {
+        let graph = Arc::clone(&self.pattern.graph);
+        for node in (0..self.leads.len()).filter(|n| self.leads[*n] as usize != *n) {
+            let lead = self.leads[node] as usize;
+            let lever = lever(&state.position, &self.leads, node).cross_matrix();
+            let term: Matrix3<f64> = vector(&balance.nodal, 6 * node).cross_matrix() * lever;
+            let at = graph.col_ptr[lead] * 36;
+            for (row, column) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+                if !self.held[6 * lead + 3 + row] && !self.held[6 * lead + 3 + column] {
+                    matrix.values[at + (column + 3) * 6 + row + 3] +=
+                        0.5 * (term[(row, column)] + term[(column, row)]);
+                }
+            }
+        }
+    }
+
+    pub fn factorise(&self, matrix: &BlockMatrix) -> Result<Factor, FactorError> {
+        self.analysis.factorise_indefinite(matrix, self.threads)
+    }
+
+    /// Displacement and spin of a node for a step of the dofs, to first order.
+    fn node_step(&self, state: &State, step: &[f64], node: usize) -> (Vector3<f64>, Vector3<f64>) {
+        let at = 6 * self.leads[node] as usize;
+        let (du, spin) = (vector(step, at), vector(step, at + 3));
+        (du + spin.cross(&lever(&state.position, &self.leads, node)), spin)
+    }
+
+    /// Element forces that a step is expected to lead to: those of the mixed integration point.
+    pub fn predict(&self, state: &State, balance: &Balance, step: &[f64]) -> Vec<Vector24> {
+        self.each(0..self.quads.len(), |q| {
+            let mut spins = Vector24::zeros();
+            for (i, node) in self.model.mesh.quads[q].iter().enumerate() {
+                let (du, spin) = self.node_step(state, step, *node as usize);
+                spins.fixed_rows_mut::<3>(6 * i).copy_from(&du);
+                spins.fixed_rows_mut::<3>(6 * i + 3).copy_from(&spin);
+            }
+            balance.local[q] + self.stiffness(q) * balance.motions[q].deformation_rate(&spins)
+        })
+    }
+
+    /// Moves the nodes by a step of the dofs: rotations compose, bodies stay rigid.
+    pub fn advance(&self, state: &mut State, step: &[f64]) {
+        let before = state.position.clone();
+        for node in 0..before.len() {
+            let lead = self.leads[node] as usize;
+            let turn = UnitQuaternion::from_scaled_axis(vector(step, 6 * lead + 3));
+            state.position[node] =
+                before[lead] + vector(step, 6 * lead) + turn * (before[node] - before[lead]);
+            let mut rotation = turn * state.rotation[node];
+            rotation.renormalize();
+            state.rotation[node] = rotation;
+        }
+    }
+
+    /// Largest rotation of a node against its element (rad).
+    pub fn largest_rotation(balance: &Balance) -> f64 {
+        balance.motions.iter().map(Motion::largest_rotation).fold(0.0, f64::max)
+    }
+
+    /// Reactions at the held dofs; 0 elsewhere.
+    pub fn reactions(&self, balance: &Balance) -> Vec<f64> {
+        balance.unbalanced.iter().zip(&self.held).map(|(f, held)| if *held { *f } else { 0.0 }).collect()
+    }
+}
+
+/// Three entries as a vector.
+fn vector(values: &[f64], at: usize) -> Vector3<f64> {
+    Vector3::new(values[at], values[at + 1], values[at + 2])
+}
