@@ -7,12 +7,12 @@ mod edge;
 mod probe;
 mod recovery;
 
-use nalgebra::{DMatrix, Matrix2, Matrix3, Vector2, Vector3};
+use nalgebra::{DMatrix, Matrix2, Matrix3, Point3, Vector2, Vector3};
 
 pub use edge::edge_moments;
 pub use probe::{Line, Locator, ProbeValue};
 
-use crate::element::{Cells, Prepared, Vector24};
+use crate::element::{Cell, Cells, Matrix24, Prepared, Vector24};
 use crate::mesh::QuadMesh;
 use crate::model::{Model, ModelError};
 use recovery::Patches;
@@ -58,8 +58,32 @@ impl ElementResultants {
     }
 }
 
-fn element_resultants(element: &Prepared, warp: &Vector3<f64>, u: &Vector24) -> ElementResultants {
-    let local = element.to_local() * u;
+/// What elements that are equal up to a translation share.
+struct Geometry {
+    element: Prepared,
+    to_local: Matrix24,
+    smoothing: Vec<Cell>,
+    corners: [Point3<f64>; 4],
+}
+
+impl Geometry {
+    fn of(model: &Model, quad: usize, flat: bool) -> Result<Self, ModelError> {
+        let element = model.element(quad, flat)?;
+        let (to_local, smoothing) = (element.to_local(), element.cells().collect());
+        Ok(Self { element, to_local, smoothing, corners: model.mesh.corners(quad) })
+    }
+
+    /// Equal up to a translation, to the rounding of the coordinates.
+    fn is_like(&self, corners: &[Point3<f64>; 4]) -> bool {
+        let own = &self.corners;
+        let size = (own[2] - own[0]).norm();
+        (1..4).all(|i| ((corners[i] - corners[0]) - (own[i] - own[0])).amax() <= 1e-12 * size)
+    }
+}
+
+fn element_resultants(geometry: &Geometry, warp: &Vector3<f64>, u: &Vector24) -> ElementResultants {
+    let element = &geometry.element;
+    let local = geometry.to_local * u;
     // From element axes to material axes: the warp seen in the element's plane.
     let a = element.frame.rotation * warp;
     let (s, c) = a.y.atan2(a.x).sin_cos();
@@ -70,10 +94,11 @@ fn element_resultants(element: &Prepared, warp: &Vector3<f64>, u: &Vector24) -> 
         -c * s, c * s, c * c - s * s,
     );
     let vector = Matrix2::new(c, s, -s, c);
-    let cells = element
-        .cells()
+    let cells = geometry
+        .smoothing
+        .iter()
         .map(|cell| {
-            let (strain, curvature) = element.strains(&cell, &local);
+            let (strain, curvature) = element.strains(cell, &local);
             (cell.area, (stress * element.d_m * strain).into(), (stress * element.d_b * curvature).into())
         })
         .collect();
@@ -94,10 +119,15 @@ fn for_each_element(
     displacement: &[f64],
     mut visit: impl FnMut(usize, ElementResultants),
 ) -> Result<(), ModelError> {
+    let mut last: Option<Geometry> = None;
     for (quad, nodes) in model.mesh.quads.iter().enumerate() {
-        let element = model.element(quad, flat)?;
+        let geometry = match last.take() {
+            Some(geometry) if geometry.is_like(&model.mesh.corners(quad)) => geometry,
+            _ => Geometry::of(model, quad, flat)?,
+        };
         let u = Vector24::from_fn(|k, _| displacement[6 * nodes[k / 6] as usize + k % 6]);
-        visit(quad, element_resultants(&element, &model.warp, &u));
+        visit(quad, element_resultants(&geometry, &model.warp, &u));
+        last = Some(geometry);
     }
     Ok(())
 }
