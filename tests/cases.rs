@@ -18,7 +18,7 @@ fn every_shipped_case_is_read_and_every_explicit_section_passes_its_checks() {
     for path in shipped() {
         let case = Case::read(&path).unwrap_or_else(|e| panic!("{e}"));
         let Some(table) = &case.section else { continue };
-        let result = solve_case(&case, section(table).unwrap(), None, &Options::default()).unwrap();
+        let result = solve_case(&case, section(table).unwrap(), &Options::default()).unwrap();
         for check in &result.checks {
             println!("{}: {} error {:.2e}", case.name, check.quantity, check.relative_error);
             assert!(check.passed, "{}: {check:?}", case.name);
@@ -35,8 +35,8 @@ fn decoupled_and_coupled_solutions_are_equal() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/benchmark_clamped_orthotropic.toml");
     let case = Case::read(&path).unwrap();
     let s = section(case.section.as_ref().unwrap()).unwrap();
-    let apart = solve_case(&case, s.clone(), None, &Options::default()).unwrap();
-    let together = solve_case(&case, s, None, &Options { coupled: true, ..Options::default() }).unwrap();
+    let apart = solve_case(&case, s.clone(), &Options::default()).unwrap();
+    let together = solve_case(&case, s, &Options { coupled: true, ..Options::default() }).unwrap();
     let scale = apart.w_max.abs();
     for (a, b) in apart.solution.displacement.iter().zip(&together.solution.displacement) {
         assert!((a - b).abs() < 1e-9 * scale.max(a.abs()));
@@ -60,7 +60,7 @@ const PRESSURE: &str = "[[loads]]\nkind = \"pressure\"\nvalue = \"1e-6 Pa\"\n";
 fn a_modal_case_gives_frequencies_and_the_first_shape() {
     let case = parsed("kind = \"modal\"\nmodes = 3", "");
     let s = section(case.section.as_ref().unwrap()).unwrap();
-    let result = solve_case(&case, s, None, &Options::default()).unwrap();
+    let result = solve_case(&case, s, &Options::default()).unwrap();
     assert_eq!(result.frequencies.len(), 3);
     let omega = result.frequencies[0] * std::f64::consts::TAU;
     assert!((omega / 35.98519 - 1.0).abs() < 0.02, "{omega}");
@@ -74,8 +74,8 @@ fn a_modal_case_gives_frequencies_and_the_first_shape() {
 fn a_dynamic_case_swings_about_the_static_deflection() {
     let case = parsed("kind = \"newmark\"\nduration = \"0.175 s\"\nstep = \"0.5 ms\"", PRESSURE);
     let s = section(case.section.as_ref().unwrap()).unwrap();
-    let dynamic = solve_case(&case, s.clone(), None, &Options::default()).unwrap();
-    let still = solve_case(&parsed("kind = \"linear\"", PRESSURE), s, None, &Options::default()).unwrap();
+    let dynamic = solve_case(&case, s.clone(), &Options::default()).unwrap();
+    let still = solve_case(&parsed("kind = \"linear\"", PRESSURE), s, &Options::default()).unwrap();
     let ratio = dynamic.w_max / still.w_max;
     assert!((1.9..2.2).contains(&ratio), "{ratio}");
     let history = dynamic.history.unwrap();

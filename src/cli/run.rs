@@ -45,10 +45,13 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let tree = Tree::open(&options.output, &options.task)?;
     let reports = fabrics(&work, &tasks, &tree, ui)?;
     let own: Vec<Task> =
-        tasks.iter().filter(|t| t.fabric.is_none() && t.case.sheet.is_some()).copied().collect();
+        tasks.iter().filter(|t| t.fabric.is_none() && t.case.sheet.is_some()).cloned().collect();
     let benchmarks: Vec<(Task, Result<CaseResult, Failure>)> = own
         .into_par_iter()
-        .map(|task| (task, task.solve().and_then(|r| tree.solved(&task, &r).map(|()| r))))
+        .map(|task| {
+            let result = task.solve().and_then(|r| tree.solved(&task, &r).map(|()| r));
+            (task, result)
+        })
         .collect();
     ui.go_on()?;
 
@@ -99,7 +102,7 @@ fn fabrics(work: &Work, tasks: &[Task], tree: &Tree, ui: &Ui) -> Result<Vec<Fabr
         .filter_map(|fabric| {
             ui.go_on().ok()?;
             let mine = |t: &&Task| t.fabric.is_some_and(|f| std::ptr::eq(f, &raw const fabric.sheet));
-            let mine: Vec<Task> = tasks.iter().filter(mine).copied().collect();
+            let mine: Vec<Task> = tasks.iter().filter(mine).cloned().collect();
             let report = FabricReport::of(fabric, &mine, tree);
             bar.inc(1);
             Some(report)

@@ -1,6 +1,7 @@
 //! A case together with the fabric it is for: what solve, compare and run have in common.
 
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
 
 use clap::Args;
 use serde_json::{Value, json};
@@ -15,7 +16,8 @@ use crate::quantity::{Curve, Estimate};
 use crate::section::ShellSection;
 use crate::solve::Options as SolveOptions;
 use crate::study::{
-    self, Case, CaseResult, Comparison, VirtualCurve, VirtualTest, compare_curves, measured_curve,
+    self, Case, CaseResult, Comparison, PreparedCase, PreparedTest, VirtualCurve, VirtualTest,
+    compare_curves, measured_curve,
 };
 
 /// Cases and fabrics on the command line.
@@ -45,10 +47,19 @@ pub struct Work {
 }
 
 /// A case and its fabric; none for a case with constants of its own.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct Task<'a> {
     pub case: &'a Case,
     pub fabric: Option<&'a FabricSheet>,
+    shared: Arc<Shared<'a>>,
+}
+
+/// What the tasks of one case share, made by the first that needs it. Nothing in the making waits for
+/// other threads' work, so those that wait for it cannot lock each other out.
+#[derive(Default)]
+struct Shared<'a> {
+    case: OnceLock<Result<PreparedCase<'a>, Failure>>,
+    test: OnceLock<Result<PreparedTest, Failure>>,
 }
 
 /// A simulated test with what was measured.
@@ -103,17 +114,19 @@ fn is_within(path: &Path, folder: &Path) -> bool {
 
 impl Work {
     /// Every case with every fabric it is for, cases in order; a case that finds none is a failure.
-    pub fn tasks(&self) -> (Vec<Task<'_>>, Vec<Failure>) {
+    pub fn tasks<'w>(&'w self) -> (Vec<Task<'w>>, Vec<Failure>) {
         let (mut tasks, mut failures) = (Vec::new(), Vec::new());
         for case in &self.cases {
+            let shared = Arc::default();
             if case.section.is_some() {
-                tasks.push(Task { case, fabric: None });
+                tasks.push(Task { case, fabric: None, shared });
                 continue;
             }
             let named = named_fabric(case);
-            let is_for = |f: &&Fabric| named.as_ref().is_none_or(|n| is_within(&f.path, n));
+            let is_for = |f: &&'w Fabric| named.as_ref().is_none_or(|n| is_within(&f.path, n));
             let before = tasks.len();
-            tasks.extend(self.fabrics.iter().filter(is_for).map(|f| Task { case, fabric: Some(&f.sheet) }));
+            let task = |f: &'w Fabric| Task { case, fabric: Some(&f.sheet), shared: Arc::clone(&shared) };
+            tasks.extend(self.fabrics.iter().filter(is_for).map(task));
             if tasks.len() == before {
                 let text = format!("{} is for a fabric, and none is there", case.name);
                 failures.push(
@@ -160,7 +173,9 @@ impl Task<'_> {
     /// Solves a case with a `[sheet]`.
     pub fn solve(&self) -> Result<CaseResult, Failure> {
         let solved = self.section().and_then(|(section, _)| {
-            Ok(study::solve_case(self.case, section, None, &SolveOptions::default())?)
+            let prepare = || Ok(PreparedCase::new(self.case, &SolveOptions::default())?);
+            let prepared = self.shared.case.get_or_init(prepare).as_ref().map_err(Clone::clone)?;
+            Ok(prepared.solve(section)?)
         });
         solved.map_err(|f| f.of(&self.name()))
     }
@@ -177,9 +192,11 @@ impl Task<'_> {
             study::compression(sheet).into_iter().collect()
         } else {
             let (section, _) = self.section()?;
+            let prepare = || Ok(PreparedTest::new(self.case, spec, &SolveOptions::default())?);
+            let prepared = self.shared.test.get_or_init(prepare).as_ref().map_err(Clone::clone)?;
             [Direction::Warp, Direction::Weft]
                 .into_iter()
-                .map(|d| study::simulate(self.case, spec, d, &section))
+                .map(|d| prepared.simulate(d, &section))
                 .collect::<Result<Vec<_>, _>>()?
         };
         Ok(curves.into_iter().map(|c| self.tested(sheet, c)).collect())

@@ -14,7 +14,7 @@ use crate::report::OutputFolder;
 use crate::report::chart::{self, ChartError, FieldPlot, SimulatedCurve};
 use crate::report::json::{section_document, sheet_document, text};
 use crate::report::vtu::{MeshField, vtu};
-use crate::study::CaseResult;
+use crate::study::{CaseResult, StudyError};
 
 /// A folder of results that several threads may write to.
 pub struct Tree {
@@ -144,13 +144,14 @@ impl Mesh {
             values.chunks_exact(6).flat_map(|v| v[from..from + 3].to_vec()).collect()
         };
         let (u, r) = (&result.solution.displacement, &result.solution.reaction);
+        let nodal = result.nodal().map_err(StudyError::from)?;
         let fields = [
             ("displacement", 3, six(u, 0)),
             ("rotation", 3, six(u, 3)),
             ("reaction_force", 3, six(r, 0)),
-            ("membrane_force", 3, result.nodal.iter().flat_map(|n| n.membrane).collect()),
-            ("moment", 3, result.nodal.iter().flat_map(|n| n.moment).collect()),
-            ("shear_force", 2, result.nodal.iter().flat_map(|n| n.shear).collect()),
+            ("membrane_force", 3, nodal.iter().flat_map(|n| n.membrane).collect()),
+            ("moment", 3, nodal.iter().flat_map(|n| n.moment).collect()),
+            ("shear_force", 2, nodal.iter().flat_map(|n| n.shear).collect()),
         ];
         let fields: Vec<_> = fields
             .iter()

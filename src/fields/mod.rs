@@ -7,12 +7,13 @@ mod edge;
 mod probe;
 mod recovery;
 
-use nalgebra::{DMatrix, Matrix2, Matrix3, Vector2, Vector3};
+use nalgebra::{DMatrix, Matrix2, Matrix3, Point3, Vector2, Vector3};
 
 pub use edge::edge_moments;
-pub use probe::{Locator, ProbeValue, profile};
+pub use probe::{Line, Locator, ProbeValue};
 
-use crate::element::{Cells, Prepared, Vector24};
+use crate::element::{Cell, Cells, Matrix24, Prepared, Vector24};
+use crate::mesh::QuadMesh;
 use crate::model::{Model, ModelError};
 use recovery::Patches;
 
@@ -44,8 +45,45 @@ struct ElementResultants {
     centre_shear: [f64; 2],
 }
 
-fn element_resultants(element: &Prepared, warp: &Vector3<f64>, u: &Vector24) -> ElementResultants {
-    let local = element.to_local() * u;
+impl ElementResultants {
+    /// The mean over the cells, the shear at the centre.
+    fn mean(&self) -> Resultants {
+        let area: f64 = self.cells.iter().map(|c| c.0).sum();
+        let mut mean = Resultants::default();
+        for (a, membrane, moment) in &self.cells {
+            mean.add(&Resultants { membrane: *membrane, moment: *moment, shear: [0.0; 2] }, a / area);
+        }
+        mean.shear = self.centre_shear;
+        mean
+    }
+}
+
+/// What elements that are equal up to a translation share.
+struct Geometry {
+    element: Prepared,
+    to_local: Matrix24,
+    smoothing: Vec<Cell>,
+    corners: [Point3<f64>; 4],
+}
+
+impl Geometry {
+    fn of(model: &Model, quad: usize, flat: bool) -> Result<Self, ModelError> {
+        let element = model.element(quad, flat)?;
+        let (to_local, smoothing) = (element.to_local(), element.cells().collect());
+        Ok(Self { element, to_local, smoothing, corners: model.mesh.corners(quad) })
+    }
+
+    /// Equal up to a translation, to the rounding of the coordinates.
+    fn is_like(&self, corners: &[Point3<f64>; 4]) -> bool {
+        let own = &self.corners;
+        let size = (own[2] - own[0]).norm();
+        (1..4).all(|i| ((corners[i] - corners[0]) - (own[i] - own[0])).amax() <= 1e-12 * size)
+    }
+}
+
+fn element_resultants(geometry: &Geometry, warp: &Vector3<f64>, u: &Vector24) -> ElementResultants {
+    let element = &geometry.element;
+    let local = geometry.to_local * u;
     // From element axes to material axes: the warp seen in the element's plane.
     let a = element.frame.rotation * warp;
     let (s, c) = a.y.atan2(a.x).sin_cos();
@@ -56,10 +94,11 @@ fn element_resultants(element: &Prepared, warp: &Vector3<f64>, u: &Vector24) -> 
         -c * s, c * s, c * c - s * s,
     );
     let vector = Matrix2::new(c, s, -s, c);
-    let cells = element
-        .cells()
+    let cells = geometry
+        .smoothing
+        .iter()
         .map(|cell| {
-            let (strain, curvature) = element.strains(&cell, &local);
+            let (strain, curvature) = element.strains(cell, &local);
             (cell.area, (stress * element.d_m * strain).into(), (stress * element.d_b * curvature).into())
         })
         .collect();
@@ -76,14 +115,19 @@ fn element_resultants(element: &Prepared, warp: &Vector3<f64>, u: &Vector24) -> 
 
 fn for_each_element(
     model: &Model,
+    flat: bool,
     displacement: &[f64],
     mut visit: impl FnMut(usize, ElementResultants),
 ) -> Result<(), ModelError> {
-    let flat = model.mesh.is_flat();
+    let mut last: Option<Geometry> = None;
     for (quad, nodes) in model.mesh.quads.iter().enumerate() {
-        let element = model.element(quad, flat)?;
+        let geometry = match last.take() {
+            Some(geometry) if geometry.is_like(&model.mesh.corners(quad)) => geometry,
+            _ => Geometry::of(model, quad, flat)?,
+        };
         let u = Vector24::from_fn(|k, _| displacement[6 * nodes[k / 6] as usize + k % 6]);
-        visit(quad, element_resultants(&element, &model.warp, &u));
+        visit(quad, element_resultants(&geometry, &model.warp, &u));
+        last = Some(geometry);
     }
     Ok(())
 }
@@ -107,70 +151,83 @@ pub fn cells(model: &Model, displacement: &[f64]) -> Result<Vec<Vec<Resultants>>
 /// # Errors
 /// M008 if the warp direction is normal to an element.
 pub fn element_means(model: &Model, displacement: &[f64]) -> Result<Vec<Resultants>, ModelError> {
-    let mut means = vec![Resultants::default(); model.mesh.quads.len()];
-    for_each_element(model, displacement, |quad, e| {
-        let area: f64 = e.cells.iter().map(|c| c.0).sum();
-        for (a, membrane, moment) in e.cells {
-            means[quad].add(&Resultants { membrane, moment, shear: [0.0; 2] }, a / area);
-        }
-        means[quad].shear = e.centre_shear;
-    })?;
+    let mut means = Vec::with_capacity(model.mesh.quads.len());
+    for_each_element(model, model.mesh.is_flat(), displacement, |_, e| means.push(e.mean()))?;
     Ok(means)
 }
 
-/// Resultants at the nodes. N and M: inside the sheet each element's cells extrapolated to its corners
-/// and averaged over the elements that meet; on its boundary the quadratic patch recovery from
-/// element means. Q: MITC4 values at the corners, averaged.
+/// Resultants at the nodes of a model: a [`Recovery`] used once.
+///
+/// # Errors
+/// M008 if the warp direction is normal to an element.
+pub fn nodal(model: &Model, displacement: &[f64]) -> Result<Vec<Resultants>, ModelError> {
+    Recovery::new(&model.mesh).nodal(model, displacement)
+}
+
+/// What the resultants at the nodes take from the mesh alone, shared by every model on it.
+///
+/// N and M: inside the sheet each element's cells extrapolated to its corners and averaged over the
+/// elements that meet; on its boundary the quadratic patch recovery from element means. Q: MITC4
+/// values at the corners, averaged.
 ///
 /// Second order everywhere. Averages would do for the inside and are first order on clamped
 /// edges (12 % at 32 x 32 elements of a clamped square, where the patch recovery has 0.2 %). Where the mesh
 /// has too few elements for a parabola (less than three across) the averages are kept. For clamped edges
 /// [`edge_moments`] is a second source, from the reactions (0.1 %).
-///
-/// # Errors
-/// M008 if the warp direction is normal to an element.
-pub fn nodal(model: &Model, displacement: &[f64]) -> Result<Vec<Resultants>, ModelError> {
-    let mut nodal = averages(model, displacement)?;
-    let means = element_means(model, displacement)?;
-    let patches = Patches::new(&model.mesh);
-    let mut boundary: Vec<u32> = model.mesh.boundary_edges().into_iter().flatten().collect();
-    boundary.sort_unstable();
-    boundary.dedup();
-    for node in boundary {
-        let Some(weights) = patches.weights(node as usize) else { continue };
-        let mut fitted = Resultants::default();
-        for (quad, weight) in weights {
-            fitted.add(&means[quad], weight);
-        }
-        let at = &mut nodal[node as usize];
-        *at = Resultants { shear: at.shear, ..fitted };
-    }
-    Ok(nodal)
+#[derive(Clone, Debug)]
+pub struct Recovery {
+    flat: bool,
+    /// Boundary nodes that have a patch, and the weight of each element mean of it.
+    boundary: Vec<(u32, Vec<(usize, f64)>)>,
 }
 
-/// Each element's cells extrapolated to its corners, then averaged over the elements that meet.
-fn averages(model: &Model, displacement: &[f64]) -> Result<Vec<Resultants>, ModelError> {
-    let weights = extrapolation(model.formulation.cells);
-    let mut sums = vec![(Resultants::default(), 0.0); model.mesh.nodes.len()];
-    for_each_element(model, displacement, |quad, e| {
-        for (corner, node) in model.mesh.quads[quad].iter().enumerate() {
-            let (sum, count) = &mut sums[*node as usize];
-            for (k, (_, membrane, moment)) in e.cells.iter().enumerate() {
-                let part = Resultants { membrane: *membrane, moment: *moment, shear: [0.0; 2] };
-                sum.add(&part, weights[(corner, k)]);
+impl Recovery {
+    /// The patches of a mesh.
+    pub fn new(mesh: &QuadMesh) -> Self {
+        let patches = Patches::new(mesh);
+        let mut nodes: Vec<u32> = mesh.boundary_edges().into_iter().flatten().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let boundary = nodes.into_iter().filter_map(|n| Some((n, patches.weights(n as usize)?))).collect();
+        Self { flat: mesh.is_flat(), boundary }
+    }
+
+    /// Resultants at the nodes of a model on the mesh.
+    ///
+    /// # Errors
+    /// M008 if the warp direction is normal to an element.
+    pub fn nodal(&self, model: &Model, displacement: &[f64]) -> Result<Vec<Resultants>, ModelError> {
+        let weights = extrapolation(model.formulation.cells);
+        let mut means = Vec::with_capacity(model.mesh.quads.len());
+        let mut sums = vec![(Resultants::default(), 0.0); model.mesh.nodes.len()];
+        for_each_element(model, self.flat, displacement, |quad, e| {
+            means.push(e.mean());
+            for (corner, node) in model.mesh.quads[quad].iter().enumerate() {
+                let (sum, count) = &mut sums[*node as usize];
+                for (k, (_, membrane, moment)) in e.cells.iter().enumerate() {
+                    let part = Resultants { membrane: *membrane, moment: *moment, shear: [0.0; 2] };
+                    sum.add(&part, weights[(corner, k)]);
+                }
+                sum.add(&Resultants { shear: e.corner_shear[corner], ..Default::default() }, 1.0);
+                *count += 1.0;
             }
-            sum.add(&Resultants { shear: e.corner_shear[corner], ..Default::default() }, 1.0);
-            *count += 1.0;
+        })?;
+        let mut nodal: Vec<Resultants> = sums
+            .into_iter()
+            .map(|(sum, count)| {
+                let mut mean = Resultants::default();
+                mean.add(&sum, 1.0 / count);
+                mean
+            })
+            .collect();
+        for (node, patch) in &self.boundary {
+            let mut fitted = Resultants::default();
+            patch.iter().for_each(|(quad, weight)| fitted.add(&means[*quad], *weight));
+            let at = &mut nodal[*node as usize];
+            *at = Resultants { shear: at.shear, ..fitted };
         }
-    })?;
-    Ok(sums
-        .into_iter()
-        .map(|(sum, count)| {
-            let mut mean = Resultants::default();
-            mean.add(&sum, 1.0 / count);
-            mean
-        })
-        .collect())
+        Ok(nodal)
+    }
 }
 
 /// Weights (4 corners x cells) of the least-squares surface through the cell values, in natural

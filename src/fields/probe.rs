@@ -27,24 +27,34 @@ pub struct ProbeValue {
     pub resultants: Resultants,
 }
 
+/// How far outside of a quad, relative to its size, a point still counts as on its edge.
+const OUTSIDE: f64 = 1.0 + 1e-6;
+
+/// The longer diagonal of a quad (m).
+fn reach(corners: &[Point3<f64>; 4]) -> f64 {
+    (corners[2] - corners[0]).norm().max((corners[3] - corners[1]).norm())
+}
+
 impl Locator {
     /// The quad that holds the point, seen along its own normal; `None` outside the mesh.
     pub fn find(mesh: &QuadMesh, point: &Point3<f64>) -> Option<Self> {
-        const OUTSIDE: f64 = 1.0 + 1e-6;
-        (0..mesh.quads.len()).find_map(|quad| {
-            let corners = mesh.corners(quad);
-            let reach = (corners[2] - corners[0]).norm().max((corners[3] - corners[1]).norm());
-            if (point - corners[0]).norm() > reach * OUTSIDE {
-                return None;
-            }
-            let frame = Frame::of(&corners);
-            let centre = corners.iter().fold(nalgebra::Vector3::zeros(), |s, c| s + c.coords) / 4.0;
-            let local = frame.rotation * (point.coords - centre);
-            let [xi, eta] = natural(&frame.xy, [local.x, local.y])?;
-            let inside = xi.abs() <= OUTSIDE && eta.abs() <= OUTSIDE;
-            // A point well off the plane belongs to another part of a folded sheet.
-            (inside && local.z.abs() <= 0.1 * reach).then(|| Self { quad, weights: shape(xi, eta) })
-        })
+        (0..mesh.quads.len()).find_map(|quad| Self::within(mesh, quad, point))
+    }
+
+    /// The point in one quad, if it lies there.
+    fn within(mesh: &QuadMesh, quad: usize, point: &Point3<f64>) -> Option<Self> {
+        let corners = mesh.corners(quad);
+        let reach = reach(&corners);
+        if (point - corners[0]).norm() > reach * OUTSIDE {
+            return None;
+        }
+        let frame = Frame::of(&corners);
+        let centre = corners.iter().fold(nalgebra::Vector3::zeros(), |s, c| s + c.coords) / 4.0;
+        let local = frame.rotation * (point.coords - centre);
+        let [xi, eta] = natural(&frame.xy, [local.x, local.y])?;
+        let inside = xi.abs() <= OUTSIDE && eta.abs() <= OUTSIDE;
+        // A point well off the plane belongs to another part of a folded sheet.
+        (inside && local.z.abs() <= 0.1 * reach).then(|| Self { quad, weights: shape(xi, eta) })
     }
 
     /// A nodal quantity at the point.
@@ -81,21 +91,38 @@ fn natural(xy: &[[f64; 2]; 4], point: [f64; 2]) -> Option<[f64; 2]> {
     (xi.is_finite() && eta.is_finite()).then_some([xi, eta])
 }
 
-/// A nodal quantity at `count` equal steps from `from` to `to`: x = distance from `from` (m).
-/// Points outside the mesh are left out.
-pub fn profile(
-    mesh: &QuadMesh,
-    from: &Point3<f64>,
-    to: &Point3<f64>,
-    count: usize,
-    nodal: impl Fn(usize) -> f64,
-) -> Curve {
-    let length = (to - from).norm();
-    Curve::from_points((0..=count).filter_map(|k| {
-        let t = k as f64 / count as f64;
-        let locator = Locator::find(mesh, &(from + (to - from) * t))?;
-        Some((t * length, locator.interpolate(mesh, &nodal)))
-    }))
+/// Points at equal steps on a straight line across a mesh, found once for any number of fields.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Line {
+    /// Distance from the start (m) and the place in the mesh.
+    points: Vec<(f64, Locator)>,
+}
+
+impl Line {
+    /// The points at `count` equal steps from `from` to `to`; those outside the mesh are left out.
+    pub fn new(mesh: &QuadMesh, from: &Point3<f64>, to: &Point3<f64>, count: usize) -> Self {
+        let (low, high) = (from.inf(to), from.sup(to));
+        // A quad holds only points within its longer diagonal of its first corner.
+        let near: Vec<usize> = (0..mesh.quads.len())
+            .filter(|&quad| {
+                let corners = mesh.corners(quad);
+                let reach = reach(&corners) * OUTSIDE;
+                (0..3).all(|k| low[k] - reach <= corners[0][k] && corners[0][k] <= high[k] + reach)
+            })
+            .collect();
+        let length = (to - from).norm();
+        let points = (0..=count).filter_map(|k| {
+            let t = k as f64 / count as f64;
+            let point = from + (to - from) * t;
+            Some((t * length, near.iter().find_map(|quad| Locator::within(mesh, *quad, &point))?))
+        });
+        Self { points: points.collect() }
+    }
+
+    /// A nodal quantity along the line: x = distance from its start (m).
+    pub fn profile(&self, mesh: &QuadMesh, nodal: impl Fn(usize) -> f64) -> Curve {
+        Curve::from_points(self.points.iter().map(|(x, at)| (*x, at.interpolate(mesh, &nodal))))
+    }
 }
 
 #[cfg(test)]
@@ -113,7 +140,8 @@ mod tests {
             assert_relative_eq!(at.interpolate(&mesh, field), 1.0 + 2.0 * x - 3.0 * y, epsilon = 1e-12);
         }
         assert_eq!(Locator::find(&mesh, &Point3::new(2.1, 0.5, 0.0)), None);
-        let line = profile(&mesh, &Point3::new(0.0, 0.5, 0.0), &Point3::new(2.0, 0.5, 0.0), 10, field);
+        let line = Line::new(&mesh, &Point3::new(0.0, 0.5, 0.0), &Point3::new(2.0, 0.5, 0.0), 10);
+        let line = line.profile(&mesh, field);
         assert_eq!(line.len(), 11);
         assert_relative_eq!(line.y[10], 3.5, epsilon = 1e-12);
     }

@@ -161,8 +161,9 @@ impl OutputFolder {
         }
         let path = self.root.join(name);
         let new = hash(bytes);
-        let old = existing(&path)?.map(|old| hash(&old));
-        if old.as_ref() != Some(&new) {
+        let old = existing(&path)?;
+        if old.as_deref() != Some(bytes) {
+            let old = old.as_deref().map(hash);
             // Ours: as an earlier run left it, or written by this one.
             let written = self.written.lock().unwrap_or_else(PoisonError::into_inner).get(name).cloned();
             let known = [self.earlier.get(name), written.as_ref()];

@@ -4,6 +4,7 @@
 mod build;
 mod case;
 mod compare;
+mod prepared;
 mod run;
 mod virtual_test;
 
@@ -15,8 +16,9 @@ pub use case::{
     VirtualTest,
 };
 pub use compare::{Comparison, compare_curves, measured_curve};
+pub use prepared::PreparedCase;
 pub use run::{CaseResult, CheckResult, History, Probe, Status, solve_case};
-pub use virtual_test::{VirtualCurve, compression, simulate};
+pub use virtual_test::{PreparedTest, VirtualCurve, compression, simulate};
 
 use crate::finding::Place;
 use crate::mesh::MeshError;

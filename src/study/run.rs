@@ -1,19 +1,19 @@
 //! Solving a case and reading its results.
 
 use std::ops::ControlFlow;
+use std::sync::{Arc, OnceLock};
 
-use nalgebra::Point3;
 use serde::Serialize;
 
 use super::case::{Analysis, Case, Check, Reference};
-use super::{StudyError, build};
-use crate::fields::{self, Locator, ProbeValue, Resultants, profile};
+use super::{PreparedCase, StudyError};
+use crate::fields::{Locator, ProbeValue, Recovery, Resultants};
 use crate::finding::{Finding, Place};
-use crate::model::Model;
+use crate::model::{Model, ModelError};
 use crate::quantity::{Curve, Frequency, Time, Unit, parse_quantity};
 use crate::section::ShellSection;
 use crate::solve::newmark::{self, Energy, LoadHistory, Rayleigh};
-use crate::solve::{self, Options, Plan, Solution};
+use crate::solve::{self, Options, Solution};
 
 /// How a case ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -76,8 +76,6 @@ pub struct CaseResult {
     pub model: Model,
     /// Displacements, reactions, energy, timings.
     pub solution: Solution,
-    /// Resultants at the nodes.
-    pub nodal: Vec<Resultants>,
     /// The largest |w| with its sign (m).
     pub w_max: f64,
     /// |w_max| over the bending thickness t_b = √(12 B / D_m).
@@ -95,6 +93,23 @@ pub struct CaseResult {
     pub history: Option<History>,
     /// What a reader of the result must know.
     pub findings: Vec<Finding>,
+    pub(super) recovery: Arc<OnceLock<Recovery>>,
+    pub(super) nodal: OnceLock<Vec<Resultants>>,
+}
+
+impl CaseResult {
+    /// Resultants at the nodes, found when first asked for.
+    ///
+    /// # Errors
+    /// M008 if the warp direction is normal to an element.
+    pub fn nodal(&self) -> Result<&[Resultants], ModelError> {
+        if let Some(nodal) = self.nodal.get() {
+            return Ok(nodal);
+        }
+        let recovery = self.recovery.get_or_init(|| Recovery::new(&self.model.mesh));
+        let nodal = recovery.nodal(&self.model, &self.solution.displacement)?;
+        Ok(self.nodal.get_or_init(|| nodal))
+    }
 }
 
 /// A dynamic analysis in time.
@@ -123,73 +138,61 @@ struct Outcome {
 /// solutions, ν = 0.316).
 const LINEAR_LIMIT: f64 = 0.3;
 
-/// Solves a case that has a `[sheet]`, for one section.
-///
-/// `plan` may carry the analysis of an earlier solve on the same mesh.
+/// Solves a case that has a `[sheet]`, for one section; many sections share a [`PreparedCase`].
 ///
 /// # Errors
 /// See [`StudyError`].
-pub fn solve_case(
-    case: &Case,
-    section: ShellSection,
-    plan: Option<&Plan>,
-    options: &Options,
-) -> Result<CaseResult, StudyError> {
-    let Some(sheet) = &case.sheet else {
-        return Err(
-            case.inconsistent("the case has no [sheet]; a [virtual_test] is compared, not solved".into())
-        );
-    };
-    let model = build::model(case, sheet, section)?;
-    let Outcome { solution, frequencies, history } = analyse(case, &model, plan, options)?;
-    let nodal = fields::nodal(&model, &solution.displacement)?;
-    let w = |n: usize| solution.displacement[6 * n + 2];
-    let w_max =
-        (0..model.mesh.nodes.len()).map(w).fold(0.0, |m: f64, v| if v.abs() > m.abs() { v } else { m });
-    let w_max = history.as_ref().map_or(w_max, |h| h.w_max);
-    let w_over_thickness = w_max.abs() / model.section.bending_thickness_squared().sqrt();
-    let probes = probes(case, &model, &solution, &nodal)?;
-    let readings = Readings { w_max, solution: &solution, frequencies: &frequencies, probes: &probes };
-    let checks = case.checks.iter().map(|c| check(case, c, &readings)).collect::<Result<Vec<_>, _>>()?;
-    let is_mode = !frequencies.is_empty();
-    let beyond_linear = !is_mode && w_over_thickness > LINEAR_LIMIT;
-    let findings = findings(case, &model, beyond_linear.then_some((w_max, w_over_thickness)));
-    let status = if checks.iter().any(|c| !c.passed) {
-        Status::CheckFailed
-    } else if beyond_linear {
-        Status::BeyondLinear
-    } else {
-        Status::Ok
-    };
-    let [from, to] = middle_line(&model);
-    let profile = profile(&model.mesh, &from, &to, 200, w);
-    let case = case.name.clone();
-    Ok(CaseResult {
-        case,
-        status,
-        model,
-        solution,
-        nodal,
-        w_max,
-        w_over_thickness,
-        probes,
-        checks,
-        profile,
-        frequencies,
-        history,
-        findings,
-    })
+pub fn solve_case(case: &Case, section: ShellSection, options: &Options) -> Result<CaseResult, StudyError> {
+    PreparedCase::new(case, options)?.solve(section)
 }
 
-fn analyse(
-    case: &Case,
-    model: &Model,
-    plan: Option<&Plan>,
-    options: &Options,
-) -> Result<Outcome, StudyError> {
+impl PreparedCase<'_> {
+    /// Solves the case for one section.
+    ///
+    /// # Errors
+    /// See [`StudyError`].
+    pub fn solve(&self, section: ShellSection) -> Result<CaseResult, StudyError> {
+        let case = self.case;
+        let model = self.model(section);
+        let Outcome { solution, frequencies, history } = analyse(self, &model)?;
+        let w = |n: usize| solution.displacement[6 * n + 2];
+        let largest = |m: f64, v: f64| if v.abs() > m.abs() { v } else { m };
+        let w_max = (0..model.mesh.nodes.len()).map(w).fold(0.0, largest);
+        let w_max = history.as_ref().map_or(w_max, |h| h.w_max);
+        let w_over_thickness = w_max.abs() / model.section.bending_thickness_squared().sqrt();
+        let beyond_linear = frequencies.is_empty() && w_over_thickness > LINEAR_LIMIT;
+        let findings = findings(case, &model, beyond_linear.then_some((w_max, w_over_thickness)));
+        let profile = self.middle.profile(&model.mesh, w);
+        let mut result = CaseResult {
+            case: case.name.clone(),
+            status: if beyond_linear { Status::BeyondLinear } else { Status::Ok },
+            model,
+            solution,
+            w_max,
+            w_over_thickness,
+            probes: Vec::new(),
+            checks: Vec::new(),
+            profile,
+            frequencies,
+            history,
+            findings,
+            recovery: Arc::clone(&self.recovery),
+            nodal: OnceLock::new(),
+        };
+        result.probes = probes(case, &self.probes, &result)?;
+        result.checks = case.checks.iter().map(|c| check(case, c, &result)).collect::<Result<_, _>>()?;
+        if result.checks.iter().any(|c| !c.passed) {
+            result.status = Status::CheckFailed;
+        }
+        Ok(result)
+    }
+}
+
+fn analyse(prepared: &PreparedCase<'_>, model: &Model) -> Result<Outcome, StudyError> {
+    let (case, options) = (prepared.case, &prepared.options);
     match &case.analysis {
         Analysis::Linear => {
-            let solution = match plan {
+            let solution = match &prepared.plan {
                 Some(plan) => solve::solve_with(model, plan, options)?,
                 None => solve::solve(model, options)?,
             };
@@ -218,7 +221,7 @@ fn analyse(
             if !(settings.step > 0.0 && settings.duration >= settings.step) {
                 return Err(case.inconsistent("newmark needs 0 < step <= duration".into()));
             }
-            dynamics(case, model, &settings, options)
+            dynamics(prepared, model, &settings)
         }
     }
 }
@@ -256,15 +259,14 @@ fn load_history(case: &Case, text: &str) -> Result<LoadHistory, StudyError> {
 }
 
 fn dynamics(
-    case: &Case,
+    prepared: &PreparedCase<'_>,
     model: &Model,
     settings: &newmark::Settings,
-    options: &Options,
 ) -> Result<Outcome, StudyError> {
-    let locators = locators(case, model)?;
+    let locators = &prepared.probes;
     let mut history = History { probes: vec![Vec::new(); locators.len()], ..History::default() };
     let mut solution = Solution::at_rest(model);
-    newmark::newmark(model, settings, options, |at| {
+    newmark::newmark(model, settings, &prepared.options, |at| {
         history.time.push(at.time);
         history.energy.push(at.energy);
         let w = |n: usize| at.displacement[6 * n + 2];
@@ -280,14 +282,6 @@ fn dynamics(
     let work = history.energy.iter().map(|e| e.work.abs()).fold(f64::MIN_POSITIVE, f64::max);
     history.imbalance = history.energy.iter().map(|e| e.imbalance().abs()).fold(0.0, f64::max) / work;
     Ok(Outcome { solution, frequencies: Vec::new(), history: Some(history) })
-}
-
-/// Ends of the middle line along x.
-fn middle_line(model: &Model) -> [Point3<f64>; 2] {
-    let start = (Point3::from([f64::INFINITY; 3]), Point3::from([f64::NEG_INFINITY; 3]));
-    let (low, high) = model.mesh.nodes.iter().fold(start, |(l, h), p| (l.inf(p), h.sup(p)));
-    let middle = nalgebra::center(&low, &high);
-    [Point3::new(low.x, middle.y, middle.z), Point3::new(high.x, middle.y, middle.z)]
 }
 
 fn findings(case: &Case, model: &Model, beyond_linear: Option<(f64, f64)>) -> Vec<Finding> {
@@ -317,47 +311,22 @@ fn findings(case: &Case, model: &Model, beyond_linear: Option<(f64, f64)>) -> Ve
     findings
 }
 
-fn locators(case: &Case, model: &Model) -> Result<Vec<Locator>, StudyError> {
-    case.probes
-        .iter()
-        .map(|p| {
-            let [x, y] = p.at.map(|c| c.si());
-            Locator::find(&model.mesh, &Point3::new(x, y, 0.0)).ok_or_else(|| {
-                case.inconsistent(format!("probe `{}` at ({x}, {y}) m lies outside the sheet", p.name))
-            })
-        })
-        .collect()
-}
-
-fn probes(
-    case: &Case,
-    model: &Model,
-    solution: &Solution,
-    nodal: &[Resultants],
-) -> Result<Vec<Probe>, StudyError> {
-    let locators = locators(case, model)?;
+fn probes(case: &Case, locators: &[Locator], result: &CaseResult) -> Result<Vec<Probe>, StudyError> {
+    if locators.is_empty() {
+        return Ok(Vec::new());
+    }
+    let nodal = result.nodal()?;
+    let value = |at: &Locator| at.value(&result.model.mesh, &result.solution.displacement, nodal);
     Ok(case
         .probes
         .iter()
         .zip(locators)
-        .map(|(p, locator)| Probe {
-            name: p.name.clone(),
-            at: p.at.map(|c| c.si()),
-            value: locator.value(&model.mesh, &solution.displacement, nodal),
-        })
+        .map(|(p, at)| Probe { name: p.name.clone(), at: p.at.map(|c| c.si()), value: value(at) })
         .collect())
 }
 
-/// What a check may ask for.
-struct Readings<'a> {
-    w_max: f64,
-    solution: &'a Solution,
-    frequencies: &'a [f64],
-    probes: &'a [Probe],
-}
-
 /// Value and SI unit of a quantity by name.
-fn lookup(quantity: &str, results: &Readings<'_>) -> Option<(f64, &'static str)> {
+fn lookup(quantity: &str, results: &CaseResult) -> Option<(f64, &'static str)> {
     match quantity {
         "w_max" => return Some((results.w_max, "m")),
         "strain_energy" => return Some((results.solution.strain_energy, "J")),
@@ -389,7 +358,7 @@ fn lookup(quantity: &str, results: &Readings<'_>) -> Option<(f64, &'static str)>
     })
 }
 
-fn check(case: &Case, check: &Check, results: &Readings<'_>) -> Result<CheckResult, StudyError> {
+fn check(case: &Case, check: &Check, results: &CaseResult) -> Result<CheckResult, StudyError> {
     let (value, unit) = lookup(&check.quantity, results).ok_or_else(|| {
         let names: Vec<&str> = results.probes.iter().map(|p| p.name.as_str()).collect();
         case.inconsistent(format!(

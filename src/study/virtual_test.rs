@@ -9,13 +9,14 @@ use nalgebra::Vector3;
 use super::StudyError;
 use super::build;
 use super::case::{Case, VirtualTest};
+use super::prepared::stand_in;
 use crate::characterise::FabricSheet;
 use crate::instrument::{Direction, Parameter, Test};
 use crate::mesh;
 use crate::model::{Dof, Model, Support};
 use crate::quantity::Curve;
 use crate::section::ShellSection;
-use crate::solve::{self, Options};
+use crate::solve::{self, Options, Plan};
 
 /// Standard specimen: width between the free edges (m).
 const WIDTH: f64 = 0.20;
@@ -70,7 +71,92 @@ impl VirtualCurve {
     }
 }
 
-/// Simulates a mechanical test (tensile, shear, bending) of a specimen cut along `direction`.
+/// A mechanical test (tensile, shear, bending) with everything that does not depend on the fabric:
+/// specimen, clamps, order of elimination and symbolic factorisation.
+#[derive(Debug)]
+pub struct PreparedTest {
+    test: Test,
+    /// The unit of the abscissa that is applied.
+    x: f64,
+    /// What is read at the moving clamp.
+    reading: Dof,
+    /// Nodes of the moving clamp.
+    right: Vec<u32>,
+    /// With a stand-in for the section, warp along x.
+    model: Model,
+    plan: Plan,
+    options: Options,
+}
+
+impl PreparedTest {
+    /// Makes the test of a case ready.
+    ///
+    /// # Errors
+    /// See [`StudyError`]; S003 for compression, which a shell does not have.
+    pub fn new(case: &Case, spec: &VirtualTest, options: &Options) -> Result<Self, StudyError> {
+        let gauge = match spec.test {
+            Test::Tensile | Test::Shear => 0.05,
+            Test::Bending => 0.01,
+            Test::Compression => {
+                return Err(case.inconsistent(
+                    "a shell has no thickness to compress: use `compression` of a sheet".into(),
+                ));
+            }
+        };
+        let mesh = mesh::rectangle(gauge, WIDTH, spec.cells[0], spec.cells[1])?;
+        let (left, right) = (mesh.set("left")?.to_vec(), mesh.set("right")?.to_vec());
+        // A small unit of the abscissa; the solution is scaled, so its size is free.
+        let x = match spec.test {
+            Test::Bending => 1.0,
+            _ => 1e-3,
+        };
+        let (reading, moved) = match spec.test {
+            Test::Tensile => (Dof::U, vec![(Dof::U, x * gauge), (Dof::V, 0.0), (Dof::ThetaZ, 0.0)]),
+            Test::Shear => (Dof::V, vec![(Dof::U, 0.0), (Dof::V, x * gauge), (Dof::ThetaZ, 0.0)]),
+            // A circular arc: θy = κ x and w = -κ x² / 2 satisfy w,x = -θy.
+            _ => {
+                let w = -0.5 * x * gauge * gauge;
+                (Dof::ThetaY, vec![(Dof::ThetaY, x * gauge), (Dof::W, w), (Dof::ThetaX, 0.0)])
+            }
+        };
+        let model = Model {
+            mesh,
+            section: stand_in(),
+            warp: Vector3::x(),
+            formulation: build::formulation(case)?,
+            supports: vec![Support::clamped(&left), Support { nodes: right.clone(), held: moved }],
+            loads: Vec::new(),
+        };
+        let plan = Plan::new(&model.mesh, &Plan::groups(&model, options), options.path)?;
+        Ok(Self { test: spec.test, x, reading, right, model, plan, options: *options })
+    }
+
+    /// Simulates the test of a specimen cut along `direction`.
+    ///
+    /// # Errors
+    /// See [`StudyError`].
+    pub fn simulate(&self, direction: Direction, section: &ShellSection) -> Result<VirtualCurve, StudyError> {
+        let warp = match direction {
+            Direction::Warp => Vector3::x(),
+            Direction::Weft => Vector3::y(),
+            Direction::Bias => Vector3::new(1.0, 1.0, 0.0),
+        };
+        let model = Model { section: section.clone(), warp, ..self.model.clone() };
+        let solution = solve::solve_with(&model, &self.plan, &self.options)?;
+        let at = |n: &u32| solution.reaction[6 * *n as usize + self.reading as usize];
+        let apparent = self.right.iter().map(at).sum::<f64>() / WIDTH / self.x;
+        let along = section.rotated(warp.y.atan2(warp.x));
+        let ideal = match self.test {
+            // A wide strip between free edges: uniaxial stiffness, 1 over the compliance.
+            Test::Tensile => along.d_m.try_inverse().map_or(f64::NAN, |c| 1.0 / c[(0, 0)]),
+            Test::Shear => along.d_m[(2, 2)],
+            _ => along.d_b[(0, 0)],
+        };
+        Ok(VirtualCurve { ideal, ..VirtualCurve::line(self.test, Some(direction), apparent) })
+    }
+}
+
+/// Simulates a mechanical test of a specimen cut along `direction`: a [`PreparedTest`] used once.
 ///
 /// # Errors
 /// See [`StudyError`]; S003 for compression, which a shell does not have.
@@ -80,56 +166,7 @@ pub fn simulate(
     direction: Direction,
     section: &ShellSection,
 ) -> Result<VirtualCurve, StudyError> {
-    let gauge = match spec.test {
-        Test::Tensile | Test::Shear => 0.05,
-        Test::Bending => 0.01,
-        Test::Compression => {
-            return Err(case
-                .inconsistent("a shell has no thickness to compress: use `compression` of a sheet".into()));
-        }
-    };
-    let mesh = mesh::rectangle(gauge, WIDTH, spec.cells[0], spec.cells[1])?;
-    let (left, right) = (mesh.set("left")?.to_vec(), mesh.set("right")?.to_vec());
-    // A small unit of the abscissa; the solution is scaled, so its size is free.
-    let x = match spec.test {
-        Test::Bending => 1.0,
-        _ => 1e-3,
-    };
-    let moved: Vec<(Dof, f64)> = match spec.test {
-        Test::Tensile => vec![(Dof::U, x * gauge), (Dof::V, 0.0), (Dof::ThetaZ, 0.0)],
-        Test::Shear => vec![(Dof::U, 0.0), (Dof::V, x * gauge), (Dof::ThetaZ, 0.0)],
-        // A circular arc: θy = κ x and w = -κ x² / 2 satisfy w,x = -θy.
-        _ => vec![(Dof::ThetaY, x * gauge), (Dof::W, -0.5 * x * gauge * gauge), (Dof::ThetaX, 0.0)],
-    };
-    let warp = match direction {
-        Direction::Warp => Vector3::x(),
-        Direction::Weft => Vector3::y(),
-        Direction::Bias => Vector3::new(1.0, 1.0, 0.0),
-    };
-    let reading = match spec.test {
-        Test::Tensile => Dof::U,
-        Test::Shear => Dof::V,
-        _ => Dof::ThetaY,
-    };
-    let model = Model {
-        mesh,
-        section: section.clone(),
-        warp,
-        formulation: build::formulation(case)?,
-        supports: vec![Support::clamped(&left), Support { nodes: right.clone(), held: moved }],
-        loads: Vec::new(),
-    };
-    let solution = solve::solve(&model, &Options::default())?;
-    let total: f64 = right.iter().map(|n| solution.reaction[6 * *n as usize + reading as usize]).sum();
-    let apparent = total / WIDTH / x;
-    let along = section.rotated(warp.y.atan2(warp.x));
-    let ideal = match spec.test {
-        // A wide strip between free edges: uniaxial stiffness, 1 over the compliance.
-        Test::Tensile => along.d_m.try_inverse().map_or(f64::NAN, |c| 1.0 / c[(0, 0)]),
-        Test::Shear => along.d_m[(2, 2)],
-        _ => along.d_b[(0, 0)],
-    };
-    Ok(VirtualCurve { ideal, ..VirtualCurve::line(spec.test, Some(direction), apparent) })
+    PreparedTest::new(case, spec, &Options::default())?.simulate(direction, section)
 }
 
 /// The compression curve of a sheet: the exponential through its two thicknesses, T0 at
