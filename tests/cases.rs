@@ -110,7 +110,7 @@ fn a_mesh_file_is_used_with_its_unit_and_its_groups() {
             format!("{head}[sheet]\n{sheet}\n[[supports]]\nset = \"{set}\"\nkind = \"clamped\"\n{rest}");
         let case = Case::parse(&folder.path().join("c.toml"), &text).unwrap();
         let s = section(case.section.as_ref().unwrap()).unwrap();
-        solve_case(&case, s, None, &Options::default()).map(|r| r.w_max)
+        solve_case(&case, s, &Options::default()).map(|r| r.w_max)
     };
     let from_file = solve("file = \"part.msh\"\nunit = \"mm\"", "held").unwrap();
     let generated =

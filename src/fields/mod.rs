@@ -139,7 +139,7 @@ fn for_each_element(
 /// M008 if the warp direction is normal to an element.
 pub fn cells(model: &Model, displacement: &[f64]) -> Result<Vec<Vec<Resultants>>, ModelError> {
     let mut all = vec![Vec::new(); model.mesh.quads.len()];
-    for_each_element(model, displacement, |quad, e| {
+    for_each_element(model, model.mesh.is_flat(), displacement, |quad, e| {
         let of_cell = |(_, membrane, moment)| Resultants { membrane, moment, shear: [0.0; 2] };
         all[quad] = e.cells.into_iter().map(of_cell).collect();
     })?;
