@@ -5,6 +5,7 @@ mod build;
 mod case;
 mod compare;
 mod run;
+mod uncertainty;
 mod virtual_test;
 
 use thiserror::Error;
@@ -15,7 +16,8 @@ pub use case::{
     VirtualTest,
 };
 pub use compare::{Comparison, compare_curves, measured_curve};
-pub use run::{CaseResult, CheckResult, History, Probe, Status, solve_case};
+pub use run::{CaseResult, CheckResult, History, Probe, Status, solve_case, solve_measured_case};
+pub use uncertainty::{Prediction, Uncertainty};
 pub use virtual_test::{VirtualCurve, compression, simulate};
 
 use crate::finding::Place;

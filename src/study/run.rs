@@ -6,14 +6,16 @@ use nalgebra::Point3;
 use serde::Serialize;
 
 use super::case::{Analysis, Case, Check, Reference};
+use super::uncertainty::{Uncertainty, linear_uncertainty};
 use super::{StudyError, build};
+use crate::constitutive::Input;
 use crate::fields::{self, Locator, ProbeValue, Resultants, profile};
 use crate::finding::{Finding, Place};
 use crate::model::Model;
 use crate::quantity::{Curve, Frequency, Time, Unit, parse_quantity};
 use crate::section::ShellSection;
 use crate::solve::newmark::{self, Energy, LoadHistory, Rayleigh};
-use crate::solve::{self, Options, Plan, Solution};
+use crate::solve::{self, Factors, Options, Plan, Solution};
 
 /// How a case ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -93,6 +95,8 @@ pub struct CaseResult {
     pub frequencies: Vec<f64>,
     /// What happened in time; of a dynamic analysis only, whose displacements are those at the end.
     pub history: Option<History>,
+    /// How certain the deflections are; of a linear analysis with measured inputs only.
+    pub uncertainty: Option<Uncertainty>,
     /// What a reader of the result must know.
     pub findings: Vec<Finding>,
 }
@@ -116,6 +120,8 @@ struct Outcome {
     solution: Solution,
     frequencies: Vec<f64>,
     history: Option<History>,
+    /// Of a linear analysis only.
+    factors: Option<Factors>,
 }
 
 /// Above this ratio of deflection to bending thickness the sheet's own stretching carries part of
@@ -135,13 +141,28 @@ pub fn solve_case(
     plan: Option<&Plan>,
     options: &Options,
 ) -> Result<CaseResult, StudyError> {
+    solve_measured_case(case, section, &[], plan, options)
+}
+
+/// [`solve_case`] for a section that was made of `inputs`: their spread becomes the uncertainty of
+/// a linear result.
+///
+/// # Errors
+/// See [`StudyError`].
+pub fn solve_measured_case(
+    case: &Case,
+    section: ShellSection,
+    inputs: &[Input],
+    plan: Option<&Plan>,
+    options: &Options,
+) -> Result<CaseResult, StudyError> {
     let Some(sheet) = &case.sheet else {
         return Err(
             case.inconsistent("the case has no [sheet]; a [virtual_test] is compared, not solved".into())
         );
     };
     let model = build::model(case, sheet, section)?;
-    let Outcome { solution, frequencies, history } = analyse(case, &model, plan, options)?;
+    let Outcome { solution, frequencies, history, factors } = analyse(case, &model, plan, options)?;
     let nodal = fields::nodal(&model, &solution.displacement)?;
     let w = |n: usize| solution.displacement[6 * n + 2];
     let w_max =
@@ -149,6 +170,14 @@ pub fn solve_case(
     let w_max = history.as_ref().map_or(w_max, |h| h.w_max);
     let w_over_thickness = w_max.abs() / model.section.bending_thickness_squared().sqrt();
     let probes = probes(case, &model, &solution, &nodal)?;
+    let uncertainty = match factors.filter(|_| !inputs.is_empty()) {
+        Some(factors) => {
+            let named: Vec<_> =
+                case.probes.iter().map(|p| p.name.as_str()).zip(locators(case, &model)?).collect();
+            Some(linear_uncertainty(&model, &solution, &factors, inputs, &named)?)
+        }
+        None => None,
+    };
     let readings = Readings { w_max, solution: &solution, frequencies: &frequencies, probes: &probes };
     let checks = case.checks.iter().map(|c| check(case, c, &readings)).collect::<Result<Vec<_>, _>>()?;
     let is_mode = !frequencies.is_empty();
@@ -177,6 +206,7 @@ pub fn solve_case(
         profile,
         frequencies,
         history,
+        uncertainty,
         findings,
     })
 }
@@ -189,11 +219,8 @@ fn analyse(
 ) -> Result<Outcome, StudyError> {
     match &case.analysis {
         Analysis::Linear => {
-            let solution = match plan {
-                Some(plan) => solve::solve_with(model, plan, options)?,
-                None => solve::solve(model, options)?,
-            };
-            Ok(Outcome { solution, frequencies: Vec::new(), history: None })
+            let (solution, factors) = solve::solve_keeping(model, plan, options)?;
+            Ok(Outcome { solution, frequencies: Vec::new(), history: None, factors: Some(factors) })
         }
         Analysis::Modal { modes, lumped } => {
             let modes = solve::modes(model, *modes, *lumped, options)?;
@@ -204,7 +231,7 @@ fn analyse(
                 solution.displacement = first.shape.iter().map(|v| v / largest).collect();
             }
             let frequencies = modes.iter().map(solve::Mode::frequency).collect();
-            Ok(Outcome { solution, frequencies, history: None })
+            Ok(Outcome { solution, frequencies, history: None, factors: None })
         }
         Analysis::Newmark { duration, step, tolerance, damping, load, lumped } => {
             let settings = newmark::Settings {
@@ -279,7 +306,7 @@ fn dynamics(
     })?;
     let work = history.energy.iter().map(|e| e.work.abs()).fold(f64::MIN_POSITIVE, f64::max);
     history.imbalance = history.energy.iter().map(|e| e.imbalance().abs()).fold(0.0, f64::max) / work;
-    Ok(Outcome { solution, frequencies: Vec::new(), history: Some(history) })
+    Ok(Outcome { solution, frequencies: Vec::new(), history: Some(history), factors: None })
 }
 
 /// Ends of the middle line along x.
