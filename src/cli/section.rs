@@ -107,7 +107,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     if sections.is_empty() {
         return Ok(Exit::of_batch(0, &failures));
     }
-    let entries = || sections.iter().map(|(name, c)| (*name, &c.section, used(&c.used)));
+    let entries = || sections.iter().map(|(name, c)| (*name, &c.section, &c.inputs[..], used(&c.used)));
     let bytes = match format {
         Format::Text => sections.iter().map(|(n, c)| page(n, c)).collect::<Vec<_>>().join("\n").into_bytes(),
         Format::Json => text(&section_document(entries()))?.into_bytes(),

@@ -129,6 +129,7 @@ impl FabricReport {
             measured: mean,
             unit: (*unit).into(),
             error: mean.and_then(|m| relative_error(simulated, m)),
+            ..PredictionRow::default()
         });
         if let Some(measured) = measured {
             self.parity.push(ParityPoint {
@@ -160,13 +161,18 @@ pub fn unmet(result: &CaseResult) -> bool {
 
 /// The largest deflection, and the deflection of each probe.
 pub fn predictions(task: &Task, result: &CaseResult) -> Vec<PredictionRow> {
-    let row = |quantity: String, value: f64| PredictionRow {
-        fabric: task.fabric_name().unwrap_or_default().into(),
-        case: result.case.clone(),
-        quantity,
-        simulated: Some(value),
-        unit: "m".into(),
-        ..PredictionRow::default()
+    let row = |quantity: String, value: f64| {
+        let band = result.uncertainty.as_ref().and_then(|u| u.of(&quantity)?.mean_fabric());
+        PredictionRow {
+            fabric: task.fabric_name().unwrap_or_default().into(),
+            case: result.case.clone(),
+            quantity,
+            simulated: Some(value),
+            unit: "m".into(),
+            simulated_low: band.map(|[low, _]| low),
+            simulated_high: band.map(|[_, high]| high),
+            ..PredictionRow::default()
+        }
     };
     let probes = result.probes.iter().map(|p| row(format!("{}.w", p.name), p.value.u[2]));
     std::iter::once(row("w_max".into(), result.w_max)).chain(probes).collect()

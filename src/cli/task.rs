@@ -10,14 +10,14 @@ use super::Ui;
 use super::diagnostics::Failure;
 use super::inputs::{self, EvaluateArgs, Fabric};
 use crate::characterise::FabricSheet;
-use crate::constitutive::{self, Constitutive};
+use crate::constitutive::{self, Constitutive, Input};
 use crate::instrument::{Direction, Parameter, Test};
 use crate::quantity::{Curve, Estimate};
 use crate::section::ShellSection;
 use crate::solve::Options as SolveOptions;
 use crate::study::{
-    self, Case, CaseResult, Comparison, PreparedCase, PreparedTest, VirtualCurve, VirtualTest,
-    compare_curves, measured_curve,
+    self, Case, CaseResult, Comparison, Prediction, PreparedCase, PreparedTest, Uncertainty, VirtualCurve,
+    VirtualTest, compare_curves, measured_curve,
 };
 
 /// Cases and fabrics on the command line.
@@ -172,10 +172,11 @@ impl Task<'_> {
 
     /// Solves a case with a `[sheet]`.
     pub fn solve(&self) -> Result<CaseResult, Failure> {
-        let solved = self.section().and_then(|(section, _)| {
+        let solved = self.section().and_then(|(section, from)| {
+            let inputs = from.map_or_else(Vec::new, |c| c.inputs);
             let prepare = || Ok(PreparedCase::new(self.case, &SolveOptions::default())?);
             let prepared = self.shared.case.get_or_init(prepare).as_ref().map_err(Clone::clone)?;
-            Ok(prepared.solve(section)?)
+            Ok(prepared.solve_measured(section, &inputs)?)
         });
         solved.map_err(|f| f.of(&self.name()))
     }
@@ -262,6 +263,7 @@ pub fn solution(task: &Task, result: &CaseResult, timings: bool) -> Value {
             "probes": probes,
             "reactions": [sum(0), sum(1), sum(2)],
             "strain_energy": s.strain_energy,
+            "uncertainty": result.uncertainty.as_ref().map(uncertainty),
         },
         "checks": result.checks,
         "findings": result.findings,
@@ -274,6 +276,29 @@ pub fn solution(task: &Task, result: &CaseResult, timings: bool) -> Value {
         });
     }
     entry
+}
+
+/// `results.uncertainty`: the inputs, and each quantity with its bands and its sensitivities
+/// ∂ln y/∂ln p (none of a quantity that is 0).
+fn uncertainty(u: &Uncertainty) -> Value {
+    let input =
+        |i: &Input| json!({"name": i.name, "mean": i.estimate.mean, "sd": i.estimate.sd, "n": i.estimate.n});
+    let quantity = |p: &Prediction| {
+        let log = |d: &f64| (p.value != 0.0).then(|| d / p.value);
+        let of = u.inputs.iter().zip(&p.derivatives);
+        let sensitivity: Value = of.map(|(i, d)| (i.name.clone(), json!(log(d)))).collect();
+        let entry = json!({
+            "value": p.value, "unit": p.unit,
+            "mean_fabric": p.bands.map(|b| b.mean_fabric),
+            "next_specimen": p.bands.map(|b| b.next_specimen),
+            "without_spread": p.without_spread, "sensitivity": sensitivity,
+        });
+        (p.quantity.clone(), entry)
+    };
+    json!({
+        "inputs": u.inputs.iter().map(input).collect::<Vec<_>>(),
+        "quantities": u.predictions.iter().map(quantity).collect::<serde_json::Map<_, _>>(),
+    })
 }
 
 /// An entry of `kesf.comparison/1`.

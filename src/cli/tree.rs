@@ -51,7 +51,7 @@ impl Tree {
 
     /// `<fabric>/section.json`.
     pub fn section(&self, fabric: &str, c: &Constitutive) -> Result<(), Failure> {
-        let document = section_document([(fabric, &c.section, used(&c.used))]);
+        let document = section_document([(fabric, &c.section, &c.inputs[..], used(&c.used))]);
         self.write(&format!("{fabric}/section.json"), text(&document)?.as_bytes())
     }
 

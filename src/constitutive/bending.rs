@@ -12,7 +12,7 @@
 
 use nalgebra::Matrix3;
 
-use super::{Assumptions, BendingCoupling, ConstitutiveError, Notes, Torsion};
+use super::{Assumptions, BendingCoupling, Constant, ConstitutiveError, Notes, Torsion};
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::significant;
 
@@ -23,7 +23,7 @@ pub(super) fn matrix(
     assumptions: &Assumptions,
     notes: &mut Notes,
 ) -> Result<Matrix3<f64>, ConstitutiveError> {
-    let Some([b1, b2]) = notes.warp_weft(Parameter::B) else {
+    let Some([b1, b2]) = notes.bending_rigidities() else {
         return Err(notes.missing("bending rigidity B", "add a KES-FB2 test or a result table with B"));
     };
     for (direction, b) in [("warp", b1), ("weft", b2)] {
@@ -68,6 +68,7 @@ fn torsion(
                     "measure one at 45°, or choose torsion = \"huber\" or a value",
                 ));
             };
+            notes.origin("B bias", b45, &[(Constant::Bias, 1.0)]);
             let b45 = b45.mean;
             (b45 - (b1 + b2 + 2.0 * d12) / 4.0, format!("measured: B at 45° = {} N·m", significant(b45)))
         }

@@ -9,10 +9,10 @@
 
 use nalgebra::Matrix3;
 
-use super::{Assumptions, ConstitutiveError, Notes, PoissonRule};
+use super::{Assumptions, Constant, ConstitutiveError, Notes, PoissonRule};
 use crate::characterise::Modulus;
 use crate::instrument::Direction;
-use crate::quantity::significant;
+use crate::quantity::{Estimate, significant};
 
 /// D_m (N/m) with the in-plane shear stiffness `g` (N/m).
 pub(super) fn matrix(
@@ -52,8 +52,7 @@ pub(super) fn matrix(
 fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], ConstitutiveError> {
     let chosen = assumptions.modulus;
     if let Some(e) = known(chosen, notes) {
-        record(e, format!("measured: {chosen}"), notes);
-        return Ok(e);
+        return Ok(record(e, format!("measured: {chosen}"), notes));
     }
     if let Modulus::Window(..) = chosen {
         return Err(notes.missing(
@@ -67,8 +66,8 @@ fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], Cons
                 "C011",
                 format!("there is no {chosen} modulus; the {other} modulus is used instead"),
             );
-            record(e, format!("measured: {other}, because there is no {chosen} modulus"), notes);
-            return Ok(e);
+            let source = format!("measured: {other}, because there is no {chosen} modulus");
+            return Ok(record(e, source, notes));
         }
     }
     let e = assumptions.tensile;
@@ -79,17 +78,22 @@ fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], Cons
              does not depend on it, membrane results and the limit of linear theory do)"
         ),
     );
-    record([e.si(); 2], "assumed: not measured".into(), notes);
-    Ok([e.si(); 2])
+    let stand_in = Estimate::single(e.si());
+    Ok(record([&stand_in; 2], "assumed: not measured".into(), notes))
 }
 
-fn record([e1, e2]: [f64; 2], source: String, notes: &mut Notes) {
+/// Writes down the two moduli and gives their values.
+fn record([warp, weft]: [&Estimate; 2], source: String, notes: &mut Notes) -> [f64; 2] {
+    let [e1, e2] = [warp.mean, weft.mean];
+    notes.origin("E warp", warp, &[(Constant::Tensile(0), 1.0)]);
+    notes.origin("E weft", weft, &[(Constant::Tensile(1), 1.0)]);
     let value = format!("warp {} N/m, weft {} N/m", significant(e1), significant(e2));
     notes.used("tensile modulus", value, source);
+    [e1, e2]
 }
 
 /// The modulus of the sheet in both directions.
-fn known(modulus: Modulus, notes: &Notes) -> Option<[f64; 2]> {
-    let of = |direction| Some(notes.sheet.moduli.get(&(modulus.name(), direction))?.mean);
+fn known<'a>(modulus: Modulus, notes: &Notes<'a>) -> Option<[&'a Estimate; 2]> {
+    let of = |direction| notes.sheet.moduli.get(&(modulus.name(), direction));
     Some([of(Direction::Warp)?, of(Direction::Weft)?])
 }

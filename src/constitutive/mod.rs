@@ -13,6 +13,7 @@
 mod assumptions;
 mod bending;
 mod membrane;
+mod sensitivity;
 mod shear;
 
 use serde::Serialize;
@@ -21,10 +22,12 @@ use thiserror::Error;
 use crate::characterise::FabricSheet;
 use crate::finding::Finding;
 use crate::instrument::{Direction, Parameter};
-use crate::quantity::significant;
+use crate::quantity::{Estimate, significant};
 use crate::section::{SectionError, ShellSection};
 
 pub use assumptions::{Assumptions, BendingCoupling, ChoiceError, PoissonRule, Torsion, TransverseShear};
+use sensitivity::{Constant, Origin};
+pub use sensitivity::{Entry, Input, SectionDerivative, bands, entries};
 
 /// A section with everything that went into it.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +36,8 @@ pub struct Constitutive {
     pub section: ShellSection,
     /// Inputs and assumptions in the order in which they were used.
     pub used: Vec<Used>,
+    /// Measured inputs with their spread, and how the section depends on each.
+    pub inputs: Vec<Input>,
     /// What a reader of the section must know.
     pub findings: Vec<Finding>,
 }
@@ -139,7 +144,7 @@ impl ConstitutiveError {
 /// assert!(broad.findings.iter().any(|f| f.code == "C012"));
 /// ```
 pub fn section(sheet: &FabricSheet, assumptions: &Assumptions) -> Result<Constitutive, ConstitutiveError> {
-    let mut notes = Notes { sheet, used: Vec::new(), findings: Vec::new() };
+    let mut notes = Notes { sheet, used: Vec::new(), origins: Vec::new(), findings: Vec::new() };
     let g = shear::in_plane(assumptions, &mut notes)?;
     let thickness = thickness(assumptions, &mut notes)?;
     let d_m = membrane::matrix(g, assumptions, &mut notes)?;
@@ -149,7 +154,8 @@ pub fn section(sheet: &FabricSheet, assumptions: &Assumptions) -> Result<Constit
     let section = ShellSection { d_m, d_b, d_s, areal_density, thickness }
         .checked()
         .map_err(|source| ConstitutiveError::Section { fabric: sheet.name.clone(), source })?;
-    Ok(Constitutive { section, used: notes.used, findings: notes.findings })
+    let inputs = sensitivity::inputs(&section, assumptions, notes.origins);
+    Ok(Constitutive { section, used: notes.used, inputs, findings: notes.findings })
 }
 
 /// T0, else Tm, else `fabric.toml`, else the stand-in (m).
@@ -157,16 +163,18 @@ fn thickness(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, Consti
     let sheet = notes.sheet;
     let measured = [Parameter::T0, Parameter::Tm]
         .into_iter()
-        .find_map(|p| Some((sheet.get(p, None)?.mean, format!("measured: {p}"))));
-    let stated = || sheet.info.thickness.map(|t| (t, "measured: fabric.toml".to_string()));
-    let (value, source) = measured.or_else(stated).unwrap_or_else(|| {
+        .find_map(|p| Some((sheet.get(p, None)?.clone(), format!("measured: {p}"))));
+    let stated = || sheet.info.thickness.map(|t| (Estimate::single(t), "measured: fabric.toml".to_string()));
+    let (estimate, source) = measured.or_else(stated).unwrap_or_else(|| {
         let t = assumptions.thickness;
         notes.finding(
             "C014",
             format!("no thickness is known; {t} stands in for it (statics do not depend on it)"),
         );
-        (t.si(), "assumed: not measured".to_string())
+        (Estimate::single(t.si()), "assumed: not measured".to_string())
     });
+    let value = estimate.mean;
+    notes.origin("thickness", &estimate, &[(Constant::Thickness, 1.0)]);
     notes.positive("thickness", value, "m", "measure it (KES-FB3) or correct it in fabric.toml")?;
     notes.used("thickness", format!("{} mm", significant(value * 1e3)), source);
     Ok(value)
@@ -175,15 +183,17 @@ fn thickness(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, Consti
 /// W, else `fabric.toml`, else what is assumed explicitly (kg/m²).
 fn areal_density(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, ConstitutiveError> {
     let sheet = notes.sheet;
-    let measured = sheet.get(Parameter::W, None).map(|w| (w.mean, "measured: W"));
-    let stated = || sheet.info.areal_density.map(|w| (w, "measured: fabric.toml"));
-    let assumed = || assumptions.areal_density.map(|w| (w.si(), "assumed: not measured"));
-    let Some((value, source)) = measured.or_else(stated).or_else(assumed) else {
+    let measured = sheet.get(Parameter::W, None).map(|w| (w.clone(), "measured: W"));
+    let stated = || sheet.info.areal_density.map(|w| (Estimate::single(w), "measured: fabric.toml"));
+    let assumed = || assumptions.areal_density.map(|w| (Estimate::single(w.si()), "assumed: not measured"));
+    let Some((estimate, source)) = measured.or_else(stated).or_else(assumed) else {
         return Err(notes.missing(
             "areal density",
             "weigh the specimen and write areal_density = \"150 g/m²\" in its fabric.toml, or pass --areal-density",
         ));
     };
+    let value = estimate.mean;
+    notes.origin("areal density", &estimate, &[(Constant::ArealDensity, 1.0)]);
     notes.positive("areal density", value, "kg/m²", "correct it in its fabric.toml or result table")?;
     notes.used("areal density", format!("{} g/m²", significant(value * 1e3)), source);
     Ok(value)
@@ -193,10 +203,16 @@ fn areal_density(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, Co
 struct Notes<'a> {
     sheet: &'a FabricSheet,
     used: Vec<Used>,
+    origins: Vec<Origin>,
     findings: Vec<Finding>,
 }
 
 impl Notes<'_> {
+    /// Writes down where constants come from; `gives` has `∂ln c/∂ln p` of each.
+    fn origin(&mut self, name: impl Into<String>, estimate: &Estimate, gives: &[(Constant, f64)]) {
+        self.origins.push(Origin { name: name.into(), estimate: estimate.clone(), gives: gives.to_vec() });
+    }
+
     fn used(&mut self, name: &'static str, value: impl Into<String>, source: impl Into<String>) {
         self.used.push(Used { name, value: value.into(), source: source.into() });
     }
@@ -227,12 +243,18 @@ impl Notes<'_> {
         Err(ConstitutiveError::NotPositive { fabric, what, value, unit, cure })
     }
 
-    /// Warp and weft value of a parameter. One value for the fabric, or for one direction only,
+    /// Bending rigidities along warp and weft. One value for the fabric, or for one direction only,
     /// stands for both, with a finding.
-    fn warp_weft(&mut self, parameter: Parameter) -> Option<[f64; 2]> {
-        let get = |direction| self.sheet.get(parameter, direction).map(|e| e.mean);
+    fn bending_rigidities(&mut self) -> Option<[f64; 2]> {
+        let (parameter, sheet) = (Parameter::B, self.sheet);
+        let get = |direction| sheet.get(parameter, direction);
+        let constants = [0, 1].map(|i| (Constant::Bending(i), 1.0));
         let known = match (get(Some(Direction::Warp)), get(Some(Direction::Weft)), get(None)) {
-            (Some(warp), Some(weft), _) => return Some([warp, weft]),
+            (Some(warp), Some(weft), _) => {
+                self.origin("B warp", warp, &constants[..1]);
+                self.origin("B weft", weft, &constants[1..]);
+                return Some([warp.mean, weft.mean]);
+            }
             (_, _, Some(mean)) => (mean, "one value for the fabric"),
             (Some(warp), None, None) => (warp, "the warp value only"),
             (None, Some(weft), None) => (weft, "the weft value only"),
@@ -242,7 +264,8 @@ impl Notes<'_> {
             "C010",
             format!("{parameter} is known as {}; it stands for warp and weft alike", known.1),
         );
-        Some([known.0; 2])
+        self.origin(parameter.symbol(), known.0, &constants);
+        Some([known.0.mean; 2])
     }
 }
 

@@ -8,9 +8,9 @@
 
 use nalgebra::Matrix2;
 
-use super::{Assumptions, ConstitutiveError, Notes, TransverseShear};
+use super::{Assumptions, Constant, ConstitutiveError, Notes, TransverseShear};
 use crate::instrument::{Direction, Parameter};
-use crate::quantity::significant;
+use crate::quantity::{Estimate, significant};
 
 /// Shear correction factor of a homogeneous plate.
 const CHI: f64 = 5.0 / 6.0;
@@ -19,14 +19,21 @@ const CHI: f64 = 5.0 / 6.0;
 pub(super) fn in_plane(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, ConstitutiveError> {
     let sheet = notes.sheet;
     let directions = [Some(Direction::Warp), Some(Direction::Weft), None];
-    let [warp, weft, mean] = directions.map(|d| sheet.get(Parameter::G, d).map(|e| e.mean));
+    let [warp, weft, mean] = directions.map(|d| sheet.get(Parameter::G, d));
     let (g, source) = match (warp, weft) {
-        (Some(warp), Some(weft)) => {
+        (Some(warp_test), Some(weft_test)) => {
+            let (warp, weft) = (warp_test.mean, weft_test.mean);
+            // G = (G1 + G2)/2, so ∂ln G/∂ln G1 = G1/(G1 + G2).
+            notes.origin("G warp", warp_test, &[(Constant::Shear, warp / (warp + weft))]);
+            notes.origin("G weft", weft_test, &[(Constant::Shear, weft / (warp + weft))]);
             let values = format!("{} and {} N/m", significant(warp), significant(weft));
             ((warp + weft) / 2.0, format!("measured: mean of G warp and weft, {values}"))
         }
         _ => match warp.or(weft).or(mean) {
-            Some(g) => (g, "measured: G".to_string()),
+            Some(g) => {
+                notes.origin("G", g, &[(Constant::Shear, 1.0)]);
+                (g.mean, "measured: G".to_string())
+            }
             None => {
                 let g = assumptions.shear;
                 notes.finding(
@@ -36,6 +43,7 @@ pub(super) fn in_plane(assumptions: &Assumptions, notes: &mut Notes) -> Result<f
                          in-plane results do)"
                     ),
                 );
+                notes.origin("G", &Estimate::single(g.si()), &[(Constant::Shear, 1.0)]);
                 (g.si(), "assumed: no shear test".to_string())
             }
         },

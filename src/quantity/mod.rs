@@ -6,11 +6,13 @@
 
 mod curve;
 mod estimate;
+mod propagation;
 mod text;
 mod unit;
 
 pub use curve::Curve;
 pub use estimate::Estimate;
+pub use propagation::{Band, Bands, NoSpread};
 pub use text::significant;
 pub use unit::{Dimension, QuantityError, UNITS, Unit, parse_quantity};
 

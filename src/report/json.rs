@@ -9,6 +9,7 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use crate::characterise::FabricSheet;
+use crate::constitutive::{Entry, Input, entries};
 use crate::finding::Finding;
 use crate::instrument::Parameter;
 use crate::quantity::Estimate;
@@ -99,6 +100,8 @@ pub struct SectionEntry {
     pub thickness: f64,
     /// How the constants were found, as an object.
     pub assumptions: Value,
+    /// Entries on and above the diagonals with their bands, in their own units.
+    pub uncertainty: Vec<Entry>,
 }
 
 /// The document of some sheets.
@@ -129,19 +132,21 @@ pub fn sheet_document<'a>(sheets: impl IntoIterator<Item = &'a FabricSheet>) -> 
     document
 }
 
-/// The document of some sections: name, section and assumptions of each.
+/// The document of some sections: name, section, measured inputs and assumptions of each.
 pub fn section_document<'a>(
-    sections: impl IntoIterator<Item = (&'a str, &'a ShellSection, Value)>,
+    sections: impl IntoIterator<Item = (&'a str, &'a ShellSection, &'a [Input], Value)>,
 ) -> SectionDocument {
-    let entry = |(fabric, section, assumptions): (&str, &ShellSection, Value)| SectionEntry {
-        fabric: fabric.into(),
-        d_m: rows3(&section.d_m),
-        d_b: rows3(&section.d_b),
-        d_s: rows2(&section.d_s),
-        areal_density: section.areal_density,
-        thickness: section.thickness,
-        assumptions,
-    };
+    let entry =
+        |(fabric, section, inputs, assumptions): (&str, &ShellSection, &[Input], Value)| SectionEntry {
+            fabric: fabric.into(),
+            d_m: rows3(&section.d_m),
+            d_b: rows3(&section.d_b),
+            d_s: rows2(&section.d_s),
+            areal_density: section.areal_density,
+            thickness: section.thickness,
+            assumptions,
+            uncertainty: entries(section, inputs),
+        };
     SectionDocument {
         schema: "kesf.section/1",
         version: env!("CARGO_PKG_VERSION"),
@@ -272,7 +277,7 @@ mod tests {
             areal_density: 0.2,
             thickness: 4e-4,
         };
-        let document = section_document([("poplin", &section, json!({ "poisson": "geometric" }))]);
+        let document = section_document([("poplin", &section, &[][..], json!({ "poisson": "geometric" }))]);
         let v = serde_json::to_value(&document).unwrap();
         assert_eq!(v["schema"], "kesf.section/1");
         assert_eq!(v["sections"][0]["d_m"], json!([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 9.0]]));

@@ -93,6 +93,11 @@ row! {
         unit: String,
         /// (simulated - measured) / measured; see [`relative_error`].
         error: Option<f64>,
+        /// Lower end of the 95 % band of the mean fabric; nothing where an input that matters has no
+        /// spread, or where the result is not linear.
+        simulated_low: Option<f64>,
+        /// Upper end of that band.
+        simulated_high: Option<f64>,
     }
 }
 

@@ -5,7 +5,7 @@ use std::time::Instant;
 use thiserror::Error;
 
 use super::assemble::{Kind, Pattern, assemble, multiply, unit_rows};
-use super::factor::{Analysis, Counts, FactorError, Path};
+use super::factor::{Analysis, Counts, Factor, FactorError, Path};
 use super::plan::Plan;
 use crate::model::{DofGroup, Model, ModelError};
 
@@ -164,11 +164,71 @@ const REFINE: f64 = 1e-10;
 /// # Errors
 /// See [`SolveError`].
 pub fn solve(model: &Model, options: &Options) -> Result<Solution, SolveError> {
+    analysed(model, options, &mut drop)
+}
+
+/// The same, with a new plan.
+fn analysed(
+    model: &Model,
+    options: &Options,
+    keep: &mut dyn FnMut(GroupFactor),
+) -> Result<Solution, SolveError> {
     let start = Instant::now();
     let plan = Plan::new(&model.mesh, &Plan::groups(model, options), options.path)?;
-    let mut solution = solve_with(model, &plan, options)?;
+    let mut solution = planned(model, &plan, options, keep)?;
     solution.timings.analyse_s = start.elapsed().as_secs_f64() - sum(&solution.timings);
     Ok(solution)
+}
+
+/// The factors of a solved problem, for further right-hand sides.
+#[derive(Debug, Default)]
+pub struct Factors {
+    groups: Vec<GroupFactor>,
+}
+
+#[derive(Debug)]
+struct GroupFactor {
+    group: DofGroup,
+    factor: Factor,
+    is_held: Vec<bool>,
+}
+
+impl Factors {
+    /// The groups that were solved.
+    pub fn groups(&self) -> impl Iterator<Item = DofGroup> {
+        self.groups.iter().map(|g| g.group)
+    }
+
+    /// Displacements (six a node) under nodal forces `load` (six a node) with every held dof at
+    /// rest; 0 in groups that were not solved.
+    pub fn solve(&self, load: &[f64]) -> Vec<f64> {
+        let mut full = vec![0.0; load.len()];
+        for GroupFactor { group, factor, is_held } in &self.groups {
+            let mut part = group.gather(load);
+            part.iter_mut().zip(is_held).filter(|(_, held)| **held).for_each(|(p, _)| *p = 0.0);
+            factor.solve(&mut part, 1);
+            group.scatter(&part, &mut full);
+        }
+        full
+    }
+}
+
+/// [`solve`], or [`solve_with`] where there is a plan, that keeps the factors.
+///
+/// # Errors
+/// See [`SolveError`].
+pub fn solve_keeping(
+    model: &Model,
+    plan: Option<&Plan>,
+    options: &Options,
+) -> Result<(Solution, Factors), SolveError> {
+    let mut factors = Factors::default();
+    let mut keep = |g| factors.groups.push(g);
+    let solution = match plan {
+        Some(plan) => planned(model, plan, options, &mut keep)?,
+        None => analysed(model, options, &mut keep)?,
+    };
+    Ok((solution, factors))
 }
 
 fn sum(t: &Timings) -> f64 {
@@ -180,10 +240,22 @@ fn sum(t: &Timings) -> f64 {
 /// # Errors
 /// See [`SolveError`].
 pub fn solve_with(model: &Model, plan: &Plan, options: &Options) -> Result<Solution, SolveError> {
+    planned(model, plan, options, &mut drop)
+}
+
+/// Solves group by group and hands each factor to `keep`; one that is dropped there makes room for
+/// the next.
+fn planned(
+    model: &Model,
+    plan: &Plan,
+    options: &Options,
+    keep: &mut dyn FnMut(GroupFactor),
+) -> Result<Solution, SolveError> {
     let (load, held) = (model.load_vector(), model.constraints());
     let mut solution = Solution::at_rest(model);
     for (group, analysis) in &plan.groups {
-        solve_group(model, (&plan.pattern, *group, analysis), options, &load, &held, &mut solution)?;
+        let parts = (&plan.pattern, *group, analysis);
+        keep(solve_group(model, parts, options, &load, &held, &mut solution)?);
     }
     Ok(solution)
 }
@@ -195,7 +267,7 @@ fn solve_group(
     load: &[f64],
     held: &[Option<f64>],
     solution: &mut Solution,
-) -> Result<(), SolveError> {
+) -> Result<GroupFactor, SolveError> {
     let b = group.dofs().len();
     let load = group.gather(load);
     let held: Vec<Option<f64>> =
@@ -275,7 +347,7 @@ fn solve_group(
     group.scatter(&u, &mut solution.displacement);
     group.scatter(&reaction, &mut solution.reaction);
     solution.timings.solve_s += start.elapsed().as_secs_f64();
-    Ok(())
+    Ok(GroupFactor { group, factor, is_held })
 }
 
 fn relative_residual(internal: &[f64], load: &[f64], held: &[Option<f64>]) -> f64 {

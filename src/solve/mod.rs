@@ -11,6 +11,6 @@ pub mod ordering;
 pub mod plan;
 pub mod sparse;
 
-pub use linear::{Options, Solution, SolveError, Timings, solve, solve_with};
+pub use linear::{Factors, Options, Solution, SolveError, Timings, solve, solve_keeping, solve_with};
 pub use modal::{Mode, modes};
 pub use plan::Plan;

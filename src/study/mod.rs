@@ -6,6 +6,7 @@ mod case;
 mod compare;
 mod prepared;
 mod run;
+mod uncertainty;
 mod virtual_test;
 
 use thiserror::Error;
@@ -18,6 +19,7 @@ pub use case::{
 pub use compare::{Comparison, compare_curves, measured_curve};
 pub use prepared::PreparedCase;
 pub use run::{CaseResult, CheckResult, History, Probe, Status, solve_case};
+pub use uncertainty::{Prediction, Uncertainty};
 pub use virtual_test::{PreparedTest, VirtualCurve, compression, simulate};
 
 use crate::finding::Place;

@@ -6,14 +6,16 @@ use std::sync::{Arc, OnceLock};
 use serde::Serialize;
 
 use super::case::{Analysis, Case, Check, Reference};
+use super::uncertainty::{Uncertainty, linear_uncertainty};
 use super::{PreparedCase, StudyError};
+use crate::constitutive::Input;
 use crate::fields::{Locator, ProbeValue, Recovery, Resultants};
 use crate::finding::{Finding, Place};
 use crate::model::{Model, ModelError};
 use crate::quantity::{Curve, Frequency, Time, Unit, parse_quantity};
 use crate::section::ShellSection;
 use crate::solve::newmark::{self, Energy, LoadHistory, Rayleigh};
-use crate::solve::{self, Options, Solution};
+use crate::solve::{self, Factors, Options, Solution};
 
 /// How a case ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -91,6 +93,8 @@ pub struct CaseResult {
     pub frequencies: Vec<f64>,
     /// What happened in time; of a dynamic analysis only, whose displacements are those at the end.
     pub history: Option<History>,
+    /// How certain the deflections are; of a linear analysis with measured inputs only.
+    pub uncertainty: Option<Uncertainty>,
     /// What a reader of the result must know.
     pub findings: Vec<Finding>,
     pub(super) recovery: Arc<OnceLock<Recovery>>,
@@ -131,6 +135,8 @@ struct Outcome {
     solution: Solution,
     frequencies: Vec<f64>,
     history: Option<History>,
+    /// Of a linear analysis only.
+    factors: Option<Factors>,
 }
 
 /// Above this ratio of deflection to bending thickness the sheet's own stretching carries part of
@@ -152,9 +158,26 @@ impl PreparedCase<'_> {
     /// # Errors
     /// See [`StudyError`].
     pub fn solve(&self, section: ShellSection) -> Result<CaseResult, StudyError> {
+        self.solve_measured(section, &[])
+    }
+
+    /// Solves the case for a section that was made of `inputs`: their spread becomes the
+    /// uncertainty of a linear result.
+    ///
+    /// # Errors
+    /// See [`StudyError`].
+    pub fn solve_measured(&self, section: ShellSection, inputs: &[Input]) -> Result<CaseResult, StudyError> {
         let case = self.case;
         let model = self.model(section);
-        let Outcome { solution, frequencies, history } = analyse(self, &model)?;
+        let Outcome { solution, frequencies, history, factors } = analyse(self, &model)?;
+        let uncertainty = match factors.filter(|_| !inputs.is_empty()) {
+            Some(factors) => {
+                let names = case.probes.iter().map(|p| p.name.as_str());
+                let named: Vec<_> = names.zip(self.probes.iter().copied()).collect();
+                Some(linear_uncertainty(&model, &solution, &factors, inputs, &named)?)
+            }
+            None => None,
+        };
         let w = |n: usize| solution.displacement[6 * n + 2];
         let largest = |m: f64, v: f64| if v.abs() > m.abs() { v } else { m };
         let w_max = (0..model.mesh.nodes.len()).map(w).fold(0.0, largest);
@@ -175,6 +198,7 @@ impl PreparedCase<'_> {
             profile,
             frequencies,
             history,
+            uncertainty,
             findings,
             recovery: Arc::clone(&self.recovery),
             nodal: OnceLock::new(),
@@ -192,11 +216,8 @@ fn analyse(prepared: &PreparedCase<'_>, model: &Model) -> Result<Outcome, StudyE
     let (case, options) = (prepared.case, &prepared.options);
     match &case.analysis {
         Analysis::Linear => {
-            let solution = match &prepared.plan {
-                Some(plan) => solve::solve_with(model, plan, options)?,
-                None => solve::solve(model, options)?,
-            };
-            Ok(Outcome { solution, frequencies: Vec::new(), history: None })
+            let (solution, factors) = solve::solve_keeping(model, prepared.plan.as_ref(), options)?;
+            Ok(Outcome { solution, frequencies: Vec::new(), history: None, factors: Some(factors) })
         }
         Analysis::Modal { modes, lumped } => {
             let modes = solve::modes(model, *modes, *lumped, options)?;
@@ -207,7 +228,7 @@ fn analyse(prepared: &PreparedCase<'_>, model: &Model) -> Result<Outcome, StudyE
                 solution.displacement = first.shape.iter().map(|v| v / largest).collect();
             }
             let frequencies = modes.iter().map(solve::Mode::frequency).collect();
-            Ok(Outcome { solution, frequencies, history: None })
+            Ok(Outcome { solution, frequencies, history: None, factors: None })
         }
         Analysis::Newmark { duration, step, tolerance, damping, load, lumped } => {
             let settings = newmark::Settings {
@@ -281,7 +302,7 @@ fn dynamics(
     })?;
     let work = history.energy.iter().map(|e| e.work.abs()).fold(f64::MIN_POSITIVE, f64::max);
     history.imbalance = history.energy.iter().map(|e| e.imbalance().abs()).fold(0.0, f64::max) / work;
-    Ok(Outcome { solution, frequencies: Vec::new(), history: Some(history) })
+    Ok(Outcome { solution, frequencies: Vec::new(), history: Some(history), factors: None })
 }
 
 fn findings(case: &Case, model: &Model, beyond_linear: Option<(f64, f64)>) -> Vec<Finding> {
