@@ -111,7 +111,7 @@ impl Default for Settings {
 /// A way to an equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
-    /// See [`solve`]; random loads break the symmetry, if asked for.
+    /// See [`solve`]; random loads break the symmetry, if asked for, and lead along stable equilibria only.
     Newton(Option<Perturbation>),
     /// See [`follow`].
     ArcLength(ArcLength),
@@ -323,7 +323,10 @@ fn grow(
         }
         // The last step ends at 1 exactly, without a sliver after it.
         let factor = if state.factor + 1.001 * step >= 1.0 { 1.0 } else { state.factor + step };
-        match newton(system, &state, factor, settings, &Drag { rate: 0.0, extra }) {
+        let found = newton(system, &state, factor, settings, &Drag { rate: 0.0, extra });
+        // A long step may land beyond the branch that the perturbation leads to.
+        let found = found.and_then(|c| if extra.is_some() { c.stable(system) } else { Ok(c) });
+        match found {
             Ok(converged) => {
                 let flow = progress.show(system, &converged, &mut observe);
                 if converged.iterations <= settings.iterations / 3 {

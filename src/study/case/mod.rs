@@ -18,7 +18,7 @@ use serde::Deserialize;
 use crate::constitutive::Assumptions;
 use crate::finding::Place;
 
-pub use analysis::Analysis;
+pub use analysis::{Analysis, MethodChoice, NonlinearTable};
 pub use check::{Check, ProbeTable, Reference, ReferenceKind};
 pub use element::{DrillingChoice, ElementTable, Profile, Subcells};
 pub use error::CaseError;
