@@ -9,6 +9,7 @@ mod nonlinear;
 mod prepared;
 mod run;
 mod uncertainty;
+mod virtual_large;
 mod virtual_test;
 
 use thiserror::Error;
@@ -16,7 +17,7 @@ use thiserror::Error;
 pub use build::{formulation, model, section};
 pub use case::{
     Analysis, Case, CaseError, Check, MethodChoice, NonlinearTable, ProbeTable, Reference, ReferenceKind,
-    SectionTable, Shape, Sheet, VirtualTest,
+    SectionTable, Shape, Sheet, TestFormulation, VirtualTest,
 };
 pub use compare::{Comparison, compare_curves, measured_curve};
 pub use dynamics::History;
@@ -24,7 +25,7 @@ pub use nonlinear::{LoadPath, PathStep};
 pub use prepared::PreparedCase;
 pub use run::{CaseResult, CheckResult, Probe, Status, solve_case};
 pub use uncertainty::{Prediction, Uncertainty};
-pub use virtual_test::{PreparedTest, VirtualCurve, compression, simulate};
+pub use virtual_test::{EdgeEffect, PreparedTest, VirtualCurve, compression, simulate};
 
 use crate::finding::Place;
 use crate::mesh::MeshError;

@@ -25,7 +25,7 @@ pub use error::CaseError;
 pub use loads::{LoadTable, SupportKind, SupportTable};
 pub use section::SectionTable;
 pub use sheet::{Shape, Sheet};
-pub use virtual_test::VirtualTest;
+pub use virtual_test::{TestFormulation, VirtualTest};
 
 /// A case as it is written in its file; unknown keys are refused.
 #[derive(Clone, Debug, Deserialize)]
