@@ -93,7 +93,7 @@ fn modal() {
     let options = Options::default();
     let model = PreparedCase::new(&case, &options).expect("a mesh").model(section(0));
     let start = Instant::now();
-    let found = modes(&model, 10, false, &options).expect("modes");
+    let found = modes(&model, 10, Mass::default(), &options).expect("modes");
     println!("{} modes, 100 x 100 clamped: {:.2} s", found.len(), start.elapsed().as_secs_f64());
 }
 

@@ -38,7 +38,7 @@ use self::system::{Balance, System};
 use super::SolveError;
 use super::linear::Options;
 use crate::mesh::QuadMesh;
-use crate::model::{Model, RigidBody, RigidBodyError};
+use crate::model::Model;
 
 /// Places and rotations of the nodes under a part of the load.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,21 +86,12 @@ pub struct Settings {
     pub largest_step: f64,
     /// A step that has been halved below this one ends the search.
     pub smallest_step: f64,
-    /// Nodes that move as rigid bodies.
-    pub bodies: Vec<RigidBody>,
 }
 
 impl Default for Settings {
     /// Tolerance 1e-8, at most 25 iterations a step, the whole load at once.
     fn default() -> Self {
-        Self {
-            tolerance: 1e-8,
-            iterations: 25,
-            first_step: 1.0,
-            largest_step: 1.0,
-            smallest_step: 1e-5,
-            bodies: Vec::new(),
-        }
+        Self { tolerance: 1e-8, iterations: 25, first_step: 1.0, largest_step: 1.0, smallest_step: 1e-5 }
     }
 }
 
@@ -146,9 +137,6 @@ pub enum NonlinearError {
     /// The model cannot be assembled or its tangent not be factorised.
     #[error(transparent)]
     Solve(#[from] SolveError),
-    /// M010.
-    #[error(transparent)]
-    Body(#[from] RigidBodyError),
     /// N007: Newton's method did not converge, and steps cannot be made smaller.
     #[error(
         "N007 step {step} did not converge: after {iterations} iterations the residual is {residual:.1e} of the loads, \
@@ -174,7 +162,6 @@ impl NonlinearError {
     pub fn code(&self) -> &'static str {
         match self {
             Self::Solve(e) => e.code(),
-            Self::Body(_) => "M010",
             Self::NotConverged { .. } => "N007",
         }
     }
@@ -236,7 +223,7 @@ pub fn solve(
     options: &Options,
     mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    let system = System::new(model, settings, options)?;
+    let system = System::new(model, options)?;
     let mut state = State::rest(&model.mesh);
     let mut balance = system.balance(&state, None);
     let (mut step, mut progress) = (settings.first_step, Progress::default());

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use thiserror::Error;
 
+use super::rigid::RigidTable;
 use crate::constitutive::Assumptions;
+use crate::element::Mass;
 use crate::finding::Place;
 use crate::instrument::Test;
 use crate::quantity::{
@@ -41,6 +43,9 @@ pub struct Case {
     /// Where it is held.
     #[serde(default)]
     pub supports: Vec<SupportTable>,
+    /// What moves as one rigid body.
+    #[serde(default)]
+    pub rigid: Vec<RigidTable>,
     /// What acts on it.
     #[serde(default)]
     pub loads: Vec<LoadTable>,
@@ -271,9 +276,10 @@ pub enum Analysis {
         /// How many of the lowest.
         #[serde(default = "default_modes")]
         modes: usize,
-        /// Row sums as mass matrix instead of the consistent one.
-        #[serde(default)]
-        lumped: bool,
+        /// How the mass of an element goes to its nodes; row sums when left out.
+        mass: Option<Mass>,
+        /// The older word: `true` is `mass = "lumped"`, `false` is `mass = "consistent"`.
+        lumped: Option<bool>,
     },
     /// Linear dynamics from rest (Newmark, average acceleration).
     Newmark {
@@ -288,9 +294,10 @@ pub enum Analysis {
         /// `"step"`, `"ramp until 0.1 s"` or `"sine 5 Hz"`.
         #[serde(default = "default_load_history")]
         load: String,
-        /// Row sums as mass matrix.
-        #[serde(default)]
-        lumped: bool,
+        /// How the mass of an element goes to its nodes; row sums when left out.
+        mass: Option<Mass>,
+        /// The older word: `true` is `mass = "lumped"`, `false` is `mass = "consistent"`.
+        lumped: Option<bool>,
     },
 }
 
@@ -461,10 +468,13 @@ impl Case {
                 refuse("a [virtual_test] brings its own specimen: remove [sheet], or the [virtual_test]")
             }
             (None, Some(_))
-                if !(self.supports.is_empty() && self.loads.is_empty() && self.probes.is_empty()) =>
+                if !(self.supports.is_empty()
+                    && self.rigid.is_empty()
+                    && self.loads.is_empty()
+                    && self.probes.is_empty()) =>
             {
                 refuse(
-                    "a [virtual_test] brings its own supports and loads: remove [[supports]], [[loads]], [[probes]]",
+                    "a [virtual_test] brings its own supports and loads: remove [[supports]], [[rigid]], [[loads]], [[probes]]",
                 )
             }
             (Some(_), None) if self.supports.is_empty() => {

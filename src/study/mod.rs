@@ -5,6 +5,7 @@ mod build;
 mod case;
 mod compare;
 mod prepared;
+mod rigid;
 mod run;
 mod uncertainty;
 mod virtual_test;
@@ -18,6 +19,7 @@ pub use case::{
 };
 pub use compare::{Comparison, compare_curves, measured_curve};
 pub use prepared::PreparedCase;
+pub use rigid::{Place as RigidPlace, RigidTable};
 pub use run::{CaseResult, CheckResult, History, Probe, Status, solve_case};
 pub use uncertainty::{Prediction, Uncertainty};
 pub use virtual_test::{PreparedTest, VirtualCurve, compression, simulate};

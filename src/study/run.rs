@@ -9,6 +9,7 @@ use super::case::{Analysis, Case, Check, Reference};
 use super::uncertainty::{Uncertainty, linear_uncertainty};
 use super::{PreparedCase, StudyError};
 use crate::constitutive::Input;
+use crate::element::Mass;
 use crate::fields::{Locator, ProbeValue, Recovery, Resultants};
 use crate::finding::{Finding, Place};
 use crate::model::{Model, ModelError};
@@ -180,7 +181,7 @@ impl PreparedCase<'_> {
         };
         let w = |n: usize| solution.displacement[6 * n + 2];
         let largest = |m: f64, v: f64| if v.abs() > m.abs() { v } else { m };
-        let w_max = (0..model.mesh.nodes.len()).map(w).fold(0.0, largest);
+        let w_max = model.mesh.quads.iter().flatten().map(|n| w(*n as usize)).fold(0.0, largest);
         let w_max = history.as_ref().map_or(w_max, |h| h.w_max);
         let w_over_thickness = w_max.abs() / model.section.bending_thickness_squared().sqrt();
         let beyond_linear = frequencies.is_empty() && w_over_thickness > LINEAR_LIMIT;
@@ -216,11 +217,12 @@ fn analyse(prepared: &PreparedCase<'_>, model: &Model) -> Result<Outcome, StudyE
     let (case, options) = (prepared.case, &prepared.options);
     match &case.analysis {
         Analysis::Linear => {
-            let (solution, factors) = solve::solve_keeping(model, prepared.plan.as_ref(), options)?;
+            let (solution, factors) = solve::solve_keeping(model, Some(&prepared.plan), options)?;
             Ok(Outcome { solution, frequencies: Vec::new(), history: None, factors: Some(factors) })
         }
-        Analysis::Modal { modes, lumped } => {
-            let modes = solve::modes(model, *modes, *lumped, options)?;
+        Analysis::Modal { modes, mass, lumped } => {
+            let mass = mass_choice(case, *mass, *lumped)?;
+            let modes = solve::modes_with(model, &prepared.plan, *modes, mass, options)?;
             let mut solution = Solution::at_rest(model);
             if let Some(first) = modes.first() {
                 let translations = first.shape.chunks_exact(6).flat_map(|node| &node[..3]);
@@ -230,14 +232,15 @@ fn analyse(prepared: &PreparedCase<'_>, model: &Model) -> Result<Outcome, StudyE
             let frequencies = modes.iter().map(solve::Mode::frequency).collect();
             Ok(Outcome { solution, frequencies, history: None, factors: None })
         }
-        Analysis::Newmark { duration, step, tolerance, damping, load, lumped } => {
+        Analysis::Newmark { duration, step, tolerance, damping, load, mass, lumped } => {
+            let mass = mass_choice(case, *mass, *lumped)?;
             let settings = newmark::Settings {
                 duration: duration.si(),
                 step: step.si(),
                 tolerance: *tolerance,
-                damping: rayleigh(model, *damping, options)?,
+                damping: rayleigh(prepared, model, *damping, mass)?,
                 load: load_history(case, load)?,
-                lumped: *lumped,
+                mass,
             };
             if !(settings.step > 0.0 && settings.duration >= settings.step) {
                 return Err(case.inconsistent("newmark needs 0 < step <= duration".into()));
@@ -248,14 +251,33 @@ fn analyse(prepared: &PreparedCase<'_>, model: &Model) -> Result<Outcome, StudyE
 }
 
 /// Damping ratios at the first and the third natural frequency become Rayleigh factors.
-fn rayleigh(model: &Model, ratios: Option<[f64; 2]>, options: &Options) -> Result<Rayleigh, StudyError> {
+fn rayleigh(
+    prepared: &PreparedCase<'_>,
+    model: &Model,
+    ratios: Option<[f64; 2]>,
+    mass: Mass,
+) -> Result<Rayleigh, StudyError> {
     let Some(ratios) = ratios else { return Ok(Rayleigh::default()) };
-    let modes = solve::modes(model, 3, false, options)?;
+    let plan = prepared.all_groups.as_ref().unwrap_or(&prepared.plan);
+    let modes = solve::modes_with(model, plan, 3, mass, &prepared.options)?;
     let omega: Vec<f64> = modes.iter().map(|m| m.angular_frequency).filter(|w| *w > 0.0).collect();
     Ok(match (omega.first(), omega.last()) {
         (Some(first), Some(last)) => Rayleigh::from_ratios(ratios, [*first, *last]),
         _ => Rayleigh::default(),
     })
+}
+
+/// The mass matrix of a case: the key `mass`, or the older `lumped`.
+fn mass_choice(case: &Case, mass: Option<Mass>, lumped: Option<bool>) -> Result<Mass, StudyError> {
+    match (mass, lumped) {
+        (Some(_), Some(_)) => {
+            Err(case.inconsistent("[analysis] gives both `mass` and `lumped`: remove `lumped`".into()))
+        }
+        (Some(mass), None) => Ok(mass),
+        (None, Some(false)) => Ok(Mass::Consistent),
+        (None, Some(true)) => Ok(Mass::Lumped),
+        (None, None) => Ok(Mass::default()),
+    }
 }
 
 fn load_history(case: &Case, text: &str) -> Result<LoadHistory, StudyError> {
@@ -287,14 +309,14 @@ fn dynamics(
     let locators = &prepared.probes;
     let mut history = History { probes: vec![Vec::new(); locators.len()], ..History::default() };
     let mut solution = Solution::at_rest(model);
-    newmark::newmark(model, settings, &prepared.options, |at| {
+    newmark::newmark_with(model, &prepared.plan, settings, &prepared.options, |at| {
         history.time.push(at.time);
         history.energy.push(at.energy);
         let w = |n: usize| at.displacement[6 * n + 2];
         for (locator, out) in locators.iter().zip(&mut history.probes) {
             out.push(locator.interpolate(&model.mesh, w));
         }
-        let largest = (0..model.mesh.nodes.len()).map(w);
+        let largest = model.mesh.quads.iter().flatten().map(|n| w(*n as usize));
         history.w_max = largest.fold(history.w_max, |m, v| if v.abs() > m.abs() { v } else { m });
         solution.displacement.copy_from_slice(at.displacement);
         solution.strain_energy = at.energy.strain;

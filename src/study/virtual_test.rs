@@ -126,8 +126,9 @@ impl PreparedTest {
             formulation: build::formulation(case)?,
             supports: vec![Support::clamped(&left), Support { nodes: right.clone(), held: moved }],
             loads: Vec::new(),
+            bodies: Vec::new(),
         };
-        let plan = Plan::new(&model.mesh, &Plan::groups(&model, options), options.path)?;
+        let plan = Plan::new(&model, &Plan::groups(&model, options), options.path)?;
         Ok(Self { test: spec.test, x, reading, right, model, plan, options: *options })
     }
 

@@ -45,7 +45,7 @@ pub fn follow(
     options: &Options,
     mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    let system = System::new(model, settings, options)?;
+    let system = System::new(model, options)?;
     let mut state = State::rest(&model.mesh);
     let mut balance = system.balance(&state, None);
     let mut progress = Progress::default();

@@ -61,7 +61,7 @@ pub fn relax(
     options: &Options,
     mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    let system = System::new(model, settings, options)?;
+    let system = System::new(model, options)?;
     let mut state = State::rest(&model.mesh);
     let first = first_rate(&system, model, &state);
     let noise = noise(&system, flow);
