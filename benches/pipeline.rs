@@ -7,6 +7,7 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 
+use kesf::element::Mass;
 use kesf::section::ShellSection;
 use kesf::solve::{Options, modes};
 use kesf::study::{Case, PreparedCase};
@@ -93,7 +94,7 @@ fn modal() {
     let options = Options::default();
     let model = PreparedCase::new(&case, &options).expect("a mesh").model(section(0));
     let start = Instant::now();
-    let found = modes(&model, 10, false, &options).expect("modes");
+    let found = modes(&model, 10, Mass::default(), &options).expect("modes");
     println!("{} modes, 100 x 100 clamped: {:.2} s", found.len(), start.elapsed().as_secs_f64());
 }
 

@@ -6,7 +6,7 @@
 
 use std::ops::ControlFlow;
 
-use kesf::element::Formulation;
+use kesf::element::{Formulation, Mass};
 use kesf::mesh::rectangle;
 use kesf::model::{Load, Model, Support};
 use kesf::section::ShellSection;
@@ -33,8 +33,9 @@ fn model_in_first_mode() -> (Model, Mode) {
         formulation: Formulation::default(),
         supports,
         loads: Vec::new(),
+        bodies: Vec::new(),
     };
-    let mode = modes(&model, 1, true, &Options::default()).unwrap().remove(0);
+    let mode = modes(&model, 1, Mass::Lumped, &Options::default()).unwrap().remove(0);
     let node_mass = 1.0 / 36.0;
     for (node, q) in mode.shape.chunks_exact(6).enumerate() {
         model.loads.push(Load::Point {
@@ -79,7 +80,7 @@ fn a_step_load_follows_the_oscillator_at_second_order_and_keeps_energy() {
         tolerance: None,
         damping: Rayleigh::default(),
         load: LoadHistory::Step,
-        lumped: true,
+        mass: Mass::Lumped,
     };
     let exact = |t: f64| (1.0 - (w * t).cos()) / (w * w);
     let (coarse, fine) =
@@ -109,7 +110,7 @@ fn damping_ratios_are_those_asked_for() {
             tolerance: None,
             damping,
             load: LoadHistory::Step,
-            lumped: true,
+            mass: Mass::Lumped,
         };
         let out = run(&model, &mode, settings, exact);
         assert!(out.worst < 1e-3, "{}", out.worst);
@@ -128,7 +129,7 @@ fn the_adaptive_step_meets_its_tolerance_with_few_steps() {
         tolerance: Some(1e-4),
         damping: Rayleigh::default(),
         load: LoadHistory::Step,
-        lumped: true,
+        mass: Mass::Lumped,
     };
     let out = run(&model, &mode, settings, |t| (1.0 - (w * t).cos()) / (w * w));
     assert!(out.steps < 200, "{}", out.steps);

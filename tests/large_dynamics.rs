@@ -9,7 +9,7 @@
 
 use std::ops::ControlFlow;
 
-use kesf::element::Formulation;
+use kesf::element::{Formulation, Mass};
 use kesf::mesh::rectangle;
 use kesf::model::{Dof, Load, Model, Support};
 use kesf::section::ShellSection;
@@ -46,6 +46,7 @@ fn strip(cells: usize, b: f64, root: &[Dof], g: f64) -> Model {
         section: section(b),
         warp: Vector3::x(),
         formulation: Formulation::default(),
+        bodies: Vec::new(),
     }
 }
 
@@ -57,7 +58,7 @@ fn settings(duration: f64, step: f64) -> Dynamics {
         spectral_radius: 0.9,
         damping: Rayleigh::default(),
         load: LoadHistory::Step,
-        lumped: false,
+        mass: Mass::Consistent,
     }
 }
 
@@ -96,7 +97,7 @@ fn a_rigid_strip_is_a_pendulum_of_second_order() {
 fn small_motions_are_the_linear_ones() {
     let model = strip(10, 8e-6, &Dof::ALL, 1e-6);
     let end = 6 * model.mesh.set("right").unwrap()[0] as usize + 2;
-    let first = modes(&model, 1, false, &Options::default()).unwrap()[0].frequency();
+    let first = modes(&model, 1, Mass::Consistent, &Options::default()).unwrap()[0].frequency();
     let (duration, step) = (1.5 / first, 1.0 / (200.0 * first));
     for damping in [Rayleigh::default(), Rayleigh { alpha: 0.5 * first, beta: 0.01 / first }] {
         let linear = newmark::Settings {
@@ -105,7 +106,7 @@ fn small_motions_are_the_linear_ones() {
             tolerance: None,
             damping,
             load: LoadHistory::Step,
-            lumped: false,
+            mass: Mass::Consistent,
         };
         let (mut straight, mut turned) = (Vec::new(), Vec::new());
         newmark(&model, &linear, &Options::default(), |at| {

@@ -44,6 +44,7 @@ fn cantilever(cells: usize, t: f64, loads: impl Fn(&QuadMesh) -> Vec<Load>) -> M
             Support::clamped(mesh.set("left").unwrap()),
         ],
         loads: loads(&mesh),
+        bodies: Vec::new(),
         mesh,
         section: strip_section(1.0, t),
         warp: Vector3::x(),
@@ -123,8 +124,8 @@ fn a_held_rotation_may_pass_half_a_turn() {
     let everywhere = model.supports[0].nodes.clone();
     model.supports[0].nodes = everywhere.into_iter().filter(|n| *n != nodes[1]).collect();
     let lead = 6 * nodes[0] as usize + Dof::ThetaY as usize;
-    let settings = Settings { bodies: vec![RigidBody { nodes }], first_step: 0.5, ..Settings::default() };
-    let solution = run(&model, &settings);
+    model.bodies = vec![RigidBody { nodes }];
+    let solution = run(&model, &Settings { first_step: 0.5, ..Settings::default() });
     assert!((tip(&model, &solution) + Vector3::x()).norm() < 1e-9);
     let moment = solution.reaction[lead] * 16.0;
     assert!((moment + TAU).abs() < 1e-8, "{moment}");
@@ -140,6 +141,7 @@ fn bending_test(cells: usize, width: f64, b: f64, curvature: f64) -> (Model, Set
             Support { nodes: vec![right[0]], held: turn },
         ],
         loads: Vec::new(),
+        bodies: vec![RigidBody { nodes: right.clone() }],
         mesh,
         section: ShellSection {
             d_m: Matrix3::new(1e4, 0.0, 0.0, 0.0, 6e3, 0.0, 0.0, 0.0, 40.0),
@@ -152,13 +154,7 @@ fn bending_test(cells: usize, width: f64, b: f64, curvature: f64) -> (Model, Set
         formulation: Formulation::default(),
     };
     let lead = 6 * right[0] as usize + Dof::ThetaY as usize;
-    let settings = Settings {
-        first_step: 0.1,
-        largest_step: 0.1,
-        tolerance: 1e-10,
-        bodies: vec![RigidBody { nodes: right }],
-        ..Settings::default()
-    };
+    let settings = Settings { first_step: 0.1, largest_step: 0.1, tolerance: 1e-10, ..Settings::default() };
     (model, settings, lead)
 }
 
@@ -189,7 +185,7 @@ fn the_bending_test_gives_the_rigidity_at_every_curvature() {
 /// on a finer mesh; half the specimen, 10 x 20 elements.
 #[test]
 fn the_bending_test_of_a_sheet_that_curls_across() {
-    let (mut model, mut settings, lead) = bending_test(10, 0.2, 8e-6, 250.0);
+    let (mut model, settings, lead) = bending_test(10, 0.2, 8e-6, 250.0);
     model.mesh = rectangle(0.01, 0.1, 10, 20).unwrap();
     let right = model.mesh.set("right").unwrap().to_vec();
     let middle = model.mesh.set("bottom").unwrap().iter().filter(|n| !right.contains(n));
@@ -200,7 +196,7 @@ fn the_bending_test_of_a_sheet_that_curls_across() {
     let coupling = 0.25 * (8e-6f64 * 4e-6).sqrt();
     model.section.d_b = Matrix3::new(8e-6, coupling, 0.0, coupling, 4e-6, 0.0, 0.0, 0.0, 2e-6);
     assert_eq!(lead, 6 * 10 + 4, "the lead of the clamp is the end of the first row in both meshes");
-    settings.bodies = vec![RigidBody { nodes: right }];
+    model.bodies = vec![RigidBody { nodes: right }];
     let solution = solve(&model, &settings, &Options::default(), |step| {
         let ratio = step.reaction[lead] / 0.1 / (8e-6 * step.state.factor * 250.0);
         assert!((0.9995..0.9998).contains(&ratio), "M/(D11 k) = {ratio}");
@@ -255,8 +251,8 @@ fn a_rigid_half_turns_with_the_sheet() {
     nodes.swap(0, lead);
     model.supports[0].nodes = [&inner[..], &nodes[..1]].concat();
     let rest = model.mesh.nodes[nodes[0] as usize] - model.mesh.nodes[nodes[1] as usize];
-    let settings = Settings { bodies: vec![RigidBody { nodes: nodes.clone() }], ..Settings::default() };
-    let solution = run(&model, &settings);
+    model.bodies = vec![RigidBody { nodes: nodes.clone() }];
+    let solution = run(&model, &Settings::default());
     assert!(solution.iterations <= 10, "{} iterations", solution.iterations);
     let at = |n: u32| solution.state.position[n as usize];
     assert!(((at(nodes[0]) - at(nodes[1])).norm() - rest.norm()).abs() < 1e-13);
@@ -298,14 +294,14 @@ fn failures_keep_the_last_equilibrium() {
 #[test]
 fn bodies_that_cannot_be_are_refused() {
     let (model, settings, _) = bending_test(4, 0.2, 8e-6, 1.0);
-    let refuse = |model: &Model, bodies: Vec<RigidBody>| {
-        let settings = Settings { bodies, ..settings.clone() };
-        solve(model, &settings, &Options::default(), go_on).unwrap_err().to_string()
+    let refuse = |bodies: Vec<RigidBody>| {
+        let model = Model { bodies, ..model.clone() };
+        solve(&model, &settings, &Options::default(), go_on).unwrap_err().to_string()
     };
-    let body = settings.bodies[0].clone();
-    assert!(refuse(&model, vec![body.clone(), body.clone()]).starts_with("M010"));
+    let body = model.bodies[0].clone();
+    assert!(refuse(vec![body.clone(), body.clone()]).starts_with("M010"));
     let reversed = RigidBody { nodes: body.nodes.iter().rev().copied().collect() };
-    assert!(refuse(&model, vec![reversed]).contains("hold node"));
+    assert!(refuse(vec![reversed]).contains("hold node"));
 }
 
 /// A strip between two hinges, inflated: an arc of a circle with the tension N = p R, of length

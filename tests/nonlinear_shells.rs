@@ -40,7 +40,7 @@ fn mapped(nx: usize, ny: usize, map: impl Fn(f64, f64) -> [f64; 3]) -> QuadMesh 
 fn model(mesh: QuadMesh, section: ShellSection, supports: Vec<Support>, loads: Vec<Load>) -> Model {
     // Isotropic sections need no warp; this direction lies in no plane of the meshes here.
     let warp = Vector3::new(0.6, 0.8, 0.1);
-    Model { mesh, section, warp, formulation: Formulation::default(), supports, loads }
+    Model { mesh, section, warp, formulation: Formulation::default(), supports, loads, bodies: Vec::new() }
 }
 
 fn set<'a>(mesh: &'a QuadMesh, name: &str) -> &'a [u32] {

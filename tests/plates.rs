@@ -45,6 +45,7 @@ fn centre_deflection(n: usize, nc: u32, clamped: bool, section: ShellSection, al
         },
         supports,
         loads: vec![Load::Pressure(1.0)],
+        bodies: Vec::new(),
     };
     solve::solve(&model, &Options::default()).unwrap().displacement[6 * centre + 2]
 }

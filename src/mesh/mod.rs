@@ -125,6 +125,14 @@ impl QuadMesh {
         self.quads[quad].map(|n| self.nodes[n as usize])
     }
 
+    /// Lowest and highest coordinates of the nodes that quads use; a point of reference beside the
+    /// sheet does not count.
+    pub fn bounds(&self) -> [Point3<f64>; 2] {
+        let mut used = self.quads.iter().flatten().map(|n| self.nodes[*n as usize]);
+        let first = used.next().unwrap_or_default();
+        used.fold([first, first], |[low, high], p| [low.inf(&p), high.sup(&p)])
+    }
+
     /// The nodes of a named set.
     ///
     /// # Errors

@@ -3,11 +3,13 @@
 mod dof;
 pub mod rigid;
 
+use std::sync::Arc;
+
 use nalgebra::{Point3, Vector3};
 use thiserror::Error;
 
 pub use dof::{Dof, DofGroup};
-pub use rigid::{RigidBody, RigidBodyError};
+pub use rigid::{Links, RigidBody, RigidBodyError};
 
 use crate::element::{Formulation, Frame, MaterialAxisError, Prepared, gravity_load, pressure_load};
 use crate::mesh::{MeshError, QuadMesh};
@@ -28,6 +30,8 @@ pub struct Model {
     pub supports: Vec<Support>,
     /// Loads, added up.
     pub loads: Vec<Load>,
+    /// Nodes that move as rigid bodies.
+    pub bodies: Vec<RigidBody>,
 }
 
 /// Dofs held at a value on some nodes.
@@ -142,6 +146,9 @@ pub enum ModelError {
         /// Angle of the edge from x (degrees).
         angle_deg: f64,
     },
+    /// M010.
+    #[error(transparent)]
+    Body(#[from] RigidBodyError),
 }
 
 impl ModelError {
@@ -151,12 +158,31 @@ impl ModelError {
             Self::Mesh(e) => e.code(),
             Self::MaterialAxis(_) => "M008",
             Self::SkewHardSupport { .. } => "M009",
+            Self::Body(_) => "M010",
         }
     }
 }
 
 impl Model {
-    /// Value of each held dof; `None` where free. Six a node.
+    /// What the rigid bodies tie together.
+    ///
+    /// # Errors
+    /// M010 if a node is in two bodies.
+    pub fn links(&self) -> Result<Arc<Links>, ModelError> {
+        Ok(Links::new(&self.mesh.nodes, &self.bodies)?)
+    }
+
+    /// Value of each held dof, followers of rigid bodies at zero; `None` where free. Six a node.
+    ///
+    /// # Errors
+    /// M010 if a follower is held and its lead is not.
+    pub fn held(&self, links: &Links) -> Result<Vec<Option<f64>>, ModelError> {
+        let mut held = self.constraints();
+        links.hold_followers(&mut held)?;
+        Ok(held)
+    }
+
+    /// Value of each dof that a support holds; `None` elsewhere. Six a node.
     pub fn constraints(&self) -> Vec<Option<f64>> {
         let mut held = vec![None; 6 * self.mesh.nodes.len()];
         for support in &self.supports {

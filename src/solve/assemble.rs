@@ -2,18 +2,22 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Matrix3, Point3, SMatrix, Vector3};
+use nalgebra::Point3;
 
 use super::sparse::{BlockGraph, BlockMatrix};
-use crate::element::{MaterialAxisError, Prepared, consistent_mass, lumped_mass};
-use crate::model::{DofGroup, Model};
-use crate::section::ShellSection;
+use crate::element::{Mass, MaterialAxisError, Prepared};
+use crate::mesh::QuadMesh;
+use crate::model::{DofGroup, Links, Model};
 
-/// The node graph of a mesh and the place of every element's blocks in it: computed once per mesh.
+/// The node graph of a model and the place of every element's blocks in it: computed once per mesh.
 #[derive(Clone, Debug)]
 pub struct Pattern {
     /// Neighbouring nodes.
     pub graph: Arc<BlockGraph>,
+    /// What rigid bodies tie together.
+    pub links: Arc<Links>,
+    /// Nodes of each quad, followers replaced by their leads.
+    pub(super) quads: Vec<[u32; 4]>,
     /// Block index of each of the ten node pairs of every quad, in the order of [`PAIRS`].
     pub(super) blocks: Vec<[u32; 10]>,
 }
@@ -23,9 +27,11 @@ const PAIRS: [(usize, usize); 10] =
     [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2), (3, 0), (3, 1), (3, 2), (3, 3)];
 
 impl Pattern {
-    /// The pattern of a mesh.
-    pub fn new(nodes: usize, quads: &[[u32; 4]]) -> Self {
-        let graph = BlockGraph::from_elements(nodes, quads);
+    /// The pattern of a mesh with these links.
+    pub fn new(mesh: &QuadMesh, links: Arc<Links>) -> Self {
+        let quads: Vec<[u32; 4]> =
+            mesh.quads.iter().map(|quad| quad.map(|n| links.leads[n as usize])).collect();
+        let graph = BlockGraph::from_elements(mesh.nodes.len(), &quads);
         let blocks = quads
             .iter()
             .map(|quad| {
@@ -36,7 +42,7 @@ impl Pattern {
                 })
             })
             .collect();
-        Self { graph: Arc::new(graph), blocks }
+        Self { graph: Arc::new(graph), links, quads, blocks }
     }
 }
 
@@ -46,10 +52,7 @@ pub enum Kind {
     /// Stiffness.
     Stiffness,
     /// Mass, Eq. (12).
-    Mass {
-        /// Row sums on the diagonal instead of the consistent matrix.
-        lumped: bool,
-    },
+    Mass(Mass),
 }
 
 /// Element matrices of a model in one dof group; equal elements in a row are computed once.
@@ -87,8 +90,9 @@ impl<'a> ElementMatrices<'a> {
                 (Kind::Stiffness, DofGroup::Shell) => {
                     self.matrix.extend_from_slice(element.stiffness().as_slice());
                 }
-                (Kind::Mass { lumped }, group) => {
-                    self.matrix = mass(&element, &self.model.section, group, lumped);
+                (Kind::Mass(mass), group) => {
+                    let mass = mass.matrix(&element.frame, &self.model.section);
+                    of_group(mass.as_slice(), group, &mut self.matrix);
                 }
             }
             let size = (corners[2] - corners[0]).norm();
@@ -104,32 +108,18 @@ impl<'a> ElementMatrices<'a> {
     }
 }
 
-/// Mass of an element in global axes: `ρ ∫ N_i N_j` times `diag(1, 1, 1, t²/12, t²/12, 0)` in its own.
-fn mass(element: &Prepared, section: &ShellSection, group: DofGroup, lumped: bool) -> Vec<f64> {
-    let pairs = if lumped {
-        SMatrix::<f64, 4, 4>::from_diagonal(&lumped_mass(&element.frame, section).into())
-    } else {
-        consistent_mass(&element.frame, section)
-    };
-    let rotary = section.thickness * section.thickness / 12.0;
-    let r = element.frame.rotation;
-    let rotation = r.transpose() * Matrix3::from_diagonal(&Vector3::new(rotary, rotary, 0.0)) * r;
-    let mut node = SMatrix::<f64, 6, 6>::identity();
-    node.fixed_view_mut::<3, 3>(3, 3).copy_from(&rotation);
+/// The part of a 24 x 24 matrix that belongs to a group.
+fn of_group(full: &[f64], group: DofGroup, part: &mut Vec<f64>) {
     let dofs = group.dofs();
+    let place = |k: usize| 6 * (k / dofs.len()) + dofs[k % dofs.len()] as usize;
     let n = 4 * dofs.len();
-    let mut m = vec![0.0; n * n];
-    for (k, value) in m.iter_mut().enumerate() {
-        let (column, row) = (k / n, k % n);
-        let (a, b) = (dofs[row % dofs.len()] as usize, dofs[column % dofs.len()] as usize);
-        *value = pairs[(row / dofs.len(), column / dofs.len())] * node[(a, b)];
-    }
-    m
+    part.extend((0..n * n).map(|k| full[24 * place(k / n) + place(k % n)]));
 }
 
-/// The sum of `factor` times each kind of matrix, with rows and columns of held dofs empty.
+/// The sum of `factor` times each kind of matrix, with rows and columns of held dofs empty; those
+/// of followers of rigid bodies are added to their leads.
 ///
-/// `held` says of each dof of the group (`b` a node) whether it is held.
+/// `held` says of each dof of the group (`b` a node) whether it is held; followers count as held.
 ///
 /// # Errors
 /// M008 if the warp direction is normal to an element.
@@ -145,14 +135,18 @@ pub fn assemble(
     let mut copy = vec![0.0; 16 * b * b];
     for &(kind, factor) in terms {
         let mut elements = ElementMatrices::new(model, group, kind);
-        for (quad, nodes) in model.mesh.quads.iter().enumerate() {
+        for (quad, nodes) in pattern.quads.iter().enumerate() {
             let k = elements.of(quad)?;
             let is_held = |dof: usize| held[nodes[dof / b] as usize * b + dof % b];
-            if factor == 1.0 && !(0..4 * b).any(is_held) {
+            let linked = pattern.links.touch(&model.mesh.quads[quad]);
+            if factor == 1.0 && !linked && !(0..4 * b).any(is_held) {
                 scatter(k, b, nodes, &pattern.blocks[quad], &mut matrix);
                 continue;
             }
             copy.iter_mut().zip(k).for_each(|(c, k)| *c = factor * k);
+            if linked {
+                pattern.links.constrain(group, &model.mesh.quads[quad], &mut copy);
+            }
             for j in (0..4 * b).filter(|j| is_held(*j)) {
                 for i in 0..4 * b {
                     copy[j * 4 * b + i] = 0.0;
@@ -190,21 +184,20 @@ pub(super) fn scatter(k: &[f64], b: usize, nodes: &[u32; 4], blocks: &[u32; 10],
 /// factorisation sees a unit row of ordinary size.
 pub fn unit_rows(matrix: &mut BlockMatrix, held: &[bool]) {
     let b = matrix.block;
-    let diagonal = |col_ptr: &[usize], k: usize| col_ptr[k / b] * b * b + (k % b) * (b + 1);
-    let graph = Arc::clone(&matrix.graph);
     let mut scale = vec![0.0f64; b];
-    for k in 0..graph.nodes * b {
-        scale[k % b] = scale[k % b].max(matrix.values[diagonal(&graph.col_ptr, k)]);
+    for k in 0..matrix.rows() {
+        scale[k % b] = scale[k % b].max(matrix.values[matrix.diagonal(k)]);
     }
     for k in (0..held.len()).filter(|k| held[*k]) {
         // A kind of dof that is held everywhere has no scale of its own.
         let s = if scale[k % b] > 0.0 { scale[k % b] } else { 1.0 };
-        matrix.values[diagonal(&graph.col_ptr, k)] = s;
+        let at = matrix.diagonal(k);
+        matrix.values[at] = s;
     }
 }
 
 /// A matrix of the model times a vector of the group, by a loop over the elements: independent of
-/// the assembled matrix, held dofs included.
+/// the assembled matrix, held dofs included; followers of rigid bodies are nodes like any other.
 ///
 /// # Errors
 /// M008 if the warp direction is normal to an element.

@@ -65,6 +65,17 @@ pub enum FactorError {
     },
 }
 
+impl FactorError {
+    /// The stable code.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NotPositiveDefinite { .. } => "N001",
+            Self::Singular { .. } => "N003",
+            Self::OutOfMemory { .. } => "N002",
+        }
+    }
+}
+
 /// What a matrix is taken for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Form {

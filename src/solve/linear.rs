@@ -1,5 +1,6 @@
 //! Linear statics.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use thiserror::Error;
@@ -7,7 +8,7 @@ use thiserror::Error;
 use super::assemble::{Kind, Pattern, assemble, multiply, unit_rows};
 use super::factor::{Analysis, Counts, Factor, FactorError, Path};
 use super::plan::Plan;
-use crate::model::{DofGroup, Model, ModelError};
+use crate::model::{DofGroup, Links, Model, ModelError};
 
 /// How to solve; the result does not depend on it beyond rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +52,7 @@ pub enum SolveError {
         /// What else may be the cause.
         hint: &'static str,
     },
-    /// N002: the factorisation itself failed.
+    /// N001 to N003: the factorisation itself failed.
     #[error(transparent)]
     Factor(FactorError),
     /// N006: the answer does not satisfy the equations.
@@ -91,18 +92,36 @@ pub enum SolveError {
         /// Time reached (s).
         time: f64,
     },
+    /// N008: motion in time without mass.
+    #[error(
+        "N008 the sheet has no mass: frequencies and motion in time need an areal density above 0; give          `areal_density` in [section], or the fabric its weight W"
+    )]
+    NoMass,
 }
 
 impl SolveError {
+    /// What a failed factorisation means for a model.
+    pub(super) fn of(error: FactorError, model: &Model, group: DofGroup) -> Self {
+        let FactorError::NotPositiveDefinite { node, dof, .. } = error else { return Self::Factor(error) };
+        let p = model.mesh.nodes[node];
+        let hint = if model.section.d_b[(2, 2)] == 0.0 {
+            ", or give the sheet a torsional rigidity (H = 0 lets it twist freely)"
+        } else {
+            ""
+        };
+        Self::Singular { node, dof: group.dofs()[dof].name(), x: p.x, y: p.y, z: p.z, hint }
+    }
+
     /// The stable code.
     pub fn code(&self) -> &'static str {
         match self {
             Self::Model(e) => e.code(),
             Self::Singular { .. } => "N001",
-            Self::Factor(_) => "N002",
+            Self::Factor(e) => e.code(),
             Self::Residual { .. } => "N006",
             Self::ModesNotSettled { .. } => "N004",
             Self::StepVanished { .. } => "N005",
+            Self::NoMass => "N008",
         }
     }
 }
@@ -174,7 +193,7 @@ fn analysed(
     keep: &mut dyn FnMut(GroupFactor),
 ) -> Result<Solution, SolveError> {
     let start = Instant::now();
-    let plan = Plan::new(&model.mesh, &Plan::groups(model, options), options.path)?;
+    let plan = Plan::new(model, &Plan::groups(model, options), options.path)?;
     let mut solution = planned(model, &plan, options, keep)?;
     solution.timings.analyse_s = start.elapsed().as_secs_f64() - sum(&solution.timings);
     Ok(solution)
@@ -191,6 +210,7 @@ struct GroupFactor {
     group: DofGroup,
     factor: Factor,
     is_held: Vec<bool>,
+    links: Arc<Links>,
 }
 
 impl Factors {
@@ -203,10 +223,12 @@ impl Factors {
     /// rest; 0 in groups that were not solved.
     pub fn solve(&self, load: &[f64]) -> Vec<f64> {
         let mut full = vec![0.0; load.len()];
-        for GroupFactor { group, factor, is_held } in &self.groups {
+        for GroupFactor { group, factor, is_held, links } in &self.groups {
             let mut part = group.gather(load);
+            links.reduce(*group, &mut part);
             part.iter_mut().zip(is_held).filter(|(_, held)| **held).for_each(|(p, _)| *p = 0.0);
             factor.solve(&mut part, 1);
+            links.expand(*group, &mut part);
             group.scatter(&part, &mut full);
         }
         full
@@ -251,7 +273,7 @@ fn planned(
     options: &Options,
     keep: &mut dyn FnMut(GroupFactor),
 ) -> Result<Solution, SolveError> {
-    let (load, held) = (model.load_vector(), model.constraints());
+    let (load, held) = (model.load_vector(), model.held(&plan.pattern.links)?);
     let mut solution = Solution::at_rest(model);
     for (group, analysis) in &plan.groups {
         let parts = (&plan.pattern, *group, analysis);
@@ -269,13 +291,21 @@ fn solve_group(
     solution: &mut Solution,
 ) -> Result<GroupFactor, SolveError> {
     let b = group.dofs().len();
-    let load = group.gather(load);
+    let links = &pattern.links;
+    let mut load = group.gather(load);
+    links.reduce(group, &mut load);
     let held: Vec<Option<f64>> =
         held.chunks_exact(6).flat_map(|node| group.dofs().iter().map(|d| node[*d as usize])).collect();
 
     let start = Instant::now();
     let is_held: Vec<bool> = held.iter().map(Option::is_some).collect();
-    let stiffness = |u: &[f64]| multiply(model, group, Kind::Stiffness, u).map_err(ModelError::from);
+    let stiffness = |u: &[f64]| {
+        let mut moved = u.to_vec();
+        links.expand(group, &mut moved);
+        let mut f = multiply(model, group, Kind::Stiffness, &moved).map_err(ModelError::from)?;
+        links.reduce(group, &mut f);
+        Ok::<_, ModelError>(f)
+    };
     let mut matrix =
         assemble(model, group, pattern, &[(Kind::Stiffness, 1.0)], &is_held).map_err(ModelError::from)?;
     unit_rows(&mut matrix, &is_held);
@@ -286,19 +316,7 @@ fn solve_group(
     solution.timings.assemble_s += start.elapsed().as_secs_f64();
 
     let start = Instant::now();
-    let singular = |node: usize, dof: usize| {
-        let p = model.mesh.nodes[node];
-        let hint = if model.section.d_b[(2, 2)] == 0.0 {
-            ", or give the sheet a torsional rigidity (H = 0 lets it twist freely)"
-        } else {
-            ""
-        };
-        SolveError::Singular { node, dof: group.dofs()[dof].name(), x: p.x, y: p.y, z: p.z, hint }
-    };
-    let factor = analysis.factorise(&matrix, options.threads).map_err(|e| match e {
-        FactorError::NotPositiveDefinite { node, dof, .. } => singular(node, dof),
-        other => SolveError::Factor(other),
-    })?;
+    let factor = analysis.factorise(&matrix, options.threads).map_err(|e| SolveError::of(e, model, group))?;
     solution.counts.push(analysis.counts());
     solution.timings.factor_s += start.elapsed().as_secs_f64();
 
@@ -344,10 +362,11 @@ fn solve_group(
     solution.strain_energy += 0.5 * u.iter().zip(&internal).map(|(a, f)| a * f).sum::<f64>();
     solution.residual = solution.residual.max(residual);
     solution.dofs += model.mesh.nodes.len() * b;
+    links.expand(group, &mut u);
     group.scatter(&u, &mut solution.displacement);
     group.scatter(&reaction, &mut solution.reaction);
     solution.timings.solve_s += start.elapsed().as_secs_f64();
-    Ok(GroupFactor { group, factor, is_held })
+    Ok(GroupFactor { group, factor, is_held, links: Arc::clone(links) })
 }
 
 fn relative_residual(internal: &[f64], load: &[f64], held: &[Option<f64>]) -> f64 {

@@ -12,5 +12,5 @@ pub mod plan;
 pub mod sparse;
 
 pub use linear::{Factors, Options, Solution, SolveError, Timings, solve, solve_keeping, solve_with};
-pub use modal::{Mode, modes};
+pub use modal::{Mode, modes, modes_with};
 pub use plan::Plan;

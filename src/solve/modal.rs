@@ -1,15 +1,18 @@
 //! Natural frequencies and modes: subspace iteration on the sparse factorisation.
 
+mod dense;
+
 use nalgebra::{DMatrix, SymmetricEigen};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use super::SolveError;
 use super::assemble::{Kind, Pattern, assemble, unit_rows};
-use super::factor::{Analysis, FactorError};
+use super::factor::{Analysis, Factor};
 use super::linear::Options;
 use super::plan::Plan;
 use super::sparse::BlockMatrix;
+use crate::element::Mass;
 use crate::model::{DofGroup, Model, ModelError};
 
 /// One mode of vibration.
@@ -36,17 +39,33 @@ const ROUNDS: usize = 200;
 
 /// The lowest `count` modes of the model, in order of frequency; prescribed values count as zero.
 ///
-/// `lumped` takes row sums as mass matrix instead of the consistent one of Eq. (12). Fewer modes
-/// come back when the model has fewer. Rigid motions are found like any other mode.
+/// Fewer modes come back when the model has fewer. Rigid motions are found like any other mode.
 ///
 /// # Errors
-/// N001, N002 from the factorisation; N004 when the iteration does not settle.
-pub fn modes(model: &Model, count: usize, lumped: bool, options: &Options) -> Result<Vec<Mode>, SolveError> {
-    let groups = if options.coupled { vec![DofGroup::Shell] } else { Plan::all_groups(model) };
-    let plan = Plan::new(&model.mesh, &groups, options.path)?;
+/// N001, N002 from the factorisation; N004 when the iteration does not settle; N008 for a sheet
+/// without mass.
+pub fn modes(model: &Model, count: usize, mass: Mass, options: &Options) -> Result<Vec<Mode>, SolveError> {
+    let plan = Plan::new(model, &Plan::all_groups(model, options), options.path)?;
+    modes_with(model, &plan, count, mass, options)
+}
+
+/// [`modes`] with a plan that was made for the same mesh and [all its groups](Plan::all_groups).
+///
+/// # Errors
+/// As [`modes`].
+pub fn modes_with(
+    model: &Model,
+    plan: &Plan,
+    count: usize,
+    mass: Mass,
+    options: &Options,
+) -> Result<Vec<Mode>, SolveError> {
+    if model.section.areal_density <= 0.0 {
+        return Err(SolveError::NoMass);
+    }
     let mut all = Vec::new();
     for (group, analysis) in &plan.groups {
-        all.extend(group_modes(model, (&plan.pattern, *group, analysis), count, lumped, options)?);
+        all.extend(group_modes(model, (&plan.pattern, *group, analysis), count, mass, options)?);
     }
     all.sort_by(|a, b| a.angular_frequency.total_cmp(&b.angular_frequency));
     all.truncate(count);
@@ -57,74 +76,95 @@ fn group_modes(
     model: &Model,
     (pattern, group, analysis): (&Pattern, DofGroup, &Analysis),
     count: usize,
-    lumped: bool,
+    mass: Mass,
     options: &Options,
 ) -> Result<Vec<Mode>, SolveError> {
     let held: Vec<bool> = model
-        .constraints()
+        .held(&pattern.links)?
         .chunks_exact(6)
         .flat_map(|node| group.dofs().iter().map(|d| node[*d as usize].is_some()))
         .collect();
-    let kind = Kind::Mass { lumped };
+    let kind = Kind::Mass(mass);
     let mass = assemble(model, group, pattern, &[(kind, 1.0)], &held).map_err(ModelError::from)?;
     // A small shift makes rigid motions regular; it is taken off the eigenvalues again.
     let shift = shift(model, group);
     let mut stiffness = assemble(model, group, pattern, &[(Kind::Stiffness, 1.0), (kind, shift)], &held)
         .map_err(ModelError::from)?;
     unit_rows(&mut stiffness, &held);
-    let factor = analysis.factorise(&stiffness, options.threads).map_err(SolveError::Factor)?;
-
-    let with_mass = massive_dofs(&mass, &held);
-    let columns = (2 * count).max(count + 8).min(with_mass);
-    let count = count.min(with_mass);
-    if count == 0 {
+    let factor =
+        analysis.factorise(&stiffness, options.threads).map_err(|e| SolveError::of(e, model, group))?;
+    let (columns, with_mass) = ((2 * count).max(count + 8), massive_dofs(&mass, &held));
+    if with_mass == 0 {
         return Ok(Vec::new());
     }
+    let (values, vectors) = if 2 * columns > with_mass {
+        // Iterating on most of the space costs more than all of it at once, and cannot end well: columns
+        // that hold all modes but few become dependent in the first round.
+        dense::eigen(&stiffness, &mass, &held).map_err(|e| SolveError::of(e, model, group))?
+    } else {
+        subspace(&factor, &mass, &held, count, columns)?
+    };
+    let expanded = |x: &[f64]| {
+        let mut part = x.to_vec();
+        pattern.links.expand(group, &mut part);
+        part
+    };
+    let pairs = values.iter().zip(vectors.column_iter()).take(count);
+    Ok(pairs.map(|(value, x)| mode(group, value - shift, shift, &expanded(x.as_slice()))).collect())
+}
+
+/// The lowest `count` eigenvalues and vectors by subspace iteration with `columns` vectors.
+fn subspace(
+    factor: &Factor,
+    mass: &BlockMatrix,
+    held: &[bool],
+    count: usize,
+    columns: usize,
+) -> Result<(Vec<f64>, DMatrix<f64>), SolveError> {
     let n = held.len();
     let mut random = Pcg64Mcg::seed_from_u64(1);
     let mut x =
         DMatrix::from_fn(n, columns, |i, _| if held[i] { 0.0 } else { random.random_range(-1.0..1.0) });
     let mut previous = vec![f64::INFINITY; count];
-    for _ in 0..ROUNDS {
-        let y = times(&mass, &x);
+    for round in 1..=ROUNDS {
+        let y = times(mass, &x);
         let mut z = y.clone();
         factor.solve(z.as_mut_slice(), columns);
-        let (values, vectors) = rayleigh_ritz(z.tr_mul(&y), z.tr_mul(&times(&mass, &z)))?;
+        let (values, vectors) = rayleigh_ritz(z.tr_mul(&y), z.tr_mul(&times(mass, &z)))
+            .ok_or(SolveError::ModesNotSettled { rounds: round })?;
         x = z * vectors;
         let settled =
             previous.iter().zip(values.iter()).all(|(old, new)| (old - new).abs() <= TOLERANCE * new.abs());
         previous.copy_from_slice(&values.as_slice()[..count]);
         if settled {
-            return Ok((0..count)
-                .map(|k| mode(group, previous[k] - shift, shift, x.column(k).as_slice()))
-                .collect());
+            return Ok((previous, x));
         }
     }
     Err(SolveError::ModesNotSettled { rounds: ROUNDS })
 }
 
-/// Eigenvalues (ascending) and coefficients of the small problem `a c = λ b c`, `bᵀ`-orthonormal.
-fn rayleigh_ritz(a: DMatrix<f64>, b: DMatrix<f64>) -> Result<(DMatrix<f64>, DMatrix<f64>), SolveError> {
+/// Eigenvalues (ascending) and coefficients of the small problem `a c = λ b c`, `bᵀ`-orthonormal; `None`
+/// where the columns are dependent.
+fn rayleigh_ritz(a: DMatrix<f64>, b: DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
     let symmetric = |m: DMatrix<f64>| 0.5 * (&m + m.transpose());
     // Scale first: columns of the iterate differ by orders of magnitude in the first rounds.
     let scale: Vec<f64> = (0..b.nrows()).map(|i| 1.0 / b[(i, i)].max(f64::MIN_POSITIVE).sqrt()).collect();
     let scaled =
         |m: DMatrix<f64>| DMatrix::from_fn(m.nrows(), m.ncols(), |i, j| m[(i, j)] * scale[i] * scale[j]);
     let (a, b) = (scaled(symmetric(a)), scaled(symmetric(b)));
-    let dependent = || SolveError::Factor(FactorError::NotPositiveDefinite { node: 0, dof: 0, pivot: 0.0 });
-    let l = b.cholesky().ok_or_else(dependent)?.l();
-    let left = l.solve_lower_triangular(&a).ok_or_else(dependent)?;
-    let reduced = l.solve_lower_triangular(&left.transpose()).ok_or_else(dependent)?;
+    let l = b.cholesky()?.l();
+    let left = l.solve_lower_triangular(&a)?;
+    let reduced = l.solve_lower_triangular(&left.transpose())?;
     let eigen = SymmetricEigen::new(symmetric(reduced));
     let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
     order.sort_by(|i, j| eigen.eigenvalues[*i].total_cmp(&eigen.eigenvalues[*j]));
     let values = DMatrix::from_iterator(order.len(), 1, order.iter().map(|k| eigen.eigenvalues[*k]));
     let sorted = DMatrix::from_fn(order.len(), order.len(), |i, k| eigen.eigenvectors[(i, order[k])]);
-    let mut vectors = l.tr_solve_lower_triangular(&sorted).ok_or_else(dependent)?;
+    let mut vectors = l.tr_solve_lower_triangular(&sorted)?;
     for (i, mut row) in vectors.row_iter_mut().enumerate() {
         row *= scale[i];
     }
-    Ok((values, vectors))
+    Some((values, vectors))
 }
 
 fn times(matrix: &BlockMatrix, x: &DMatrix<f64>) -> DMatrix<f64> {
@@ -139,16 +179,12 @@ fn times(matrix: &BlockMatrix, x: &DMatrix<f64>) -> DMatrix<f64> {
 
 /// Free dofs with mass: there are that many modes of finite frequency.
 fn massive_dofs(mass: &BlockMatrix, held: &[bool]) -> usize {
-    let b = mass.block;
-    (0..held.len())
-        .filter(|&k| !held[k] && mass.values[mass.graph.col_ptr[k / b] * b * b + (k % b) * (b + 1)] > 0.0)
-        .count()
+    (0..held.len()).filter(|&k| !held[k] && mass.values[mass.diagonal(k)] > 0.0).count()
 }
 
 /// A hundredth of the order of the lowest eigenvalue: stiffness over mass at the size of the sheet.
 fn shift(model: &Model, group: DofGroup) -> f64 {
-    let first = model.mesh.nodes.first().copied().unwrap_or_default();
-    let (low, high) = model.mesh.nodes.iter().fold((first, first), |(l, h), p| (l.inf(p), h.sup(p)));
+    let [low, high] = model.mesh.bounds();
     let size = (high - low).norm();
     let s = &model.section;
     let bending = s.d_b[(0, 0)].max(s.d_b[(1, 1)]) / size.powi(4);

@@ -1,6 +1,7 @@
 //! Linear dynamics by Newmark's method, Eq. (25): `M ü + C u̇ + K u = f(t)`, from rest.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use super::SolveError;
 use super::assemble::{Kind, Pattern, assemble, unit_rows};
@@ -8,7 +9,8 @@ use super::factor::{Analysis, Factor};
 use super::linear::Options;
 use super::plan::Plan;
 use super::sparse::BlockMatrix;
-use crate::model::{DofGroup, Model, ModelError};
+use crate::element::Mass;
+use crate::model::{DofGroup, Links, Model, ModelError};
 
 /// β and γ of the average acceleration method: second order, no numerical damping.
 const BETA: f64 = 0.25;
@@ -74,8 +76,8 @@ pub struct Settings {
     pub damping: Rayleigh,
     /// The load in time.
     pub load: LoadHistory,
-    /// Row sums as mass matrix.
-    pub lumped: bool,
+    /// The mass matrix.
+    pub mass: Mass,
 }
 
 /// Energies of the sheet at one instant (J).
@@ -114,14 +116,32 @@ pub struct Instant<'a> {
 /// Prescribed values other than zero are not part of a dynamic run: they count as zero.
 ///
 /// # Errors
-/// N001, N002 from the factorisation; N005 when the adaptive step vanishes.
+/// N001, N002 from the factorisation; N005 when the adaptive step vanishes; N008 for a sheet without
+/// mass.
 pub fn newmark(
     model: &Model,
     settings: &Settings,
     options: &Options,
+    observe: impl FnMut(&Instant<'_>) -> ControlFlow<()>,
+) -> Result<(), SolveError> {
+    let plan = Plan::new(model, &Plan::groups(model, options), options.path)?;
+    newmark_with(model, &plan, settings, options, observe)
+}
+
+/// [`newmark`] with a plan that was made for the same mesh and the [groups in motion](Plan::groups).
+///
+/// # Errors
+/// As [`newmark`].
+pub fn newmark_with(
+    model: &Model,
+    plan: &Plan,
+    settings: &Settings,
+    options: &Options,
     mut observe: impl FnMut(&Instant<'_>) -> ControlFlow<()>,
 ) -> Result<(), SolveError> {
-    let plan = Plan::new(&model.mesh, &Plan::groups(model, options), options.path)?;
+    if model.section.areal_density <= 0.0 {
+        return Err(SolveError::NoMass);
+    }
     let mut systems = plan
         .groups
         .iter()
@@ -131,7 +151,7 @@ pub fn newmark(
     let mut show = |time: f64, systems: &[System<'_>]| {
         let mut energy = Energy::default();
         for s in systems {
-            s.group.scatter(&s.u, &mut full);
+            s.group.scatter(&s.motion(), &mut full);
             energy.kinetic += s.energy.kinetic;
             energy.strain += s.energy.strain;
             energy.dissipated += s.energy.dissipated;
@@ -173,7 +193,9 @@ pub fn newmark(
 
 /// One dof group: matrices, state, and the factor of the current step.
 struct System<'a> {
+    model: &'a Model,
     group: DofGroup,
+    links: Arc<Links>,
     analysis: &'a Analysis,
     threads: usize,
     stiffness: BlockMatrix,
@@ -198,26 +220,29 @@ struct Trial {
 
 impl<'a> System<'a> {
     fn new(
-        model: &Model,
+        model: &'a Model,
         (pattern, group, analysis): (&Pattern, DofGroup, &'a Analysis),
         settings: &Settings,
         options: &Options,
     ) -> Result<Self, SolveError> {
         let held: Vec<bool> = model
-            .constraints()
+            .held(&pattern.links)?
             .chunks_exact(6)
             .flat_map(|node| group.dofs().iter().map(|d| node[*d as usize].is_some()))
             .collect();
         let matrix = |kind| assemble(model, group, pattern, &[(kind, 1.0)], &held).map_err(ModelError::from);
         let mut load = group.gather(&model.load_vector());
+        pattern.links.reduce(group, &mut load);
         load.iter_mut().zip(&held).filter(|(_, h)| **h).for_each(|(f, _)| *f = 0.0);
         let n = load.len();
         let mut system = Self {
+            model,
             group,
+            links: Arc::clone(&pattern.links),
             analysis,
             threads: options.threads,
             stiffness: matrix(Kind::Stiffness)?,
-            mass: matrix(Kind::Mass { lumped: settings.lumped })?,
+            mass: matrix(Kind::Mass(settings.mass))?,
             damping: settings.damping,
             held,
             load,
@@ -230,14 +255,35 @@ impl<'a> System<'a> {
         };
         let start = settings.load.at(0.0);
         if start != 0.0 {
-            // M a = f at the first instant; drilling rotations have no mass, so a trace of the
-            // stiffness (a step a thousand times shorter) keeps the system regular.
-            let tiny = 1e-3 * settings.step;
-            let factor = system.factorise(tiny)?;
-            system.a = system.load.iter().map(|f| f * start).collect();
-            factor.solve(&mut system.a, 1);
+            system.a = system.first_acceleration(start)?;
         }
         Ok(system)
+    }
+
+    /// `M a = f` at the first instant, when nothing has moved and nothing is damped yet. Rotations about
+    /// the normal have no mass; their acceleration does not enter that balance and starts at 0.
+    fn first_acceleration(&self, load_factor: f64) -> Result<Vec<f64>, SolveError> {
+        let mut mass = self.mass.clone();
+        add_rotary_trace(&mut mass);
+        let massless: Vec<bool> = (0..mass.rows()).map(|k| mass.values[mass.diagonal(k)] <= 0.0).collect();
+        unit_rows(&mut mass, &massless);
+        let factor = self.factorised(&mass)?;
+        let mut a: Vec<f64> = self.load.iter().map(|f| f * load_factor).collect();
+        a.iter_mut().zip(&massless).filter(|(_, m)| **m).for_each(|(f, _)| *f = 0.0);
+        factor.solve(&mut a, 1);
+        Ok(a)
+    }
+
+    /// Displacements of the group's dofs, followers of rigid bodies included.
+    fn motion(&self) -> Vec<f64> {
+        let mut u = self.u.clone();
+        self.links.expand(self.group, &mut u);
+        u
+    }
+
+    fn factorised(&self, matrix: &BlockMatrix) -> Result<Factor, SolveError> {
+        let factor = self.analysis.factorise(matrix, self.threads);
+        factor.map_err(|e| SolveError::of(e, self.model, self.group))
     }
 
     /// Factor of `M + γ Δt C + β Δt² K`.
@@ -247,7 +293,7 @@ impl<'a> System<'a> {
         let mut matrix = self.mass.clone();
         matrix.values.iter_mut().zip(&self.stiffness.values).for_each(|(a, b)| *a = m * *a + k * b);
         unit_rows(&mut matrix, &self.held);
-        self.analysis.factorise(&matrix, self.threads).map_err(SolveError::Factor)
+        self.factorised(&matrix)
     }
 
     fn trial(&mut self, dt: f64, load_factor: f64) -> Result<Trial, SolveError> {
@@ -293,6 +339,22 @@ impl<'a> System<'a> {
         self.energy.strain = 0.5 * dot(&trial.u, &product(&self.stiffness, &trial.u));
         self.largest = trial.u.iter().fold(self.largest, |m, x| m.max(x.abs()));
         (self.u, self.v, self.a) = (trial.u, trial.v, trial.a);
+    }
+}
+
+/// Adds a trace of each node's rotary inertia to its rotations: that about the normal of a tilted
+/// element vanishes, which leaves the block of the node singular. The balance is then met to this part of
+/// the moments.
+fn add_rotary_trace(mass: &mut BlockMatrix) {
+    const TRACE: f64 = 1e-12;
+    if mass.block != DofGroup::Shell.dofs().len() {
+        return;
+    }
+    for node in 0..mass.graph.nodes {
+        let at = mass.diagonal(6 * node);
+        let block = &mut mass.values[at..][..36];
+        let trace: f64 = (3..6).map(|d| block[7 * d]).sum();
+        (3..6).for_each(|d| block[7 * d] += TRACE * trace);
     }
 }
 

@@ -36,13 +36,12 @@ pub use stability::Stability;
 
 use self::flow::noise;
 use self::newton::{Converged, Drag, Failure, newton};
-use self::system::{Balance, System, quads_of_leads};
+use self::system::{Balance, System};
 use super::SolveError;
 use super::linear::Options;
 use super::plan::Plan;
 use crate::mesh::QuadMesh;
-use crate::model::rigid::leads;
-use crate::model::{DofGroup, Model, RigidBody, RigidBodyError};
+use crate::model::{DofGroup, Model};
 
 /// Places and rotations of the nodes under a part of the load.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,21 +89,12 @@ pub struct Settings {
     pub largest_step: f64,
     /// A step that has been halved below this one ends the search.
     pub smallest_step: f64,
-    /// Nodes that move as rigid bodies.
-    pub bodies: Vec<RigidBody>,
 }
 
 impl Default for Settings {
     /// Tolerance 1e-8, at most 25 iterations a step, the whole load at once.
     fn default() -> Self {
-        Self {
-            tolerance: 1e-8,
-            iterations: 25,
-            first_step: 1.0,
-            largest_step: 1.0,
-            smallest_step: 1e-5,
-            bodies: Vec::new(),
-        }
+        Self { tolerance: 1e-8, iterations: 25, first_step: 1.0, largest_step: 1.0, smallest_step: 1e-5 }
     }
 }
 
@@ -172,9 +162,6 @@ pub enum NonlinearError {
     /// The model cannot be assembled or its tangent not be factorised.
     #[error(transparent)]
     Solve(#[from] SolveError),
-    /// M010.
-    #[error(transparent)]
-    Body(#[from] RigidBodyError),
     /// N007: Newton's method did not converge, and steps cannot be made smaller.
     #[error(
         "N007 step {step} did not converge: after {iterations} iterations the residual is {residual:.1e} of the loads, \
@@ -200,7 +187,6 @@ impl NonlinearError {
     pub fn code(&self) -> &'static str {
         match self {
             Self::Solve(e) => e.code(),
-            Self::Body(_) => "M010",
             Self::NotConverged { .. } => "N007",
         }
     }
@@ -271,17 +257,15 @@ pub fn solve(
     options: &Options,
     observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    search(model, &plan(model, settings, options)?, settings, &Method::Newton(None), options, observe)
+    search(model, &plan(model, options)?, settings, &Method::Newton(None), options, observe)
 }
 
 /// What depends on the mesh and the bodies only, shared by every model on them.
 ///
 /// # Errors
 /// M010 for the bodies; N002 for memory.
-pub fn plan(model: &Model, settings: &Settings, options: &Options) -> Result<Plan, NonlinearError> {
-    let mesh = &model.mesh;
-    let leads = leads(mesh.nodes.len(), &settings.bodies, &model.constraints())?;
-    Ok(Plan::of_quads(mesh, &quads_of_leads(mesh, &leads), &[DofGroup::Shell], options.path)?)
+pub fn plan(model: &Model, options: &Options) -> Result<Plan, NonlinearError> {
+    Ok(Plan::new(model, &[DofGroup::Shell], options.path)?)
 }
 
 /// [`solve`], [`follow`] or [`relax`] with a plan that was made before by [`plan`], for a model with the
@@ -297,7 +281,7 @@ pub fn search(
     options: &Options,
     observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    let system = System::new(model, plan, settings, options)?;
+    let system = System::new(model, plan, options)?;
     match method {
         Method::Newton(perturbation) => grow(&system, settings, *perturbation, observe),
         Method::ArcLength(arc) => arc::follow_path(&system, settings, arc, observe),

@@ -1,10 +1,9 @@
-//! What depends on the mesh only, shared by every fabric on it.
+//! What depends on the mesh and its rigid bodies only, shared by every fabric on it.
 
 use super::SolveError;
 use super::assemble::Pattern;
 use super::factor::{self, Analysis, Path};
 use super::linear::Options;
-use crate::mesh::QuadMesh;
 use crate::model::{Dof, DofGroup, Model};
 
 /// Node pattern of a mesh, and ordering and symbolic factorisation for each dof group in use.
@@ -15,22 +14,13 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Analyses the mesh for the dof groups that will be solved.
+    /// Analyses the mesh and the rigid bodies of a model for the dof groups that will be solved.
     ///
     /// # Errors
-    /// N002 when the ordering or symbolic phase fails (out of memory).
-    pub fn new(mesh: &QuadMesh, groups: &[DofGroup], path: Path) -> Result<Self, SolveError> {
-        Self::of_quads(mesh, &mesh.quads, groups, path)
-    }
-
-    /// The same for elements whose nodes are not those of the mesh: those of rigid bodies are their leads.
-    pub(super) fn of_quads(
-        mesh: &QuadMesh,
-        quads: &[[u32; 4]],
-        groups: &[DofGroup],
-        path: Path,
-    ) -> Result<Self, SolveError> {
-        let pattern = Pattern::new(mesh.nodes.len(), quads);
+    /// M010 for bodies that cannot be; N002 when the ordering or symbolic phase fails (out of memory).
+    pub fn new(model: &Model, groups: &[DofGroup], path: Path) -> Result<Self, SolveError> {
+        let mesh = &model.mesh;
+        let pattern = Pattern::new(mesh, model.links()?);
         let coordinates: Vec<[f64; 3]> = mesh.nodes.iter().map(|p| [p.x, p.y, p.z]).collect();
         let groups = groups
             .iter()
@@ -60,7 +50,10 @@ impl Plan {
     }
 
     /// Every group that a model has, in motion or not: what a modal analysis needs.
-    pub fn all_groups(model: &Model) -> Vec<DofGroup> {
-        if model.mesh.is_flat() { vec![DofGroup::Plate, DofGroup::Membrane] } else { vec![DofGroup::Shell] }
+    pub fn all_groups(model: &Model, options: &Options) -> Vec<DofGroup> {
+        if options.coupled || !model.mesh.is_flat() {
+            return vec![DofGroup::Shell];
+        }
+        vec![DofGroup::Plate, DofGroup::Membrane]
     }
 }

@@ -142,6 +142,12 @@ impl BlockMatrix {
         self.graph.nodes * self.block
     }
 
+    /// Where the diagonal entry of a row stands in `values`.
+    pub fn diagonal(&self, row: usize) -> usize {
+        let b = self.block;
+        self.graph.col_ptr[row / b] * b * b + (row % b) * (b + 1)
+    }
+
     /// The product `y = A x`, with both triangles.
     ///
     /// # Panics

@@ -5,10 +5,10 @@ use std::str::FromStr;
 
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
-use super::StudyError;
 use super::case::{
     Case, DrillingChoice, LoadTable, Profile, SectionTable, Shape, Sheet, Subcells, SupportKind, SupportTable,
 };
+use super::{StudyError, rigid};
 use crate::element::{Cells, Drilling, Formulation};
 use crate::finding::Place;
 use crate::mesh::{self, MeshError, QuadMesh};
@@ -79,7 +79,8 @@ pub fn formulation(case: &Case) -> Result<Formulation, StudyError> {
 /// # Errors
 /// S003, and the errors of mesh and model.
 pub fn model(case: &Case, sheet: &Sheet, section: ShellSection) -> Result<Model, StudyError> {
-    let mesh = sheet_mesh(case, sheet)?;
+    let mut mesh = sheet_mesh(case, sheet)?;
+    let bodies = rigid::bodies(case, &mut mesh)?;
     let (sin, cos) = sheet.warp_angle_deg.to_radians().sin_cos();
     let mut supports = Vec::new();
     for table in &case.supports {
@@ -100,7 +101,7 @@ pub fn model(case: &Case, sheet: &Sheet, section: ShellSection) -> Result<Model,
         }
     }
     let formulation = formulation(case)?;
-    Ok(Model { mesh, section, warp: Vector3::new(cos, sin, 0.0), formulation, supports, loads })
+    Ok(Model { mesh, section, warp: Vector3::new(cos, sin, 0.0), formulation, supports, loads, bodies })
 }
 
 fn sheet_mesh(case: &Case, sheet: &Sheet) -> Result<QuadMesh, StudyError> {

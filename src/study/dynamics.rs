@@ -9,13 +9,14 @@ use super::StudyError;
 use super::case::{Case, LoadTable};
 use super::nonlinear::largest_w;
 use super::run::Outcome;
+use crate::element::Mass;
 use crate::fields::Locator;
 use crate::mesh::QuadMesh;
 use crate::model::Model;
 use crate::quantity::{Frequency, Time};
 use crate::solve::newmark::{self, Energy, Instant, LoadHistory, Rayleigh};
-use crate::solve::nonlinear::dynamics::{Dynamics, integrate};
-use crate::solve::{self, Options, Solution};
+use crate::solve::nonlinear::dynamics::{Dynamics, integrate_with};
+use crate::solve::{self, Solution};
 
 /// A dynamic analysis in time.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -44,12 +45,14 @@ pub(super) struct Large {
 
 /// Damping ratios at the first and the third natural frequency become Rayleigh factors.
 pub(super) fn rayleigh(
+    prepared: &PreparedCase<'_>,
     model: &Model,
     ratios: Option<[f64; 2]>,
-    options: &Options,
+    mass: Mass,
 ) -> Result<Rayleigh, StudyError> {
     let Some(ratios) = ratios else { return Ok(Rayleigh::default()) };
-    let modes = solve::modes(model, 3, false, options)?;
+    let plan = prepared.all_groups.as_ref().unwrap_or(&prepared.plan);
+    let modes = solve::modes_with(model, plan, 3, mass, &prepared.options)?;
     let omega: Vec<f64> = modes.iter().map(|m| m.angular_frequency).filter(|w| *w > 0.0).collect();
     Ok(match (omega.first(), omega.last()) {
         (Some(first), Some(last)) => Rayleigh::from_ratios(ratios, [*first, *last]),
@@ -116,6 +119,11 @@ pub(super) fn dynamics(
     if large.rotations && case.loads.iter().any(|l| matches!(l, LoadTable::Prescribed { .. })) {
         return Err(case.inconsistent("a dynamic analysis has no prescribed values: remove them".into()));
     }
+    if large.rotations && !case.rigid.is_empty() {
+        return Err(case.inconsistent(
+            "dynamics in large rotations has no rigid bodies: remove [[rigid]], or large_rotations".into(),
+        ));
+    }
     let mut record = Record {
         mesh: &model.mesh,
         locators: &prepared.probes,
@@ -123,12 +131,12 @@ pub(super) fn dynamics(
         solution: Solution::at_rest(model),
     };
     let state = if large.rotations {
-        let newmark::Settings { duration, step, tolerance, damping, load, lumped } = *settings;
+        let newmark::Settings { duration, step, tolerance, damping, load, mass } = *settings;
         let spectral_radius = large.spectral_radius.unwrap_or(SPECTRAL_RADIUS);
-        let dynamics = Dynamics { duration, step, tolerance, spectral_radius, damping, load, lumped };
-        Some(integrate(model, &dynamics, &prepared.options, |at| record.see(at))?)
+        let dynamics = Dynamics { duration, step, tolerance, spectral_radius, damping, load, mass };
+        Some(integrate_with(model, &prepared.plan, &dynamics, &prepared.options, |at| record.see(at))?)
     } else {
-        newmark::newmark(model, settings, &prepared.options, |at| record.see(at))?;
+        newmark::newmark_with(model, &prepared.plan, settings, &prepared.options, |at| record.see(at))?;
         None
     };
     let Record { mut history, solution, .. } = record;

@@ -196,14 +196,6 @@ pub(super) fn equilibrium(
                 .into(),
         ));
     }
-    let own;
-    let plan = match &prepared.plan {
-        Some(plan) => plan,
-        None => {
-            own = nonlinear::plan(model, &settings, options)?;
-            &own
-        }
-    };
     let linear = solve::solve(model, options).ok();
     let mut record = Record {
         mesh: &model.mesh,
@@ -219,7 +211,8 @@ pub(super) fn equilibrium(
         state: State::rest(&model.mesh),
         solution: Solution::at_rest(model),
     };
-    let found = nonlinear::search(model, plan, &settings, &method, options, |step| record.see(step));
+    let found =
+        nonlinear::search(model, &prepared.plan, &settings, &method, options, |step| record.see(step));
     let mut findings = Vec::new();
     let mut note = |code, message: String| {
         findings.push(Finding::new(code, message).at(Place::file(&case.path)));

@@ -9,9 +9,9 @@ use super::nonlinear::way;
 use super::{StudyError, build};
 use crate::fields::{Line, Locator, Recovery};
 use crate::mesh::QuadMesh;
-use crate::model::Model;
+use crate::model::{DofGroup, Model};
 use crate::section::ShellSection;
-use crate::solve::{Options, Plan, nonlinear};
+use crate::solve::{Options, Plan};
 
 /// A case with a `[sheet]`, and everything of it that does not depend on the fabric: mesh, supports,
 /// loads, order of elimination and symbolic factorisation, places of probes. Shared between threads
@@ -22,8 +22,11 @@ pub struct PreparedCase<'a> {
     pub(super) options: Options,
     /// With a stand-in for the section.
     model: Model,
-    /// Of linear and nonlinear statics; the others have analyses of their own.
-    pub(super) plan: Option<Plan>,
+    /// Of the groups that the analysis solves for.
+    pub(super) plan: Plan,
+    /// Of every group: where the damping of a dynamic analysis needs frequencies of groups that the
+    /// loads leave at rest.
+    pub(super) all_groups: Option<Plan>,
     pub(super) probes: Vec<Locator>,
     /// The middle line along x.
     pub(super) middle: Line,
@@ -46,15 +49,34 @@ impl<'a> PreparedCase<'a> {
             );
         };
         let model = build::model(case, sheet, stand_in())?;
-        let plan = match &case.analysis {
-            Analysis::Linear => Some(Plan::new(&model.mesh, &Plan::groups(&model, options), options.path)?),
-            Analysis::Nonlinear(table) => Some(nonlinear::plan(&model, &way(case, table)?.0, options)?),
-            _ => None,
+        let all = Plan::all_groups(&model, options);
+        let groups = match &case.analysis {
+            Analysis::Modal { .. } => all.clone(),
+            Analysis::Nonlinear(table) => {
+                // Keys that do not fit are refused before anything is computed.
+                way(case, table)?;
+                vec![DofGroup::Shell]
+            }
+            Analysis::Newmark { large_rotations: true, .. } => vec![DofGroup::Shell],
+            _ => Plan::groups(&model, options),
         };
+        let plan = Plan::new(&model, &groups, options.path)?;
+        let damped = matches!(case.analysis, Analysis::Newmark { damping: Some(_), .. });
+        let all_groups =
+            (damped && all != groups).then(|| Plan::new(&model, &all, options.path)).transpose()?;
         let probes = locators(case, &model.mesh)?;
         let [from, to] = middle_line(&model.mesh);
         let middle = Line::new(&model.mesh, &from, &to, STEPS);
-        Ok(Self { case, options: *options, model, plan, probes, middle, recovery: Arc::default() })
+        Ok(Self {
+            case,
+            options: *options,
+            model,
+            plan,
+            all_groups,
+            probes,
+            middle,
+            recovery: Arc::default(),
+        })
     }
 
     /// The model of the case with a section.
@@ -76,8 +98,7 @@ pub(super) fn stand_in() -> ShellSection {
 
 /// Ends of the middle line along x.
 fn middle_line(mesh: &QuadMesh) -> [Point3<f64>; 2] {
-    let start = (Point3::from([f64::INFINITY; 3]), Point3::from([f64::NEG_INFINITY; 3]));
-    let (low, high) = mesh.nodes.iter().fold(start, |(l, h), p| (l.inf(p), h.sup(p)));
+    let [low, high] = mesh.bounds();
     let middle = nalgebra::center(&low, &high);
     [Point3::new(low.x, middle.y, middle.z), Point3::new(high.x, middle.y, middle.z)]
 }

@@ -10,6 +10,7 @@ use super::nonlinear::{LoadPath, equilibrium, largest_w};
 use super::uncertainty::{Uncertainty, linear_uncertainty};
 use super::{PreparedCase, StudyError};
 use crate::constitutive::Input;
+use crate::element::Mass;
 use crate::fields::{Locator, ProbeValue, Recovery, Resultants};
 use crate::finding::{Finding, Place};
 use crate::model::{Model, ModelError};
@@ -240,11 +241,12 @@ fn analyse(prepared: &PreparedCase<'_>, model: &Model) -> Result<Outcome, StudyE
     let (case, options) = (prepared.case, &prepared.options);
     match &case.analysis {
         Analysis::Linear => {
-            let (solution, factors) = solve::solve_keeping(model, prepared.plan.as_ref(), options)?;
+            let (solution, factors) = solve::solve_keeping(model, Some(&prepared.plan), options)?;
             Ok(Outcome { factors: Some(factors), ..Outcome::of(solution) })
         }
-        Analysis::Modal { modes, lumped } => {
-            let modes = solve::modes(model, *modes, *lumped, options)?;
+        Analysis::Modal { modes, mass, lumped } => {
+            let mass = mass_choice(case, *mass, *lumped)?;
+            let modes = solve::modes_with(model, &prepared.plan, *modes, mass, options)?;
             let mut solution = Solution::at_rest(model);
             if let Some(first) = modes.first() {
                 let translations = first.shape.chunks_exact(6).flat_map(|node| &node[..3]);
@@ -260,17 +262,19 @@ fn analyse(prepared: &PreparedCase<'_>, model: &Model) -> Result<Outcome, StudyE
             tolerance,
             damping,
             load,
+            mass,
             lumped,
             large_rotations,
             spectral_radius,
         } => {
+            let mass = mass_choice(case, *mass, *lumped)?;
             let settings = newmark::Settings {
                 duration: duration.si(),
                 step: step.si(),
                 tolerance: *tolerance,
-                damping: rayleigh(model, *damping, options)?,
+                damping: rayleigh(prepared, model, *damping, mass)?,
                 load: load_history(case, load)?,
-                lumped: *lumped,
+                mass,
             };
             if !(settings.step > 0.0 && settings.duration >= settings.step) {
                 return Err(case.inconsistent("newmark needs 0 < step <= duration".into()));
@@ -279,6 +283,19 @@ fn analyse(prepared: &PreparedCase<'_>, model: &Model) -> Result<Outcome, StudyE
             dynamics(prepared, model, &settings, large)
         }
         Analysis::Nonlinear(table) => equilibrium(prepared, model, table),
+    }
+}
+
+/// The mass matrix of a case: the key `mass`, or the older `lumped`.
+fn mass_choice(case: &Case, mass: Option<Mass>, lumped: Option<bool>) -> Result<Mass, StudyError> {
+    match (mass, lumped) {
+        (Some(_), Some(_)) => {
+            Err(case.inconsistent("[analysis] gives both `mass` and `lumped`: remove `lumped`".into()))
+        }
+        (Some(mass), None) => Ok(mass),
+        (None, Some(false)) => Ok(Mass::Consistent),
+        (None, Some(true)) => Ok(Mass::Lumped),
+        (None, None) => Ok(Mass::default()),
     }
 }
 

@@ -169,7 +169,7 @@ fn the_band_of_the_mean_fabric_agrees_with_monte_carlo() {
         e.mean *= (z * e.cv().unwrap() / (e.n as f64).sqrt()).exp();
     };
     let mut model = build::model(&case, case.sheet.as_ref().unwrap(), c.section).unwrap();
-    let plan = Plan::new(&model.mesh, &Plan::groups(&model, &options), options.path).unwrap();
+    let plan = Plan::new(&model, &Plan::groups(&model, &options), options.path).unwrap();
     let values: Vec<f64> = (0..DRAWS)
         .map(|_| {
             let mut drawn = sheet.clone();

@@ -69,18 +69,14 @@ impl LargeTest {
             warp: Vector3::x(),
             formulation,
             loads: Vec::new(),
+            bodies: vec![RigidBody { nodes: clamp.clone() }],
         };
         let curvature = spec.curvature.map_or(CURVATURE, |k| k.si());
         let pretension = spec.pretension.map_or(PRETENSION, |w| w.si());
         let step = if spec.test == Test::Bending { 1.0 / BENDING_STEPS as f64 } else { 1.0 };
-        let settings = Settings {
-            tolerance: 1e-10,
-            first_step: step,
-            largest_step: step,
-            bodies: vec![RigidBody { nodes: clamp.clone() }],
-            ..Settings::default()
-        };
-        let plan = plan(&model, &settings, options)?;
+        let settings =
+            Settings { tolerance: 1e-10, first_step: step, largest_step: step, ..Settings::default() };
+        let plan = plan(&model, options)?;
         Ok(Self { test: spec.test, gauge, width, clamp, curvature, pretension, settings, plan, model })
     }
 

@@ -172,8 +172,9 @@ impl PreparedTest {
             formulation,
             supports: vec![Support::clamped(&left), Support { nodes: right.clone(), held: moved }],
             loads: Vec::new(),
+            bodies: Vec::new(),
         };
-        let plan = Plan::new(&model.mesh, &Plan::groups(&model, options), options.path)?;
+        let plan = Plan::new(&model, &Plan::groups(&model, options), options.path)?;
         Ok(Self { test: spec.test, x, reading, right, model, plan, options: *options, gauge, large })
     }
 

@@ -47,7 +47,7 @@ pub fn follow(
     options: &Options,
     observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    let plan = super::plan(model, settings, options)?;
+    let plan = super::plan(model, options)?;
     super::search(model, &plan, settings, &Method::ArcLength(*arc), options, observe)
 }
 

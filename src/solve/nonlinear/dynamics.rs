@@ -17,13 +17,14 @@ use nalgebra::SMatrix;
 
 use super::newton::{is_rounding, limit};
 use super::system::{Balance, System};
-use super::{NonlinearError, Settings, State, plan};
-use crate::element::{Frame, Vector24, consistent_mass, lumped_mass};
+use super::{NonlinearError, State, plan};
+use crate::element::{Frame, Mass, Vector24};
 use crate::model::Model;
 use crate::solve::SolveError;
 use crate::solve::assemble::{scatter, unit_rows};
 use crate::solve::linear::Options;
 use crate::solve::newmark::{Energy, Instant, LoadHistory, Rayleigh};
+use crate::solve::plan::Plan;
 use crate::solve::sparse::BlockMatrix;
 
 /// What to integrate.
@@ -42,8 +43,8 @@ pub struct Dynamics {
     pub damping: Rayleigh,
     /// The load in time.
     pub load: LoadHistory,
-    /// Row sums as mass matrix.
-    pub lumped: bool,
+    /// The mass matrix.
+    pub mass: Mass,
 }
 
 /// Iterations before a step is halved.
@@ -63,11 +64,23 @@ pub fn integrate(
     model: &Model,
     dynamics: &Dynamics,
     options: &Options,
+    observe: impl FnMut(&Instant<'_>) -> ControlFlow<()>,
+) -> Result<State, NonlinearError> {
+    integrate_with(model, &plan(model, options)?, dynamics, options, observe)
+}
+
+/// [`integrate`] with a plan that was made before by [`plan`].
+///
+/// # Errors
+/// As [`integrate`].
+pub fn integrate_with(
+    model: &Model,
+    plan: &Plan,
+    dynamics: &Dynamics,
+    options: &Options,
     mut observe: impl FnMut(&Instant<'_>) -> ControlFlow<()>,
 ) -> Result<State, NonlinearError> {
-    let settings = Settings::default();
-    let plan = plan(model, &settings, options)?;
-    let system = System::new(model, &plan, &settings, options)?;
+    let system = System::new(model, plan, options)?;
     let motion = Motion::new(&system, dynamics);
     let mut now = motion.start()?;
     let (mut time, mut step) = (0.0, dynamics.step);
@@ -145,7 +158,7 @@ impl<'a> Motion<'a> {
         let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
         let gamma = 0.5 + alpha_f - alpha_m;
         let beta = 0.25 * (0.5 + gamma) * (0.5 + gamma);
-        Self { mass: mass(system, dynamics.lumped), system, dynamics, alpha_m, alpha_f, beta, gamma }
+        Self { mass: mass(system, dynamics.mass), system, dynamics, alpha_m, alpha_f, beta, gamma }
     }
 
     /// At rest under the loads of the first instant.
@@ -312,17 +325,13 @@ fn travel(from: &State, to: &State) -> Vec<f64> {
 }
 
 /// Mass with rows and columns of held dofs empty.
-fn mass(system: &System<'_>, lumped: bool) -> BlockMatrix {
+fn mass(system: &System<'_>, mass: Mass) -> BlockMatrix {
     let (model, pattern) = (system.model, &system.plan.pattern);
     let mut matrix = BlockMatrix::zeros(Arc::clone(&pattern.graph), 6);
     let rotary = model.section.thickness * model.section.thickness / 12.0;
     for (quad, nodes) in model.mesh.quads.iter().enumerate() {
         let frame = Frame::of(&model.mesh.corners(quad));
-        let pairs = if lumped {
-            SMatrix::<f64, 4, 4>::from_diagonal(&lumped_mass(&frame, &model.section).into())
-        } else {
-            consistent_mass(&frame, &model.section)
-        };
+        let pairs = mass.pairs(&frame, &model.section);
         let element = SMatrix::<f64, 24, 24>::from_fn(|i, j| {
             let held = |k: usize| system.held[6 * nodes[k / 6] as usize + k % 6];
             let share = if i % 6 < 3 { 1.0 } else { rotary };

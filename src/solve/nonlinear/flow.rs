@@ -61,7 +61,7 @@ pub fn relax(
     options: &Options,
     observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    let plan = super::plan(model, settings, options)?;
+    let plan = super::plan(model, options)?;
     super::search(model, &plan, settings, &Method::Flow(*flow), options, observe)
 }
 

@@ -5,12 +5,11 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector3};
 use rayon::prelude::*;
 
-use super::{NonlinearError, Settings, State};
+use super::{NonlinearError, State};
 use crate::element::corotational::{Motion, Reference};
 use crate::element::{Matrix24, Vector24, follower_pressure, follower_pressure_tangent, lumped_mass};
-use crate::mesh::QuadMesh;
-use crate::model::rigid::{leads, lever};
-use crate::model::{Model, ModelError};
+use crate::model::rigid::lever;
+use crate::model::{Links, Model, ModelError};
 use crate::solve::SolveError;
 use crate::solve::assemble::{scatter, unit_rows};
 use crate::solve::factor::{Factor, FactorError};
@@ -31,9 +30,7 @@ pub(super) struct System<'a> {
     /// Which stiffness each element has.
     kinds: Vec<u32>,
     stiffnesses: Vec<Matrix24>,
-    /// Nodes of each element, followers replaced by their leads.
-    quads: Vec<[u32; 4]>,
-    leads: Vec<u32>,
+    links: Arc<Links>,
     /// Dead loads at factor 1.
     load: Vec<f64>,
     /// Follower pressure at factor 1 (Pa).
@@ -70,34 +67,24 @@ pub(super) struct Balance {
 
 impl<'a> System<'a> {
     /// Of a model; `plan` is that of [`plan`](super::plan) for its mesh and bodies.
-    pub fn new(
-        model: &'a Model,
-        plan: &'a Plan,
-        settings: &Settings,
-        options: &Options,
-    ) -> Result<Self, NonlinearError> {
+    pub fn new(model: &'a Model, plan: &'a Plan, options: &Options) -> Result<Self, NonlinearError> {
         let nodes = model.mesh.nodes.len();
-        let mut constraints = model.constraints();
-        let leads = leads(nodes, &settings.bodies, &constraints)?;
-        for node in (0..nodes).filter(|n| leads[*n] as usize != *n) {
-            constraints[6 * node..][..6].fill(Some(0.0));
-        }
-        let quads = quads_of_leads(&model.mesh, &leads);
-        let first = model.mesh.nodes.first().copied().unwrap_or_default();
-        let (low, high) = model.mesh.nodes.iter().fold((first, first), |(l, h), p| (l.inf(p), h.sup(p)));
+        let links = Arc::clone(&plan.pattern.links);
+        let held = model.held(&links).map_err(SolveError::from)?;
+        let elements = plan.pattern.quads.len();
+        let [low, high] = model.mesh.bounds();
         let mut system = Self {
             model,
             plan,
             threads: options.threads,
-            references: Vec::with_capacity(quads.len()),
-            kinds: Vec::with_capacity(quads.len()),
+            references: Vec::with_capacity(elements),
+            kinds: Vec::with_capacity(elements),
             stiffnesses: Vec::new(),
-            quads,
-            leads,
+            links,
             load: model.dead_load_vector(),
             pressure: model.follower_pressure(),
-            held: constraints.iter().map(Option::is_some).collect(),
-            values: constraints.iter().map(|c| c.unwrap_or(0.0)).collect(),
+            held: held.iter().map(Option::is_some).collect(),
+            values: held.iter().map(|c| c.unwrap_or(0.0)).collect(),
             metric: vec![0.0; 6 * nodes],
             side: 0.0,
             size: (high - low).norm(),
@@ -123,7 +110,8 @@ impl<'a> System<'a> {
             self.kinds.push(self.stiffnesses.len() as u32 - 1);
             self.references.push(Reference::of(&element.frame));
             let rotary = element.frame.area() / 12.0;
-            for (node, share) in self.quads[quad].iter().zip(lumped_mass(&element.frame, &unit)) {
+            for (node, share) in self.plan.pattern.quads[quad].iter().zip(lumped_mass(&element.frame, &unit))
+            {
                 for d in 0..6 {
                     self.metric[6 * *node as usize + d] += if d < 3 { share } else { share * rotary };
                 }
@@ -195,10 +183,10 @@ impl<'a> System<'a> {
     /// Adds the forces of followers to their leads.
     fn to_leads(&self, state: &State, nodal: &[f64]) -> Vec<f64> {
         let mut reduced = nodal.to_vec();
-        for node in (0..self.leads.len()).filter(|n| self.leads[*n] as usize != *n) {
+        for node in self.links.followers() {
             let (force, moment) = (vector(nodal, 6 * node), vector(nodal, 6 * node + 3));
-            let moment = moment + lever(&state.position, &self.leads, node).cross(&force);
-            let at = 6 * self.leads[node] as usize;
+            let moment = moment + lever(&state.position, &self.links.leads, node).cross(&force);
+            let at = 6 * self.links.leads[node] as usize;
             reduced[6 * node..][..6].fill(0.0);
             for d in 0..3 {
                 reduced[at + d] += force[d];
@@ -285,8 +273,8 @@ impl<'a> System<'a> {
         let mut matrix = BlockMatrix::zeros(Arc::clone(&pattern.graph), 6);
         let mut push = vec![0.0; self.held.len()];
         let pushes = self.values.iter().any(|v| *v != 0.0);
-        for start in (0..self.quads.len()).step_by(BATCH) {
-            let batch = start..(start + BATCH).min(self.quads.len());
+        for start in (0..pattern.quads.len()).step_by(BATCH) {
+            let batch = start..(start + BATCH).min(pattern.quads.len());
             let tangents = self.each(batch.clone(), |q| {
                 let k = *self.stiffness(q) * stiffening;
                 let mut k = balance.motions[q].tangent(&k, &local[q]);
@@ -294,7 +282,7 @@ impl<'a> System<'a> {
                 self.constrain(state, q, k, pushes)
             });
             for (q, (k, forces)) in batch.zip(tangents) {
-                let nodes = &self.quads[q];
+                let nodes = &pattern.quads[q];
                 scatter(k.as_slice(), 6, nodes, &pattern.blocks[q], &mut matrix);
                 for (i, node) in nodes.iter().enumerate() {
                     for d in 0..6 {
@@ -317,17 +305,17 @@ impl<'a> System<'a> {
     fn constrain(&self, state: &State, q: usize, mut k: Matrix24, pushes: bool) -> (Matrix24, Vector24) {
         let nodes = &self.model.mesh.quads[q];
         for (i, node) in nodes.iter().enumerate() {
-            if self.leads[*node as usize] == *node {
+            if self.links.leads[*node as usize] == *node {
                 continue;
             }
             // du = du_lead + dω x r.
-            let lever = lever(&state.position, &self.leads, *node as usize).cross_matrix();
+            let lever = lever(&state.position, &self.links.leads, *node as usize).cross_matrix();
             let columns = k.fixed_columns::<3>(6 * i + 3) - k.fixed_columns::<3>(6 * i) * lever;
             k.fixed_columns_mut::<3>(6 * i + 3).copy_from(&columns);
             let rows = k.fixed_rows::<3>(6 * i + 3) + lever * k.fixed_rows::<3>(6 * i);
             k.fixed_rows_mut::<3>(6 * i + 3).copy_from(&rows);
         }
-        let dof = |a: usize| 6 * self.quads[q][a / 6] as usize + a % 6;
+        let dof = |a: usize| 6 * self.plan.pattern.quads[q][a / 6] as usize + a % 6;
         let mut push = Vector24::zeros();
         if pushes {
             let values = Vector24::from_fn(|a, _| self.values[dof(a)]);
@@ -344,9 +332,9 @@ impl<'a> System<'a> {
     /// Forces on followers turn with the body: `n (r · dω) - ...` on the rotation of the lead.
     fn add_body_terms(&self, state: &State, balance: &Balance, matrix: &mut BlockMatrix) {
         let graph = &self.plan.pattern.graph;
-        for node in (0..self.leads.len()).filter(|n| self.leads[*n] as usize != *n) {
-            let lead = self.leads[node] as usize;
-            let lever = lever(&state.position, &self.leads, node).cross_matrix();
+        for node in self.links.followers() {
+            let lead = self.links.leads[node] as usize;
+            let lever = lever(&state.position, &self.links.leads, node).cross_matrix();
             let term: Matrix3<f64> = vector(&balance.nodal, 6 * node).cross_matrix() * lever;
             let at = graph.col_ptr[lead] * 36;
             for (row, column) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
@@ -364,14 +352,14 @@ impl<'a> System<'a> {
 
     /// Displacement and spin of a node for a step of the dofs, to first order.
     fn node_step(&self, state: &State, step: &[f64], node: usize) -> (Vector3<f64>, Vector3<f64>) {
-        let at = 6 * self.leads[node] as usize;
+        let at = 6 * self.links.leads[node] as usize;
         let (du, spin) = (vector(step, at), vector(step, at + 3));
-        (du + spin.cross(&lever(&state.position, &self.leads, node)), spin)
+        (du + spin.cross(&lever(&state.position, &self.links.leads, node)), spin)
     }
 
     /// Element forces that a step is expected to lead to: those of the mixed integration point.
     pub fn predict(&self, state: &State, balance: &Balance, step: &[f64]) -> Vec<Vector24> {
-        self.each(0..self.quads.len(), |q| {
+        self.each(0..self.plan.pattern.quads.len(), |q| {
             let mut spins = Vector24::zeros();
             for (i, node) in self.model.mesh.quads[q].iter().enumerate() {
                 let (du, spin) = self.node_step(state, step, *node as usize);
@@ -387,17 +375,17 @@ impl<'a> System<'a> {
     pub fn viscous(&self, balance: &Balance, velocity: &[f64], beta: f64) -> (Vec<f64>, Vec<Vector24>) {
         let mut forces = vec![0.0; velocity.len()];
         if beta == 0.0 {
-            return (forces, vec![Vector24::zeros(); self.quads.len()]);
+            return (forces, vec![Vector24::zeros(); self.plan.pattern.quads.len()]);
         }
-        let parts = self.each(0..self.quads.len(), |q| {
-            let nodes = &self.quads[q];
+        let parts = self.each(0..self.plan.pattern.quads.len(), |q| {
+            let nodes = &self.plan.pattern.quads[q];
             let rates = Vector24::from_fn(|k, _| velocity[6 * nodes[k / 6] as usize + k % 6]);
             let motion = &balance.motions[q];
             let local = self.stiffness(q) * motion.deformation_rate(&rates) * beta;
             (motion.force(&local), local)
         });
         let mut locals = Vec::with_capacity(parts.len());
-        for (nodes, (force, local)) in self.quads.iter().zip(parts) {
+        for (nodes, (force, local)) in self.plan.pattern.quads.iter().zip(parts) {
             for k in 0..24 {
                 forces[6 * nodes[k / 6] as usize + k % 6] += force[k];
             }
@@ -410,7 +398,7 @@ impl<'a> System<'a> {
     pub fn advance(&self, state: &mut State, step: &[f64]) {
         let before = state.position.clone();
         for node in 0..before.len() {
-            let lead = self.leads[node] as usize;
+            let lead = self.links.leads[node] as usize;
             let turn = UnitQuaternion::from_scaled_axis(vector(step, 6 * lead + 3));
             state.position[node] =
                 before[lead] + vector(step, 6 * lead) + turn * (before[node] - before[lead]);
@@ -429,11 +417,6 @@ impl<'a> System<'a> {
     pub fn reactions(&self, balance: &Balance) -> Vec<f64> {
         balance.unbalanced.iter().zip(&self.held).map(|(f, held)| if *held { *f } else { 0.0 }).collect()
     }
-}
-
-/// The elements with the leads of their nodes.
-pub(super) fn quads_of_leads(mesh: &QuadMesh, leads: &[u32]) -> Vec<[u32; 4]> {
-    mesh.quads.iter().map(|quad| quad.map(|n| leads[n as usize])).collect()
 }
 
 /// Three entries as a vector.

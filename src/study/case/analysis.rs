@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 
+use crate::element::Mass;
 use crate::quantity::Time;
 
 /// `[analysis]`.
@@ -16,9 +17,10 @@ pub enum Analysis {
         /// How many of the lowest.
         #[serde(default = "default_modes")]
         modes: usize,
-        /// Row sums as mass matrix instead of the consistent one.
-        #[serde(default)]
-        lumped: bool,
+        /// How the mass of an element goes to its nodes; row sums when left out.
+        mass: Option<Mass>,
+        /// The older word: `true` is `mass = "lumped"`, `false` is `mass = "consistent"`.
+        lumped: Option<bool>,
     },
     /// Dynamics from rest (Newmark, average acceleration).
     Newmark {
@@ -33,9 +35,10 @@ pub enum Analysis {
         /// `"step"`, `"ramp until 0.1 s"` or `"sine 5 Hz"`.
         #[serde(default = "default_load_history")]
         load: String,
-        /// Row sums as mass matrix.
-        #[serde(default)]
-        lumped: bool,
+        /// How the mass of an element goes to its nodes; row sums when left out.
+        mass: Option<Mass>,
+        /// The older word: `true` is `mass = "lumped"`, `false` is `mass = "consistent"`.
+        lumped: Option<bool>,
         /// Rotations of any size (generalised-α method) instead of small displacements.
         #[serde(default)]
         large_rotations: bool,

@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
+use super::rigid::RigidTable;
 use crate::constitutive::Assumptions;
 use crate::finding::Place;
 
@@ -56,6 +57,9 @@ pub struct Case {
     /// Where it is held.
     #[serde(default)]
     pub supports: Vec<SupportTable>,
+    /// What moves as one rigid body.
+    #[serde(default)]
+    pub rigid: Vec<RigidTable>,
     /// What acts on it.
     #[serde(default)]
     pub loads: Vec<LoadTable>,
@@ -117,10 +121,13 @@ impl Case {
                 refuse("a [virtual_test] brings its own specimen: remove [sheet], or the [virtual_test]")
             }
             (None, Some(_))
-                if !(self.supports.is_empty() && self.loads.is_empty() && self.probes.is_empty()) =>
+                if !(self.supports.is_empty()
+                    && self.rigid.is_empty()
+                    && self.loads.is_empty()
+                    && self.probes.is_empty()) =>
             {
                 refuse(
-                    "a [virtual_test] brings its own supports and loads: remove [[supports]], [[loads]], [[probes]]",
+                    "a [virtual_test] brings its own supports and loads: remove [[supports]], [[rigid]], [[loads]], [[probes]]",
                 )
             }
             (Some(_), None) if self.supports.is_empty() => {

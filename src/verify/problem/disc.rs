@@ -44,6 +44,7 @@ impl Disc {
             formulation: formulation(self.cells, self.alpha, DrillingChoice::Scaled),
             supports,
             loads: vec![Load::Pressure(1.0)],
+            bodies: Vec::new(),
         };
         Ok(solve::solve(&model, &Options::default())?.displacement[6 * centre + 2])
     }

@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::super::VerifyError;
 use super::Law;
-use crate::element::Formulation;
+use crate::element::{Formulation, Mass};
 use crate::mesh::rectangle;
 use crate::model::{DofGroup, Load, Model, Support};
 use crate::solve::assemble::{Kind, Pattern, assemble};
@@ -55,6 +55,7 @@ fn plate() -> Result<Model, VerifyError> {
         formulation: Formulation::default(),
         supports,
         loads: vec![Load::Pressure(1.0)],
+        bodies: Vec::new(),
     })
 }
 
@@ -84,7 +85,7 @@ impl NewmarkProblem {
             tolerance: None,
             damping,
             load: LoadHistory::Step,
-            lumped: false,
+            mass: Mass::Consistent,
         };
         let (mut error, mut imbalance, mut work) = (0.0f64, 0.0f64, 0.0f64);
         newmark(model, &settings, &Options::default(), |at| {
@@ -111,7 +112,7 @@ impl Superposition {
         let constraints = model.constraints();
         let held: Vec<bool> = (0..constraints.len() / 2).map(|k| constraints[full(k)].is_some()).collect();
         let free: Vec<usize> = (0..held.len()).filter(|k| !held[*k]).collect();
-        let pattern = Pattern::new(model.mesh.nodes.len(), &model.mesh.quads);
+        let pattern = Pattern::new(&model.mesh, model.links()?);
         let dense = |kind| -> Result<DMatrix<f64>, VerifyError> {
             let matrix = assemble(model, group, &pattern, &[(kind, 1.0)], &held)?;
             let mut columns = DMatrix::zeros(free.len(), free.len());
@@ -124,7 +125,7 @@ impl Superposition {
             }
             Ok(columns)
         };
-        let (k, m) = (dense(Kind::Stiffness)?, dense(Kind::Mass { lumped: false })?);
+        let (k, m) = (dense(Kind::Stiffness)?, dense(Kind::Mass(Mass::Consistent))?);
         let singular =
             || SolveError::Factor(FactorError::NotPositiveDefinite { node: 0, dof: 0, pivot: 0.0 });
         let lower = m.cholesky().ok_or_else(singular)?.l();

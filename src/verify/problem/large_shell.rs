@@ -108,7 +108,7 @@ impl LargeShell {
         let warp =
             if matches!(self.shape, Shape::Cloth) { Vector3::x() } else { Vector3::new(0.6, 0.8, 0.1) };
         let formulation = formulation(self.cells, self.alpha, DrillingChoice::Scaled);
-        let model = Model { mesh, section, warp, formulation, supports, loads };
+        let model = Model { mesh, section, warp, formulation, supports, loads, bodies: Vec::new() };
         if matches!(self.shape, Shape::RoofLimit | Shape::RoofValley) {
             return self.extreme(&model, node);
         }

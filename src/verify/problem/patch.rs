@@ -203,6 +203,7 @@ impl Patch {
             formulation: formulation(cells, self.alpha, DrillingChoice::Scaled),
             supports,
             loads: Vec::new(),
+            bodies: Vec::new(),
         };
         let displacement = solve::solve(&model, &Options::default())?.displacement;
         let moved = kinds(&fields, &displacement);

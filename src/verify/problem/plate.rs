@@ -8,6 +8,7 @@ use super::{Law, Layout, default_alpha, formulation, nearest, unit};
 use crate::analytical::levy::Edge;
 use crate::analytical::mindlin::MindlinPlate;
 use crate::analytical::{Plate, PlateState};
+use crate::element::Mass;
 use crate::fields;
 use crate::mesh::{distorted, rectangle};
 use crate::model::{DofGroup, Load, Model, Support};
@@ -38,6 +39,9 @@ pub struct PlateProblem {
     /// Random distortion of the mesh, 0 to 0.5.
     #[serde(default)]
     distortion: f64,
+    /// Mass matrix, of frequencies.
+    #[serde(default)]
+    mass: Mass,
     /// What is taken.
     measure: Measure,
     /// Where: fractions of a and b; the nearest node.
@@ -77,10 +81,8 @@ enum Measure {
     MomentY,
     /// `M_x / (q a²)` on the edge x = 0, from its reactions.
     EdgeMoment,
-    /// `ω_k a² √(ρ/D22)` of this mode, from 1, consistent mass.
+    /// `ω_k a² √(ρ/D22)` of this mode, from 1.
     Frequency(usize),
-    /// The same with lumped mass.
-    FrequencyLumped(usize),
 }
 
 impl PlateProblem {
@@ -102,6 +104,7 @@ impl PlateProblem {
             formulation: formulation(self.cells, self.alpha, super::DrillingChoice::Scaled),
             supports,
             loads: vec![Load::Pressure(1.0)],
+            bodies: Vec::new(),
         })
     }
 
@@ -114,9 +117,8 @@ impl PlateProblem {
     }
 
     fn measure_at(&self, model: &Model, node: usize) -> Result<f64, VerifyError> {
-        if let Measure::Frequency(k) | Measure::FrequencyLumped(k) = self.measure {
-            let lumped = matches!(self.measure, Measure::FrequencyLumped(_));
-            let found = modes(model, k, lumped, &Options::default())?;
+        if let Measure::Frequency(k) = self.measure {
+            let found = modes(model, k, self.mass, &Options::default())?;
             return Ok(found.get(k - 1).map_or(f64::NAN, |m| m.angular_frequency));
         }
         let solution = solve::solve(model, &Options::default())?;
@@ -139,7 +141,7 @@ impl PlateProblem {
         match self.measure {
             Measure::Deflection => d22 / self.a.powi(4),
             Measure::MomentX | Measure::MomentY | Measure::EdgeMoment => self.a.powi(-2),
-            Measure::Frequency(_) | Measure::FrequencyLumped(_) => self.a.powi(2) / d22.sqrt(),
+            Measure::Frequency(_) => self.a.powi(2) / d22.sqrt(),
         }
     }
 
@@ -151,7 +153,7 @@ impl PlateProblem {
             Measure::Deflection => Some(s.deflection),
             Measure::MomentX | Measure::EdgeMoment => Some(s.mx),
             Measure::MomentY => Some(s.my),
-            Measure::Frequency(_) | Measure::FrequencyLumped(_) => None,
+            Measure::Frequency(_) => None,
         };
         let value = match (function, &self.edges.0) {
             (Function::Navier, b"SSSS") => pick(plate.navier(x, y, 1.0)),
@@ -178,7 +180,7 @@ impl PlateProblem {
     }
 
     fn exact_frequency(&self, plate: &Plate) -> Option<f64> {
-        let (Measure::Frequency(k) | Measure::FrequencyLumped(k)) = self.measure else { return None };
+        let Measure::Frequency(k) = self.measure else { return None };
         let all = match &self.edges.0 {
             b"SSSS" => plate.supported_frequencies(1.0, k),
             b"CCCC" => plate.clamped_frequencies(1.0, k)?,
@@ -225,7 +227,7 @@ impl Mechanisms {
     /// Number of zero frequencies among the lowest eight. Rounding leaves them below 1e-2 rad/s where it
     /// meets the small rotary inertia; the lowest elastic ones are above 1 rad/s.
     pub fn value(&self) -> Result<f64, VerifyError> {
-        let found = modes(&self.plate.model()?, 8, false, &Options::default())?;
+        let found = modes(&self.plate.model()?, 8, Mass::Consistent, &Options::default())?;
         let free = found.iter().filter(|m| m.group == DofGroup::Plate && m.angular_frequency < 1e-2);
         Ok(free.count() as f64)
     }

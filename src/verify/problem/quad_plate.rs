@@ -46,6 +46,7 @@ impl Distorted {
             formulation: formulation(self.cells, self.alpha, DrillingChoice::Scaled),
             supports,
             loads: vec![Load::Pressure(1.0)],
+            bodies: Vec::new(),
         };
         let w = solve::solve(&model, &Options::default())?.displacement[6 * 8 + 2];
         Ok(w / 1e4 / CLAMPED_SQUARE)
@@ -107,6 +108,7 @@ impl Skew {
             formulation: formulation(self.cells, self.alpha, DrillingChoice::Scaled),
             supports,
             loads: vec![Load::Pressure(1.0)],
+            bodies: Vec::new(),
         };
         let displacement = solve::solve(&model, &Options::default())?.displacement;
         Ok(match self.measure {

@@ -85,6 +85,7 @@ impl Shell {
             formulation: formulation(self.cells, self.alpha, self.drilling),
             supports: posed.supports,
             loads: posed.loads,
+            bodies: Vec::new(),
         };
         let (node, dof) = posed.taken;
         Ok(solve::solve(&model, &Options::default())?.displacement[6 * node + dof as usize].abs() / self.over)

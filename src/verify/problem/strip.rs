@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::super::{Function, VerifyError};
 use crate::analytical::elastica::{heavy_elastica, tip_loaded};
-use crate::element::Formulation;
+use crate::element::{Formulation, Mass};
 use crate::mesh::rectangle;
 use crate::model::{Dof, Load, Model, RigidBody, Support};
 use crate::section::ShellSection;
@@ -73,6 +73,7 @@ fn along_x(length: f64, n: usize, section: ShellSection) -> Result<Model, Verify
         section,
         warp: Vector3::x(),
         formulation: Formulation::default(),
+        bodies: Vec::new(),
     })
 }
 
@@ -139,6 +140,7 @@ impl BendingTest {
                 Support { nodes: vec![clamp[0]], held: turn },
             ],
             loads: Vec::new(),
+            bodies: vec![RigidBody { nodes: clamp }],
             mesh,
             section: ShellSection {
                 d_m: Matrix3::from_diagonal(&Vector3::new(1e4, 6e3, 40.0)),
@@ -150,13 +152,8 @@ impl BendingTest {
             warp: Vector3::x(),
             formulation: Formulation::default(),
         };
-        let settings = Settings {
-            tolerance: 1e-10,
-            first_step: 0.1,
-            largest_step: 0.1,
-            bodies: vec![RigidBody { nodes: clamp }],
-            ..Settings::default()
-        };
+        let settings =
+            Settings { tolerance: 1e-10, first_step: 0.1, largest_step: 0.1, ..Settings::default() };
         let mut worst = 0.0f64;
         solve(&model, &settings, &Options::default(), |step| {
             let ratio = step.reaction[at] / width / (b * step.state.factor * curvature);
@@ -217,7 +214,7 @@ fn swing(steps: usize) -> Result<(f64, f64), VerifyError> {
         spectral_radius: 0.9,
         damping: Rayleigh::default(),
         load: LoadHistory::Step,
-        lumped: false,
+        mass: Mass::Consistent,
     };
     let (mut x, mut off, mut work) = (0.0, 0.0f64, f64::MIN_POSITIVE);
     integrate(&model, &dynamics, &Options::default(), |at| {
