@@ -12,6 +12,8 @@
 //! 2. [`relax`]: the implicit gradient flow of the energy, which ends in a stable equilibrium;
 //! 3. [`follow`]: arc length, through limit points of the load.
 //!
+//! [`drive`] moves supports through a programme instead, as the clamps of a testing machine do.
+//!
 //! Loads are dead: they keep their direction and size, pressure the normals and areas at rest. A
 //! moment is conjugate to the spin about fixed axes. A held rotation is a spin about a global
 //! axis: it may grow beyond π, and about one axis it is the angle itself. A held rotation or a
@@ -19,6 +21,7 @@
 //! tangent then converges linearly; hold a plane of symmetry by both of its rotations.
 
 mod arc;
+mod drive;
 mod flow;
 mod newton;
 mod stability;
@@ -30,6 +33,7 @@ use nalgebra::{Point3, UnitQuaternion};
 use thiserror::Error;
 
 pub use arc::{ArcLength, follow};
+pub use drive::{Leg, drive};
 pub use flow::{Flow, relax};
 pub use stability::Stability;
 
@@ -243,7 +247,7 @@ pub fn solve(
     while state.factor < 1.0 {
         // The last step ends at 1 exactly, without a sliver after it.
         let factor = if state.factor + 1.001 * step >= 1.0 { 1.0 } else { state.factor + step };
-        match newton(&system, &state, factor, settings, &Drag::default()) {
+        match newton(&system, &state, factor, factor - state.factor, settings, &Drag::default()) {
             Ok(converged) => {
                 let flow = progress.show(&system, &converged, &mut observe);
                 if converged.iterations <= settings.iterations / 3 {

@@ -1,6 +1,7 @@
 //! Cases: problems described in TOML, virtual instrument tests, and the comparison of what they
 //! give with what was measured.
 
+pub mod bending;
 mod build;
 mod case;
 mod compare;
@@ -27,6 +28,7 @@ use crate::mesh::MeshError;
 use crate::model::ModelError;
 use crate::section::SectionError;
 use crate::solve::SolveError;
+use crate::solve::nonlinear::NonlinearError;
 
 /// Why a case gives no result.
 #[derive(Debug, Error)]
@@ -46,6 +48,17 @@ pub enum StudyError {
     /// The solution.
     #[error(transparent)]
     Solve(#[from] SolveError),
+    /// A solution in large rotations.
+    #[error(transparent)]
+    Nonlinear(#[from] NonlinearError),
+    /// S004: no overhang of the cantilever test brings the chord to its angle.
+    #[error("S004 no length of the strip hangs at {angle_deg} degrees; the last one tried was {tried} m")]
+    NoOverhang {
+        /// The angle of the chord (degrees).
+        angle_deg: f64,
+        /// The last length (m).
+        tried: f64,
+    },
 }
 
 impl StudyError {
@@ -57,6 +70,8 @@ impl StudyError {
             Self::Model(e) => e.code(),
             Self::Section(e) => e.code(),
             Self::Solve(e) => e.code(),
+            Self::Nonlinear(e) => e.code(),
+            Self::NoOverhang { .. } => "S004",
         }
     }
 
@@ -74,6 +89,8 @@ impl StudyError {
         matches!(
             self,
             Self::Solve(SolveError::Singular { .. } | SolveError::Factor(_) | SolveError::Residual { .. })
+                | Self::Nonlinear(NonlinearError::NotConverged { .. } | NonlinearError::Solve(_))
+                | Self::NoOverhang { .. }
         )
     }
 }

@@ -70,7 +70,7 @@ pub fn relax(
     let mut progress = Progress::default();
     loop {
         let drag = Drag { rate: pace.rate, extra: perturbed.then_some(&noise[..]) };
-        let step = match newton(&system, &state, 1.0, &inner, &drag) {
+        let step = match newton(&system, &state, 1.0, 1.0 - state.factor, &inner, &drag) {
             Ok(step) => step,
             Err(failure) => {
                 progress.iterations += failure.iterations;

@@ -70,17 +70,19 @@ impl Balance {
     }
 }
 
-/// From an equilibrium to that at another factor.
+/// From an equilibrium to that at another factor of the loads, the held values going `travel` times
+/// their way.
 pub(super) fn newton(
     system: &System<'_>,
     start: &State,
     factor: f64,
+    travel: f64,
     settings: &Settings,
     drag: &Drag<'_>,
 ) -> Result<Converged, Failure> {
     let mut state = State { factor, ..start.clone() };
     // Part of the held values that is still to come.
-    let mut remaining = factor - start.factor;
+    let mut remaining = travel;
     let mut travelled = vec![0.0; system.held.len()];
     let mut balance = system.balance(&state, drag.extra);
     let mut local = balance.local.clone();
