@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::{LineFit, Strip};
 use crate::finding::Finding;
+use crate::instrument::fab::FabTest;
 use crate::instrument::{Direction, FabricInfo, Measurement, Parameter, Source};
 use crate::quantity::{Curve, Estimate};
 
@@ -78,6 +79,8 @@ pub struct FabricSheet {
     pub specimens: Vec<SpecimenResult>,
     /// Stretch tests of FAB strips, in file order.
     pub strips: Vec<Strip>,
+    /// Bend tests of FAB strips as recorded, in file order.
+    pub bend_tests: Vec<FabTest>,
     /// Files behind the sheet.
     pub sources: Vec<Source>,
     /// What a reader of the sheet must know.

@@ -14,8 +14,8 @@ use thiserror::Error;
 
 pub use build::{formulation, model, section};
 pub use case::{
-    Analysis, Case, CaseError, Check, ProbeTable, Reference, ReferenceKind, SectionTable, Shape, Sheet,
-    VirtualTest,
+    Analysis, BendingKind, BendingTest, Case, CaseError, Check, ProbeTable, Reference, ReferenceKind,
+    SectionTable, Shape, Sheet, VirtualTest,
 };
 pub use compare::{Comparison, compare_curves, measured_curve};
 pub use prepared::PreparedCase;

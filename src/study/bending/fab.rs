@@ -98,9 +98,9 @@ pub struct FabSettings {
 }
 
 impl Default for FabSettings {
-    /// 24 elements on half of the strip, one step from sample to sample.
+    /// 32 elements on half of the strip, one step from sample to sample.
     fn default() -> Self {
-        Self { cells: 24, steps: 1 }
+        Self { cells: 32, steps: 1 }
     }
 }
 
