@@ -12,6 +12,8 @@
 pub mod finding;
 pub mod quantity;
 
+pub mod law;
+
 pub mod instrument;
 
 pub mod characterise;

@@ -13,18 +13,19 @@ use kesf::finding::explanations;
 const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("finding", &[], &["toml"]),
     ("quantity", &[], &[]),
+    ("law", &[], &[]),
     ("instrument", &["finding", "quantity"], &["csv", "calamine", "encoding_rs", "toml"]),
-    ("characterise", &["finding", "quantity", "instrument"], &[]),
-    ("section", &["finding", "quantity"], &[]),
+    ("characterise", &["finding", "quantity", "law", "instrument"], &[]),
+    ("section", &["finding", "quantity", "law"], &[]),
     ("analytical", &["section"], &[]),
     ("mesh", &["finding", "quantity"], &[]),
-    ("element", &["section", "mesh"], &[]),
-    ("model", &["finding", "quantity", "section", "mesh", "element"], &[]),
-    ("solve", &["finding", "quantity", "section", "mesh", "element", "model"], &["faer"]),
-    ("fields", &["finding", "quantity", "section", "mesh", "element", "model", "solve"], &[]),
-    ("constitutive", &["finding", "quantity", "instrument", "characterise", "section"], &[]),
+    ("element", &["section", "mesh", "law"], &[]),
+    ("model", &["finding", "quantity", "section", "mesh", "law", "element"], &[]),
+    ("solve", &["finding", "quantity", "section", "mesh", "law", "element", "model"], &["faer"]),
+    ("fields", &["finding", "quantity", "section", "mesh", "law", "element", "model", "solve"], &[]),
+    ("constitutive", &["finding", "quantity", "law", "instrument", "characterise", "section"], &[]),
     ("study", &ABOVE_STUDY, &["toml"]),
-    ("verify", &["section", "analytical", "mesh", "element", "model", "solve", "fields"], &["toml"]),
+    ("verify", &["law", "section", "analytical", "mesh", "element", "model", "solve", "fields"], &["toml"]),
     (
         "report",
         &ABOVE_REPORT,
@@ -33,9 +34,10 @@ const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("cli", &ABOVE_CLI, &["clap", "clap_complete", "indicatif", "ctrlc", "toml"]),
 ];
 
-const ABOVE_STUDY: [&str; 12] = [
+const ABOVE_STUDY: [&str; 13] = [
     "finding",
     "quantity",
+    "law",
     "instrument",
     "characterise",
     "section",
@@ -48,9 +50,10 @@ const ABOVE_STUDY: [&str; 12] = [
     "constitutive",
 ];
 
-const ABOVE_REPORT: [&str; 9] = [
+const ABOVE_REPORT: [&str; 10] = [
     "finding",
     "quantity",
+    "law",
     "instrument",
     "characterise",
     "section",
@@ -60,9 +63,10 @@ const ABOVE_REPORT: [&str; 9] = [
     "study",
 ];
 
-const ABOVE_CLI: [&str; 11] = [
+const ABOVE_CLI: [&str; 12] = [
     "finding",
     "quantity",
+    "law",
     "instrument",
     "characterise",
     "section",

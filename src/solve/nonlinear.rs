@@ -8,11 +8,16 @@
 //! Eng.* 109 (2017) 1237): sheets that hardly stretch then converge in a few iterations even when
 //! the whole load comes in one step. Three ways to an equilibrium, from quick to robust:
 //!
-//! 1. [`solve`]: loads and held values grow together by a factor from 0 to 1, in adaptive steps;
+//! 1. [`solve`]: loads and held values grow together by a factor from 0 to 1, in adaptive steps
+//!    ([`cycle`]: there and back);
 //! 2. [`relax`]: the implicit gradient flow of the energy, which ends in a stable equilibrium;
 //! 3. [`follow`]: arc length, through limit points of the load.
 //!
 //! [`drive`] moves supports through a programme instead, as the clamps of a testing machine do.
+//!
+//! The sheet is linear elastic in the frames of its elements, or its cells follow laws with friction
+//! ([`SheetLaw`]): each step is then the minimum of a convex potential of the cells, from a memory
+//! that is kept when the step has converged and restored when it is tried again.
 //!
 //! Loads are dead: they keep their direction and size, pressure the normals and areas at rest. A
 //! moment is conjugate to the spin about fixed axes. A held rotation is a spin about a global
@@ -24,6 +29,7 @@ mod arc;
 mod drive;
 mod flow;
 mod newton;
+mod sheet;
 mod stability;
 mod system;
 
@@ -41,8 +47,10 @@ use self::newton::{Converged, Drag, newton};
 use self::system::{Balance, System};
 use super::SolveError;
 use super::linear::Options;
+use crate::law;
 use crate::mesh::QuadMesh;
 use crate::model::{Model, RigidBody, RigidBodyError};
+use crate::section::SheetLaw;
 
 /// Places and rotations of the nodes under a part of the load.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,6 +61,18 @@ pub struct State {
     pub rotation: Vec<UnitQuaternion<f64>>,
     /// Factor of the loads and held values.
     pub factor: f64,
+    /// What a law with friction remembers.
+    pub memory: Memory,
+}
+
+/// What a sheet with friction remembers of the equilibria that it has been through.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Memory {
+    /// That of the laws of each smoothing cell, in the order of elements and cells; empty for new
+    /// cloth, and without a law.
+    pub cells: Vec<[law::State; 6]>,
+    /// Energy lost since the rest (J).
+    pub dissipated: f64,
 }
 
 impl State {
@@ -62,6 +82,7 @@ impl State {
             position: mesh.nodes.clone(),
             rotation: vec![UnitQuaternion::identity(); mesh.nodes.len()],
             factor: 0.0,
+            memory: Memory::default(),
         }
     }
 
@@ -92,10 +113,12 @@ pub struct Settings {
     pub smallest_step: f64,
     /// Nodes that move as rigid bodies.
     pub bodies: Vec<RigidBody>,
+    /// Laws with friction in the place of diagonal entries of the section.
+    pub law: Option<SheetLaw>,
 }
 
 impl Default for Settings {
-    /// Tolerance 1e-8, at most 25 iterations a step, the whole load at once.
+    /// Tolerance 1e-8, at most 25 iterations a step, the whole load at once, linear elastic.
     fn default() -> Self {
         Self {
             tolerance: 1e-8,
@@ -104,6 +127,7 @@ impl Default for Settings {
             largest_step: 1.0,
             smallest_step: 1e-5,
             bodies: Vec::new(),
+            law: None,
         }
     }
 }
@@ -117,7 +141,7 @@ pub struct Step<'a> {
     pub iterations: usize,
     /// Unbalanced forces relative to loads or reactions.
     pub residual: f64,
-    /// Strain energy (J).
+    /// Energy stored (J); what friction has lost is in the memory of the state.
     pub energy: f64,
     /// The nodes.
     pub state: &'a State,
@@ -132,7 +156,7 @@ pub struct Solution {
     pub state: State,
     /// Forces and moments of the supports on the sheet, six a node; 0 at free dofs.
     pub reaction: Vec<f64>,
-    /// Strain energy (J).
+    /// Energy stored (J); what friction has lost is in the memory of the state.
     pub energy: f64,
     /// Unbalanced forces relative to loads or reactions.
     pub residual: f64,
@@ -238,31 +262,50 @@ pub fn solve(
     model: &Model,
     settings: &Settings,
     options: &Options,
+    observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
+) -> Result<Solution, NonlinearError> {
+    cycle(model, settings, &[1.0], options, observe)
+}
+
+/// Takes the factor of loads and held values from 0 to each of `targets` in turn, in adaptive steps,
+/// and shows every equilibrium to `observe`, which may stop: there and back for a law with friction.
+///
+/// # Errors
+/// M008, M010 for the model; N002 for memory; N007 with the last equilibrium.
+pub fn cycle(
+    model: &Model,
+    settings: &Settings,
+    targets: &[f64],
+    options: &Options,
     mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
     let system = System::new(model, settings, options)?;
     let mut state = State::rest(&model.mesh);
     let mut balance = system.balance(&state, None);
-    let (mut step, mut progress) = (settings.first_step, Progress::default());
-    while state.factor < 1.0 {
-        // The last step ends at 1 exactly, without a sliver after it.
-        let factor = if state.factor + 1.001 * step >= 1.0 { 1.0 } else { state.factor + step };
-        match newton(&system, &state, factor, factor - state.factor, settings, &Drag::default()) {
-            Ok(converged) => {
-                let flow = progress.show(&system, &converged, &mut observe);
-                if converged.iterations <= settings.iterations / 3 {
-                    step = (1.5 * step).min(settings.largest_step);
+    let mut progress = Progress::default();
+    'targets: for &target in targets {
+        let mut step = settings.first_step;
+        while state.factor != target {
+            let way = target - state.factor;
+            // The last step ends at the target exactly, without a sliver after it.
+            let factor = if way.abs() <= 1.001 * step { target } else { state.factor + step.copysign(way) };
+            match newton(&system, &state, factor, factor - state.factor, settings, &Drag::default()) {
+                Ok(converged) => {
+                    let flow = progress.show(&system, &converged, &mut observe);
+                    if converged.iterations <= settings.iterations / 3 {
+                        step = (1.5 * step).min(settings.largest_step);
+                    }
+                    (state, balance) = (converged.state, converged.balance);
+                    if flow.is_break() {
+                        break 'targets;
+                    }
                 }
-                (state, balance) = (converged.state, converged.balance);
-                if flow.is_break() {
-                    break;
-                }
-            }
-            Err(failure) => {
-                progress.iterations += failure.iterations;
-                step = 0.5 * (factor - state.factor);
-                if step < settings.smallest_step {
-                    return Err(failure.ends(progress.steps + 1, settings, state));
+                Err(failure) => {
+                    progress.iterations += failure.iterations;
+                    step = 0.5 * (factor - state.factor).abs();
+                    if step < settings.smallest_step {
+                        return Err(failure.ends(progress.steps + 1, settings, state));
+                    }
                 }
             }
         }

@@ -85,7 +85,7 @@ pub(super) fn newton(
     let mut remaining = travel;
     let mut travelled = vec![0.0; system.held.len()];
     let mut balance = system.balance(&state, drag.extra);
-    let mut local = balance.local.clone();
+    let mut local = balance.local();
     for iterations in 1..=settings.iterations {
         let failure = |residual, cause| Failure { iterations, residual, cause };
         let (matrix, push) = system.tangent(&state, &balance, &local, drag.rate);
@@ -119,6 +119,7 @@ pub(super) fn newton(
             if System::largest_rotation(&balance) > LARGEST_FOLD {
                 return Err(failure(balance.relative_residual(), None));
             }
+            system.remember(&balance, &mut state);
             return Ok(Converged { state, balance, iterations, at_rest });
         }
     }
