@@ -18,7 +18,7 @@ use kesf::mesh::rectangle;
 use kesf::model::{Dof, Load, Model, RigidBody, Support};
 use kesf::section::{SectionError, SheetLaw, ShellSection};
 use kesf::solve::Options;
-use kesf::solve::nonlinear::{Settings, Solution, Step, cycle, solve};
+use kesf::solve::nonlinear::{Settings, Solution, Step, solve};
 use nalgebra::{Matrix2, Matrix3, Point3, UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -264,7 +264,8 @@ fn the_bending_loop_is_that_of_the_law_and_its_work_is_stored_or_lost() {
     let (mut state, mut last) = (State::default(), (0.0, 0.0));
     let (mut work, mut lost, mut steps) = (0.0, 0.0, 0);
     let mut moments = Vec::new();
-    cycle(&model, &settings, &[1.0, -1.0, 0.0], &Options::default(), |step| {
+    let settings = Settings { path: vec![1.0, -1.0, 0.0], ..settings };
+    solve(&model, &settings, &Options::default(), |step| {
         let curvature = step.state.factor * 250.0;
         let expected = law.trial(&state, curvature);
         state = expected.state;
@@ -310,7 +311,7 @@ fn a_step_that_is_cut_back_leaves_no_trace() {
     let tries: usize = cut.iterations;
     assert!(factors.len() > 1 && tries > 6 * factors.len() / 2, "{factors:?}");
     let options = Options { threads: 2, ..Options::default() };
-    let straight = cycle(&model, &hasty, &factors, &options, go_on).unwrap();
+    let straight = solve(&model, &Settings { path: factors, ..hasty }, &options, go_on).unwrap();
     assert!(straight.iterations < tries, "{} {tries}", straight.iterations);
     assert_eq!(cut.state, straight.state);
     assert_eq!(cut.reaction, straight.reaction);

@@ -8,8 +8,8 @@
 //! Eng.* 109 (2017) 1237): sheets that hardly stretch then converge in a few iterations even when
 //! the whole load comes in one step. Three ways to an equilibrium, from quick to robust:
 //!
-//! 1. [`solve`]: loads and held values grow together by a factor from 0 to 1, in adaptive steps
-//!    ([`cycle`]: there and back);
+//! 1. [`solve`]: loads and held values grow together by a factor from 0 to 1, or along another path,
+//!    in adaptive steps;
 //! 2. [`relax`]: the implicit gradient flow of the energy, which ends in a stable equilibrium;
 //! 3. [`follow`]: arc length, through limit points of the load.
 //!
@@ -19,14 +19,16 @@
 //! ([`SheetLaw`]): each step is then the minimum of a convex potential of the cells, from a memory
 //! that is kept when the step has converged and restored when it is tried again.
 //!
-//! Loads are dead: they keep their direction and size, pressure the normals and areas at rest. A
-//! moment is conjugate to the spin about fixed axes. A held rotation is a spin about a global
+//! Loads are dead: they keep their direction and size, pressure the normals and areas at rest; only a
+//! [`FollowerPressure`](crate::model::Load::FollowerPressure) goes with the sheet. A moment is
+//! conjugate to the spin about fixed axes. A held rotation is a spin about a global
 //! axis: it may grow beyond π, and about one axis it is the angle itself. A held rotation or a
 //! moment at a node that is free to turn about both other axes is not conservative: the symmetric
 //! tangent then converges linearly; hold a plane of symmetry by both of its rotations.
 
 mod arc;
 mod drive;
+pub mod dynamics;
 mod flow;
 mod newton;
 mod sheet;
@@ -43,13 +45,16 @@ pub use drive::{Leg, drive};
 pub use flow::{Flow, relax};
 pub use stability::Stability;
 
-use self::newton::{Converged, Drag, newton};
-use self::system::{Balance, System};
+use self::flow::noise;
+use self::newton::{Converged, Drag, Failure, newton};
+use self::system::{Balance, System, quads_of_leads};
 use super::SolveError;
 use super::linear::Options;
+use super::plan::Plan;
 use crate::law;
 use crate::mesh::QuadMesh;
-use crate::model::{Model, RigidBody, RigidBodyError};
+use crate::model::rigid::leads;
+use crate::model::{DofGroup, Model, RigidBody, RigidBodyError};
 use crate::section::SheetLaw;
 
 /// Places and rotations of the nodes under a part of the load.
@@ -109,6 +114,8 @@ pub struct Settings {
     pub first_step: f64,
     /// The largest step of the load factor.
     pub largest_step: f64,
+    /// Factors of loads and held values to go to in turn: 1, or there and back for a law with friction.
+    pub path: Vec<f64>,
     /// A step that has been halved below this one ends the search.
     pub smallest_step: f64,
     /// Nodes that move as rigid bodies.
@@ -126,10 +133,31 @@ impl Default for Settings {
             first_step: 1.0,
             largest_step: 1.0,
             smallest_step: 1e-5,
+            path: vec![1.0],
             bodies: Vec::new(),
             law: None,
         }
     }
+}
+
+/// A way to an equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Method {
+    /// See [`solve`]; random loads break the symmetry, if asked for.
+    Newton(Option<Perturbation>),
+    /// See [`follow`].
+    ArcLength(ArcLength),
+    /// See [`relax`].
+    Flow(Flow),
+}
+
+/// Random loads that break the symmetry of a model; they are taken away before the end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Perturbation {
+    /// Their size relative to the mean load per area.
+    pub size: f64,
+    /// Seed of the random numbers.
+    pub seed: u64,
 }
 
 /// An equilibrium on the way, handed to the observer.
@@ -139,6 +167,8 @@ pub struct Step<'a> {
     pub number: usize,
     /// Iterations that it took.
     pub iterations: usize,
+    /// Attempts that failed since the step before, each answered by a shorter step.
+    pub cut_backs: usize,
     /// Unbalanced forces relative to loads or reactions.
     pub residual: f64,
     /// Energy stored (J); what friction has lost is in the memory of the state.
@@ -213,9 +243,17 @@ impl NonlinearError {
 struct Progress {
     steps: usize,
     iterations: usize,
+    /// Failed attempts since the last step.
+    cut_backs: usize,
 }
 
 impl Progress {
+    /// Counts an attempt that failed.
+    fn cut_back(&mut self, failure: &Failure) {
+        self.iterations += failure.iterations;
+        self.cut_backs += 1;
+    }
+
     /// Counts a step and shows it.
     fn show(
         &mut self,
@@ -228,6 +266,7 @@ impl Progress {
         observe(&Step {
             number: self.steps,
             iterations: step.iterations,
+            cut_backs: std::mem::take(&mut self.cut_backs),
             residual: step.balance.relative_residual(),
             energy: step.balance.energy,
             state: &step.state,
@@ -253,8 +292,8 @@ impl Progress {
     }
 }
 
-/// Grows loads and held values from 0 to 1 in adaptive steps and shows every equilibrium to
-/// `observe`, which may stop.
+/// Grows loads and held values from 0 along the path of the settings in adaptive steps and shows every
+/// equilibrium to `observe`, which may stop.
 ///
 /// # Errors
 /// M008, M010 for the model; N002 for memory; N007 with the last equilibrium.
@@ -264,51 +303,86 @@ pub fn solve(
     options: &Options,
     observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    cycle(model, settings, &[1.0], options, observe)
+    search(model, &plan(model, settings, options)?, settings, &Method::Newton(None), options, observe)
 }
 
-/// Takes the factor of loads and held values from 0 to each of `targets` in turn, in adaptive steps,
-/// and shows every equilibrium to `observe`, which may stop: there and back for a law with friction.
+/// What depends on the mesh and the bodies only, shared by every model on them.
 ///
 /// # Errors
-/// M008, M010 for the model; N002 for memory; N007 with the last equilibrium.
-pub fn cycle(
+/// M010 for the bodies; N002 for memory.
+pub fn plan(model: &Model, settings: &Settings, options: &Options) -> Result<Plan, NonlinearError> {
+    let mesh = &model.mesh;
+    let leads = leads(mesh.nodes.len(), &settings.bodies, &model.constraints())?;
+    Ok(Plan::of_quads(mesh, &quads_of_leads(mesh, &leads), &[DofGroup::Shell], options.path)?)
+}
+
+/// [`solve`], [`follow`] or [`relax`] with a plan that was made before by [`plan`], for a model with the
+/// same mesh and bodies.
+///
+/// # Errors
+/// Those of the method.
+pub fn search(
     model: &Model,
+    plan: &Plan,
     settings: &Settings,
-    targets: &[f64],
+    method: &Method,
     options: &Options,
+    observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
+) -> Result<Solution, NonlinearError> {
+    let system = System::new(model, plan, settings, options)?;
+    match method {
+        Method::Newton(perturbation) => grow(&system, settings, *perturbation, observe),
+        Method::ArcLength(arc) => arc::follow_path(&system, settings, arc, observe),
+        Method::Flow(flow) => flow::relax_system(&system, settings, flow, observe),
+    }
+}
+
+fn grow(
+    system: &System<'_>,
+    settings: &Settings,
+    perturbation: Option<Perturbation>,
     mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    let system = System::new(model, settings, options)?;
-    let mut state = State::rest(&model.mesh);
-    let mut balance = system.balance(&state, None);
-    let mut progress = Progress::default();
-    'targets: for &target in targets {
-        let mut step = settings.first_step;
-        while state.factor != target {
-            let way = target - state.factor;
-            // The last step ends at the target exactly, without a sliver after it.
-            let factor = if way.abs() <= 1.001 * step { target } else { state.factor + step.copysign(way) };
-            match newton(&system, &state, factor, factor - state.factor, settings, &Drag::default()) {
-                Ok(converged) => {
-                    let flow = progress.show(&system, &converged, &mut observe);
-                    if converged.iterations <= settings.iterations / 3 {
-                        step = (1.5 * step).min(settings.largest_step);
-                    }
-                    (state, balance) = (converged.state, converged.balance);
-                    if flow.is_break() {
-                        break 'targets;
-                    }
+    let noise = perturbation.filter(|p| p.size > 0.0).map(|p| noise(system, &p));
+    let mut extra = noise.as_deref();
+    let mut state = State::rest(&system.model.mesh);
+    let mut balance = system.balance(&state, extra);
+    let (mut step, mut progress) = (settings.first_step, Progress::default());
+    let (mut targets, mut target) = (settings.path.iter(), state.factor);
+    loop {
+        if state.factor == target {
+            match targets.next() {
+                Some(next) => {
+                    (target, step) = (*next, settings.first_step);
+                    continue;
                 }
-                Err(failure) => {
-                    progress.iterations += failure.iterations;
-                    step = 0.5 * (factor - state.factor).abs();
-                    if step < settings.smallest_step {
-                        return Err(failure.ends(progress.steps + 1, settings, state));
-                    }
+                // The path is at its end: the last step takes the perturbation away.
+                None if extra.is_some() => extra = None,
+                None => break,
+            }
+        }
+        let way = target - state.factor;
+        // The last step ends at the target exactly, without a sliver after it.
+        let factor = if way.abs() <= 1.001 * step { target } else { state.factor + step.copysign(way) };
+        match newton(system, &state, factor, settings, &Drag { rate: 0.0, extra }) {
+            Ok(converged) => {
+                let flow = progress.show(system, &converged, &mut observe);
+                if converged.iterations <= settings.iterations / 3 {
+                    step = (1.5 * step).min(settings.largest_step);
+                }
+                (state, balance) = (converged.state, converged.balance);
+                if flow.is_break() {
+                    break;
+                }
+            }
+            Err(failure) => {
+                progress.cut_back(&failure);
+                step = 0.5 * (factor - state.factor).abs();
+                if step < settings.smallest_step {
+                    return Err(failure.ends(progress.steps + 1, settings, state));
                 }
             }
         }
     }
-    progress.finish(&system, state, &balance)
+    progress.finish(system, state, &balance)
 }

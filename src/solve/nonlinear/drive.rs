@@ -2,9 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use super::newton::{Drag, newton};
+use super::newton::{Drag, newton_with};
 use super::system::System;
-use super::{NonlinearError, Progress, Settings, Solution, State, Step};
+use super::{NonlinearError, Progress, Settings, Solution, State, Step, plan};
 use crate::model::{Model, Support};
 use crate::solve::linear::Options;
 
@@ -36,8 +36,9 @@ pub fn drive(
     mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
     let driven = with_supports_at_zero(model, legs);
-    let mut system = System::new(&driven, settings, options)?;
-    let mut state = State { factor: 0.0, ..State::rest(&model.mesh) };
+    let plan = plan(&driven, settings, options)?;
+    let mut system = System::new(&driven, &plan, settings, options)?;
+    let mut state = State::rest(&model.mesh);
     let mut balance = system.balance(&state, None);
     let mut progress = Progress::default();
     let mut place = vec![0.0; system.values.len()];
@@ -59,7 +60,7 @@ pub fn drive(
             let goal = shown as f64 * whole;
             let next = if done + 1.001 * part >= goal { goal } else { done + part };
             let factor = load + next * (leg.load - load);
-            match newton(&system, &state, factor, next - done, settings, &Drag::default()) {
+            match newton_with(&system, &state, [factor, next - done], settings, &Drag::default()) {
                 Ok(converged) => {
                     done = next;
                     part = (1.5 * part).min(whole);
@@ -76,7 +77,7 @@ pub fn drive(
                     }
                 }
                 Err(failure) => {
-                    progress.iterations += failure.iterations;
+                    progress.cut_back(&failure);
                     part = 0.5 * (next - done);
                     if part < settings.smallest_step * whole {
                         return Err(failure.ends(progress.steps + 1, settings, state));

@@ -70,13 +70,23 @@ impl Balance {
     }
 }
 
-/// From an equilibrium to that at another factor of the loads, the held values going `travel` times
-/// their way.
+/// From an equilibrium to that at another factor.
 pub(super) fn newton(
     system: &System<'_>,
     start: &State,
     factor: f64,
-    travel: f64,
+    settings: &Settings,
+    drag: &Drag<'_>,
+) -> Result<Converged, Failure> {
+    newton_with(system, start, [factor, factor - start.factor], settings, drag)
+}
+
+/// From an equilibrium to that at another factor of the loads, the held values going `travel` times
+/// their way.
+pub(super) fn newton_with(
+    system: &System<'_>,
+    start: &State,
+    [factor, travel]: [f64; 2],
     settings: &Settings,
     drag: &Drag<'_>,
 ) -> Result<Converged, Failure> {
