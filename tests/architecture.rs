@@ -16,7 +16,7 @@ const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("law", &[], &[]),
     ("instrument", &["finding", "quantity"], &["csv", "calamine", "encoding_rs", "toml"]),
     ("characterise", &["finding", "quantity", "law", "instrument"], &[]),
-    ("section", &["finding", "quantity"], &[]),
+    ("section", &["finding", "quantity", "law"], &[]),
     ("analytical", &["section"], &[]),
     ("mesh", &["finding", "quantity"], &[]),
     ("element", &["section", "mesh", "law"], &[]),

@@ -343,7 +343,7 @@ fn a_perturbation_breaks_the_symmetry_and_a_plan_is_shared() {
     let load = 1.3 * FRAC_PI_2 * FRAC_PI_2;
     let model = cantilever(16, 2e-3, end_load(Vector3::new(-load, 0.0, 0.0), Vector3::zeros()));
     let settings = Settings { first_step: 0.1, largest_step: 0.1, ..Settings::default() };
-    let shared = plan(&model, &settings, &Options::default()).unwrap();
+    let shared = plan(&model, &Options::default()).unwrap();
     let by =
         |method: Method| search(&model, &shared, &settings, &method, &Options::default(), go_on).unwrap();
     let straight = by(Method::Newton(None));

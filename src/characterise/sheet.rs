@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::{FrictionLaw, LineFit, Strip};
 use crate::finding::Finding;
+use crate::instrument::fab::FabTest;
 use crate::instrument::{Direction, FabricInfo, Measurement, Parameter, Source};
 use crate::quantity::{Curve, Estimate};
 
@@ -80,6 +81,8 @@ pub struct FabricSheet {
     pub strips: Vec<Strip>,
     /// Friction laws: of specimens in their order, then of strips, then from summary values.
     pub laws: Vec<FrictionLaw>,
+    /// Bend tests of FAB strips as recorded, in file order.
+    pub bend_tests: Vec<FabTest>,
     /// Files behind the sheet.
     pub sources: Vec<Source>,
     /// What a reader of the sheet must know.

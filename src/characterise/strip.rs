@@ -64,6 +64,8 @@ pub(super) fn add(sheet: &mut FabricSheet, files: &[FabFile], settings: &Setting
             strip
         })
         .collect();
+    sheet.bend_tests =
+        (files.iter().flat_map(|f| &f.tests)).filter(|t| !t.kind.is_stretch()).cloned().collect();
     stiffness(sheet, settings, &place);
     for direction in Direction::ALL {
         bending(sheet, files, direction, &place);

@@ -6,18 +6,20 @@ use clap::Args;
 use rayon::prelude::*;
 use serde_json::json;
 
+use super::bending;
 use super::diagnostics::Failure;
 use super::output::Columns;
 use super::task::{Task, TaskArgs, Tested, comparison};
 use super::tree::Tree;
 use super::{Exit, Ui};
 use crate::quantity::significant;
+use crate::study::bending::BendingResult;
 
 /// Simulate instrument tests and compare them with the measured curves
 #[derive(Debug, Args)]
 #[command(after_help = "Example: kesf compare cases/virtual_bending.toml kesf_data/poplin -o out")]
 pub struct Options {
-    /// Case files with a [virtual_test], and the fabrics for cases that say `fabric = "*"`
+    /// Case files with a [virtual_test] or a [bending_test], and the fabrics for cases that say `fabric = "*"`
     #[arg(value_name = "INPUT", required = true)]
     inputs: Vec<PathBuf>,
     /// Also write JSON and charts into this folder
@@ -29,23 +31,23 @@ pub struct Options {
 
 pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let mut work = options.task.load(&options.inputs, ui)?;
-    work.cases.retain(|c| c.virtual_test.is_some());
+    work.cases.retain(|c| c.virtual_test.is_some() || c.bending_test.is_some());
     let (tasks, homeless) = work.tasks();
     if tasks.is_empty() && homeless.is_empty() && work.failures.is_empty() {
-        return Err(Failure::new("O055", "there is no case with a [virtual_test] in the inputs")
-            .hint("name a case file; a [sheet] belongs to `kesf solve`"));
+        return Err(Failure::new(
+            "O055",
+            "there is no case with a [virtual_test] or a [bending_test] in the inputs",
+        )
+        .hint("name a case file; a [sheet] belongs to `kesf solve`"));
     }
     let tree = options.output.as_ref().map(|o| Tree::open(o, &options.task)).transpose()?;
     let bar = ui.bar("simulating", tasks.len());
-    let results: Vec<(Task, Result<Vec<Tested>, Failure>)> = tasks
+    let results: Vec<(Task, Result<Outcome, Failure>)> = tasks
         .into_par_iter()
-        .filter_map(|task| {
-            let result = task.test(task.case.virtual_test.as_ref()?).and_then(|tested| {
-                tree.as_ref().map_or(Ok(()), |tree| tree.tested(&task, &tested))?;
-                Ok(tested)
-            });
+        .map(|task| {
+            let result = simulated(&task, tree.as_ref());
             bar.inc(1);
-            Some((task, result))
+            (task, result)
         })
         .collect();
     bar.finish_and_clear();
@@ -57,18 +59,43 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     if let Some(tree) = tree {
         tree.finish()?;
     }
-    let compared: Vec<(&Task, &Tested)> = results
+    let done: Vec<(&Task, &Outcome)> =
+        results.iter().filter_map(|(task, r)| Some((task, r.as_ref().ok()?))).collect();
+    let compared: Vec<(&Task, &Tested)> = done
         .iter()
-        .filter_map(|(task, r)| Some((task, r.as_ref().ok()?)))
-        .flat_map(|(task, tested)| tested.iter().map(move |t| (task, t)))
+        .flat_map(|(task, outcome)| outcome.tested.iter().map(move |tested| (*task, tested)))
         .collect();
+    let bent: Vec<(&Task, &BendingResult)> =
+        done.iter().filter_map(|(task, outcome)| Some((*task, outcome.bent.as_ref()?))).collect();
     if ui.json {
-        let entries: Vec<_> = compared.iter().map(|(task, t)| comparison(task, t)).collect();
+        let tests = compared.iter().map(|(task, t)| comparison(task, t));
+        let entries: Vec<_> = tests.chain(bent.iter().flat_map(|(t, r)| bending::entries(t, r))).collect();
         ui.document(&json!({"schema": "kesf.comparison/1", "comparisons": entries}))?;
-    } else if !compared.is_empty() {
-        ui.print(&text(&compared))?;
+    } else {
+        let tests = (!compared.is_empty()).then(|| text(&compared));
+        let parts: Vec<String> = tests.into_iter().chain(bending::texts(&bent)).collect();
+        ui.print(&parts.join("\n"))?;
     }
-    Ok(Exit::of_batch(compared.len(), &failures).unless(options.task.strict && ui.diagnostics.findings() > 0))
+    Ok(Exit::of_batch(done.len(), &failures).unless(options.task.strict && ui.diagnostics.findings() > 0))
+}
+
+/// What a case gives: curves of KES tests, or a bending test of another laboratory.
+struct Outcome {
+    tested: Vec<Tested>,
+    bent: Option<BendingResult>,
+}
+
+fn simulated(task: &Task, tree: Option<&Tree>) -> Result<Outcome, Failure> {
+    let mut outcome = Outcome { tested: Vec::new(), bent: None };
+    if let Some(spec) = &task.case.virtual_test {
+        outcome.tested = task.test(spec)?;
+        tree.map_or(Ok(()), |tree| tree.tested(task, &outcome.tested))?;
+    } else if let Some(spec) = &task.case.bending_test {
+        let result = task.bend(spec)?;
+        tree.map_or(Ok(()), |tree| tree.bent(task, &result))?;
+        outcome.bent = Some(result);
+    }
+    Ok(outcome)
 }
 
 fn text(compared: &[(&Task, &Tested)]) -> String {

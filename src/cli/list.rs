@@ -71,6 +71,13 @@ const ANALYSES: &[&[&str]] = &[
     &["shear", "[virtual_test] test = \"shear\"", "KES-FB1 specimen, sheared"],
     &["bending", "[virtual_test] test = \"bending\"", "KES-FB2 specimen, bent to an arc"],
     &["compression", "[virtual_test] test = \"compression\"", "exponential through T0 and Tm; not a shell"],
+    &["cantilever", "[bending_test] test = \"cantilever\"", "overhang at 41.5 degrees, bending length"],
+    &["heart_loop", "[bending_test] test = \"heart_loop\"", "strip hung by both ends: height, and B from it"],
+    &[
+        "fab_bend_loop",
+        "[bending_test] test = \"fab_bend_loop\"",
+        "FAB force against clamp distance: B, predictions",
+    ],
 ];
 
 fn fixed(headings: &'static [&'static str], rows: &[&[&str]]) -> Rows {

@@ -4,6 +4,7 @@
 //! `exit` the exit codes. Nothing is computed here.
 
 mod args;
+mod bending;
 mod characterise;
 mod check;
 mod compare;

@@ -34,7 +34,7 @@ pub struct Options {
 }
 
 pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
-    let work = options.task.load(&options.inputs, ui)?;
+    let mut work = options.task.load(&options.inputs, ui)?;
     if work.fabrics.is_empty() && work.cases.is_empty() {
         if work.failures.is_empty() {
             return Err(Failure::new("O055", "there is neither a fabric nor a case in the inputs")
@@ -42,6 +42,8 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         }
         return Ok(Exit::Bad);
     }
+    // A case for FAB records is nothing to a batch of fabrics without them.
+    work.cases.retain(|c| !c.is_for_fab_records() || work.fabrics.iter().any(|f| c.suits(&f.sheet)));
     let (tasks, homeless) = work.tasks();
     let tree = Tree::open(&options.output, &options.task)?;
     let reports = fabrics(&work, &tasks, &tree, ui)?;

@@ -1,5 +1,6 @@
 //! What `run` keeps of a fabric once its files are written, and the overview made of it.
 
+use super::bending;
 use super::diagnostics::Failure;
 use super::inputs::Fabric;
 use super::output::Columns;
@@ -90,6 +91,13 @@ impl FabricReport {
                 let tested = task.test(spec).and_then(|t| tree.tested(task, &t).map(|()| t));
                 match tested {
                     Ok(tested) => simulated.extend(tested),
+                    Err(failure) => self.failures.push(failure),
+                }
+                continue;
+            }
+            if let Some(spec) = &task.case.bending_test {
+                match task.bend(spec).and_then(|r| tree.bent(task, &r).map(|()| r)) {
+                    Ok(result) => self.predictions.extend(bending::predictions(task, &result)),
                     Err(failure) => self.failures.push(failure),
                 }
                 continue;

@@ -15,9 +15,10 @@ use crate::instrument::{Direction, Parameter, Test};
 use crate::quantity::{Curve, Estimate};
 use crate::section::ShellSection;
 use crate::solve::Options as SolveOptions;
+use crate::study::bending::{BendingResult, simulate_records, simulate_strips};
 use crate::study::{
-    self, Case, CaseResult, Comparison, Prediction, PreparedCase, PreparedTest, Uncertainty, VirtualCurve,
-    VirtualTest, compare_curves, measured_curve,
+    self, BendingKind, BendingTest, Case, CaseResult, Comparison, Prediction, PreparedCase, PreparedTest,
+    Uncertainty, VirtualCurve, VirtualTest, compare_curves, measured_curve,
 };
 
 /// Cases and fabrics on the command line.
@@ -126,8 +127,13 @@ impl Work {
             let is_for = |f: &&'w Fabric| named.as_ref().is_none_or(|n| is_within(&f.path, n));
             let before = tasks.len();
             let task = |f: &'w Fabric| Task { case, fabric: Some(&f.sheet), shared: Arc::clone(&shared) };
-            tasks.extend(self.fabrics.iter().filter(is_for).map(task));
-            if tasks.len() == before {
+            tasks.extend(self.fabrics.iter().filter(is_for).filter(|f| case.suits(&f.sheet)).map(task));
+            if tasks.len() == before && case.is_for_fab_records() {
+                let text = format!("{} is for a fabric with FAB bend tests, and none is there", case.name);
+                failures.push(Failure::new("O055", text).hint(
+                    "name a U3M file with `raw_data`, as in `kesf compare cases/fab_bend_loop.toml FABRIC.u3m`",
+                ));
+            } else if tasks.len() == before {
                 let text = format!("{} is for a fabric, and none is there", case.name);
                 failures.push(
                     Failure::new("O055", text).hint("name one, as in `kesf solve CASE kesf_data/poplin`"),
@@ -184,6 +190,18 @@ impl Task<'_> {
     /// Simulates a `[virtual_test]` along warp and weft and compares it with the sheet.
     pub fn test(&self, spec: &VirtualTest) -> Result<Vec<Tested>, Failure> {
         self.simulate(spec).map_err(|f| f.of(&self.name()))
+    }
+
+    /// Simulates a `[bending_test]`.
+    pub fn bend(&self, spec: &BendingTest) -> Result<BendingResult, Failure> {
+        let result = match (spec.test, self.fabric) {
+            // It finds a rigidity of its own and needs no section.
+            (BendingKind::FabBendLoop, Some(sheet)) => {
+                simulate_records(self.case, spec, sheet).map_err(Failure::from)
+            }
+            _ => self.section().and_then(|(section, _)| Ok(simulate_strips(self.case, spec, &section)?)),
+        };
+        result.map_err(|f| f.of(&self.name()))
     }
 
     fn simulate(&self, spec: &VirtualTest) -> Result<Vec<Tested>, Failure> {

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde_json::json;
 
+use super::bending;
 use super::diagnostics::Failure;
 use super::section::used;
 use super::task::{Task, TaskArgs, Tested, comparison, solution};
@@ -15,6 +16,7 @@ use crate::report::chart::{self, ChartError, FieldPlot, SimulatedCurve};
 use crate::report::json::{section_document, sheet_document, text};
 use crate::report::table::{csv, history_rows};
 use crate::report::vtu::{MeshField, vtu};
+use crate::study::bending::BendingResult;
 use crate::study::{CaseResult, StudyError};
 
 /// A folder of results that several threads may write to.
@@ -84,6 +86,20 @@ impl Tree {
         };
         let test = first.simulated.test;
         self.chart(&format!("{stem}.png"), draw(sheet, test, &curves(tested.iter(), test)))?;
+        Ok(())
+    }
+
+    /// `<fabric>/<case>.json` and `.png` of a bending test; a FAB test has one chart a direction,
+    /// `<fabric>/<case>_<direction>.png`.
+    pub fn bent(&self, task: &Task, result: &BendingResult) -> Result<(), Failure> {
+        let stem = task.stem();
+        let document = json!({"schema": "kesf.comparison/1", "comparisons": bending::entries(task, result)});
+        self.write(&format!("{stem}.json"), text(&document)?.as_bytes())?;
+        if self.charts {
+            for (suffix, picture) in bending::charts(task, result) {
+                self.chart(&format!("{stem}{suffix}.png"), picture)?;
+            }
+        }
         Ok(())
     }
 

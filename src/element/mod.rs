@@ -6,6 +6,7 @@
 //! right-hand rule.
 #![doc = include_str!("theory.md")]
 
+mod cellwise;
 pub mod corotational;
 mod drilling;
 mod load;
@@ -15,6 +16,7 @@ mod quad4;
 mod shear;
 mod smoothing;
 
+pub use cellwise::{Cellwise, Strains};
 pub use load::{follower_pressure, follower_pressure_tangent, gravity_load, pressure_load};
 pub use mass::{Mass, consistent_mass, lumped_mass};
 pub use prepared::{MaterialAxisError, Matrix12, Matrix24, Prepared, Vector24};

@@ -3,9 +3,10 @@
 use nalgebra::{Matrix2, Matrix3, Point3, SMatrix, SVector, Vector3};
 use thiserror::Error;
 
+use super::cellwise::Cellwise;
 use super::quad4::{Frame, GAUSS_2X2, gauss_point};
 use super::{Cell, Drilling, Formulation, drilling, shear};
-use crate::section::ShellSection;
+use crate::section::{ShellSection, strain_rotation};
 
 /// 12 x 12, three dofs a node.
 pub type Matrix12 = SMatrix<f64, 12, 12>;
@@ -30,7 +31,11 @@ pub struct Prepared {
     pub d_b: Matrix3<f64>,
     /// Transverse shear stiffness in element axes, stabilised (N/m).
     pub d_s: Matrix2<f64>,
+    /// Strains of the element axes to those of the material axes.
+    to_material: Matrix3<f64>,
     gamma: f64,
+    /// The seed's drilling spring (N·m).
+    spring: f64,
     formulation: Formulation,
 }
 
@@ -56,7 +61,14 @@ impl Prepared {
         };
         let ShellSection { d_m, d_b, d_s, .. } = stabilised.rotated(angle);
         let gamma = drilling::penalty(formulation.drilling, section, frame.area());
-        Ok(Self { frame, d_m, d_b, d_s, gamma, formulation })
+        let to_material = strain_rotation(angle);
+        let mut element = Self { frame, d_m, d_b, d_s, to_material, gamma, spring: 0.0, formulation };
+        if let Drilling::Seed(factor) = formulation.drilling {
+            let largest = |k: Matrix12| k.diagonal().max();
+            let (membrane, plate) = (element.membrane_stiffness(), element.plate_stiffness());
+            element.spring = factor * largest(membrane).max(largest(plate));
+        }
+        Ok(element)
     }
 
     /// The same from corners in space.
@@ -99,11 +111,8 @@ impl Prepared {
             let b = membrane_matrix(&cell);
             k += b.transpose() * (self.d_m * cell.area) * b;
         }
-        if let Drilling::Seed(factor) = self.formulation.drilling {
-            let spring = factor * k.diagonal().max().max(self.plate_stiffness().diagonal().max());
-            for i in 0..4 {
-                k[(3 * i + 2, 3 * i + 2)] += spring;
-            }
+        for i in 0..4 {
+            k[(3 * i + 2, 3 * i + 2)] += self.spring;
         }
         k
     }
@@ -116,6 +125,24 @@ impl Prepared {
     /// The same in the axes of the frame, rigid links included.
     pub fn local_stiffness(&self) -> Matrix24 {
         self.linked_stiffness(&self.links(&Matrix3::identity()))
+    }
+
+    /// The element cell by cell: the `replaced` diagonal entries of `section`'s `d_m` and `d_b`, in the
+    /// order of [`Strains`](super::Strains), are left to laws; everything else stays linear.
+    pub fn cellwise(&self, section: &ShellSection, replaced: [bool; 6]) -> Cellwise {
+        let (mut d_m, mut d_b) = (section.d_m, section.d_b);
+        for i in 0..3 {
+            if replaced[i] {
+                d_m[(i, i)] = 0.0;
+            }
+            if replaced[3 + i] {
+                d_b[(i, i)] = 0.0;
+            }
+        }
+        let t = &self.to_material;
+        let linear = Self { d_m: t.transpose() * d_m * t, d_b: t.transpose() * d_b * t, ..*self };
+        let links = (!self.frame.is_plane()).then(|| self.links(&Matrix3::identity()));
+        Cellwise::new(self.cells(), t, linear.local_stiffness(), links)
     }
 
     /// `tᵀ k t` of the stiffness `k` of the element plane.

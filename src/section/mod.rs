@@ -1,5 +1,9 @@
 //! The constitutive matrices of a flat orthotropic shell: where the two arms meet.
 
+mod law;
+
+pub use law::SheetLaw;
+
 use nalgebra::{Matrix2, Matrix3, SymmetricEigen};
 use thiserror::Error;
 
@@ -98,13 +102,7 @@ impl ShellSection {
     /// which the warp points along `angle` (rad, counter-clockwise from x).
     pub fn rotated(&self, angle: f64) -> Self {
         let (s, c) = angle.sin_cos();
-        // Engineering strains of the element axes to those of the material axes.
-        #[rustfmt::skip]
-        let t = Matrix3::new(
-            c * c, s * s, c * s,
-            s * s, c * c, -c * s,
-            -2.0 * c * s, 2.0 * c * s, c * c - s * s,
-        );
+        let t = strain_rotation(angle);
         let r = Matrix2::new(c, s, -s, c);
         Self {
             d_m: t.transpose() * self.d_m * t,
@@ -119,6 +117,18 @@ impl ShellSection {
     pub fn bending_thickness_squared(&self) -> f64 {
         12.0 * self.d_b[(0, 0)].max(self.d_b[(1, 1)]) / self.d_m[(0, 0)].max(self.d_m[(1, 1)])
     }
+}
+
+/// Engineering strains `(ε_x, ε_y, γ_xy)`, or curvatures, of axes in which the warp points along
+/// `angle` (rad, counter-clockwise from x) to those of the material axes.
+#[rustfmt::skip]
+pub fn strain_rotation(angle: f64) -> Matrix3<f64> {
+    let (s, c) = angle.sin_cos();
+    Matrix3::new(
+        c * c, s * s, c * s,
+        s * s, c * c, -c * s,
+        -2.0 * c * s, 2.0 * c * s, c * c - s * s,
+    )
 }
 
 fn symmetric(

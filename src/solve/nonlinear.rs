@@ -8,20 +8,30 @@
 //! Eng.* 109 (2017) 1237): sheets that hardly stretch then converge in a few iterations even when
 //! the whole load comes in one step. Three ways to an equilibrium, from quick to robust:
 //!
-//! 1. [`solve`]: loads and held values grow together by a factor from 0 to 1, in adaptive steps;
+//! 1. [`solve`]: loads and held values grow together by a factor from 0 to 1, or along another path,
+//!    in adaptive steps;
 //! 2. [`relax`]: the implicit gradient flow of the energy, which ends in a stable equilibrium;
 //! 3. [`follow`]: arc length, through limit points of the load.
 //!
+//! [`drive`] moves supports through a programme instead, as the clamps of a testing machine do.
+//!
+//! The sheet is linear elastic in the frames of its elements, or its cells follow laws with friction
+//! ([`SheetLaw`]): each step is then the minimum of a convex potential of the cells, from a memory
+//! that is kept when the step has converged and restored when it is tried again.
+//!
 //! Loads are dead: they keep their direction and size, pressure the normals and areas at rest; only a
-//! [`FollowerPressure`](crate::model::Load::FollowerPressure) goes with the sheet. A moment is conjugate to the spin about fixed axes. A held rotation is a spin about a global
+//! [`FollowerPressure`](crate::model::Load::FollowerPressure) goes with the sheet. A moment is
+//! conjugate to the spin about fixed axes. A held rotation is a spin about a global
 //! axis: it may grow beyond π, and about one axis it is the angle itself. A held rotation or a
 //! moment at a node that is free to turn about both other axes is not conservative: the symmetric
 //! tangent then converges linearly; hold a plane of symmetry by both of its rotations.
 
 mod arc;
+mod drive;
 pub mod dynamics;
 mod flow;
 mod newton;
+mod sheet;
 mod stability;
 mod system;
 
@@ -31,6 +41,7 @@ use nalgebra::{Point3, UnitQuaternion};
 use thiserror::Error;
 
 pub use arc::{ArcLength, follow};
+pub use drive::{Leg, drive};
 pub use flow::{Flow, relax};
 pub use stability::Stability;
 
@@ -40,8 +51,10 @@ use self::system::{Balance, System};
 use super::SolveError;
 use super::linear::Options;
 use super::plan::Plan;
+use crate::law;
 use crate::mesh::QuadMesh;
 use crate::model::{DofGroup, Model};
+use crate::section::SheetLaw;
 
 /// Places and rotations of the nodes under a part of the load.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,6 +65,18 @@ pub struct State {
     pub rotation: Vec<UnitQuaternion<f64>>,
     /// Factor of the loads and held values.
     pub factor: f64,
+    /// What a law with friction remembers.
+    pub memory: Memory,
+}
+
+/// What a sheet with friction remembers of the equilibria that it has been through.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Memory {
+    /// That of the laws of each smoothing cell, in the order of elements and cells; empty for new
+    /// cloth, and without a law.
+    pub cells: Vec<[law::State; 6]>,
+    /// Energy lost since the rest (J).
+    pub dissipated: f64,
 }
 
 impl State {
@@ -61,6 +86,7 @@ impl State {
             position: mesh.nodes.clone(),
             rotation: vec![UnitQuaternion::identity(); mesh.nodes.len()],
             factor: 0.0,
+            memory: Memory::default(),
         }
     }
 
@@ -87,14 +113,26 @@ pub struct Settings {
     pub first_step: f64,
     /// The largest step of the load factor.
     pub largest_step: f64,
+    /// Factors of loads and held values to go to in turn: 1, or there and back for a law with friction.
+    pub path: Vec<f64>,
     /// A step that has been halved below this one ends the search.
     pub smallest_step: f64,
+    /// Laws with friction in the place of diagonal entries of the section.
+    pub law: Option<SheetLaw>,
 }
 
 impl Default for Settings {
-    /// Tolerance 1e-8, at most 25 iterations a step, the whole load at once.
+    /// Tolerance 1e-8, at most 25 iterations a step, the whole load at once, linear elastic.
     fn default() -> Self {
-        Self { tolerance: 1e-8, iterations: 25, first_step: 1.0, largest_step: 1.0, smallest_step: 1e-5 }
+        Self {
+            tolerance: 1e-8,
+            iterations: 25,
+            first_step: 1.0,
+            largest_step: 1.0,
+            smallest_step: 1e-5,
+            path: vec![1.0],
+            law: None,
+        }
     }
 }
 
@@ -129,7 +167,7 @@ pub struct Step<'a> {
     pub cut_backs: usize,
     /// Unbalanced forces relative to loads or reactions.
     pub residual: f64,
-    /// Strain energy (J).
+    /// Energy stored (J); what friction has lost is in the memory of the state.
     pub energy: f64,
     /// The nodes.
     pub state: &'a State,
@@ -144,7 +182,7 @@ pub struct Solution {
     pub state: State,
     /// Forces and moments of the supports on the sheet, six a node; 0 at free dofs.
     pub reaction: Vec<f64>,
-    /// Strain energy (J).
+    /// Energy stored (J); what friction has lost is in the memory of the state.
     pub energy: f64,
     /// Unbalanced forces relative to loads or reactions.
     pub residual: f64,
@@ -246,8 +284,8 @@ impl Progress {
     }
 }
 
-/// Grows loads and held values from 0 to 1 in adaptive steps and shows every equilibrium to
-/// `observe`, which may stop.
+/// Grows loads and held values from 0 along the path of the settings in adaptive steps and shows every
+/// equilibrium to `observe`, which may stop.
 ///
 /// # Errors
 /// M008, M010 for the model; N002 for memory; N007 with the last equilibrium.
@@ -281,7 +319,7 @@ pub fn search(
     options: &Options,
     observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    let system = System::new(model, plan, options)?;
+    let system = System::new(model, plan, settings, options)?;
     match method {
         Method::Newton(perturbation) => grow(&system, settings, *perturbation, observe),
         Method::ArcLength(arc) => arc::follow_path(&system, settings, arc, observe),
@@ -300,13 +338,22 @@ fn grow(
     let mut state = State::rest(&system.model.mesh);
     let mut balance = system.balance(&state, extra);
     let (mut step, mut progress) = (settings.first_step, Progress::default());
-    while state.factor < 1.0 || extra.is_some() {
-        if state.factor >= 1.0 {
-            // The whole load is on: the last step takes the perturbation away.
-            extra = None;
+    let (mut targets, mut target) = (settings.path.iter(), state.factor);
+    loop {
+        if state.factor == target {
+            match targets.next() {
+                Some(next) => {
+                    (target, step) = (*next, settings.first_step);
+                    continue;
+                }
+                // The path is at its end: the last step takes the perturbation away.
+                None if extra.is_some() => extra = None,
+                None => break,
+            }
         }
-        // The last step ends at 1 exactly, without a sliver after it.
-        let factor = if state.factor + 1.001 * step >= 1.0 { 1.0 } else { state.factor + step };
+        let way = target - state.factor;
+        // The last step ends at the target exactly, without a sliver after it.
+        let factor = if way.abs() <= 1.001 * step { target } else { state.factor + step.copysign(way) };
         let found = newton(system, &state, factor, settings, &Drag { rate: 0.0, extra });
         // A long step may land beyond the branch that the perturbation leads to.
         let found = found.and_then(|c| if extra.is_some() { c.stable(system) } else { Ok(c) });
@@ -323,7 +370,7 @@ fn grow(
             }
             Err(failure) => {
                 progress.cut_back(&failure);
-                step = 0.5 * (factor - state.factor);
+                step = 0.5 * (factor - state.factor).abs();
                 if step < settings.smallest_step {
                     return Err(failure.ends(progress.steps + 1, settings, state));
                 }

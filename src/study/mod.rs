@@ -1,6 +1,7 @@
 //! Cases: problems described in TOML, virtual instrument tests, and the comparison of what they
 //! give with what was measured.
 
+pub mod bending;
 mod build;
 mod case;
 mod compare;
@@ -17,8 +18,8 @@ use thiserror::Error;
 
 pub use build::{formulation, model, section};
 pub use case::{
-    Analysis, Case, CaseError, Check, MethodChoice, NonlinearTable, ProbeTable, Reference, ReferenceKind,
-    SectionTable, Shape, Sheet, TestFormulation, VirtualTest,
+    Analysis, BendingKind, BendingTest, Case, CaseError, Check, MethodChoice, NonlinearTable, ProbeTable,
+    Reference, ReferenceKind, SectionTable, Shape, Sheet, TestFormulation, VirtualTest,
 };
 pub use compare::{Comparison, compare_curves, measured_curve};
 pub use dynamics::History;
@@ -54,9 +55,17 @@ pub enum StudyError {
     /// The solution.
     #[error(transparent)]
     Solve(#[from] SolveError),
-    /// The solution in large rotations.
+    /// A solution in large rotations.
     #[error(transparent)]
     Nonlinear(#[from] NonlinearError),
+    /// S004: no overhang of the cantilever test brings the chord to its angle.
+    #[error("S004 no length of the strip hangs at {angle_deg} degrees; the last one tried was {tried} m")]
+    NoOverhang {
+        /// The angle of the chord (degrees).
+        angle_deg: f64,
+        /// The last length (m).
+        tried: f64,
+    },
 }
 
 impl StudyError {
@@ -69,6 +78,7 @@ impl StudyError {
             Self::Section(e) => e.code(),
             Self::Solve(e) => e.code(),
             Self::Nonlinear(e) => e.code(),
+            Self::NoOverhang { .. } => "S004",
         }
     }
 
@@ -91,7 +101,7 @@ impl StudyError {
                     | SolveError::Residual { .. }
                     | SolveError::StepVanished { .. }
             ),
-            Self::Nonlinear(NonlinearError::NotConverged { .. }) => true,
+            Self::Nonlinear(NonlinearError::NotConverged { .. }) | Self::NoOverhang { .. } => true,
             _ => false,
         }
     }

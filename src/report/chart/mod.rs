@@ -11,18 +11,22 @@ mod canvas;
 mod contour;
 mod fabric;
 mod field;
+mod force;
 mod loops;
 mod marks;
 mod palette;
 mod panel;
 mod parity;
+mod profile;
 mod schematic;
 
 use thiserror::Error;
 
 pub use fabric::{SimulatedCurve, bending, compression, shear, tensile};
 pub use field::{FieldPlot, field};
+pub use force::{ForcePlot, bend_loops};
 pub use parity::{ParityPoint, parity};
+pub use profile::{ProfileLine, ProfilePlot, profile};
 
 /// Why there is no chart.
 #[derive(Clone, Debug, Error, PartialEq)]

@@ -106,7 +106,7 @@ fn advance(
     let mut state = start.clone();
     let mut travelled = vec![0.0; system.held.len()];
     let mut balance = system.balance(&state, None);
-    let mut local = balance.local.clone();
+    let mut local = balance.local();
     for iterations in 1..=settings.iterations {
         let failure = |residual, cause| Failure { iterations, residual, cause };
         let (matrix, push) = system.tangent(&state, &balance, &local, 0.0);
@@ -148,6 +148,7 @@ fn advance(
         }
         let at_rest = is_rounding(&step, system.size);
         if part == 1.0 && (at_rest || balance.residual <= settings.tolerance * balance.scale) {
+            system.remember(&balance, &mut state);
             return Ok((Converged { state, balance, iterations, at_rest }, travelled, length));
         }
     }

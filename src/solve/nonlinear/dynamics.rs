@@ -17,7 +17,7 @@ use nalgebra::SMatrix;
 
 use super::newton::{is_rounding, limit};
 use super::system::{Balance, System};
-use super::{NonlinearError, State, plan};
+use super::{NonlinearError, Settings, State, plan};
 use crate::element::{Frame, Mass, Vector24};
 use crate::model::Model;
 use crate::solve::SolveError;
@@ -80,7 +80,8 @@ pub fn integrate_with(
     options: &Options,
     mut observe: impl FnMut(&Instant<'_>) -> ControlFlow<()>,
 ) -> Result<State, NonlinearError> {
-    let system = System::new(model, plan, options)?;
+    let settings = Settings::default();
+    let system = System::new(model, plan, &settings, options)?;
     let motion = Motion::new(&system, dynamics);
     let mut now = motion.start()?;
     let (mut time, mut step) = (0.0, dynamics.step);
@@ -202,7 +203,7 @@ impl<'a> Motion<'a> {
         let mut state = State { factor: self.dynamics.load.at(time), ..now.state.clone() };
         self.system.advance(&mut state, &travelled);
         // The straight prediction stretches a sheet that turns: its own forces say nothing.
-        let mut local: Option<Vec<Vector24>> = Some(now.balance.local.clone());
+        let mut local: Option<Vec<Vector24>> = Some(now.balance.local());
         for _ in 0..ITERATIONS {
             let mean_acceleration: Vec<f64> = (0..n)
                 .map(|d| {
@@ -249,7 +250,7 @@ impl<'a> Motion<'a> {
             }
             let geometric: Vec<Vector24> = match local.take() {
                 Some(predicted) => predicted,
-                None => balance.local.clone(),
+                None => balance.local(),
             };
             let geometric: Vec<Vector24> = geometric.iter().zip(&viscous).map(|(e, v)| e + v).collect();
             let mut step = force;

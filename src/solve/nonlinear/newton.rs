@@ -28,7 +28,7 @@ pub(super) struct Converged {
 impl Converged {
     /// The same if it is stable.
     pub fn stable(self, system: &System<'_>) -> Result<Self, Failure> {
-        let (matrix, _) = system.tangent(&self.state, &self.balance, &self.balance.local, 0.0);
+        let (matrix, _) = system.tangent(&self.state, &self.balance, &self.balance.local(), 0.0);
         match system.factorise(&matrix) {
             Ok(tangent) if tangent.negative_pivots() == 0 => Ok(self),
             Ok(_) => Err(Failure::unfinished(self)),
@@ -90,12 +90,24 @@ pub(super) fn newton(
     settings: &Settings,
     drag: &Drag<'_>,
 ) -> Result<Converged, Failure> {
+    newton_with(system, start, [factor, factor - start.factor], settings, drag)
+}
+
+/// From an equilibrium to that at another factor of the loads, the held values going `travel` times
+/// their way.
+pub(super) fn newton_with(
+    system: &System<'_>,
+    start: &State,
+    [factor, travel]: [f64; 2],
+    settings: &Settings,
+    drag: &Drag<'_>,
+) -> Result<Converged, Failure> {
     let mut state = State { factor, ..start.clone() };
     // Part of the held values that is still to come.
-    let mut remaining = factor - start.factor;
+    let mut remaining = travel;
     let mut travelled = vec![0.0; system.held.len()];
     let mut balance = system.balance(&state, drag.extra);
-    let mut local = balance.local.clone();
+    let mut local = balance.local();
     for iterations in 1..=settings.iterations {
         let failure = |residual, cause| Failure { iterations, residual, cause };
         let (matrix, push) = system.tangent(&state, &balance, &local, drag.rate);
@@ -129,6 +141,7 @@ pub(super) fn newton(
             if System::largest_rotation(&balance) > LARGEST_FOLD {
                 return Err(failure(balance.relative_residual(), None));
             }
+            system.remember(&balance, &mut state);
             return Ok(Converged { state, balance, iterations, at_rest });
         }
     }

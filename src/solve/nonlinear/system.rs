@@ -5,8 +5,9 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector3};
 use rayon::prelude::*;
 
-use super::{NonlinearError, State};
-use crate::element::corotational::{Motion, Reference};
+use super::sheet::{Answer, Sheet};
+use super::{NonlinearError, Settings, State};
+use crate::element::corotational::Motion;
 use crate::element::{Matrix24, Vector24, follower_pressure, follower_pressure_tangent, lumped_mass};
 use crate::model::rigid::lever;
 use crate::model::{Links, Model, ModelError};
@@ -26,10 +27,7 @@ pub(super) struct System<'a> {
     pub model: &'a Model,
     pub plan: &'a Plan,
     threads: usize,
-    references: Vec<Reference>,
-    /// Which stiffness each element has.
-    kinds: Vec<u32>,
-    stiffnesses: Vec<Matrix24>,
+    sheet: Sheet<'a>,
     links: Arc<Links>,
     /// Dead loads at factor 1.
     load: Vec<f64>,
@@ -50,14 +48,12 @@ pub(super) struct System<'a> {
 
 /// The forces in a state.
 pub(super) struct Balance {
-    motions: Vec<Motion>,
-    /// Element forces in their frames.
-    pub local: Vec<Vector24>,
+    answers: Vec<Answer>,
     /// Internal minus external forces at each node, followers not yet added to their leads.
     nodal: Vec<f64>,
     /// Internal minus external forces by dof: the reactions where held, what must vanish elsewhere.
     pub unbalanced: Vec<f64>,
-    /// Strain energy (J).
+    /// Energy stored (J).
     pub energy: f64,
     /// Norm of what must vanish (N).
     pub residual: f64,
@@ -67,19 +63,21 @@ pub(super) struct Balance {
 
 impl<'a> System<'a> {
     /// Of a model; `plan` is that of [`plan`](super::plan) for its mesh and bodies.
-    pub fn new(model: &'a Model, plan: &'a Plan, options: &Options) -> Result<Self, NonlinearError> {
+    pub fn new(
+        model: &'a Model,
+        plan: &'a Plan,
+        settings: &'a Settings,
+        options: &Options,
+    ) -> Result<Self, NonlinearError> {
         let nodes = model.mesh.nodes.len();
         let links = Arc::clone(&plan.pattern.links);
         let held = model.held(&links).map_err(SolveError::from)?;
-        let elements = plan.pattern.quads.len();
         let [low, high] = model.mesh.bounds();
         let mut system = Self {
             model,
             plan,
             threads: options.threads,
-            references: Vec::with_capacity(elements),
-            kinds: Vec::with_capacity(elements),
-            stiffnesses: Vec::new(),
+            sheet: Sheet::new(model, settings.law.as_ref()),
             links,
             load: model.dead_load_vector(),
             pressure: model.follower_pressure(),
@@ -93,7 +91,7 @@ impl<'a> System<'a> {
         Ok(system)
     }
 
-    /// Elements at rest; equal ones in a row share a stiffness.
+    /// Elements at rest; equal ones in a row share their matrices.
     fn prepare_elements(&mut self) -> Result<(), SolveError> {
         let (mesh, mut area) = (&self.model.mesh, 0.0);
         let unit = crate::section::ShellSection { areal_density: 1.0, ..self.model.section.clone() };
@@ -104,11 +102,7 @@ impl<'a> System<'a> {
                 let off = |i: usize| ((now[i] - now[0]) - (last[i] - last[0])).amax();
                 (1..4).map(off).fold(0.0, f64::max) <= 1e-12 * element.frame.longest_side()
             };
-            if !same {
-                self.stiffnesses.push(element.local_stiffness());
-            }
-            self.kinds.push(self.stiffnesses.len() as u32 - 1);
-            self.references.push(Reference::of(&element.frame));
+            self.sheet.push(&element, self.model, same);
             let rotary = element.frame.area() / 12.0;
             for (node, share) in self.plan.pattern.quads[quad].iter().zip(lumped_mass(&element.frame, &unit))
             {
@@ -127,23 +121,15 @@ impl<'a> System<'a> {
         if self.threads > 1 { range.into_par_iter().map(f).collect() } else { range.map(f).collect() }
     }
 
-    fn stiffness(&self, quad: usize) -> &Matrix24 {
-        &self.stiffnesses[self.kinds[quad] as usize]
-    }
-
     /// Forces in a state, with the loads times its factor and `extra` loads on top.
     pub fn balance(&self, state: &State, extra: Option<&[f64]>) -> Balance {
         let mesh = &self.model.mesh;
         let parts = self.each(0..mesh.quads.len(), |q| {
             let nodes = mesh.quads[q].map(|n| n as usize);
-            let motion = Motion::of(
-                &self.references[q],
-                &nodes.map(|n| state.position[n]),
-                &nodes.map(|n| state.rotation[n]),
-            );
-            let local = self.stiffness(q) * motion.deformation;
-            let force = motion.force(&local);
-            (motion, local, force, self.push_of(state, q))
+            let (x, r) = (nodes.map(|n| state.position[n]), nodes.map(|n| state.rotation[n]));
+            let answer = self.sheet.answer(q, &state.memory, &x, &r);
+            let force = answer.motion.force(&answer.local);
+            (answer, force, self.push_of(state, q))
         });
         let mut external: Vec<f64> = self.load.iter().map(|f| f * state.factor).collect();
         if let Some(extra) = extra {
@@ -155,23 +141,21 @@ impl<'a> System<'a> {
             }
         }
         let mut nodal: Vec<f64> = external.iter().map(|f| -f).collect();
-        let (mut motions, mut locals) = (Vec::with_capacity(parts.len()), Vec::with_capacity(parts.len()));
-        let mut energy = 0.0;
-        for (quad, (motion, local, force, _)) in mesh.quads.iter().zip(parts) {
+        let (mut answers, mut energy) = (Vec::with_capacity(parts.len()), 0.0);
+        for (quad, (answer, force, _)) in mesh.quads.iter().zip(parts) {
             for (i, node) in quad.iter().enumerate() {
                 for d in 0..6 {
                     nodal[6 * *node as usize + d] += force[6 * i + d];
                 }
             }
-            energy += 0.5 * local.dot(&motion.deformation);
-            motions.push(motion);
-            locals.push(local);
+            energy += answer.energy;
+            answers.push(answer);
         }
         let unbalanced = self.to_leads(state, &nodal);
         let residual = self.norm(&unbalanced, false);
         let loads = self.to_leads(state, &external);
         let scale = self.norm(&unbalanced, true).max(self.norm(&loads, false));
-        Balance { motions, local: locals, nodal, unbalanced, energy, residual, scale }
+        Balance { answers, nodal, unbalanced, energy, residual, scale }
     }
 
     /// Norm of the forces on the held or the free dofs (N), moments over the side of an element.
@@ -276,8 +260,9 @@ impl<'a> System<'a> {
         for start in (0..pattern.quads.len()).step_by(BATCH) {
             let batch = start..(start + BATCH).min(pattern.quads.len());
             let tangents = self.each(batch.clone(), |q| {
-                let k = *self.stiffness(q) * stiffening;
-                let mut k = balance.motions[q].tangent(&k, &local[q]);
+                let answer = &balance.answers[q];
+                let k = self.sheet.stiffness(q, answer).scale(stiffening);
+                let mut k = answer.motion.tangent(&k, &local[q]);
                 self.soften(state, q, &mut k);
                 self.constrain(state, q, k, pushes)
             });
@@ -366,7 +351,8 @@ impl<'a> System<'a> {
                 spins.fixed_rows_mut::<3>(6 * i).copy_from(&du);
                 spins.fixed_rows_mut::<3>(6 * i + 3).copy_from(&spin);
             }
-            balance.local[q] + self.stiffness(q) * balance.motions[q].deformation_rate(&spins)
+            let answer = &balance.answers[q];
+            answer.local + self.sheet.force_change(q, answer, &answer.motion.deformation_rate(&spins))
         })
     }
 
@@ -380,8 +366,9 @@ impl<'a> System<'a> {
         let parts = self.each(0..self.plan.pattern.quads.len(), |q| {
             let nodes = &self.plan.pattern.quads[q];
             let rates = Vector24::from_fn(|k, _| velocity[6 * nodes[k / 6] as usize + k % 6]);
-            let motion = &balance.motions[q];
-            let local = self.stiffness(q) * motion.deformation_rate(&rates) * beta;
+            let answer = &balance.answers[q];
+            let motion = &answer.motion;
+            let local = self.sheet.force_change(q, answer, &motion.deformation_rate(&rates)) * beta;
             (motion.force(&local), local)
         });
         let mut locals = Vec::with_capacity(parts.len());
@@ -410,12 +397,24 @@ impl<'a> System<'a> {
 
     /// Largest rotation of a node against its element (rad).
     pub fn largest_rotation(balance: &Balance) -> f64 {
-        balance.motions.iter().map(Motion::largest_rotation).fold(0.0, f64::max)
+        balance.answers.iter().map(|a| Motion::largest_rotation(&a.motion)).fold(0.0, f64::max)
+    }
+
+    /// Keeps what the sheet has been through on the way to a state.
+    pub fn remember(&self, balance: &Balance, state: &mut State) {
+        self.sheet.remember(&balance.answers, &mut state.memory);
     }
 
     /// Reactions at the held dofs; 0 elsewhere.
     pub fn reactions(&self, balance: &Balance) -> Vec<f64> {
         balance.unbalanced.iter().zip(&self.held).map(|(f, held)| if *held { *f } else { 0.0 }).collect()
+    }
+}
+
+impl Balance {
+    /// Element forces in their frames.
+    pub fn local(&self) -> Vec<Vector24> {
+        self.answers.iter().map(|a| a.local).collect()
     }
 }
 

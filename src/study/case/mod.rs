@@ -1,6 +1,7 @@
 //! The case file: what is solved, in TOML, with units on every number that has one.
 
 mod analysis;
+mod bending_test;
 mod check;
 mod element;
 mod error;
@@ -16,10 +17,12 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::rigid::RigidTable;
+use crate::characterise::FabricSheet;
 use crate::constitutive::Assumptions;
 use crate::finding::Place;
 
 pub use analysis::{Analysis, MethodChoice, NonlinearTable};
+pub use bending_test::{BendingKind, BendingTest};
 pub use check::{Check, ProbeTable, Reference, ReferenceKind};
 pub use element::{DrillingChoice, ElementTable, Profile, Subcells};
 pub use error::CaseError;
@@ -65,6 +68,8 @@ pub struct Case {
     pub loads: Vec<LoadTable>,
     /// A test of an instrument instead of `sheet`, `supports` and `loads`.
     pub virtual_test: Option<VirtualTest>,
+    /// A bending test of another instrument instead.
+    pub bending_test: Option<BendingTest>,
     /// What is computed.
     #[serde(default)]
     pub analysis: Analysis,
@@ -102,6 +107,16 @@ impl Case {
         Ok(case)
     }
 
+    /// Whether the case compares with FAB bend records, which few fabrics have.
+    pub fn is_for_fab_records(&self) -> bool {
+        self.bending_test.as_ref().is_some_and(|t| t.test == BendingKind::FabBendLoop)
+    }
+
+    /// Whether a fabric has the records that the case compares with.
+    pub fn suits(&self, sheet: &FabricSheet) -> bool {
+        !self.is_for_fab_records() || !sheet.bend_tests.is_empty()
+    }
+
     fn consistent(&self) -> Result<(), CaseError> {
         let refuse = |message: &str| {
             Err(CaseError::Inconsistent { place: Place::file(&self.path), message: message.into() })
@@ -115,8 +130,25 @@ impl Case {
             }
             _ => {}
         }
+        if let Some(test) = &self.bending_test {
+            if self.sheet.is_some() || self.virtual_test.is_some() {
+                return refuse("a [bending_test] brings its own specimen: remove [sheet] and [virtual_test]");
+            }
+            if !(self.supports.is_empty()
+                && self.rigid.is_empty()
+                && self.loads.is_empty()
+                && self.probes.is_empty())
+            {
+                return refuse(
+                    "a [bending_test] brings its own supports and loads: remove [[supports]], [[rigid]], [[loads]], [[probes]]",
+                );
+            }
+            return test.contradiction().map_or(Ok(()), refuse);
+        }
         match (&self.sheet, &self.virtual_test) {
-            (None, None) => refuse("the case has neither a [sheet] nor a [virtual_test]: give one of them"),
+            (None, None) => refuse(
+                "the case has neither a [sheet] nor a [virtual_test] nor a [bending_test]: give one of them",
+            ),
             (Some(_), Some(_)) => {
                 refuse("a [virtual_test] brings its own specimen: remove [sheet], or the [virtual_test]")
             }

@@ -1,0 +1,80 @@
+//! Bending tests of other laboratories, as shells in large rotations: cantilever, heart loop,
+//! and the bend loop of FAB strips.
+
+use crate::characterise::FabricSheet;
+use crate::instrument::{Direction, Parameter};
+use crate::quantity::Length;
+use crate::section::ShellSection;
+
+use super::StudyError;
+use super::case::{BendingKind, BendingTest, Case};
+
+mod cantilever;
+mod fab;
+mod heart;
+mod strip;
+
+pub use cantilever::{CHORD_ANGLE_DEG, Cantilever, cantilever};
+pub use fab::{Agreement, BendLoop, BendLoops, FabSettings, bend_loops};
+pub use heart::{HeartLoop, heart_loop};
+
+/// What a bending test gives, by direction.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BendingResult {
+    /// Along warp and weft.
+    Cantilever(Vec<Cantilever>),
+    /// Along warp and weft.
+    HeartLoop(Vec<HeartLoop>),
+    /// Along every direction that was recorded.
+    FabBendLoop(Vec<BendLoops>),
+}
+
+/// Simulates a cantilever or a heart loop of a section along warp and weft.
+///
+/// # Errors
+/// See [`StudyError`]; S003 for a FAB bend loop, which needs records: see [`simulate_records`].
+pub fn simulate_strips(
+    case: &Case,
+    spec: &BendingTest,
+    section: &ShellSection,
+) -> Result<BendingResult, StudyError> {
+    let width = spec.width.map(Length::si);
+    let both = [Direction::Warp, Direction::Weft].into_iter();
+    match (spec.test, spec.length) {
+        (BendingKind::Cantilever, _) => Ok(BendingResult::Cantilever(
+            both.map(|d| cantilever(section, d, width, spec.cells)).collect::<Result<_, _>>()?,
+        )),
+        (BendingKind::HeartLoop, Some(length)) => Ok(BendingResult::HeartLoop(
+            both.map(|d| heart_loop(section, d, length.si(), width, spec.cells)).collect::<Result<_, _>>()?,
+        )),
+        _ => Err(case.inconsistent("the bending test needs a length, or records of a fabric".into())),
+    }
+}
+
+/// Simulates the FAB bend tests of a sheet along every direction that has them.
+///
+/// # Errors
+/// See [`StudyError`]; S003 for a sheet without areal density.
+pub fn simulate_records(
+    case: &Case,
+    spec: &BendingTest,
+    sheet: &FabricSheet,
+) -> Result<BendingResult, StudyError> {
+    let density = sheet.get(Parameter::W, None).ok_or_else(|| {
+        case.inconsistent("a fab_bend_loop needs the areal density of the fabric (`M` of its file)".into())
+    })?;
+    let settings = FabSettings { cells: spec.cells, ..FabSettings::default() };
+    let loops = Direction::ALL
+        .into_iter()
+        .filter_map(|d| bend_loops(&sheet.bend_tests, d, density.mean, &settings).transpose())
+        .collect::<Result<_, _>>()?;
+    Ok(BendingResult::FabBendLoop(loops))
+}
+
+/// A measured bending length (m) of the fabric's `[[results]]`: along the direction, or without one.
+pub fn measured_bending_length(sheet: &FabricSheet, direction: Direction) -> Option<f64> {
+    let results = || sheet.info.results.iter().filter(|r| r.quantity == "bending_length");
+    let along = results().find(|r| r.direction == Some(direction));
+    let found = along.or_else(|| results().find(|r| r.direction.is_none()))?;
+    found.value.parse::<Length>().ok().map(Length::si)
+}

@@ -1,0 +1,170 @@
+//! Goal: the bending tests of other laboratories, simulated with shells, are the rods of the books; and a real
+//! FAB record is identified and predicted.
+//!
+//! ```text
+//!   ====o            _   _          |o=====    =====o|    clamps driven together, the strip
+//!        `o         ( `V' )         | `o..     ..o'  |    hangs down (D) or stands up (U)
+//!          `o        `-o-'          |    `ooooo'     |
+//! ```
+//! References: heavy elastica, hanging loops and slack strips of `kesf::analytical` (analytical, no code
+//! shared), Peirce's formula (published), a FAB record of a cupro weave (measured, where it is at hand).
+
+use std::path::Path;
+
+use kesf::analytical::beam::heart_load;
+use kesf::analytical::hanging::slack_strip;
+use kesf::instrument::fab::{FabKind, FabTest};
+use kesf::instrument::{Direction, ReadSettings, read};
+use kesf::quantity::{Curve, STANDARD_GRAVITY};
+use kesf::section::ShellSection;
+use kesf::study::Case;
+use kesf::study::bending::{BendLoops, FabSettings, bend_loops, cantilever, heart_loop};
+use nalgebra::{Matrix2, Matrix3};
+
+/// 1 gf·cm²/cm.
+const KES: f64 = 9.80665e-5;
+
+/// A cloth of 150 g/m² that hardly stretches; `nu` couples its bending.
+fn cloth(warp: f64, weft: f64, nu: f64) -> ShellSection {
+    let coupling = nu * (warp * weft).sqrt();
+    let twist = 0.3 * (warp * weft).sqrt();
+    ShellSection {
+        d_m: Matrix3::new(2e4, 0.0, 0.0, 0.0, 2e4, 0.0, 0.0, 0.0, 100.0),
+        d_b: Matrix3::new(warp, coupling, 0.0, coupling, weft, 0.0, 0.0, 0.0, twist),
+        d_s: Matrix2::identity() * 1e3,
+        areal_density: 0.15,
+        thickness: 4e-4,
+    }
+}
+
+/// c = (B/w)^(1/3). What is left is O(h²) of the facets, and the shear that a shell has and a rod has not.
+#[test]
+fn the_cantilever_gives_the_bending_length() {
+    let section = cloth(1e-5, 4e-6, 0.0);
+    for (direction, b) in [(Direction::Warp, 1e-5f64), (Direction::Weft, 4e-6)] {
+        let exact = (b / (0.15 * STANDARD_GRAVITY)).cbrt();
+        let off = [16, 32].map(|cells| {
+            let test = cantilever(&section, direction, None, cells).unwrap();
+            assert!(test.stable && test.strips <= 8, "{} strips", test.strips);
+            assert!((test.peirce_excess() - 0.0575).abs() < 5e-5);
+            let (x, z) = test.profile.points().last().unwrap();
+            assert!((z / x + 41.5f64.to_radians().tan()).abs() < 1e-8);
+            (test.bending_length / exact - 1.0).abs()
+        });
+        assert!(off[0] < 4e-4 && off[1] < 1e-4, "{off:?}");
+    }
+}
+
+/// A strip of 25 mm with free edges curls across and hangs shorter, but not as short as a narrow beam, whose
+/// rigidity is D11 (1 - ν²): an independent shell of another cloth hung 0.2° steeper for ν = 0.3, which is
+/// 0.25 % of the length.
+#[test]
+fn a_strip_that_curls_across_hangs_a_little_shorter() {
+    let c = |nu| cantilever(&cloth(1e-5, 1e-5, nu), Direction::Warp, Some(0.025), 16).unwrap().bending_length;
+    let shorter = 1.0 - c(0.3) / c(0.0);
+    assert!((5e-4..5e-3).contains(&shorter), "{shorter}");
+}
+
+/// From 0.005 to 1 gf cm²/cm and 1 to 20 cm of width, 10 cm long; the facets of the limpest are a quarter
+/// of its bending length.
+#[test]
+fn the_heart_loop_does_not_fail() {
+    for b in [0.005, 0.03, 0.2, 1.0] {
+        for (width, cells) in [(None, 24), (Some(0.01), 24), (Some(0.2), 12)] {
+            let section = cloth(b * KES, b * KES, 0.0);
+            let heart = heart_loop(&section, Direction::Warp, 0.1, width, cells).unwrap();
+            let off = (heart.height - heart.closed_form.unwrap()) / heart.length;
+            assert!(heart.stable, "B = {b}, width {width:?}");
+            assert!(off.abs() < 5e-3 * (24.0 / cells as f64).powi(2), "B = {b}, width {width:?}: {off:e}");
+        }
+    }
+}
+
+/// Weightless the height is 0.1338604 of the length, whatever B; loaded, the fitted polynomial gives the load back.
+#[test]
+fn the_heart_loop_has_its_height() {
+    let light = ShellSection { areal_density: 1e-9, ..cloth(1e-5, 1e-5, 0.0) };
+    let heart = heart_loop(&light, Direction::Warp, 0.1, None, 48).unwrap();
+    assert!((heart.height / heart.length - 0.1338604).abs() < 1e-4, "{}", heart.height / heart.length);
+    for length in [0.08, 0.12] {
+        let heart = heart_loop(&cloth(1e-5, 1e-5, 0.0), Direction::Weft, length, None, 48).unwrap();
+        let z = heart.height / (0.1338604 * length) - 1.0;
+        // 0.2 % of the polynomial, and the mesh.
+        assert!((heart_load(z) / heart.gamma - 1.0).abs() < 6e-3, "{} {}", heart_load(z), heart.gamma);
+        assert!((heart.rigidity.unwrap() / 1e-5 - 1.0).abs() < 6e-3);
+    }
+}
+
+/// A record of an elastic strip, by the exact slack strip; the zero of the load is anything.
+fn record(kind: FabKind, b: f64, areal_density: f64, zero: f64) -> FabTest {
+    let length: f64 = if kind == FabKind::D2 { 0.081 } else { 0.0208 };
+    let (from, to) = if kind == FabKind::D2 { (0.98, 0.84) } else { (0.93, 0.58) };
+    let width = 0.05;
+    let gamma = areal_density * STANDARD_GRAVITY * length.powi(3) / b;
+    let branch = |from: f64, to: f64| {
+        Curve::from_points((0..=10).map(|i| {
+            let distance = from + (to - from) * f64::from(i) / 10.0;
+            let strip = slack_strip(distance, gamma, kind == FabKind::U1).unwrap();
+            (distance * length, zero + strip.pull * b / (length * length) * width)
+        }))
+    };
+    let branches = vec![branch(from, to), branch(to, from)];
+    FabTest { direction: Direction::Warp, kind, length, width, branches }
+}
+
+#[test]
+fn an_elastic_fab_record_gives_its_rigidity_and_the_long_test() {
+    let (b, density) = (6e-6, 0.1056);
+    let tests = [(FabKind::D1, -0.02), (FabKind::U1, 0.03), (FabKind::D2, 0.004)]
+        .map(|(kind, zero)| record(kind, b, density, zero));
+    let at =
+        |settings: FabSettings| bend_loops(&tests, Direction::Warp, density, &settings).unwrap().unwrap();
+    let [coarse, fine] = [12, 24].map(|cells| at(FabSettings { cells, steps: 1 }));
+    let off = [&coarse, &fine].map(|l| (l.rigidity / b - 1.0).abs());
+    assert!(off[0] < 0.02 && off[1] < 0.3 * off[0] + 1e-4, "{off:?}: O(h²)");
+    for (of, zero) in fine.loops.iter().zip([-0.02, 0.03, 0.004]) {
+        assert!((of.zero - zero).abs() < 3e-4, "{:?}: zero {}", of.kind, of.zero);
+        assert!(of.outer.unwrap().nrmse < 2e-3, "{:?}: {:?}", of.kind, of.outer);
+        assert_eq!(of.fitted, of.kind != FabKind::D2);
+    }
+    // An elastic strip does not remember how it came: more steps change nothing.
+    let steps = at(FabSettings { cells: 12, steps: 3 });
+    assert!((steps.rigidity / coarse.rigidity - 1.0).abs() < 1e-6);
+    assert_eq!(bend_loops(&tests, Direction::Weft, density, &FabSettings::default()).unwrap(), None);
+}
+
+/// The cupro weave of the U3M repository (Vizoo GmbH, BSD-3-Clause): a regression of what was reached (own). A line
+/// misses the hysteresis, which is most of the short tests; the long one hangs by its weight.
+#[test]
+fn a_measured_fab_record() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/u3m/physics_example2.json");
+    if !path.exists() {
+        println!("skipped: no {}", path.display());
+        return;
+    }
+    let file = read(&path, &ReadSettings::default()).unwrap().fab.unwrap();
+    let density = file.areal_density.unwrap();
+    let settings = FabSettings { cells: 16, steps: 1 };
+    let of = |d| bend_loops(&file.tests, d, density, &settings).unwrap().unwrap();
+    let check = |loops: &BendLoops, b: f64, long: f64| {
+        assert!((loops.rigidity * 1e6 / b - 1.0).abs() < 0.02, "{}: {}", loops.direction, loops.rigidity);
+        let of = |kind| loops.loops.iter().find(|l| l.kind == kind).unwrap().outer.unwrap().nrmse;
+        assert!(of(FabKind::D1) < 0.21 && of(FabKind::U1) < 0.15 && of(FabKind::D2) < long);
+    };
+    check(&of(Direction::Warp), 9.73, 0.06);
+    check(&of(Direction::Weft), 13.85, 0.085);
+}
+
+#[test]
+fn keys_that_do_not_belong_to_a_test_are_refused() {
+    let refused = |lines: &str| {
+        let text = format!("title = \"t\"\nfabric = \"*\"\n[bending_test]\n{lines}\n");
+        Case::parse(Path::new("t.toml"), &text).unwrap_err().to_string()
+    };
+    assert!(refused("test = \"cantilever\"\nlength = \"5 cm\"").contains("finds its own length"));
+    assert!(refused("test = \"heart_loop\"").contains("length"));
+    assert!(refused("test = \"fab_bend_loop\"\nwidth = \"5 cm\"").contains("records"));
+    assert!(refused("test = \"cantilever\"\ncells = 2").contains("at least 4"));
+    assert!(refused("test = \"pear_loop\"").contains("heart_loop"));
+    assert!(refused("test = \"cantilever\"\n[virtual_test]\ntest = \"bending\"").contains("own specimen"));
+}

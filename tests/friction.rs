@@ -1,0 +1,390 @@
+//! Goal: a shell whose cells follow laws with friction is the material law, in every loop.
+//!
+//! ```text
+//!   clamp |==========> x    weight down; or a clamp that turns there and back and is free to follow
+//! ```
+//! Data: strips and one irregular, warped quad; laws of one slider (`w`, `x`) beside a straight
+//! backbone `B`, so `2HB = 2 w x`. Synthetic.
+//! References (analytical): the linear element; central differences of the potential; the law
+//! itself, as bending in a circle strains every cell alike; the heavy rod with the virgin curve,
+//! integrated from its tip.
+
+use std::ops::ControlFlow;
+
+use kesf::element::corotational::{Motion, Reference};
+use kesf::element::{Cellwise, Drilling, Formulation, Prepared, Strains, Vector24};
+use kesf::law::{Backbone, Channel, Family, Mode, Slider, State, Widening};
+use kesf::mesh::rectangle;
+use kesf::model::{Dof, Load, Model, RigidBody, Support};
+use kesf::section::{SectionError, SheetLaw, ShellSection};
+use kesf::solve::Options;
+use kesf::solve::nonlinear::{Settings, Solution, Step, solve};
+use nalgebra::{Matrix2, Matrix3, Point3, UnitQuaternion, Vector3};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+fn section() -> ShellSection {
+    ShellSection {
+        d_m: Matrix3::new(6000.0, 1200.0, 0.0, 1200.0, 4000.0, 0.0, 0.0, 0.0, 50.0),
+        d_b: Matrix3::new(1e-5, 1e-6, 0.0, 1e-6, 6e-6, 0.0, 0.0, 0.0, 3e-6),
+        d_s: Matrix2::identity() * 50.0,
+        areal_density: 0.15,
+        thickness: 4e-4,
+    }
+}
+
+/// A straight backbone with sliders of given stiffness and slip level.
+fn channel(tangent: f64, sliders: &[(f64, f64)]) -> Channel {
+    let sliders = sliders.iter().map(|(stiffness, slip)| Slider { stiffness: *stiffness, slip: *slip });
+    let family = Family { widening: Widening::Constant, sliders: sliders.collect() };
+    Channel::new(Backbone::line(tangent).unwrap(), vec![family], false).unwrap()
+}
+
+/// Friction in every strain of [`section`].
+fn friction() -> SheetLaw {
+    let d = [6000.0, 4000.0, 50.0, 1e-5, 6e-6, 3e-6];
+    let slip = [1e-3, 1e-3, 5e-3, 20.0, 20.0, 20.0];
+    let law = |i: usize| channel(d[i], &[(0.8 * d[i], slip[i]), (0.3 * d[i], 4.0 * slip[i])]);
+    SheetLaw::new(Mode::Friction, std::array::from_fn(|i| Some(law(i))))
+}
+
+fn quad(height: f64, drilling: Drilling) -> Prepared {
+    let corners =
+        [[0.0, 0.0, height], [0.013, 0.001, -height], [0.012, 0.011, height], [-0.001, 0.009, -height]];
+    let corners = corners.map(|[x, y, z]| Point3::new(x, y, z));
+    let formulation = Formulation { drilling, ..Formulation::default() };
+    Prepared::from_corners(&corners, &section(), formulation, &Vector3::new(0.8, 0.6, 0.0)).unwrap()
+}
+
+/// Plane and warped, material axes oblique to the element, some or all of the strains, every drilling.
+#[test]
+fn linear_laws_give_the_linear_element() {
+    let section = section();
+    let diagonal: Strains =
+        std::array::from_fn(|i| if i < 3 { section.d_m[(i, i)] } else { section.d_b[(i - 3, i - 3)] });
+    for (height, drilling) in
+        [(0.0, Drilling::Scaled), (0.002, Drilling::HughesBrezzi), (0.001, Drilling::Seed(1e-3))]
+    {
+        let element = quad(height, drilling);
+        let linear = element.local_stiffness();
+        let d = Vector24::from_fn(|i, _| 1e-3 * (1.0 + i as f64 * 0.618).fract());
+        for replaced in [[true; 6], [false, false, true, true, true, true]] {
+            let cells = element.cellwise(&section, replaced);
+            let tangent: Strains = std::array::from_fn(|i| if replaced[i] { diagonal[i] } else { 0.0 });
+            let stress = |e: Strains| std::array::from_fn(|i| tangent[i] * e[i]);
+            let stresses: Vec<Strains> = cells.strains(&d).map(stress).collect();
+            let k = cells.stiffness(&[tangent; 4]);
+            let (f, exact) = (cells.linear_force(&d) + cells.cell_force(&stresses), linear * d);
+            for i in 0..24 {
+                // Bending and membrane entries differ by many orders: each against its own size.
+                for j in 0..24 {
+                    let size = (linear[(i, i)] * linear[(j, j)]).sqrt();
+                    assert!((k[(i, j)] - linear[(i, j)]).abs() < 1e-13 * size, "{height} {i} {j}");
+                }
+                let size: f64 = (0..24).map(|j| (linear[(i, j)] * d[j]).abs()).sum();
+                assert!((f[i] - exact[i]).abs() < 1e-13 * size, "{height} {i}");
+            }
+        }
+    }
+}
+
+/// Stresses, tangents and `∫ (ψ + D)` of the cells of an element, all in one state before.
+fn answer(
+    law: &SheetLaw,
+    cells: &Cellwise,
+    from: &[[State; 6]],
+    d: &Vector24,
+) -> (Vec<Strains>, Vec<Strains>, f64) {
+    let (mut stresses, mut tangents) = (Vec::new(), Vec::new());
+    let mut potential = 0.5 * d.dot(&cells.linear_force(d));
+    for ((e, area), from) in cells.strains(d).zip(cells.areas()).zip(from) {
+        let of = |i: usize| law.channels[i].as_ref().unwrap().respond(law.mode, &from[i], e[i]);
+        let r: [_; 6] = std::array::from_fn(of);
+        potential += area * r.iter().map(|r| r.energy + r.dissipation).sum::<f64>();
+        stresses.push(r.map(|r| r.stress));
+        tangents.push(r.map(|r| r.tangent));
+    }
+    (stresses, tangents, potential)
+}
+
+/// Force and tangent of a corotational element with friction, after a history, are the derivatives
+/// of its incremental potential. Central differences, step 1e-6 of the element's side and of a radian;
+/// no slider is within that of its level.
+#[test]
+fn force_and_tangent_are_derivatives_of_the_potential() {
+    let mut rng = Pcg64::seed_from_u64(7);
+    let element = quad(1e-3, Drilling::Scaled);
+    let reference = Reference::of(&element.frame);
+    let (law, frame) = (friction(), &element.frame);
+    let rest = [0, 1, 2, 3].map(|i| {
+        let [x, y] = frame.xy[i];
+        Point3::from(frame.rotation.transpose() * Vector3::new(x, y, frame.z[i]))
+    });
+    let cells = element.cellwise(&section(), law.replaced());
+    let moved = |step: &Vector24| {
+        let part = |i: usize| -> Vector3<f64> { step.fixed_rows::<3>(3 * i).into() };
+        let turn = |i: usize| UnitQuaternion::from_scaled_axis(part(2 * i + 1));
+        ([0, 1, 2, 3].map(|i| rest[i] + 0.01 * part(2 * i)), [0, 1, 2, 3].map(turn))
+    };
+    for mode in [Mode::Friction, Mode::Virgin, Mode::Elastic] {
+        let law = SheetLaw { mode, ..law.clone() };
+        // A path of ten steps about a large rotation leaves its traces in the memory.
+        let mut memory = vec![[State::default(); 6]; 4];
+        let mut u = Vector24::zeros();
+        for _ in 0..10 {
+            u += Vector24::from_fn(|_, _| rng.random_range(-0.02..0.02));
+            let (x, r) = moved(&u);
+            let d = Motion::of(&reference, &x, &r).deformation;
+            for (e, states) in cells.strains(&d).zip(&mut memory) {
+                for i in 0..6 {
+                    states[i] = law.channels[i].as_ref().unwrap().respond(mode, &states[i], e[i]).state;
+                }
+            }
+        }
+        u += Vector24::from_fn(|_, _| rng.random_range(-0.02..0.02));
+        // Spins act on the turned nodes, scaled lengths on the places.
+        let spun = |v: &Vector24| {
+            let (mut x, mut r) = moved(&u);
+            for i in 0..4 {
+                let part = |at: usize| -> Vector3<f64> { v.fixed_rows::<3>(at).into() };
+                x[i] += 0.01 * part(6 * i);
+                r[i] = UnitQuaternion::from_scaled_axis(part(6 * i + 3)) * r[i];
+            }
+            let motion = Motion::of(&reference, &x, &r);
+            let (stresses, tangents, potential) = answer(&law, &cells, &memory, &motion.deformation);
+            let local = cells.linear_force(&motion.deformation) + cells.cell_force(&stresses);
+            let (force, exact) =
+                (motion.force(&local), motion.exact_tangent(&cells.stiffness(&tangents), &local));
+            let scale = Vector24::from_fn(|i, _| if i % 6 < 3 { 0.01 } else { 1.0 });
+            (
+                force.component_mul(&scale),
+                exact.map_with_location(|i, j, k| k * scale[i] * scale[j]),
+                potential,
+            )
+        };
+        let (force, tangent, _) = spun(&Vector24::zeros());
+        let h = 1e-6;
+        for i in 0..24 {
+            let mut step = Vector24::zeros();
+            step[i] = h;
+            let (ahead, behind) = (spun(&step), spun(&-step));
+            let slope = (ahead.2 - behind.2) / (2.0 * h);
+            assert!((slope - force[i]).abs() < 1e-6 * force.amax(), "{mode:?} {i}: {slope} {}", force[i]);
+            let column = (ahead.0 - behind.0) / (2.0 * h);
+            let off = (column - tangent.column(i)).amax() / tangent.amax();
+            assert!(off < 1e-6, "{mode:?} {i}: {off}");
+        }
+    }
+}
+
+fn go_on(_: &Step<'_>) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// A horizontal strip clamped at one end under its own weight, in cylindrical bending.
+fn cantilever(length: f64, cells: usize, section: &ShellSection) -> Model {
+    let mesh = rectangle(length, length / cells as f64, cells, 1).unwrap();
+    Model {
+        supports: vec![
+            Support::fix(mesh.set("all").unwrap(), &[Dof::V, Dof::ThetaX, Dof::ThetaZ]),
+            Support::clamped(mesh.set("left").unwrap()),
+        ],
+        loads: vec![Load::Gravity(Vector3::new(0.0, 0.0, -9.80665))],
+        mesh,
+        section: section.clone(),
+        warp: Vector3::x(),
+        formulation: Formulation::default(),
+        bodies: Vec::new(),
+    }
+}
+
+fn run(model: &Model, law: Option<SheetLaw>) -> Solution {
+    let settings = Settings { law, ..Settings::default() };
+    solve(model, &settings, &Options::default(), go_on).unwrap()
+}
+
+#[test]
+fn linear_laws_give_the_solution_of_the_linear_sheet() {
+    let mut section = section();
+    section.d_b[(0, 1)] = 0.0;
+    section.d_b[(1, 0)] = 0.0;
+    let model = cantilever(0.1, 16, &section);
+    let (linear, law) = (run(&model, None), run(&model, Some(SheetLaw::linear(&section).unwrap())));
+    assert_eq!(linear.iterations, law.iterations);
+    let apart = linear.state.position.iter().zip(&law.state.position).map(|(a, b)| (a - b).norm());
+    let apart = apart.fold(0.0, f64::max);
+    // Both solutions stop at a residual of 1e-8 of the load.
+    assert!(apart < 1e-9 * 0.1, "{apart:e}");
+    assert!((linear.energy / law.energy - 1.0).abs() < 1e-9);
+    assert_eq!(law.state.memory.dissipated, 0.0);
+}
+
+/// KES-FB2: a gap of 1 cm, the moving clamp turns and is free to follow.
+fn bending_test(cells: usize, law: SheetLaw, steps: f64) -> (Model, Settings, usize) {
+    let mesh = rectangle(0.01, 0.2, cells, 1).unwrap();
+    let right = mesh.set("right").unwrap().to_vec();
+    let turn = vec![(Dof::V, 0.0), (Dof::ThetaX, 0.0), (Dof::ThetaY, 2.5), (Dof::ThetaZ, 0.0)];
+    let mut section = section();
+    section.d_b = Matrix3::from_diagonal(&section.d_b.diagonal());
+    let model = Model {
+        supports: vec![
+            Support::clamped(mesh.set("left").unwrap()),
+            Support { nodes: vec![right[0]], held: turn },
+        ],
+        loads: Vec::new(),
+        bodies: vec![RigidBody { nodes: right.clone() }],
+        mesh,
+        section,
+        warp: Vector3::x(),
+        formulation: Formulation::default(),
+    };
+    let lead = 6 * right[0] as usize + Dof::ThetaY as usize;
+    let settings = Settings {
+        first_step: 1.0 / steps,
+        largest_step: 1.0 / steps,
+        tolerance: 1e-10,
+        law: Some(law),
+        ..Settings::default()
+    };
+    (model, settings, lead)
+}
+
+/// The bending channel alone; curvatures in 1/m.
+fn bending_only(law: Channel, mode: Mode) -> SheetLaw {
+    SheetLaw::new(mode, [None, None, None, Some(law), None, None])
+}
+
+/// The instrument's cycle 0, 2.5, -2.5, 0 per cm: the moment is that of the law at every curvature,
+/// so the loop has B and 2HB of the law; and what the clamp does is stored or lost. The slip
+/// levels are met by whole steps, so that the trapezoidal rule is exact for the work.
+#[test]
+fn the_bending_loop_is_that_of_the_law_and_its_work_is_stored_or_lost() {
+    let (b, hb, slip) = (1e-5, 3e-4, 12.5);
+    let law = channel(b, &[(hb / slip, slip)]);
+    let (model, settings, lead) = bending_test(10, bending_only(law.clone(), Mode::Friction), 20.0);
+    let (mut state, mut last) = (State::default(), (0.0, 0.0));
+    let (mut work, mut lost, mut steps) = (0.0, 0.0, 0);
+    let mut moments = Vec::new();
+    let settings = Settings { path: vec![1.0, -1.0, 0.0], ..settings };
+    solve(&model, &settings, &Options::default(), |step| {
+        let curvature = step.state.factor * 250.0;
+        let expected = law.trial(&state, curvature);
+        state = expected.state;
+        let moment = step.reaction[lead] / 0.2;
+        assert!((moment - expected.stress).abs() < 1e-8 * (b * 250.0 + hb), "{curvature}: {moment}");
+        work += 0.5 * (moment + last.1) * (curvature - last.0) * 0.2 * 0.01;
+        let kept = step.energy + step.state.memory.dissipated;
+        assert!((work - kept).abs() < 1e-8 * b * 250.0 * 250.0 * 0.002, "{curvature}: {work} {kept}");
+        assert!(step.state.memory.dissipated >= lost);
+        lost = step.state.memory.dissipated;
+        last = (curvature, moment);
+        moments.push(last);
+        steps += 1;
+        ControlFlow::Continue(())
+    })
+    .unwrap();
+    assert_eq!(steps, 80);
+    // B: mean slope between 0.5 and 1.5 per cm; 2HB: width of the loop at 1 per cm.
+    let at = |k: f64, from: usize| moments[from..].iter().find(|(at, _)| (at - k).abs() < 1e-9).unwrap().1;
+    let slope = (at(150.0, 0) - at(50.0, 0)) / 100.0;
+    assert!((slope / b - 1.0).abs() < 1e-8, "{slope}");
+    let width = at(100.0, 0) - at(100.0, 20);
+    assert!((width / (2.0 * hb) - 1.0).abs() < 1e-8, "{width}");
+}
+
+/// The same equilibria whether steps are cut back on the way or not, and whatever the threads.
+#[test]
+fn a_step_that_is_cut_back_leaves_no_trace() {
+    let law = SheetLaw::new(Mode::Friction, {
+        let mut channels = friction().channels;
+        channels[0] = None;
+        channels[1] = None;
+        channels
+    });
+    let model = cantilever(0.12, 16, &section());
+    let hasty = Settings { law: Some(law), iterations: 6, ..Settings::default() };
+    let mut factors = Vec::new();
+    let cut = solve(&model, &hasty, &Options::default(), |step| {
+        factors.push(step.state.factor);
+        ControlFlow::Continue(())
+    })
+    .unwrap();
+    let tries: usize = cut.iterations;
+    assert!(factors.len() > 1 && tries > 6 * factors.len() / 2, "{factors:?}");
+    let options = Options { threads: 2, ..Options::default() };
+    let straight = solve(&model, &Settings { path: factors, ..hasty }, &options, go_on).unwrap();
+    assert!(straight.iterations < tries, "{} {tries}", straight.iterations);
+    assert_eq!(cut.state, straight.state);
+    assert_eq!(cut.reaction, straight.reaction);
+}
+
+/// Angle of the chord below the horizontal (degrees) of a heavy rod whose curvature follows a law:
+/// `dM/ds = w s cos θ`, `dθ/ds = -κ(M)` from the tip at angle `tip`; the midpoint rule with 4,000 steps.
+/// Returns the angle at the clamp as well.
+fn heavy_rod(weight: f64, length: f64, tip: f64, curvature: impl Fn(f64) -> f64) -> (f64, f64) {
+    let (steps, mut theta, mut moment, mut x, mut y) = (4000, tip, 0.0, 0.0, 0.0);
+    let ds = length / f64::from(steps);
+    for i in 0..steps {
+        let s = f64::from(i) * ds;
+        let middle = theta - 0.5 * ds * curvature(moment);
+        let half = moment + 0.5 * ds * weight * (s + 0.25 * ds) * theta.cos();
+        moment += ds * weight * (s + 0.5 * ds) * middle.cos();
+        theta -= ds * curvature(half);
+        x += ds * middle.cos();
+        y += ds * middle.sin();
+    }
+    (y.atan2(x).to_degrees(), theta)
+}
+
+/// Chord angle (degrees) of the strip of the shell.
+fn chord(model: &Model, law: SheetLaw) -> f64 {
+    let solution = run(model, Some(law));
+    let tip = model.mesh.set("right").unwrap()[0] as usize;
+    let p = solution.state.position[tip];
+    (-p.z).atan2(p.x).to_degrees()
+}
+
+/// Cloth with a friction couple HB = μ B/c hangs over a clamp as a rod with the virgin law, and its
+/// bending length is c (1 + 0.423 μ - 0.056 μ²) to 1 %: at this overhang, and 1 % more and less,
+/// the chord is at, above and below 41.5 degrees.
+#[test]
+fn a_cantilever_of_virgin_cloth_has_the_bending_length_of_its_friction() {
+    let section = ShellSection { d_b: Matrix3::from_diagonal(&section().d_b.diagonal()), ..section() };
+    let (b, weight) = (section.d_b[(0, 0)], section.areal_density * 9.80665);
+    let c = (b / weight).cbrt();
+    for mu in [0.0, 0.5, 1.0, 2.0f64] {
+        let (couple, slip) = (mu * b / c, 0.01 / c);
+        let law = channel(b, &[(couple / slip, slip)]);
+        let length = 2.0 * c * (1.0 + 0.423 * mu - 0.056 * mu * mu);
+        let angle = |factor: f64, mode| {
+            chord(&cantilever(factor * length, 40, &section), bending_only(law.clone(), mode))
+        };
+        let (at, under, over) =
+            (angle(1.0, Mode::Virgin), angle(0.99, Mode::Virgin), angle(1.01, Mode::Virgin));
+        println!("mu {mu}: {under:.3} {at:.3} {over:.3}");
+        assert!(under < 41.5 && over > 41.5, "mu {mu}: {under} {at} {over}");
+        // The rod with the same law: the tip angle that leaves none at the clamp.
+        let first = (couple + b * slip, couple / slip + b);
+        let bent = |m: f64| if m < first.0 { m / first.1 } else { (m - couple) / b };
+        let (mut low, mut high) = (0.0, 1.5);
+        for _ in 0..50 {
+            let tip = 0.5 * (low + high);
+            if heavy_rod(weight, length, tip, bent).1 > 0.0 { high = tip } else { low = tip }
+        }
+        let exact = heavy_rod(weight, length, low, bent).0;
+        // Facets of the mesh: 1e-4 of the length with 40 elements.
+        assert!((at - exact).abs() < 0.05, "mu {mu}: {at} {exact}");
+        // In one step there is no way back: friction is the virgin curve.
+        assert!((angle(1.0, Mode::Friction) - at).abs() < 1e-6);
+    }
+}
+
+/// A coupling that is stronger than the least tangents of two laws could release energy.
+#[test]
+fn laws_too_soft_for_the_coupling_are_refused() {
+    let section = section();
+    assert!(friction().checked(&section).is_ok());
+    let mut law = friction();
+    law.channels[0] = Some(channel(100.0, &[(6000.0, 1e-3)]));
+    assert!(matches!(law.checked(&section), Err(SectionError::NotPositiveDefinite { .. })));
+}
