@@ -7,6 +7,7 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 
+use kesf::element::Mass;
 use kesf::section::ShellSection;
 use kesf::solve::{Options, modes};
 use kesf::study::{Case, PreparedCase};

@@ -15,6 +15,7 @@ mod oracles;
 mod settings;
 mod sheet;
 mod specimen;
+mod spread;
 mod statistics;
 mod strip;
 mod tables;
@@ -23,6 +24,7 @@ mod tensile;
 pub use graph::LineFit;
 pub use settings::{CycleChoice, Modulus, Settings};
 pub use sheet::{Branch, FabricSheet, Key, SpecimenResult, Window};
+pub use spread::{MeanBranch, mean_branches};
 pub use strip::{Strip, StripCycle};
 
 use crate::instrument::FabricInput;

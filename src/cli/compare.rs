@@ -72,22 +72,39 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
 }
 
 fn text(compared: &[(&Task, &Tested)]) -> String {
-    let headings = ["test", "fabric", "", "simulated", "measured", "unit", "RMSE", "NRMSE", "R²", "n"];
+    let headings = [
+        "test",
+        "fabric",
+        "",
+        "simulated",
+        "± 95 %",
+        "measured",
+        "± 95 %",
+        "unit",
+        "RMSE",
+        "NRMSE",
+        "R²",
+        "n",
+    ];
     let mut table = Columns::new(headings);
     for (task, t) in compared {
-        let [symbol, simulated, measured, unit] = match &t.stiffness {
+        let band = t.simulated.uncertainty.as_ref().and_then(|u| u.bands).map(|b| b.mean_fabric.half_width);
+        let number = |v: Option<f64>| v.map_or("-".into(), significant);
+        let [symbol, simulated, half, measured, interval, unit] = match &t.stiffness {
             Some((symbol, unit, measured)) => {
-                let measured = measured.as_ref().map_or("-".into(), |e| significant(e.mean));
-                [symbol.to_string(), significant(t.simulated.apparent), measured, unit.to_string()]
+                let mean = number(measured.as_ref().map(|e| e.mean));
+                let interval = number(measured.as_ref().and_then(|e| e.ci95()));
+                let simulated = significant(t.simulated.apparent);
+                [symbol.to_string(), simulated, number(band), mean, interval, unit.to_string()]
             }
-            None => [const { String::new() }; 4],
+            None => [const { String::new() }; 6],
         };
         let figures = t.comparison.as_ref().map_or(["-", "-", "-", "0"].map(String::from), |c| {
             let rmse = format!("{} {}", significant(c.rmse), c.unit);
             [rmse, significant(c.nrmse), significant(c.r2), c.n.to_string()]
         });
         let head = [t.name.clone(), task.fabric_name().unwrap_or_default().into(), symbol];
-        table.row(head.into_iter().chain([simulated, measured, unit]).chain(figures));
+        table.row(head.into_iter().chain([simulated, half, measured, interval, unit]).chain(figures));
     }
     table.text()
 }

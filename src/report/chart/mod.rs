@@ -17,6 +17,7 @@ mod palette;
 mod panel;
 mod parity;
 mod schematic;
+mod spread;
 
 use thiserror::Error;
 

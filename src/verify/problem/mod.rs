@@ -6,6 +6,7 @@ mod element;
 mod patch;
 mod plate;
 mod quad_plate;
+mod rigid;
 mod shell;
 
 use nalgebra::{Matrix2, Matrix3, Point3};
@@ -40,6 +41,8 @@ pub enum Problem {
     Skew(quad_plate::Skew),
     /// Curved shells.
     Shell(shell::Shell),
+    /// Strips with a part that moves as one rigid body.
+    Rigid(rigid::Rigid),
     /// Newmark's method against all modes.
     Newmark(dynamics::NewmarkProblem),
 }
@@ -59,6 +62,7 @@ impl Problem {
             Self::Disc(p) => p.value().map(nowhere),
             Self::Skew(p) => p.value().map(nowhere),
             Self::Shell(p) => p.value().map(nowhere),
+            Self::Rigid(p) => p.value().map(nowhere),
             Self::Newmark(p) => p.value().map(nowhere),
         }
     }
