@@ -119,3 +119,62 @@ fn a_mesh_file_is_used_with_its_unit_and_its_groups() {
     assert!((from_file / generated - 1.0).abs() < 1e-12, "{from_file} {generated}");
     assert!(solve("file = \"part.msh\"", "held").unwrap_err().to_string().contains("unit = \"mm\""));
 }
+
+/// `[[rigid]]` end to end: a clamped strip whose end is a rigid clamp about its middle. Turned through 0.1 rad
+/// and free to follow it is a circle (ν = 0): w = κ L²/2. Masses are chosen by name.
+#[test]
+fn a_rigid_clamp_follows_in_a_case() {
+    let head = r#"
+title = "t"
+[section]
+tensile_warp = "12000 N/m"
+tensile_weft = "12000 N/m"
+poisson = 0
+shear = "6000 N/m"
+bending_warp = "1 N·m"
+bending_weft = "1 N·m"
+bending_coupling = "0 N·m"
+torsion = "0.5 N·m"
+transverse_shear = "1e5 N/m"
+areal_density = "1 kg/m²"
+thickness = "1 mm"
+[sheet]
+shape = "strip"
+width = "1 m"
+height = "0.1 m"
+cells = [8, 2]
+[[supports]]
+set = "left"
+kind = "clamped"
+"#;
+    let clamp = "[[rigid]]\nname = \"clamp\"\nset = \"right\"\nat = [\"1.2 m\", \"5 cm\", \"0 m\"]\n";
+    let turn = "[[loads]]\nkind = \"prescribed\"\nset = \"clamp\"\ndof = \"theta_y\"\nvalue = \"0.1 rad\"\n";
+    let parse = |text: &str| Case::parse(Path::new("inline.toml"), text);
+    let solve = |text: &str| {
+        let case = parse(text).unwrap();
+        let s = section(case.section.as_ref().unwrap()).unwrap();
+        solve_case(&case, s, &Options::default())
+    };
+    let result = solve(&format!("{head}{clamp}{turn}")).unwrap();
+    // The point of reference lies off the sheet and is not part of its largest deflection.
+    assert!((result.w_max / -0.05 - 1.0).abs() < 1e-9, "{}", result.w_max);
+    let reference = result.model.mesh.set("clamp").unwrap()[0] as usize;
+    let moment = result.solution.reaction[6 * reference + 4];
+    assert!((moment / (0.1 * 0.1) - 1.0).abs() < 1e-9, "{moment}");
+    assert!(result.nodal().unwrap().iter().all(|r| r.moment[0].is_finite()));
+    let held = "[[supports]]\nset = \"right\"\nfix = [\"v\"]\n";
+    assert_eq!(solve(&format!("{head}{held}{clamp}{turn}")).unwrap_err().code(), "M010");
+    let twice = clamp.replace("\"clamp\"", "\"left\"");
+    assert!(solve(&format!("{head}{twice}{turn}")).unwrap_err().to_string().contains("choose another"));
+
+    let modal = |keys: &str| format!("{head}{clamp}[analysis]\nkind = \"modal\"\nmodes = 2\n{keys}");
+    let first = |keys: &str| solve(&modal(keys)).unwrap().frequencies[0];
+    assert_eq!(first(""), first("mass = \"lumped\""));
+    assert_eq!(first("lumped = true"), first("mass = \"lumped\""));
+    assert_eq!(first("lumped = false"), first("mass = \"consistent\""));
+    assert!(
+        first("mass = \"averaged\"") > first("") && first("mass = \"averaged\"") < first("lumped = false")
+    );
+    let both = solve(&modal("mass = \"lumped\"\nlumped = true")).unwrap_err();
+    assert!(both.to_string().contains("remove `lumped`"), "{both}");
+}

@@ -16,6 +16,7 @@ mod oracles;
 mod settings;
 mod sheet;
 mod specimen;
+mod spread;
 mod statistics;
 mod strip;
 mod tables;
@@ -25,6 +26,7 @@ pub use friction::{Basis, ClosedForm, CycleFit, FrictionLaw, LoopFit, cycle, ext
 pub use graph::LineFit;
 pub use settings::{CycleChoice, Modulus, Settings};
 pub use sheet::{Branch, FabricSheet, Key, SpecimenResult, Window};
+pub use spread::{MeanBranch, mean_branches};
 pub use strip::{Strip, StripCycle};
 
 use crate::instrument::FabricInput;

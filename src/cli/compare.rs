@@ -104,7 +104,9 @@ fn text(compared: &[(&Task, &Tested)]) -> String {
         "fabric",
         "",
         "simulated",
+        "± 95 %",
         "measured",
+        "± 95 %",
         "unit",
         "edge effect",
         "closed form",
@@ -115,12 +117,16 @@ fn text(compared: &[(&Task, &Tested)]) -> String {
     ];
     let mut table = Columns::new(headings);
     for (task, t) in compared {
-        let [symbol, simulated, measured, unit] = match &t.stiffness {
+        let band = t.simulated.uncertainty.as_ref().and_then(|u| u.bands).map(|b| b.mean_fabric.half_width);
+        let number = |v: Option<f64>| v.map_or("-".into(), significant);
+        let [symbol, simulated, half, measured, interval, unit] = match &t.stiffness {
             Some((symbol, unit, measured)) => {
-                let measured = measured.as_ref().map_or("-".into(), |e| significant(e.mean));
-                [symbol.to_string(), significant(t.simulated.apparent), measured, unit.to_string()]
+                let mean = number(measured.as_ref().map(|e| e.mean));
+                let interval = number(measured.as_ref().and_then(|e| e.ci95()));
+                let simulated = significant(t.simulated.apparent);
+                [symbol.to_string(), simulated, number(band), mean, interval, unit.to_string()]
             }
-            None => [const { String::new() }; 4],
+            None => [const { String::new() }; 6],
         };
         let figures = t.comparison.as_ref().map_or(["-", "-", "-", "0"].map(String::from), |c| {
             let rmse = format!("{} {}", significant(c.rmse), c.unit);
@@ -130,7 +136,8 @@ fn text(compared: &[(&Task, &Tested)]) -> String {
         let closed_form = edge.and_then(|e| e.closed_form).map_or("-".into(), fixed);
         let edges = [edge.map_or("-".into(), |e| fixed(e.ratio)), closed_form];
         let head = [t.name.clone(), task.fabric_name().unwrap_or_default().into(), symbol];
-        table.row(head.into_iter().chain([simulated, measured, unit]).chain(edges).chain(figures));
+        let values = [simulated, half, measured, interval, unit];
+        table.row(head.into_iter().chain(values).chain(edges).chain(figures));
     }
     let notes: Vec<String> = compared.iter().filter_map(|(_, t)| note(t)).collect();
     [table.text(), notes.concat()].concat()

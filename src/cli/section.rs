@@ -11,11 +11,11 @@ use super::diagnostics::Failure;
 use super::inputs::EvaluateArgs;
 use super::output::{Columns, Format, OutputArgs};
 use super::{Exit, Ui};
-use crate::characterise::Modulus;
+use crate::characterise::{FabricSheet, Modulus};
 use crate::constitutive::{
-    Assumptions, BendingCoupling, Constitutive, PoissonRule, Torsion, TransverseShear, Used, section,
+    Assumptions, BendingCoupling, Constitutive, PoissonRule, Torsion, TransverseShear, Used, entries, section,
 };
-use crate::quantity::{ArealDensity, Length, LineForce, significant};
+use crate::quantity::{ArealDensity, Bands, Length, LineForce, significant};
 use crate::report::json::{section_document, text};
 
 /// Compute the membrane, bending and shear stiffness of fabrics, with the assumptions used
@@ -90,12 +90,12 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let format = options.output.format(ui.json)?;
     let assumptions = Assumptions::from(&options.assume);
     let (fabrics, mut failures) = options.evaluate.sheets(&options.inputs, &[assumptions.modulus], ui)?;
-    let mut sections: Vec<(&str, Constitutive)> = Vec::new();
+    let mut sections: Vec<(&FabricSheet, Constitutive)> = Vec::new();
     for fabric in &fabrics {
         match section(&fabric.sheet, &assumptions) {
             Ok(c) => {
                 c.findings.iter().for_each(|f| ui.diagnostics.finding(f));
-                sections.push((&fabric.sheet.name, c));
+                sections.push((&fabric.sheet, c));
             }
             Err(error) => {
                 let failure = Failure::from(error);
@@ -107,10 +107,11 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     if sections.is_empty() {
         return Ok(Exit::of_batch(0, &failures));
     }
-    let entries = || sections.iter().map(|(name, c)| (*name, &c.section, &c.inputs[..], used(&c.used)));
+    let documents =
+        || sections.iter().map(|(sheet, c)| (sheet.name.as_str(), &c.section, &c.inputs[..], used(&c.used)));
     let bytes = match format {
-        Format::Text => sections.iter().map(|(n, c)| page(n, c)).collect::<Vec<_>>().join("\n").into_bytes(),
-        Format::Json => text(&section_document(entries()))?.into_bytes(),
+        Format::Text => sections.iter().map(|(s, c)| page(s, c)).collect::<Vec<_>>().join("\n").into_bytes(),
+        Format::Json => text(&section_document(documents()))?.into_bytes(),
         Format::Csv | Format::Parquet => return Err(options.output.no_such_format(".txt or .json")),
     };
     options.output.emit(&bytes)?;
@@ -122,8 +123,8 @@ pub fn used(used: &[Used]) -> Value {
     used.iter().map(|u| (u.name.to_string(), json!({"value": u.value, "source": u.source}))).collect()
 }
 
-fn page(name: &str, c: &Constitutive) -> String {
-    let mut page = format!("{name}\n");
+fn page(sheet: &FabricSheet, c: &Constitutive) -> String {
+    let mut page = format!("{}\n", sheet.name);
     for (symbol, unit, d) in [("D_m", "N/m", &c.section.d_m), ("D_b", "N·m", &c.section.d_b)] {
         let _ = writeln!(page, "\n{symbol} ({unit}), x = warp, y = weft\n{}", matrix(d));
     }
@@ -133,7 +134,52 @@ fn page(name: &str, c: &Constitutive) -> String {
     for u in &c.used {
         columns.row([u.name, &u.value, &u.source]);
     }
-    page + &columns.text()
+    page += &columns.text();
+    for table in [bands(c), repeats(sheet, c)].into_iter().filter(|t| !t.is_empty()) {
+        page += &format!("\n{}", table.text());
+    }
+    page
+}
+
+/// Every entry with its 95 % bands, or what forbids them.
+fn bands(c: &Constitutive) -> Columns {
+    let mut columns = Columns::new([
+        "entry",
+        "value",
+        "± 95 % of the mean",
+        "± 95 % of one specimen",
+        "no spread known of",
+    ]);
+    for e in entries(&c.section, &c.inputs) {
+        let half = |of: fn(&Bands) -> f64| e.bands.as_ref().map_or("-".into(), |b| significant(of(b)));
+        columns.row([
+            format!("{}[{},{}]", e.matrix, e.row, e.column),
+            significant(e.value),
+            half(|b| b.mean_fabric.half_width),
+            half(|b| b.next_specimen.half_width),
+            e.without_spread.join(", "),
+        ]);
+    }
+    columns
+}
+
+/// The measured inputs with their spread, and whether a repeat stands apart (K010).
+fn repeats(sheet: &FabricSheet, c: &Constitutive) -> Columns {
+    let mut columns = Columns::new(["measured", "mean", "SD", "n", "outlier"]);
+    for input in &c.inputs {
+        let e = &input.estimate;
+        let named = format!("{}: ", input.name);
+        let outlier = sheet.findings.iter().find(|f| f.code == "K010" && f.message.starts_with(&named));
+        let outlier = outlier.and_then(|f| f.message.strip_prefix(&named)?.split(" stands").next());
+        columns.row([
+            input.name.clone(),
+            significant(e.mean),
+            e.sd.map_or("-".into(), significant),
+            e.n.to_string(),
+            outlier.unwrap_or_default().into(),
+        ]);
+    }
+    columns
 }
 
 fn matrix(d: &Matrix3<f64>) -> String {

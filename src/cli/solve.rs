@@ -80,22 +80,39 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
 
 /// Deflections, then probes, searches and checks; with `verbose` every step of a search.
 fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
-    let mut table = Columns::new(["case", "fabric", "w_max (mm)", "w/t_b", "elements", "status"]);
-    let mut probes = Columns::new(["probe", "case", "fabric", "u (mm)", "v (mm)", "w (mm)"]);
+    let mut table =
+        Columns::new(["case", "fabric", "w_max (mm)", "± 95 % (mm)", "w/t_b", "elements", "status"]);
+    let mut probes = Columns::new(["probe", "case", "fabric", "u (mm)", "v (mm)", "w (mm)", "± 95 % (mm)"]);
     for (task, r) in solved {
         let fabric = task.fabric_name().unwrap_or_default().to_string();
         let [w, ratio] = [significant(1e3 * r.w_max), significant(r.w_over_thickness)];
         let elements = r.model.mesh.quads.len().to_string();
-        table.row([r.case.clone(), fabric.clone(), w, ratio, elements, status(r.status).into()]);
+        table.row([
+            r.case.clone(),
+            fabric.clone(),
+            w,
+            half_width(r, "w_max"),
+            ratio,
+            elements,
+            status(r.status).into(),
+        ]);
         for p in &r.probes {
             let u = p.value.u.map(|u| significant(1e3 * u));
-            probes.row([vec![p.name.clone(), r.case.clone(), fabric.clone()], u.to_vec()].concat());
+            let half = half_width(r, &format!("{}.w", p.name));
+            probes
+                .row([vec![p.name.clone(), r.case.clone(), fabric.clone()], u.to_vec(), vec![half]].concat());
         }
     }
     let checks = checks(solved.iter().map(|(_, r)| *r));
     let every = if verbose { steps(solved) } else { None };
     let parts = [Some(table), Some(probes), searches(solved), every, checks];
     parts.into_iter().flatten().filter(|t| !t.is_empty()).map(|t| t.text()).collect::<Vec<_>>().join("\n")
+}
+
+/// Half of the 95 % band of the mean fabric of a displacement (mm); `-` where it has none.
+fn half_width(result: &CaseResult, quantity: &str) -> String {
+    let bands = result.uncertainty.as_ref().and_then(|u| u.of(quantity)?.bands);
+    bands.map_or("-".into(), |b| significant(1e3 * b.mean_fabric.half_width))
 }
 
 /// The checks of cases, if there are any.

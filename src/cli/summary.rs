@@ -136,6 +136,7 @@ impl FabricReport {
         let Some((symbol, unit, measured)) = &t.stiffness else { return };
         let direction = t.simulated.direction.map_or("", Direction::name);
         let simulated = t.simulated.apparent;
+        let band = t.simulated.uncertainty.as_ref().and_then(|u| u.bands).map(|b| b.mean_fabric);
         let mean = measured.as_ref().map(|e| e.mean);
         self.predictions.push(PredictionRow {
             fabric: self.name.clone(),
@@ -145,7 +146,8 @@ impl FabricReport {
             measured: mean,
             unit: (*unit).into(),
             error: mean.and_then(|m| relative_error(simulated, m)),
-            ..PredictionRow::default()
+            simulated_low: band.map(|b| simulated - b.half_width),
+            simulated_high: band.map(|b| simulated + b.half_width),
         });
         if let Some(measured) = measured {
             self.parity.push(ParityPoint {
@@ -154,8 +156,9 @@ impl FabricReport {
                 quantity: quantity(t.simulated.test).into(),
                 unit: (*unit).into(),
                 measured: measured.mean,
-                measured_sd: measured.sd,
+                measured_half_width: measured.ci95(),
                 simulated,
+                simulated_half_width: band.map(|b| b.half_width),
             });
         }
     }

@@ -210,12 +210,13 @@ impl Task<'_> {
         let curves = if spec.test == Test::Compression {
             study::compression(sheet).into_iter().collect()
         } else {
-            let (section, _) = self.section()?;
+            let (section, from) = self.section()?;
+            let inputs = from.map_or_else(Vec::new, |c| c.inputs);
             let prepare = || Ok(PreparedTest::new(self.case, spec, &SolveOptions::default())?);
             let prepared = self.shared.test.get_or_init(prepare).as_ref().map_err(Clone::clone)?;
             [Direction::Warp, Direction::Weft]
                 .into_iter()
-                .map(|d| prepared.simulate(d, &section))
+                .map(|d| prepared.simulate_measured(d, &section, &inputs))
                 .collect::<Result<Vec<_>, _>>()?
         };
         Ok(curves.into_iter().map(|c| self.tested(sheet, c)).collect())
@@ -332,9 +333,13 @@ fn uncertainty(u: &Uncertainty) -> Value {
 /// An entry of `kesf.comparison/1`.
 pub fn comparison(task: &Task, tested: &Tested) -> Value {
     let c = tested.comparison.as_ref();
+    let prediction = tested.simulated.uncertainty.as_ref();
     let stiffness = tested.stiffness.as_ref().map(|(symbol, unit, measured)| {
         json!({
             "symbol": symbol, "unit": unit, "simulated": tested.simulated.apparent,
+            "mean_fabric": prediction.and_then(|p| p.bands).map(|b| b.mean_fabric),
+            "next_specimen": prediction.and_then(|p| p.bands).map(|b| b.next_specimen),
+            "without_spread": prediction.map(|p| &p.without_spread),
             "measured": measured.as_ref().map(|e| e.mean), "sd": measured.as_ref().and_then(|e| e.sd),
         })
     });

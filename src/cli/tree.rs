@@ -11,6 +11,7 @@ use super::task::{Task, TaskArgs, Tested, comparison, solution};
 use crate::characterise::FabricSheet;
 use crate::constitutive::Constitutive;
 use crate::instrument::{Origin, Test};
+use crate::quantity::Curve;
 use crate::report::OutputFolder;
 use crate::report::chart::{self, ChartError, FieldPlot, SimulatedCurve};
 use crate::report::json::{section_document, sheet_document, text};
@@ -143,8 +144,19 @@ fn curves<'a>(tested: impl Iterator<Item = &'a Tested>, test: Test) -> Vec<Simul
             rmse: t.comparison.as_ref().map(|c| c.rmse),
             nrmse: t.comparison.as_ref().map(|c| c.nrmse),
             r2: t.comparison.as_ref().map(|c| c.r2).filter(|r| r.is_finite()),
+            band: band(t),
+            repeats: t.simulated.repeats(),
         })
         .collect()
+}
+
+/// Both edges of the band of a simulated curve, where it has one at every point.
+fn band(t: &Tested) -> Option<[Curve; 2]> {
+    let edge = |sign: f64| {
+        let at = |(x, y): (f64, f64)| Some((x, y + sign * t.simulated.band(x)?.half_width));
+        Some(Curve::from_points(t.curve.points().map(at).collect::<Option<Vec<_>>>()?))
+    };
+    Some([edge(-1.0)?, edge(1.0)?])
 }
 
 /// The mesh and the deflection of a result, as the files want them.

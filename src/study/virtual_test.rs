@@ -4,6 +4,9 @@
 //! of the measurement. In large rotations the clamps move as those of the instrument, and the curve is
 //! what they feel; its stiffness is the slope where the instrument takes it. What a straight line cannot give (hysteresis, crimp interchange) shows as
 //! the difference.
+//!
+//! Where the section comes from repeats, the stiffness has the bands of first-order propagation
+//! ([`Prediction`]); those of a straight line widen from the origin in proportion.
 
 use nalgebra::Vector3;
 
@@ -11,12 +14,14 @@ use super::StudyError;
 use super::build;
 use super::case::{Case, TestFormulation, VirtualTest};
 use super::prepared::stand_in;
+use super::uncertainty::{Prediction, energy_derivative};
 use super::virtual_large::LargeTest;
 use crate::characterise::FabricSheet;
+use crate::constitutive::Input;
 use crate::instrument::{Direction, Parameter, Test};
 use crate::mesh;
 use crate::model::{Dof, Model, Support};
-use crate::quantity::Curve;
+use crate::quantity::{Band, Bands, Curve, Estimate};
 use crate::section::ShellSection;
 use crate::solve::{self, Options, Plan};
 
@@ -40,6 +45,8 @@ pub struct VirtualCurve {
     /// The abscissa at which the specimen was found unstable first: a real one buckles before. In large
     /// rotations only.
     pub unstable_from: Option<f64>,
+    /// How certain `apparent` is; of a linear test of a section with measured inputs only.
+    pub uncertainty: Option<Prediction>,
     law: Law,
 }
 
@@ -61,13 +68,16 @@ enum Law {
     Line(f64),
     /// Points from the origin; odd, straight between and beyond them.
     Points(Curve),
-    /// P = P0 exp((T0 - T) / length).
+    /// P = P0 exp((T0 - T) / length), length = (T0 - Tm) / ln(Pm/P0).
     Exponential {
-        p0: f64,
-        t0: f64,
-        length: f64,
+        t0: Estimate,
+        tm: Estimate,
     },
 }
+
+/// Pressures at which T0 and Tm are read (Pa): 0.5 and 50 gf/cm².
+const P0: f64 = 0.5 * 98.0665;
+const PM: f64 = 50.0 * 98.0665;
 
 impl VirtualCurve {
     /// A straight line through the origin.
@@ -79,6 +89,7 @@ impl VirtualCurve {
             ideal: slope,
             edge: None,
             unstable_from: None,
+            uncertainty: None,
             law: Law::Line(slope),
         }
     }
@@ -88,7 +99,38 @@ impl VirtualCurve {
         match &self.law {
             Law::Line(slope) => slope * x,
             Law::Points(curve) => interpolate(curve, x.abs()).copysign(x),
-            Law::Exponential { p0, t0, length } => *p0 * ((t0 - x) / length).exp(),
+            Law::Exponential { t0, tm } => P0 * ((t0.mean - x) / decay(t0, tm)).exp(),
+        }
+    }
+
+    /// The 95 % band of the mean fabric at an abscissa (SI); `None` where the spread of an input that
+    /// matters is unknown.
+    pub fn band(&self, x: f64) -> Option<Band> {
+        match &self.law {
+            Law::Line(_) => {
+                let band = self.uncertainty.as_ref()?.bands?.mean_fabric;
+                let (standard, half_width) = (band.standard * x.abs(), band.half_width * x.abs());
+                Some(Band { standard, half_width, ..band })
+            }
+            // Large rotations are not linearised.
+            Law::Points(_) => None,
+            Law::Exponential { t0, tm } => {
+                let (length, p, above) = (decay(t0, tm), self.at(x), t0.mean - x);
+                // ∂ln P/∂T0 = 1/length - above/length² ∂length/∂T0; Tm moves the length alone.
+                let by_length = above / (length * length * (PM / P0).ln());
+                let by_t0 = p * (1.0 / length - by_length) * t0.mean;
+                let terms = [(t0, by_t0), (tm, p * by_length * tm.mean)];
+                Bands::propagated(&terms).ok().map(|b| b.mean_fabric)
+            }
+        }
+    }
+
+    /// The fewest repeats behind the inputs that the curve depends on.
+    pub fn repeats(&self) -> Option<usize> {
+        match &self.law {
+            Law::Line(_) => self.uncertainty.as_ref()?.repeats,
+            Law::Points(_) => None,
+            Law::Exponential { t0, tm } => Some(t0.n.min(tm.n)),
         }
     }
 
@@ -183,6 +225,20 @@ impl PreparedTest {
     /// # Errors
     /// See [`StudyError`].
     pub fn simulate(&self, direction: Direction, section: &ShellSection) -> Result<VirtualCurve, StudyError> {
+        self.simulate_measured(direction, section, &[])
+    }
+
+    /// The same for a section that was made of `inputs`: their spread becomes the uncertainty of the
+    /// stiffness.
+    ///
+    /// # Errors
+    /// See [`StudyError`].
+    pub fn simulate_measured(
+        &self,
+        direction: Direction,
+        section: &ShellSection,
+        inputs: &[Input],
+    ) -> Result<VirtualCurve, StudyError> {
         let warp: Vector3<f64> = match direction {
             Direction::Warp => Vector3::x(),
             Direction::Weft => Vector3::y(),
@@ -212,7 +268,15 @@ impl PreparedTest {
         let at = |n: &u32| solution.reaction[6 * *n as usize + self.reading as usize];
         let apparent = self.right.iter().map(at).sum::<f64>() / WIDTH / self.x;
         let edge = Some(self.edge(apparent / ideal, &along, 0.0));
-        Ok(VirtualCurve { ideal, edge, ..VirtualCurve::line(self.test, Some(direction), apparent) })
+        let uncertainty = (!inputs.is_empty())
+            .then(|| self.uncertainty(&model, &solution.displacement, apparent, inputs))
+            .transpose()?;
+        Ok(VirtualCurve {
+            ideal,
+            edge,
+            uncertainty,
+            ..VirtualCurve::line(self.test, Some(direction), apparent)
+        })
     }
 
     /// The ratio beside its closed form, material axes along the specimen.
@@ -232,6 +296,30 @@ impl PreparedTest {
             _ => (Some(1.0), "1: a wide specimen bends to a cylinder"),
         };
         EdgeEffect { ratio, closed_form, formula, pretension }
+    }
+
+    /// The stiffness by the work of the moving clamp, `apparent = 2 U / (width x² gauge)`. The transverse
+    /// force that holds the clamp of a bending test on its arc does no work in sum: the specimen is symmetric
+    /// about its middle, and so moment and rotation do it all.
+    fn uncertainty(
+        &self,
+        model: &Model,
+        u: &[f64],
+        apparent: f64,
+        inputs: &[Input],
+    ) -> Result<Prediction, StudyError> {
+        let [low, high] = model.mesh.bounds();
+        let scale = 2.0 / (WIDTH * self.x * self.x * (high.x - low.x));
+        let groups = Plan::groups(model, &self.options);
+        let derivatives = inputs
+            .iter()
+            .map(|i| Ok(scale * energy_derivative(model, &i.derivative, u, &groups)?))
+            .collect::<Result<_, StudyError>>()?;
+        let (name, unit) = match self.test {
+            Test::Bending => ("rigidity", "N·m"),
+            _ => ("stiffness", "N/m"),
+        };
+        Ok(Prediction::new(name.into(), unit, apparent, derivatives, inputs))
     }
 }
 
@@ -282,20 +370,22 @@ pub fn simulate(
 ///
 /// A closed form with two measured numbers, not a prediction of the shell.
 pub fn compression(sheet: &FabricSheet) -> Option<VirtualCurve> {
-    const P0: f64 = 0.5 * 98.0665;
-    const PM: f64 = 50.0 * 98.0665;
-    let t0 = sheet.get(Parameter::T0, None)?.mean;
-    let tm = sheet.get(Parameter::Tm, None)?.mean;
-    let length = (t0 - tm) / (PM / P0).ln();
-    (length > 0.0).then_some(VirtualCurve {
+    let (t0, tm) = (sheet.get(Parameter::T0, None)?.clone(), sheet.get(Parameter::Tm, None)?.clone());
+    (t0.mean > tm.mean).then_some(VirtualCurve {
         test: Test::Compression,
         direction: None,
         apparent: 0.0,
         ideal: 0.0,
         edge: None,
         unstable_from: None,
-        law: Law::Exponential { p0: P0, t0, length },
+        uncertainty: None,
+        law: Law::Exponential { t0, tm },
     })
+}
+
+/// The change of thickness over which the pressure rises e-fold (m).
+fn decay(t0: &Estimate, tm: &Estimate) -> f64 {
+    (t0.mean - tm.mean) / (PM / P0).ln()
 }
 
 #[cfg(test)]
@@ -404,5 +494,126 @@ mod tests {
     fn without_contraction_tension_is_exact() {
         let t = run("tensile", Direction::Weft, &fabric(0.0, 0.0));
         assert_relative_eq!(t.apparent, 3000.0, max_relative = 1e-8);
+    }
+
+    /// Inputs that each scale one entry of the section: the bands are those of whole solutions, by Monte Carlo
+    /// (2000 draws of each mean, normal) and by differences.
+    #[test]
+    fn bands_agree_with_monte_carlo() {
+        use crate::constitutive::SectionDerivative;
+        use rand::{RngExt, SeedableRng};
+        use statrs::distribution::{ContinuousCDF, Normal};
+        let five = |mean: f64, cv: f64| Estimate { mean, sd: Some(cv * mean), n: 5, values: vec![] };
+        let normal = Normal::standard();
+        for (test, direction) in
+            [("tensile", Direction::Warp), ("shear", Direction::Weft), ("bending", Direction::Warp)]
+        {
+            let section = fabric(0.3, 0.25);
+            let of = |d_m: [f64; 4], d_b: [f64; 3]| {
+                let mut d = SectionDerivative::default();
+                let [e1, e2, e12, g] = d_m;
+                let m = &section.d_m;
+                d.d_m = Matrix3::new(
+                    e1 * m[(0, 0)],
+                    e12 * m[(0, 1)],
+                    0.0,
+                    e12 * m[(1, 0)],
+                    e2 * m[(1, 1)],
+                    0.0,
+                    0.0,
+                    0.0,
+                    g * m[(2, 2)],
+                );
+                d.d_b = Matrix3::from_diagonal(
+                    &[
+                        d_b[0] * section.d_b[(0, 0)],
+                        d_b[1] * section.d_b[(1, 1)],
+                        d_b[2] * section.d_b[(2, 2)],
+                    ]
+                    .into(),
+                );
+                d
+            };
+            let inputs: Vec<Input> = [
+                ("E warp", five(6000.0, 0.05), of([1.0, 0.0, 0.5, 0.0], [0.0; 3])),
+                ("E weft", five(3000.0, 0.06), of([0.0, 1.0, 0.5, 0.0], [0.0; 3])),
+                ("G", five(60.0, 0.08), of([0.0, 0.0, 0.0, 1.0], [0.0; 3])),
+                ("B warp", five(1e-5, 0.07), of([0.0; 4], [1.0, 0.0, 0.0])),
+                ("B weft", five(6e-6, 0.07), of([0.0; 4], [0.0, 1.0, 0.0])),
+            ]
+            .map(|(name, estimate, derivative)| Input { name: name.into(), estimate, derivative })
+            .to_vec();
+            let case = Case::parse(
+                Path::new("t.toml"),
+                &format!(
+                    "title = \"t\"\nfabric = \"*\"\n[virtual_test]\ntest = \"{test}\"\ncells = [4, 6]\n"
+                ),
+            )
+            .unwrap();
+            let spec = case.virtual_test.as_ref().unwrap();
+            let prepared = PreparedTest::new(&case, spec, &Options::default()).unwrap();
+            let curve = prepared.simulate_measured(direction, &section, &inputs).unwrap();
+            let prediction = curve.uncertainty.as_ref().unwrap();
+            let moved = |steps: &[f64]| {
+                let mut section = section.clone();
+                for (input, step) in inputs.iter().zip(steps) {
+                    section = input.derivative.step(&section, *step);
+                }
+                prepared.simulate(direction, &section).unwrap().apparent
+            };
+            for (k, derivative) in prediction.derivatives.iter().enumerate() {
+                let at = |by: f64| moved(&(0..5).map(|i| if i == k { by } else { 0.0 }).collect::<Vec<_>>());
+                let difference = (at(1e-3) - at(-1e-3)) / 2e-3;
+                assert!(
+                    (derivative - difference).abs() < 1e-5 * curve.apparent,
+                    "{test}: input {k}: {derivative} {difference}"
+                );
+            }
+            let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(7);
+            let draws: Vec<f64> = (0..2000)
+                .map(|_| {
+                    let steps: Vec<f64> = inputs
+                        .iter()
+                        .map(|i| {
+                            let z = normal.inverse_cdf(random.random_range(1e-12..1.0));
+                            z * i.estimate.cv().unwrap() / 5f64.sqrt()
+                        })
+                        .collect();
+                    moved(&steps)
+                })
+                .collect();
+            let found = Estimate::of(&draws).unwrap();
+            let bands = prediction.bands.unwrap();
+            // The SD of 2000 draws is itself 1.6 % uncertain: three times that.
+            assert_relative_eq!(bands.mean_fabric.standard, found.sd.unwrap(), max_relative = 0.05);
+            assert_relative_eq!(found.mean, curve.apparent, max_relative = 2e-3);
+            let x = 0.01;
+            assert_relative_eq!(curve.band(x).unwrap().half_width, bands.mean_fabric.half_width * x);
+            assert_eq!(curve.repeats(), Some(5));
+        }
+    }
+
+    /// P = P0 exp((T0 - T)/l): by differences of T0 and Tm, which are independent.
+    #[test]
+    fn the_band_of_compression_is_that_of_its_two_thicknesses() {
+        use crate::characterise::Key;
+        let sheet = |t0: f64, tm: f64| {
+            let mut sheet = FabricSheet::default();
+            for (parameter, mean, sd) in [(Parameter::T0, t0, 1e-5), (Parameter::Tm, tm, 4e-6)] {
+                let estimate = Estimate { mean, sd: Some(sd), n: 4, values: vec![] };
+                sheet.values.insert(Key { parameter, direction: None }, estimate);
+            }
+            sheet
+        };
+        let (t0, tm, at) = (6e-4, 4e-4, 4.5e-4);
+        let p = |t0: f64, tm: f64| compression(&sheet(t0, tm)).unwrap().at(at);
+        let step = 1e-9;
+        let by = [
+            (p(t0 + step, tm) - p(t0 - step, tm)) / (2.0 * step),
+            (p(t0, tm + step) - p(t0, tm - step)) / (2.0 * step),
+        ];
+        let expected = ((by[0] * 1e-5).powi(2) + (by[1] * 4e-6).powi(2)).sqrt() / 2.0;
+        let band = compression(&sheet(t0, tm)).unwrap().band(at).unwrap();
+        assert_relative_eq!(band.standard, expected, max_relative = 1e-5);
     }
 }

@@ -1,6 +1,6 @@
 //! The four charts of a fabric: tensile, shear, bending, compression.
 
-use crate::characterise::FabricSheet;
+use crate::characterise::{FabricSheet, mean_branches};
 use crate::instrument::{Direction, Origin, Parameter, Test};
 use crate::quantity::{Curve, Estimate};
 use crate::report::number::{fixed, plain_exponent, power_of_ten, significant, unit_text, with_spread};
@@ -12,6 +12,7 @@ use super::loops::{self, TestAxes, Trace};
 use super::marks::{Marks, has_readings, reading_stroke};
 use super::palette::{self, darker, lighter};
 use super::panel::{self, Row};
+use super::spread::Spread;
 use super::{ChartError, Head, schematic};
 
 /// A simulated curve to be drawn over the measured ones, with its distance from them.
@@ -29,6 +30,10 @@ pub struct SimulatedCurve {
     pub nrmse: Option<f64>,
     /// Coefficient of determination (1).
     pub r2: Option<f64>,
+    /// Ends of the 95 % band of the mean fabric, in SI.
+    pub band: Option<[Curve; 2]>,
+    /// The fewest repeats behind the band.
+    pub repeats: Option<usize>,
 }
 
 impl From<&Comparison> for SimulatedCurve {
@@ -46,6 +51,8 @@ impl From<&Comparison> for SimulatedCurve {
             rmse: finite(comparison.rmse),
             nrmse: finite(comparison.nrmse),
             r2: finite(comparison.r2),
+            band: None,
+            repeats: None,
         }
     }
 }
@@ -97,7 +104,8 @@ fn draw(sheet: &FabricSheet, test: Test, simulated: &[SimulatedCurve]) -> Result
         });
     }
     let overlay: Vec<Vec<Point>> = simulated.iter().map(|s| axes.convert(&s.curve)).collect();
-    let frame = frame(test, &traces, &overlay);
+    let spread = Spread::of(mean_branches(sheet, test), simulated, &axes);
+    let frame = frame(test, &traces, &overlay, &spread);
 
     let mut canvas = Canvas::new()?;
     let name = if sheet.info.title.is_empty() { &sheet.name } else { &sheet.info.title };
@@ -111,22 +119,27 @@ fn draw(sheet: &FabricSheet, test: Test, simulated: &[SimulatedCurve]) -> Result
     .draw(&mut canvas)?;
     let marks = Marks { sheet, test, axes: &axes, frame: &frame, overlay: &overlay, recorded };
     marks.areas(&mut canvas, &traces)?;
+    spread.draw_measured(&mut canvas, &frame)?;
     frame.draw(&mut canvas, &axes.x, &axes.y, true)?;
     draw_traces(&mut canvas, &frame, &traces, !simulated.is_empty())?;
     for (curve, line) in simulated.iter().zip(&overlay) {
         let points: Vec<Point> = line.iter().map(|p| frame.at(p.0, p.1)).collect();
         canvas.line(&points, simulated_stroke(curve.direction))?;
     }
+    spread.draw_simulated(&mut canvas, &frame)?;
     marks.readings(&mut canvas, &traces)?;
-    let rows = rows(sheet, test, &axes, &traces, simulated, recorded);
+    let mut rows = legend(sheet, &traces, simulated, &spread, recorded);
+    rows.push(Row::Gap);
+    rows.extend(value_rows(sheet, test));
+    rows.extend(distance_rows(&axes, simulated));
     panel::draw(&mut canvas, &rows, [1405.0, WIDTH as f64 - 40.0], [frame.top - 20.0, HEIGHT as f64 - 40.0])?;
     canvas.png(&format!("{name}{kind}"))
 }
 
-fn frame(test: Test, traces: &[Trace], overlay: &[Vec<Point>]) -> Frame {
+fn frame(test: Test, traces: &[Trace], overlay: &[Vec<Point>], spread: &Spread) -> Frame {
     let points = || {
         let measured = traces.iter().flat_map(|t| t.parts.iter().flat_map(|p| p.1.iter()));
-        measured.chain(overlay.iter().flatten())
+        measured.chain(overlay.iter().flatten()).chain(spread.points())
     };
     // The axes of one-sided tests begin at zero load, so that areas are seen whole.
     let zero = matches!(test, Test::Tensile | Test::Compression).then_some(0.0);
@@ -194,17 +207,9 @@ fn draw_traces(
     Ok(())
 }
 
-fn rows(
-    sheet: &FabricSheet,
-    test: Test,
-    axes: &TestAxes,
-    traces: &[Trace],
-    simulated: &[SimulatedCurve],
-    recorded: bool,
-) -> Vec<Row> {
-    let mut rows = legend(sheet, traces, simulated, recorded);
-    rows.push(Row::Gap);
-    rows.extend(value_rows(sheet, test));
+/// How far the simulated curves are from the measured ones.
+fn distance_rows(axes: &TestAxes, simulated: &[SimulatedCurve]) -> Vec<Row> {
+    let mut rows = Vec::new();
     for curve in simulated.iter().filter(|c| c.rmse.or(c.nrmse).or(c.r2).is_some()) {
         rows.push(Row::Gap);
         let direction = curve.direction.map_or(String::new(), |d| format!(" {d}"));
@@ -223,7 +228,13 @@ fn rows(
     rows
 }
 
-fn legend(sheet: &FabricSheet, traces: &[Trace], simulated: &[SimulatedCurve], recorded: bool) -> Vec<Row> {
+fn legend(
+    sheet: &FabricSheet,
+    traces: &[Trace],
+    simulated: &[SimulatedCurve],
+    spread: &Spread,
+    recorded: bool,
+) -> Vec<Row> {
     let mut rows = Vec::new();
     for trace in traces.iter().filter(|t| t.emphasised) {
         let who = trace.direction.map_or("fabric".to_string(), |d| d.to_string());
@@ -237,6 +248,7 @@ fn legend(sheet: &FabricSheet, traces: &[Trace], simulated: &[SimulatedCurve], r
         let direction = curve.direction.map_or(String::new(), |d| format!("{d}, "));
         rows.push(Row::Sample(simulated_stroke(curve.direction), format!("{direction}{}", curve.label)));
     }
+    rows.extend(spread.rows(simulated));
     if let Some(trace) = traces.iter().find(|t| has_readings(t)) {
         rows.push(Row::Sample(reading_stroke(trace), "fitted or read here".into()));
     }

@@ -19,6 +19,7 @@ mod panel;
 mod parity;
 mod profile;
 mod schematic;
+mod spread;
 
 use thiserror::Error;
 

@@ -21,10 +21,12 @@ pub struct ParityPoint {
     pub unit: String,
     /// Measured value.
     pub measured: f64,
-    /// Standard deviation of the measured value, for the error bar.
-    pub measured_sd: Option<f64>,
+    /// Half of the 95 % interval of the mean of the repeats, for the bar across.
+    pub measured_half_width: Option<f64>,
     /// Simulated value.
     pub simulated: f64,
+    /// Half of the 95 % band of the mean fabric, for the upright bar.
+    pub simulated_half_width: Option<f64>,
 }
 
 /// How far simulated values are from measured ones.
@@ -89,9 +91,10 @@ pub fn parity(points: &[ParityPoint], title: &str, subtitle: &str) -> Result<Vec
     if groups.len() > 1 || groups.first().is_some_and(|g| !g.is_empty()) {
         rows.extend(groups.iter().enumerate().map(|(i, g)| Row::Marker(i, (*g).to_string())));
     }
-    if usable.iter().any(|p| p.measured_sd.is_some()) {
+    if usable.iter().any(|p| p.measured_half_width.or(p.simulated_half_width).is_some()) {
         rows.push(Row::Gap);
-        rows.push(Row::Remark("Bars: ± one standard deviation of the measured value.".into(), GREY));
+        let text = "Bars: 95 % interval of the mean of the repeats, measured across, simulated upright.";
+        rows.push(Row::Remark(text.into(), GREY));
     }
     panel::draw(&mut canvas, &rows, [1420.0, WIDTH as f64 - 40.0], [200.0, 1300.0])?;
     canvas.png(title)
@@ -159,10 +162,15 @@ fn draw_panel(
     let places: Vec<Point> =
         points.iter().map(|p| frame.at(p.measured / factor, p.simulated / factor)).collect();
     for (point, at) in points.iter().zip(&places) {
-        if let Some(sd) = point.measured_sd {
-            let low = ((point.measured - sd) / factor).max(range.from);
-            let high = ((point.measured + sd) / factor).min(range.to);
-            let bar = [(frame.at(low, range.from).0, at.1), (frame.at(high, range.from).0, at.1)];
+        let ends = |value: f64, half: f64| {
+            [(value - half) / factor, (value + half) / factor].map(|v| v.clamp(range.from, range.to))
+        };
+        if let Some(half) = point.measured_half_width {
+            let bar = ends(point.measured, half).map(|v| (frame.at(v, range.from).0, at.1));
+            canvas.line(&bar, Stroke::solid(INK, 2.2))?;
+        }
+        if let Some(half) = point.simulated_half_width {
+            let bar = ends(point.simulated, half).map(|v| (at.0, frame.at(range.from, v).1));
             canvas.line(&bar, Stroke::solid(INK, 2.2))?;
         }
     }
@@ -182,8 +190,10 @@ fn summary(a: Agreement, factor: f64, unit: &str) -> [String; 2] {
 
 fn range(points: &[&ParityPoint], factor: f64) -> Range {
     let values = points.iter().flat_map(|p| {
-        let sd = p.measured_sd.unwrap_or(0.0);
-        [p.measured - sd, p.measured + sd, p.simulated].map(|v| v / factor)
+        let across = p.measured_half_width.unwrap_or(0.0);
+        let upright = p.simulated_half_width.unwrap_or(0.0);
+        [p.measured - across, p.measured + across, p.simulated - upright, p.simulated + upright]
+            .map(|v| v / factor)
     });
     let smallest = points.iter().map(|p| p.measured.min(p.simulated) / factor).fold(f64::INFINITY, f64::min);
     let largest = values.clone().fold(f64::NEG_INFINITY, f64::max);

@@ -230,6 +230,8 @@ fn simulated(direction: Option<Direction>, points: impl IntoIterator<Item = (f64
         rmse: Some(1.3e-5),
         nrmse: Some(0.021),
         r2: Some(0.9942),
+        band: None,
+        repeats: None,
     }
 }
 
@@ -414,8 +416,9 @@ fn parity_of_one_and_of_four_quantities() {
         quantity: quantity.into(),
         unit: unit.into(),
         measured: scale * (1.0 + 0.9 * i as f64),
-        measured_sd: Some(0.06 * scale * (1.0 + 0.9 * i as f64)),
+        measured_half_width: Some(0.06 * scale * (1.0 + 0.9 * i as f64)),
         simulated: scale * (1.0 + 0.9 * i as f64) * (1.0 + 0.17 * (i as f64 * 2.1).sin()),
+        simulated_half_width: Some(0.05 * scale * (1.0 + 0.9 * i as f64)),
     };
     let one: Vec<ParityPoint> = (0..10).map(|i| point(i, "Bending rigidity B", "N·m", 1.1e-6)).collect();
     drawn("parity-one.png", || parity(&one, "Simulated against measured", "ten fabrics"));
@@ -423,7 +426,8 @@ fn parity_of_one_and_of_four_quantities() {
     four.extend((0..10).map(|i| ParityPoint {
         simulated: 0.4 * 8f64.powf(0.45 * i as f64),
         measured: 0.45 * 8f64.powf(0.44 * i as f64),
-        measured_sd: None,
+        measured_half_width: None,
+        simulated_half_width: None,
         ..point(i, "Shear stiffness G", "gf/(cm·°)", 0.3)
     }));
     four.extend((0..4).map(|i| point(i, "Drape coefficient", "%", 22.0)));

@@ -7,6 +7,7 @@ mod large_shell;
 mod patch;
 mod plate;
 mod quad_plate;
+mod rigid;
 mod shell;
 mod strip;
 
@@ -50,6 +51,8 @@ pub enum Problem {
     BendingTest(strip::BendingTest),
     /// A rigid strip that swings.
     Pendulum(strip::Pendulum),
+    /// Strips with a part that moves as one rigid body.
+    Rigid(rigid::Rigid),
     /// Newmark's method against all modes.
     Newmark(dynamics::NewmarkProblem),
 }
@@ -73,6 +76,7 @@ impl Problem {
             Self::Strip(p) => p.value().map(nowhere),
             Self::BendingTest(p) => p.value().map(nowhere),
             Self::Pendulum(p) => p.value().map(nowhere),
+            Self::Rigid(p) => p.value().map(nowhere),
             Self::Newmark(p) => p.value().map(nowhere),
         }
     }

@@ -81,6 +81,8 @@ enum Measure {
     MomentY,
     /// `M_x / (q a²)` on the edge x = 0, from its reactions.
     EdgeMoment,
+    /// `Q_x / (q a)` on the clamped edge x = 0, from its reactions.
+    EdgeShear,
     /// `ω_k a² √(ρ/D22)` of this mode, from 1.
     Frequency(usize),
 }
@@ -127,9 +129,13 @@ impl PlateProblem {
             Measure::MomentY => fields::nodal(model, &solution.displacement)?[node].moment[1],
             Measure::EdgeMoment => {
                 let edges = model.mesh.set_edges("left")?;
-                let moments = fields::edge_moments(&model.mesh, &solution.reaction, &edges);
-                let ends = edges.iter().zip(&moments).flat_map(|(e, m)| e.iter().zip(m));
-                ends.filter(|(n, _)| **n as usize == node).map(|(_, m)| *m).next().unwrap_or(f64::NAN)
+                at_end(&edges, &fields::edge_moments(&model.mesh, &solution.reaction, &edges), node)
+            }
+            Measure::EdgeShear => {
+                let edges = model.mesh.set_edges("left")?;
+                let forces = fields::edge_forces(&model.mesh, &solution.reaction, &edges);
+                let along_z: Vec<[f64; 2]> = forces.iter().map(|ends| ends.map(|f| -f.z)).collect();
+                at_end(&edges, &along_z, node)
             }
             _ => solution.displacement[6 * node + 2],
         })
@@ -141,6 +147,7 @@ impl PlateProblem {
         match self.measure {
             Measure::Deflection => d22 / self.a.powi(4),
             Measure::MomentX | Measure::MomentY | Measure::EdgeMoment => self.a.powi(-2),
+            Measure::EdgeShear => self.a.recip(),
             Measure::Frequency(_) => self.a.powi(2) / d22.sqrt(),
         }
     }
@@ -153,7 +160,7 @@ impl PlateProblem {
             Measure::Deflection => Some(s.deflection),
             Measure::MomentX | Measure::EdgeMoment => Some(s.mx),
             Measure::MomentY => Some(s.my),
-            Measure::Frequency(_) => None,
+            Measure::EdgeShear | Measure::Frequency(_) => None,
         };
         let value = match (function, &self.edges.0) {
             (Function::Navier, b"SSSS") => pick(plate.navier(x, y, 1.0)),
@@ -189,6 +196,12 @@ impl PlateProblem {
         };
         all.get(k - 1).copied()
     }
+}
+
+/// The value at a node among those at the ends of edges.
+fn at_end(edges: &[[u32; 2]], values: &[[f64; 2]], node: usize) -> f64 {
+    let mut ends = edges.iter().zip(values).flat_map(|(e, v)| e.iter().zip(v));
+    ends.find(|(n, _)| **n as usize == node).map_or(f64::NAN, |(_, v)| *v)
 }
 
 /// Slope of the error of a plate in a log-log plot, from `n` to `2 n` elements.
