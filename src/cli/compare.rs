@@ -12,6 +12,7 @@ use super::output::Columns;
 use super::task::{Task, TaskArgs, Tested, comparison};
 use super::tree::Tree;
 use super::{Exit, Ui};
+use crate::instrument::Test;
 use crate::quantity::significant;
 use crate::study::bending::BendingResult;
 
@@ -151,16 +152,18 @@ fn fixed(ratio: f64) -> String {
 /// What a tension across the specimen adds, and where the specimen buckles.
 fn note(tested: &Tested) -> Option<String> {
     let (simulated, name) = (&tested.simulated, &tested.name);
-    let pretension = simulated.edge.filter(|e| e.pretension > 0.0).map(|e| {
-        let without = significant(simulated.apparent - e.pretension);
-        let with = significant(simulated.apparent);
-        format!(
-            "{name}: {with} N/m with the tension of {} N/m across it, {without} without\n",
-            significant(e.pretension)
-        )
+    let tension = simulated.edge.and_then(|e| e.tension).map(|t| {
+        let [value, adds] = [t.value, t.adds].map(significant);
+        let without = significant(simulated.apparent - t.adds);
+        format!("{name}: {without} N/m, and {adds} N/m by the tension of {value} N/m across it\n")
     });
-    let buckles =
-        simulated.unstable_from.map(|x| format!("{name}: the specimen buckles before {}\n", significant(x)));
-    let notes: String = pretension.into_iter().chain(buckles).collect();
+    let unit = match simulated.test {
+        Test::Tensile => "strain",
+        Test::Shear => "rad",
+        _ => "1/m",
+    };
+    let buckles = simulated.unstable_from;
+    let buckles = buckles.map(|x| format!("{name}: the specimen buckles before {} {unit}\n", significant(x)));
+    let notes: String = tension.into_iter().chain(buckles).collect();
     (!notes.is_empty()).then_some(notes)
 }

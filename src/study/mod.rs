@@ -28,7 +28,7 @@ pub use prepared::PreparedCase;
 pub use rigid::{Place as RigidPlace, RigidTable};
 pub use run::{CaseResult, CheckResult, Probe, Status, solve_case};
 pub use uncertainty::{Prediction, Uncertainty};
-pub use virtual_test::{EdgeEffect, PreparedTest, VirtualCurve, compression, simulate};
+pub use virtual_test::{EdgeEffect, PreparedTest, Tension, VirtualCurve, compression, simulate};
 
 use crate::finding::Place;
 use crate::mesh::MeshError;

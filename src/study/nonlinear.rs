@@ -63,11 +63,8 @@ impl LoadPath {
     }
 }
 
-/// Settings and method of a case.
-///
-/// # Errors
-/// S003 for keys that the method does not have, and for values out of range.
-pub(super) fn way(case: &Case, table: &NonlinearTable) -> Result<(Settings, Method), StudyError> {
+/// Refuses keys that the method does not have, and values out of range.
+fn checked(case: &Case, table: &NonlinearTable) -> Result<(), StudyError> {
     let method = table.method;
     let only = |given: bool, key: &str, of: &[MethodChoice]| {
         let names: Vec<&str> = of.iter().map(|m| name(*m)).collect();
@@ -85,6 +82,11 @@ pub(super) fn way(case: &Case, table: &NonlinearTable) -> Result<(Settings, Meth
     only(table.smallest_step.is_some(), "smallest_step", &[Newton])?;
     only(table.steps.is_some(), "steps", &[Arc, Relax])?;
     only(table.perturbation.is_some() || table.seed.is_some(), "perturbation", &[Newton, Relax])?;
+    if method == Newton && table.seed.is_some() && table.perturbation.is_none() {
+        return Err(
+            case.inconsistent("[analysis] seed needs a perturbation, such as perturbation = 1e-3".into())
+        );
+    }
     let fractions = [
         ("tolerance", table.tolerance),
         ("first_step", table.first_step),
@@ -102,6 +104,16 @@ pub(super) fn way(case: &Case, table: &NonlinearTable) -> Result<(Settings, Meth
     if table.iterations == Some(0) || table.steps == Some(0) {
         return Err(case.inconsistent("[analysis] iterations and steps must be at least 1".into()));
     }
+    Ok(())
+}
+
+/// Settings and method of a case.
+///
+/// # Errors
+/// S003 for keys that the method does not have, and for values out of range.
+pub(super) fn way(case: &Case, table: &NonlinearTable) -> Result<(Settings, Method), StudyError> {
+    use MethodChoice::{ArcLength as Arc, Flow as Relax, Newton};
+    checked(case, table)?;
     let default = Settings::default();
     let largest_step = table.largest_step.unwrap_or(default.largest_step);
     let settings = Settings {
@@ -113,7 +125,7 @@ pub(super) fn way(case: &Case, table: &NonlinearTable) -> Result<(Settings, Meth
         ..default
     };
     let seed = table.seed.unwrap_or(1);
-    let method = match method {
+    let method = match table.method {
         Newton => Method::Newton(table.perturbation.map(|size| Perturbation { size, seed })),
         Arc => {
             let default = ArcLength::default();
@@ -213,32 +225,42 @@ pub(super) fn equilibrium(
     };
     let found =
         nonlinear::search(model, &prepared.plan, &settings, &method, options, |step| record.see(step));
-    let mut findings = Vec::new();
-    let mut note = |code, message: String| {
-        findings.push(Finding::new(code, message).at(Place::file(&case.path)));
-    };
-    match found {
-        Ok(solution) => {
-            record.path.stability = Some(solution.stability);
-            let negative = solution.stability.negative_pivots;
-            if negative > 0 {
-                note("S111", unstable(negative));
-            }
-            if solution.state.factor != 1.0 {
-                note("S112", unfinished(solution.state.factor, record.path.steps.len()));
-            }
-        }
-        Err(e @ NonlinearError::NotConverged { .. }) => {
-            record.path.converged = false;
-            let text = e.to_string();
-            let text = text.strip_prefix("N007 ").unwrap_or(&text);
-            note("N007", format!("{text}; {}; the results are the last state that was reached", cure(table)));
-        }
-        Err(other) => return Err(other.into()),
-    }
+    let findings = conclude(found, table, &mut record.path)?;
+    let findings = findings.into_iter().map(|f| f.at(Place::file(&case.path))).collect();
     let mut solution = record.solution;
     solution.dofs = model.constraints().iter().filter(|c| c.is_none()).count();
     Ok(Outcome { path: Some(record.path), state: Some(record.state), findings, ..Outcome::of(solution) })
+}
+
+/// What the end of a search means: stability, and what a reader must know.
+fn conclude(
+    found: Result<nonlinear::Solution, NonlinearError>,
+    table: &NonlinearTable,
+    path: &mut LoadPath,
+) -> Result<Vec<Finding>, StudyError> {
+    let mut findings = Vec::new();
+    match found {
+        Ok(solution) => {
+            path.stability = Some(solution.stability);
+            let negative = solution.stability.negative_pivots;
+            if negative > 0 {
+                findings.push(Finding::new("S111", unstable(negative)));
+            }
+            if solution.state.factor != 1.0 {
+                findings.push(Finding::new("S112", unfinished(solution.state.factor, path.steps.len())));
+            }
+        }
+        Err(e @ NonlinearError::NotConverged { .. }) => {
+            path.converged = false;
+            let text = e.to_string();
+            let text = text.strip_prefix("N007 ").unwrap_or(&text);
+            let cure = cure(table);
+            let message = format!("{text}; {cure}; the results are the last state that was reached");
+            findings.push(Finding::new("N007", message));
+        }
+        Err(other) => return Err(other.into()),
+    }
+    Ok(findings)
 }
 
 fn unstable(negative_pivots: usize) -> String {

@@ -1,4 +1,9 @@
 //! Tests of an instrument in large rotations: what the clamps of a KES machine do to a sheet.
+//!
+//! A sheared specimen is drawn tight by a tension W, which resists the shear with W tan φ as the yarns turn by
+//! φ. The frame of a corotational element of sides a (along W) and b turns by `c φ`, `c = a²/(a² + b²)`, and sees the
+//! part `1 - (1 - c)²` of that: 0.75 with squares, 0.996 with a = 4 b. So elements are long along the tension, and
+//! what the tension adds is found by a second run without it and told beside W.
 
 use std::ops::ControlFlow;
 
@@ -22,8 +27,12 @@ const CURVATURE: f64 = 250.0;
 const PRETENSION: f64 = 9.80665;
 
 /// Strains, and angles in degrees, at which force is read; the slope of G is taken from 0.5 to 2.5 degrees.
-const STRAINS: [f64; 3] = [0.01, 0.03, 0.05];
+const STRAINS: [f64; 4] = [0.001, 0.01, 0.03, 0.05];
 const ANGLES: [f64; 5] = [0.5, 2.5, 4.0, 6.0, 8.0];
+
+/// Elements along and across: see the head of this file for a shear test.
+const CELLS: [usize; 2] = [10, 20];
+const SHEAR_CELLS: [usize; 2] = [8, 128];
 
 /// Steps of a bending test up to its largest curvature.
 const BENDING_STEPS: usize = 10;
@@ -48,6 +57,8 @@ pub(super) struct LargeTest {
 pub(super) struct Reading {
     /// From (0, 0).
     pub curve: Curve,
+    /// The same without the tension across; of a shear test only.
+    pub slack: Option<Curve>,
     /// The abscissa from which on the flat or evenly bent specimen is unstable: a real one buckles.
     pub unstable_from: Option<f64>,
 }
@@ -60,7 +71,9 @@ impl LargeTest {
         section: ShellSection,
         options: &Options,
     ) -> Result<Self, StudyError> {
-        let mesh = mesh::rectangle(gauge, width, spec.cells[0], spec.cells[1])?;
+        let [along, across] =
+            spec.cells.unwrap_or(if spec.test == Test::Shear { SHEAR_CELLS } else { CELLS });
+        let mesh = mesh::rectangle(gauge, width, along, across)?;
         let clamp = mesh.set("right")?.to_vec();
         let model = Model {
             supports: vec![Support::clamped(mesh.set("left")?)],
@@ -80,9 +93,9 @@ impl LargeTest {
         Ok(Self { test: spec.test, gauge, width, clamp, curvature, pretension, settings, plan, model })
     }
 
-    /// Tension per width while the specimen is sheared (N/m); 0 of other tests.
+    /// Tension per width while the specimen is sheared (N/m).
     pub fn pretension(&self) -> f64 {
-        if self.test == Test::Shear { self.pretension } else { 0.0 }
+        self.pretension
     }
 
     /// Drives the clamp. Both clamps stay rigid; what the instrument does not hold is free.
@@ -93,7 +106,8 @@ impl LargeTest {
         options: &Options,
     ) -> Result<Reading, StudyError> {
         let model = Model { section: section.clone(), warp, ..self.model.clone() };
-        let mut reading = Reading { curve: Curve::from_points([(0.0, 0.0)]), unstable_from: None };
+        let mut reading =
+            Reading { curve: Curve::from_points([(0.0, 0.0)]), slack: None, unstable_from: None };
         match self.test {
             Test::Bending => {
                 let turn = (Dof::ThetaY, self.curvature * self.gauge);
@@ -108,17 +122,32 @@ impl LargeTest {
                 }
             }
             _ => {
-                let force = Vector3::x() * (self.pretension * self.width);
-                let load = Load::Point { nodes: vec![self.clamp[0]], force, moment: Vector3::zeros() };
-                let model = Model { loads: vec![load], ..model };
-                for x in ANGLES.map(f64::to_radians) {
-                    let held = [Dof::W, Dof::ThetaX, Dof::ThetaY, Dof::ThetaZ].map(|d| (d, 0.0));
-                    let held = [&held[..], &[(Dof::V, x.tan() * self.gauge)]].concat();
-                    self.drive(model.clone(), held, Dof::V, x, &mut reading, options)?;
-                }
+                let mut slack = Reading { curve: reading.curve.clone(), slack: None, unstable_from: None };
+                self.shear(&model, 0.0, &ANGLES[..2], &mut slack, options)?;
+                self.shear(&model, self.pretension, &ANGLES, &mut reading, options)?;
+                reading.slack = Some(slack.curve);
             }
         }
         Ok(reading)
+    }
+
+    fn shear(
+        &self,
+        model: &Model,
+        tension: f64,
+        angles: &[f64],
+        reading: &mut Reading,
+        options: &Options,
+    ) -> Result<(), StudyError> {
+        let force = Vector3::x() * (tension * self.width);
+        let load = Load::Point { nodes: vec![self.clamp[0]], force, moment: Vector3::zeros() };
+        let model = Model { loads: vec![load], ..model.clone() };
+        for x in angles.iter().map(|a| a.to_radians()) {
+            let held = [Dof::W, Dof::ThetaX, Dof::ThetaY, Dof::ThetaZ].map(|d| (d, 0.0));
+            let held = [&held[..], &[(Dof::V, x.tan() * self.gauge)]].concat();
+            self.drive(model.clone(), held, Dof::V, x, reading, options)?;
+        }
+        Ok(())
     }
 
     /// Moves the clamp to `x` and reads the reaction of its lead per width at every step.

@@ -11,9 +11,9 @@ use crate::quantity::{Curvature, LineForce};
 pub struct VirtualTest {
     /// Which test.
     pub test: Test,
-    /// Elements along the gauge length and across the specimen.
-    #[serde(default = "default_cells")]
-    pub cells: [usize; 2],
+    /// Elements along the gauge length and across the specimen; 10 and 20, for shear in large rotations 8
+    /// and 128.
+    pub cells: Option<[usize; 2]>,
     /// Small displacements and one slope, or large rotations and the whole curve.
     #[serde(default)]
     pub formulation: TestFormulation,
@@ -32,8 +32,4 @@ pub enum TestFormulation {
     Linear,
     /// Large rotations: the clamps as they are, the curve as it comes.
     Nonlinear,
-}
-
-fn default_cells() -> [usize; 2] {
-    [10, 20]
 }
