@@ -39,6 +39,8 @@ pub struct FabricReport {
     pub predictions: Vec<PredictionRow>,
     /// See `rows`.
     pub problems: Vec<ProblemRow>,
+    /// Tests of which there is a chart.
+    pub drawn: Vec<Test>,
     /// Points of the parity chart.
     pub parity: Vec<ParityPoint>,
     /// Findings of sheet, section and cases.
@@ -101,8 +103,12 @@ impl FabricReport {
     }
 
     fn charts(&mut self, sheet: &FabricSheet, simulated: &[Tested], tree: &Tree) {
-        if tree.charts() {
-            self.keep(tree.fabric_charts(sheet, simulated));
+        if !tree.charts() {
+            return;
+        }
+        match tree.fabric_charts(sheet, simulated) {
+            Ok(drawn) => self.drawn = drawn,
+            Err(failure) => self.failures.push(failure),
         }
     }
 
@@ -196,6 +202,9 @@ const HEADINGS: [&str; 9] = [
     "W (mg/cm²)",
 ];
 
+/// Units of the columns that do not name theirs.
+const CAPTION: &str = "B in gf·cm²/cm, G in gf/(cm·deg)";
+
 /// B, G, E, T, W: KES units, except E in N/m.
 fn cells(sheet: &FabricSheet) -> Vec<String> {
     let kes = |p: Parameter, d: Option<Direction>| {
@@ -242,7 +251,8 @@ pub fn page(
     failures: &[Failure],
     charts: bool,
 ) -> Page {
-    let mut sections = vec![Section { heading: "Overview".into(), blocks: overview(failures, charts) }];
+    let mut sections =
+        vec![Section { heading: "Overview".into(), blocks: overview(reports, failures, charts) }];
     sections.extend(reports.iter().map(|r| fabric_section(r, charts)));
     let mut blocks = Vec::new();
     for (task, result) in benchmarks {
@@ -267,7 +277,7 @@ pub fn page(
     }
 }
 
-fn overview(failures: &[Failure], charts: bool) -> Vec<Block> {
+fn overview(reports: &[FabricReport], failures: &[Failure], charts: bool) -> Vec<Block> {
     let names = [
         "fabrics.csv",
         "fabrics.parquet",
@@ -277,6 +287,15 @@ fn overview(failures: &[Failure], charts: bool) -> Vec<Block> {
         "run.json",
     ];
     let mut blocks = vec![Block::Files(names.map(String::from).to_vec())];
+    let row = |r: &FabricReport| {
+        let name = std::iter::once(r.name.clone());
+        name.chain(r.cells.iter().cloned()).chain([r.status.clone()]).collect()
+    };
+    blocks.push(Block::Table {
+        caption: CAPTION.into(),
+        header: HEADINGS.iter().copied().chain(["status"]).map(String::from).collect(),
+        rows: reports.iter().map(row).collect(),
+    });
     if charts {
         blocks.push(Block::Figures(vec![figure("Simulated against measured stiffness", "parity.png")]));
     }
@@ -289,15 +308,15 @@ fn overview(failures: &[Failure], charts: bool) -> Vec<Block> {
 
 fn fabric_section(r: &FabricReport, charts: bool) -> Section {
     let table = Block::Table {
-        caption: "B in gf·cm²/cm, G in gf/(cm·deg)".into(),
+        caption: CAPTION.into(),
         header: HEADINGS[1..].iter().map(ToString::to_string).collect(),
         rows: vec![r.cells.clone()],
     };
     let mut blocks = vec![table];
     if charts {
-        let tests = Test::ALL.map(|t| figure(t.name(), &format!("{}/{}.png", r.name, t.name())));
+        let tests = r.drawn.iter().map(|t| figure(t.name(), &format!("{}/{}.png", r.name, t.name())));
         let cases = r.deflections.iter().map(|(case, _)| figure(case, &format!("{}/{case}.png", r.name)));
-        blocks.push(Block::Figures(tests.into_iter().chain(cases).collect()));
+        blocks.push(Block::Figures(tests.chain(cases).collect()));
     }
     blocks.push(Block::Findings(r.findings.clone()));
     Section { heading: r.name.clone(), blocks }
