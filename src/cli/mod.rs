@@ -12,6 +12,7 @@ mod completions;
 mod diagnostics;
 mod exit;
 mod explain;
+mod friction;
 mod inputs;
 mod list;
 mod output;

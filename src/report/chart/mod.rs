@@ -12,6 +12,7 @@ mod contour;
 mod fabric;
 mod field;
 mod force;
+mod friction;
 mod loops;
 mod marks;
 mod palette;
@@ -26,6 +27,7 @@ use thiserror::Error;
 pub use fabric::{SimulatedCurve, bending, compression, shear, tensile};
 pub use field::{FieldPlot, field};
 pub use force::{ForcePlot, bend_loops};
+pub use friction::friction;
 pub use parity::{ParityPoint, parity};
 pub use profile::{ProfileLine, ProfilePlot, profile};
 
