@@ -48,6 +48,7 @@ fn zero_energy_modes_match_the_table() {
             cells: Cells::from_count(nc).unwrap(),
             shear_stabilisation: 0.0,
             drilling: Drilling::HughesBrezzi,
+            ..Formulation::default()
         };
         for corners in shapes() {
             let x = Vector3::x();

@@ -26,12 +26,23 @@ pub use smoothing::{Cell, Cells};
 pub struct Formulation {
     /// Smoothing cells for membrane and bending.
     pub cells: Cells,
+    /// Whether the membrane has these cells, too.
+    pub membrane: Membrane,
     /// Stabilisation α of the transverse shear, `1/S_i + α h² / (3.5 B_i)` with `h` the longest
     /// side: 0 as the seed paper has it, 0.05 by default. It removes the loss of digits of very
     /// thin sheets.
     pub shear_stabilisation: f64,
     /// What resists the rotation θz about the normal.
     pub drilling: Drilling,
+}
+
+/// How the membrane strain of an element is smoothed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Membrane {
+    /// Over the cells of the formulation.
+    Cells,
+    /// One.
+    OneCell(f64),
 }
 
 /// The stiffness given to the drilling rotation θz.
@@ -50,13 +61,13 @@ pub enum Drilling {
 impl Default for Formulation {
     /// Four cells, α = 0.05, scaled drilling penalty.
     fn default() -> Self {
-        Self { cells: Cells::grid(2, 2), shear_stabilisation: 0.05, drilling: Drilling::Scaled }
+        Self { cells: Cells::grid(2, 2), membrane: Membrane::Cells, shear_stabilisation: 0.05, drilling: Drilling::Scaled }
     }
 }
 
 impl Formulation {
     /// The seed paper's element: four cells, no shear stabilisation, drilling spring 1e-3.
     pub fn seed() -> Self {
-        Self { cells: Cells::grid(2, 2), shear_stabilisation: 0.0, drilling: Drilling::Seed(1e-3) }
+        Self { cells: Cells::grid(2, 2), membrane: Membrane::Cells, shear_stabilisation: 0.0, drilling: Drilling::Seed(1e-3) }
     }
 }

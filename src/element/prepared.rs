@@ -31,6 +31,7 @@ pub struct Prepared {
     /// Transverse shear stiffness in element axes, stabilised (N/m).
     pub d_s: Matrix2<f64>,
     gamma: f64,
+    soft: f64,
     formulation: Formulation,
 }
 
@@ -56,7 +57,9 @@ impl Prepared {
         };
         let ShellSection { d_m, d_b, d_s, .. } = stabilised.rotated(angle);
         let gamma = drilling::penalty(formulation.drilling, section, frame.area());
-        Ok(Self { frame, d_m, d_b, d_s, gamma, formulation })
+        let t2 = section.bending_thickness_squared();
+        let soft = t2 / (t2 + frame.area());
+        Ok(Self { frame, d_m, d_b, d_s, gamma, soft, formulation })
     }
 
     /// The same from corners in space.
@@ -95,10 +98,20 @@ impl Prepared {
     /// Stiffness of membrane and drilling penalty in element axes, dofs `(u, v, θz)` node by node.
     pub fn membrane_stiffness(&self) -> Matrix12 {
         let mut k = drilling::stiffness(&self.frame.xy, self.gamma);
-        for cell in self.cells() {
-            let b = membrane_matrix(&cell);
-            k += b.transpose() * (self.d_m * cell.area) * b;
-        }
+        let smoothed = |cells: super::Cells| {
+            cells.over(&self.frame.xy).fold(Matrix12::zeros(), |k, cell| {
+                let b = membrane_matrix(&cell);
+                k + b.transpose() * (self.d_m * cell.area) * b
+            })
+        };
+        let full = smoothed(self.formulation.cells);
+        k += match self.formulation.membrane {
+            super::Membrane::Cells => full,
+            super::Membrane::OneCell(factor) => {
+                let one = smoothed(super::Cells::grid(1, 1));
+                one + (full - one) * (factor * self.soft)
+            }
+        };
         if let Drilling::Seed(factor) = self.formulation.drilling {
             let spring = factor * k.diagonal().max().max(self.plate_stiffness().diagonal().max());
             for i in 0..4 {

@@ -30,7 +30,7 @@ use nalgebra::{Point3, UnitQuaternion};
 use thiserror::Error;
 
 pub use arc::{ArcLength, follow};
-pub use flow::{Flow, relax};
+pub use flow::{Flow, relax, relax_from};
 pub use stability::Stability;
 
 use self::newton::{Converged, Drag, newton};

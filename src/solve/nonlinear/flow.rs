@@ -59,11 +59,26 @@ pub fn relax(
     settings: &Settings,
     flow: &Flow,
     options: &Options,
+    observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
+) -> Result<Solution, NonlinearError> {
+    relax_from(model, State::rest(&model.mesh), settings, flow, options, observe)
+}
+
+/// The same from a state of the sheet instead of the rest.
+///
+/// # Errors
+/// See [`relax`].
+pub fn relax_from(
+    model: &Model,
+    start: State,
+    settings: &Settings,
+    flow: &Flow,
+    options: &Options,
     mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
     let system = System::new(model, settings, options)?;
-    let mut state = State::rest(&model.mesh);
-    let first = first_rate(&system, model, &state);
+    let mut state = start;
+    let first = first_rate(&system, model, &State::rest(&model.mesh));
     let noise = noise(&system, flow);
     let mut inner = Settings { iterations: INNER_ITERATIONS, ..settings.clone() };
     let (mut pace, mut perturbed, mut kicks) = (Pace::new(first), flow.perturbation > 0.0, 0);
