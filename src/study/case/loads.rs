@@ -1,0 +1,89 @@
+//! `[[supports]]` and `[[loads]]`: where the sheet is held and what acts on it.
+
+use serde::Deserialize;
+
+use crate::quantity::{Acceleration, LineForce, LineMoment, Pressure};
+
+/// `[[supports]]`: a set with either a kind or a list of dofs.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SupportTable {
+    /// Node set.
+    pub set: String,
+    /// A named kind.
+    pub kind: Option<SupportKind>,
+    /// Names of dofs: `u v w theta_x theta_y theta_z`.
+    pub fix: Option<Vec<String>>,
+}
+
+/// Named supports.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SupportKind {
+    /// All dofs held.
+    Clamped,
+    /// Displacements held, and the rotation along the normal of the edge: a thin plate on a support.
+    SimplySupported,
+    /// Displacements held only.
+    SimplySupportedSoft,
+    /// Symmetry about a plane x = const.
+    SymmetryX,
+    /// Symmetry about a plane y = const.
+    SymmetryY,
+    /// Nothing held; a way to say so.
+    Free,
+}
+
+/// `[[loads]]`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum LoadTable {
+    /// Along the normal of the sheet (+z of a flat one).
+    Pressure {
+        /// Pressure.
+        value: Pressure,
+    },
+    /// Own weight.
+    Gravity {
+        /// Acceleration; standard gravity when left out.
+        value: Option<Acceleration>,
+        /// Direction; `[0, 0, -1]` when left out.
+        direction: Option<[f64; 3]>,
+    },
+    /// A force (N) or moment (N·m) shared by the nodes of a set.
+    Point {
+        /// Node set.
+        set: String,
+        /// Force, such as `"0.1 N"`, or moment, such as `"1 N·mm"`.
+        value: String,
+        /// Direction of the force or axis of the moment.
+        direction: [f64; 3],
+    },
+    /// A force per length on the boundary edges of a set.
+    EdgeForce {
+        /// Node set.
+        set: String,
+        /// Force per length.
+        value: LineForce,
+        /// Direction.
+        direction: [f64; 3],
+    },
+    /// A moment per length on the boundary edges of a set.
+    EdgeMoment {
+        /// Node set.
+        set: String,
+        /// Moment per length.
+        value: LineMoment,
+        /// Axis.
+        direction: [f64; 3],
+    },
+    /// A displacement or rotation of a set.
+    Prescribed {
+        /// Node set.
+        set: String,
+        /// `u v w theta_x theta_y theta_z`.
+        dof: String,
+        /// Displacement, such as `"1 mm"`, or rotation, such as `"2 deg"`.
+        value: String,
+    },
+}

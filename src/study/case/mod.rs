@@ -1,0 +1,150 @@
+//! The case file: what is solved, in TOML, with units on every number that has one.
+
+mod analysis;
+mod check;
+mod element;
+mod error;
+mod loads;
+mod section;
+mod sheet;
+#[cfg(test)]
+mod tests;
+mod virtual_test;
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use crate::constitutive::Assumptions;
+use crate::finding::Place;
+
+pub use analysis::Analysis;
+pub use check::{Check, ProbeTable, Reference, ReferenceKind};
+pub use element::{DrillingChoice, ElementTable, Profile, Subcells};
+pub use error::CaseError;
+pub use loads::{LoadTable, SupportKind, SupportTable};
+pub use section::SectionTable;
+pub use sheet::{Shape, Sheet};
+pub use virtual_test::VirtualTest;
+
+/// A case as it is written in its file; unknown keys are refused.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Case {
+    /// Identifier: the stem of the file name.
+    #[serde(skip)]
+    pub name: String,
+    /// The file.
+    #[serde(skip)]
+    pub path: PathBuf,
+    /// For people.
+    pub title: String,
+    /// Where the problem comes from.
+    pub source: Option<String>,
+    /// A fabric folder, or `*` for every fabric at hand.
+    pub fabric: Option<String>,
+    /// Explicit constants instead of a fabric.
+    pub section: Option<SectionTable>,
+    /// Choices between a fabric's sheet and its section.
+    #[serde(default)]
+    pub assumptions: Assumptions,
+    /// The sheet and its mesh.
+    pub sheet: Option<Sheet>,
+    /// The element.
+    #[serde(default)]
+    pub element: ElementTable,
+    /// Where it is held.
+    #[serde(default)]
+    pub supports: Vec<SupportTable>,
+    /// What acts on it.
+    #[serde(default)]
+    pub loads: Vec<LoadTable>,
+    /// A test of an instrument instead of `sheet`, `supports` and `loads`.
+    pub virtual_test: Option<VirtualTest>,
+    /// What is computed.
+    #[serde(default)]
+    pub analysis: Analysis,
+    /// Points whose values are reported.
+    #[serde(default)]
+    pub probes: Vec<ProbeTable>,
+    /// Values that must come out.
+    #[serde(default)]
+    pub checks: Vec<Check>,
+}
+
+impl Case {
+    /// Reads a case file.
+    ///
+    /// # Errors
+    /// S001 to S003 with the position in the file.
+    pub fn read(path: &Path) -> Result<Self, CaseError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|e| CaseError::Unreadable { place: Place::file(path), reason: e.to_string() })?;
+        Self::parse(path, &text)
+    }
+
+    /// Parses the text of a case file; `path` names it in messages.
+    ///
+    /// # Errors
+    /// S002 and S003 with the position in the file.
+    pub fn parse(path: &Path, text: &str) -> Result<Self, CaseError> {
+        let mut case: Self = toml::from_str(text).map_err(|e| {
+            let (line, column) = position(text, e.span().map_or(0, |s| s.start));
+            CaseError::Malformed { place: Place::at(path, line, column), message: one_line(e.message()) }
+        })?;
+        case.path = path.to_path_buf();
+        case.name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        case.consistent()?;
+        Ok(case)
+    }
+
+    fn consistent(&self) -> Result<(), CaseError> {
+        let refuse = |message: &str| {
+            Err(CaseError::Inconsistent { place: Place::file(&self.path), message: message.into() })
+        };
+        match (&self.fabric, &self.section) {
+            (None, None) => {
+                return refuse("the case names neither `fabric` nor a [section]: give one of them");
+            }
+            (Some(_), Some(_)) => {
+                return refuse("the case gives both `fabric` and [section]: remove one of them");
+            }
+            _ => {}
+        }
+        match (&self.sheet, &self.virtual_test) {
+            (None, None) => refuse("the case has neither a [sheet] nor a [virtual_test]: give one of them"),
+            (Some(_), Some(_)) => {
+                refuse("a [virtual_test] brings its own specimen: remove [sheet], or the [virtual_test]")
+            }
+            (None, Some(_))
+                if !(self.supports.is_empty() && self.loads.is_empty() && self.probes.is_empty()) =>
+            {
+                refuse(
+                    "a [virtual_test] brings its own supports and loads: remove [[supports]], [[loads]], [[probes]]",
+                )
+            }
+            (Some(_), None) if self.supports.is_empty() => {
+                refuse("nothing holds the sheet: add [[supports]] (kind = \"free\" says that this is meant)")
+            }
+            (Some(_), None) if self.loads.is_empty() && !matches!(self.analysis, Analysis::Modal { .. }) => {
+                refuse("nothing acts on the sheet: add [[loads]]")
+            }
+            (Some(_), None) if !self.loads.is_empty() && matches!(self.analysis, Analysis::Modal { .. }) => {
+                refuse("a modal analysis has no loads: remove [[loads]]")
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Line and column (from 1, in characters) of a byte offset.
+fn position(text: &str, offset: usize) -> (usize, usize) {
+    let before = text.get(..offset).unwrap_or(text);
+    let line = before.matches('\n').count() + 1;
+    let column = before.rsplit('\n').next().map_or(0, |l| l.chars().count()) + 1;
+    (line, column)
+}
+
+fn one_line(message: &str) -> String {
+    message.lines().map(str::trim).collect::<Vec<_>>().join("; ")
+}

@@ -1,0 +1,53 @@
+//! `[sheet]`: outline, mesh and orientation.
+
+use std::path::PathBuf;
+
+use serde::Deserialize;
+
+use crate::quantity::Length;
+
+/// `[sheet]`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sheet {
+    /// Which outline; left out when the mesh comes from a file.
+    pub shape: Option<Shape>,
+    /// A Gmsh mesh (MSH 4.1, ASCII, quads), relative to the case file.
+    pub file: Option<PathBuf>,
+    /// Unit of the coordinates in the file, such as `"mm"`.
+    pub unit: Option<String>,
+    /// Along x (`rectangle`), or the length of a `strip` along x.
+    pub width: Option<Length>,
+    /// Along y (`rectangle`), or the breadth of a `strip` along y.
+    pub height: Option<Length>,
+    /// Of a `disc`; outer one of an `annulus`.
+    pub diameter: Option<Length>,
+    /// Inner one of an `annulus`.
+    pub inner_diameter: Option<Length>,
+    /// Cells along x and y; across the core of a disc (one number twice); along the radius and
+    /// around an annulus.
+    pub cells: Option<[usize; 2]>,
+    /// Angle of the warp from x.
+    #[serde(default)]
+    pub warp_angle_deg: f64,
+    /// Seeded displacement of interior nodes, 0 to 0.5 of half an edge.
+    #[serde(default)]
+    pub distortion: f64,
+    /// Seed of the distortion.
+    #[serde(default)]
+    pub seed: u64,
+}
+
+/// Outline of a sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shape {
+    /// `width` x `height`, lower left corner at the origin.
+    Rectangle,
+    /// The same; the word for a long narrow one.
+    Strip,
+    /// `diameter`, centre at the origin.
+    Disc,
+    /// `inner_diameter` to `diameter`, centre at the origin.
+    Annulus,
+}
