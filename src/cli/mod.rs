@@ -9,6 +9,7 @@ mod check;
 mod compare;
 mod completions;
 mod diagnostics;
+mod drape;
 mod exit;
 mod explain;
 mod inputs;

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use serde_json::json;
 
 use super::diagnostics::Failure;
+use super::drape;
 use super::output::Columns;
 use super::summary::{FabricReport, page, summary};
 use super::task::{Task, TaskArgs, Work};
@@ -16,7 +17,7 @@ use crate::report::chart;
 use crate::report::html::html;
 use crate::report::json::text;
 use crate::report::table::{FabricRow, PredictionRow, ProblemRow, Row, csv, parquet};
-use crate::study::CaseResult;
+use crate::study::{Analysis, Case, CaseResult};
 
 /// Do everything: read fabrics, evaluate, solve and compare every case, draw charts, write tables
 #[derive(Debug, Args)]
@@ -28,12 +29,23 @@ pub struct Options {
     /// Folder of the results
     #[arg(short, long, value_name = "FOLDER", default_value = "results")]
     output: PathBuf,
+    /// Solve drape cases too: a minute or so for each fabric
+    #[arg(long)]
+    drape: bool,
     #[command(flatten)]
     task: TaskArgs,
 }
 
 pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
-    let work = options.task.load(&options.inputs, ui)?;
+    let mut work = options.task.load(&options.inputs, ui)?;
+    if !options.drape {
+        let (drapes, others) = std::mem::take(&mut work.cases).into_iter().partition(is_drape);
+        work.cases = others;
+        let left_out: Vec<Case> = drapes;
+        for case in &left_out {
+            ui.diagnostics.note(&format!("{}: left out, it takes minutes; add --drape", case.path.display()));
+        }
+    }
     if work.fabrics.is_empty() && work.cases.is_empty() {
         if work.failures.is_empty() {
             return Err(Failure::new("O055", "there is neither a fabric nor a case in the inputs")
@@ -46,6 +58,9 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let reports = fabrics(&work, &tasks, &tree, ui)?;
     let own: Vec<Task> =
         tasks.iter().filter(|t| t.fabric.is_none() && t.case.sheet.is_some()).cloned().collect();
+    let (hanging, own): (Vec<Task>, Vec<Task>) = own.into_iter().partition(Task::is_drape);
+    let hung: Vec<Result<(), Failure>> =
+        hanging.iter().map(|task| task.drape(&|| ()).and_then(|d| drape::write(&tree, task, &d))).collect();
     let benchmarks: Vec<(Task, Result<CaseResult, Failure>)> = own
         .into_par_iter()
         .map(|task| {
@@ -57,6 +72,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
 
     let mut failures = homeless;
     failures.extend(reports.iter().flat_map(|r| r.failures.clone()));
+    failures.extend(hung.into_iter().filter_map(Result::err));
     failures.extend(benchmarks.iter().filter_map(|(_, r)| r.as_ref().err().cloned()));
     failures.iter().for_each(|f| ui.diagnostics.error(f));
     failures.splice(0..0, work.failures.iter().cloned());
@@ -81,6 +97,8 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         let subtitle = "closed loop: the measured stiffness, seen again through a simulated test (clamps, edges, element)";
         tree.chart("parity.png", chart::parity(&points, "Simulated against measured", subtitle))?;
     }
+    let draped: Vec<_> = reports.iter().flat_map(|r| r.drape_parity.clone()).collect();
+    drape::parity(&tree, &draped)?;
     tree.write("run.json", text(&about(options, &work))?.as_bytes())?;
     tree.write("index.html", html(&page(&reports, &solved, &failures, tree.charts())).as_bytes())?;
     let shown = summary(&reports, &work);
@@ -91,6 +109,10 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let strict = options.task.strict && ui.diagnostics.findings() > 0;
     Ok(Exit::of_batch(reports.iter().filter(|r| r.useful).count() + solved.len(), &failures)
         .unless(unmet || strict))
+}
+
+fn is_drape(case: &Case) -> bool {
+    matches!(case.analysis, Analysis::Drape { .. })
 }
 
 /// Every fabric with its cases, in parallel; reports in name order.

@@ -1,6 +1,7 @@
 //! What `run` keeps of a fabric once its files are written, and the overview made of it.
 
 use super::diagnostics::Failure;
+use super::drape;
 use super::inputs::Fabric;
 use super::output::Columns;
 use super::solve::status;
@@ -16,7 +17,7 @@ use crate::report::html::{Block, Figure, Page, Picture, Section};
 use crate::report::table::{
     FabricRow, PredictionRow, ProblemRow, UnitSystem, fabric_rows, problem_row, relative_error,
 };
-use crate::study::{CaseResult, Status};
+use crate::study::{Analysis, CaseResult, Drape, Status};
 
 /// What is left of a fabric.
 #[derive(Default)]
@@ -41,6 +42,10 @@ pub struct FabricReport {
     pub problems: Vec<ProblemRow>,
     /// Points of the parity chart.
     pub parity: Vec<ParityPoint>,
+    /// Names of its drape cases.
+    pub drapes: Vec<String>,
+    /// Points of the parity chart of drape coefficients.
+    pub drape_parity: Vec<ParityPoint>,
     /// Findings of sheet, section and cases.
     pub findings: Vec<Finding>,
     /// What failed.
@@ -91,6 +96,13 @@ impl FabricReport {
                 }
                 continue;
             }
+            if task.is_drape() {
+                match task.drape(&|| ()).and_then(|d| drape::write(tree, task, &d).map(|()| d)) {
+                    Ok(draped) => self.draped(task, &draped),
+                    Err(failure) => self.failures.push(failure),
+                }
+                continue;
+            }
             match task.solve().and_then(|r| tree.solved(task, &r).map(|()| r)) {
                 Ok(result) => self.solved(task, &result),
                 Err(failure) => self.failures.push(failure),
@@ -114,6 +126,13 @@ impl FabricReport {
         if result.status != Status::Ok && self.status == "ok" {
             self.status = status(result.status).into();
         }
+    }
+
+    fn draped(&mut self, task: &Task, draped: &Drape) {
+        self.drapes.push(draped.case.clone());
+        self.findings.extend(draped.findings.iter().cloned());
+        self.predictions.push(drape::prediction(task, draped));
+        self.drape_parity.extend(drape::point(task, draped));
     }
 
     fn tested(&mut self, t: &Tested) {
@@ -140,6 +159,7 @@ impl FabricReport {
                 measured: measured.mean,
                 measured_sd: measured.sd,
                 simulated,
+                simulated_band: None,
             });
         }
     }
@@ -218,7 +238,7 @@ pub fn summary(reports: &[FabricReport], work: &Work) -> Columns {
     let cases: Vec<&str> = work
         .cases
         .iter()
-        .filter(|c| c.sheet.is_some() && c.section.is_none())
+        .filter(|c| c.sheet.is_some() && c.section.is_none() && !matches!(c.analysis, Analysis::Drape { .. }))
         .map(|c| c.name.as_str())
         .collect();
     let deflections = cases.iter().map(|c| format!("w_max {c} (mm)"));
@@ -242,7 +262,9 @@ pub fn page(
     failures: &[Failure],
     charts: bool,
 ) -> Page {
-    let mut sections = vec![Section { heading: "Overview".into(), blocks: overview(failures, charts) }];
+    let drapes = reports.iter().any(|r| !r.drape_parity.is_empty());
+    let mut sections =
+        vec![Section { heading: "Overview".into(), blocks: overview(failures, charts, drapes) }];
     sections.extend(reports.iter().map(|r| fabric_section(r, charts)));
     let mut blocks = Vec::new();
     for (task, result) in benchmarks {
@@ -267,7 +289,7 @@ pub fn page(
     }
 }
 
-fn overview(failures: &[Failure], charts: bool) -> Vec<Block> {
+fn overview(failures: &[Failure], charts: bool, drapes: bool) -> Vec<Block> {
     let names = [
         "fabrics.csv",
         "fabrics.parquet",
@@ -278,7 +300,11 @@ fn overview(failures: &[Failure], charts: bool) -> Vec<Block> {
     ];
     let mut blocks = vec![Block::Files(names.map(String::from).to_vec())];
     if charts {
-        blocks.push(Block::Figures(vec![figure("Simulated against measured stiffness", "parity.png")]));
+        let mut figures = vec![figure("Simulated against measured stiffness", "parity.png")];
+        if drapes {
+            figures.push(figure("Simulated against measured drape", "drape_parity.png"));
+        }
+        blocks.push(Block::Figures(figures));
     }
     blocks.extend(failures.iter().map(|f| {
         let row = f.row();
@@ -297,7 +323,11 @@ fn fabric_section(r: &FabricReport, charts: bool) -> Section {
     if charts {
         let tests = Test::ALL.map(|t| figure(t.name(), &format!("{}/{}.png", r.name, t.name())));
         let cases = r.deflections.iter().map(|(case, _)| figure(case, &format!("{}/{case}.png", r.name)));
-        blocks.push(Block::Figures(tests.into_iter().chain(cases).collect()));
+        let drapes = r
+            .drapes
+            .iter()
+            .flat_map(|case| ["", "_view"].map(|end| figure(case, &format!("{}/{case}{end}.png", r.name))));
+        blocks.push(Block::Figures(tests.into_iter().chain(cases).chain(drapes).collect()));
     }
     blocks.push(Block::Findings(r.findings.clone()));
     Section { heading: r.name.clone(), blocks }

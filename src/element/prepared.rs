@@ -4,7 +4,7 @@ use nalgebra::{Matrix2, Matrix3, Point3, SMatrix, SVector, Vector3};
 use thiserror::Error;
 
 use super::quad4::{Frame, GAUSS_2X2, gauss_point};
-use super::{Cell, Drilling, Formulation, drilling, shear};
+use super::{Cell, Cells, Drilling, Formulation, Membrane, drilling, shear};
 use crate::section::ShellSection;
 
 /// 12 x 12, three dofs a node.
@@ -31,7 +31,8 @@ pub struct Prepared {
     /// Transverse shear stiffness in element axes, stabilised (N/m).
     pub d_s: Matrix2<f64>,
     gamma: f64,
-    soft: f64,
+    /// Part of the stiffness of several membrane cells that one cell is given.
+    stabilisation: f64,
     formulation: Formulation,
 }
 
@@ -57,9 +58,9 @@ impl Prepared {
         };
         let ShellSection { d_m, d_b, d_s, .. } = stabilised.rotated(angle);
         let gamma = drilling::penalty(formulation.drilling, section, frame.area());
-        let t2 = section.bending_thickness_squared();
-        let soft = t2 / (t2 + frame.area());
-        Ok(Self { frame, d_m, d_b, d_s, gamma, soft, formulation })
+        let thickness_squared = section.bending_thickness_squared();
+        let stabilisation = thickness_squared / (thickness_squared + frame.area());
+        Ok(Self { frame, d_m, d_b, d_s, gamma, stabilisation, formulation })
     }
 
     /// The same from corners in space.
@@ -98,18 +99,18 @@ impl Prepared {
     /// Stiffness of membrane and drilling penalty in element axes, dofs `(u, v, θz)` node by node.
     pub fn membrane_stiffness(&self) -> Matrix12 {
         let mut k = drilling::stiffness(&self.frame.xy, self.gamma);
-        let smoothed = |cells: super::Cells| {
+        let smoothed = |cells: Cells| {
             cells.over(&self.frame.xy).fold(Matrix12::zeros(), |k, cell| {
                 let b = membrane_matrix(&cell);
                 k + b.transpose() * (self.d_m * cell.area) * b
             })
         };
-        let full = smoothed(self.formulation.cells);
+        let all = smoothed(self.formulation.cells);
         k += match self.formulation.membrane {
-            super::Membrane::Cells => full,
-            super::Membrane::OneCell(factor) => {
-                let one = smoothed(super::Cells::grid(1, 1));
-                one + (full - one) * (factor * self.soft)
+            Membrane::Cells => all,
+            Membrane::OneCell => {
+                let one = smoothed(Cells::grid(1, 1));
+                one + (all - one) * self.stabilisation
             }
         };
         if let Drilling::Seed(factor) = self.formulation.drilling {

@@ -4,6 +4,7 @@
 mod build;
 mod case;
 mod compare;
+mod drape;
 mod prepared;
 mod run;
 mod uncertainty;
@@ -17,6 +18,7 @@ pub use case::{
     VirtualTest,
 };
 pub use compare::{Comparison, compare_curves, measured_curve};
+pub use drape::{Drape, DrapeState, Folds, drape, drape_stages, measured_drape};
 pub use prepared::PreparedCase;
 pub use run::{CaseResult, CheckResult, History, Probe, Status, solve_case};
 pub use uncertainty::{Prediction, Uncertainty};
@@ -27,6 +29,7 @@ use crate::mesh::MeshError;
 use crate::model::ModelError;
 use crate::section::SectionError;
 use crate::solve::SolveError;
+use crate::solve::nonlinear::NonlinearError;
 
 /// Why a case gives no result.
 #[derive(Debug, Error)]
@@ -46,6 +49,9 @@ pub enum StudyError {
     /// The solution.
     #[error(transparent)]
     Solve(#[from] SolveError),
+    /// The solution in large rotations.
+    #[error(transparent)]
+    Nonlinear(#[from] NonlinearError),
 }
 
 impl StudyError {
@@ -57,6 +63,7 @@ impl StudyError {
             Self::Model(e) => e.code(),
             Self::Section(e) => e.code(),
             Self::Solve(e) => e.code(),
+            Self::Nonlinear(e) => e.code(),
         }
     }
 
@@ -74,6 +81,7 @@ impl StudyError {
         matches!(
             self,
             Self::Solve(SolveError::Singular { .. } | SolveError::Factor(_) | SolveError::Residual { .. })
+                | Self::Nonlinear(NonlinearError::NotConverged { .. } | NonlinearError::Solve(_))
         )
     }
 }

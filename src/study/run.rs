@@ -244,6 +244,9 @@ fn analyse(prepared: &PreparedCase<'_>, model: &Model) -> Result<Outcome, StudyE
             }
             dynamics(prepared, model, &settings)
         }
+        Analysis::Drape { .. } => {
+            Err(case.inconsistent("a drape is a search for many states, not one solve".into()))
+        }
     }
 }
 

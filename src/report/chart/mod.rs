@@ -9,6 +9,7 @@
 mod axes;
 mod canvas;
 mod contour;
+mod drape;
 mod fabric;
 mod field;
 mod loops;
@@ -20,6 +21,7 @@ mod schematic;
 
 use thiserror::Error;
 
+pub use drape::{DrapePlot, drape_shadow, drape_view};
 pub use fabric::{SimulatedCurve, bending, compression, shear, tensile};
 pub use field::{FieldPlot, field};
 pub use parity::{ParityPoint, parity};

@@ -25,6 +25,8 @@ pub struct ParityPoint {
     pub measured_sd: Option<f64>,
     /// Simulated value.
     pub simulated: f64,
+    /// Lowest and highest simulated value, for a bar.
+    pub simulated_band: Option<[f64; 2]>,
 }
 
 /// How far simulated values are from measured ones.
@@ -92,6 +94,10 @@ pub fn parity(points: &[ParityPoint], title: &str, subtitle: &str) -> Result<Vec
     if usable.iter().any(|p| p.measured_sd.is_some()) {
         rows.push(Row::Gap);
         rows.push(Row::Remark("Bars: ± one standard deviation of the measured value.".into(), GREY));
+    }
+    if usable.iter().any(|p| p.simulated_band.is_some()) {
+        rows.push(Row::Gap);
+        rows.push(Row::Remark("Upright bars: lowest to highest simulated value.".into(), GREY));
     }
     panel::draw(&mut canvas, &rows, [1420.0, WIDTH as f64 - 40.0], [200.0, 1300.0])?;
     canvas.png(title)
@@ -165,6 +171,10 @@ fn draw_panel(
             let bar = [(frame.at(low, range.from).0, at.1), (frame.at(high, range.from).0, at.1)];
             canvas.line(&bar, Stroke::solid(INK, 2.2))?;
         }
+        if let Some(band) = point.simulated_band {
+            let [low, high] = band.map(|v| frame.at(range.from, v / factor).1);
+            canvas.line(&[(at.0, low), (at.0, high)], Stroke::solid(INK, 2.2))?;
+        }
     }
     for (point, at) in points.iter().zip(&places) {
         let group = groups.iter().position(|g| *g == point.group).unwrap_or(0);
@@ -183,7 +193,8 @@ fn summary(a: Agreement, factor: f64, unit: &str) -> [String; 2] {
 fn range(points: &[&ParityPoint], factor: f64) -> Range {
     let values = points.iter().flat_map(|p| {
         let sd = p.measured_sd.unwrap_or(0.0);
-        [p.measured - sd, p.measured + sd, p.simulated].map(|v| v / factor)
+        let [low, high] = p.simulated_band.unwrap_or([p.simulated; 2]);
+        [p.measured - sd, p.measured + sd, p.simulated, low, high].map(|v| v / factor)
     });
     let smallest = points.iter().map(|p| p.measured.min(p.simulated) / factor).fold(f64::INFINITY, f64::min);
     let largest = values.clone().fold(f64::NEG_INFINITY, f64::max);
