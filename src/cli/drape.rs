@@ -87,22 +87,29 @@ pub fn entry(task: &Task, d: &Drape) -> Value {
     })
 }
 
-/// Coefficient and band beside what was measured, for the table of predictions.
-pub fn prediction(task: &Task, d: &Drape) -> PredictionRow {
+/// Coefficient beside what was measured, and the least and greatest of the states, for the table of
+/// predictions.
+pub fn predictions(task: &Task, d: &Drape) -> Vec<PredictionRow> {
     let measured = measured(task).map(|(m, _)| m);
-    let [low, high] = d.band();
-    PredictionRow {
+    let row = |quantity: &str, simulated: f64, measured: Option<f64>| PredictionRow {
         fabric: task.fabric_name().unwrap_or_default().into(),
         case: d.case.clone(),
-        quantity: "drape_coefficient".into(),
-        simulated: Some(d.finest.coefficient),
+        quantity: quantity.into(),
+        simulated: Some(simulated),
         measured,
         unit: "1".into(),
-        error: measured.and_then(|m| relative_error(d.finest.coefficient, m)),
-        simulated_low: Some(low),
-        simulated_high: Some(high),
-        ..PredictionRow::default()
-    }
+        error: measured.and_then(|m| relative_error(simulated, m)),
+        // Those are for the spread of measured inputs, which a band of states is not.
+        simulated_low: None,
+        simulated_high: None,
+    };
+    let [low, high] = d.band();
+    vec![
+        row("drape_coefficient", d.finest.coefficient, measured),
+        row("drape_coefficient_least", low, None),
+        row("drape_coefficient_greatest", high, None),
+        row("drape_nodes", d.finest.folds.count as f64, None),
+    ]
 }
 
 /// The point of a parity chart, where a coefficient was measured.

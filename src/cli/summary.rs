@@ -131,7 +131,7 @@ impl FabricReport {
     fn draped(&mut self, task: &Task, draped: &Drape) {
         self.drapes.push(draped.case.clone());
         self.findings.extend(draped.findings.iter().cloned());
-        self.predictions.push(drape::prediction(task, draped));
+        self.predictions.extend(drape::predictions(task, draped));
         self.drape_parity.extend(drape::point(task, draped));
     }
 
