@@ -40,6 +40,8 @@ pub struct FabricReport {
     pub predictions: Vec<PredictionRow>,
     /// See `rows`.
     pub problems: Vec<ProblemRow>,
+    /// Tests of which there is a chart.
+    pub drawn: Vec<Test>,
     /// Points of the parity chart.
     pub parity: Vec<ParityPoint>,
     /// Names of its drape cases.
@@ -113,8 +115,12 @@ impl FabricReport {
     }
 
     fn charts(&mut self, sheet: &FabricSheet, simulated: &[Tested], tree: &Tree) {
-        if tree.charts() {
-            self.keep(tree.fabric_charts(sheet, simulated));
+        if !tree.charts() {
+            return;
+        }
+        match tree.fabric_charts(sheet, simulated) {
+            Ok(drawn) => self.drawn = drawn,
+            Err(failure) => self.failures.push(failure),
         }
     }
 
@@ -216,6 +222,9 @@ const HEADINGS: [&str; 9] = [
     "W (mg/cm²)",
 ];
 
+/// Units of the columns that do not name theirs.
+const CAPTION: &str = "B in gf·cm²/cm, G in gf/(cm·deg)";
+
 /// B, G, E, T, W: KES units, except E in N/m.
 fn cells(sheet: &FabricSheet) -> Vec<String> {
     let kes = |p: Parameter, d: Option<Direction>| {
@@ -262,9 +271,8 @@ pub fn page(
     failures: &[Failure],
     charts: bool,
 ) -> Page {
-    let drapes = reports.iter().any(|r| !r.drape_parity.is_empty());
     let mut sections =
-        vec![Section { heading: "Overview".into(), blocks: overview(failures, charts, drapes) }];
+        vec![Section { heading: "Overview".into(), blocks: overview(reports, failures, charts) }];
     sections.extend(reports.iter().map(|r| fabric_section(r, charts)));
     let mut blocks = Vec::new();
     for (task, result) in benchmarks {
@@ -289,7 +297,7 @@ pub fn page(
     }
 }
 
-fn overview(failures: &[Failure], charts: bool, drapes: bool) -> Vec<Block> {
+fn overview(reports: &[FabricReport], failures: &[Failure], charts: bool) -> Vec<Block> {
     let names = [
         "fabrics.csv",
         "fabrics.parquet",
@@ -299,9 +307,18 @@ fn overview(failures: &[Failure], charts: bool, drapes: bool) -> Vec<Block> {
         "run.json",
     ];
     let mut blocks = vec![Block::Files(names.map(String::from).to_vec())];
+    let row = |r: &FabricReport| {
+        let name = std::iter::once(r.name.clone());
+        name.chain(r.cells.iter().cloned()).chain([r.status.clone()]).collect()
+    };
+    blocks.push(Block::Table {
+        caption: CAPTION.into(),
+        header: HEADINGS.iter().copied().chain(["status"]).map(String::from).collect(),
+        rows: reports.iter().map(row).collect(),
+    });
     if charts {
         let mut figures = vec![figure("Simulated against measured stiffness", "parity.png")];
-        if drapes {
+        if reports.iter().any(|r| !r.drape_parity.is_empty()) {
             figures.push(figure("Simulated against measured drape", "drape_parity.png"));
         }
         blocks.push(Block::Figures(figures));
@@ -315,19 +332,19 @@ fn overview(failures: &[Failure], charts: bool, drapes: bool) -> Vec<Block> {
 
 fn fabric_section(r: &FabricReport, charts: bool) -> Section {
     let table = Block::Table {
-        caption: "B in gf·cm²/cm, G in gf/(cm·deg)".into(),
+        caption: CAPTION.into(),
         header: HEADINGS[1..].iter().map(ToString::to_string).collect(),
         rows: vec![r.cells.clone()],
     };
     let mut blocks = vec![table];
     if charts {
-        let tests = Test::ALL.map(|t| figure(t.name(), &format!("{}/{}.png", r.name, t.name())));
+        let tests = r.drawn.iter().map(|t| figure(t.name(), &format!("{}/{}.png", r.name, t.name())));
         let cases = r.deflections.iter().map(|(case, _)| figure(case, &format!("{}/{case}.png", r.name)));
         let drapes = r
             .drapes
             .iter()
             .flat_map(|case| ["", "_view"].map(|end| figure(case, &format!("{}/{case}{end}.png", r.name))));
-        blocks.push(Block::Figures(tests.into_iter().chain(cases).chain(drapes).collect()));
+        blocks.push(Block::Figures(tests.chain(cases).chain(drapes).collect()));
     }
     blocks.push(Block::Findings(r.findings.clone()));
     Section { heading: r.name.clone(), blocks }

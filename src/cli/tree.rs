@@ -78,23 +78,27 @@ impl Tree {
             return Ok(());
         };
         let test = first.simulated.test;
-        self.chart(&format!("{stem}.png"), draw(sheet, test, &curves(tested.iter(), test)))
-    }
-
-    /// `<fabric>/tensile.png` ..., with the simulated curves of its cases on top.
-    pub fn fabric_charts(&self, sheet: &FabricSheet, tested: &[Tested]) -> Result<(), Failure> {
-        for test in Test::ALL {
-            let picture = draw(sheet, test, &curves(tested.iter(), test));
-            self.chart(&format!("{}/{}.png", sheet.name, test.name()), picture)?;
-        }
+        self.chart(&format!("{stem}.png"), draw(sheet, test, &curves(tested.iter(), test)))?;
         Ok(())
     }
 
-    /// Writes a chart; one without data is simply not there.
-    pub fn chart(&self, name: &str, picture: Result<Vec<u8>, ChartError>) -> Result<(), Failure> {
+    /// `<fabric>/tensile.png` ..., with the simulated curves of its cases on top; the tests that have one.
+    pub fn fabric_charts(&self, sheet: &FabricSheet, tested: &[Tested]) -> Result<Vec<Test>, Failure> {
+        let mut drawn = Vec::new();
+        for test in Test::ALL {
+            let picture = draw(sheet, test, &curves(tested.iter(), test));
+            if self.chart(&format!("{}/{}.png", sheet.name, test.name()), picture)? {
+                drawn.push(test);
+            }
+        }
+        Ok(drawn)
+    }
+
+    /// Writes a chart and says whether there is one; without data it is simply not there.
+    pub fn chart(&self, name: &str, picture: Result<Vec<u8>, ChartError>) -> Result<bool, Failure> {
         match picture {
-            Err(ChartError::NothingToDraw { .. }) => Ok(()),
-            other => self.write(name, &other?),
+            Err(ChartError::NothingToDraw { .. }) => Ok(false),
+            other => self.write(name, &other?).map(|()| true),
         }
     }
 }
