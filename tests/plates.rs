@@ -42,6 +42,7 @@ fn centre_deflection(n: usize, nc: u32, clamped: bool, section: ShellSection, al
             cells: Cells::from_count(nc).unwrap(),
             shear_stabilisation: alpha,
             drilling: Drilling::Scaled,
+            ..Formulation::default()
         },
         supports,
         loads: vec![Load::Pressure(1.0)],

@@ -73,8 +73,10 @@ pub fn parity(sheet: &FabricSheet) -> Vec<ParityPoint> {
                 quantity: p.symbol().into(),
                 unit: p.kes_unit().into(),
                 measured: r.measured.mean / p.kes_factor(),
-                measured_sd: r.measured.sd.map(|sd| sd / p.kes_factor()),
+                measured_half_width: r.measured.ci95().map(|half| half / p.kes_factor()),
                 simulated: r.simulated.mean / p.kes_factor(),
+                simulated_half_width: None,
+                simulated_band: None,
             }
         })
         .collect()

@@ -78,6 +78,11 @@ const ANALYSES: &[&[&str]] = &[
         "[analysis] kind = \"nonlinear\"",
         "statics in large rotations: method = newton, arc_length or flow",
     ],
+    &[
+        "drape",
+        "[analysis] kind = \"drape\"",
+        "a round sheet hangs from a disc; for an annulus held at `inner`",
+    ],
     &["tensile", "[virtual_test] test = \"tensile\"", "KES-FB1 specimen between jaws"],
     &["shear", "[virtual_test] test = \"shear\"", "KES-FB1 specimen, sheared"],
     &["bending", "[virtual_test] test = \"bending\"", "KES-FB2 specimen, bent to an arc"],

@@ -10,6 +10,7 @@ mod check;
 mod compare;
 mod completions;
 mod diagnostics;
+mod drape;
 mod exit;
 mod explain;
 mod friction;

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use serde_json::json;
 
 use super::diagnostics::Failure;
+use super::drape;
 use super::output::Columns;
 use super::search::{NOT_CONVERGED, unconverged};
 use super::summary::{FabricReport, page, summary};
@@ -17,7 +18,7 @@ use crate::report::chart;
 use crate::report::html::html;
 use crate::report::json::text;
 use crate::report::table::{FabricRow, PredictionRow, ProblemRow, Row, csv, parquet};
-use crate::study::{CaseResult, Status};
+use crate::study::{Analysis, Case, CaseResult, Status};
 
 /// Do everything: read fabrics, evaluate, solve and compare every case, draw charts, write tables
 #[derive(Debug, Args)]
@@ -29,12 +30,23 @@ pub struct Options {
     /// Folder of the results
     #[arg(short, long, value_name = "FOLDER", default_value = "results")]
     output: PathBuf,
+    /// Solve drape cases too: a minute or so for each fabric
+    #[arg(long)]
+    drape: bool,
     #[command(flatten)]
     task: TaskArgs,
 }
 
 pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let mut work = options.task.load(&options.inputs, ui)?;
+    if !options.drape {
+        let (drapes, others) = std::mem::take(&mut work.cases).into_iter().partition(is_drape);
+        work.cases = others;
+        let left_out: Vec<Case> = drapes;
+        for case in &left_out {
+            ui.diagnostics.note(&format!("{}: left out, it takes minutes; add --drape", case.path.display()));
+        }
+    }
     if work.fabrics.is_empty() && work.cases.is_empty() {
         if work.failures.is_empty() {
             return Err(Failure::new("O055", "there is neither a fabric nor a case in the inputs")
@@ -49,6 +61,9 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let reports = fabrics(&work, &tasks, &tree, ui)?;
     let own: Vec<Task> =
         tasks.iter().filter(|t| t.fabric.is_none() && t.case.sheet.is_some()).cloned().collect();
+    let (hanging, own): (Vec<Task>, Vec<Task>) = own.into_iter().partition(Task::is_drape);
+    let hung: Vec<Result<(), Failure>> =
+        hanging.iter().map(|task| task.drape(&|| ()).and_then(|d| drape::write(&tree, task, &d))).collect();
     let benchmarks: Vec<(Task, Result<CaseResult, Failure>)> = own
         .into_par_iter()
         .map(|task| {
@@ -60,6 +75,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
 
     let mut failures = homeless;
     failures.extend(reports.iter().flat_map(|r| r.failures.clone()));
+    failures.extend(hung.into_iter().filter_map(Result::err));
     failures.extend(benchmarks.iter().filter_map(|(task, r)| match r {
         Ok(result) => unconverged(task, result),
         Err(failure) => Some(failure.clone()),
@@ -91,6 +107,8 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         let subtitle = "parameters read from the simulated cycle of each friction law, by the evaluation of instrument files";
         tree.chart("friction.png", chart::parity(&points, "Friction laws against measured", subtitle))?;
     }
+    let draped: Vec<_> = reports.iter().flat_map(|r| r.drape_parity.clone()).collect();
+    drape::parity(&tree, &draped)?;
     tree.write("run.json", text(&about(options, &work))?.as_bytes())?;
     tree.write("index.html", html(&page(&reports, &solved, &failures, tree.charts())).as_bytes())?;
     let shown = summary(&reports, &work);
@@ -105,6 +123,10 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         &failures,
     )
     .unless(unmet || strict))
+}
+
+fn is_drape(case: &Case) -> bool {
+    matches!(case.analysis, Analysis::Drape { .. })
 }
 
 /// Every fabric with its cases, in parallel; reports in name order.

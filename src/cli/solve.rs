@@ -7,13 +7,14 @@ use rayon::prelude::*;
 use serde_json::json;
 
 use super::diagnostics::Failure;
+use super::drape;
 use super::output::Columns;
 use super::search::{NOT_CONVERGED, searches, steps, unconverged};
 use super::task::{Task, TaskArgs, solution};
 use super::tree::Tree;
 use super::{Exit, Ui};
 use crate::quantity::significant;
-use crate::study::{CaseResult, Status};
+use crate::study::{CaseResult, Drape, Status, drape_stages};
 
 /// Solve cases: deflections, probes, reactions and checks
 #[derive(Debug, Args)]
@@ -38,7 +39,9 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
             .hint("name a case file; a [virtual_test] belongs to `kesf compare`"));
     }
     let tree = options.output.as_ref().map(|o| Tree::open(o, &options.task)).transpose()?;
-    let bar = ui.bar("solving", tasks.len());
+    let (drapes, tasks): (Vec<Task>, Vec<Task>) = tasks.into_iter().partition(Task::is_drape);
+    let stages: usize = drapes.iter().map(|t| drape_stages(t.case)).sum();
+    let bar = ui.bar("solving", tasks.len() + stages);
     let results: Vec<(Task, Result<CaseResult, Failure>)> = tasks
         .into_par_iter()
         .map(|task| {
@@ -50,6 +53,16 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
             (task, result)
         })
         .collect();
+    let draped: Vec<(Task, Result<Drape, Failure>)> = drapes
+        .into_par_iter()
+        .map(|task| {
+            let result = ui.go_on().and_then(|()| task.drape(&|| bar.inc(1))).and_then(|d| {
+                tree.as_ref().map_or(Ok(()), |tree| drape::write(tree, &task, &d))?;
+                Ok(d)
+            });
+            (task, result)
+        })
+        .collect();
     bar.finish_and_clear();
     ui.go_on()?;
     let mut failures: Vec<Failure> = homeless;
@@ -57,25 +70,38 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         Ok(result) => unconverged(task, result),
         Err(failure) => Some(failure.clone()),
     }));
+    failures.extend(draped.iter().filter_map(|(_, r)| r.as_ref().err().cloned()));
     failures.iter().for_each(|f| ui.diagnostics.error(f));
     failures.extend(work.failures.iter().cloned());
     let solved: Vec<(&Task, &CaseResult)> =
         results.iter().filter_map(|(t, r)| Some((t, r.as_ref().ok()?))).collect();
+    let draped: Vec<(&Task, &Drape)> =
+        draped.iter().filter_map(|(t, r)| Some((t, r.as_ref().ok()?))).collect();
     let findings = solved.iter().flat_map(|(_, r)| &r.findings).filter(|f| f.code != NOT_CONVERGED);
-    findings.for_each(|f| ui.diagnostics.finding(f));
+    findings.chain(draped.iter().flat_map(|(_, d)| &d.findings)).for_each(|f| ui.diagnostics.finding(f));
     if let Some(tree) = tree {
+        let points: Vec<_> = draped.iter().filter_map(|(t, d)| drape::point(t, d)).collect();
+        drape::parity(&tree, &points)?;
         tree.finish()?;
     }
     if ui.json {
-        let entries: Vec<_> = solved.iter().map(|(t, r)| solution(t, r, true)).collect();
+        let entries = solved.iter().map(|(t, r)| solution(t, r, true));
+        let entries: Vec<_> = entries.chain(draped.iter().map(|(t, d)| drape::entry(t, d))).collect();
         ui.document(&json!({"schema": "kesf.solution/1", "solutions": entries}))?;
-    } else if !solved.is_empty() {
-        ui.print(&text(&solved, ui.diagnostics.verbose()))?;
+    } else {
+        let drapes = drape::table(draped.iter().copied());
+        let drapes = (!drapes.is_empty()).then(|| drapes.text());
+        let verbose = ui.diagnostics.verbose();
+        let parts: Vec<String> =
+            (!solved.is_empty()).then(|| text(&solved, verbose)).into_iter().chain(drapes).collect();
+        if !parts.is_empty() {
+            ui.print(&parts.join("\n"))?;
+        }
     }
     let unmet = solved.iter().any(|(_, r)| r.status == Status::CheckFailed);
     let strict = options.task.strict && ui.diagnostics.findings() > 0;
     let useful = solved.iter().filter(|(_, r)| r.status != Status::NotConverged).count();
-    Ok(Exit::of_batch(useful, &failures).unless(unmet || strict))
+    Ok(Exit::of_batch(useful + draped.len(), &failures).unless(unmet || strict))
 }
 
 /// Deflections, then probes, searches and checks; with `verbose` every step of a search.

@@ -2,6 +2,7 @@
 
 use super::bending;
 use super::diagnostics::Failure;
+use super::drape;
 use super::inputs::Fabric;
 use super::output::Columns;
 use super::search::{NOT_CONVERGED, unconverged};
@@ -18,7 +19,7 @@ use crate::report::html::{Block, Figure, Page, Picture, Section};
 use crate::report::table::{
     FabricRow, PredictionRow, ProblemRow, UnitSystem, fabric_rows, problem_row, relative_error,
 };
-use crate::study::{CaseResult, Status};
+use crate::study::{Analysis, CaseResult, Drape, Status};
 
 /// What is left of a fabric.
 #[derive(Default)]
@@ -49,6 +50,10 @@ pub struct FabricReport {
     pub parity: Vec<ParityPoint>,
     /// Points of the parity chart of friction laws.
     pub re_extracted: Vec<ParityPoint>,
+    /// Names of its drape cases.
+    pub drapes: Vec<String>,
+    /// Points of the parity chart of drape coefficients.
+    pub drape_parity: Vec<ParityPoint>,
     /// Findings of sheet, section and cases.
     pub findings: Vec<Finding>,
     /// What failed.
@@ -106,6 +111,13 @@ impl FabricReport {
                 }
                 continue;
             }
+            if task.is_drape() {
+                match task.drape(&|| ()).and_then(|d| drape::write(tree, task, &d).map(|()| d)) {
+                    Ok(draped) => self.draped(task, &draped),
+                    Err(failure) => self.failures.push(failure),
+                }
+                continue;
+            }
             match task.solve().and_then(|r| tree.solved(task, &r).map(|()| r)) {
                 Ok(result) => self.solved(task, &result),
                 Err(failure) => self.failures.push(failure),
@@ -141,6 +153,13 @@ impl FabricReport {
         }
     }
 
+    fn draped(&mut self, task: &Task, draped: &Drape) {
+        self.drapes.push(draped.case.clone());
+        self.findings.extend(draped.findings.iter().cloned());
+        self.predictions.extend(drape::predictions(task, draped));
+        self.drape_parity.extend(drape::point(task, draped));
+    }
+
     fn tested(&mut self, t: &Tested) {
         let Some((symbol, unit, measured)) = &t.stiffness else { return };
         let direction = t.simulated.direction.map_or("", Direction::name);
@@ -168,6 +187,7 @@ impl FabricReport {
                 measured_half_width: measured.ci95(),
                 simulated,
                 simulated_half_width: band.map(|b| b.half_width),
+                simulated_band: None,
             });
         }
     }
@@ -250,7 +270,7 @@ pub fn summary(reports: &[FabricReport], work: &Work) -> Columns {
     let cases: Vec<&str> = work
         .cases
         .iter()
-        .filter(|c| c.sheet.is_some() && c.section.is_none())
+        .filter(|c| c.sheet.is_some() && c.section.is_none() && !matches!(c.analysis, Analysis::Drape { .. }))
         .map(|c| c.name.as_str())
         .collect();
     let deflections = cases.iter().map(|c| format!("w_max {c} (mm)"));
@@ -324,6 +344,9 @@ fn overview(reports: &[FabricReport], failures: &[Failure], charts: bool) -> Vec
         if reports.iter().any(|r| !r.re_extracted.is_empty()) {
             figures.push(figure("Parameters of friction laws against measured ones", "friction.png"));
         }
+        if reports.iter().any(|r| !r.drape_parity.is_empty()) {
+            figures.push(figure("Simulated against measured drape", "drape_parity.png"));
+        }
         blocks.push(Block::Figures(figures));
     }
     blocks.extend(failures.iter().map(|f| {
@@ -345,7 +368,11 @@ fn fabric_section(r: &FabricReport, charts: bool) -> Section {
         let cases = r.deflections.iter().map(|(case, _)| figure(case, &format!("{}/{case}.png", r.name)));
         let friction =
             r.friction.iter().map(|f| figure(&f.replace('_', ": "), &format!("{}/{f}.png", r.name)));
-        blocks.push(Block::Figures(tests.chain(friction).chain(cases).collect()));
+        let drapes = r
+            .drapes
+            .iter()
+            .flat_map(|case| ["", "_view"].map(|end| figure(case, &format!("{}/{case}{end}.png", r.name))));
+        blocks.push(Block::Figures(tests.chain(friction).chain(cases).chain(drapes).collect()));
     }
     blocks.push(Block::Findings(r.findings.clone()));
     Section { heading: r.name.clone(), blocks }

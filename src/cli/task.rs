@@ -17,8 +17,8 @@ use crate::section::ShellSection;
 use crate::solve::Options as SolveOptions;
 use crate::study::bending::{BendingResult, simulate_records, simulate_strips};
 use crate::study::{
-    self, BendingKind, BendingTest, Case, CaseResult, Comparison, Prediction, PreparedCase, PreparedTest,
-    Uncertainty, VirtualCurve, VirtualTest, compare_curves, measured_curve,
+    self, Analysis, BendingKind, BendingTest, Case, CaseResult, Comparison, Drape, Prediction, PreparedCase,
+    PreparedTest, Uncertainty, VirtualCurve, VirtualTest, compare_curves, measured_curve,
 };
 
 /// Cases and fabrics on the command line.
@@ -185,6 +185,20 @@ impl Task<'_> {
             Ok(prepared.solve_measured(section, &inputs)?)
         });
         solved.map_err(|f| f.of(&self.name()))
+    }
+
+    /// Whether its case is a drape.
+    pub fn is_drape(&self) -> bool {
+        matches!(self.case.analysis, Analysis::Drape { .. })
+    }
+
+    /// Searches the states of a drape.
+    pub fn drape(&self, progress: &(dyn Fn() + Sync)) -> Result<Drape, Failure> {
+        let options = SolveOptions::default();
+        let draped = self
+            .section()
+            .and_then(|(section, _)| Ok(study::drape(self.case, &section, &options, progress)?));
+        draped.map_err(|f| f.of(&self.name()))
     }
 
     /// Simulates a `[virtual_test]` along warp and weft and compares it with the sheet.

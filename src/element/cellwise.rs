@@ -38,11 +38,12 @@ pub struct Cellwise {
 }
 
 impl Cellwise {
-    /// From the cells, the map of strains to the material axes, the stiffness of the part that stays
-    /// linear, and the rigid links of a warped element.
+    /// From the cells, the map of strains to the material axes, whether the membrane is smoothed over all
+    /// cells as one, the stiffness of the part that stays linear, and the rigid links of a warped element.
     pub(super) fn new(
         cells: impl Iterator<Item = Cell>,
         to_material: &Matrix3<f64>,
+        one_membrane_cell: bool,
         linear: Matrix24,
         links: Option<Matrix24>,
     ) -> Self {
@@ -61,7 +62,13 @@ impl Cellwise {
             }
             CellGradient { area: cell.area, membrane: to_material * membrane, bending: to_material * bending }
         };
-        Self { cells: cells.map(gradient).collect(), linear, links }
+        let mut cells: Vec<CellGradient> = cells.map(gradient).collect();
+        if one_membrane_cell {
+            let area: f64 = cells.iter().map(|c| c.area).sum();
+            let mean = cells.iter().fold(Gradient::zeros(), |g, c| g + c.membrane * (c.area / area));
+            cells.iter_mut().for_each(|c| c.membrane = mean);
+        }
+        Self { cells, linear, links }
     }
 
     /// Areas of the cells (m²).

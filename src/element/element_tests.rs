@@ -2,7 +2,7 @@
 //! design document's independent implementation.
 
 use super::*;
-use crate::element::Cells;
+use crate::element::{Cells, Membrane};
 use nalgebra::{DMatrix, Rotation3};
 
 fn isotropic(twist: f64) -> ShellSection {
@@ -48,6 +48,7 @@ fn zero_energy_modes_match_the_table() {
             cells: Cells::from_count(nc).unwrap(),
             shear_stabilisation: 0.0,
             drilling: Drilling::HughesBrezzi,
+            ..Formulation::default()
         };
         for corners in shapes() {
             let x = Vector3::x();
@@ -87,4 +88,34 @@ fn a_warp_axis_normal_to_the_element_is_refused() {
     let corners = shapes()[0];
     let e = Prepared::from_corners(&corners, &isotropic(1.0), Formulation::default(), &Vector3::z());
     assert_eq!(e.err(), Some(MaterialAxisError));
+}
+
+/// One membrane cell leaves no motion without energy, strains a uniform state as four cells do, and
+/// nearly nothing else of a thin sheet.
+#[test]
+fn one_membrane_cell_is_stabilised_and_exact_for_uniform_strain() {
+    let prepared = |corners: &[Point3<f64>; 4], membrane, thin: f64| {
+        let mut section = isotropic(1.0);
+        section.d_b *= thin;
+        let formulation = Formulation { membrane, ..Formulation::default() };
+        Prepared::from_corners(corners, &section, formulation, &Vector3::x()).unwrap()
+    };
+    for corners in shapes() {
+        let [one, four] = [Membrane::OneCell, Membrane::Cells].map(|m| prepared(&corners, m, 1.0));
+        assert_eq!(zero_modes(one.stiffness()), 6);
+        // u = 2x + y, v = 3y - x with the rotation that goes with it.
+        let field = SVector::<f64, 12>::from_fn(|k, _| {
+            let [x, y] = one.frame.xy[k / 3];
+            [2.0 * x + y, 3.0 * y - x, -1.0][k % 3]
+        });
+        let [a, b] = [&one, &four].map(|e| e.membrane_stiffness() * field);
+        assert!((a - b).norm() < 1e-12 * b.norm());
+        // The in-plane bending of the element, u = ξη.
+        let bent = SVector::<f64, 12>::from_fn(|k, _| if k % 3 == 0 { [1.0, -1.0][k / 3 % 2] } else { 0.0 });
+        let [one, four] = [Membrane::OneCell, Membrane::Cells].map(|m| {
+            let k = prepared(&corners, m, 1e-6).membrane_stiffness();
+            bent.dot(&(k * bent))
+        });
+        assert!(one < 1e-4 * four, "{one:e} of {four:e}");
+    }
 }

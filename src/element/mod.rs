@@ -26,14 +26,32 @@ pub use smoothing::{Cell, Cells};
 /// How an element is formulated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Formulation {
-    /// Smoothing cells for membrane and bending.
+    /// Smoothing cells for bending, and for the membrane if that has no cell of its own.
     pub cells: Cells,
+    /// Smoothing of the membrane.
+    pub membrane: Membrane,
     /// Stabilisation α of the transverse shear, `1/S_i + α h² / (3.5 B_i)` with `h` the longest
     /// side: 0 as the seed paper has it, 0.05 by default. It removes the loss of digits of very
     /// thin sheets.
     pub shear_stabilisation: f64,
     /// What resists the rotation θz about the normal.
     pub drilling: Drilling,
+}
+
+/// How the membrane strain of an element is smoothed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Membrane {
+    /// Over the cells of the formulation.
+    Cells,
+    /// Over the whole element, as bending is not: for thin sheets that bend far across the mesh.
+    ///
+    /// A quad whose corners lie on a bent sheet is warped, and no flat quad has the lengths of its
+    /// four sides and of both diagonals: four cells strain it in five ways where a surface has
+    /// three, so that a coarse mesh resists bending about axes oblique to its lines with the
+    /// stiffness of the membrane. One cell keeps the three. What is left of the other two is a
+    /// stabilisation, `t_b² / (t_b² + A)` of their stiffness: about that of bending in a thin sheet
+    /// (`A` is the element's area, `t_b² = 12 B / D_m`), and all of it in a thick one.
+    OneCell,
 }
 
 /// The stiffness given to the drilling rotation θz.
@@ -52,13 +70,23 @@ pub enum Drilling {
 impl Default for Formulation {
     /// Four cells, α = 0.05, scaled drilling penalty.
     fn default() -> Self {
-        Self { cells: Cells::grid(2, 2), shear_stabilisation: 0.05, drilling: Drilling::Scaled }
+        Self {
+            cells: Cells::grid(2, 2),
+            membrane: Membrane::Cells,
+            shear_stabilisation: 0.05,
+            drilling: Drilling::Scaled,
+        }
     }
 }
 
 impl Formulation {
     /// The seed paper's element: four cells, no shear stabilisation, drilling spring 1e-3.
     pub fn seed() -> Self {
-        Self { cells: Cells::grid(2, 2), shear_stabilisation: 0.0, drilling: Drilling::Seed(1e-3) }
+        Self {
+            cells: Cells::grid(2, 2),
+            membrane: Membrane::Cells,
+            shear_stabilisation: 0.0,
+            drilling: Drilling::Seed(1e-3),
+        }
     }
 }

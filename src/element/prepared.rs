@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use super::cellwise::Cellwise;
 use super::quad4::{Frame, GAUSS_2X2, gauss_point};
-use super::{Cell, Drilling, Formulation, drilling, shear};
+use super::{Cell, Cells, Drilling, Formulation, Membrane, drilling, shear};
 use crate::section::{ShellSection, strain_rotation};
 
 /// 12 x 12, three dofs a node.
@@ -36,6 +36,8 @@ pub struct Prepared {
     gamma: f64,
     /// The seed's drilling spring (N·m).
     spring: f64,
+    /// Part of the stiffness of several membrane cells that one cell is given.
+    stabilisation: f64,
     formulation: Formulation,
 }
 
@@ -62,7 +64,10 @@ impl Prepared {
         let ShellSection { d_m, d_b, d_s, .. } = stabilised.rotated(angle);
         let gamma = drilling::penalty(formulation.drilling, section, frame.area());
         let to_material = strain_rotation(angle);
-        let mut element = Self { frame, d_m, d_b, d_s, to_material, gamma, spring: 0.0, formulation };
+        let thickness_squared = section.bending_thickness_squared();
+        let stabilisation = thickness_squared / (thickness_squared + frame.area());
+        let mut element =
+            Self { frame, d_m, d_b, d_s, to_material, gamma, spring: 0.0, stabilisation, formulation };
         if let Drilling::Seed(factor) = formulation.drilling {
             let largest = |k: Matrix12| k.diagonal().max();
             let (membrane, plate) = (element.membrane_stiffness(), element.plate_stiffness());
@@ -107,10 +112,20 @@ impl Prepared {
     /// Stiffness of membrane and drilling penalty in element axes, dofs `(u, v, θz)` node by node.
     pub fn membrane_stiffness(&self) -> Matrix12 {
         let mut k = drilling::stiffness(&self.frame.xy, self.gamma);
-        for cell in self.cells() {
-            let b = membrane_matrix(&cell);
-            k += b.transpose() * (self.d_m * cell.area) * b;
-        }
+        let smoothed = |cells: Cells| {
+            cells.over(&self.frame.xy).fold(Matrix12::zeros(), |k, cell| {
+                let b = membrane_matrix(&cell);
+                k + b.transpose() * (self.d_m * cell.area) * b
+            })
+        };
+        let all = smoothed(self.formulation.cells);
+        k += match self.formulation.membrane {
+            Membrane::Cells => all,
+            Membrane::OneCell => {
+                let one = smoothed(Cells::grid(1, 1));
+                one + (all - one) * self.stabilisation
+            }
+        };
         for i in 0..4 {
             k[(3 * i + 2, 3 * i + 2)] += self.spring;
         }
@@ -140,9 +155,17 @@ impl Prepared {
             }
         }
         let t = &self.to_material;
-        let linear = Self { d_m: t.transpose() * d_m * t, d_b: t.transpose() * d_b * t, ..*self };
+        let bare = |d_m, d_b| Self { d_m, d_b, stabilisation: 0.0, ..*self }.local_stiffness();
+        let rest = [d_m, d_b].map(|d| t.transpose() * d * t);
+        let one_cell = self.formulation.membrane == Membrane::OneCell;
+        let linear = if one_cell {
+            // The stabilisation stays linear, whatever follows a law.
+            bare(rest[0], rest[1]) + (self.local_stiffness() - bare(self.d_m, self.d_b))
+        } else {
+            Self { d_m: rest[0], d_b: rest[1], ..*self }.local_stiffness()
+        };
         let links = (!self.frame.is_plane()).then(|| self.links(&Matrix3::identity()));
-        Cellwise::new(self.cells(), t, linear.local_stiffness(), links)
+        Cellwise::new(self.cells(), t, one_cell, linear, links)
     }
 
     /// `tᵀ k t` of the stiffness `k` of the element plane.

@@ -42,7 +42,7 @@ use thiserror::Error;
 
 pub use arc::{ArcLength, follow};
 pub use drive::{Leg, drive};
-pub use flow::{Flow, relax};
+pub use flow::{Flow, relax, relax_from};
 pub use stability::Stability;
 
 use self::flow::noise;
@@ -323,7 +323,7 @@ pub fn search(
     match method {
         Method::Newton(perturbation) => grow(&system, settings, *perturbation, observe),
         Method::ArcLength(arc) => arc::follow_path(&system, settings, arc, observe),
-        Method::Flow(flow) => flow::relax_system(&system, settings, flow, observe),
+        Method::Flow(flow) => flow::relax_system(&system, State::rest(&model.mesh), settings, flow, observe),
     }
 }
 

@@ -6,10 +6,11 @@ use std::str::FromStr;
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
 use super::case::{
-    Case, DrillingChoice, LoadTable, Profile, SectionTable, Shape, Sheet, Subcells, SupportKind, SupportTable,
+    Analysis, Case, DrillingChoice, LoadTable, MembraneChoice, Profile, SectionTable, Shape, Sheet, Subcells,
+    SupportKind, SupportTable,
 };
 use super::{StudyError, rigid};
-use crate::element::{Cells, Drilling, Formulation};
+use crate::element::{Cells, Drilling, Formulation, Membrane};
 use crate::finding::Place;
 use crate::mesh::{self, MeshError, QuadMesh};
 use crate::model::{Dof, Load, Model, Support};
@@ -65,6 +66,11 @@ pub fn formulation(case: &Case) -> Result<Formulation, StudyError> {
         Some(DrillingChoice::HughesBrezzi) => formulation.drilling = Drilling::HughesBrezzi,
         Some(DrillingChoice::Seed) => formulation.drilling = Drilling::Seed(1e-3),
     }
+    let of_drape = matches!(case.analysis, Analysis::Drape { .. }).then_some(MembraneChoice::OneCell);
+    formulation.membrane = match case.element.membrane.or(of_drape) {
+        None | Some(MembraneChoice::Cells) => Membrane::Cells,
+        Some(MembraneChoice::OneCell) => Membrane::OneCell,
+    };
     if let Some(alpha) = case.element.shear_stabilisation {
         if !(0.0..=1.0).contains(&alpha) {
             return Err(case.inconsistent(format!("shear_stabilisation = {alpha}: it must be 0 to 1")));

@@ -5,6 +5,7 @@ pub mod bending;
 mod build;
 mod case;
 mod compare;
+mod drape;
 mod dynamics;
 mod nonlinear;
 mod prepared;
@@ -22,6 +23,7 @@ pub use case::{
     Reference, ReferenceKind, SectionTable, Shape, Sheet, TestFormulation, VirtualTest,
 };
 pub use compare::{Comparison, compare_curves, measured_curve};
+pub use drape::{Drape, DrapeState, Folds, drape, drape_stages, measured_drape};
 pub use dynamics::History;
 pub use nonlinear::{LoadPath, PathStep};
 pub use prepared::PreparedCase;

@@ -284,6 +284,9 @@ fn analyse(prepared: &PreparedCase<'_>, model: &Model) -> Result<Outcome, StudyE
             dynamics(prepared, model, &settings, large)
         }
         Analysis::Nonlinear(table) => equilibrium(prepared, model, table),
+        Analysis::Drape { .. } => {
+            Err(case.inconsistent("a drape is a search for many states, not one solve".into()))
+        }
     }
 }
 

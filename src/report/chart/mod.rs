@@ -9,6 +9,7 @@
 mod axes;
 mod canvas;
 mod contour;
+mod drape;
 mod fabric;
 mod field;
 mod force;
@@ -24,6 +25,7 @@ mod spread;
 
 use thiserror::Error;
 
+pub use drape::{DrapePlot, drape_shadow, drape_view};
 pub use fabric::{SimulatedCurve, bending, compression, shear, tensile};
 pub use field::{FieldPlot, field};
 pub use force::{ForcePlot, bend_loops};

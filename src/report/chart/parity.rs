@@ -27,6 +27,8 @@ pub struct ParityPoint {
     pub simulated: f64,
     /// Half of the 95 % band of the mean fabric, for the upright bar.
     pub simulated_half_width: Option<f64>,
+    /// Lowest and highest simulated value, for a bar.
+    pub simulated_band: Option<[f64; 2]>,
 }
 
 /// How far simulated values are from measured ones.
@@ -95,6 +97,10 @@ pub fn parity(points: &[ParityPoint], title: &str, subtitle: &str) -> Result<Vec
         rows.push(Row::Gap);
         let text = "Bars: 95 % interval of the mean of the repeats, measured across, simulated upright.";
         rows.push(Row::Remark(text.into(), GREY));
+    }
+    if usable.iter().any(|p| p.simulated_band.is_some()) {
+        rows.push(Row::Gap);
+        rows.push(Row::Remark("Upright bars: lowest to highest simulated value.".into(), GREY));
     }
     panel::draw(&mut canvas, &rows, [1420.0, WIDTH as f64 - 40.0], [200.0, 1300.0])?;
     canvas.png(title)
@@ -173,6 +179,10 @@ fn draw_panel(
             let bar = ends(point.simulated, half).map(|v| (at.0, frame.at(range.from, v).1));
             canvas.line(&bar, Stroke::solid(INK, 2.2))?;
         }
+        if let Some(band) = point.simulated_band {
+            let [low, high] = band.map(|v| frame.at(range.from, v / factor).1);
+            canvas.line(&[(at.0, low), (at.0, high)], Stroke::solid(INK, 2.2))?;
+        }
     }
     for (point, at) in points.iter().zip(&places) {
         let group = groups.iter().position(|g| *g == point.group).unwrap_or(0);
@@ -192,8 +202,8 @@ fn range(points: &[&ParityPoint], factor: f64) -> Range {
     let values = points.iter().flat_map(|p| {
         let across = p.measured_half_width.unwrap_or(0.0);
         let upright = p.simulated_half_width.unwrap_or(0.0);
-        [p.measured - across, p.measured + across, p.simulated - upright, p.simulated + upright]
-            .map(|v| v / factor)
+        let [low, high] = p.simulated_band.unwrap_or([p.simulated - upright, p.simulated + upright]);
+        [p.measured - across, p.measured + across, low, high].map(|v| v / factor)
     });
     let smallest = points.iter().map(|p| p.measured.min(p.simulated) / factor).fold(f64::INFINITY, f64::min);
     let largest = values.clone().fold(f64::NEG_INFINITY, f64::max);

@@ -419,6 +419,7 @@ fn parity_of_one_and_of_four_quantities() {
         measured_half_width: Some(0.06 * scale * (1.0 + 0.9 * i as f64)),
         simulated: scale * (1.0 + 0.9 * i as f64) * (1.0 + 0.17 * (i as f64 * 2.1).sin()),
         simulated_half_width: Some(0.05 * scale * (1.0 + 0.9 * i as f64)),
+        simulated_band: i.is_multiple_of(3).then_some([0.9 * scale, 1.2 * scale * (1.0 + i as f64)]),
     };
     let one: Vec<ParityPoint> = (0..10).map(|i| point(i, "Bending rigidity B", "N·m", 1.1e-6)).collect();
     drawn("parity-one.png", || parity(&one, "Simulated against measured", "ten fabrics"));
@@ -433,4 +434,44 @@ fn parity_of_one_and_of_four_quantities() {
     four.extend((0..4).map(|i| point(i, "Drape coefficient", "%", 22.0)));
     four.extend((0..1).map(|i| point(i, "Bending length", "m", 0.021)));
     drawn("parity-four.png", || parity(&four, "Simulated against measured", "ten fabrics"));
+}
+
+#[test]
+fn a_draped_sheet_from_above_and_aside() {
+    let tau = std::f64::consts::TAU;
+    let (radial, around) = (6, 72);
+    let nodes: Vec<[f64; 3]> = (0..=radial)
+        .flat_map(|i| (0..around).map(move |k| (f64::from(i) / f64::from(radial), f64::from(k))))
+        .map(|(part, k)| {
+            let angle = tau * k / f64::from(around);
+            let r = 0.09 + 0.06 * part * (0.75 + 0.2 * part * (6.0 * angle).cos());
+            [r * angle.cos(), r * angle.sin(), -0.04 * part * part * (1.0 - 0.4 * (6.0 * angle).cos())]
+        })
+        .collect();
+    let node = |i: i32, k: i32| (i * around + k % around) as u32;
+    let quads: Vec<[u32; 4]> = (0..radial)
+        .flat_map(|i| {
+            (0..around).map(move |k| [node(i, k), node(i + 1, k), node(i + 1, k + 1), node(i, k + 1)])
+        })
+        .collect();
+    let outline: Vec<f64> = nodes[nodes.len() - around as usize..].iter().map(|p| p[0].hypot(p[1])).collect();
+    let plot = DrapePlot {
+        title: "Drape".into(),
+        subtitle: "made up".into(),
+        origin: "synthetic data".into(),
+        nodes: &nodes,
+        quads: &quads,
+        disc_radius: 0.09,
+        sheet_radius: 0.15,
+        outline: &outline,
+        values: vec![("Drape coefficient".into(), "60 %".into())],
+        remarks: vec!["nothing measured".into()],
+    };
+    drawn("drape-shadow.png", || drape_shadow(&plot));
+    drawn("drape-view.png", || drape_view(&plot));
+    let none: &[[u32; 4]] = &[];
+    let empty = DrapePlot { quads: none, ..plot.clone() };
+    assert!(matches!(drape_view(&empty), Err(ChartError::NothingToDraw { .. })));
+    let short = DrapePlot { nodes: &nodes[1..], ..plot };
+    assert!(matches!(drape_shadow(&short), Err(ChartError::Inconsistent { .. })));
 }

@@ -10,6 +10,7 @@ use super::system::System;
 use super::{Method, NonlinearError, Perturbation, Progress, Settings, Solution, State, Step, stability};
 use crate::model::Model;
 use crate::solve::linear::Options;
+use crate::solve::plan::Plan;
 
 /// How to flow.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,14 +66,31 @@ pub fn relax(
     super::search(model, &plan, settings, &Method::Flow(*flow), options, observe)
 }
 
+/// The same from a state of the sheet instead of the rest, with a [`plan`](super::plan) of the model.
+///
+/// # Errors
+/// See [`relax`].
+pub fn relax_from(
+    model: &Model,
+    plan: &Plan,
+    start: State,
+    settings: &Settings,
+    flow: &Flow,
+    options: &Options,
+    observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
+) -> Result<Solution, NonlinearError> {
+    relax_system(&System::new(model, plan, settings, options)?, start, settings, flow, observe)
+}
+
 pub(super) fn relax_system(
     system: &System<'_>,
+    start: State,
     settings: &Settings,
     flow: &Flow,
     mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    let mut state = State::rest(&system.model.mesh);
-    let first = first_rate(system, system.model, &state);
+    let mut state = start;
+    let first = first_rate(system, system.model, &State::rest(&system.model.mesh));
     let noise = noise(system, &Perturbation { size: flow.perturbation, seed: flow.seed });
     let mut inner = Settings { iterations: INNER_ITERATIONS, ..settings.clone() };
     let (mut pace, mut perturbed, mut kicks) = (Pace::new(first), flow.perturbation > 0.0, 0);

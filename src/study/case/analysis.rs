@@ -48,6 +48,23 @@ pub enum Analysis {
     },
     /// Statics in large rotations.
     Nonlinear(NonlinearTable),
+    /// A round sheet hangs from a disc: an `annulus` held at `inner`, in large rotations.
+    Drape {
+        /// Folds that the sheet is given at the start, one search for each: the equilibria are many.
+        #[serde(default = "default_folds")]
+        folds: Vec<usize>,
+        /// How often the cells are halved for the state of lowest energy.
+        #[serde(default = "default_refinements")]
+        refinements: usize,
+    },
+}
+
+fn default_folds() -> Vec<usize> {
+    vec![2, 3, 4, 5, 6, 7]
+}
+
+fn default_refinements() -> usize {
+    1
 }
 
 /// `[analysis]` with `kind = "nonlinear"`; what is left out is chosen by the method.

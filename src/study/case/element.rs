@@ -10,6 +10,9 @@ pub struct ElementTable {
     pub profile: Option<Profile>,
     /// Smoothing cells: a number (1, 2, 3, 4, 9, 16 ...) or `[along_xi, along_eta]`; 4.
     pub subcells: Option<Subcells>,
+    /// Smoothing cells of the membrane: `cells` (as bending) or `one_cell`; `cells`, in a drape
+    /// `one_cell`.
+    pub membrane: Option<MembraneChoice>,
     /// α of the transverse shear; 0.05, seed 0.
     pub shear_stabilisation: Option<f64>,
     /// What holds the drilling rotation; `scaled`, seed `seed`.
@@ -44,4 +47,14 @@ pub enum DrillingChoice {
     HughesBrezzi,
     /// The paper's spring, 1e-3 of the largest diagonal term.
     Seed,
+}
+
+/// Smoothing of the membrane as written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MembraneChoice {
+    /// The cells of bending.
+    Cells,
+    /// One cell and a stabilisation: for thin sheets that bend far.
+    OneCell,
 }

@@ -24,7 +24,7 @@ use crate::finding::Place;
 pub use analysis::{Analysis, MethodChoice, NonlinearTable};
 pub use bending_test::{BendingKind, BendingTest};
 pub use check::{Check, ProbeTable, Reference, ReferenceKind};
-pub use element::{DrillingChoice, ElementTable, Profile, Subcells};
+pub use element::{DrillingChoice, ElementTable, MembraneChoice, Profile, Subcells};
 pub use error::CaseError;
 pub use loads::{LoadTable, SupportKind, SupportTable};
 pub use section::SectionTable;

@@ -203,6 +203,7 @@ fn formulation(cells: Layout, alpha: f64, drilling: DrillingChoice) -> Formulati
             DrillingChoice::HughesBrezzi => Drilling::HughesBrezzi,
             DrillingChoice::Seed => Drilling::Seed(1e-3),
         },
+        ..Formulation::default()
     }
 }
 

@@ -1,0 +1,201 @@
+//! What `solve` and `run` show of a drape.
+
+use serde_json::{Value, json};
+
+use super::diagnostics::Failure;
+use super::output::Columns;
+use super::task::Task;
+use super::tree::Tree;
+use crate::instrument::Origin;
+use crate::quantity::significant;
+use crate::report::chart::{self, DrapePlot, ParityPoint};
+use crate::report::json::text;
+use crate::report::table::{PredictionRow, relative_error};
+use crate::report::vtu::{MeshField, vtu};
+use crate::study::{Drape, DrapeState, measured_drape};
+
+/// The measured coefficient of the task's fabric (0 to 1) and its method.
+fn measured<'a>(task: &'a Task) -> Option<(f64, &'a str)> {
+    measured_drape(task.fabric?)
+}
+
+fn percent(ratio: f64) -> String {
+    format!("{:.1}", 100.0 * ratio)
+}
+
+/// One line a drape.
+pub fn table<'a>(draped: impl Iterator<Item = (&'a Task<'a>, &'a Drape)>) -> Columns {
+    let mut table = Columns::new([
+        "drape",
+        "fabric",
+        "coefficient (%)",
+        "band (%)",
+        "measured (%)",
+        "nodes",
+        "amplitude (mm)",
+        "elements",
+        "residual",
+        "state",
+    ]);
+    for (task, d) in draped {
+        let ([low, high], s) = (d.band(), &d.finest);
+        table.row([
+            d.case.clone(),
+            task.fabric_name().unwrap_or_default().into(),
+            percent(s.coefficient),
+            format!("{} to {}", percent(low), percent(high)),
+            measured(task).map_or("-".into(), |(m, _)| percent(m)),
+            s.folds.count.to_string(),
+            significant(1e3 * s.folds.amplitude),
+            s.elements.to_string(),
+            format!("{:.0e}", s.residual),
+            if s.negative_pivots == 0 { "stable".into() } else { "unstable".to_string() },
+        ]);
+    }
+    table
+}
+
+fn state(s: &DrapeState) -> Value {
+    json!({
+        "start_folds": s.start, "elements": s.elements, "coefficient": s.coefficient,
+        "nodes": s.folds.count, "harmonic": s.folds.harmonic, "amplitude": s.folds.amplitude,
+        "energy": s.energy, "strain_energy": s.strain_energy, "residual": s.residual,
+        "negative_pivots": s.negative_pivots, "lowest_eigenvalue": s.lowest_eigenvalue,
+        "iterations": s.iterations,
+    })
+}
+
+/// An entry of `kesf.solution/1`.
+pub fn entry(task: &Task, d: &Drape) -> Value {
+    let mesh = &d.model.mesh;
+    let measured = measured(task).map(|(value, method)| json!({"value": value, "method": method}));
+    json!({
+        "case": d.case,
+        "fabric": task.fabric_name(),
+        "status": "ok",
+        "model": {"nodes": mesh.nodes.len(), "elements": mesh.quads.len(), "dofs": 6 * mesh.nodes.len()},
+        "results": {"drape": {
+            "coefficient": d.finest.coefficient,
+            "band": d.band(),
+            "measured": measured,
+            "finest": state(&d.finest),
+            "states": d.states.iter().map(state).collect::<Vec<_>>(),
+            "failed_starts": d.failed.iter().map(|(start, e)| json!({"start_folds": start, "code": e.code()})).collect::<Vec<_>>(),
+            "outline": {"unit": "m", "step_deg": 1, "distance": d.outline},
+        }},
+        "findings": d.findings,
+    })
+}
+
+/// Coefficient beside what was measured, and the least and greatest of the states, for the table of
+/// predictions.
+pub fn predictions(task: &Task, d: &Drape) -> Vec<PredictionRow> {
+    let measured = measured(task).map(|(m, _)| m);
+    let row = |quantity: &str, simulated: f64, measured: Option<f64>| PredictionRow {
+        fabric: task.fabric_name().unwrap_or_default().into(),
+        case: d.case.clone(),
+        quantity: quantity.into(),
+        simulated: Some(simulated),
+        measured,
+        unit: "1".into(),
+        error: measured.and_then(|m| relative_error(simulated, m)),
+        // Those are for the spread of measured inputs, which a band of states is not.
+        simulated_low: None,
+        simulated_high: None,
+    };
+    let [low, high] = d.band();
+    vec![
+        row("drape_coefficient", d.finest.coefficient, measured),
+        row("drape_coefficient_least", low, None),
+        row("drape_coefficient_greatest", high, None),
+        row("drape_nodes", d.finest.folds.count as f64, None),
+    ]
+}
+
+/// The point of a parity chart, where a coefficient was measured.
+pub fn point(task: &Task, d: &Drape) -> Option<ParityPoint> {
+    let (measured, _) = measured(task)?;
+    Some(ParityPoint {
+        label: task.fabric_name()?.into(),
+        group: "elastic".into(),
+        quantity: "Drape coefficient".into(),
+        unit: "%".into(),
+        measured: 100.0 * measured,
+        measured_half_width: None,
+        simulated: 100.0 * d.finest.coefficient,
+        simulated_half_width: None,
+        simulated_band: Some(d.band().map(|b| 100.0 * b)),
+    })
+}
+
+/// `drape_parity.png`, if there is anything to compare.
+pub fn parity(tree: &Tree, points: &[ParityPoint]) -> Result<(), Failure> {
+    if !tree.charts() {
+        return Ok(());
+    }
+    let subtitle =
+        "elastic, lowest-energy state and band of the states found; without friction a sheet is too limp";
+    tree.chart("drape_parity.png", chart::parity(points, "Drape, simulated against measured", subtitle))?;
+    Ok(())
+}
+
+/// `<fabric>/<case>.json`, `.vtu`, `.png` (shadow) and `_view.png`.
+pub fn write(tree: &Tree, task: &Task, d: &Drape) -> Result<(), Failure> {
+    let stem = task.stem();
+    let document = json!({"schema": "kesf.solution/1", "solutions": [entry(task, d)]});
+    tree.write(&format!("{stem}.json"), text(&document)?.as_bytes())?;
+    let rest: Vec<[f64; 3]> = d.model.mesh.nodes.iter().map(|p| [p.x, p.y, p.z]).collect();
+    let now: Vec<[f64; 3]> = d.solution.state.position.iter().map(|p| [p.x, p.y, p.z]).collect();
+    let moved: Vec<f64> = now.iter().zip(&rest).flat_map(|(n, r)| [0, 1, 2].map(|k| n[k] - r[k])).collect();
+    let turned: Vec<f64> =
+        d.solution.state.rotation.iter().flat_map(|r| <[f64; 3]>::from(r.scaled_axis())).collect();
+    let fields = [
+        MeshField { name: "displacement", components: 3, values: &moved },
+        MeshField { name: "rotation", components: 3, values: &turned },
+    ];
+    tree.write(&format!("{stem}.vtu"), &vtu(&now, &d.model.mesh.quads, &fields, &[])?)?;
+    if tree.charts() {
+        let plot = plot(task, d, &now);
+        tree.chart(&format!("{stem}.png"), chart::drape_shadow(&plot))?;
+        tree.chart(&format!("{stem}_view.png"), chart::drape_view(&plot))?;
+    }
+    Ok(())
+}
+
+fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
+    let origin = task.fabric.map_or("", |f| match f.info.origin {
+        Origin::Measured => "measured data",
+        Origin::Published => "published data",
+        Origin::Synthetic => "synthetic data",
+    });
+    let ([low, high], s) = (d.band(), &d.finest);
+    let mut values = vec![
+        ("Drape coefficient".to_string(), format!("{} %", percent(s.coefficient))),
+        (format!("band of {} states", d.states.len()), format!("{} to {} %", percent(low), percent(high))),
+    ];
+    if let Some((value, _)) = measured(task) {
+        values.push(("measured".into(), format!("{} %", percent(value))));
+    }
+    values.extend([
+        ("nodes".to_string(), s.folds.count.to_string()),
+        ("amplitude".to_string(), format!("{} mm", significant(1e3 * s.folds.amplitude))),
+        ("elements".to_string(), s.elements.to_string()),
+        ("residual".to_string(), format!("{:.0e}", s.residual)),
+    ]);
+    DrapePlot {
+        title: task.case.title.clone(),
+        subtitle: format!(
+            "{}; state of lowest energy, {}",
+            task.fabric_name().unwrap_or("section of the case"),
+            if s.negative_pivots == 0 { "stable" } else { "UNSTABLE" }
+        ),
+        origin: origin.into(),
+        nodes,
+        quads: &d.model.mesh.quads,
+        disc_radius: d.disc_radius,
+        sheet_radius: d.sheet_radius,
+        outline: &d.outline,
+        values,
+        remarks: d.findings.iter().map(|f| f.message.clone()).collect(),
+    }
+}

@@ -1,0 +1,86 @@
+//! Own statements (equilibrium, stability, the same always) and limits that need no other program.
+
+use super::*;
+use approx::assert_relative_eq;
+use std::path::Path;
+
+const CASE: &str = r#"
+title = "t"
+[section]
+tensile_warp = "10000 N/m"
+tensile_weft = "10000 N/m"
+poisson = 0.2
+shear = "40 N/m"
+bending_warp = "BEND"
+bending_weft = "BEND"
+bending_coupling = "0 N·m"
+torsion = "TWIST"
+transverse_shear = "33 N/m"
+areal_density = "0.15 kg/m²"
+thickness = "0.4 mm"
+[sheet]
+shape = "annulus"
+inner_diameter = "18 cm"
+diameter = "30 cm"
+cells = [4, 48]
+[[supports]]
+set = "inner"
+kind = "clamped"
+[[loads]]
+kind = "gravity"
+[analysis]
+kind = "drape"
+folds = [3, 5]
+"#;
+
+fn case(b: f64, from: &str, to: &str) -> Case {
+    let text = CASE.replace("BEND", &format!("{b} N·m")).replace("TWIST", &format!("{} N·m", 0.5 * b));
+    assert!(text.contains(from));
+    Case::parse(Path::new("drape.toml"), &text.replace(from, to)).unwrap()
+}
+
+fn run(case: &Case) -> Drape {
+    let section = build::section(case.section.as_ref().unwrap()).unwrap();
+    drape(case, &section, &Options::default(), &|| ()).unwrap()
+}
+
+#[test]
+fn a_cloth_hangs_in_folds_and_does_so_always() {
+    let cloth = case(2e-5, "", "");
+    let drape = run(&cloth);
+    assert_eq!((drape.states.len(), drape.failed.len()), (2, 0));
+    assert_eq!((drape.states[0].elements, drape.finest.elements), (192, 768));
+    for state in drape.states.iter().chain([&drape.finest]) {
+        assert!(state.residual <= TOLERANCE && state.negative_pivots == 0, "{state:?}");
+        assert!(state.coefficient > 0.3 && state.coefficient < 0.95, "{state:?}");
+        assert!(state.folds.count >= 2 && state.folds.amplitude > 1e-3, "{state:?}");
+        assert!(state.energy < 0.0);
+    }
+    let [low, high] = drape.band();
+    assert!(low <= drape.finest.coefficient && drape.finest.coefficient <= high);
+    assert!(drape.findings.iter().any(|f| f.code == "S113"));
+    let again = run(&cloth);
+    assert_eq!((again.states, again.finest), (drape.states, drape.finest));
+}
+
+/// A ring as stiff as card stays flat: its shadow is the sheet.
+#[test]
+fn a_stiff_sheet_stays_flat() {
+    let drape = run(&case(0.1, "folds = [3, 5]", "folds = [3]\nrefinements = 0"));
+    assert_relative_eq!(drape.finest.coefficient, 1.0, epsilon = 1e-4);
+    assert_eq!(drape.finest.folds.count, 0);
+}
+
+#[test]
+fn what_is_no_drape_is_refused() {
+    let refused = |from, to| {
+        let case = case(1e-5, from, to);
+        let section = build::section(case.section.as_ref().unwrap()).unwrap();
+        drape(&case, &section, &Options::default(), &|| ()).unwrap_err().to_string()
+    };
+    assert!(refused("folds = [3, 5]", "folds = []").contains("S003"));
+    assert!(
+        refused("shape = \"annulus\"\ninner_diameter = \"18 cm\"", "shape = \"disc\"").contains("annulus")
+    );
+    assert!(refused("kind = \"drape\"\nfolds = [3, 5]", "kind = \"linear\"").contains("drape"));
+}
