@@ -13,7 +13,7 @@ use kesf::finding::explanations;
 const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("finding", &[], &["toml"]),
     ("quantity", &[], &[]),
-    ("instrument", &["finding", "quantity"], &["csv", "calamine", "encoding_rs", "toml"]),
+    ("instrument", &["finding", "quantity"], &["csv", "calamine", "cfb", "encoding_rs", "toml", "zip"]),
     ("characterise", &["finding", "quantity", "instrument"], &[]),
     ("section", &["finding", "quantity"], &[]),
     ("analytical", &["section"], &[]),

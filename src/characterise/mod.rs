@@ -25,6 +25,7 @@ pub use settings::{CycleChoice, Modulus, Settings};
 pub use sheet::{Branch, FabricSheet, Key, SpecimenResult, Window};
 pub use strip::{Strip, StripCycle};
 
+use crate::finding::Place;
 use crate::instrument::FabricInput;
 
 /// The parameter sheet of a fabric.
@@ -55,8 +56,12 @@ pub fn characterise(input: &FabricInput, settings: &Settings) -> FabricSheet {
     strip::add(&mut sheet, &input.fab, settings);
     tables::metadata(&mut sheet, input);
     tables::moduli(&mut sheet, settings);
-    let mut found = checks::plausibility(&sheet);
+    let mut found = checks::plausibility(&sheet, input);
     found.extend(checks::shear_directions(&sheet, settings));
     sheet.findings.append(&mut found);
+    // What concerns the fabric as a whole is found in its folder.
+    for finding in sheet.findings.iter_mut().filter(|f| f.place.is_none() && *input.path != *"") {
+        finding.place = Some(Place::file(&input.path));
+    }
     sheet
 }
