@@ -14,7 +14,7 @@ const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("finding", &[], &["toml"]),
     ("quantity", &[], &[]),
     ("law", &[], &[]),
-    ("instrument", &["finding", "quantity"], &["csv", "calamine", "encoding_rs", "toml"]),
+    ("instrument", &["finding", "quantity"], &["csv", "calamine", "cfb", "encoding_rs", "toml", "zip"]),
     ("characterise", &["finding", "quantity", "law", "instrument"], &[]),
     ("section", &["finding", "quantity", "law"], &[]),
     ("analytical", &["section"], &[]),

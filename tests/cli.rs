@@ -318,3 +318,46 @@ fn a_nonlinear_case_tells_how_it_came_there() {
     let both = run(&["solve", &path("hard.toml"), &path("cloth.toml")]);
     assert_eq!(code(&both), 1);
 }
+
+/// `check -v` says how each file was understood, and what each dialect knows of one that was not.
+#[test]
+fn check_explains_what_it_inferred() {
+    let told = stdout(&run(&["-v", "check", "kesf_data/twill/twill_bending_warp.txt"]));
+    for expected in [
+        "twill_bending_warp.txt\n  encoding Shift_JIS: not UTF-8, and the byte pairs are Japanese\n",
+        "delimiter '\\t', decimal mark '.': 1473 numbers so",
+        "\"曲げモーメント\" (gf・cm/cm) times 0.00980665 is N",
+        "maximum 2.5 1/cm (standard, not in the file)",
+        "bending warp (stated in line 3), specimen 2",
+    ] {
+        assert!(told.contains(expected), "{expected} is not in {told}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "lab.csv", "direction,warp\nkappa (1/cm),bar\n0,0\n1,1\n2,2\n");
+    let file = folder.path().join("lab.csv");
+    let output = run(&["-v", "check", file.to_str().unwrap()]);
+    assert_eq!(code(&output), 2);
+    let told = stdout(&output);
+    assert!(told.contains("dialect kesf: knows nothing; does not know kappa (1/cm), bar"), "{told}");
+    assert!(told.contains("[columns] curvature = [\"kappa\"]"), "{told}");
+    let document = json(&run(&["--json", "check", file.to_str().unwrap()]));
+    assert!(document["inference"][0]["decisions"].as_array().unwrap().len() > 3);
+    let examples = stdout(&run(&["-v", "list", "dialects"]));
+    assert!(examples.contains("name = \"kes-japanese\"") && examples.contains("[columns]"));
+}
+
+/// Moduli, windows and statistics stand in the sheet.
+#[test]
+fn a_sheet_shows_moduli_windows_and_statistics() {
+    let text = stdout(&run(&["characterise", "kesf_data/poplin"]));
+    assert!(text.contains("E tangent_low"), "{text}");
+    assert!(text.contains("tangent_low fitted over: 5 gf/cm .. 20 gf/cm"), "{text}");
+    let text = stdout(&run(&["-v", "characterise", "kesf_data/poplin"]));
+    assert!(text.contains("95 % interval of the mean"), "{text}");
+    let document = json(&run(&["--json", "characterise", "kesf_data/poplin"]));
+    let b = &document["fabrics"][0]["parameters"]["B"]["warp"];
+    // t(0.975, 2) = 4.30265273 (tables).
+    let half = 4.302_652_73 * b["sd"].as_f64().unwrap() / 3f64.sqrt();
+    assert!((b["ci95"].as_f64().unwrap() / half - 1.0).abs() < 1e-7);
+    assert_eq!(document["settings"]["B fitted over"], "0.5 1/cm .. 1.5 1/cm");
+}

@@ -213,17 +213,48 @@ fn fast_values_give_bending_and_shear_rigidity() {
     assert!(content.findings.iter().any(|f| f.code == "R104" && f.message.contains("E100-1")));
 }
 
+/// Numbers that no unit and no width may make infinite.
+#[test]
+fn numbers_stay_finite_in_si() {
+    let text = |width, y| format!("direction,warp\nwidth,{width}\nstrain (%),force (gf)\n0,0\n1,{y}\n2,2\n");
+    assert_eq!(code(&text("20 cm", "1e200")), "R017");
+    assert_eq!(code(&text("1e-306 m", "1e6")), "R017");
+    assert_eq!(code(&text("1e-320 m", "1")), "R013");
+}
+
+/// The same values with one row each: the symbol carries the direction, or columns do.
+#[test]
+fn fast_values_may_stand_in_rows() {
+    let rows = "parameter,unit,value\nW,g/m²,200\nC-1,mm,18\nC-2,mm,16\nEB5,%,3\nE100-1,%,4.1\n";
+    let columns = "property;unit;warp;weft\nbending length;mm;18;16\nEB5;%;3;-\nW;g/m²;200;\n";
+    for text in [rows, columns] {
+        let content = read("fast.csv", text);
+        let of = |p, d| {
+            let same = |r: &&kesf::instrument::ResultValue| r.parameter == p && r.direction == d;
+            content.results.iter().map(|(_, r)| r).find(same).unwrap().mean
+        };
+        let expected = |c: f64| 200.0 * c.powi(3) * 9.81e-12;
+        assert_relative_eq!(of(Parameter::B, Some(Direction::Warp)), expected(18.0), max_relative = 1e-12);
+        assert_relative_eq!(of(Parameter::B, Some(Direction::Weft)), expected(16.0), max_relative = 1e-12);
+        assert_relative_eq!(of(Parameter::G, None), 41.0, max_relative = 1e-12);
+    }
+    // Without a unit nothing is guessed.
+    assert_eq!(code("parameter,unit,value\nW,g/m²,200\nC-1,,18\n"), "R008");
+}
+
 /// What was inferred can be read: the words of `kesf check -v`.
 #[test]
 fn inference_is_told() {
     let text = "direction;warp\nK (1/cm);M (gf·cm/cm);what\n0,0;0,0;a\n1,5;0,1;b\n2,5;0,2;c\n";
     let told = read("a.csv", text).inference.join("\n");
     for expected in [
-        "encoding UTF-8",
-        "delimiter ';', decimal mark ','",
-        "dialect kesf",
-        "\"K\" and \"M\": bending",
-        "width 0.2 m",
+        "encoding UTF-8: the bytes are valid UTF-8",
+        "delimiter ';', decimal mark ',': 6 numbers so",
+        "words that dialects know, of 5 texts: kesf 3, kes-japanese 0, kes-european 0",
+        "\"K\" and \"M\": bending test, which the columns belong to",
+        "width 20 cm (standard, not in the file)",
+        "\"M\" (gf·cm/cm) times 0.00980665 is N",
+        "bending warp (stated in line 1), specimen not numbered of sample \"a\": 3 points in lines 3 to 5",
     ] {
         assert!(told.contains(expected), "{expected} is not in {told}");
     }
@@ -233,6 +264,17 @@ fn inference_is_told() {
     assert!(unknown.to_string().contains("\"kesf\" comes closest"), "{unknown}");
     assert!(unknown.to_string().contains("foo"), "{unknown}");
     assert!(!unknown.hint().is_empty());
+    // The error carries what was decided before it, and what a dialect file could say.
+    let told = unknown.inference.join("\n");
+    for expected in [
+        "encoding UTF-8",
+        "headings foo (1/cm) | moment (gf)",
+        "dialect kesf: knows moment (gf); does not know foo (1/cm)",
+        "dialect kes-japanese: knows nothing",
+        "[columns] curvature = [\"foo\"]",
+    ] {
+        assert!(told.contains(expected), "{expected} is not in {told}");
+    }
 }
 
 /// Two sheets: side-by-side curves with typed numbers, and a result table.

@@ -1,11 +1,13 @@
-//! One malformed file for every reading code: the code and the place that it must be given.
+//! One malformed file for every code of reading and characterising: the code and the place that it
+//! must be given.
 //!
-//! Kind: own. The files are small and written by hand; the places were counted in an editor.
+//! Kind: own. The files are small, synthetic and made for this; the places were counted in an editor.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use kesf::finding::{explain, explanations};
+use kesf::characterise::{Settings, characterise};
+use kesf::finding::{Finding, explain, explanations};
 use kesf::instrument::{Problem, ReadSettings, read_fabrics};
 
 /// Code, input below tests/malformed, and the place, below it too.
@@ -41,6 +43,38 @@ const CASES: &[(&str, &str, &str)] = &[
     ("R106", "r106_weft_FB2_1.csv", "r106_weft_FB2_1.csv:6"),
     ("R107", "r107-fast.csv", "r107-fast.csv:2:11"),
     ("R108", "r108-warning.json", "r108-warning.json"),
+    ("K001", "k001-five-samples.csv", "k001-five-samples.csv:6"),
+    ("K002", "k002-two-degrees.csv", "k002-two-degrees.csv:6"),
+    ("K003", "k003-kink.csv", "k003-kink.csv:6"),
+    ("K004", "k004-few-samples.csv", "k004-few-samples.csv:6"),
+    ("K005", "k005-low-maximum.csv", "k005-low-maximum.csv:6"),
+    ("K006", "k006-beyond-maximum.csv", "k006-beyond-maximum.csv:7"),
+    ("K007", "k007-two-maxima", "k007-two-maxima/b_warp_FB1_2.csv:7"),
+    ("K008", "k008-offset.csv", "k008-offset.csv:6"),
+    ("K009", "k009-noise.csv", "k009-noise.csv:6"),
+    ("K010", "k010-one-apart.csv", "k010-one-apart.csv:100"),
+    ("K011", "k011-newtons.csv", "k011-newtons.csv"),
+    ("K012", "k012-shear.csv", "k012-shear.csv"),
+    ("K013", "k013-swapped.csv", "k013-swapped.csv:100"),
+    ("K014", "k014-inferred.csv", "k014-inferred.csv:3:12"),
+    ("K016", "k016-table-and-curves", "k016-table-and-curves/results.csv:2:6"),
+    ("K017", "k017-no-mass.csv", "k017-no-mass.csv"),
+    ("K018", "k018-face-only.csv", "k018-face-only.csv:6"),
+    ("K020", "k020-table-only.csv", "k020-table-only.csv"),
+    ("K021", "k021-thickness", "k021-thickness"),
+    ("K030", "k030-fab.json", "k030-fab.json"),
+    ("K031", "k030-fab.json", "k030-fab.json"),
+    ("K032", "k030-fab.json", "k030-fab.json"),
+    ("K033", "k030-fab.json", "k030-fab.json"),
+    ("K034", "k030-fab.json", "k030-fab.json"),
+];
+
+/// Codes that no file can trigger, because reading refuses it or sets it right before; programs
+/// that fill a `FabricInput` themselves can, and the unit tests of `characterise` do.
+const NOT_FROM_FILES: &[(&str, &str)] = &[
+    ("K015", "a curve without a direction is refused with R012"),
+    ("K019", "specimens that share a number are renumbered with R103"),
+    ("K022", "values that are not finite are refused with R017"),
 ];
 
 fn root() -> PathBuf {
@@ -52,9 +86,11 @@ fn every_code_is_given_at_its_place() {
     for (code, input, place) in CASES {
         let batch = read_fabrics(&[root().join(input)], &ReadSettings::default(), &|_: &Path| ());
         let failures = batch.failures.iter().map(|e| (e.code(), e.place().to_string(), e.to_string()));
-        let findings = batch.fabrics.iter().flat_map(|f| &f.findings);
-        let findings = findings
-            .map(|f| (f.code, f.place.as_ref().map(ToString::to_string).unwrap_or_default(), f.to_string()));
+        // The findings of a sheet begin with those of reading.
+        let sheets = batch.fabrics.iter().map(|f| characterise(f, &Settings::default()));
+        let findings: Vec<Finding> = sheets.flat_map(|s| s.findings).collect();
+        let place_of = |f: &Finding| f.place.as_ref().map(ToString::to_string).unwrap_or_default();
+        let findings = findings.iter().map(|f| (f.code, place_of(f), f.to_string()));
         let all: Vec<_> = failures.chain(findings).collect();
         let expected = root().join(place).display().to_string();
         let found = all.iter().find(|(c, p, _)| c == code && *p == expected);
@@ -70,8 +106,9 @@ fn every_code_is_given_at_its_place() {
 #[test]
 fn every_code_has_an_explanation_and_a_file() {
     let explained: BTreeSet<&str> =
-        explanations().iter().map(|e| e.code.as_str()).filter(|c| c.starts_with('R')).collect();
-    let tested: BTreeSet<&str> = CASES.iter().map(|c| c.0).collect();
+        explanations().iter().map(|e| e.code.as_str()).filter(|c| c.starts_with(['R', 'K'])).collect();
+    let tested: BTreeSet<&str> =
+        CASES.iter().map(|c| c.0).chain(NOT_FROM_FILES.iter().map(|c| c.0)).collect();
     assert_eq!(explained, tested);
     assert!(Problem::CODES.iter().all(|c| explained.contains(c)));
 }

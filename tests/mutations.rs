@@ -3,12 +3,16 @@
 //!
 //! Kind: property. The long run is `cargo +nightly fuzz run parse`; this replays a short one.
 
+use std::io::{Cursor, Read, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use kesf::instrument::{FileContent, ReadSettings, Test, parse};
+use kesf::quantity::Unit;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 /// Valid files of every layout.
 fn seeds() -> Vec<Vec<u8>> {
@@ -32,6 +36,7 @@ fn seeds() -> Vec<Vec<u8>> {
     seeds.push(encoding_rs::SHIFT_JIS.encode(japanese).0.into_owned());
     seeds.push(encoding_rs::WINDOWS_1252.encode(portuguese).0.into_owned());
     seeds.push(include_bytes!("workbooks/twill.xlsx").to_vec());
+    seeds.push(include_bytes!("workbooks/twill.xls").to_vec());
     seeds
 }
 
@@ -93,6 +98,24 @@ fn mutated(seed: &[u8], other: &[u8], rng: &mut Pcg64) -> Vec<u8> {
     bytes
 }
 
+/// An archive whose parts are mutated and packed again: damage that the checksums do not catch.
+fn mutated_parts(seed: &[u8], rng: &mut Pcg64) -> Vec<u8> {
+    let mut parts = ZipArchive::new(Cursor::new(seed)).expect("an archive");
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    for i in 0..parts.len() {
+        let mut part = parts.by_index(i).expect("a part");
+        let (name, mut bytes) = (part.name().expect("a name").into_owned(), Vec::new());
+        part.read_to_end(&mut bytes).expect("its bytes");
+        if name.contains("sheet") || rng.random_range(0..4) == 0 {
+            bytes = mutated(&bytes, &bytes, rng);
+        }
+        zip.start_file(name, SimpleFileOptions::default().compression_method(CompressionMethod::Stored))
+            .expect("a part");
+        zip.write_all(&bytes).expect("its bytes");
+    }
+    zip.finish().expect("an archive").into_inner()
+}
+
 fn check(content: &FileContent) {
     for m in &content.measurements {
         assert_eq!(m.curve.x.len(), m.curve.y.len());
@@ -122,7 +145,11 @@ fn mutations_neither_panic_nor_hang_nor_leave_anything_unfinished() {
     let (mut read, mut slowest) = (0, Duration::ZERO);
     for _ in 0..count {
         let (a, b) = (rng.random_range(0..seeds.len()), rng.random_range(0..seeds.len()));
-        let bytes = mutated(&seeds[a], &seeds[b], &mut rng);
+        let bytes = if seeds[a].starts_with(b"PK") && rng.random_range(0..2) == 0 {
+            mutated_parts(&seeds[a], &mut rng)
+        } else {
+            mutated(&seeds[a], &seeds[b], &mut rng)
+        };
         let start = Instant::now();
         let content =
             parse(Path::new("F01_warp_FB2_1.csv"), &bytes, &settings[(rng.next_u32() % 2) as usize]);
@@ -135,5 +162,56 @@ fn mutations_neither_panic_nor_hang_nor_leave_anything_unfinished() {
     println!("{read} of {count} mutations were still read; the slowest took {slowest:?}");
     // A file of a kilobyte takes microseconds; a second means a loop.
     assert!(slowest < Duration::from_secs(1));
+    assert!(read > 0);
+}
+
+/// A unit with one to three slips of the pen is refused, or it is another unit and taken as such:
+/// the scale of the curve is then that unit's, found here without the reader.
+#[test]
+fn a_damaged_unit_is_never_taken_for_another() {
+    const SLIPS: [&str; 22] = [
+        "g", "f", "c", "m", "N", "/", "·", "(", ")", "[", "]", " ", "%", "u", "k", "2", "-", "^", "deg", "²",
+        ",", "cm",
+    ];
+    let mut rng = Pcg64::seed_from_u64(7);
+    let mut read = 0;
+    for _ in 0..4_000 {
+        let mut heading: Vec<String> = "moment (gf·cm/cm)".chars().map(String::from).collect();
+        for _ in 0..rng.random_range(1..4) {
+            // Behind the name of the column.
+            let at = rng.random_range(6..heading.len());
+            let slip = SLIPS[rng.random_range(0..SLIPS.len())].to_string();
+            match rng.random_range(0..3) {
+                0 if heading.len() > 8 => drop(heading.remove(at)),
+                1 => heading.insert(at, slip),
+                _ => heading[at] = slip,
+            }
+        }
+        let heading = heading.concat();
+        let text = format!("direction,warp\ncurvature (1/cm);{heading}\n0;0\n1;0.1\n2;0.2\n")
+            .replace(",warp", ";warp");
+        let Ok(content) = parse(Path::new("a.csv"), text.as_bytes(), &ReadSettings::default()) else {
+            continue;
+        };
+        read += 1;
+        let scale = content.measurements[0].curve.y[2] / 0.2;
+        // What stands at the end of the heading, from any character on, in a bracket or not; a moment
+        // per width, or a moment over the standard width of 20 cm.
+        let plain = heading.replace('[', "(").replace(']', ")");
+        let inside =
+            plain.rsplit_once('(').map_or(plain.as_str(), |(_, unit)| unit).trim_end_matches([' ', ')']);
+        let ends = |text: &str| -> Vec<String> {
+            text.char_indices().map(|(i, _)| text[i..].trim().to_string()).collect()
+        };
+        let readings = [ends(inside), ends(&plain)].concat();
+        let is_meant = |unit: &String| {
+            Unit::parse(unit).is_ok_and(|meant| {
+                let ratio = scale / meant.factor;
+                (ratio - 1.0).abs() < 1e-12 || (ratio * 0.20 - 1.0).abs() < 1e-12
+            })
+        };
+        assert!(readings.iter().any(is_meant), "{heading:?} was read with a scale of {scale}");
+    }
+    println!("{read} of 4000 damaged units were still units of a moment");
     assert!(read > 0);
 }

@@ -2,7 +2,7 @@
 
 use super::statistics::name;
 use super::{FabricSheet, Settings};
-use crate::finding::{Finding, Place};
+use crate::finding::Finding;
 use crate::instrument::{Direction, FabricInput, Measurement, Parameter, Test};
 
 /// Plausible means of woven apparel fabrics in KES units; a value outside is a question, not an error.
@@ -21,25 +21,27 @@ const PLAUSIBLE: [(Parameter, f64, f64); 9] = [
 /// Loop widths: a negative one means that the branches were taken for each other.
 const WIDTHS: [Parameter; 4] = [Parameter::Hg, Parameter::Hg5, Parameter::Hb, Parameter::Hb05];
 
-/// K011: values that no woven apparel fabric has; usually a unit.
-pub(super) fn plausibility(sheet: &FabricSheet) -> Vec<Finding> {
+/// K011: values that no woven apparel fabric has; usually a unit. A value of a table is pointed at.
+pub(super) fn plausibility(sheet: &FabricSheet, input: &FabricInput) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (key, estimate) in &sheet.values {
         let value = estimate.mean / key.parameter.kes_factor();
         let unit = key.parameter.kes_unit();
+        let cell = (input.results.iter())
+            .find(|r| (r.parameter, r.direction, r.mean) == (key.parameter, key.direction, estimate.mean));
+        let place = || cell.map(|c| c.place.clone());
         if let Some((_, low, high)) = PLAUSIBLE.iter().find(|p| p.0 == key.parameter)
             && !(*low..=*high).contains(&value)
         {
-            findings.push(Finding::new(
-                "K011",
-                format!("{} = {value:.4} {unit} is outside {low} to {high}, the range of woven apparel fabrics: check unit, specimen width and conditions", name(*key)),
-            ));
+            let text = format!(
+                "{} = {value:.4} {unit} is outside {low} to {high}, the range of woven apparel fabrics: check unit, specimen width and conditions",
+                name(*key)
+            );
+            findings.push(Finding { place: place(), ..Finding::new("K011", text) });
         }
         if WIDTHS.contains(&key.parameter) && value < 0.0 {
-            findings.push(Finding::new(
-                "K011",
-                format!("{} = {value:.4} {unit} is negative: the loop runs backwards", name(*key)),
-            ));
+            let text = format!("{} = {value:.4} {unit} is negative: the loop runs backwards", name(*key));
+            findings.push(Finding { place: place(), ..Finding::new("K011", text) });
         }
     }
     findings
@@ -62,7 +64,6 @@ pub(super) fn shear_directions(sheet: &FabricSheet, settings: &Settings) -> Opti
 /// K006, K007, K015, K019: what the set of records says about itself.
 pub(super) fn records(input: &FabricInput) -> Vec<Finding> {
     let mut findings = Vec::new();
-    let at = |m: &Measurement| Place::at(&m.source.path, m.lines.first().copied().unwrap_or(0), 0);
     for test in Test::ALL {
         let set: Vec<&Measurement> = input.measurements.iter().filter(|m| m.test == test).collect();
         for (i, m) in set.iter().enumerate() {
@@ -72,7 +73,7 @@ pub(super) fn records(input: &FabricInput) -> Vec<Finding> {
                     test.name(),
                     m.specimen
                 );
-                findings.push(Finding::new("K015", text).at(at(m)));
+                findings.push(Finding::new("K015", text).at(m.place()));
             }
             if set[..i].iter().any(|o| o.direction == m.direction && o.specimen == m.specimen) {
                 let direction = m.direction.map_or(String::new(), |d| format!(" {d}"));
@@ -81,7 +82,7 @@ pub(super) fn records(input: &FabricInput) -> Vec<Finding> {
                     test.name(),
                     m.specimen
                 );
-                findings.push(Finding::new("K019", text).at(at(m)));
+                findings.push(Finding::new("K019", text).at(m.place()));
             }
         }
         let Some(first) = set.first() else { continue };
@@ -95,7 +96,7 @@ pub(super) fn records(input: &FabricInput) -> Vec<Finding> {
                 test.name(),
                 first.source.path.display()
             );
-            findings.push(Finding::new("K007", text).at(at(other)));
+            findings.push(Finding::new("K007", text).at(other.place()));
         }
     }
     findings

@@ -31,6 +31,7 @@ pub use sheet::{Branch, FabricSheet, Key, SpecimenResult, Window};
 pub use spread::{MeanBranch, mean_branches};
 pub use strip::{Strip, StripCycle};
 
+use crate::finding::Place;
 use crate::instrument::FabricInput;
 
 /// The parameter sheet of a fabric.
@@ -62,8 +63,12 @@ pub fn characterise(input: &FabricInput, settings: &Settings) -> FabricSheet {
     tables::metadata(&mut sheet, input);
     tables::moduli(&mut sheet, settings);
     friction::add(&mut sheet, settings);
-    let mut found = checks::plausibility(&sheet);
+    let mut found = checks::plausibility(&sheet, input);
     found.extend(checks::shear_directions(&sheet, settings));
     sheet.findings.append(&mut found);
+    // What concerns the fabric as a whole is found in its folder.
+    for finding in sheet.findings.iter_mut().filter(|f| f.place.is_none() && *input.path != *"") {
+        finding.place = Some(Place::file(&input.path));
+    }
     sheet
 }

@@ -118,6 +118,11 @@ pub struct Settings {
     pub strip_windows: Vec<[LineForce; 2]>,
     /// Force at which the secant of FAB strips is taken (100 gf/cm).
     pub strip_secant: LineForce,
+    /// Force at which G is taken from a FAB bias strip (5 gf/cm, as EB5 of FAST).
+    pub strip_shear: LineForce,
+    /// Span of the load in a FAB bend test below which it is called low: the load cell's noise of
+    /// 0.05 to 0.15 gf over 5 cm is then more than a tenth of it (0.2 gf/cm).
+    pub strip_low_load: LineForce,
     /// Whether zero, offset and slack are corrected.
     pub correct_zero: bool,
     /// A drive reversal counts when it is longer than this part of the range of the abscissa; less is jitter.
@@ -152,6 +157,8 @@ impl Default for Settings {
             strip_onset: LineForce(GF_PER_CM),
             strip_windows: [[2.0, 5.0], [20.0, 100.0]].map(|w| w.map(|f| LineForce(f * GF_PER_CM))).to_vec(),
             strip_secant: LineForce(100.0 * GF_PER_CM),
+            strip_shear: LineForce(5.0 * GF_PER_CM),
+            strip_low_load: LineForce(0.2 * GF_PER_CM),
             correct_zero: true,
             reversal: Ratio(0.05),
             large_correction: Ratio(0.10),
@@ -188,6 +195,10 @@ impl Settings {
             ),
             ("cycle", if self.cycle == CycleChoice::First { "first" } else { "last" }.to_string()),
             ("zero, offset and slack corrected", yes_no(self.correct_zero)),
+            (
+                "FAB strips: onset of load, G, secant at",
+                [self.strip_onset, self.strip_shear, self.strip_secant].map(in_gf_per_cm).join(", "),
+            ),
         ]
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::graph::LineFit;
 use super::{Branch, Settings, SpecimenResult, Window, closed_loop, compression, tensile};
-use crate::finding::{Finding, Place};
+use crate::finding::Finding;
 use crate::instrument::{Measurement, Parameter, Test};
 use crate::quantity::{Curve, Unit, significant};
 
@@ -30,8 +30,7 @@ impl Notes<'_> {
         let m = self.measurement;
         let direction = m.direction.map_or(String::new(), |d| format!(" {d}"));
         let text = format!("{}{direction}, specimen {}: {}", m.test.name(), m.specimen, message.as_ref());
-        let line = m.lines.first().copied().unwrap_or(0);
-        self.findings.push(Finding::new(code, text).at(Place::at(&m.source.path, line, 0)));
+        self.findings.push(Finding::new(code, text).at(m.place()));
     }
 
     /// K002: something of the record that a parameter needs is not there.

@@ -2,9 +2,9 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::{FabricSheet, Key, Settings};
+use super::{FabricSheet, Key, Settings, SpecimenResult};
 use crate::finding::Finding;
-use crate::instrument::{Direction, Parameter};
+use crate::instrument::{Direction, Measurement, Parameter};
 use crate::quantity::Estimate;
 
 /// Modified z-score above which a repeat is an outlier: Iglewicz and Hoaglin (1993), How to
@@ -45,20 +45,24 @@ pub(super) fn outliers(sheet: &FabricSheet, settings: &Settings) -> Vec<Finding>
     let mut findings = Vec::new();
     for (key, estimate) in &sheet.values {
         let Some((i, test)) = outlier(&estimate.values, settings.outlier_floor.si()) else { continue };
-        let specimen = (sheet.specimens.iter())
-            .filter(|s| s.measurement.direction == key.direction && s.values.contains_key(&key.parameter))
-            .nth(i)
-            .map_or(i + 1, |s| s.measurement.specimen);
-        findings.push(Finding::new(
-            "K010",
-            format!(
-                "{}: specimen {specimen} stands apart from the other {} ({test}); it is kept in the mean",
-                name(*key),
-                estimate.n - 1
-            ),
-        ));
+        let Some(measurement) = repeat(sheet, *key, i) else { continue };
+        let text = format!(
+            "{}: specimen {} stands apart from the other {} ({test}); it is kept in the mean",
+            name(*key),
+            measurement.specimen,
+            estimate.n - 1
+        );
+        findings.push(Finding::new("K010", text).at(measurement.place()));
     }
     findings
+}
+
+/// The record behind the i-th value of an estimate.
+fn repeat(sheet: &FabricSheet, key: Key, i: usize) -> Option<&Measurement> {
+    let of_key = |s: &&SpecimenResult| {
+        s.measurement.direction == key.direction && s.values.contains_key(&key.parameter)
+    };
+    sheet.specimens.iter().filter(of_key).nth(i).map(|s| &s.measurement)
 }
 
 /// `B warp`, or `T0` for the fabric as a whole.
@@ -109,14 +113,13 @@ pub(super) fn swapped(sheet: &FabricSheet) -> Vec<Finding> {
         for (own, other) in [(Direction::Warp, Direction::Weft), (Direction::Weft, Direction::Warp)] {
             let of = |d| sheet.get(parameter, Some(d)).map(|e| e.values.as_slice()).unwrap_or_default();
             for i in misplaced(of(own), of(other)) {
-                let specimen = (sheet.specimens.iter())
-                    .filter(|s| s.measurement.direction == Some(own) && s.values.contains_key(&parameter))
-                    .nth(i)
-                    .map_or(i + 1, |s| s.measurement.specimen);
-                findings.push(Finding::new(
-                    "K013",
-                    format!("{parameter}: {own} specimen {specimen} fits the {other} specimens and not its own: is its direction labelled correctly?"),
-                ));
+                let key = Key { parameter, direction: Some(own) };
+                let Some(measurement) = repeat(sheet, key, i) else { continue };
+                let text = format!(
+                    "{parameter}: {own} specimen {} fits the {other} specimens and not its own: is its direction labelled correctly?",
+                    measurement.specimen
+                );
+                findings.push(Finding::new("K013", text).at(measurement.place()));
             }
         }
     }

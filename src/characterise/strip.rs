@@ -10,7 +10,7 @@ use super::{Branch, FabricSheet, Key, Modulus, Settings};
 use crate::finding::{Finding, Place};
 use crate::instrument::fab::{FabFile, FabKind, FabTest};
 use crate::instrument::{Direction, Parameter};
-use crate::quantity::{Curve, Estimate, significant};
+use crate::quantity::{Curve, Estimate, STANDARD_GRAVITY, significant};
 
 /// A stretch test of a strip after processing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -67,8 +67,9 @@ pub(super) fn add(sheet: &mut FabricSheet, files: &[FabFile], settings: &Setting
     sheet.bend_tests =
         (files.iter().flat_map(|f| &f.tests)).filter(|t| !t.kind.is_stretch()).cloned().collect();
     stiffness(sheet, settings, &place);
+    shear(sheet, settings, &place);
     for direction in Direction::ALL {
-        bending(sheet, files, direction, &place);
+        bending(sheet, files, direction, settings, &place);
     }
     let whole = |parameter| Key { parameter, direction: None };
     let masses: Vec<f64> = files.iter().filter_map(|f| f.areal_density).collect();
@@ -145,7 +146,8 @@ fn cycle(
 }
 
 /// Moduli of the long strips (short ones where there is no other), last cycle.
-fn stiffness(sheet: &mut FabricSheet, settings: &Settings, place: &Place) {
+fn stiffness(sheet: &mut FabricSheet, files: &[FabFile], settings: &Settings, place: &Place) {
+    let mut lengths = Vec::new();
     for direction in Direction::ALL {
         if sheet.moduli.keys().any(|(_, d)| *d == direction) {
             continue;
@@ -156,12 +158,8 @@ fn stiffness(sheet: &mut FabricSheet, settings: &Settings, place: &Place) {
         let strips = Some(of(FabKind::S2)).filter(|s| !s.is_empty()).unwrap_or_else(|| of(FabKind::S1));
         let last: Vec<&StripCycle> = strips.iter().filter_map(|s| s.cycles.last()).collect();
         let Some(shown) = last.first() else { continue };
-        let text = format!(
-            "{direction}: moduli of a strip of {} cm from the onset of load, cycle {}; the secant is at {} gf/cm",
-            significant(100.0 * shown.onset),
-            strips[0].cycles.len(),
-            significant(settings.strip_secant.si() / Parameter::Hg.kes_factor()),
-        );
+        let (length, cycle) = (significant(100.0 * shown.onset), strips[0].cycles.len());
+        lengths.push(format!("{direction} {length} cm in cycle {cycle}"));
         let mut names: Vec<&String> = last.iter().flat_map(|c| c.moduli.keys()).collect();
         names.sort();
         names.dedup();
@@ -172,22 +170,82 @@ fn stiffness(sheet: &mut FabricSheet, settings: &Settings, place: &Place) {
             })
             .collect();
         sheet.moduli.extend(estimates);
-        sheet.findings.push(Finding::new("K030", text).at(place.clone()));
     }
+    if lengths.is_empty() {
+        return;
+    }
+    let warnings: Vec<&str> = files.iter().flat_map(|f| &f.warnings).map(String::as_str).collect();
+    let text = format!(
+        "moduli are those of strips, from the onset of load at {}; the secant is at {} gf/cm; the instrument's program gave {}",
+        lengths.join(", "),
+        significant(settings.strip_secant.si() / Parameter::Hg.kes_factor()),
+        if warnings.is_empty() {
+            "no warning".to_string()
+        } else {
+            format!("warnings: {}", warnings.join(", "))
+        }
+    );
+    sheet.findings.push(Finding::new("K030", text).at(place.clone()));
+}
+
+/// G from the long bias strip, last cycle: the strip shears by twice its strain under half its force
+/// per width, so G = F/(4 ε); with strain in per cent at 5 gf/cm that is G = 123/EB5 N/m of FAST.
+/// Force and strain count from the onset of load. Short strips are held by their clamps.
+fn shear(sheet: &mut FabricSheet, settings: &Settings, place: &Place) {
+    let key = Key { parameter: Parameter::G, direction: None };
+    let known = sheet.values.keys().any(|k| k.parameter == Parameter::G);
+    let of_cycle = |cycle: &StripCycle| {
+        let load = Graph::of(&cycle.branches.first()?.curve);
+        let strain = load.first_rise_to(settings.strip_shear.si()).filter(|e| *e > 0.0)?;
+        Some((settings.strip_shear.si() - settings.strip_onset.si()) / (4.0 * strain))
+    };
+    let bias = |s: &&Strip| s.direction == Direction::Bias && s.kind == FabKind::S2;
+    let strips: Vec<&Strip> = sheet.strips.iter().filter(bias).collect();
+    let ends: Vec<[f64; 2]> = (strips.iter())
+        .filter_map(|s| Some([of_cycle(s.cycles.first()?)?, of_cycle(s.cycles.last()?)?]))
+        .collect();
+    let last: Vec<f64> = ends.iter().map(|e| e[1]).collect();
+    let (Some(estimate), [[first, _], ..], false) = (Estimate::of(&last), &ends[..], known) else { return };
+    let slender = strips[0].cycles[0].onset / strips[0].width;
+    let text = format!(
+        "G is estimated from the bias strip at {} gf/cm as FAST does: {} N/m in the last cycle, {} in the first; the strip is {} times as long as wide, so its clamps stiffen it",
+        significant(settings.strip_shear.si() / Parameter::Hg.kes_factor()),
+        significant(estimate.mean),
+        significant(*first),
+        significant(slender)
+    );
+    sheet.findings.push(Finding::new("K033", text).at(place.clone()));
+    sheet.values.insert(key, estimate);
 }
 
 /// B from the short strips bent downwards and upwards, last cycle; the two differ by the weight of
 /// the strip and by friction, so their spread is the uncertainty.
-fn bending(sheet: &mut FabricSheet, files: &[FabFile], direction: Direction, place: &Place) {
+fn bending(
+    sheet: &mut FabricSheet,
+    files: &[FabFile],
+    direction: Direction,
+    settings: &Settings,
+    place: &Place,
+) {
     let key = Key { parameter: Parameter::B, direction: Some(direction) };
     if sheet.values.contains_key(&key) {
         return;
     }
-    let values: Vec<f64> = (files.iter().flat_map(|f| &f.tests))
+    let tests: Vec<&FabTest> = (files.iter().flat_map(|f| &f.tests))
         .filter(|t| t.direction == direction && matches!(t.kind, FabKind::D1 | FabKind::U1))
-        .filter_map(rigidity)
         .collect();
+    let values: Vec<f64> = tests.iter().filter_map(|t| rigidity(t)).collect();
     let Some(estimate) = Estimate::of(&values) else { return };
+    for (test, span) in tests.iter().filter_map(|t| Some((t, load_span(t)?))) {
+        if span < settings.strip_low_load.si() * test.width {
+            let text = format!(
+                "{direction} {}: the load changes by {} gf only, so that noise and resolution of the cell are in B",
+                test.kind.name(),
+                significant(span / (1e-3 * STANDARD_GRAVITY))
+            );
+            sheet.findings.push(Finding::new("K034", text).at(place.clone()));
+        }
+    }
     let each: Vec<String> = values.iter().map(|b| significant(1e6 * b)).collect();
     let text = format!(
         "B {direction} is an estimate from buckled strips ({} µN·m down and up): friction and an unknown load zero are in it, expect it up to twice too high",
@@ -195,6 +253,13 @@ fn bending(sheet: &mut FabricSheet, files: &[FabFile], direction: Direction, pla
     );
     sheet.findings.push(Finding::new("K031", text).at(place.clone()));
     sheet.values.insert(key, estimate);
+}
+
+/// Range of the load (N) in the last cycle.
+fn load_span(test: &FabTest) -> Option<f64> {
+    let loads = || test.branches.chunks_exact(2).last().into_iter().flatten().flat_map(|b| &b.y).copied();
+    let low = loads().reduce(f64::min)?;
+    Some(loads().reduce(f64::max)? - low)
 }
 
 /// B (N·m) of a clamped strip that buckles as its clamps approach: least squares of the mean of
@@ -298,6 +363,22 @@ mod tests {
         // The onset is where the load passes 1 gf/cm, 0.05 % of strain late.
         assert_relative_eq!(cycle.onset, 0.021 * (1.0 + 0.980665 / 2000.0), max_relative = 1e-12);
         assert_relative_eq!(cycle.moduli["tangent_low"], 2000.0, max_relative = 1e-3);
+    }
+
+    /// A bias strip of G = 30 N/m extends by F/(4 G): FAST's 123/EB5, with EB5 in per cent at 5 gf/cm.
+    #[test]
+    fn a_bias_strip_gives_its_shear_stiffness() {
+        let force = |d: f64| 0.05 * 4.0 * 30.0 * (d / 0.08 - 1.0).max(0.0);
+        let curve = Curve::from_points((0..=200).map(|i| 0.079 + 1e-4 * f64::from(i)).map(|d| (d, force(d))));
+        let test = FabTest { direction: Direction::Bias, length: 0.08, ..test_of(FabKind::S2, vec![curve]) };
+        let mut sheet = FabricSheet::default();
+        add(&mut sheet, &[FabFile { tests: vec![test], ..FabFile::default() }], &Settings::default());
+        let g = sheet.get(Parameter::G, None).unwrap().mean;
+        // Strain counts from the length at 1 gf/cm, which is 0.8 % longer.
+        assert_relative_eq!(g, 30.0 * (1.0 + 0.980665 / 120.0), max_relative = 1e-9);
+        let eb5 = 100.0 * 5.0 * 0.980665 / 120.0;
+        assert_relative_eq!(123.0 / eb5, 30.0, max_relative = 5e-3);
+        assert!(sheet.findings.iter().any(|f| f.code == "K033"));
     }
 
     #[test]

@@ -29,7 +29,7 @@ pub struct Global {
     /// Print no findings and no progress, only errors
     #[arg(short, long, global = true, overrides_with = "verbose")]
     pub quiet: bool,
-    /// Say more: every finding in batches, files as they are written
+    /// Say more: how files were understood (check), all statistics (characterise), every finding in batches
     #[arg(short, long, global = true, overrides_with = "quiet")]
     pub verbose: bool,
     /// Colour the messages (also: NO_COLOR)

@@ -6,15 +6,17 @@ use clap::Args;
 use serde_json::json;
 
 use super::diagnostics::Failure;
-use super::inputs::{self, ReadArgs};
+use super::inputs::{self, ReadArgs, Worked};
 use super::output::Columns;
 use super::{Exit, Ui};
-use crate::instrument::FabricInput;
+use crate::instrument::{FabricInput, Inference};
 use crate::study::Case;
 
 /// Validate measurement files and cases, compute nothing
 #[derive(Debug, Args)]
-#[command(after_help = "Example: kesf check kesf_data cases")]
+#[command(
+    after_help = "Example: kesf check kesf_data cases\nWith -v: what was inferred from each file and why."
+)]
 pub struct Options {
     /// Fabric folders, measurement files, case files, or folders of them
     #[arg(value_name = "INPUT", default_values = ["kesf_data", "cases"])]
@@ -33,7 +35,8 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     }
     let others: Vec<_> =
         options.inputs.iter().filter(|p| p.is_dir() || !inputs::is_case(p)).cloned().collect();
-    let (fabrics, unread) = options.reading.fabrics(&others, ui)?;
+    let Worked { done: fabrics, failures: unread, of_failures } =
+        options.reading.each(&others, "reading", |fabric| fabric, ui)?;
     failures.extend(unread);
     for finding in fabrics.iter().flat_map(|f| &f.findings) {
         ui.diagnostics.finding(finding);
@@ -44,12 +47,23 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         return Err(Failure::new("O055", "there is neither a measurement nor a case in the inputs")
             .hint("name a fabric folder, a measurement file or a case file"));
     }
+    let inference: Vec<&Inference> = fabrics.iter().flat_map(|f| &f.inference).chain(&of_failures).collect();
     if ui.json {
-        ui.document(&document(&fabrics, &cases, failures.len()))?;
+        ui.document(&document(&fabrics, &cases, failures.len(), &inference))?;
     } else {
-        ui.print(&text(&fabrics, &cases, failures.len()))?;
+        let told = if ui.diagnostics.is_verbose() { explanation(&inference) } else { String::new() };
+        ui.print(&(told + &text(&fabrics, &cases, failures.len())))?;
     }
     Ok(exit)
+}
+
+/// How each file was understood: its path, and the decisions below it.
+fn explanation(files: &[&Inference]) -> String {
+    let file = |i: &&Inference| {
+        let lines: Vec<String> = i.decisions.iter().map(|d| format!("  {d}\n")).collect();
+        format!("{}\n{}\n", i.path.display(), lines.concat())
+    };
+    files.iter().map(file).collect()
 }
 
 fn text(fabrics: &[FabricInput], cases: &[Case], failures: usize) -> String {
@@ -66,7 +80,12 @@ fn text(fabrics: &[FabricInput], cases: &[Case], failures: usize) -> String {
     format!("{}{} fabrics, {} cases, {failures} errors\n", columns.text(), fabrics.len(), cases.len())
 }
 
-fn document(fabrics: &[FabricInput], cases: &[Case], failures: usize) -> serde_json::Value {
+fn document(
+    fabrics: &[FabricInput],
+    cases: &[Case],
+    failures: usize,
+    inference: &[&Inference],
+) -> serde_json::Value {
     let fabric = |f: &FabricInput| {
         json!({
             "name": f.name, "path": f.path, "files": f.sources, "curves": f.measurements.len(),
@@ -78,5 +97,6 @@ fn document(fabrics: &[FabricInput], cases: &[Case], failures: usize) -> serde_j
         "fabrics": fabrics.iter().map(fabric).collect::<Vec<_>>(),
         "cases": cases.iter().map(|c| json!({"name": c.name, "path": c.path, "title": c.title})).collect::<Vec<_>>(),
         "errors": failures,
+        "inference": inference,
     })
 }

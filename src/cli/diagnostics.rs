@@ -198,6 +198,11 @@ impl Diagnostics {
         !self.quiet && !self.json && std::io::stderr().is_terminal()
     }
 
+    /// Whether `-v` was given.
+    pub fn is_verbose(&self) -> bool {
+        self.verbose
+    }
+
     /// Number of findings so far, shown or not.
     pub fn findings(&self) -> usize {
         self.findings

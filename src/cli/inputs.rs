@@ -5,13 +5,14 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use rayon::prelude::*;
 
 use super::Ui;
 use super::diagnostics::Failure;
 use crate::characterise::{FabricSheet, Modulus, Settings, characterise};
 use crate::finding::{Finding, Place};
-use crate::instrument::{Batch, FabricInput, ReadSettings, ResultValue, parse, read_dialect, read_fabrics};
+use crate::instrument::{
+    FabricInput, Inference, Library, ReadError, ReadSettings, ResultValue, parse, read_dialect,
+};
 use crate::report::table::UnitSystem;
 use crate::study::Case;
 
@@ -63,31 +64,58 @@ impl ReadArgs {
     }
 
     /// Reads every fabric below the inputs, in name order; `-` is one file on standard input.
-    /// Findings and errors are told; the errors are returned as well.
+    /// Errors are told, and returned as well.
     pub fn fabrics(
         &self,
         inputs: &[PathBuf],
         ui: &mut Ui,
     ) -> Result<(Vec<FabricInput>, Vec<Failure>), Failure> {
+        let read = self.each(inputs, "reading", |fabric| fabric, ui)?;
+        Ok((read.done, read.failures))
+    }
+
+    /// Reads fabric by fabric and keeps what `work` makes of each: see [`Library::each`].
+    pub fn each<T: Send>(
+        &self,
+        inputs: &[PathBuf],
+        what: &'static str,
+        work: impl Fn(FabricInput) -> T + Sync,
+        ui: &mut Ui,
+    ) -> Result<Worked<T>, Failure> {
         let settings = self.settings()?;
         let (stdin, paths): (Vec<_>, Vec<_>) = inputs.iter().cloned().partition(|p| is_stdin(p));
-        let bar = ui.spinner("reading");
-        let batch = read_fabrics(&paths, &settings, &|_| bar.inc(1));
+        let library = Library::find(&paths, &settings);
+        let bar = ui.bar(what, library.files());
+        let (mut done, mut errors) = library.each(&|_| bar.inc(1), &work);
         bar.finish_and_clear();
         ui.go_on()?;
-        let Batch { mut fabrics, failures } = batch;
-        let mut failures: Vec<Failure> = failures.into_iter().map(Failure::from).collect();
+        let mut failures = Vec::new();
         if !stdin.is_empty() {
             match from_stdin(&settings) {
-                Ok(fabric) => fabrics.push(fabric),
-                Err(failure) => failures.push(failure),
+                Ok(fabric) => done.push(work(fabric)),
+                Err(Unread::File(error)) => errors.push(error),
+                Err(Unread::Stream(failure)) => failures.push(failure),
             }
         }
+        let inference =
+            |e: &ReadError| Inference { path: e.place.path.clone(), decisions: e.inference.clone() };
+        let of_failures = errors.iter().map(inference).filter(|i| !i.decisions.is_empty()).collect();
+        failures.splice(0..0, errors.into_iter().map(Failure::from));
         for failure in &failures {
             ui.diagnostics.error(failure);
         }
-        Ok((fabrics, failures))
+        Ok(Worked { done, failures, of_failures })
     }
+}
+
+/// What became of the inputs.
+pub struct Worked<T> {
+    /// What was made of each fabric, in name order.
+    pub done: Vec<T>,
+    /// What could not be read; already told.
+    pub failures: Vec<Failure>,
+    /// What had been inferred from the files that could not be read.
+    pub of_failures: Vec<Inference>,
 }
 
 /// How curves are evaluated.
@@ -100,6 +128,15 @@ pub struct EvaluateArgs {
     settings: Option<PathBuf>,
 }
 
+/// Whether sheets keep the curves behind their values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Curves {
+    /// For charts.
+    Kept,
+    /// For values only.
+    Dropped,
+}
+
 /// A characterised fabric and where it was found.
 pub struct Fabric {
     /// Its folder or file.
@@ -110,11 +147,13 @@ pub struct Fabric {
 
 impl EvaluateArgs {
     /// The sheets of all fabrics below the inputs, in name order, each with a name of its own.
-    /// `moduli` are evaluated beside those of the settings.
+    /// `moduli` are evaluated beside those of the settings; `curves` says whether the sheets keep
+    /// the curves behind their values, which a library of thousands of files would fill memory with.
     pub fn sheets(
         &self,
         inputs: &[PathBuf],
         moduli: &[Modulus],
+        curves: Curves,
         ui: &mut Ui,
     ) -> Result<(Vec<Fabric>, Vec<Failure>), Failure> {
         let mut settings = self.settings()?;
@@ -123,23 +162,22 @@ impl EvaluateArgs {
                 settings.moduli.push(*modulus);
             }
         }
-        let (inputs, failures) = self.reading.fabrics(inputs, ui)?;
-        let bar = ui.bar("characterising", inputs.len());
-        let mut fabrics: Vec<Fabric> = inputs
-            .into_par_iter()
-            .map(|input| {
-                let sheet = characterise(&input, &settings);
-                bar.inc(1);
-                Fabric { path: input.path, sheet }
-            })
-            .collect();
-        bar.finish_and_clear();
-        ui.go_on()?;
+        let evaluated = |input: FabricInput| {
+            let mut sheet = characterise(&input, &settings);
+            if curves == Curves::Dropped {
+                sheet.specimens = Vec::new();
+                sheet.strips = Vec::new();
+            }
+            Fabric { path: input.path, sheet }
+        };
+        let Worked { done: mut fabrics, failures, .. } =
+            self.reading.each(inputs, "characterising", evaluated, ui)?;
         distinguish(&mut fabrics);
         Ok((fabrics, failures))
     }
 
-    fn settings(&self) -> Result<Settings, Failure> {
+    /// The settings of the evaluation.
+    pub fn settings(&self) -> Result<Settings, Failure> {
         let Some(path) = &self.settings else { return Ok(Settings::default()) };
         let wrong = |reason: String| {
             Failure::new("O050", format!("the settings cannot be used: {reason}")).at(Place::file(path))
@@ -188,13 +226,20 @@ pub fn is_stdin(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-fn from_stdin(settings: &ReadSettings) -> Result<FabricInput, Failure> {
+/// Why there is no fabric on standard input: the bytes, or getting them.
+enum Unread {
+    File(ReadError),
+    Stream(Failure),
+}
+
+fn from_stdin(settings: &ReadSettings) -> Result<FabricInput, Unread> {
     let path = Path::new("<stdin>");
     let mut bytes = Vec::new();
     std::io::stdin().read_to_end(&mut bytes).map_err(|e| {
-        Failure::new("O052", format!("standard input cannot be read: {e}")).at(Place::file(path))
+        let text = format!("standard input cannot be read: {e}");
+        Unread::Stream(Failure::new("O052", text).at(Place::file(path)))
     })?;
-    let content = parse(path, &bytes, settings)?;
+    let content = parse(path, &bytes, settings).map_err(Unread::File)?;
     let sample = content.measurements.iter().find_map(|m| m.sample.clone());
     let name = sample.unwrap_or_else(|| "stdin".to_string());
     let results: Vec<ResultValue> = content.results.into_iter().map(|(_, value)| value).collect();
@@ -204,6 +249,7 @@ fn from_stdin(settings: &ReadSettings) -> Result<FabricInput, Failure> {
         measurements: content.measurements,
         results,
         fab: content.fab.into_iter().collect(),
+        inference: vec![Inference { path: path.to_path_buf(), decisions: content.inference }],
         sources: vec![content.source],
         findings: content.findings,
         ..FabricInput::default()

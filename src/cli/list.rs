@@ -7,12 +7,14 @@ use super::diagnostics::Failure;
 use super::output::Columns;
 use super::{Exit, Ui};
 use crate::finding::explanations;
-use crate::instrument::dialects;
+use crate::instrument::{DIALECT_FILES, dialects};
 use crate::quantity::UNITS;
 
 /// List the formats, dialects, units, analyses and codes that the program knows
 #[derive(Debug, Args)]
-#[command(after_help = "Example: kesf list units")]
+#[command(
+    after_help = "Example: kesf list units\n`kesf list dialects -v` prints the dialect files themselves, as examples for one's own."
+)]
 pub struct Options {
     /// What to list
     #[arg(value_enum)]
@@ -41,6 +43,9 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         Topic::Units => units(),
         Topic::Codes => codes(),
     };
+    if let (Topic::Dialects, false, true) = (options.topic, ui.json, ui.diagnostics.is_verbose()) {
+        return ui.print(&DIALECT_FILES.join("\n"));
+    }
     if ui.json {
         let object = |row: &Vec<Value>| -> Value {
             headings.iter().map(ToString::to_string).zip(row.iter().cloned()).collect()
@@ -59,7 +64,7 @@ type Rows = (&'static [&'static str], Vec<Vec<Value>>);
 
 const FORMATS: &[&[&str]] = &[
     &["csv tsv txt dat asc prn kes fb1 fb2 fb3", "text tables: curves of FB1, FB2, FB3, and result tables"],
-    &["xlsx xlsm xls ods", "workbooks with the same tables"],
+    &["xlsx xlsm xls", "workbooks with the same tables"],
     &["json u3m", "FAB strip measurements inside U3M 1.1"],
     &["fabric.toml", "what people know of a fabric: name, weave, origin, areal density, measured results"],
     &["dialect.toml", "a laboratory's own words and marks, beside its files"],

@@ -62,16 +62,6 @@ impl Ui {
         self.print(&text(document)?)
     }
 
-    /// A running count on a terminal; nothing elsewhere.
-    fn spinner(&self, what: &'static str) -> ProgressBar {
-        if !self.diagnostics.progress() {
-            return ProgressBar::hidden();
-        }
-        let style =
-            ProgressStyle::with_template("{spinner} {msg} {pos}").unwrap_or(ProgressStyle::default_spinner());
-        ProgressBar::new_spinner().with_style(style).with_message(what)
-    }
-
     /// A bar over `length` items on a terminal; nothing elsewhere.
     fn bar(&self, what: &'static str, length: usize) -> ProgressBar {
         if !self.diagnostics.progress() {

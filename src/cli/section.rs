@@ -8,7 +8,7 @@ use nalgebra::Matrix3;
 use serde_json::{Value, json};
 
 use super::diagnostics::Failure;
-use super::inputs::EvaluateArgs;
+use super::inputs::{Curves, EvaluateArgs};
 use super::output::{Columns, Format, OutputArgs};
 use super::{Exit, Ui};
 use crate::characterise::{FabricSheet, Modulus};
@@ -89,7 +89,8 @@ impl From<&AssumptionArgs> for Assumptions {
 pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let format = options.output.format(ui.json)?;
     let assumptions = Assumptions::from(&options.assume);
-    let (fabrics, mut failures) = options.evaluate.sheets(&options.inputs, &[assumptions.modulus], ui)?;
+    let (fabrics, mut failures) =
+        options.evaluate.sheets(&options.inputs, &[assumptions.modulus], Curves::Dropped, ui)?;
     let mut sections: Vec<(&FabricSheet, Constitutive)> = Vec::new();
     for fabric in &fabrics {
         match section(&fabric.sheet, &assumptions) {

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::Ui;
 use super::diagnostics::Failure;
-use super::inputs::{self, EvaluateArgs, Fabric};
+use super::inputs::{self, Curves, EvaluateArgs, Fabric};
 use crate::characterise::FabricSheet;
 use crate::constitutive::{self, Constitutive, Input};
 use crate::instrument::{Direction, Parameter, Test};
@@ -93,7 +93,7 @@ impl TaskArgs {
             }
         }
         let moduli: Vec<_> = cases.iter().map(|c| c.assumptions.modulus).collect();
-        let (fabrics, unread) = self.evaluate.sheets(&folders, &moduli, ui)?;
+        let (fabrics, unread) = self.evaluate.sheets(&folders, &moduli, Curves::Kept, ui)?;
         failures.extend(unread);
         Ok(Work { cases, fabrics, failures })
     }

@@ -50,7 +50,7 @@ impl Tree {
 
     /// `<fabric>/sheet.json`.
     pub fn sheet(&self, sheet: &FabricSheet) -> Result<(), Failure> {
-        self.write(&format!("{}/sheet.json", sheet.name), text(&sheet_document([sheet]))?.as_bytes())
+        self.write(&format!("{}/sheet.json", sheet.name), text(&sheet_document([sheet], None))?.as_bytes())
     }
 
     /// `<fabric>/section.json`.

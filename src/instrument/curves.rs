@@ -8,6 +8,8 @@ use super::error::{Problem, ReadError};
 use super::layout::{Context, Entry, Header, Pair};
 use super::raw::Row;
 use super::sniff::{Number, folded, number};
+use super::told;
+use super::words::SPECIMENS;
 use super::{Conditions, Direction, Measurement, Source, Test};
 use crate::finding::{Finding, Place};
 use crate::quantity::{Angle, Curvature, Curve, Length, LineForce, Pressure, QuantityError};
@@ -21,12 +23,18 @@ pub(super) fn measurement(
     context: &Context<'_>,
     log: &mut Vec<String>,
 ) -> Result<Option<(Measurement, Vec<Finding>)>, ReadError> {
-    let test = test_of(pair, context)?;
-    log.push(format!("columns {:?} and {:?}: {}", pair.x.name, pair.y.name, test.name()));
+    let (test, why) = test_of(pair, context)?;
+    log.push(format!("columns {:?} and {:?}: {} test, {why}", pair.x.name, pair.y.name, test.name()));
     let header = &pair.header;
     let conditions = conditions(test, header, context, log)?;
     let axes = Axes { test, conditions: &conditions, header, context };
     let (x, y) = (axes.scale(&pair.x, true)?, axes.scale(&pair.y, false)?);
+    log.push(format!(
+        "{}: {}, {}",
+        test.name(),
+        told::scaled(&pair.x, x, test.axes()[0]),
+        told::scaled(&pair.y, y, test.axes()[1])
+    ));
     let points = points(pair, rows, ends_file, context)?;
     if points.rows.is_empty() {
         return Ok(None);
@@ -46,6 +54,14 @@ pub(super) fn measurement(
         let message = format!("the header says {stated}, the file name {named}: the header was taken");
         findings.push(Finding::new("R106", message).at(Place::at(context.path, pair.x.line, 0)));
     }
+    let curve = Curve::from_points(points.rows.iter().map(|&(_, a, b)| (x.apply(a), y.apply(b))));
+    // A width of 1e-300 m or a range of 1e300 V is no slip that any number survives.
+    if let Some(i) = curve.points().position(|(x, y)| !(x.is_finite() && y.is_finite())) {
+        let found = format!("{} or {} in SI", points.rows[i].1, points.rows[i].2);
+        return Err(context.error(points.rows[i].0, pair.x.column, Problem::NotFinite { found }));
+    }
+    let specimen = specimen(header, context)?;
+    log.push(told::curve(test, direction, specimen, pair, context, &points.rows));
     let measurement = Measurement {
         test,
         sample: header
@@ -55,9 +71,9 @@ pub(super) fn measurement(
             .or_else(|| context.label.sample.clone()),
         direction,
         // 0 stands for "not stated" until the whole file is known.
-        specimen: specimen(header, context)?.unwrap_or(0),
+        specimen: specimen.unwrap_or(0),
         conditions,
-        curve: Curve::from_points(points.rows.iter().map(|&(_, a, b)| (x.apply(a), y.apply(b)))),
+        curve,
         lines: points.rows.iter().map(|p| p.0).collect(),
         source: Source::default(),
         metadata: header.other.clone(),
@@ -65,8 +81,8 @@ pub(super) fn measurement(
     Ok(Some((measurement, findings)))
 }
 
-/// The test that two columns and the header agree on.
-fn test_of(pair: &Pair, context: &Context<'_>) -> Result<Test, ReadError> {
+/// The test that two columns and the header agree on, and what decided it.
+fn test_of(pair: &Pair, context: &Context<'_>) -> Result<(Test, &'static str), ReadError> {
     let header = pair.header.known.get(&Key::Test);
     let stated = header.and_then(|e| context.vocabulary.test(&e.text));
     let elsewhere = context.label.test.or(context.dialect.and_then(|d| d.test));
@@ -108,7 +124,9 @@ fn test_of(pair: &Pair, context: &Context<'_>) -> Result<Test, ReadError> {
             c.name(),
             s.name()
         ))),
-        (Some(test), _) | (None, Some(test)) => Ok(test),
+        (Some(test), Some(_)) => Ok((test, "as the columns say and the file states")),
+        (Some(test), None) => Ok((test, "which the columns belong to")),
+        (None, Some(test)) => Ok((test, "as stated: the columns occur in several tests")),
         (None, None) => Err(unclear(format!(
             "columns {:?} and {:?} occur in several tests, and the file does not say which",
             pair.x.name, pair.y.name
@@ -133,13 +151,13 @@ fn specimen(header: &Header, context: &Context<'_>) -> Result<Option<usize>, Rea
     let Some(entry) = header.known.get(&Key::Specimen) else { return Ok(context.label.specimen) };
     let digits: String =
         entry.text.chars().skip_while(|c| !c.is_ascii_digit()).take_while(char::is_ascii_digit).collect();
-    match digits.parse() {
-        Ok(n) if n > 0 => Ok(Some(n)),
-        _ => {
-            let reason = format!("{:?} is not a specimen number (1, 2, 3 ...)", entry.text);
-            Err(context.error(entry.line, entry.column, Problem::BadValue { key: "specimen".into(), reason }))
-        }
+    if digits.trim_start_matches('0').is_empty() {
+        let reason = format!("{:?} is not a specimen number (1, 2, 3 ...)", entry.text);
+        let problem = Problem::BadValue { key: "specimen".into(), reason };
+        return Err(context.error(entry.line, entry.column, problem));
     }
+    // A longer number is that of an order or a date: specimens are then counted in file order.
+    Ok(digits.parse().ok().filter(|n| *n < SPECIMENS))
 }
 
 /// Conditions: the header, else what was stated elsewhere, else the standard set.
@@ -151,15 +169,11 @@ fn conditions(
 ) -> Result<Conditions, ReadError> {
     let mut c = context.conditions.over_standard(test);
     let value = |key: Key, name: &str| quantity_of::<Length>(header, key, name, "mm", context);
-    match value(Key::Width, "width")? {
-        Some(width) => c.width = positive(width.si(), Key::Width, header, context)?,
-        None => log.push(format!("{}: width {} m (not in the file)", test.name(), c.width)),
+    if let Some(width) = value(Key::Width, "width")? {
+        c.width = positive(width.si(), Key::Width, header, context)?;
     }
-    if test != Test::Compression {
-        match value(Key::Gauge, "gauge")? {
-            Some(gauge) => c.gauge = positive(gauge.si(), Key::Gauge, header, context)?,
-            None => log.push(format!("{}: gauge {} m (not in the file)", test.name(), c.gauge)),
-        }
+    if let Some(gauge) = value(Key::Gauge, "gauge")?.filter(|_| test != Test::Compression) {
+        c.gauge = positive(gauge.si(), Key::Gauge, header, context)?;
     }
     let maximum =
         |unit| {
@@ -176,14 +190,7 @@ fn conditions(
                 }
             })
         };
-    let unit = match test {
-        Test::Tensile => Role::Force,
-        Test::Shear => Role::Angle,
-        Test::Bending => Role::Curvature,
-        Test::Compression => Role::Pressure,
-    }
-    .kes_unit();
-    if let Some(m) = maximum(unit)? {
+    if let Some(m) = maximum(driven(test).kes_unit())? {
         c.maximum = positive(m.abs(), Key::Maximum, header, context)?;
     }
     if test == Test::Shear
@@ -191,7 +198,23 @@ fn conditions(
     {
         c.pretension = w.si();
     }
+    log.push(told::conditions(test, &c, header));
+    let unknown: Vec<&str> =
+        header.other.keys().map(String::as_str).filter(|k| context.vocabulary.key(k).is_none()).collect();
+    if !unknown.is_empty() {
+        log.push(format!("header lines that no dialect knows, kept as text: {}", unknown.join(", ")));
+    }
     Ok(c)
+}
+
+/// The axis that has a set maximum.
+pub(super) fn driven(test: Test) -> Role {
+    match test {
+        Test::Tensile => Role::Force,
+        Test::Shear => Role::Angle,
+        Test::Bending => Role::Curvature,
+        Test::Compression => Role::Pressure,
+    }
 }
 
 /// The value, if it is greater than zero.
@@ -201,7 +224,7 @@ pub(super) fn positive(
     header: &Header,
     context: &Context<'_>,
 ) -> Result<f64, ReadError> {
-    if value.is_finite() && value > 0.0 {
+    if value.is_finite() && value > f64::MIN_POSITIVE {
         return Ok(value);
     }
     let (line, column, text) = header.known.get(&key).map_or((0, 0, ""), |e| (e.line, e.column, &e.text));

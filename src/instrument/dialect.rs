@@ -217,16 +217,16 @@ impl Dialect {
 pub fn dialects() -> &'static [Dialect] {
     static TABLE: OnceLock<Vec<Dialect>> = OnceLock::new();
     TABLE.get_or_init(|| {
-        [
-            include_str!("dialects/kesf.toml"),
-            include_str!("dialects/kes-japanese.toml"),
-            include_str!("dialects/kes-european.toml"),
-        ]
-        .into_iter()
-        .map(|text| Dialect::from_toml(text).expect("built-in dialect"))
-        .collect()
+        DIALECT_FILES.iter().map(|text| Dialect::from_toml(text).expect("built-in dialect")).collect()
     })
 }
+
+/// The texts of the built-in dialects: examples for dialect files of one's own.
+pub const DIALECT_FILES: [&str; 3] = [
+    include_str!("dialects/kesf.toml"),
+    include_str!("dialects/kes-japanese.toml"),
+    include_str!("dialects/kes-european.toml"),
+];
 
 #[cfg(test)]
 mod tests {

@@ -14,9 +14,16 @@ pub struct ReadError {
     pub place: Place,
     /// What is wrong there.
     pub problem: Problem,
+    /// What had been decided about the file until then, for people (`kesf check -v`).
+    pub inference: Vec<String>,
 }
 
 impl ReadError {
+    /// A problem at a place.
+    pub fn new(place: Place, problem: Problem) -> Self {
+        Self { place, problem, inference: Vec::new() }
+    }
+
     /// The stable code, e.g. `R004`; see [`crate::finding::explain`].
     pub fn code(&self) -> &'static str {
         self.problem.code()
@@ -98,7 +105,7 @@ problems! {
         /// The words that were met, and the closest dialect.
         found: String,
     } = "no column headings that are known here: {found}",
-        "write a dialect file that names the columns (`kesf list dialects`), and pass it with `--dialect` or as dialect.toml beside the data";
+        "write a dialect file that names the columns (`kesf list dialects -v` shows examples; `kesf check -v` says what each dialect knows), and pass it with `--dialect` or as dialect.toml beside the data";
     /// An abscissa without its ordinate, or the reverse.
     "R007" IncompletePair {
         /// The column, and what it lacks.

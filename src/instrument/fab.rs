@@ -92,14 +92,37 @@ pub struct FabFile {
     pub source: Source,
 }
 
+impl FabFile {
+    /// What the record holds, for people.
+    pub(super) fn told(&self) -> String {
+        let of = |direction: Direction| {
+            let tests = self.tests.iter().filter(|t| t.direction == direction);
+            let named: Vec<String> =
+                tests.map(|t| format!("{} with {} branches", t.kind.name(), t.branches.len())).collect();
+            (!named.is_empty()).then(|| format!("{direction} ({})", named.join(", ")))
+        };
+        let tests: Vec<String> = Direction::ALL.into_iter().filter_map(of).collect();
+        let warnings = match self.warnings.len() {
+            0 => "no warning of the instrument's program".to_string(),
+            n => format!("{n} warnings of the instrument's program"),
+        };
+        let mass = if self.areal_density.is_some() { "its mass" } else { "no mass" };
+        format!(
+            "a FAB record of {}; {} thickness contacts, {mass}, {warnings}",
+            tests.join(", "),
+            self.thickness.len()
+        )
+    }
+}
+
 /// Reads the raw data of a U3M physics file.
 ///
 /// # Errors
 /// `R022` if it is not JSON, `R023` if it holds no FAB raw data or a broken test.
 pub(super) fn parse(path: &Path, text: &str) -> Result<(FabFile, Vec<Finding>), ReadError> {
-    let document: Value = serde_json::from_str(text).map_err(|e| ReadError {
-        place: Place::at(path, e.line(), e.column()),
-        problem: Problem::BadJson { reason: e.to_string() },
+    let document: Value = serde_json::from_str(text).map_err(|e| {
+        let place = Place::at(path, e.line(), e.column());
+        ReadError::new(place, Problem::BadJson { reason: e.to_string() })
     })?;
     let raw = document.get("raw_data").filter(|r| r.is_object());
     let raw = raw.ok_or_else(|| bad(path, "the document has no `raw_data` object".into()))?;
@@ -133,7 +156,7 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<(FabFile, Vec<Finding>), 
 }
 
 fn bad(path: &Path, reason: String) -> ReadError {
-    ReadError { place: Place::file(path), problem: Problem::BadFab { reason } }
+    ReadError::new(Place::file(path), Problem::BadFab { reason })
 }
 
 fn strip(

@@ -10,7 +10,7 @@ use super::conditions::StatedConditions;
 use super::dialect::Dialect;
 use super::error::{Problem, ReadError};
 use super::read::{FileContent, ReadSettings, read};
-use super::{FabricInfo, FabricInput, MeasuredResult, Origin, ResultValue};
+use super::{FabricInfo, FabricInput, Inference, MeasuredResult, Origin, ResultValue};
 use crate::finding::{Finding, Place};
 use crate::quantity::{ArealDensity, Length};
 
@@ -60,53 +60,84 @@ struct Group {
     findings: Vec<Finding>,
 }
 
-/// Reads folders and files as fabrics, in parallel; results do not depend on the order of work.
+/// The files of a batch, found and not yet read.
 ///
 /// A folder with `fabric.toml` is a fabric; a folder without, that holds measurement files itself,
 /// is one named after it, with a finding; other folders are searched, in name order. A single file
 /// is a fabric named by its sample or its stem. A result table of several fabrics makes several.
-/// `dialect.toml` in a folder is tried first for its files. `progress` is called after each file.
+/// `dialect.toml` in a folder is tried first for its files.
+pub struct Library {
+    groups: Vec<Group>,
+    failures: Vec<ReadError>,
+}
+
+impl Library {
+    /// Finds the measurement files among the inputs and below them.
+    pub fn find(inputs: &[PathBuf], settings: &ReadSettings) -> Self {
+        let mut library = Self { groups: Vec::new(), failures: Vec::new() };
+        for input in inputs {
+            if input.is_dir() {
+                walk(input, settings, &mut library);
+            } else {
+                library.groups.push(Group {
+                    path: input.clone(),
+                    name: None,
+                    files: vec![input.clone()],
+                    info: FabricInfo::default(),
+                    settings: settings.clone(),
+                    findings: vec![without_fabric_file(input)],
+                });
+            }
+        }
+        library
+    }
+
+    /// Number of files that are to be read.
+    pub fn files(&self) -> usize {
+        self.groups.iter().map(|g| g.files.len()).sum()
+    }
+
+    /// Reads fabric by fabric, in parallel, and gives each to `work`; only what `work` returns is
+    /// kept, so that memory does not grow with the library. Results are in name order, whatever
+    /// the order of work, and so are the errors: one for each file that was not read.
+    /// `progress` is called after each file.
+    pub fn each<T: Send>(
+        self,
+        progress: &(dyn Fn(&Path) + Sync),
+        work: impl Fn(FabricInput) -> T + Sync,
+    ) -> (Vec<T>, Vec<ReadError>) {
+        let group = |group: Group| {
+            let file = |file: &PathBuf| {
+                let content = read(file, &group.settings);
+                progress(file);
+                content
+            };
+            let read: Vec<_> = group.files.par_iter().map(file).collect();
+            let (mut contents, mut failures) = (Vec::new(), Vec::new());
+            for content in read {
+                match content {
+                    Ok(content) => contents.push(content),
+                    Err(error) => failures.push(error),
+                }
+            }
+            let done: Vec<T> = fabrics(group, contents).into_iter().map(&work).collect();
+            (done, failures)
+        };
+        let groups: Vec<_> = self.groups.into_par_iter().map(group).collect();
+        let (mut all, mut failures) = (Vec::new(), self.failures);
+        for (done, unread) in groups {
+            all.extend(done);
+            failures.extend(unread);
+        }
+        (all, failures)
+    }
+}
+
+/// Reads folders and files as fabrics, in parallel, and keeps them all: see [`Library`].
+/// `progress` is called after each file.
 pub fn read_fabrics(inputs: &[PathBuf], settings: &ReadSettings, progress: &(dyn Fn(&Path) + Sync)) -> Batch {
-    let mut batch = Batch::default();
-    let mut groups = Vec::new();
-    for input in inputs {
-        if input.is_dir() {
-            walk(input, settings, &mut groups, &mut batch.failures);
-        } else {
-            groups.push(Group {
-                path: input.clone(),
-                name: None,
-                files: vec![input.clone()],
-                info: FabricInfo::default(),
-                settings: settings.clone(),
-                findings: vec![without_fabric_file(input)],
-            });
-        }
-    }
-    let jobs: Vec<(usize, &Path)> = groups
-        .iter()
-        .enumerate()
-        .flat_map(|(g, group)| group.files.iter().map(move |f| (g, f.as_path())))
-        .collect();
-    let contents: Vec<(usize, Result<FileContent, ReadError>)> = jobs
-        .par_iter()
-        .map(|&(g, file)| {
-            let content = read(file, &groups[g].settings);
-            progress(file);
-            (g, content)
-        })
-        .collect();
-    let mut of_group: Vec<Vec<FileContent>> = groups.iter().map(|_| Vec::new()).collect();
-    for (g, content) in contents {
-        match content {
-            Ok(content) => of_group[g].push(content),
-            Err(error) => batch.failures.push(error),
-        }
-    }
-    for (group, contents) in groups.into_iter().zip(of_group) {
-        batch.fabrics.extend(fabrics(group, contents));
-    }
-    batch
+    let (fabrics, failures) = Library::find(inputs, settings).each(progress, |fabric| fabric);
+    Batch { fabrics, failures }
 }
 
 fn without_fabric_file(path: &Path) -> Finding {
@@ -115,9 +146,8 @@ fn without_fabric_file(path: &Path) -> Finding {
 }
 
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, ReadError> {
-    let unreadable = |e: std::io::Error| ReadError {
-        place: Place::file(folder),
-        problem: Problem::Unreadable { reason: e.to_string() },
+    let unreadable = |e: std::io::Error| {
+        ReadError::new(Place::file(folder), Problem::Unreadable { reason: e.to_string() })
     };
     let mut paths = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(unreadable)? {
@@ -144,10 +174,10 @@ fn is_data(path: &Path) -> bool {
             || std::fs::read(path).is_ok_and(|b| b.windows(10).any(|w| w == b"\"raw_data\"")))
 }
 
-fn walk(folder: &Path, settings: &ReadSettings, groups: &mut Vec<Group>, failures: &mut Vec<ReadError>) {
+fn walk(folder: &Path, settings: &ReadSettings, library: &mut Library) {
     let paths = match entries(folder) {
         Ok(paths) => paths,
-        Err(error) => return failures.push(error),
+        Err(error) => return library.failures.push(error),
     };
     let visible = || paths.iter().filter(|p| !is_hidden(p));
     let mut files: Vec<PathBuf> = visible().filter(|p| is_data(p)).cloned().collect();
@@ -162,20 +192,20 @@ fn walk(folder: &Path, settings: &ReadSettings, groups: &mut Vec<Group>, failure
                     files.extend(inner.iter().filter(|p| !is_hidden(p) && is_data(p)).cloned());
                     folders.extend(inner.into_iter().filter(|p| !is_hidden(p) && p.is_dir()));
                 }
-                Err(error) => failures.push(error),
+                Err(error) => library.failures.push(error),
             }
         }
         files.sort();
     }
     if has_fabric_file || !files.is_empty() {
         match group(folder, files, has_fabric_file, settings) {
-            Ok(group) => groups.push(group),
-            Err(error) => failures.push(error),
+            Ok(group) => library.groups.push(group),
+            Err(error) => library.failures.push(error),
         }
     }
     if !has_fabric_file {
         for inner in visible().filter(|p| p.is_dir()) {
-            walk(inner, settings, groups, failures);
+            walk(inner, settings, library);
         }
     }
 }
@@ -230,15 +260,13 @@ fn from_toml<T: serde::de::DeserializeOwned>(
     path: &Path,
     problem: impl Fn(String) -> Problem,
 ) -> Result<T, ReadError> {
-    let text = std::fs::read_to_string(path).map_err(|e| ReadError {
-        place: Place::file(path),
-        problem: Problem::Unreadable { reason: e.to_string() },
-    })?;
+    let text = std::fs::read_to_string(path)
+        .map_err(|e| ReadError::new(Place::file(path), Problem::Unreadable { reason: e.to_string() }))?;
     toml::from_str(&text).map_err(|e: toml::de::Error| {
         let before = &text[..e.span().map_or(0, |s| s.start.min(text.len()))];
         let line = before.matches('\n').count() + 1;
         let column = before.rsplit('\n').next().map_or(0, |l| l.chars().count()) + 1;
-        ReadError { place: Place::at(path, line, column), problem: problem(e.message().replace('\n', "; ")) }
+        ReadError::new(Place::at(path, line, column), problem(e.message().replace('\n', "; ")))
     })
 }
 
@@ -268,11 +296,22 @@ fn fabrics(group: Group, contents: Vec<FileContent>) -> Vec<FabricInput> {
         if !content.measurements.is_empty() || content.fab.is_some() {
             of.entry(name.clone()).or_default();
         }
+        let decisions = content.inference;
+        let mut inference = Some(Inference { path: content.source.path.clone(), decisions });
+        // A finding of a table goes to the fabric of its cell, and one of the file to the first.
+        let (mut findings, first) = (content.findings, of.keys().next().cloned());
         for (fabric, results) in of {
             let input = out.entry(fabric.clone()).or_insert_with(|| blank(&fabric, &group));
+            let of_cell = |f: &Finding| results.iter().any(|r| f.place.as_ref() == Some(&r.place));
+            let (own, others) = findings.into_iter().partition(of_cell);
+            findings = others;
+            input.findings.extend::<Vec<_>>(own);
             input.results.extend(results);
-            input.findings.extend(content.findings.iter().cloned());
             input.sources.push(content.source.clone());
+            input.inference.extend(inference.take());
+        }
+        if let Some(input) = first.and_then(|name| out.get_mut(&name)) {
+            input.findings.extend(findings);
         }
         if let Some(input) = out.get_mut(&name) {
             input.measurements.extend(content.measurements);
@@ -326,15 +365,15 @@ fn finished(mut fabric: FabricInput) -> FabricInput {
 
 /// Gives specimens of different files that carry the same number numbers of their own.
 fn renumber(fabric: &mut FabricInput) {
-    let mut seen: BTreeMap<_, Vec<usize>> = BTreeMap::new();
+    let mut seen: BTreeMap<_, BTreeSet<usize>> = BTreeMap::new();
     for m in &mut fabric.measurements {
         let taken = seen.entry((m.test, m.direction)).or_default();
         if taken.contains(&m.specimen) {
-            let next = taken.iter().max().map_or(1, |n| n + 1);
+            let next = taken.last().map_or(1, |n| n + 1);
             let message = format!("specimen {} occurs twice; the later one is numbered {next}", m.specimen);
             fabric.findings.push(Finding::new("R103", message).at(Place::file(&m.source.path)));
             m.specimen = next;
         }
-        taken.push(m.specimen);
+        taken.insert(m.specimen);
     }
 }

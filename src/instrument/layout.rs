@@ -12,6 +12,7 @@ use super::error::{Problem, ReadError};
 use super::heading;
 use super::raw::Row;
 use super::sniff::{Number, folded, number};
+use super::suggest;
 use super::words::{Label, Vocabulary, is_volt, split_unit, unit};
 use crate::finding::Place;
 
@@ -31,7 +32,7 @@ pub(super) struct Context<'a> {
 
 impl Context<'_> {
     pub fn error(&self, line: usize, column: usize, problem: Problem) -> ReadError {
-        ReadError { place: Place::at(self.path, line, column), problem }
+        ReadError::new(Place::at(self.path, line, column), problem)
     }
 
     /// The unit of a column that states none.
@@ -406,12 +407,15 @@ impl<'t> Scanner<'t, '_> {
     }
 
     fn unknown_layout(&self, row: &Row<'_>, words: &[String]) -> ReadError {
-        let found = if words.is_empty() {
-            "numbers stand without a heading row".to_string()
-        } else {
-            let (closest, unknown) = self.context.vocabulary.closest(words);
-            format!("dialect {closest:?} comes closest, but it does not know {}", unknown.join(", "))
+        let closest = self.context.vocabulary.closest(words);
+        let found = match closest.first().filter(|_| !words.is_empty()) {
+            None => "numbers stand without a heading row".to_string(),
+            Some((name, unknown)) => {
+                format!("dialect {name:?} comes closest, but it does not know {}", unknown.join(", "))
+            }
         };
-        self.context.error(row.line, row.column(0), Problem::UnknownLayout { found })
+        let mut error = self.context.error(row.line, row.column(0), Problem::UnknownLayout { found });
+        error.inference = suggest::layout(words, &closest);
+        error
     }
 }

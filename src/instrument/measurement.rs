@@ -38,6 +38,16 @@ impl Test {
         }
     }
 
+    /// SI units of abscissa and ordinate.
+    pub fn axes(self) -> [&'static str; 2] {
+        match self {
+            Self::Tensile => ["1", "N/m"],
+            Self::Shear => ["rad", "N/m"],
+            Self::Bending => ["1/m", "N"],
+            Self::Compression => ["m", "Pa"],
+        }
+    }
+
     /// The instrument, e.g. `KES-FB2`.
     pub fn instrument(self) -> &'static str {
         match self {
@@ -122,6 +132,13 @@ pub struct Measurement {
     pub metadata: BTreeMap<String, String>,
 }
 
+impl Measurement {
+    /// The file and the line of the first sample.
+    pub fn place(&self) -> Place {
+        Place::at(&self.source.path, self.lines.first().copied().unwrap_or(0), 0)
+    }
+}
+
 /// One value of a result table, SI.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ResultValue {
@@ -199,4 +216,16 @@ pub struct FabricInput {
     pub sources: Vec<Source>,
     /// What a reader of the data must know.
     pub findings: Vec<Finding>,
+    /// What was inferred from each file and why, for people.
+    #[serde(skip)]
+    pub inference: Vec<Inference>,
+}
+
+/// What was inferred from a file and why, for people (`kesf check -v`).
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Inference {
+    /// Path as it was named to us.
+    pub path: PathBuf,
+    /// One decision each, in the order in which they were taken.
+    pub decisions: Vec<String>,
 }

@@ -14,12 +14,15 @@ mod fast;
 mod folder;
 mod heading;
 mod layout;
+mod limits;
 mod measurement;
 mod parameter;
 mod raw;
 mod read;
 mod result_table;
 mod sniff;
+mod suggest;
+mod told;
 mod words;
 mod workbook;
 
@@ -27,11 +30,12 @@ pub use conditions::{
     BendingConditions, CompressionConditions, ShearConditions, StatedConditions, TensileConditions,
     standard_conditions,
 };
-pub use dialect::{Dialect, Key, Role, TableColumn, dialects};
+pub use dialect::{DIALECT_FILES, Dialect, Key, Role, TableColumn, dialects};
 pub use error::{Problem, ReadError};
-pub use folder::{Batch, read_dialect, read_fabrics};
+pub use folder::{Batch, Library, read_dialect, read_fabrics};
 pub use measurement::{
-    Conditions, FabricInfo, FabricInput, MeasuredResult, Measurement, Origin, ResultValue, Source, Test,
+    Conditions, FabricInfo, FabricInput, Inference, MeasuredResult, Measurement, Origin, ResultValue, Source,
+    Test,
 };
 pub use parameter::{Direction, Parameter};
 pub use read::{FileContent, ReadSettings, parse, read};

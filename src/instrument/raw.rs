@@ -10,6 +10,8 @@ use super::error::Problem;
 pub(super) struct Text {
     pub text: String,
     pub encoding: &'static str,
+    /// What decided it, for people.
+    pub why: &'static str,
 }
 
 /// One cell as it stands in the file.
@@ -26,6 +28,8 @@ pub(super) struct Row<'a> {
     /// From 1.
     pub line: usize,
     pub cells: Vec<Cell<'a>>,
+    /// Whether columns count cells, as in a workbook, and not characters.
+    pub in_cells: bool,
 }
 
 impl Row<'_> {
@@ -45,7 +49,8 @@ impl Row<'_> {
 
     /// The column of a cell; past the end, the column after the last one.
     pub fn column(&self, index: usize) -> usize {
-        let end = || self.cells.last().map_or(1, |c| c.column + c.text.chars().count());
+        let width = |c: &Cell<'_>| if self.in_cells { 1 } else { c.text.chars().count() };
+        let end = || self.cells.last().map_or(1, |c| c.column + width(c));
         self.cells.get(index).map_or_else(end, |c| c.column)
     }
 }
@@ -56,8 +61,8 @@ impl Row<'_> {
 /// The whole file is decoded before anything is split, because the second byte of a CP932
 /// character can be `|` or a backslash. The error carries line and column.
 pub(super) fn decode(bytes: &[u8], label: Option<&str>) -> Result<Text, (usize, usize, Problem)> {
-    let encoding = match label.and_then(|l| Encoding::for_label(l.as_bytes())) {
-        Some(encoding) => encoding,
+    let (encoding, why) = match label.and_then(|l| Encoding::for_label(l.as_bytes())) {
+        Some(encoding) => (encoding, "stated by the dialect"),
         None => guess(bytes),
     };
     let body = Encoding::for_bom(bytes).map_or(bytes, |(_, n)| &bytes[n..]);
@@ -79,26 +84,29 @@ pub(super) fn decode(bytes: &[u8], label: Option<&str>) -> Result<Text, (usize, 
         let code = text[at..].chars().next().map_or(0, u32::from);
         return Err((line, column, not_text(format!("control character U+{code:04X}"))));
     }
-    Ok(Text { text: text.to_string(), encoding: encoding.name() })
+    Ok(Text { text: text.to_string(), encoding: encoding.name(), why })
 }
 
 fn not_text(found: String) -> Problem {
     Problem::NotText { found }
 }
 
-fn guess(bytes: &[u8]) -> &'static Encoding {
+/// The encoding, and what speaks for it.
+fn guess(bytes: &[u8]) -> (&'static Encoding, &'static str) {
     if let Some((encoding, _)) = Encoding::for_bom(bytes) {
-        return encoding;
+        return (encoding, "byte order mark");
     }
+    const NULS: &str = "every second byte is NUL";
     let nuls = |offset: usize| bytes.iter().skip(offset).step_by(2).take(2000).filter(|&&b| b == 0).count();
     match (std::str::from_utf8(bytes).is_ok(), nuls(0), nuls(1)) {
-        (true, 0, 0) => UTF_8,
+        (true, 0, 0) if bytes.is_ascii() => (UTF_8, "plain ASCII"),
+        (true, 0, 0) => (UTF_8, "the bytes are valid UTF-8"),
         // ASCII characters of UTF-16 have a NUL in every second byte, always on the same side.
-        (_, even, odd) if odd > 10 * even && odd > 3 => UTF_16LE,
-        (_, even, odd) if even > 10 * odd && even > 3 => UTF_16BE,
-        (true, ..) => UTF_8,
-        _ if looks_japanese(bytes) => SHIFT_JIS,
-        _ => WINDOWS_1252,
+        (_, even, odd) if odd > 10 * even && odd > 3 => (UTF_16LE, NULS),
+        (_, even, odd) if even > 10 * odd && even > 3 => (UTF_16BE, NULS),
+        (true, ..) => (UTF_8, "the bytes are valid UTF-8"),
+        _ if looks_japanese(bytes) => (SHIFT_JIS, "not UTF-8, and the byte pairs are Japanese"),
+        _ => (WINDOWS_1252, "not UTF-8 and not Japanese"),
     }
 }
 
@@ -139,6 +147,7 @@ pub(super) fn rows(text: &str, delimiter: char) -> Vec<Row<'_>> {
         .map(|(i, line)| Row {
             line: i + 1,
             cells: cells(line.strip_suffix('\r').unwrap_or(line), delimiter),
+            in_cells: false,
         })
         .collect()
 }

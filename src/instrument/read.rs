@@ -1,6 +1,6 @@
 //! One file: bytes to measurements, result values or a FAB record.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
@@ -57,10 +57,8 @@ pub struct FileContent {
 /// # Errors
 /// See [`Problem`].
 pub fn read(path: &Path, settings: &ReadSettings) -> Result<FileContent, ReadError> {
-    let bytes = std::fs::read(path).map_err(|e| ReadError {
-        place: Place::file(path),
-        problem: Problem::Unreadable { reason: e.to_string() },
-    })?;
+    let bytes = std::fs::read(path)
+        .map_err(|e| ReadError::new(Place::file(path), Problem::Unreadable { reason: e.to_string() }))?;
     parse(path, &bytes, settings)
 }
 
@@ -74,11 +72,12 @@ pub fn parse(path: &Path, bytes: &[u8], settings: &ReadSettings) -> Result<FileC
         sha256: Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect(),
         ..Source::default()
     };
-    let mut content = if workbook::is_workbook(bytes) {
-        sheets(path, bytes, settings, source)?
-    } else {
-        text(path, bytes, settings, source)?
-    };
+    let mut content = FileContent { source, ..FileContent::default() };
+    let reader = if workbook::is_workbook(bytes) { sheets } else { text };
+    if let Err(mut error) = reader(path, bytes, settings, &mut content) {
+        content.inference.append(&mut error.inference);
+        return Err(ReadError { inference: content.inference, ..error });
+    }
     number_specimens(path, &mut content);
     for m in &mut content.measurements {
         m.source = content.source.clone();
@@ -90,41 +89,38 @@ fn text(
     path: &Path,
     bytes: &[u8],
     settings: &ReadSettings,
-    source: Source,
-) -> Result<FileContent, ReadError> {
-    let error = |(line, column, problem)| ReadError { place: Place::at(path, line, column), problem };
+    content: &mut FileContent,
+) -> Result<(), ReadError> {
+    let error = |(line, column, problem)| ReadError::new(Place::at(path, line, column), problem);
     let mut decoded = raw::decode(bytes, None);
     let as_guessed = decoded.as_ref().map_or("", |t| t.text.as_str());
     let dialect = settings.dialects.iter().find(|d| d.applies_to(as_guessed));
     if let Some(label) = dialect.and_then(|d| d.encoding.as_deref()) {
         decoded = raw::decode(bytes, Some(label));
     }
-    let raw::Text { text, encoding } = decoded.map_err(error)?;
-    let mut content = FileContent { source, ..FileContent::default() };
+    let raw::Text { text, encoding, why } = decoded.map_err(error)?;
     content.source.encoding = encoding.to_string();
-    content.inference.push(format!("encoding {encoding}"));
+    content.inference.push(format!("encoding {encoding}: {why}"));
     if text.trim().is_empty() {
         return Err(error((0, 0, Problem::Empty)));
     }
     if text.trim_start().starts_with('{') {
         let (mut file, findings) = fab::parse(path, &text)?;
         content.source.dialect = "u3m-fab".to_string();
-        content.inference.push("JSON with raw_data: a FAB record".to_string());
+        content.inference.push(format!("JSON with raw_data: {}", file.told()));
         file.source = content.source.clone();
         (content.fab, content.findings) = (Some(file), findings);
-        return Ok(content);
+        return Ok(());
     }
     let delimiter = settings.delimiter.or(dialect.and_then(|d| d.delimiter));
     let decimal = settings.decimal.or(dialect.and_then(|d| d.decimal));
-    let format = sniff(&text, delimiter, decimal).map_err(|p| error((0, 0, p)))?;
-    let stated = if delimiter.is_some() { "stated" } else { "gives most numbers" };
+    let (format, why) = sniff(&text, delimiter, decimal).map_err(|p| error((0, 0, p)))?;
     content
         .inference
-        .push(format!("delimiter {:?}, decimal mark {:?}: {stated}", format.delimiter, format.decimal));
+        .push(format!("delimiter {:?}, decimal mark {:?}: {why}", format.delimiter, format.decimal));
     let rows = raw::rows(&text, format.delimiter);
     let context = context(path, settings, dialect, format.delimiter, format.decimal);
-    table(&rows, &context, text.ends_with('\n'), &mut content)?;
-    Ok(content)
+    table(&rows, &context, text.ends_with('\n'), content)
 }
 
 fn context<'a>(
@@ -153,12 +149,11 @@ fn sheets(
     path: &Path,
     bytes: &[u8],
     settings: &ReadSettings,
-    source: Source,
-) -> Result<FileContent, ReadError> {
-    let error = |problem| ReadError { place: Place::file(path), problem };
+    content: &mut FileContent,
+) -> Result<(), ReadError> {
+    let error = |problem| ReadError::new(Place::file(path), problem);
     let decimal = settings.decimal.or_else(|| settings.dialects.iter().find_map(|d| d.decimal));
     let (sheets, decimal) = workbook::sheets(bytes, decimal).map_err(error)?;
-    let mut content = FileContent { source, ..FileContent::default() };
     let several = sheets.len() > 1;
     for sheet in &sheets {
         // The place of a cell needs its sheet: `book.xlsx[sheet]:line:column`.
@@ -169,7 +164,8 @@ fn sheets(
         context.path = at;
         context.label = Label::parse(&sheet.name, context.vocabulary).or(context.label);
         let before = content.inference.len();
-        match table(&sheet.rows, &context, true, &mut content) {
+        content.inference.push(format!("sheet {:?}: {} rows", sheet.name, sheet.rows.len()));
+        match table(&sheet.rows, &context, true, content) {
             // A sheet of remarks or charts among others.
             Err(e) if several && e.problem == Problem::Empty => content.inference.truncate(before),
             result => result?,
@@ -178,7 +174,7 @@ fn sheets(
     if content.measurements.is_empty() && content.results.is_empty() {
         return Err(error(Problem::Empty));
     }
-    Ok(content)
+    Ok(())
 }
 
 /// Reads a table of cells into `content`; `complete` says that its last row ended properly.
@@ -189,8 +185,7 @@ fn table(
     content: &mut FileContent,
 ) -> Result<(), ReadError> {
     let blocks = layout::blocks(rows, context)?;
-    content.source.dialect = dialect_name(rows, context);
-    content.inference.push(format!("dialect {}: knows most of the headings", content.source.dialect));
+    content.source.dialect = dialect_name(rows, context, &mut content.inference);
     let count = blocks.len();
     for (i, block) in blocks.into_iter().enumerate() {
         let ends_file = !complete && i + 1 == count;
@@ -211,7 +206,8 @@ fn table(
                 }
             }
             Block::Table { header, heading, rows } => {
-                let (values, findings) = result_table::read(&header, heading, &rows, context)?;
+                let (values, findings) =
+                    result_table::read(&header, heading, &rows, context, &mut content.inference)?;
                 content.results.extend(values);
                 content.findings.extend(findings);
             }
@@ -245,7 +241,7 @@ fn weight(header: &Header, context: &Context<'_>, content: &mut FileContent) -> 
 }
 
 /// The dialect that knows most words of the rows that are not numbers.
-fn dialect_name(rows: &[Row<'_>], context: &Context<'_>) -> String {
+fn dialect_name(rows: &[Row<'_>], context: &Context<'_>, log: &mut Vec<String>) -> String {
     let is_text = |t: &str| t.chars().any(char::is_alphabetic);
     let words: Vec<String> = rows
         .iter()
@@ -253,25 +249,28 @@ fn dialect_name(rows: &[Row<'_>], context: &Context<'_>) -> String {
         .take(40)
         .flat_map(|r| r.filled().map(|(_, c)| c.text.to_string()).collect::<Vec<_>>())
         .collect();
-    context.vocabulary.closest(&words).0
+    let dialects = context.vocabulary.closest(&words);
+    let known = |(name, unknown): &(String, Vec<String>)| format!("{name} {}", words.len() - unknown.len());
+    let counts: Vec<String> = dialects.iter().map(known).collect();
+    log.push(format!("words that dialects know, of {} texts: {}", words.len(), counts.join(", ")));
+    dialects.into_iter().next().unwrap_or_default().0
 }
 
 /// Numbers the specimens that the file leaves unnumbered, per test and direction, in file order.
 fn number_specimens(path: &Path, content: &mut FileContent) {
     let unnumbered = content.measurements.iter().filter(|m| m.specimen == 0).count();
-    for i in 0..content.measurements.len() {
-        let (before, rest) = content.measurements.split_at_mut(i);
-        let m = &mut rest[0];
-        let same = |o: &&Measurement| (o.test, o.direction, &o.sample) == (m.test, m.direction, &m.sample);
-        let taken: Vec<usize> = before.iter().filter(same).map(|o| o.specimen).collect();
+    let mut numbers: BTreeMap<_, BTreeSet<usize>> = BTreeMap::new();
+    for m in &mut content.measurements {
+        let taken = numbers.entry((m.test, m.direction, m.sample.clone())).or_default();
+        let next = taken.last().map_or(1, |n| n + 1);
         if m.specimen == 0 {
-            m.specimen = taken.iter().max().map_or(1, |n| n + 1);
+            m.specimen = next;
         } else if taken.contains(&m.specimen) {
-            let next = taken.iter().max().map_or(1, |n| n + 1);
             let message = format!("specimen {} occurs twice; the later one is numbered {next}", m.specimen);
             content.findings.push(Finding::new("R103", message).at(Place::at(path, m.lines[0], 0)));
             m.specimen = next;
         }
+        taken.insert(m.specimen);
     }
     if unnumbered > 1 {
         content.inference.push(format!("{unnumbered} specimens numbered in file order"));

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use super::curves::finite;
 use super::dialect::TableColumn;
 use super::error::{Problem, ReadError};
-use super::fast::FastValue;
+use super::fast::{self, FastValue};
 use super::heading::{Column, ParameterColumn, columns, parameter_column};
 use super::layout::{Context, Header};
 use super::raw::Row;
@@ -30,6 +30,7 @@ pub(super) fn read(
     heading: &Row<'_>,
     rows: &[&Row<'_>],
     context: &Context<'_>,
+    log: &mut Vec<String>,
 ) -> Result<(Values, Vec<Finding>), ReadError> {
     let columns = columns(heading, context.vocabulary);
     let mut table = Table {
@@ -43,6 +44,7 @@ pub(super) fn read(
         findings: Vec::new(),
     };
     let long = table.meta(TableColumn::Parameter).is_some();
+    log.push(table.told(long));
     let rows = if long { rows } else { table.unit_row(rows) };
     for row in rows {
         if long { table.long_row(row)? } else { table.wide_row(row)? }
@@ -77,6 +79,25 @@ struct Table<'t, 'a> {
 }
 
 impl Table<'_, '_> {
+    /// The form of the table and what its columns hold, for people.
+    fn told(&self, long: bool) -> String {
+        let form = if long { "one row a parameter" } else { "one column a parameter" };
+        let named = self.columns.iter().zip(&self.heading.cells).filter_map(|(column, cell)| {
+            let meaning = match column.as_ref()? {
+                Column::Meta(meta) => format!("{meta:?}").to_lowercase(),
+                Column::Parameter(p) => match p.direction {
+                    Some(direction) => format!("{} {direction}", p.parameter),
+                    None => p.parameter.to_string(),
+                },
+                Column::Of(direction) => format!("values of {direction}"),
+                Column::Fast(value, ..) => format!("FAST {}", value.symbol()),
+            };
+            Some(format!("{:?} is {meaning}", cell.text))
+        });
+        let named = named.collect::<Vec<_>>().join(", ");
+        format!("result table with its headings in line {}, {form}: {named}", self.heading.line)
+    }
+
     fn meta(&self, meta: TableColumn) -> Option<usize> {
         self.columns.iter().position(|c| *c == Some(Column::Meta(meta)))
     }
@@ -187,8 +208,13 @@ impl Table<'_, '_> {
         let Some(index) = self.meta(TableColumn::Parameter) else { return Ok(()) };
         let Some(name) = row.get(index) else { return Ok(()) };
         let Some(mut p) = parameter_column(name, self.context.vocabulary) else {
-            self.ignored.push(name.to_string());
-            return Ok(());
+            return match fast::heading(name) {
+                Some(heading) => self.long_fast(row, heading),
+                None => {
+                    self.ignored.push(name.to_string());
+                    Ok(())
+                }
+            };
         };
         p.inferred |= self.text(row, TableColumn::Status).is_some_and(|t| normalised(t) == "inferred");
         let (fabric, direction, n) = (self.fabric(row), self.direction(row)?, self.repeats(row)?);
@@ -211,6 +237,30 @@ impl Table<'_, '_> {
                 let sd = finite(row, at, cell, self.context)? * unit.factor;
                 self.spread(&fabric, p.parameter, of, sd);
             }
+        }
+        Ok(())
+    }
+
+    /// A FAST value in a row of its own.
+    fn long_fast(
+        &mut self,
+        row: &Row<'_>,
+        (value, named, own_unit): (FastValue, Option<Direction>, Option<String>),
+    ) -> Result<(), ReadError> {
+        let (fabric, direction) = (self.fabric(row), named.or(self.direction(row)?));
+        let at = self.meta(TableColumn::Unit).or(self.meta(TableColumn::Parameter)).unwrap_or(0);
+        let text = self.text(row, TableColumn::Unit).or(own_unit.as_deref());
+        let factor = self.fast_unit(value, text, (row.line, row.column(at)))?.factor;
+        for (i, column) in self.columns.clone().iter().enumerate() {
+            let of = match column {
+                Some(Column::Meta(TableColumn::Value)) => direction,
+                Some(Column::Of(d)) => Some(*d),
+                _ => continue,
+            };
+            let Some(cell) = row.get(i).filter(|c| !is_gap(c)) else { continue };
+            let si = finite(row, i, cell, self.context)? * factor;
+            let (fabric, line, column) = (fabric.clone(), row.line, row.column(i));
+            self.fast.push(FastCell { fabric, value, direction: of, si, line, column });
         }
         Ok(())
     }
@@ -344,7 +394,7 @@ impl Table<'_, '_> {
             } else if value.parameter.is_directional() {
                 let found =
                     format!("{} is given twice (first in line {})", value.parameter, out[at].1.place.line);
-                return Err(ReadError { place: value.place, problem: Problem::BadTable { found } });
+                return Err(ReadError::new(value.place, Problem::BadTable { found }));
             } else if !means.contains(&value.mean) {
                 // A thickness in each direction's row: the fabric has one.
                 means.push(value.mean);

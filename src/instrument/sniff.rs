@@ -27,6 +27,9 @@ pub(super) enum Number {
     Text,
 }
 
+/// From here on a number is none that was measured, and sums and units could make it infinite.
+const BEYOND: f64 = 1e100;
+
 /// NFKC and one kind of minus: full-width digits and signs become ASCII.
 pub(super) fn folded(cell: &str) -> Cow<'_, str> {
     if cell.is_ascii() {
@@ -54,7 +57,7 @@ pub(super) fn number(cell: &str, decimal: char) -> Number {
     if bytes.iter().all(|&b| in_number(b)) {
         let parsed = if decimal == ',' { text.replace(',', ".").parse() } else { text.parse::<f64>() };
         return match parsed {
-            Ok(value) if value.is_finite() => Number::Value(value),
+            Ok(value) if value.abs() < BEYOND => Number::Value(value),
             Ok(_) => Number::NotFinite,
             Err(_) => Number::Broken,
         };
@@ -77,11 +80,15 @@ fn is_date(text: &str) -> bool {
     text.as_bytes().windows(2).any(|w| w[0].is_ascii_digit() && w[1] == b'-')
 }
 
-/// Decides the format of a text, within what is already `delimiter`/`decimal` known.
+/// Decides the format of a text, within what is already `delimiter`/`decimal` known, and says why.
 ///
 /// # Errors
 /// `R005` where two readings are equally good.
-pub(super) fn sniff(text: &str, delimiter: Option<char>, decimal: Option<char>) -> Result<Format, Problem> {
+pub(super) fn sniff(
+    text: &str,
+    delimiter: Option<char>,
+    decimal: Option<char>,
+) -> Result<(Format, String), Problem> {
     let mut best: Vec<(i64, Format)> = Vec::new();
     // Marks that do not occur cannot win, and need not be tried unless they are stated.
     let occurs = |c: char| text.contains(c);
@@ -111,7 +118,17 @@ pub(super) fn sniff(text: &str, delimiter: Option<char>, decimal: Option<char>) 
     if decimal.is_none() && format.decimal == ',' {
         thousands(text, format)?;
     }
-    Ok(format)
+    let why = match (delimiter.is_some() && decimal.is_some(), best.get(1)) {
+        (true, _) => "both stated".to_string(),
+        (_, None) => format!("{top} numbers so, and no other mark occurs"),
+        (_, Some((score, next))) => format!(
+            "{top} numbers so; with {:?} and {:?} {}",
+            next.delimiter,
+            next.decimal,
+            if *score < 0 { "cells break that begin like numbers".to_string() } else { score.to_string() }
+        ),
+    };
+    Ok((format, why))
 }
 
 /// Numbers won minus numbers broken, counted over the cells of rows that have several.
@@ -169,6 +186,7 @@ mod tests {
         assert_eq!(number("0,35", '.'), Number::Broken);
         assert_eq!(number("NaN", '.'), Number::NotFinite);
         assert_eq!(number("1e999", '.'), Number::NotFinite);
+        assert_eq!(number("-1e200", '.'), Number::NotFinite);
         assert_eq!(number("20 cm", '.'), Number::Text);
         assert_eq!(number("2024-01-05", '.'), Number::Text);
         assert_eq!(number("-", '.'), Number::Text);
@@ -177,7 +195,7 @@ mod tests {
 
     #[test]
     fn delimiter_and_decimal_mark_are_found_together() {
-        let f = |text| sniff(text, None, None).map(|f| (f.delimiter, f.decimal));
+        let f = |text| sniff(text, None, None).map(|(f, _)| (f.delimiter, f.decimal));
         assert_eq!(f("a,b\n0.5,1.5\n"), Ok((',', '.')));
         assert_eq!(f("a;b\n0,5;1,5\n"), Ok((';', ',')));
         assert_eq!(f("a\tb\n0,5\t1,5\n"), Ok(('\t', ',')));
@@ -189,6 +207,7 @@ mod tests {
     fn what_can_be_read_in_two_ways_is_refused_until_it_is_settled() {
         let text = "a;b\n1,234;2,345\n3,456;4,567\n";
         assert!(matches!(sniff(text, None, None), Err(Problem::Ambiguous { .. })));
-        assert_eq!(sniff(text, None, Some(',')), Ok(Format { delimiter: ';', decimal: ',' }));
+        let settled = sniff(text, None, Some(',')).map(|(format, _)| format);
+        assert_eq!(settled, Ok(Format { delimiter: ';', decimal: ',' }));
     }
 }

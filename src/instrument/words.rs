@@ -94,17 +94,17 @@ impl<'a> Vocabulary<'a> {
         })
     }
 
-    /// The dialect that knows most of these words, and the words that it does not know.
-    pub fn closest(self, words: &[String]) -> (String, Vec<String>) {
+    /// Every dialect with those of the words that it does not know, the closest first.
+    pub fn closest(self, words: &[String]) -> Vec<(String, Vec<String>)> {
         let words: Vec<(&String, String)> = words.iter().map(|w| (w, normalised(&split_unit(w).0))).collect();
         let unknown = |d: &Dialect| -> Vec<String> {
             let knows = |word: &str| d.vocabulary().any(|v| v == word);
             words.iter().filter(|(_, word)| !knows(word)).map(|(w, _)| (*w).clone()).collect()
         };
-        self.dialects()
-            .map(|d| (d.name.clone(), unknown(d)))
-            .min_by_key(|(_, unknown)| unknown.len())
-            .unwrap_or_default()
+        let mut found: Vec<_> = self.dialects().map(|d| (d.name.clone(), unknown(d))).collect();
+        // A stable sort: among equals the user's, then the first built-in one.
+        found.sort_by_key(|(_, unknown)| unknown.len());
+        found
     }
 }
 
@@ -118,6 +118,10 @@ pub(super) fn split_unit(cell: &str) -> (String, Option<String>) {
         if !inner.is_empty() && open > 0 && !text[..open].trim_end().ends_with(['/', '·']) {
             return (text[..open].trim().to_string(), Some(inner));
         }
+    }
+    // A bracket that was lost took something with it: "moment (gf·cm/N" is no moment in N.
+    if text.matches('(').count() != text.matches(')').count() {
+        return (text, None);
     }
     for (i, c) in text.char_indices().filter(|(_, c)| matches!(c, ' ' | '/' | ',' | ':' | '_')) {
         let rest = text[i + c.len_utf8()..].trim();
@@ -183,6 +187,9 @@ pub(super) fn is_volt(text: &str) -> bool {
     matches!(text, "V" | "mV")
 }
 
+/// A number from here on does not count specimens.
+pub(super) const SPECIMENS: usize = 10_000;
+
 /// Metadata in a file name or over a block of columns: `F01_warp_FB2_1`, `経-1`, `タテ`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Label {
@@ -224,8 +231,9 @@ impl Label {
             self.direction = self.direction.or(Some(direction));
         } else if let Some(test) = vocabulary.find(part, false, |d| &d.tests) {
             self.test = self.test.or(Some(test));
-        } else if let Ok(number) = part.parse::<usize>() {
-            self.specimen = Some(number);
+        } else if !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit()) {
+            // A longer number is a date or an order.
+            self.specimen = part.parse().ok().filter(|n| *n < SPECIMENS).or(self.specimen);
         } else {
             let word = normalised(part);
             return matches!(word.as_str(), "kes" | "kesf" | "fb1" | "no")
@@ -277,6 +285,8 @@ mod tests {
         assert_eq!(split("force gf/cm"), pair("force", "gf/cm"));
         assert_eq!(split("strain/%"), pair("strain", "%"));
         assert_eq!(split("bending moment"), ("bending moment".to_string(), None));
+        assert_eq!(split("moment (gf·cm/N").1, None);
+        assert_eq!(split("force (front) gf/cm"), pair("force (front)", "gf/cm"));
         assert!((unit("gf/cm·deg").unwrap().factor - 56.187_965_62).abs() < 1e-8);
         assert!((unit("gf/cm*deg").unwrap().factor - 56.187_965_62).abs() < 1e-8);
     }
@@ -291,5 +301,7 @@ mod tests {
         assert_eq!((label("タテ2").direction, label("タテ2").specimen), (Some(Direction::Warp), Some(2)));
         assert_eq!(label("試料番号 3").specimen, Some(3));
         assert_eq!(label("fb1-shear-weft-2").test, Some(Test::Shear));
+        assert_eq!(label("poplin_20240105_warp").specimen, None);
+        assert_eq!(label("poplin_20240105_warp").sample.as_deref(), Some("poplin"));
     }
 }

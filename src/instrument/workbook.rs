@@ -7,6 +7,7 @@ use std::io::Cursor;
 use calamine::{Data, DataRef, Reader, Xls, Xlsx};
 
 use super::error::Problem;
+use super::limits;
 use super::raw::{Cell, Row};
 use super::sniff::{Number, number};
 
@@ -39,6 +40,9 @@ pub(super) fn is_workbook(bytes: &[u8]) -> bool {
 /// `R021`.
 pub(super) fn sheets(bytes: &[u8], decimal: Option<char>) -> Result<(Vec<Sheet>, char), Problem> {
     let cells = if bytes.starts_with(b"PK") { xlsx(bytes)? } else { xls(bytes)? };
+    if cells.iter().map(|(_, c)| places(c)).sum::<usize>() > limits::CELLS {
+        return Err(limits::too_many_cells());
+    }
     let text = || {
         cells.iter().flat_map(|(_, c)| c.values()).filter_map(|v| match v {
             Value::Text(t) => Some(t.as_str()),
@@ -60,9 +64,9 @@ fn rows(cells: Cells, decimal: char) -> Vec<Row<'static>> {
         if last != line {
             if last + 1 < line {
                 // One blank row stands for a gap of any height.
-                rows.push(Row { line: line - 1, cells: Vec::new() });
+                rows.push(Row { line: line - 1, cells: Vec::new(), in_cells: true });
             }
-            rows.push(Row { line, cells: Vec::new() });
+            rows.push(Row { line, cells: Vec::new(), in_cells: true });
         }
         let text = match value {
             Value::Text(text) => text,
@@ -80,10 +84,11 @@ fn rows(cells: Cells, decimal: char) -> Vec<Row<'static>> {
     rows
 }
 
-fn bad(reason: impl std::fmt::Display) -> Problem {
+pub(super) fn bad(reason: impl std::fmt::Display) -> Problem {
     Problem::BadWorkbook { reason: reason.to_string() }
 }
 
+/// Adds a cell that holds something.
 fn insert(cells: &mut Cells, (row, column): (u32, u32), value: DataRef<'_>) -> Result<(), Problem> {
     let value = match value {
         DataRef::Empty => return Ok(()),
@@ -101,10 +106,20 @@ fn insert(cells: &mut Cells, (row, column): (u32, u32), value: DataRef<'_>) -> R
         return Err(bad(format!("a cell stands in column {}; {COLUMNS} are read at most", column + 1)));
     }
     cells.insert((row, column), value);
-    Ok(())
+    if cells.len() > limits::CELLS { Err(limits::too_many_cells()) } else { Ok(()) }
+}
+
+/// Places from the first column to the last cell of each row, empty ones included.
+fn places(cells: &Cells) -> usize {
+    let mut rows: BTreeMap<u32, usize> = BTreeMap::new();
+    for &(row, column) in cells.keys() {
+        rows.insert(row, column as usize + 1);
+    }
+    rows.values().sum()
 }
 
 fn xlsx(bytes: &[u8]) -> Result<Vec<(String, Cells)>, Problem> {
+    limits::archive(bytes)?;
     let mut book = Xlsx::new(Cursor::new(bytes)).map_err(bad)?;
     let mut out = Vec::new();
     for name in book.sheet_names() {
@@ -120,6 +135,7 @@ fn xlsx(bytes: &[u8]) -> Result<Vec<(String, Cells)>, Problem> {
 }
 
 fn xls(bytes: &[u8]) -> Result<Vec<(String, Cells)>, Problem> {
+    limits::compound(bytes)?;
     let mut book = Xls::new(Cursor::new(bytes)).map_err(bad)?;
     let mut out = Vec::new();
     for name in book.sheet_names() {

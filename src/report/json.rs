@@ -8,7 +8,7 @@ use nalgebra::{Matrix2, Matrix3};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use crate::characterise::{FabricSheet, FrictionLaw};
+use crate::characterise::{FabricSheet, FrictionLaw, Settings};
 use crate::constitutive::{Entry, Input, entries};
 use crate::finding::Finding;
 use crate::instrument::Parameter;
@@ -28,6 +28,9 @@ pub struct SheetDocument {
     pub fabrics: Vec<SheetEntry>,
     /// What a reader must know.
     pub findings: Vec<FindingEntry>,
+    /// Windows and readings behind the values, in words.
+    #[serde(skip_serializing_if = "Map::is_empty")]
+    pub settings: Map<String, Value>,
 }
 
 /// A file and its hash.
@@ -107,14 +110,19 @@ pub struct SectionEntry {
     pub uncertainty: Vec<Entry>,
 }
 
-/// The document of some sheets.
-pub fn sheet_document<'a>(sheets: impl IntoIterator<Item = &'a FabricSheet>) -> SheetDocument {
+/// The document of some sheets, and of the settings that they were evaluated with.
+pub fn sheet_document<'a>(
+    sheets: impl IntoIterator<Item = &'a FabricSheet>,
+    settings: Option<&Settings>,
+) -> SheetDocument {
+    let settings = settings.map(Settings::describe).unwrap_or_default();
     let mut document = SheetDocument {
         schema: "kesf.sheet/1",
         version: env!("CARGO_PKG_VERSION"),
         inputs: Vec::new(),
         fabrics: Vec::new(),
         findings: Vec::new(),
+        settings: settings.into_iter().map(|(name, value)| (name.to_string(), value.into())).collect(),
     };
     for sheet in sheets {
         document.inputs.extend(
@@ -207,7 +215,7 @@ fn moduli(sheet: &FabricSheet) -> Map<String, Value> {
 }
 
 fn estimate(e: &Estimate, unit: &str) -> Value {
-    json!({ "mean": e.mean, "sd": e.sd, "n": e.n, "unit": unit })
+    json!({ "mean": e.mean, "sd": e.sd, "n": e.n, "unit": unit, "cv": e.cv(), "ci95": e.ci95() })
 }
 
 fn finding_entry(fabric: &str, finding: &Finding) -> FindingEntry {
@@ -255,16 +263,21 @@ mod tests {
         let source = Source { path: "p/b.csv".into(), sha256: "00".into(), ..Source::default() };
         sheet.sources = vec![source.clone(), source];
         sheet.findings = vec![Finding::new("K003", "odd").at(Place::at("p/b.csv", 3, 0))];
-        let text = text(&sheet_document([&sheet])).unwrap();
+        let text = text(&sheet_document([&sheet], Some(&Settings::default()))).unwrap();
         assert!(text.ends_with("}\n"));
         let v: Value = serde_json::from_str(&text).unwrap();
         let keys: Vec<&String> = v.as_object().unwrap().keys().collect();
-        assert_eq!(keys, ["schema", "version", "inputs", "fabrics", "findings"]);
+        assert_eq!(keys, ["schema", "version", "inputs", "fabrics", "findings", "settings"]);
         assert_eq!(v["inputs"], json!([{ "path": "p/b.csv", "sha256": "00" }]));
         let parameters = &v["fabrics"][0]["parameters"];
         let symbols: Vec<&String> = parameters.as_object().unwrap().keys().collect();
         assert_eq!(symbols, ["LT", "B", "W"], "the order of sheets");
-        assert_eq!(parameters["B"]["warp"], json!({ "mean": 5e-6, "sd": 1e-7, "n": 3, "unit": "N·m" }));
+        let b = &parameters["B"]["warp"];
+        assert_eq!((&b["mean"], &b["sd"], &b["n"]), (&json!(5e-6), &json!(1e-7), &json!(3)));
+        assert_eq!((&b["unit"], &b["cv"]), (&json!("N·m"), &json!(0.02)));
+        // t(0.975, 2) = 4.30265273 (tables).
+        assert!((b["ci95"].as_f64().unwrap() / (4.302_652_73e-7 / 3f64.sqrt()) - 1.0).abs() < 1e-7);
+        assert_eq!(v["settings"]["G fitted over"], "0.5 deg .. 2.5 deg");
         assert_eq!(parameters["B"]["weft"]["sd"], Value::Null);
         assert_eq!(parameters["W"]["mean"], json!(0.15));
         assert_eq!(parameters["LT"]["fabric"]["mean"], Value::Null);

@@ -5,7 +5,8 @@ use thiserror::Error;
 
 use crate::characterise::FabricSheet;
 use crate::finding::Finding;
-use crate::instrument::{FabricInput, Measurement, Parameter, Test};
+use crate::instrument::{Direction, FabricInput, Measurement, Parameter, Test};
+use crate::quantity::Estimate;
 use crate::study::CaseResult;
 
 /// Why there is no table.
@@ -74,6 +75,10 @@ row! {
         unit: String,
         /// `ok`, or the code of what went wrong.
         status: String,
+        /// Coefficient of variation, SD / |mean|.
+        cv: Option<f64>,
+        /// Half width of the 95 % Student t interval of the mean.
+        ci95: Option<f64>,
     }
 }
 
@@ -174,6 +179,14 @@ impl UnitSystem {
             Self::Si => (parameter.si_unit(), 1.0),
         }
     }
+
+    /// Unit text of a tensile modulus (force per width over strain) and its SI value.
+    pub fn of_modulus(self) -> (&'static str, f64) {
+        match self {
+            Self::Kes => (Parameter::Hg.kes_unit(), Parameter::Hg.kes_factor()),
+            Self::Si => ("N/m", 1.0),
+        }
+    }
 }
 
 /// An SI value in another unit, to 12 significant digits: what was 0.1 gf·cm²/cm in a file is that again, not
@@ -191,25 +204,32 @@ pub fn relative_error(simulated: f64, measured: f64) -> Option<f64> {
     Some((simulated - measured) / measured).filter(|e| e.is_finite())
 }
 
-/// The rows of a sheet, in the order of its parameters and directions.
+/// The rows of a sheet, in the order of its parameters and directions; then its moduli (`E secant`).
 pub fn fabric_rows(sheet: &FabricSheet, units: UnitSystem) -> Vec<FabricRow> {
-    sheet
+    let row = |name: String, direction: Option<Direction>, e: &Estimate, (unit, factor): (&str, f64)| {
+        let shown = |value: f64| in_unit(value, factor);
+        FabricRow {
+            fabric: sheet.name.clone(),
+            parameter: name,
+            direction: direction.map(|d| d.name().into()),
+            mean: Some(shown(e.mean)),
+            sd: e.sd.map(shown),
+            n: e.n as u64,
+            unit: unit.into(),
+            status: "ok".into(),
+            cv: e.cv(),
+            ci95: e.ci95().map(shown),
+        }
+    };
+    let values = sheet
         .values
         .iter()
-        .map(|(key, estimate)| {
-            let (unit, factor) = units.of(key.parameter);
-            FabricRow {
-                fabric: sheet.name.clone(),
-                parameter: key.parameter.symbol().into(),
-                direction: key.direction.map(|d| d.name().into()),
-                mean: Some(in_unit(estimate.mean, factor)),
-                sd: estimate.sd.map(|sd| in_unit(sd, factor)),
-                n: estimate.n as u64,
-                unit: unit.into(),
-                status: "ok".into(),
-            }
-        })
-        .collect()
+        .map(|(key, e)| row(key.parameter.symbol().into(), key.direction, e, units.of(key.parameter)));
+    let moduli = sheet
+        .moduli
+        .iter()
+        .map(|((name, direction), e)| row(format!("E {name}"), Some(*direction), e, units.of_modulus()));
+    values.chain(moduli).collect()
 }
 
 /// Probes and energies against load factor or time; none of analyses without either.
@@ -336,8 +356,6 @@ pub fn parquet<R: Row>(rows: &[R]) -> Result<Vec<u8>, TableError> {
 mod tests {
     use super::*;
     use crate::characterise::Key;
-    use crate::instrument::Direction;
-    use crate::quantity::Estimate;
 
     fn sheet() -> FabricSheet {
         let mut sheet = FabricSheet { name: "poplin, \"A\"".into(), ..FabricSheet::default() };
@@ -352,10 +370,11 @@ mod tests {
         // B: 9.80665e-6 N·m is 0.1 gf·cm²/cm.
         let text = String::from_utf8(csv(&fabric_rows(&sheet(), UnitSystem::Kes)).unwrap()).unwrap();
         let mut lines = text.lines();
-        assert_eq!(lines.next(), Some("fabric,parameter,direction,mean,sd,n,unit,status"));
+        assert_eq!(lines.next(), Some("fabric,parameter,direction,mean,sd,n,unit,status,cv,ci95"));
         let b = lines.next().unwrap();
-        assert_eq!(b, "\"poplin, \"\"A\"\"\",B,warp,0.1,0.001,3,gf·cm²/cm,ok");
-        assert!(lines.next().unwrap().ends_with(",T0,,0.4,,1,mm,ok"));
+        // t(0.975, 2) = 4.30265272991 (tables): 0.001 t / √3.
+        assert_eq!(b, "\"poplin, \"\"A\"\"\",B,warp,0.1,0.001,3,gf·cm²/cm,ok,0.01,0.0024841377118");
+        assert!(lines.next().unwrap().ends_with(",T0,,0.4,,1,mm,ok,,"));
         let si = String::from_utf8(csv(&fabric_rows(&sheet(), UnitSystem::Si)).unwrap()).unwrap();
         assert!(si.contains(",B,warp,9.80665e-6,9.80665e-8,3,N·m,ok"), "{si}");
     }

@@ -1,0 +1,77 @@
+//! What was inferred from a curve file, in words for people (`kesf check -v`).
+
+use super::axis::Scale;
+use super::conditions::standard_conditions;
+use super::curves::driven;
+use super::dialect::Key;
+use super::layout::{Column, Context, Header, Pair};
+use super::words::unit as unit_of;
+use super::{Conditions, Direction, Test};
+
+/// A column and its scale, for people: `"curvature" (1/cm) times 100 is 1/m`.
+pub(super) fn scaled(column: &Column, scale: Scale, si: &str) -> String {
+    let unit = column.unit.as_deref().unwrap_or("no unit stated");
+    match scale {
+        Scale::Linear(f) => format!("{:?} ({unit}) times {} is {si}", column.name, plain(f)),
+        Scale::Atan(f) => {
+            format!("{:?} ({unit}): {si} is the arc tangent of {} times it", column.name, plain(f))
+        }
+    }
+}
+
+/// A number without the last-bit noise of a conversion.
+fn plain(value: f64) -> String {
+    format!("{value:.8e}").parse::<f64>().unwrap_or(value).to_string()
+}
+
+/// What a curve is and where that is stated, for people.
+pub(super) fn curve(
+    test: Test,
+    direction: Option<Direction>,
+    specimen: Option<usize>,
+    pair: &Pair,
+    context: &Context<'_>,
+    rows: &[(usize, f64, f64)],
+) -> String {
+    let place = |key| {
+        pair.header.known.get(&key).map_or("in the file name".to_string(), |e| format!("in line {}", e.line))
+    };
+    let mut text = test.name().to_string();
+    if let Some(direction) = direction {
+        text += &format!(" {direction} (stated {})", place(Key::Direction));
+    }
+    text += &match specimen {
+        Some(n) => format!(", specimen {n} (stated {})", place(Key::Specimen)),
+        None => ", specimen not numbered".to_string(),
+    };
+    let [first, last] = [rows.first(), rows.last()].map(|r| r.map_or(0, |r| r.0));
+    let sample = pair.header.known.get(&Key::Sample).map(|e| &e.text).or(context.label.sample.as_ref());
+    let sample = sample.map(|s| format!(" of sample {s:?}")).unwrap_or_default();
+    format!("{text}{sample}: {} points in lines {first} to {last}", rows.len())
+}
+
+/// The conditions and where they come from, for people.
+pub(super) fn conditions(test: Test, c: &Conditions, header: &Header) -> String {
+    let standard = standard_conditions(test);
+    let all = [
+        (Key::Width, "width", c.width, standard.width, "cm"),
+        (Key::Gauge, "gauge", c.gauge, standard.gauge, "cm"),
+        (Key::Maximum, "maximum", c.maximum, standard.maximum, driven(test).kes_unit()),
+        (Key::Pretension, "tension", c.pretension, standard.pretension, "gf/cm"),
+    ];
+    // What a test does not have is zero in the standard set.
+    let told: Vec<String> = all
+        .into_iter()
+        .filter(|(.., standard, _)| *standard > 0.0)
+        .map(|(key, name, value, standard, unit)| {
+            let from = match header.known.get(&key) {
+                Some(entry) => format!("line {}", entry.line),
+                None if value == standard => "standard, not in the file".to_string(),
+                None => "fabric.toml or dialect, not in the file".to_string(),
+            };
+            let factor = unit_of(unit).map_or(f64::NAN, |u| u.factor);
+            format!("{name} {} {unit} ({from})", plain(value / factor))
+        })
+        .collect();
+    format!("{}: {}", test.name(), told.join(", "))
+}
