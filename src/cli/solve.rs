@@ -1,5 +1,6 @@
 //! `kesf solve`: cases to displacements, forces and checks.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -104,7 +105,8 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     Ok(Exit::of_batch(useful + draped.len(), &failures).unless(unmet || strict))
 }
 
-/// Deflections, then probes, searches and checks; with `verbose` every step of a search.
+/// Deflections, then probes, searches and checks; with `verbose` every step of a search; last, why a
+/// deflection has no band.
 fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
     let mut table =
         Columns::new(["case", "fabric", "w_max (mm)", "± 95 % (mm)", "w/t_b", "elements", "status"]);
@@ -132,7 +134,16 @@ fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
     let checks = checks(solved.iter().map(|(_, r)| *r));
     let every = if verbose { steps(solved) } else { None };
     let parts = [Some(table), Some(probes), searches(solved), every, checks];
-    parts.into_iter().flatten().filter(|t| !t.is_empty()).map(|t| t.text()).collect::<Vec<_>>().join("\n")
+    let parts = parts.into_iter().flatten().filter(|t| !t.is_empty()).map(|t| t.text());
+    parts.chain(without_band(solved)).collect::<Vec<_>>().join("\n")
+}
+
+/// The inputs without a spread that forbid the band of a largest deflection, if there are any.
+fn without_band(solved: &[(&Task, &CaseResult)]) -> Option<String> {
+    let uncertain = solved.iter().filter_map(|(_, r)| r.uncertainty.as_ref()?.of("w_max"));
+    let names: BTreeSet<&str> = uncertain.flat_map(|p| &p.without_spread).map(String::as_str).collect();
+    let names = names.into_iter().collect::<Vec<_>>().join(", ");
+    (!names.is_empty()).then(|| format!("no band (-) where a single value is all there is of: {names}\n"))
 }
 
 /// Half of the 95 % band of the mean fabric of a displacement (mm); `-` where it has none.

@@ -1,9 +1,8 @@
-//! Forces and moments along supported edges, from the reactions.
+//! Moments along supported edges, from the reactions.
 
 use nalgebra::Vector3;
 
 use crate::mesh::QuadMesh;
-use crate::model::Dof;
 
 /// Bending moment about each edge at its two ends (N·m/m = N; positive stretches the +z face), from the
 /// nodal reactions of a solution (six a node), edge by edge as given.
@@ -16,21 +15,6 @@ use crate::model::Dof;
 /// Edges must run counter-clockwise about the sheet, as [`QuadMesh::boundary_edges`] gives them, and hold
 /// the rotation about themselves; where several edges meet at a corner, ask for each straight part alone.
 pub fn edge_moments(mesh: &QuadMesh, reaction: &[f64], edges: &[[u32; 2]]) -> Vec<[f64; 2]> {
-    let sides = |[a, b]: &[u32; 2]| (mesh.nodes[*b as usize] - mesh.nodes[*a as usize]).normalize();
-    let moments = along(mesh, reaction, edges, Dof::ThetaX);
-    edges.iter().zip(moments).map(|(edge, ends)| ends.map(|m| m.dot(&sides(edge)))).collect()
-}
-
-/// Force per length of the supports on the sheet at the two ends of each edge (N/m), from the nodal
-/// reactions of a solution (six a node), edge by edge as given and as consistent as [`edge_moments`].
-///
-/// Its part along z is minus the shear force, where the edge holds the twist as well: a clamped one.
-pub fn edge_forces(mesh: &QuadMesh, reaction: &[f64], edges: &[[u32; 2]]) -> Vec<[Vector3<f64>; 2]> {
-    along(mesh, reaction, edges, Dof::U)
-}
-
-/// Three of the reactions, from `first`, per length of the edges.
-fn along(mesh: &QuadMesh, reaction: &[f64], edges: &[[u32; 2]], first: Dof) -> Vec<[Vector3<f64>; 2]> {
     let mut nodes: Vec<u32> = edges.iter().flatten().copied().collect();
     nodes.sort_unstable();
     nodes.dedup();
@@ -40,9 +24,10 @@ fn along(mesh: &QuadMesh, reaction: &[f64], edges: &[[u32; 2]], first: Dof) -> V
         .iter()
         .map(|[a, b]| (place(*a), place(*b), mesh.nodes[*b as usize] - mesh.nodes[*a as usize]))
         .collect();
-    let part = |n: &u32| Vector3::from_column_slice(&reaction[6 * *n as usize + first as usize..][..3]);
-    let found = per_length(&sides, nodes.iter().map(part).collect());
-    sides.iter().map(|(a, b, _)| [found[*a], found[*b]]).collect()
+    let right: Vec<Vector3<f64>> =
+        nodes.iter().map(|n| Vector3::from_column_slice(&reaction[6 * *n as usize + 3..][..3])).collect();
+    let moment = per_length(&sides, right);
+    sides.iter().map(|(a, b, side)| [*a, *b].map(|n| moment[n].dot(&side.normalize()))).collect()
 }
 
 /// Solves `Σ_j ∫ N_i N_j ds m_j = r_i` by conjugate gradients, preconditioned with the row sums: the

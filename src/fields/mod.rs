@@ -9,7 +9,7 @@ mod recovery;
 
 use nalgebra::{DMatrix, Matrix2, Matrix3, Point3, Vector2, Vector3};
 
-pub use edge::{edge_forces, edge_moments};
+pub use edge::edge_moments;
 pub use probe::{Line, Locator, ProbeValue};
 
 use crate::element::corotational::{Motion, Reference};

@@ -8,7 +8,7 @@ use super::axes::Frame;
 use super::canvas::{Canvas, Point, Stroke};
 use super::fabric::SimulatedCurve;
 use super::loops::TestAxes;
-use super::palette::{self, darker, lighter};
+use super::palette::{self, GREY, darker, lighter};
 use super::panel::Row;
 
 /// Bands in the units of a chart.
@@ -73,15 +73,22 @@ impl Spread {
             if !named.contains(&branch.direction) {
                 named.push(branch.direction);
                 let who = branch.direction.map_or("mean".to_string(), |d| format!("{d} mean"));
-                let text = format!("{who}, 95 %, n = {}", branch.n);
+                let text = format!("{who}, n = {}", branch.n);
                 rows.push(Row::Sample(Stroke::solid(measured_color(branch), 24.0), text));
             }
         }
         for curve in simulated.iter().filter(|s| s.band.is_some()) {
             let who = curve.direction.map_or("simulated".to_string(), |d| format!("{d} simul."));
             let n = curve.repeats.map_or(String::new(), |n| format!(", n ≥ {n}"));
-            rows.push(Row::Sample(simulated_edge(curve), format!("{who}, 95 %{n}")));
+            rows.push(Row::Sample(simulated_edge(curve), format!("{who}{n}")));
         }
+        let text = match (self.measured.is_empty(), self.simulated.is_empty()) {
+            (true, true) => return rows,
+            (false, true) => "Pale: 95 % interval of the mean.",
+            (true, false) => "Dotted: 95 % band for the mean fabric.",
+            (false, false) => "Pale and dotted: 95 % intervals of the mean.",
+        };
+        rows.push(Row::Remark(text.into(), GREY));
         rows
     }
 }

@@ -81,8 +81,6 @@ enum Measure {
     MomentY,
     /// `M_x / (q a²)` on the edge x = 0, from its reactions.
     EdgeMoment,
-    /// `Q_x / (q a)` on the clamped edge x = 0, from its reactions.
-    EdgeShear,
     /// `ω_k a² √(ρ/D22)` of this mode, from 1.
     Frequency(usize),
 }
@@ -131,12 +129,6 @@ impl PlateProblem {
                 let edges = model.mesh.set_edges("left")?;
                 at_end(&edges, &fields::edge_moments(&model.mesh, &solution.reaction, &edges), node)
             }
-            Measure::EdgeShear => {
-                let edges = model.mesh.set_edges("left")?;
-                let forces = fields::edge_forces(&model.mesh, &solution.reaction, &edges);
-                let along_z: Vec<[f64; 2]> = forces.iter().map(|ends| ends.map(|f| -f.z)).collect();
-                at_end(&edges, &along_z, node)
-            }
             _ => solution.displacement[6 * node + 2],
         })
     }
@@ -147,7 +139,6 @@ impl PlateProblem {
         match self.measure {
             Measure::Deflection => d22 / self.a.powi(4),
             Measure::MomentX | Measure::MomentY | Measure::EdgeMoment => self.a.powi(-2),
-            Measure::EdgeShear => self.a.recip(),
             Measure::Frequency(_) => self.a.powi(2) / d22.sqrt(),
         }
     }
@@ -160,7 +151,7 @@ impl PlateProblem {
             Measure::Deflection => Some(s.deflection),
             Measure::MomentX | Measure::EdgeMoment => Some(s.mx),
             Measure::MomentY => Some(s.my),
-            Measure::EdgeShear | Measure::Frequency(_) => None,
+            Measure::Frequency(_) => None,
         };
         let value = match (function, &self.edges.0) {
             (Function::Navier, b"SSSS") => pick(plate.navier(x, y, 1.0)),
