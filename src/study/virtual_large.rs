@@ -3,7 +3,9 @@
 //! A sheared specimen is drawn tight by a tension W, which resists the shear with W tan φ as the yarns turn by
 //! φ. The frame of a corotational element of sides a (along W) and b turns by `c φ`, `c = a²/(a² + b²)`, and sees the
 //! part `1 - (1 - c)²` of that: 0.75 with squares, 0.996 with a = 4 b. So elements are long along the tension, and
-//! what the tension adds is found by a second run without it and told beside W.
+//! what the tension adds is found by a second run without it and told beside W. Such frames strain the
+//! other yarns by `φ²/2` in turn: a few percent of the slope up to 2.5 degrees. Strains in the frame of the yarns
+//! would be exact for both.
 
 use std::ops::ControlFlow;
 
