@@ -3,6 +3,7 @@
 use super::diagnostics::Failure;
 use super::inputs::Fabric;
 use super::output::Columns;
+use super::search::{NOT_CONVERGED, unconverged};
 use super::solve::status;
 use super::task::{Task, Tested, Work};
 use super::tree::Tree;
@@ -39,6 +40,8 @@ pub struct FabricReport {
     pub predictions: Vec<PredictionRow>,
     /// See `rows`.
     pub problems: Vec<ProblemRow>,
+    /// Tests of which there is a chart.
+    pub drawn: Vec<Test>,
     /// Points of the parity chart.
     pub parity: Vec<ParityPoint>,
     /// Findings of sheet, section and cases.
@@ -101,14 +104,19 @@ impl FabricReport {
     }
 
     fn charts(&mut self, sheet: &FabricSheet, simulated: &[Tested], tree: &Tree) {
-        if tree.charts() {
-            self.keep(tree.fabric_charts(sheet, simulated));
+        if !tree.charts() {
+            return;
+        }
+        match tree.fabric_charts(sheet, simulated) {
+            Ok(drawn) => self.drawn = drawn,
+            Err(failure) => self.failures.push(failure),
         }
     }
 
     fn solved(&mut self, task: &Task, result: &CaseResult) {
         self.deflections.push((result.case.clone(), result.w_max));
-        self.findings.extend(result.findings.iter().cloned());
+        self.findings.extend(result.findings.iter().filter(|f| f.code != NOT_CONVERGED).cloned());
+        self.failures.extend(unconverged(task, result));
         self.predictions.extend(predictions(task, result));
         self.unmet |= unmet(result);
         if result.status != Status::Ok && self.status == "ok" {
@@ -178,9 +186,10 @@ pub fn predictions(task: &Task, result: &CaseResult) -> Vec<PredictionRow> {
     std::iter::once(row("w_max".into(), result.w_max)).chain(probes).collect()
 }
 
-/// Findings as rows of `problems.csv`; `otherwise` is the place of one without a place.
+/// Findings as rows of `problems.csv`; `otherwise` is the place of one without a place. A search that found no
+/// equilibrium is there as a failure.
 pub fn problems(findings: &[Finding], otherwise: &str) -> Vec<ProblemRow> {
-    findings.iter().map(|f| problem_row(f, otherwise)).collect()
+    findings.iter().filter(|f| f.code != NOT_CONVERGED).map(|f| problem_row(f, otherwise)).collect()
 }
 
 /// Headings of the overview before the deflections, in KES units.
@@ -195,6 +204,9 @@ const HEADINGS: [&str; 9] = [
     "T (mm)",
     "W (mg/cm²)",
 ];
+
+/// Units of the columns that do not name theirs.
+const CAPTION: &str = "B in gf·cm²/cm, G in gf/(cm·deg)";
 
 /// B, G, E, T, W: KES units, except E in N/m.
 fn cells(sheet: &FabricSheet) -> Vec<String> {
@@ -242,7 +254,8 @@ pub fn page(
     failures: &[Failure],
     charts: bool,
 ) -> Page {
-    let mut sections = vec![Section { heading: "Overview".into(), blocks: overview(failures, charts) }];
+    let mut sections =
+        vec![Section { heading: "Overview".into(), blocks: overview(reports, failures, charts) }];
     sections.extend(reports.iter().map(|r| fabric_section(r, charts)));
     let mut blocks = Vec::new();
     for (task, result) in benchmarks {
@@ -267,7 +280,7 @@ pub fn page(
     }
 }
 
-fn overview(failures: &[Failure], charts: bool) -> Vec<Block> {
+fn overview(reports: &[FabricReport], failures: &[Failure], charts: bool) -> Vec<Block> {
     let names = [
         "fabrics.csv",
         "fabrics.parquet",
@@ -277,6 +290,15 @@ fn overview(failures: &[Failure], charts: bool) -> Vec<Block> {
         "run.json",
     ];
     let mut blocks = vec![Block::Files(names.map(String::from).to_vec())];
+    let row = |r: &FabricReport| {
+        let name = std::iter::once(r.name.clone());
+        name.chain(r.cells.iter().cloned()).chain([r.status.clone()]).collect()
+    };
+    blocks.push(Block::Table {
+        caption: CAPTION.into(),
+        header: HEADINGS.iter().copied().chain(["status"]).map(String::from).collect(),
+        rows: reports.iter().map(row).collect(),
+    });
     if charts {
         blocks.push(Block::Figures(vec![figure("Simulated against measured stiffness", "parity.png")]));
     }
@@ -289,15 +311,15 @@ fn overview(failures: &[Failure], charts: bool) -> Vec<Block> {
 
 fn fabric_section(r: &FabricReport, charts: bool) -> Section {
     let table = Block::Table {
-        caption: "B in gf·cm²/cm, G in gf/(cm·deg)".into(),
+        caption: CAPTION.into(),
         header: HEADINGS[1..].iter().map(ToString::to_string).collect(),
         rows: vec![r.cells.clone()],
     };
     let mut blocks = vec![table];
     if charts {
-        let tests = Test::ALL.map(|t| figure(t.name(), &format!("{}/{}.png", r.name, t.name())));
+        let tests = r.drawn.iter().map(|t| figure(t.name(), &format!("{}/{}.png", r.name, t.name())));
         let cases = r.deflections.iter().map(|(case, _)| figure(case, &format!("{}/{case}.png", r.name)));
-        blocks.push(Block::Figures(tests.into_iter().chain(cases).collect()));
+        blocks.push(Block::Figures(tests.chain(cases).collect()));
     }
     blocks.push(Block::Findings(r.findings.clone()));
     Section { heading: r.name.clone(), blocks }

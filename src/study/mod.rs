@@ -4,29 +4,35 @@
 mod build;
 mod case;
 mod compare;
+mod dynamics;
+mod nonlinear;
 mod prepared;
 mod run;
 mod uncertainty;
+mod virtual_large;
 mod virtual_test;
 
 use thiserror::Error;
 
 pub use build::{formulation, model, section};
 pub use case::{
-    Analysis, Case, CaseError, Check, ProbeTable, Reference, ReferenceKind, SectionTable, Shape, Sheet,
-    VirtualTest,
+    Analysis, Case, CaseError, Check, MethodChoice, NonlinearTable, ProbeTable, Reference, ReferenceKind,
+    SectionTable, Shape, Sheet, TestFormulation, VirtualTest,
 };
 pub use compare::{Comparison, compare_curves, measured_curve};
+pub use dynamics::History;
+pub use nonlinear::{LoadPath, PathStep};
 pub use prepared::PreparedCase;
-pub use run::{CaseResult, CheckResult, History, Probe, Status, solve_case};
+pub use run::{CaseResult, CheckResult, Probe, Status, solve_case};
 pub use uncertainty::{Prediction, Uncertainty};
-pub use virtual_test::{PreparedTest, VirtualCurve, compression, simulate};
+pub use virtual_test::{EdgeEffect, PreparedTest, VirtualCurve, compression, simulate};
 
 use crate::finding::Place;
 use crate::mesh::MeshError;
 use crate::model::ModelError;
 use crate::section::SectionError;
 use crate::solve::SolveError;
+use crate::solve::nonlinear::NonlinearError;
 
 /// Why a case gives no result.
 #[derive(Debug, Error)]
@@ -46,6 +52,9 @@ pub enum StudyError {
     /// The solution.
     #[error(transparent)]
     Solve(#[from] SolveError),
+    /// The solution in large rotations.
+    #[error(transparent)]
+    Nonlinear(#[from] NonlinearError),
 }
 
 impl StudyError {
@@ -57,6 +66,7 @@ impl StudyError {
             Self::Model(e) => e.code(),
             Self::Section(e) => e.code(),
             Self::Solve(e) => e.code(),
+            Self::Nonlinear(e) => e.code(),
         }
     }
 
@@ -71,10 +81,17 @@ impl StudyError {
 
     /// Whether the numerics failed, rather than the input.
     pub fn is_numeric(&self) -> bool {
-        matches!(
-            self,
-            Self::Solve(SolveError::Singular { .. } | SolveError::Factor(_) | SolveError::Residual { .. })
-        )
+        match self {
+            Self::Solve(e) | Self::Nonlinear(NonlinearError::Solve(e)) => matches!(
+                e,
+                SolveError::Singular { .. }
+                    | SolveError::Factor(_)
+                    | SolveError::Residual { .. }
+                    | SolveError::StepVanished { .. }
+            ),
+            Self::Nonlinear(NonlinearError::NotConverged { .. }) => true,
+            _ => false,
+        }
     }
 }
 
