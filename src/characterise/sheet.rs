@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{LineFit, Strip};
+use super::{FrictionLaw, LineFit, Strip};
 use crate::finding::Finding;
 use crate::instrument::{Direction, FabricInfo, Measurement, Parameter, Source};
 use crate::quantity::{Curve, Estimate};
@@ -78,6 +78,8 @@ pub struct FabricSheet {
     pub specimens: Vec<SpecimenResult>,
     /// Stretch tests of FAB strips, in file order.
     pub strips: Vec<Strip>,
+    /// Friction laws: of specimens in their order, then of strips, then from summary values.
+    pub laws: Vec<FrictionLaw>,
     /// Files behind the sheet.
     pub sources: Vec<Source>,
     /// What a reader of the sheet must know.
