@@ -8,6 +8,7 @@ mod branch;
 mod checks;
 mod closed_loop;
 mod compression;
+mod friction;
 mod graph;
 mod onset;
 #[cfg(test)]
@@ -20,6 +21,8 @@ mod strip;
 mod tables;
 mod tensile;
 
+pub(crate) use friction::nnls::nnls;
+pub use friction::{Basis, ClosedForm, CycleFit, FrictionLaw, LoopFit, cycle, extract};
 pub use graph::LineFit;
 pub use settings::{CycleChoice, Modulus, Settings};
 pub use sheet::{Branch, FabricSheet, Key, SpecimenResult, Window};
@@ -55,6 +58,7 @@ pub fn characterise(input: &FabricInput, settings: &Settings) -> FabricSheet {
     strip::add(&mut sheet, &input.fab, settings);
     tables::metadata(&mut sheet, input);
     tables::moduli(&mut sheet, settings);
+    friction::add(&mut sheet, settings);
     let mut found = checks::plausibility(&sheet);
     found.extend(checks::shear_directions(&sheet, settings));
     sheet.findings.append(&mut found);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{LineFit, Strip};
+use super::{FrictionLaw, LineFit, Strip};
 use crate::finding::Finding;
 use crate::instrument::fab::FabTest;
 use crate::instrument::{Direction, FabricInfo, Measurement, Parameter, Source};
@@ -81,6 +81,8 @@ pub struct FabricSheet {
     pub strips: Vec<Strip>,
     /// Bend tests of FAB strips as recorded, in file order.
     pub bend_tests: Vec<FabTest>,
+    /// Friction laws: of specimens in their order, then of strips, then from summary values.
+    pub laws: Vec<FrictionLaw>,
     /// Files behind the sheet.
     pub sources: Vec<Source>,
     /// What a reader of the sheet must know.

@@ -8,7 +8,7 @@ use super::diagnostics::Failure;
 use super::inputs::{EvaluateArgs, Units};
 use super::output::{Columns, Format, OutputArgs};
 use super::{Exit, Ui};
-use crate::characterise::FabricSheet;
+use crate::characterise::{Basis, FabricSheet};
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::{Estimate, significant};
 use crate::report::json::{sheet_document, text};
@@ -66,7 +66,33 @@ fn table(sheet: &FabricSheet, units: UnitSystem) -> String {
             columns.row([vec![parameter.symbol().to_string()], cells, vec![unit.to_string()]].concat());
         }
     }
-    format!("{} ({}), mean ± SD (n)\n{}", sheet.name, sheet.info.origin.name(), columns.text())
+    let head = format!("{} ({}), mean ± SD (n)", sheet.name, sheet.info.origin.name());
+    format!("{head}\n{}{}", columns.text(), friction(sheet))
+}
+
+/// One line a friction law: the parameters of its simulated cycle are not repeated here.
+fn friction(sheet: &FabricSheet) -> String {
+    if sheet.laws.is_empty() {
+        return String::new();
+    }
+    let mut columns =
+        Columns::new(["friction law", "", "", "fit (%)", "line (%)", "noise (%)", "loop energy (%)"]);
+    let percent = |v: f64| format!("{:.2}", 100.0 * v);
+    for law in &sheet.laws {
+        let basis = match law.basis {
+            Basis::Loop => format!("specimen {}", law.specimen),
+            Basis::Strip => format!("strip S{}", law.specimen),
+            Basis::AssumedSpectrum => "assumed spectrum".into(),
+        };
+        let direction = law.direction.map_or("", Direction::name);
+        let mut row = vec![law.test.name().to_string(), direction.into(), basis];
+        row.extend(match &law.fit {
+            Some(f) => [f.fitted.nrmse, f.fitted.line_nrmse, f.noise, f.fitted.loop_energy].map(percent),
+            None => Default::default(),
+        });
+        columns.row(row);
+    }
+    format!("\n{}", columns.text())
 }
 
 fn estimate(e: &Estimate, factor: f64) -> String {

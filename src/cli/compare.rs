@@ -92,14 +92,27 @@ fn simulated(task: &Task, tree: Option<&Tree>) -> Result<Outcome, Failure> {
         tree.map_or(Ok(()), |tree| tree.tested(task, &outcome.tested))?;
     } else if let Some(spec) = &task.case.bending_test {
         let result = task.bend(spec)?;
-        tree.map_or(Ok(()), |tree| tree.bent(task, &result))?;
+        tree.map_or(Ok(Vec::new()), |tree| tree.bent(task, &result))?;
         outcome.bent = Some(result);
     }
     Ok(outcome)
 }
 
 fn text(compared: &[(&Task, &Tested)]) -> String {
-    let headings = ["test", "fabric", "", "simulated", "measured", "unit", "RMSE", "NRMSE", "R²", "n"];
+    let headings = [
+        "test",
+        "fabric",
+        "",
+        "simulated",
+        "measured",
+        "unit",
+        "edge effect",
+        "closed form",
+        "RMSE",
+        "NRMSE",
+        "R²",
+        "n",
+    ];
     let mut table = Columns::new(headings);
     for (task, t) in compared {
         let [symbol, simulated, measured, unit] = match &t.stiffness {
@@ -113,8 +126,34 @@ fn text(compared: &[(&Task, &Tested)]) -> String {
             let rmse = format!("{} {}", significant(c.rmse), c.unit);
             [rmse, significant(c.nrmse), significant(c.r2), c.n.to_string()]
         });
+        let edge = t.simulated.edge.as_ref();
+        let closed_form = edge.and_then(|e| e.closed_form).map_or("-".into(), fixed);
+        let edges = [edge.map_or("-".into(), |e| fixed(e.ratio)), closed_form];
         let head = [t.name.clone(), task.fabric_name().unwrap_or_default().into(), symbol];
-        table.row(head.into_iter().chain([simulated, measured, unit]).chain(figures));
+        table.row(head.into_iter().chain([simulated, measured, unit]).chain(edges).chain(figures));
     }
-    table.text()
+    let notes: Vec<String> = compared.iter().filter_map(|(_, t)| note(t)).collect();
+    [table.text(), notes.concat()].concat()
+}
+
+/// A ratio near 1.
+fn fixed(ratio: f64) -> String {
+    format!("{ratio:.5}")
+}
+
+/// What a tension across the specimen adds, and where the specimen buckles.
+fn note(tested: &Tested) -> Option<String> {
+    let (simulated, name) = (&tested.simulated, &tested.name);
+    let pretension = simulated.edge.filter(|e| e.pretension > 0.0).map(|e| {
+        let without = significant(simulated.apparent - e.pretension);
+        let with = significant(simulated.apparent);
+        format!(
+            "{name}: {with} N/m with the tension of {} N/m across it, {without} without\n",
+            significant(e.pretension)
+        )
+    });
+    let buckles =
+        simulated.unstable_from.map(|x| format!("{name}: the specimen buckles before {}\n", significant(x)));
+    let notes: String = pretension.into_iter().chain(buckles).collect();
+    (!notes.is_empty()).then_some(notes)
 }

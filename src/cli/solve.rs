@@ -8,6 +8,7 @@ use serde_json::json;
 
 use super::diagnostics::Failure;
 use super::output::Columns;
+use super::search::{NOT_CONVERGED, searches, steps, unconverged};
 use super::task::{Task, TaskArgs, solution};
 use super::tree::Tree;
 use super::{Exit, Ui};
@@ -52,12 +53,16 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     bar.finish_and_clear();
     ui.go_on()?;
     let mut failures: Vec<Failure> = homeless;
-    failures.extend(results.iter().filter_map(|(_, r)| r.as_ref().err().cloned()));
+    failures.extend(results.iter().filter_map(|(task, r)| match r {
+        Ok(result) => unconverged(task, result),
+        Err(failure) => Some(failure.clone()),
+    }));
     failures.iter().for_each(|f| ui.diagnostics.error(f));
     failures.extend(work.failures.iter().cloned());
     let solved: Vec<(&Task, &CaseResult)> =
         results.iter().filter_map(|(t, r)| Some((t, r.as_ref().ok()?))).collect();
-    solved.iter().flat_map(|(_, r)| &r.findings).for_each(|f| ui.diagnostics.finding(f));
+    let findings = solved.iter().flat_map(|(_, r)| &r.findings).filter(|f| f.code != NOT_CONVERGED);
+    findings.for_each(|f| ui.diagnostics.finding(f));
     if let Some(tree) = tree {
         tree.finish()?;
     }
@@ -65,15 +70,16 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         let entries: Vec<_> = solved.iter().map(|(t, r)| solution(t, r, true)).collect();
         ui.document(&json!({"schema": "kesf.solution/1", "solutions": entries}))?;
     } else if !solved.is_empty() {
-        ui.print(&text(&solved))?;
+        ui.print(&text(&solved, ui.diagnostics.verbose()))?;
     }
     let unmet = solved.iter().any(|(_, r)| r.status == Status::CheckFailed);
     let strict = options.task.strict && ui.diagnostics.findings() > 0;
-    Ok(Exit::of_batch(solved.len(), &failures).unless(unmet || strict))
+    let useful = solved.iter().filter(|(_, r)| r.status != Status::NotConverged).count();
+    Ok(Exit::of_batch(useful, &failures).unless(unmet || strict))
 }
 
-/// Deflections, then probes, then checks.
-fn text(solved: &[(&Task, &CaseResult)]) -> String {
+/// Deflections, then probes, searches and checks; with `verbose` every step of a search.
+fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
     let mut table = Columns::new(["case", "fabric", "w_max (mm)", "w/t_b", "elements", "status"]);
     let mut probes = Columns::new(["probe", "case", "fabric", "u (mm)", "v (mm)", "w (mm)"]);
     for (task, r) in solved {
@@ -87,7 +93,8 @@ fn text(solved: &[(&Task, &CaseResult)]) -> String {
         }
     }
     let checks = checks(solved.iter().map(|(_, r)| *r));
-    let parts = [Some(table), Some(probes), checks];
+    let every = if verbose { steps(solved) } else { None };
+    let parts = [Some(table), Some(probes), searches(solved), every, checks];
     parts.into_iter().flatten().filter(|t| !t.is_empty()).map(|t| t.text()).collect::<Vec<_>>().join("\n")
 }
 
@@ -114,5 +121,6 @@ pub fn status(status: Status) -> &'static str {
         Status::Ok => "ok",
         Status::BeyondLinear => "beyond linear",
         Status::CheckFailed => "check failed",
+        Status::NotConverged => "not converged",
     }
 }

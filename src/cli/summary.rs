@@ -4,6 +4,7 @@ use super::bending;
 use super::diagnostics::Failure;
 use super::inputs::Fabric;
 use super::output::Columns;
+use super::search::{NOT_CONVERGED, unconverged};
 use super::solve::status;
 use super::task::{Task, Tested, Work};
 use super::tree::Tree;
@@ -40,6 +41,10 @@ pub struct FabricReport {
     pub predictions: Vec<PredictionRow>,
     /// See `rows`.
     pub problems: Vec<ProblemRow>,
+    /// Tests of which there is a chart.
+    pub drawn: Vec<Test>,
+    /// Title and file of each chart of a bending test.
+    pub bent: Vec<(String, String)>,
     /// Points of the parity chart.
     pub parity: Vec<ParityPoint>,
     /// Findings of sheet, section and cases.
@@ -93,8 +98,11 @@ impl FabricReport {
                 continue;
             }
             if let Some(spec) = &task.case.bending_test {
-                match task.bend(spec).and_then(|r| tree.bent(task, &r).map(|()| r)) {
-                    Ok(result) => self.predictions.extend(bending::predictions(task, &result)),
+                match task.bend(spec).and_then(|r| tree.bent(task, &r).map(|drawn| (r, drawn))) {
+                    Ok((result, drawn)) => {
+                        self.predictions.extend(bending::predictions(task, &result));
+                        self.bent.extend(drawn.into_iter().map(|file| (task.case.title.clone(), file)));
+                    }
                     Err(failure) => self.failures.push(failure),
                 }
                 continue;
@@ -109,14 +117,19 @@ impl FabricReport {
     }
 
     fn charts(&mut self, sheet: &FabricSheet, simulated: &[Tested], tree: &Tree) {
-        if tree.charts() {
-            self.keep(tree.fabric_charts(sheet, simulated));
+        if !tree.charts() {
+            return;
+        }
+        match tree.fabric_charts(sheet, simulated) {
+            Ok(drawn) => self.drawn = drawn,
+            Err(failure) => self.failures.push(failure),
         }
     }
 
     fn solved(&mut self, task: &Task, result: &CaseResult) {
         self.deflections.push((result.case.clone(), result.w_max));
-        self.findings.extend(result.findings.iter().cloned());
+        self.findings.extend(result.findings.iter().filter(|f| f.code != NOT_CONVERGED).cloned());
+        self.failures.extend(unconverged(task, result));
         self.predictions.extend(predictions(task, result));
         self.unmet |= unmet(result);
         if result.status != Status::Ok && self.status == "ok" {
@@ -186,9 +199,10 @@ pub fn predictions(task: &Task, result: &CaseResult) -> Vec<PredictionRow> {
     std::iter::once(row("w_max".into(), result.w_max)).chain(probes).collect()
 }
 
-/// Findings as rows of `problems.csv`; `otherwise` is the place of one without a place.
+/// Findings as rows of `problems.csv`; `otherwise` is the place of one without a place. A search that found no
+/// equilibrium is there as a failure.
 pub fn problems(findings: &[Finding], otherwise: &str) -> Vec<ProblemRow> {
-    findings.iter().map(|f| problem_row(f, otherwise)).collect()
+    findings.iter().filter(|f| f.code != NOT_CONVERGED).map(|f| problem_row(f, otherwise)).collect()
 }
 
 /// Headings of the overview before the deflections, in KES units.
@@ -203,6 +217,9 @@ const HEADINGS: [&str; 9] = [
     "T (mm)",
     "W (mg/cm²)",
 ];
+
+/// Units of the columns that do not name theirs.
+const CAPTION: &str = "B in gf·cm²/cm, G in gf/(cm·deg)";
 
 /// B, G, E, T, W: KES units, except E in N/m.
 fn cells(sheet: &FabricSheet) -> Vec<String> {
@@ -250,7 +267,8 @@ pub fn page(
     failures: &[Failure],
     charts: bool,
 ) -> Page {
-    let mut sections = vec![Section { heading: "Overview".into(), blocks: overview(failures, charts) }];
+    let mut sections =
+        vec![Section { heading: "Overview".into(), blocks: overview(reports, failures, charts) }];
     sections.extend(reports.iter().map(|r| fabric_section(r, charts)));
     let mut blocks = Vec::new();
     for (task, result) in benchmarks {
@@ -275,7 +293,7 @@ pub fn page(
     }
 }
 
-fn overview(failures: &[Failure], charts: bool) -> Vec<Block> {
+fn overview(reports: &[FabricReport], failures: &[Failure], charts: bool) -> Vec<Block> {
     let names = [
         "fabrics.csv",
         "fabrics.parquet",
@@ -285,6 +303,15 @@ fn overview(failures: &[Failure], charts: bool) -> Vec<Block> {
         "run.json",
     ];
     let mut blocks = vec![Block::Files(names.map(String::from).to_vec())];
+    let row = |r: &FabricReport| {
+        let name = std::iter::once(r.name.clone());
+        name.chain(r.cells.iter().cloned()).chain([r.status.clone()]).collect()
+    };
+    blocks.push(Block::Table {
+        caption: CAPTION.into(),
+        header: HEADINGS.iter().copied().chain(["status"]).map(String::from).collect(),
+        rows: reports.iter().map(row).collect(),
+    });
     if charts {
         blocks.push(Block::Figures(vec![figure("Simulated against measured stiffness", "parity.png")]));
     }
@@ -297,15 +324,16 @@ fn overview(failures: &[Failure], charts: bool) -> Vec<Block> {
 
 fn fabric_section(r: &FabricReport, charts: bool) -> Section {
     let table = Block::Table {
-        caption: "B in gf·cm²/cm, G in gf/(cm·deg)".into(),
+        caption: CAPTION.into(),
         header: HEADINGS[1..].iter().map(ToString::to_string).collect(),
         rows: vec![r.cells.clone()],
     };
     let mut blocks = vec![table];
     if charts {
-        let tests = Test::ALL.map(|t| figure(t.name(), &format!("{}/{}.png", r.name, t.name())));
+        let tests = r.drawn.iter().map(|t| figure(t.name(), &format!("{}/{}.png", r.name, t.name())));
         let cases = r.deflections.iter().map(|(case, _)| figure(case, &format!("{}/{case}.png", r.name)));
-        blocks.push(Block::Figures(tests.into_iter().chain(cases).collect()));
+        let bent = r.bent.iter().map(|(title, file)| figure(title, file));
+        blocks.push(Block::Figures(tests.chain(cases).chain(bent).collect()));
     }
     blocks.push(Block::Findings(r.findings.clone()));
     Section { heading: r.name.clone(), blocks }

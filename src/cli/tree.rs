@@ -14,6 +14,7 @@ use crate::instrument::{Origin, Test};
 use crate::report::OutputFolder;
 use crate::report::chart::{self, ChartError, FieldPlot, SimulatedCurve};
 use crate::report::json::{section_document, sheet_document, text};
+use crate::report::table::{csv, history_rows};
 use crate::report::vtu::{MeshField, vtu};
 use crate::study::bending::BendingResult;
 use crate::study::{CaseResult, StudyError};
@@ -57,11 +58,15 @@ impl Tree {
         self.write(&format!("{fabric}/section.json"), text(&document)?.as_bytes())
     }
 
-    /// `<fabric>/<case>.json`, `.vtu` and `.png` of a solved case.
+    /// `<fabric>/<case>.json`, `.vtu` and `.png` of a solved case, and `.csv` of what it has of a history.
     pub fn solved(&self, task: &Task, result: &CaseResult) -> Result<(), Failure> {
         let stem = task.stem();
         let document = json!({"schema": "kesf.solution/1", "solutions": [solution(task, result, false)]});
         self.write(&format!("{stem}.json"), text(&document)?.as_bytes())?;
+        let history = history_rows(result);
+        if !history.is_empty() {
+            self.write(&format!("{stem}.csv"), &csv(&history)?)?;
+        }
         let mesh = Mesh::of(result);
         self.write(&format!("{stem}.vtu"), &mesh.vtu(result)?)?;
         if self.charts {
@@ -80,37 +85,45 @@ impl Tree {
             return Ok(());
         };
         let test = first.simulated.test;
-        self.chart(&format!("{stem}.png"), draw(sheet, test, &curves(tested.iter(), test)))
+        self.chart(&format!("{stem}.png"), draw(sheet, test, &curves(tested.iter(), test)))?;
+        Ok(())
     }
 
     /// `<fabric>/<case>.json` and `.png` of a bending test; a FAB test has one chart a direction,
-    /// `<fabric>/<case>_<direction>.png`.
-    pub fn bent(&self, task: &Task, result: &BendingResult) -> Result<(), Failure> {
+    /// `<fabric>/<case>_<direction>.png`. The names of the charts that there are.
+    pub fn bent(&self, task: &Task, result: &BendingResult) -> Result<Vec<String>, Failure> {
         let stem = task.stem();
         let document = json!({"schema": "kesf.comparison/1", "comparisons": bending::entries(task, result)});
         self.write(&format!("{stem}.json"), text(&document)?.as_bytes())?;
+        let mut drawn = Vec::new();
         if self.charts {
             for (suffix, picture) in bending::charts(task, result) {
-                self.chart(&format!("{stem}{suffix}.png"), picture)?;
+                let name = format!("{stem}{suffix}.png");
+                if self.chart(&name, picture)? {
+                    drawn.push(name);
+                }
             }
         }
-        Ok(())
+        Ok(drawn)
     }
 
-    /// `<fabric>/tensile.png` ..., with the simulated curves of its cases on top.
-    pub fn fabric_charts(&self, sheet: &FabricSheet, tested: &[Tested]) -> Result<(), Failure> {
+    /// `<fabric>/tensile.png` ..., with the simulated curves of its cases on top; the tests that have one.
+    pub fn fabric_charts(&self, sheet: &FabricSheet, tested: &[Tested]) -> Result<Vec<Test>, Failure> {
+        let mut drawn = Vec::new();
         for test in Test::ALL {
             let picture = draw(sheet, test, &curves(tested.iter(), test));
-            self.chart(&format!("{}/{}.png", sheet.name, test.name()), picture)?;
+            if self.chart(&format!("{}/{}.png", sheet.name, test.name()), picture)? {
+                drawn.push(test);
+            }
         }
-        Ok(())
+        Ok(drawn)
     }
 
-    /// Writes a chart; one without data is simply not there.
-    pub fn chart(&self, name: &str, picture: Result<Vec<u8>, ChartError>) -> Result<(), Failure> {
+    /// Writes a chart and says whether there is one; without data it is simply not there.
+    pub fn chart(&self, name: &str, picture: Result<Vec<u8>, ChartError>) -> Result<bool, Failure> {
         match picture {
-            Err(ChartError::NothingToDraw { .. }) => Ok(()),
-            other => self.write(name, &other?),
+            Err(ChartError::NothingToDraw { .. }) => Ok(false),
+            other => self.write(name, &other?).map(|()| true),
         }
     }
 }

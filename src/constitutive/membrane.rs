@@ -74,8 +74,9 @@ fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], Cons
     notes.finding(
         "C012",
         format!(
-            "no tensile modulus is known; {e} stands in for both (linear bending of a flat sheet \
-             does not depend on it, membrane results and the limit of linear theory do)"
+            "no tensile modulus is known; {} N/m stands in for both (linear bending of a flat sheet \
+             does not depend on it, membrane results and the limit of linear theory do)",
+            significant(e.si())
         ),
     );
     let stand_in = Estimate::single(e.si());

@@ -39,8 +39,9 @@ pub(super) fn in_plane(assumptions: &Assumptions, notes: &mut Notes) -> Result<f
                 notes.finding(
                     "C013",
                     format!(
-                        "no shear test is known; {g} stands in for G (linear bending hardly depends on it, \
-                         in-plane results do)"
+                        "no shear test is known; {} N/m stands in for G (linear bending hardly depends on it, \
+                         in-plane results do)",
+                        significant(g.si())
                     ),
                 );
                 notes.origin("G", &Estimate::single(g.si()), &[(Constant::Shear, 1.0)]);

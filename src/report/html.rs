@@ -36,7 +36,7 @@ pub struct Section {
 pub enum Block {
     /// A paragraph.
     Text(String),
-    /// A table; columns that hold nothing but numbers are set to the right.
+    /// A table; columns that hold nothing but numbers (or `-` for none) are set to the right.
     Table {
         /// A line above it; empty for none.
         caption: String,
@@ -128,7 +128,8 @@ fn table(out: &mut String, caption: &str, header: &[String], rows: &[Vec<String>
     let cell = |row: &[String], column: usize| row.get(column).map_or("", String::as_str).to_string();
     let numeric: Vec<bool> = (0..header.len())
         .map(|column| {
-            let mut filled = rows.iter().map(|r| cell(r, column)).filter(|c| !c.is_empty()).peekable();
+            let mut filled =
+                rows.iter().map(|r| cell(r, column)).filter(|c| !c.is_empty() && c != "-").peekable();
             filled.peek().is_some() && filled.all(|c| is_number(&c))
         })
         .collect();

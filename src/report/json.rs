@@ -8,7 +8,7 @@ use nalgebra::{Matrix2, Matrix3};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use crate::characterise::FabricSheet;
+use crate::characterise::{FabricSheet, FrictionLaw};
 use crate::constitutive::{Entry, Input, entries};
 use crate::finding::Finding;
 use crate::instrument::Parameter;
@@ -53,6 +53,9 @@ pub struct SheetEntry {
     pub parameters: Map<String, Value>,
     /// Tensile moduli (N/m) by name and direction.
     pub moduli: Map<String, Value>,
+    /// Friction laws (SI; see [`FrictionLaw`]): test, direction, specimen, what the law rests on, its
+    /// backbone and sliders, how well it fits, and the parameters of its simulated cycle.
+    pub friction: Vec<FrictionLaw>,
 }
 
 /// A finding of a document.
@@ -124,6 +127,7 @@ pub fn sheet_document<'a>(sheets: impl IntoIterator<Item = &'a FabricSheet>) -> 
             origin: sheet.info.origin.name(),
             parameters: parameters(sheet),
             moduli: moduli(sheet),
+            friction: sheet.laws.clone(),
         });
     }
     // Two fabrics may come from one file.

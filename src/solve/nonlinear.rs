@@ -143,7 +143,7 @@ impl Default for Settings {
 /// A way to an equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
-    /// See [`solve`]; random loads break the symmetry, if asked for.
+    /// See [`solve`]; random loads break the symmetry, if asked for, and lead along stable equilibria only.
     Newton(Option<Perturbation>),
     /// See [`follow`].
     ArcLength(ArcLength),
@@ -364,7 +364,10 @@ fn grow(
         let way = target - state.factor;
         // The last step ends at the target exactly, without a sliver after it.
         let factor = if way.abs() <= 1.001 * step { target } else { state.factor + step.copysign(way) };
-        match newton(system, &state, factor, settings, &Drag { rate: 0.0, extra }) {
+        let found = newton(system, &state, factor, settings, &Drag { rate: 0.0, extra });
+        // A long step may land beyond the branch that the perturbation leads to.
+        let found = found.and_then(|c| if extra.is_some() { c.stable(system) } else { Ok(c) });
+        match found {
             Ok(converged) => {
                 let flow = progress.show(system, &converged, &mut observe);
                 if converged.iterations <= settings.iterations / 3 {

@@ -5,23 +5,28 @@ pub mod bending;
 mod build;
 mod case;
 mod compare;
+mod dynamics;
+mod nonlinear;
 mod prepared;
 mod run;
 mod uncertainty;
+mod virtual_large;
 mod virtual_test;
 
 use thiserror::Error;
 
 pub use build::{formulation, model, section};
 pub use case::{
-    Analysis, BendingKind, BendingTest, Case, CaseError, Check, ProbeTable, Reference, ReferenceKind,
-    SectionTable, Shape, Sheet, VirtualTest,
+    Analysis, BendingKind, BendingTest, Case, CaseError, Check, MethodChoice, NonlinearTable, ProbeTable,
+    Reference, ReferenceKind, SectionTable, Shape, Sheet, TestFormulation, VirtualTest,
 };
 pub use compare::{Comparison, compare_curves, measured_curve};
+pub use dynamics::History;
+pub use nonlinear::{LoadPath, PathStep};
 pub use prepared::PreparedCase;
-pub use run::{CaseResult, CheckResult, History, Probe, Status, solve_case};
+pub use run::{CaseResult, CheckResult, Probe, Status, solve_case};
 pub use uncertainty::{Prediction, Uncertainty};
-pub use virtual_test::{PreparedTest, VirtualCurve, compression, simulate};
+pub use virtual_test::{EdgeEffect, PreparedTest, VirtualCurve, compression, simulate};
 
 use crate::finding::Place;
 use crate::law::LawError;
@@ -91,12 +96,17 @@ impl StudyError {
 
     /// Whether the numerics failed, rather than the input.
     pub fn is_numeric(&self) -> bool {
-        matches!(
-            self,
-            Self::Solve(SolveError::Singular { .. } | SolveError::Factor(_) | SolveError::Residual { .. })
-                | Self::Nonlinear(NonlinearError::NotConverged { .. } | NonlinearError::Solve(_))
-                | Self::NoOverhang { .. }
-        )
+        match self {
+            Self::Solve(e) | Self::Nonlinear(NonlinearError::Solve(e)) => matches!(
+                e,
+                SolveError::Singular { .. }
+                    | SolveError::Factor(_)
+                    | SolveError::Residual { .. }
+                    | SolveError::StepVanished { .. }
+            ),
+            Self::Nonlinear(NonlinearError::NotConverged { .. }) | Self::NoOverhang { .. } => true,
+            _ => false,
+        }
     }
 }
 

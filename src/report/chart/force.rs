@@ -151,10 +151,13 @@ fn rows(loops: &BendLoops) -> Vec<Row> {
             format!("{} | {} %", percent(of(&test.elastic)), friction(of))
         };
         rows.push(Row::Value("outer".into(), both(|s| s.outer)));
-        rows.push(Row::Value("inner, predicted".into(), both(|s| s.inner)));
+        rows.push(Row::Value("inner".into(), both(|s| s.inner)));
         rows.push(Row::Value("own zero".into(), both(|s| s.inner_with_own_zero)));
     }
     rows.push(Row::Gap);
-    rows.push(Row::Remark("Own zero: the load zero of the inner cycles fitted by itself.".into(), GREY));
+    rows.push(Row::Remark(
+        "Inner cycles are predicted; own zero: with a load zero of their own.".into(),
+        GREY,
+    ));
     rows
 }

@@ -212,32 +212,30 @@ fn increasing_root(
     guess: f64,
     tolerance: f64,
 ) -> Result<f64, StudyError> {
-    let (mut low, mut high): (Option<(f64, f64)>, Option<(f64, f64)>) = (None, None);
-    let (mut x, mut growth) = (guess, 1.02f64);
-    let mut last_was_low = None;
+    // The nearest arguments below and above the root, with their values.
+    let mut ends: [Option<(f64, f64)>; 2] = [None; 2];
+    let (mut x, mut growth, mut last) = (guess, 1.02f64, None);
     for _ in 0..TRIALS {
         let y = f(x)?;
         if y.abs() <= tolerance {
             return Ok(x);
         }
-        let is_low = y < 0.0;
-        // The end that stays twice counts half: it would otherwise never move.
-        let stays = last_was_low == Some(is_low);
-        last_was_low = Some(is_low);
-        let (moved, kept) = if is_low { (&mut low, &mut high) } else { (&mut high, &mut low) };
-        *moved = Some((x, y));
-        match kept {
+        let side = usize::from(y > 0.0);
+        ends[side] = Some((x, y));
+        match &mut ends[1 - side] {
             Some((other, value)) => {
-                if stays {
+                // The end that stays twice counts half: it would otherwise never move.
+                if last == Some(side) {
                     *value *= 0.5;
                 }
                 x = (x * *value - *other * y) / (*value - y);
             }
             None => {
-                x = if is_low { x * growth } else { x / growth };
+                x = if side == 0 { x * growth } else { x / growth };
                 growth *= growth;
             }
         }
+        last = Some(side);
     }
     Err(StudyError::NoOverhang { angle_deg: CHORD_ANGLE_DEG, tried: x })
 }

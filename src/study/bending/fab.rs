@@ -9,7 +9,6 @@
 //! Half of the strip is a shell in large rotations, from its middle, where it is symmetric, to a clamp.
 
 mod identify;
-mod nnls;
 mod record;
 
 use crate::instrument::Direction;

@@ -20,7 +20,7 @@ use crate::characterise::FabricSheet;
 use crate::constitutive::Assumptions;
 use crate::finding::Place;
 
-pub use analysis::Analysis;
+pub use analysis::{Analysis, MethodChoice, NonlinearTable};
 pub use bending_test::{BendingKind, BendingTest};
 pub use check::{Check, ProbeTable, Reference, ReferenceKind};
 pub use element::{DrillingChoice, ElementTable, Profile, Subcells};
@@ -28,7 +28,7 @@ pub use error::CaseError;
 pub use loads::{LoadTable, SupportKind, SupportTable};
 pub use section::SectionTable;
 pub use sheet::{Shape, Sheet};
-pub use virtual_test::VirtualTest;
+pub use virtual_test::{TestFormulation, VirtualTest};
 
 /// A case as it is written in its file; unknown keys are refused.
 #[derive(Clone, Debug, Deserialize)]

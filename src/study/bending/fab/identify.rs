@@ -14,10 +14,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::characterise::nnls;
 use crate::law::{Backbone, Channel, Family, LawError, Slider, Widening};
 use crate::study::StudyError;
 
-use super::nnls::nnls;
 use super::record::{Bending, Record, Run};
 use super::{FabSettings, Friction};
 

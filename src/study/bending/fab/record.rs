@@ -115,7 +115,7 @@ impl<'a> Record<'a> {
                 2.0 * q.j.atan2(q.w)
             };
             rotations.push(strip.line.iter().map(rotation).collect());
-            if step.number > before && (step.number - before) % steps == 0 {
+            if step.number > before && (step.number - before).is_multiple_of(steps) {
                 let pull: f64 = strip.end.iter().map(|n| step.reaction[6 * *n as usize]).sum();
                 force.push(pull / side * self.test.width);
                 step_of.push(rotations.len() - 1);

@@ -1,0 +1,209 @@
+//! Friction laws of cloth: one per specimen from its measured loop, one per direction from summary
+//! values where no loop was recorded.
+//!
+//! The law is that of [`crate::law`]; strain and stress are those of the test (curvature and moment
+//! per width, shear angle and force, strain and force, approach of the faces and pressure).
+//! Identification is linear in the weights: least squares with weights not below zero over 20
+//! slip levels, a search for the widening, then six sliders that carry equal parts of the friction
+//! in place of the levels found, and the weights again.
+
+mod closed_form;
+mod identify;
+mod loop_fit;
+pub(crate) mod nnls;
+mod record;
+mod strip;
+mod summary;
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+use serde::{Serialize, Serializer, ser::SerializeMap};
+
+use self::identify::Path;
+use super::{CycleChoice, FabricSheet, Settings, SpecimenResult};
+use crate::finding::{Finding, Place};
+use crate::instrument::{Direction, Parameter, Test};
+use crate::law::Channel;
+use crate::quantity::Curve;
+
+pub use closed_form::ClosedForm;
+pub use loop_fit::{CycleFit, LoopFit};
+pub use record::{cycle, extract};
+
+/// A law of one test in one direction.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FrictionLaw {
+    /// The test, and so what strain and stress are.
+    pub test: Test,
+    /// Yarn direction; `None` for compression.
+    pub direction: Option<Direction>,
+    /// Specimen number; 0 for a law of the fabric from summary values.
+    pub specimen: usize,
+    /// What the law rests on.
+    pub basis: Basis,
+    /// Thickness at which the approach of the faces counts from (m); compression only.
+    pub thickness: Option<f64>,
+    /// The law (SI: 1/m and N; rad and N/m; 1 and N/m; m and Pa).
+    pub channel: Channel,
+    /// Measured beside simulated; `None` without a loop.
+    pub fit: Option<LoopFit>,
+    /// B and 2HB by a closed form, as a check on the fit; bending loops only.
+    pub closed_form: Option<ClosedForm>,
+    /// Parameters re-extracted from the cycle of the instrument, simulated with this law (SI).
+    #[serde(serialize_with = "by_symbol")]
+    pub values: BTreeMap<Parameter, f64>,
+}
+
+/// What a law rests on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Basis {
+    /// A measured loop.
+    Loop,
+    /// A cycle of a FAB strip.
+    Strip,
+    /// Summary values: stiffness and loop width are measured, how friction begins is assumed.
+    AssumedSpectrum,
+}
+
+impl FrictionLaw {
+    /// The strain of the law at an abscissa of the test.
+    pub fn strain(&self, abscissa: f64) -> f64 {
+        self.thickness.map_or(abscissa, |t| t - abscissa)
+    }
+
+    /// The abscissa of the test at a strain of the law.
+    pub fn abscissa(&self, strain: f64) -> f64 {
+        self.thickness.map_or(strain, |t| t - strain)
+    }
+
+    /// The ordinates that the law gives along a record of the test, from cloth never deformed.
+    pub fn simulate(&self, record: &Curve) -> Curve {
+        let strains = record.x.iter().map(|x| self.strain(*x));
+        let stresses = self.channel.path(Default::default(), strains).map(|r| r.stress);
+        Curve { x: record.x.clone(), y: stresses.collect() }
+    }
+}
+
+impl FabricSheet {
+    /// The law to calculate with: that of the specimen in the middle by B, G, WT or WC, or that from
+    /// summary values; that of the fabric where the direction has none.
+    pub fn law(&self, test: Test, direction: Option<Direction>) -> Option<&FrictionLaw> {
+        let leading = match test {
+            Test::Tensile => Parameter::Wt,
+            Test::Shear => Parameter::G,
+            Test::Bending => Parameter::B,
+            Test::Compression => Parameter::Wc,
+        };
+        let of = |direction| {
+            let mut found: Vec<&FrictionLaw> = (self.laws.iter())
+                .filter(|l| l.test == test && l.direction == direction && l.basis != Basis::Strip)
+                .collect();
+            let value = |l: &FrictionLaw| l.values.get(&leading).copied().unwrap_or(0.0);
+            found.sort_by(|a, b| value(a).total_cmp(&value(b)));
+            found.get(found.len().saturating_sub(1) / 2).copied()
+        };
+        of(direction).or_else(|| of(None))
+    }
+}
+
+/// Adds the laws to a sheet.
+pub(super) fn add(sheet: &mut FabricSheet, settings: &Settings) {
+    let found: Vec<Result<FrictionLaw, Finding>> =
+        sheet.specimens.par_iter().map(|s| of_specimen(s, settings).ok_or_else(|| none(s))).collect();
+    for law in found {
+        match law {
+            Ok(law) => sheet.laws.push(law),
+            Err(finding) => sheet.findings.push(finding),
+        }
+    }
+    sheet.laws.extend(sheet.strips.iter().filter_map(strip::law));
+    summary::add(sheet, settings);
+}
+
+/// The law of a specimen; `None` if its loop is not one that the law can follow.
+fn of_specimen(specimen: &SpecimenResult, settings: &Settings) -> Option<FrictionLaw> {
+    let m = &specimen.measurement;
+    let thickness = match m.test {
+        Test::Compression => Some(match specimen.values.get(&Parameter::T0) {
+            Some(t0) => *t0,
+            None => *specimen.branches.first()?.curve.x.first()?,
+        }),
+        _ => None,
+    };
+    let one_sided = matches!(m.test, Test::Tensile | Test::Compression);
+    let (path, cycles) = path(specimen, thickness, one_sided, settings.cycle)?;
+    let channel = if one_sided { identify::one_sided(&path) } else { identify::two_sided(&path) }?;
+    let fit = LoopFit::of(&channel, &path, &cycles);
+    let closed_form = (m.test == Test::Bending).then(|| ClosedForm::of(&path)).flatten();
+    let mut law = FrictionLaw {
+        test: m.test,
+        direction: m.direction,
+        specimen: m.specimen,
+        basis: Basis::Loop,
+        thickness,
+        channel,
+        fit: Some(fit),
+        closed_form,
+        values: BTreeMap::new(),
+    };
+    law.values = extract(&law, &m.conditions, settings);
+    Some(law)
+}
+
+/// K041: a loop that was recorded, but has no law.
+fn none(specimen: &SpecimenResult) -> Finding {
+    let m = &specimen.measurement;
+    let direction = m.direction.map_or(String::new(), |d| format!(" {d}"));
+    let text = format!(
+        "{}{direction}, specimen {}: no friction law, its loop has too few samples or does not rise",
+        m.test.name(),
+        m.specimen
+    );
+    Finding::new("K041", text).at(Place::file(&m.source.path))
+}
+
+/// The corrected record as one path of strain and stress, and the samples of each cycle. Of a
+/// one-sided test the samples at strains below zero are left out: the cloth is slack.
+fn path(
+    specimen: &SpecimenResult,
+    thickness: Option<f64>,
+    one_sided: bool,
+    choice: CycleChoice,
+) -> Option<(Path, Vec<std::ops::Range<usize>>)> {
+    let mut path = Path::default();
+    let mut ends: Vec<usize> = Vec::new();
+    for branch in &specimen.branches {
+        // Branches share the sample at which they meet.
+        let joined = |x: f64, y: f64| path.strain.last() == Some(&x) && path.stress.last() == Some(&y);
+        let points: Vec<(f64, f64)> =
+            branch.curve.points().map(|(x, y)| (thickness.map_or(x, |t| t - x), y)).collect();
+        let skip = usize::from(points.first().is_some_and(|p| joined(p.0, p.1)));
+        for (e, s) in points.into_iter().skip(skip).filter(|p| !one_sided || p.0 >= 0.0) {
+            path.strain.push(e);
+            path.stress.push(s);
+        }
+        ends.resize((branch.cycle + 1).max(ends.len()), 0);
+        ends[branch.cycle] = path.strain.len();
+    }
+    let starts = std::iter::once(0).chain(ends.iter().copied());
+    let cycles: Vec<_> = starts.zip(&ends).map(|(a, b)| a..*b).collect();
+    path.fitted = match choice {
+        CycleChoice::First => cycles.first(),
+        CycleChoice::Last => cycles.last(),
+    }?
+    .clone();
+    Some((path, cycles))
+}
+
+/// Parameters by their symbols.
+fn by_symbol<S: Serializer>(values: &BTreeMap<Parameter, f64>, s: S) -> Result<S::Ok, S::Error> {
+    let mut map = s.serialize_map(Some(values.len()))?;
+    for (parameter, value) in values {
+        map.serialize_entry(parameter.symbol(), value)?;
+    }
+    map.end()
+}

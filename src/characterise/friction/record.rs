@@ -1,0 +1,86 @@
+//! The cycle of an instrument, simulated at a point, and its parameters.
+
+use std::collections::BTreeMap;
+
+use super::FrictionLaw;
+use crate::characterise::{Settings, specimen};
+use crate::instrument::{Conditions, Measurement, Parameter, Source, Test};
+use crate::law::{Channel, State};
+use crate::quantity::Curve;
+
+/// Samples of a branch.
+const SAMPLES: usize = 250;
+
+/// The record that an instrument would make of cloth with this law, uniformly strained, under given
+/// conditions: bending and shear 0, +maximum, -maximum, 0; tension and compression up to the
+/// maximum force and back to none. Axes are those of the test (SI).
+///
+/// Empty if the law never reaches the maximum force, or the maximum is not known.
+pub fn cycle(law: &FrictionLaw, conditions: &Conditions) -> Curve {
+    let maximum = conditions.maximum;
+    if !(maximum.is_finite() && maximum > 0.0) {
+        return Curve::default();
+    }
+    let strained = match law.test {
+        Test::Bending | Test::Shear => to_both_sides(&law.channel, maximum),
+        Test::Tensile | Test::Compression => to_force(&law.channel, maximum),
+    };
+    Curve::from_points(strained.into_iter().map(|(e, s)| (law.abscissa(e), s)))
+}
+
+/// The KES parameters of [`cycle`], by the evaluation that instrument files go through.
+pub fn extract(law: &FrictionLaw, conditions: &Conditions, settings: &Settings) -> BTreeMap<Parameter, f64> {
+    let measurement = Measurement {
+        test: law.test,
+        sample: None,
+        direction: law.direction,
+        specimen: law.specimen,
+        conditions: conditions.clone(),
+        curve: cycle(law, conditions),
+        lines: Vec::new(),
+        source: Source::default(),
+        metadata: BTreeMap::new(),
+    };
+    // A simulated record has no slack and no zero error; what it cannot give is left out, and what
+    // there is to say about noise or windows is said of the measured one.
+    let settings = Settings { correct_zero: false, ..settings.clone() };
+    specimen::evaluate(&measurement, &settings, &mut Vec::new()).map(|s| s.values).unwrap_or_default()
+}
+
+fn to_both_sides(channel: &Channel, maximum: f64) -> Vec<(f64, f64)> {
+    let run = |from: f64, to: f64, n: usize| (1..=n).map(move |i| from + (to - from) * i as f64 / n as f64);
+    let there = run(0.0, maximum, SAMPLES).chain(run(maximum, -maximum, 2 * SAMPLES));
+    let path = std::iter::once(0.0).chain(there).chain(run(-maximum, 0.0, SAMPLES));
+    channel.path(State::default(), path).map(|r| (r.state.strain, r.stress)).collect()
+}
+
+fn to_force(channel: &Channel, maximum: f64) -> Vec<(f64, f64)> {
+    let Some(top) = strain_at(channel, maximum) else { return Vec::new() };
+    let up = (0..=SAMPLES).map(|i| top * i as f64 / SAMPLES as f64);
+    let down = (0..SAMPLES).rev().map(|i| top * i as f64 / SAMPLES as f64);
+    let mut record: Vec<(f64, f64)> =
+        channel.path(State::default(), up.chain(down)).map(|r| (r.state.strain, r.stress)).collect();
+    // The drive stops where the force is gone.
+    let gone = record[SAMPLES..].iter().position(|p| p.1 <= 0.0);
+    if let Some(i) = gone {
+        record.truncate(SAMPLES + i + 1);
+    }
+    record
+}
+
+/// The strain at which first loading reaches a stress, by bisection.
+fn strain_at(channel: &Channel, stress: f64) -> Option<f64> {
+    let mut high = channel.backbone().knots().last().filter(|e| *e > 0.0)?;
+    for _ in 0..40 {
+        if channel.virgin(high).stress >= stress {
+            break;
+        }
+        high *= 1.25;
+    }
+    let mut low = 0.0;
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if channel.virgin(middle).stress < stress { low = middle } else { high = middle }
+    }
+    (channel.virgin(high).stress >= stress * (1.0 - 1e-9)).then_some(high)
+}

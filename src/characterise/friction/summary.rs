@@ -1,0 +1,166 @@
+//! Laws from summary values: B and 2HB; G, 2HG and 2HG5; LT, WT, RT and EMT.
+
+use std::collections::BTreeMap;
+
+use super::{Basis, FrictionLaw, extract};
+use crate::characterise::{FabricSheet, Settings};
+use crate::finding::Finding;
+use crate::instrument::{Conditions, Direction, Parameter, Test};
+use crate::law::{Backbone, Channel, Family, LawError, Slider, Widening};
+use crate::quantity::{Angle, Curvature, LineForce, significant};
+
+/// Slip levels over the greatest strain of the test, each with a third of the friction: 0.03 to
+/// 0.1 1/cm of 2.5 1/cm in bending, where measured loops of cloth have them.
+const LEVELS: [f64; 3] = [0.012, 0.022, 0.04];
+/// Knots of the backbone of a tensile law.
+const KNOTS: usize = 25;
+
+/// Adds a law where a test has no loop, but its summary values, with K040.
+pub(super) fn add(sheet: &mut FabricSheet, settings: &Settings) {
+    let directions = Direction::ALL.map(Some).into_iter().chain([None]);
+    let mut made = Vec::new();
+    for direction in directions {
+        for test in [Test::Tensile, Test::Shear, Test::Bending] {
+            let known = |l: &FrictionLaw| l.test == test && (l.direction == direction || direction.is_none());
+            if sheet.laws.iter().any(known) {
+                continue;
+            }
+            if let Some(Ok(channel)) = channel(sheet, test, direction, settings) {
+                made.push(law(test, direction, channel, settings));
+            }
+        }
+    }
+    for law in made {
+        let direction = law.direction.map_or(String::new(), |d| format!(" {d}"));
+        let text = format!(
+            "{}{direction}: the friction law has the summary values and an assumed spectrum, slip levels of {} to {} % of the range: no loop was recorded",
+            law.test.name(),
+            significant(100.0 * LEVELS[0]),
+            significant(100.0 * LEVELS[2]),
+        );
+        sheet.findings.push(Finding::new("K040", text));
+        sheet.laws.push(law);
+    }
+}
+
+fn law(test: Test, direction: Option<Direction>, channel: Channel, settings: &Settings) -> FrictionLaw {
+    let mut law = FrictionLaw {
+        test,
+        direction,
+        specimen: 0,
+        basis: Basis::AssumedSpectrum,
+        thickness: None,
+        channel,
+        fit: None,
+        closed_form: None,
+        values: BTreeMap::new(),
+    };
+    law.values = extract(&law, &conditions(test, settings), settings);
+    law
+}
+
+/// The standard cycle of a test.
+fn conditions(test: Test, settings: &Settings) -> Conditions {
+    let maximum = match test {
+        Test::Bending => Curvature(250.0).si(),
+        Test::Shear => Angle(8f64.to_radians()).si(),
+        Test::Tensile => settings.table_maximum.si(),
+        Test::Compression => f64::NAN,
+    };
+    Conditions { maximum, ..Conditions::default() }
+}
+
+/// The law of the values in a direction; `None` if they are not there.
+fn channel(
+    sheet: &FabricSheet,
+    test: Test,
+    direction: Option<Direction>,
+    settings: &Settings,
+) -> Option<Result<Channel, LawError>> {
+    let value = |p| sheet.get(p, direction).map(|e| e.mean).filter(|v| v.is_finite() && *v >= 0.0);
+    let maximum = conditions(test, settings).maximum;
+    match test {
+        Test::Bending => Some(bending(value(Parameter::B)?, value(Parameter::Hb)?, maximum)),
+        Test::Shear => {
+            let near = value(Parameter::Hg)?;
+            let widths = [near, value(Parameter::Hg5).unwrap_or(near)];
+            Some(shear(value(Parameter::G)?, widths, settings, maximum))
+        }
+        Test::Tensile => {
+            let [lt, rt, emt] = [Parameter::Lt, Parameter::Rt, Parameter::Emt].map(value);
+            let (lt, rt, emt) = (lt?, rt?, emt?);
+            let good = lt > 0.0 && lt <= 1.0 && rt > 0.0 && rt <= 1.0 && emt > 0.0;
+            good.then(|| tension([lt, rt, emt], settings))
+        }
+        Test::Compression => None,
+    }
+}
+
+/// Sliders that carry `stress` together when all slip.
+fn sliders(stress: f64, e_max: f64) -> Vec<Slider> {
+    let slider = |part: f64| Slider { stiffness: stress / (3.0 * part * e_max), slip: part * e_max };
+    LEVELS.map(slider).to_vec()
+}
+
+/// `M = B K` and friction of half the width 2HB.
+fn bending(b: f64, width: f64, e_max: f64) -> Result<Channel, LawError> {
+    let family = Family { widening: Widening::Constant, sliders: sliders(0.5 * width, e_max) };
+    Channel::new(Backbone::line(b)?, vec![family], false)
+}
+
+/// The widening follows from the two widths; it steepens the branch that G is read from, and so
+/// much is taken off the backbone: the slope of `φ²` over a window is the sum of its ends.
+fn shear(g: f64, widths: [f64; 2], settings: &Settings, e_max: f64) -> Result<Channel, LawError> {
+    let [near, far] = settings.shear_readings.map(|a| (a.si() / e_max).powi(2));
+    let alpha = (widths[1] - widths[0]) / (widths[0] * far - widths[1] * near);
+    let limit = 0.5 / LEVELS[2];
+    let alpha = if alpha.is_finite() { alpha.clamp(0.0, limit) } else { 0.0 };
+    let stress = 0.5 * widths[0] / (1.0 + alpha * near);
+    let [from, to] = settings.shear_slope.map(|a| a.si());
+    let steeper = stress * alpha * (from + to) / (e_max * e_max);
+    let widening = Widening::Quadratic { alpha, e_max };
+    let family = Family { widening, sliders: sliders(stress, e_max) };
+    Channel::new(Backbone::line((g - steeper).max(0.0))?, vec![family], false)
+}
+
+/// First loading `F = Fm (e/em)^n`, `n = 2/LT - 1`; friction in proportion to it, as much as RT
+/// says. The share is found by trying: sliders give way a little after the drive turns.
+fn tension([lt, rt, emt]: [f64; 3], settings: &Settings) -> Result<Channel, LawError> {
+    let top = LineForce(settings.table_maximum.si()).si();
+    let n = 2.0 / lt - 1.0;
+    // Denser near the origin, where the tangent of a power below 2 changes most.
+    let knots: Vec<f64> = (0..KNOTS).map(|i| (i as f64 / (KNOTS - 1) as f64).powi(2) * emt).collect();
+    let power: Vec<f64> = knots.iter().map(|e| n * (e / emt).powf(n - 1.0) * top / emt).collect();
+    let shape = Backbone::new(0.0, &knots, &power)?;
+    let scale = top / shape.at(emt).stress;
+    let with = |share: f64| {
+        let tangents = |part: f64| power.iter().map(|t| t * scale * part).collect::<Vec<f64>>();
+        let loading = Backbone::new(0.0, &knots, &tangents(1.0))?;
+        let backbone = Backbone::new(0.0, &knots, &tangents(1.0 - share))?;
+        // Steep curves leave less room for a level that widens with them.
+        let room = 0.95 * top / (scale * power.iter().copied().fold(0.0, f64::max) * LEVELS[2] * emt);
+        let sliders = sliders(share * top, emt * room.min(1.0));
+        Channel::new(backbone, vec![Family { widening: Widening::Loading(loading), sliders }], true)
+    };
+    let resilience = |share: f64| -> Result<f64, LawError> {
+        let law = FrictionLaw {
+            test: Test::Tensile,
+            direction: None,
+            specimen: 0,
+            basis: Basis::AssumedSpectrum,
+            thickness: None,
+            channel: with(share)?,
+            fit: None,
+            closed_form: None,
+            values: BTreeMap::new(),
+        };
+        let values = extract(&law, &conditions(Test::Tensile, settings), settings);
+        Ok(values.get(&Parameter::Rt).copied().unwrap_or(f64::NAN))
+    };
+    let (mut low, mut high) = (0.0, 0.95);
+    for _ in 0..30 {
+        let share = 0.5 * (low + high);
+        if resilience(share)? > rt { low = share } else { high = share }
+    }
+    with(0.5 * (low + high))
+}
