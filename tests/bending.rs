@@ -44,7 +44,7 @@ fn the_cantilever_gives_the_bending_length() {
     for (direction, b) in [(Direction::Warp, 1e-5f64), (Direction::Weft, 4e-6)] {
         let exact = (b / (0.15 * STANDARD_GRAVITY)).cbrt();
         let off = [16, 32].map(|cells| {
-            let test = cantilever(&section, direction, None, cells).unwrap();
+            let test = cantilever(&section, direction, None, None, cells).unwrap();
             assert!(test.stable && test.strips <= 8, "{} strips", test.strips);
             assert!((test.peirce_excess() - 0.0575).abs() < 5e-5);
             let (x, z) = test.profile.points().last().unwrap();
@@ -60,7 +60,9 @@ fn the_cantilever_gives_the_bending_length() {
 /// 0.25 % of the length.
 #[test]
 fn a_strip_that_curls_across_hangs_a_little_shorter() {
-    let c = |nu| cantilever(&cloth(1e-5, 1e-5, nu), Direction::Warp, Some(0.025), 16).unwrap().bending_length;
+    let c = |nu| {
+        cantilever(&cloth(1e-5, 1e-5, nu), Direction::Warp, None, Some(0.025), 16).unwrap().bending_length
+    };
     let shorter = 1.0 - c(0.3) / c(0.0);
     assert!((5e-4..5e-3).contains(&shorter), "{shorter}");
 }
@@ -123,8 +125,9 @@ fn an_elastic_fab_record_gives_its_rigidity_and_the_long_test() {
     let off = [&coarse, &fine].map(|l| (l.rigidity / b - 1.0).abs());
     assert!(off[0] < 0.02 && off[1] < 0.3 * off[0] + 1e-4, "{off:?}: O(h²)");
     for (of, zero) in fine.loops.iter().zip([-0.02, 0.03, 0.004]) {
-        assert!((of.zero - zero).abs() < 3e-4, "{:?}: zero {}", of.kind, of.zero);
-        assert!(of.outer.unwrap().nrmse < 2e-3, "{:?}: {:?}", of.kind, of.outer);
+        let elastic = &of.elastic;
+        assert!((elastic.zero - zero).abs() < 3e-4, "{:?}: zero {}", of.kind, elastic.zero);
+        assert!(elastic.outer.unwrap().nrmse < 2e-3, "{:?}: {:?}", of.kind, elastic.outer);
         assert_eq!(of.fitted, of.kind != FabKind::D2);
     }
     // An elastic strip does not remember how it came: more steps change nothing.
@@ -133,8 +136,28 @@ fn an_elastic_fab_record_gives_its_rigidity_and_the_long_test() {
     assert_eq!(bend_loops(&tests, Direction::Weft, density, &FabSettings::default()).unwrap(), None);
 }
 
+/// Friction in a cantilever of new cloth: c (1 + 0.423 μ - 0.056 μ²), a fit for friction that slips at once. The
+/// three slip curvatures that are assumed, 0.03 to 0.1 1/cm, take about 1 % off where they are not
+/// small beside 1/c.
+#[test]
+fn friction_makes_the_cantilever_stiffer() {
+    let section = cloth(1e-5, 4e-6, 0.0);
+    for (direction, b) in [(Direction::Warp, 1e-5f64), (Direction::Weft, 4e-6)] {
+        let c = (b / (0.15 * STANDARD_GRAVITY)).cbrt();
+        for mu in [0.3, 1.0, 2.0] {
+            let test = cantilever(&section, direction, Some(mu * b / c), None, 32).unwrap();
+            let friction = test.friction.unwrap();
+            assert!((friction.mu - mu).abs() < 1e-9);
+            let ratio = friction.bending_length / friction.estimate;
+            assert!((0.97..1.005).contains(&ratio), "{direction} mu {mu}: {ratio}");
+            assert!(friction.bending_length > 1.02 * test.bending_length);
+        }
+    }
+}
+
 /// The cupro weave of the U3M repository (Vizoo GmbH, BSD-3-Clause): a regression of what was reached (own). A line
-/// misses the hysteresis, which is most of the short tests; the long one hangs by its weight.
+/// misses the hysteresis, which is most of the short tests; the long one hangs by its weight. The hanging warp
+/// strip drifts during its test by half of its span, and so stays above 10 %.
 #[test]
 fn a_measured_fab_record() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/u3m/physics_example2.json");
@@ -146,13 +169,24 @@ fn a_measured_fab_record() {
     let density = file.areal_density.unwrap();
     let settings = FabSettings { cells: 16, steps: 1 };
     let of = |d| bend_loops(&file.tests, d, density, &settings).unwrap().unwrap();
-    let check = |loops: &BendLoops, b: f64, long: f64| {
+    let check = |loops: &BendLoops, [b, with_friction, couple]: [f64; 3], bounds: [[f64; 2]; 3]| {
+        println!("{} {} {:?}", loops.direction, loops.rigidity, loops.friction);
         assert!((loops.rigidity * 1e6 / b - 1.0).abs() < 0.02, "{}: {}", loops.direction, loops.rigidity);
-        let of = |kind| loops.loops.iter().find(|l| l.kind == kind).unwrap().outer.unwrap().nrmse;
-        assert!(of(FabKind::D1) < 0.21 && of(FabKind::U1) < 0.15 && of(FabKind::D2) < long);
+        let friction = loops.friction.as_ref().unwrap();
+        assert!((friction.rigidity * 1e6 / with_friction - 1.0).abs() < 0.02, "{}", friction.rigidity);
+        assert!((friction.couple * 1e6 / couple - 1.0).abs() < 0.02, "{}", friction.couple);
+        for (of, [elastic, friction]) in loops.loops.iter().zip(bounds) {
+            let nrmse = [&of.elastic, of.friction.as_ref().unwrap()].map(|s| s.outer.unwrap().nrmse);
+            assert!(
+                nrmse[0] < elastic && nrmse[1] < friction,
+                "{} {:?}: {nrmse:?}",
+                loops.direction,
+                of.kind
+            );
+        }
     };
-    check(&of(Direction::Warp), 9.73, 0.06);
-    check(&of(Direction::Weft), 13.85, 0.085);
+    check(&of(Direction::Warp), [9.73, 5.92, 123.0], [[0.21, 0.14], [0.15, 0.085], [0.06, 0.085]]);
+    check(&of(Direction::Weft), [13.85, 8.37, 201.7], [[0.21, 0.08], [0.155, 0.05], [0.085, 0.235]]);
 }
 
 #[test]

@@ -22,6 +22,7 @@ mod strip;
 mod tables;
 mod tensile;
 
+pub(crate) use friction::nnls::nnls;
 pub use friction::{
     Basis, ClosedForm, CycleFit, FrictionLaw, LawTrace, LoopFit, ReExtracted, cycle, extract,
 };

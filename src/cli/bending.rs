@@ -6,24 +6,23 @@ use super::output::Columns;
 use super::task::Task;
 use crate::characterise::FabricSheet;
 use crate::instrument::Origin;
-use crate::quantity::significant;
+use crate::quantity::{Curve, STANDARD_GRAVITY, significant};
 use crate::report::chart::{self, ChartError, ForcePlot, ProfileLine, ProfilePlot};
 use crate::report::table::{PredictionRow, relative_error};
 use crate::study::bending::{
-    Agreement, BendLoop, BendLoops, BendingResult, CHORD_ANGLE_DEG, Cantilever, HeartLoop,
+    Agreement, BendLoop, BendLoops, BendingResult, CHORD_ANGLE_DEG, Cantilever, HeartLoop, Simulated,
     measured_bending_length,
 };
 
 /// One table for each kind of test among the results.
 pub fn texts(results: &[(&Task, &BendingResult)]) -> Vec<String> {
-    let mm = |v: f64| significant(1e3 * v);
-    let micro = |v: f64| significant(1e6 * v);
     let mut cantilevers = Columns::new([
         "cantilever",
         "fabric",
         "overhang (mm)",
-        "c (mm)",
+        "c elastic (mm)",
         "(B/w)^1/3 (mm)",
+        "c friction (mm)",
         "c measured (mm)",
         "B by Peirce's formula",
     ]);
@@ -40,58 +39,98 @@ pub fn texts(results: &[(&Task, &BendingResult)]) -> Vec<String> {
         "FAB",
         "fabric",
         "test",
+        "role",
+        "law",
         "B (µN·m)",
-        "",
+        "HB (µN)",
         "outer NRMSE",
         "R²",
         "inner NRMSE",
         "zero (gf)",
     ]);
     for (task, result) in results {
-        let fabric = task.fabric_name().unwrap_or_default().to_string();
         match result {
-            BendingResult::Cantilever(tests) => tests.iter().for_each(|c| {
-                let head = [c.direction.to_string(), fabric.clone()];
-                let peirce = format!("+{} %", significant(100.0 * c.peirce_excess()));
-                let cells = [
-                    mm(c.overhang),
-                    mm(c.bending_length),
-                    mm(c.closed_form),
-                    or_dash(measured(task, c), mm),
-                    peirce,
-                ];
-                cantilevers.row(head.into_iter().chain(cells));
-            }),
-            BendingResult::HeartLoop(tests) => tests.iter().for_each(|h| {
-                let head = [h.direction.to_string(), fabric.clone()];
-                let cells = [
-                    mm(h.length),
-                    mm(h.height),
-                    or_dash(h.closed_form, mm),
-                    or_dash(h.rigidity, micro),
-                    micro(h.section_rigidity),
-                ];
-                hearts.row(head.into_iter().chain(cells));
-            }),
+            BendingResult::Cantilever(tests) => {
+                tests.iter().for_each(|c| cantilevers.row(cantilever_row(task, c)))
+            }
+            BendingResult::HeartLoop(tests) => tests.iter().for_each(|h| hearts.row(heart_row(task, h))),
             BendingResult::FabBendLoop(directions) => {
-                for (d, l) in directions.iter().flat_map(|d| d.loops.iter().map(move |l| (d, l))) {
-                    let percent =
-                        |a: Option<Agreement>| or_dash(a, |a| format!("{} %", significant(100.0 * a.nrmse)));
-                    let head = [
-                        d.direction.to_string(),
-                        fabric.clone(),
-                        l.kind.name().to_string(),
-                        micro(d.rigidity),
-                    ];
-                    let role = if l.fitted { "fitted" } else { "predicted" }.to_string();
-                    let r2 = or_dash(l.outer, |a| significant(a.r2));
-                    let zero = significant(l.zero / 9.80665e-3);
-                    fab.row(head.into_iter().chain([role, percent(l.outer), r2, percent(l.inner), zero]));
-                }
+                directions.iter().flat_map(|d| fab_rows(task, d)).for_each(|row| fab.row(row));
             }
         }
     }
     [cantilevers, hearts, fab].into_iter().filter(|t| !t.is_empty()).map(|t| t.text()).collect()
+}
+
+fn mm(metres: f64) -> String {
+    significant(1e3 * metres)
+}
+
+fn micro(value: f64) -> String {
+    significant(1e6 * value)
+}
+
+fn cantilever_row(task: &Task, c: &Cantilever) -> Vec<String> {
+    let friction = c.friction.as_ref().map(|f| f.bending_length);
+    vec![
+        c.direction.to_string(),
+        task.fabric_name().unwrap_or_default().into(),
+        mm(c.overhang),
+        mm(c.bending_length),
+        mm(c.closed_form),
+        or_dash(friction, mm),
+        or_dash(measured(task, c), mm),
+        format!("+{} %", significant(100.0 * c.peirce_excess())),
+    ]
+}
+
+fn heart_row(task: &Task, h: &HeartLoop) -> Vec<String> {
+    vec![
+        h.direction.to_string(),
+        task.fabric_name().unwrap_or_default().into(),
+        mm(h.length),
+        mm(h.height),
+        or_dash(h.closed_form, mm),
+        or_dash(h.rigidity, micro),
+        micro(h.section_rigidity),
+    ]
+}
+
+/// Two rows a test: elastic, and with friction.
+fn fab_rows(task: &Task, d: &BendLoops) -> Vec<Vec<String>> {
+    let percent = |a: Option<Agreement>| or_dash(a, |a| format!("{} %", significant(100.0 * a.nrmse)));
+    let row = |l: &BendLoop, law: [String; 3], s: &Simulated| {
+        let head = [
+            d.direction.to_string(),
+            task.fabric_name().unwrap_or_default().into(),
+            l.kind.name().to_string(),
+            role(l).to_string(),
+        ];
+        let figures = [
+            percent(s.outer),
+            or_dash(s.outer, |a| significant(a.r2)),
+            percent(s.inner),
+            significant(s.zero / GRAM_FORCE),
+        ];
+        head.into_iter().chain(law).chain(figures).collect()
+    };
+    d.loops
+        .iter()
+        .flat_map(|l| {
+            let elastic = row(l, ["elastic".into(), micro(d.rigidity), "-".into()], &l.elastic);
+            let friction = d.friction.as_ref().zip(l.friction.as_ref());
+            let friction =
+                friction.map(|(f, s)| row(l, ["friction".into(), micro(f.rigidity), micro(f.couple)], s));
+            std::iter::once(elastic).chain(friction)
+        })
+        .collect()
+}
+
+/// N.
+const GRAM_FORCE: f64 = 1e-3 * STANDARD_GRAVITY;
+
+fn role(l: &BendLoop) -> &'static str {
+    if l.fitted { "fitted" } else { "predicted" }
 }
 
 fn or_dash<T>(value: Option<T>, text: impl Fn(T) -> String) -> String {
@@ -134,6 +173,12 @@ fn cantilever(c: &Cantilever, measured: Option<f64>) -> Value {
         },
         "rigidity_by_peirce_formula_excess": c.peirce_excess(),
         "rigidity": {"value": c.rigidity, "unit": "N·m"},
+        "friction": c.friction.as_ref().map(|f| json!({
+            "couple": {"value": f.couple, "unit": "N"}, "mu": f.mu,
+            "overhang": {"value": f.overhang, "unit": "m"},
+            "bending_length": {"simulated": f.bending_length, "estimate": f.estimate, "unit": "m"},
+            "profile": {"x": f.profile.x, "z": f.profile.y, "unit": "m"},
+        })),
         "profile": {"x": c.profile.x, "z": c.profile.y, "unit": "m"},
         "elements": c.elements, "strips": c.strips, "iterations": c.iterations, "stable": c.stable,
     })
@@ -151,18 +196,29 @@ fn heart(h: &HeartLoop) -> Value {
 }
 
 fn fab(d: &BendLoops) -> Value {
-    let test = |l: &BendLoop| {
+    let simulated = |s: &Simulated| {
         json!({
-            "test": l.kind.name(),
-            "role": if l.fitted { "fitted" } else { "predicted" },
-            "load_zero": {"value": l.zero, "unit": "N"},
-            "outer": l.outer, "inner": l.inner,
-            "distance": l.measured.x, "measured": l.measured.y, "simulated": l.simulated.y,
-            "branches_begin": l.branches, "unit": ["m", "N"],
+            "load_zero": {"value": s.zero, "unit": "N"},
+            "outer": s.outer, "inner": s.inner, "inner_with_own_zero": s.inner_with_own_zero,
+            "force": s.force.y,
         })
     };
+    let test = |l: &BendLoop| {
+        json!({
+            "test": l.kind.name(), "role": role(l),
+            "distance": l.measured.x, "measured": l.measured.y, "branches_begin": l.branches, "unit": ["m", "N"],
+            "elastic": simulated(&l.elastic), "friction": l.friction.as_ref().map(simulated),
+        })
+    };
+    let friction = d.friction.as_ref().map(|f| {
+        json!({
+            "rigidity": {"value": f.rigidity, "unit": "N·m"}, "couple": {"value": f.couple, "unit": "N"},
+            "law": f.law, "rounds": f.rounds,
+        })
+    });
     json!({
         "rigidity": {"value": d.rigidity, "unit": "N·m"},
+        "friction": friction,
         "elements": d.cells,
         "tests": d.loops.iter().map(test).collect::<Vec<_>>(),
     })
@@ -194,12 +250,21 @@ pub fn predictions(task: &Task, result: &BendingResult) -> Vec<PredictionRow> {
         BendingResult::FabBendLoop(directions) => directions
             .iter()
             .flat_map(|d| {
-                let rigidity = row(format!("B {}", d.direction), Some(d.rigidity), None, "N·m");
-                let nrmse = d.loops.iter().map(|l| {
-                    let name = format!("nrmse {} {}", l.kind.name(), d.direction);
-                    row(name, l.outer.map(|a| a.nrmse), None, "1")
+                let law = |name: &str, value, unit| row(format!("{name} {}", d.direction), value, None, unit);
+                let friction = d.friction.as_ref();
+                let found = [
+                    law("fab_B_elastic", Some(d.rigidity), "N·m"),
+                    law("fab_B_friction", friction.map(|f| f.rigidity), "N·m"),
+                    law("fab_HB_friction", friction.map(|f| f.couple), "N"),
+                ];
+                let nrmse = d.loops.iter().flat_map(|l| {
+                    let of = |law: &str, s: Option<&Simulated>| {
+                        let value = s.and_then(|s| s.outer).map(|a| a.nrmse);
+                        row(format!("nrmse_{law} {} {}", l.kind.name(), d.direction), value, None, "1")
+                    };
+                    [of("elastic", Some(&l.elastic)), of("friction", l.friction.as_ref())]
                 });
-                std::iter::once(rigidity).chain(nrmse).collect::<Vec<_>>()
+                found.into_iter().chain(nrmse).collect::<Vec<_>>()
             })
             .collect(),
     }
@@ -213,19 +278,6 @@ pub fn charts(task: &Task, result: &BendingResult) -> Pictures {
     let origin = origin(task.fabric);
     match result {
         BendingResult::Cantilever(tests) => {
-            let lines = tests.iter().map(|c| ProfileLine {
-                direction: c.direction,
-                shape: c.profile.clone(),
-                values: vec![
-                    ("overhang".into(), format!("{} mm", significant(1e3 * c.overhang))),
-                    ("c simulated".into(), format!("{} mm", significant(1e3 * c.bending_length))),
-                    (
-                        "c measured".into(),
-                        or_dash(measured(task, c), |m| format!("{} mm", significant(1e3 * m))),
-                    ),
-                ],
-            });
-            let peirce = tests.first().map_or(0.0, Cantilever::peirce_excess);
             let plot = ProfilePlot {
                 title,
                 kind: ", cantilever".into(),
@@ -233,22 +285,18 @@ pub fn charts(task: &Task, result: &BendingResult) -> Pictures {
                     "side view at equal scales; the strip hangs over the edge at 0 until its chord falls at {CHORD_ANGLE_DEG}°"
                 ),
                 origin,
-                lines: lines.collect(),
+                lines: tests.iter().flat_map(|c| cantilever_lines(task, c)).collect(),
                 chord_angle_deg: Some(CHORD_ANGLE_DEG),
                 mirrored: false,
-                remarks: vec![
-                    "Elastic: face up and face down are the same, and friction is left out.".into(),
-                    format!(
-                        "c is read by the exact function; Peirce's formula gives {} % more for B.",
-                        significant(100.0 * peirce)
-                    ),
-                ],
+                remarks: cantilever_remarks(tests),
             };
             vec![(String::new(), chart::profile(&plot))]
         }
         BendingResult::HeartLoop(tests) => {
             let lines = tests.iter().map(|h| ProfileLine {
                 direction: h.direction,
+                pale: false,
+                name: h.direction.to_string(),
                 shape: h.profile.clone(),
                 values: vec![
                     ("height".into(), format!("{} mm", significant(1e3 * h.height))),
@@ -278,6 +326,38 @@ pub fn charts(task: &Task, result: &BendingResult) -> Pictures {
             })
             .collect(),
     }
+}
+
+/// The elastic strip, and paler the one with friction.
+fn cantilever_lines(task: &Task, c: &Cantilever) -> Vec<ProfileLine> {
+    let millimetres = |v: f64| format!("{} mm", mm(v));
+    let line = |name: String, pale: bool, shape: &Curve, overhang: f64, length: f64| ProfileLine {
+        direction: c.direction,
+        pale,
+        name,
+        shape: shape.clone(),
+        values: vec![("overhang".into(), millimetres(overhang)), ("c".into(), millimetres(length))],
+    };
+    let mut elastic =
+        line(format!("{}, elastic", c.direction), false, &c.profile, c.overhang, c.bending_length);
+    elastic.values.push(("c measured".into(), or_dash(measured(task, c), millimetres)));
+    let friction = c.friction.as_ref().map(|f| {
+        line(format!("{}, with friction", c.direction), true, &f.profile, f.overhang, f.bending_length)
+    });
+    std::iter::once(elastic).chain(friction).collect()
+}
+
+fn cantilever_remarks(tests: &[Cantilever]) -> Vec<String> {
+    let peirce = tests.first().map_or(0.0, Cantilever::peirce_excess);
+    let mut remarks = vec![format!(
+        "c is read by the exact function; Peirce's formula gives {} % more for B.",
+        significant(100.0 * peirce)
+    )];
+    remarks.push("Face up and face down are the same law here.".into());
+    if tests.iter().any(|c| c.friction.is_some()) {
+        remarks.push("Friction: first loading, from 2HB alone (assumed slip curvatures).".into());
+    }
+    remarks
 }
 
 fn title(task: &Task) -> String {

@@ -93,7 +93,7 @@ fn simulated(task: &Task, tree: Option<&Tree>) -> Result<Outcome, Failure> {
         tree.map_or(Ok(()), |tree| tree.tested(task, &outcome.tested))?;
     } else if let Some(spec) = &task.case.bending_test {
         let result = task.bend(spec)?;
-        tree.map_or(Ok(()), |tree| tree.bent(task, &result))?;
+        tree.map_or(Ok(Vec::new()), |tree| tree.bent(task, &result))?;
         outcome.bent = Some(result);
     }
     Ok(outcome)

@@ -46,6 +46,8 @@ pub struct FabricReport {
     pub drawn: Vec<Test>,
     /// Charts of friction laws.
     pub friction: Vec<String>,
+    /// Title and file of each chart of a bending test.
+    pub bent: Vec<(String, String)>,
     /// Points of the parity chart.
     pub parity: Vec<ParityPoint>,
     /// Points of the parity chart of friction laws.
@@ -105,8 +107,11 @@ impl FabricReport {
                 continue;
             }
             if let Some(spec) = &task.case.bending_test {
-                match task.bend(spec).and_then(|r| tree.bent(task, &r).map(|()| r)) {
-                    Ok(result) => self.predictions.extend(bending::predictions(task, &result)),
+                match task.bend(spec).and_then(|r| tree.bent(task, &r).map(|drawn| (r, drawn))) {
+                    Ok((result, drawn)) => {
+                        self.predictions.extend(bending::predictions(task, &result));
+                        self.bent.extend(drawn.into_iter().map(|file| (task.case.title.clone(), file)));
+                    }
                     Err(failure) => self.failures.push(failure),
                 }
                 continue;
@@ -368,11 +373,12 @@ fn fabric_section(r: &FabricReport, charts: bool) -> Section {
         let cases = r.deflections.iter().map(|(case, _)| figure(case, &format!("{}/{case}.png", r.name)));
         let friction =
             r.friction.iter().map(|f| figure(&f.replace('_', ": "), &format!("{}/{f}.png", r.name)));
+        let bent = r.bent.iter().map(|(title, file)| figure(title, file));
         let drapes = r
             .drapes
             .iter()
             .flat_map(|case| ["", "_view"].map(|end| figure(case, &format!("{}/{case}{end}.png", r.name))));
-        blocks.push(Block::Figures(tests.chain(friction).chain(cases).chain(drapes).collect()));
+        blocks.push(Block::Figures(tests.chain(friction).chain(cases).chain(bent).chain(drapes).collect()));
     }
     blocks.push(Block::Findings(r.findings.clone()));
     Section { heading: r.name.clone(), blocks }

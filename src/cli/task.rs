@@ -213,7 +213,12 @@ impl Task<'_> {
             (BendingKind::FabBendLoop, Some(sheet)) => {
                 simulate_records(self.case, spec, sheet).map_err(Failure::from)
             }
-            _ => self.section().and_then(|(section, _)| Ok(simulate_strips(self.case, spec, &section)?)),
+            (_, fabric) => {
+                let nothing = FabricSheet::default();
+                let sheet = fabric.unwrap_or(&nothing);
+                let simulate = |(section, _)| Ok(simulate_strips(self.case, spec, sheet, &section)?);
+                self.section().and_then(simulate)
+            }
         };
         result.map_err(|f| f.of(&self.name()))
     }

@@ -91,17 +91,21 @@ impl Tree {
     }
 
     /// `<fabric>/<case>.json` and `.png` of a bending test; a FAB test has one chart a direction,
-    /// `<fabric>/<case>_<direction>.png`.
-    pub fn bent(&self, task: &Task, result: &BendingResult) -> Result<(), Failure> {
+    /// `<fabric>/<case>_<direction>.png`. The names of the charts that there are.
+    pub fn bent(&self, task: &Task, result: &BendingResult) -> Result<Vec<String>, Failure> {
         let stem = task.stem();
         let document = json!({"schema": "kesf.comparison/1", "comparisons": bending::entries(task, result)});
         self.write(&format!("{stem}.json"), text(&document)?.as_bytes())?;
+        let mut drawn = Vec::new();
         if self.charts {
             for (suffix, picture) in bending::charts(task, result) {
-                self.chart(&format!("{stem}{suffix}.png"), picture)?;
+                let name = format!("{stem}{suffix}.png");
+                if self.chart(&name, picture)? {
+                    drawn.push(name);
+                }
             }
         }
-        Ok(())
+        Ok(drawn)
     }
 
     /// `<fabric>/tensile.png` ..., with the simulated curves of its cases on top; the tests that have one.

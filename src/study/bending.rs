@@ -14,8 +14,8 @@ mod fab;
 mod heart;
 mod strip;
 
-pub use cantilever::{CHORD_ANGLE_DEG, Cantilever, cantilever};
-pub use fab::{Agreement, BendLoop, BendLoops, FabSettings, bend_loops};
+pub use cantilever::{CHORD_ANGLE_DEG, Cantilever, WithFriction, cantilever};
+pub use fab::{Agreement, BendLoop, BendLoops, FabSettings, Friction, Simulated, bend_loops};
 pub use heart::{HeartLoop, heart_loop};
 
 /// What a bending test gives, by direction.
@@ -29,20 +29,26 @@ pub enum BendingResult {
     FabBendLoop(Vec<BendLoops>),
 }
 
-/// Simulates a cantilever or a heart loop of a section along warp and weft.
+/// Simulates a cantilever or a heart loop of a section along warp and weft. Where the sheet says the
+/// hysteresis of bending, the cantilever is simulated with friction too.
 ///
 /// # Errors
 /// See [`StudyError`]; S003 for a FAB bend loop, which needs records: see [`simulate_records`].
 pub fn simulate_strips(
     case: &Case,
     spec: &BendingTest,
+    sheet: &FabricSheet,
     section: &ShellSection,
 ) -> Result<BendingResult, StudyError> {
     let width = spec.width.map(Length::si);
     let both = [Direction::Warp, Direction::Weft].into_iter();
+    let couple = |direction| {
+        let found = sheet.get(Parameter::Hb, Some(direction)).or_else(|| sheet.get(Parameter::Hb, None));
+        found.map(|hysteresis| 0.5 * hysteresis.mean)
+    };
     match (spec.test, spec.length) {
         (BendingKind::Cantilever, _) => Ok(BendingResult::Cantilever(
-            both.map(|d| cantilever(section, d, width, spec.cells)).collect::<Result<_, _>>()?,
+            both.map(|d| cantilever(section, d, couple(d), width, spec.cells)).collect::<Result<_, _>>()?,
         )),
         (BendingKind::HeartLoop, Some(length)) => Ok(BendingResult::HeartLoop(
             both.map(|d| heart_loop(section, d, length.si(), width, spec.cells)).collect::<Result<_, _>>()?,

@@ -33,6 +33,7 @@ pub use uncertainty::{Prediction, Uncertainty};
 pub use virtual_test::{EdgeEffect, PreparedTest, Tension, VirtualCurve, compression, simulate};
 
 use crate::finding::Place;
+use crate::law::LawError;
 use crate::mesh::MeshError;
 use crate::model::ModelError;
 use crate::section::SectionError;
@@ -60,6 +61,9 @@ pub enum StudyError {
     /// A solution in large rotations.
     #[error(transparent)]
     Nonlinear(#[from] NonlinearError),
+    /// M020: numbers that make no law.
+    #[error(transparent)]
+    Law(#[from] LawError),
     /// S004: no overhang of the cantilever test brings the chord to its angle.
     #[error("S004 no length of the strip hangs at {angle_deg} degrees; the last one tried was {tried} m")]
     NoOverhang {
@@ -80,6 +84,7 @@ impl StudyError {
             Self::Section(e) => e.code(),
             Self::Solve(e) => e.code(),
             Self::Nonlinear(e) => e.code(),
+            Self::Law(_) => "M020",
             Self::NoOverhang { .. } => "S004",
         }
     }

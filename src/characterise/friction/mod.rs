@@ -10,7 +10,7 @@
 mod closed_form;
 mod identify;
 mod loop_fit;
-mod nnls;
+pub(crate) mod nnls;
 mod record;
 mod strip;
 mod summary;

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 /// Minimises `|a x - b|` with `x >= 0` except in the first `free` columns (Lawson and Hanson 1974,
 /// Solving Least Squares Problems, chapter 23). `active` says which columns to begin with, and
 /// afterwards which have a part in the solution: the answer of a similar problem saves most steps.
-pub(super) fn nnls(a: &DMatrix<f64>, b: &DVector<f64>, free: usize, active: &mut [bool]) -> DVector<f64> {
+pub(crate) fn nnls(a: &DMatrix<f64>, b: &DVector<f64>, free: usize, active: &mut [bool]) -> DVector<f64> {
     let n = a.ncols();
     active[..free].fill(true);
     let mut x = DVector::zeros(n);

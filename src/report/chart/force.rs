@@ -1,8 +1,11 @@
 //! FAB bend tests: force against clamp distance, measured and simulated, a panel a test.
 
 use crate::instrument::fab::FabKind;
+use plotters::prelude::RGBColor;
+
+use crate::quantity::Curve;
 use crate::report::number::{fixed, significant};
-use crate::study::bending::{Agreement, BendLoop, BendLoops};
+use crate::study::bending::{Agreement, BendLoop, BendLoops, Simulated};
 
 use super::axes::{Frame, Label, Range};
 use super::canvas::{Canvas, Point, Stroke, Type, WIDTH};
@@ -24,8 +27,8 @@ pub struct ForcePlot<'a> {
 const CM: f64 = 1e-2;
 const GF: f64 = 9.80665e-3;
 
-/// Measured samples as dots (those of inner cycles paler), the simulation as a line, a panel a test; the errors
-/// stand beside.
+/// Measured samples as dots (those of inner cycles paler), a panel a test; of the outermost cycle the elastic
+/// simulation as a grey line, and that with friction in colour. The errors stand beside.
 ///
 /// # Errors
 /// [`ChartError::NothingToDraw`] without a test.
@@ -66,45 +69,49 @@ fn draw_test(
     [left, top, right, bottom]: [f64; 4],
     test: &BendLoop,
 ) -> Result<(), ChartError> {
-    let measured: Vec<Point> = test.measured.points().map(|(d, f)| (d / CM, f / GF)).collect();
-    let simulated: Vec<Point> = test.simulated.points().map(|(d, f)| (d / CM, f / GF)).collect();
-    let all = || measured.iter().chain(&simulated);
-    let frame = Frame {
-        left,
-        top,
-        right,
-        bottom,
-        x: Range::around(all().map(|p| p.0)),
-        y: Range::around(all().map(|p| p.1)),
-    };
+    let points = |c: &Curve| -> Vec<Point> { c.points().map(|(d, f)| (d / CM, f / GF)).collect() };
+    let (measured, elastic) = (points(&test.measured), points(&test.elastic.force));
+    let friction = test.friction.as_ref().map(|s| points(&s.force));
+    let outermost = test.outermost();
+    // The curves of inner cycles are not drawn: they do not stretch the axes either.
+    let drawn = || measured.iter().chain(&elastic[outermost..]);
+    let with_friction = || friction.iter().flat_map(|f| &f[outermost..]);
+    let x = Range::around(drawn().map(|p| p.0));
+    let y = Range::around(drawn().chain(with_friction()).map(|p| p.1));
+    let frame = Frame { left, top, right, bottom, x, y };
     frame.draw(canvas, &Label::new("Clamp distance", "cm"), &Label::new("Force", "gf"), true)?;
     let role = if test.fitted { "fitted" } else { "PREDICTED" };
     let heading = format!("{}: {}, {role}", test.kind.name(), words(test.kind));
     let kind = Type::new(28.0, INK).bold();
     let heading = panel::fitted(canvas, &heading, kind, right - left + 60.0)?;
     canvas.text((left, top - 26.0), &heading, kind)?;
-    let outermost = outermost(test);
     for (i, p) in measured.iter().enumerate() {
-        let color = if i < outermost { lighter(INK, 0.62) } else { INK };
+        let color = if i < outermost { pale() } else { INK };
         canvas.dot(frame.at(p.0, p.1), 6.0, color)?;
     }
-    let stroke = line_of(test);
-    let starts = test.branches.iter().copied();
-    for (from, to) in starts.zip(test.branches.iter().copied().skip(1).chain([simulated.len()])) {
-        if from >= outermost {
-            let branch: Vec<Point> = simulated[from..to].iter().map(|p| frame.at(p.0, p.1)).collect();
+    for (curve, stroke) in [(Some(&elastic), elastic_line()), (friction.as_ref(), friction_line(test.fitted))]
+    {
+        let Some(curve) = curve else { continue };
+        let ends = test.branches.iter().copied().skip(1).chain([curve.len()]);
+        for (from, to) in test.branches.iter().copied().zip(ends).filter(|(from, _)| *from >= outermost) {
+            let branch: Vec<Point> = curve[from..to].iter().map(|p| frame.at(p.0, p.1)).collect();
             canvas.line(&branch, stroke)?;
         }
     }
     Ok(())
 }
 
-fn outermost(test: &BendLoop) -> usize {
-    test.branches.len().checked_sub(2).map_or(0, |i| test.branches[i])
+fn pale() -> RGBColor {
+    lighter(INK, 0.62)
 }
 
-fn line_of(test: &BendLoop) -> Stroke {
-    if test.fitted {
+fn elastic_line() -> Stroke {
+    Stroke::solid(lighter(GREY, 0.35), 4.0)
+}
+
+/// Blue where it was fitted, vermillion and dashed where it is a prediction.
+fn friction_line(fitted: bool) -> Stroke {
+    if fitted {
         Stroke::solid(BLUE, 4.5)
     } else {
         Stroke { color: VERMILLION, width: 4.5, dash: Some([20.0, 9.0]) }
@@ -121,32 +128,36 @@ fn words(kind: FabKind) -> &'static str {
 }
 
 fn rows(loops: &BendLoops) -> Vec<Row> {
+    let micro = |v: f64, unit: &str| format!("{} {unit}", significant(1e6 * v, 3));
     let mut rows = vec![
         Row::Remark("● measured, outer cycle".into(), INK),
-        Row::Remark("● measured, inner cycles".into(), lighter(INK, 0.62)),
-        Row::Sample(Stroke::solid(BLUE, 4.5), "simulated, fitted".into()),
-        Row::Sample(
-            Stroke { color: VERMILLION, width: 4.5, dash: Some([20.0, 9.0]) },
-            "simulated, predicted".into(),
-        ),
-        Row::Gap,
-        Row::Value("B".into(), format!("{} µN·m", significant(1e6 * loops.rigidity, 3))),
-        Row::Value("elements".into(), loops.cells.to_string()),
-        Row::Gap,
+        Row::Remark("● measured, inner cycles".into(), pale()),
+        Row::Sample(elastic_line(), "elastic".into()),
+        Row::Value("B".into(), micro(loops.rigidity, "µN·m")),
     ];
-    let percent = |a: Agreement| format!("{} %", significant(100.0 * a.nrmse, 3));
+    if let Some(friction) = &loops.friction {
+        rows.push(Row::Sample(friction_line(true), "friction, fitted".into()));
+        rows.push(Row::Sample(friction_line(false), "friction, predicted".into()));
+        rows.push(Row::Value("B".into(), micro(friction.rigidity, "µN·m")));
+        rows.push(Row::Value("2HB/2".into(), micro(friction.couple, "µN")));
+    }
+    rows.extend([Row::Gap, Row::Remark("NRMSE: elastic | friction".into(), GREY)]);
+    let percent = |a: Option<Agreement>| a.map_or("–".into(), |a| fixed(100.0 * a.nrmse, 1));
     for test in &loops.loops {
         let role = if test.fitted { "fitted" } else { "predicted" };
         rows.push(Row::Heading(format!("{} {role}", test.kind.name())));
-        if let Some(outer) = test.outer {
-            rows.push(Row::Value("NRMSE, outer".into(), percent(outer)));
-            rows.push(Row::Value("R²".into(), fixed(outer.r2, 3)));
-        }
-        if let Some(inner) = test.inner {
-            rows.push(Row::Value("NRMSE, inner".into(), percent(inner)));
-        }
-        rows.push(Row::Gap);
+        let friction = |of: fn(&Simulated) -> Option<Agreement>| percent(test.friction.as_ref().and_then(of));
+        let both = |of: fn(&Simulated) -> Option<Agreement>| {
+            format!("{} | {} %", percent(of(&test.elastic)), friction(of))
+        };
+        rows.push(Row::Value("outer".into(), both(|s| s.outer)));
+        rows.push(Row::Value("inner".into(), both(|s| s.inner)));
+        rows.push(Row::Value("own zero".into(), both(|s| s.inner_with_own_zero)));
     }
-    rows.push(Row::Remark("Inner cycles are predicted in every test.".into(), GREY));
+    rows.push(Row::Gap);
+    rows.push(Row::Remark(
+        "Inner cycles are predicted; own zero: with a load zero of their own.".into(),
+        GREY,
+    ));
     rows
 }

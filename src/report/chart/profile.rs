@@ -14,6 +14,10 @@ use super::{ChartError, Head};
 pub struct ProfileLine {
     /// Direction of the strip.
     pub direction: Direction,
+    /// Whether it is drawn paler, as the second of its direction.
+    pub pale: bool,
+    /// What it is called.
+    pub name: String,
     /// x and z (m).
     pub shape: Curve,
     /// Names and values shown beside.
@@ -74,11 +78,11 @@ pub fn profile(plot: &ProfilePlot) -> Result<Vec<u8>, ChartError> {
     }
     for (line, shape) in plot.lines.iter().zip(&shapes) {
         let on_page: Vec<Point> = shape.iter().map(|p| frame.at(p.0, p.1)).collect();
-        canvas.line(&on_page, palette::direction(Some(line.direction), 5.0))?;
+        canvas.line(&on_page, stroke(line))?;
     }
     let mut rows = Vec::new();
     for line in &plot.lines {
-        rows.push(Row::Sample(palette::direction(Some(line.direction), 5.0), line.direction.to_string()));
+        rows.push(Row::Sample(stroke(line), line.name.clone()));
         rows.extend(line.values.iter().map(|(name, value)| Row::Value(name.clone(), value.clone())));
         rows.push(Row::Gap);
     }
@@ -91,6 +95,11 @@ pub fn profile(plot: &ProfilePlot) -> Result<Vec<u8>, ChartError> {
     }
     panel::draw(&mut canvas, &rows, [1390.0, WIDTH as f64 - 40.0], [200.0, 1300.0])?;
     canvas.png(&format!("{}{}", plot.title, plot.kind))
+}
+
+fn stroke(line: &ProfileLine) -> Stroke {
+    let stroke = palette::direction(Some(line.direction), 5.0);
+    if line.pale { Stroke { color: palette::lighter(stroke.color, 0.5), ..stroke } } else { stroke }
 }
 
 fn points(line: &ProfileLine, mirrored: bool, unit: f64) -> Vec<Point> {

@@ -4,13 +4,18 @@
 //! The strip is a shell in large rotations; its overhang is found by bracketing, as the chord only
 //! steepens with length. Its bending length follows from the exact function of the heavy elastica
 //! ([`bending_length_ratio`]), of which "half the overhang" is the value at 41.5°.
+//!
+//! A cantilever loads cloth that was at rest: friction adds its whole moment HB = 2HB/2 wherever the strip
+//! slips, and the strip hangs out farther than its rigidity says. Known from HB alone, the friction is that of
+//! three sliders of equal moment with slip curvatures of 0.03 to 0.1 1/cm.
 
 use crate::analytical::beam::{bending_length, peirce_ratio};
 use crate::analytical::elastica::bending_length_ratio;
 use crate::instrument::Direction;
+use crate::law::{Backbone, Channel, Family, Mode, Slider, Widening};
 use crate::model::Support;
 use crate::quantity::{Curve, STANDARD_GRAVITY};
-use crate::section::ShellSection;
+use crate::section::{SheetLaw, ShellSection};
 use crate::solve::nonlinear::Settings;
 use crate::study::StudyError;
 
@@ -45,6 +50,25 @@ pub struct Cantilever {
     pub iterations: usize,
     /// Whether the equilibrium is stable.
     pub stable: bool,
+    /// The test with friction; none where the hysteresis of bending is not known.
+    pub friction: Option<WithFriction>,
+}
+
+/// A cantilever of cloth with friction, loaded for the first time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WithFriction {
+    /// Moment per width at which all of the friction slips, 2HB/2 (N).
+    pub couple: f64,
+    /// `μ = HB c/B`: friction beside rigidity in this test.
+    pub mu: f64,
+    /// Length that hangs over (m).
+    pub overhang: f64,
+    /// Bending length read from it (m), as an elastic strip would have it.
+    pub bending_length: f64,
+    /// `c (1 + 0.423 μ - 0.056 μ²)`, a fit for friction that slips at once, `μ <= 2` (m).
+    pub estimate: f64,
+    /// Side view: x from the edge and z (m).
+    pub profile: Curve,
 }
 
 impl Cantilever {
@@ -58,51 +82,124 @@ impl Cantilever {
 const ANGLE_TOLERANCE: f64 = 1e-9;
 
 /// Simulates the test with `cells` elements along the strip, which is `width` (m) wide with free edges; without a
-/// width it bends to a cylinder.
+/// width it bends to a cylinder. `couple` is half of the bending hysteresis, 2HB/2 (N), where it is known.
 ///
 /// # Errors
-/// See [`StudyError`]; S004 if no length hangs at the angle.
+/// See [`StudyError`]; S004 if no length hangs at the angle; M020 for a couple that is negative or not
+/// finite.
 pub fn cantilever(
     section: &ShellSection,
     direction: Direction,
+    couple: Option<f64>,
     width: Option<f64>,
     cells: usize,
 ) -> Result<Cantilever, StudyError> {
-    let angle = CHORD_ANGLE_DEG.to_radians();
     let rigidity = rigidity(section, direction);
     let closed_form = bending_length(rigidity, section.areal_density * STANDARD_GRAVITY);
-    // 0.4999, which exists for this angle; a half would do as well, as it is a first guess only.
-    let ratio = bending_length_ratio(angle).unwrap_or(0.5);
-    let (mut strips, mut iterations) = (0, 0);
-    let mut last = None;
-    let mut miss = |overhang: f64| {
-        let mut strip = Strip::new(section, direction, overhang, width, cells)?;
-        let clamped = Support::clamped(&strip.start);
-        strip.model.supports.push(clamped);
-        let solution = strip.solve(&Settings::default())?;
-        let shape = strip.shape(&solution);
-        let chord = shape.points().last().map_or(0.0, |(x, z)| (-z).atan2(x));
-        strips += 1;
-        iterations += solution.iterations;
-        let stable = solution.stability.is_stable();
-        last = Some((shape, strip.model.mesh.quads.len(), stable));
-        Ok(chord - angle)
-    };
-    let overhang = increasing_root(&mut miss, closed_form / ratio, ANGLE_TOLERANCE)?;
-    let (profile, elements, stable) = last.unwrap_or_default();
+    let specimen = Specimen { section, direction, width, cells };
+    let elastic = specimen.hang(None, closed_form)?;
+    let friction = couple
+        .filter(|couple| *couple != 0.0)
+        .map(|couple| {
+            let mu = couple * closed_form / rigidity;
+            let estimate = closed_form * (1.0 + 0.423 * mu - 0.056 * mu * mu);
+            let law = first_loading(rigidity, couple, direction)?;
+            let hung = specimen.hang(Some(law), estimate)?;
+            let (overhang, bending_length) = (hung.overhang, ratio() * hung.overhang);
+            Ok::<_, StudyError>(WithFriction {
+                couple,
+                mu,
+                overhang,
+                bending_length,
+                estimate,
+                profile: hung.profile,
+            })
+        })
+        .transpose()?;
     Ok(Cantilever {
         direction,
-        overhang,
-        bending_length: ratio * overhang,
-        peirce: peirce_ratio(angle) * overhang,
+        overhang: elastic.overhang,
+        bending_length: ratio() * elastic.overhang,
+        peirce: peirce_ratio(CHORD_ANGLE_DEG.to_radians()) * elastic.overhang,
         closed_form,
         rigidity,
-        profile,
-        elements,
-        strips,
-        iterations,
-        stable,
+        profile: elastic.profile,
+        elements: elastic.elements,
+        strips: elastic.strips,
+        iterations: elastic.iterations,
+        stable: elastic.stable,
+        friction,
     })
+}
+
+/// Bending length over overhang at the angle of the test, 0.4999.
+fn ratio() -> f64 {
+    // It exists for this angle.
+    bending_length_ratio(CHORD_ANGLE_DEG.to_radians()).unwrap_or(0.5)
+}
+
+/// Slip curvatures of friction of which only the moment is known (1/m).
+const SLIPS: [f64; 3] = [3.0, 5.5, 10.0];
+
+/// The law of first loading with a rigidity and a friction couple along a direction.
+fn first_loading(rigidity: f64, couple: f64, direction: Direction) -> Result<SheetLaw, StudyError> {
+    let share = couple / SLIPS.len() as f64;
+    let sliders = SLIPS.map(|slip| Slider { stiffness: share / slip, slip }).to_vec();
+    let family = Family { widening: Widening::Constant, sliders };
+    let law = Channel::new(Backbone::line(rigidity)?, vec![family], false)?;
+    let along = if direction == Direction::Weft { 4 } else { 3 };
+    let channels = std::array::from_fn(|i| (i == along).then(|| law.clone()));
+    Ok(SheetLaw::new(Mode::Virgin, channels))
+}
+
+/// What is hung over the edge.
+struct Specimen<'a> {
+    section: &'a ShellSection,
+    direction: Direction,
+    width: Option<f64>,
+    cells: usize,
+}
+
+/// A strip whose chord falls at the angle of the test.
+struct Hung {
+    overhang: f64,
+    profile: Curve,
+    elements: usize,
+    strips: usize,
+    iterations: usize,
+    stable: bool,
+}
+
+impl Specimen<'_> {
+    /// Finds the overhang near that of a bending length.
+    fn hang(&self, law: Option<SheetLaw>, bending_length: f64) -> Result<Hung, StudyError> {
+        let angle = CHORD_ANGLE_DEG.to_radians();
+        let settings = Settings { law, ..Settings::default() };
+        let mut hung = Hung {
+            overhang: 0.0,
+            profile: Curve::default(),
+            elements: 0,
+            strips: 0,
+            iterations: 0,
+            stable: false,
+        };
+        let miss = &mut |overhang: f64| {
+            let mut strip = Strip::new(self.section, self.direction, overhang, self.width, self.cells)?;
+            let clamped = Support::clamped(&strip.start);
+            strip.model.supports.push(clamped);
+            let solution = strip.solve(&settings)?;
+            hung.profile = strip.shape(&solution);
+            hung.elements = strip.model.mesh.quads.len();
+            hung.strips += 1;
+            hung.iterations += solution.iterations;
+            hung.stable = solution.stability.is_stable();
+            let chord = hung.profile.points().last().map_or(0.0, |(x, z)| (-z).atan2(x));
+            Ok(chord - angle)
+        };
+        let overhang = increasing_root(miss, bending_length / ratio(), ANGLE_TOLERANCE)?;
+        hung.overhang = overhang;
+        Ok(hung)
+    }
 }
 
 /// Trials before the search is given up; a smooth function needs five to eight.
@@ -115,32 +212,30 @@ fn increasing_root(
     guess: f64,
     tolerance: f64,
 ) -> Result<f64, StudyError> {
-    let (mut low, mut high): (Option<(f64, f64)>, Option<(f64, f64)>) = (None, None);
-    let (mut x, mut growth) = (guess, 1.02f64);
-    let mut last_was_low = None;
+    // The nearest arguments below and above the root, with their values.
+    let mut ends: [Option<(f64, f64)>; 2] = [None; 2];
+    let (mut x, mut growth, mut last) = (guess, 1.02f64, None);
     for _ in 0..TRIALS {
         let y = f(x)?;
         if y.abs() <= tolerance {
             return Ok(x);
         }
-        let is_low = y < 0.0;
-        // The end that stays twice counts half: it would otherwise never move.
-        let stays = last_was_low == Some(is_low);
-        last_was_low = Some(is_low);
-        let (moved, kept) = if is_low { (&mut low, &mut high) } else { (&mut high, &mut low) };
-        *moved = Some((x, y));
-        match kept {
+        let side = usize::from(y > 0.0);
+        ends[side] = Some((x, y));
+        match &mut ends[1 - side] {
             Some((other, value)) => {
-                if stays {
+                // The end that stays twice counts half: it would otherwise never move.
+                if last == Some(side) {
                     *value *= 0.5;
                 }
                 x = (x * *value - *other * y) / (*value - y);
             }
             None => {
-                x = if is_low { x * growth } else { x / growth };
+                x = if side == 0 { x * growth } else { x / growth };
                 growth *= growth;
             }
         }
+        last = Some(side);
     }
     Err(StudyError::NoOverhang { angle_deg: CHORD_ANGLE_DEG, tried: x })
 }

@@ -1,27 +1,23 @@
 //! The bend loop of FAB strips: clamped at both ends, the clamps driven together and apart, the strip
 //! hanging down or standing up between them; force against clamp distance.
 //!
-//! The two short tests (`D1` down, `U1` up) identify the bending rigidity by least squares over their
-//! outermost cycle. The inner cycles, and the long test (`D2`), are then predicted. The zero of the load
-//! is unknown in every test of this instrument: one constant a test, the mean difference over the
-//! cycle that is compared, is taken off everywhere.
+//! The two short tests (`D1` down, `U1` up) identify the bending rigidity, and beside it a law with friction, by
+//! least squares over their outermost cycle. The inner cycles, and the long test (`D2`), are then
+//! predicted. The zero of the load is unknown in every test of this instrument: one constant a test, the mean
+//! difference over the outermost cycle, is taken off everywhere.
 //!
 //! Half of the strip is a shell in large rotations, from its middle, where it is symmetric, to a clamp.
 
-use std::ops::ControlFlow;
-
-use nalgebra::{Matrix2, Matrix3};
+mod identify;
+mod record;
 
 use crate::instrument::Direction;
 use crate::instrument::fab::{FabKind, FabTest};
-use crate::model::{Dof, Support};
+use crate::law::Channel;
 use crate::quantity::Curve;
-use crate::section::ShellSection;
-use crate::solve::Options;
-use crate::solve::nonlinear::{Leg, Settings, drive};
 use crate::study::StudyError;
 
-use super::strip::Strip;
+use self::record::{Bending, Record};
 
 /// How far a simulated curve is from a measured one.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -54,34 +50,67 @@ impl Agreement {
     }
 }
 
-/// A bend test, simulated over all of its samples.
+/// A simulated test and its distance from the measured one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct BendLoop {
-    /// Which test.
-    pub kind: FabKind,
-    /// Whether this test's outermost cycle served to identify the rigidity; else all of it is predicted.
-    pub fitted: bool,
-    /// Clamp distance (m) and force (N) as recorded, branches one after the other.
-    pub measured: Curve,
-    /// Simulated force at the same distances, the zero of the load added (N).
-    pub simulated: Curve,
-    /// The first sample of each branch.
-    pub branches: Vec<usize>,
+pub struct Simulated {
+    /// Force (N) at the measured distances (m), the zero of the load added.
+    pub force: Curve,
     /// Zero of the load (N): mean measured minus simulated force of the outermost cycle.
     pub zero: f64,
     /// Over the outermost cycle.
     pub outer: Option<Agreement>,
     /// Over the cycles before it, predicted; none if there is one cycle only.
     pub inner: Option<Agreement>,
+    /// The same with a zero of their own, as the load drifts in the course of a test.
+    pub inner_with_own_zero: Option<Agreement>,
 }
 
-/// The bend tests of a strip in one direction, with the rigidity that the short ones give.
+/// A bend test, simulated over all of its samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BendLoop {
+    /// Which test.
+    pub kind: FabKind,
+    /// Whether this test's outermost cycle served to identify; else all of it is predicted.
+    pub fitted: bool,
+    /// Clamp distance (m) and force (N) as recorded, branches one after the other.
+    pub measured: Curve,
+    /// The first sample of each branch.
+    pub branches: Vec<usize>,
+    /// With the elastic strip.
+    pub elastic: Simulated,
+    /// With friction, where a law was found.
+    pub friction: Option<Simulated>,
+}
+
+impl BendLoop {
+    /// Where the outermost cycle begins.
+    pub fn outermost(&self) -> usize {
+        self.branches.len().checked_sub(2).map_or(0, |i| self.branches[i])
+    }
+}
+
+/// A bending law with friction, identified.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Friction {
+    /// Bending rigidity of its elastic part (N·m).
+    pub rigidity: f64,
+    /// Moment per width at which all sliders slip, half the width of the loop, 2HB/2 (N).
+    pub couple: f64,
+    /// The law: moment per width over curvature.
+    pub law: Channel,
+    /// Times that the strip was bent anew.
+    pub rounds: usize,
+}
+
+/// The bend tests of a strip in one direction, with what the short ones give.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BendLoops {
     /// Direction of the strip.
     pub direction: Direction,
-    /// Bending rigidity identified (N·m).
+    /// Bending rigidity of an elastic strip (N·m): friction is in it, so it is too high.
     pub rigidity: f64,
+    /// With friction; none if the tests show none.
+    pub friction: Option<Friction>,
     /// The short tests, then the long one, as far as they were recorded.
     pub loops: Vec<BendLoop>,
     /// Elements on half of the strip.
@@ -104,14 +133,7 @@ impl Default for FabSettings {
     }
 }
 
-/// Iterations of the identification; four are usual.
-const ITERATIONS: usize = 20;
-
-/// Relative change of the rigidity that ends it, and with which the derivative is taken.
-const CONVERGED: f64 = 1e-5;
-const DIFFERENCE: f64 = 1e-3;
-
-/// The rigidity of the short tests along a direction, and all tests simulated with it.
+/// What the short tests along a direction give, and all tests simulated with it.
 ///
 /// `areal_density` is in kg/m². `None` if the direction has no short test with a complete cycle.
 ///
@@ -128,146 +150,28 @@ pub fn bend_loops(
         .filter(|t| t.direction == direction && !t.kind.is_stretch() && t.branches.len() >= 2)
         .collect();
     of_direction.sort_by_key(|t| (t.kind == FabKind::D2, t.kind));
-    let records: Vec<Record> = of_direction.iter().filter_map(|t| Record::of(t)).collect();
-    let short: Vec<&Record> = records.iter().filter(|r| r.test.kind != FabKind::D2).collect();
+    let records: Vec<Record> = of_direction.iter().filter_map(|t| Record::of(t, areal_density)).collect();
+    let short: Vec<&Record> = records.iter().filter(|r| r.is_fitted()).collect();
     if short.is_empty() {
         return Ok(None);
     }
-    let rigidity = identify(&short, areal_density, settings)?;
+    let rigidity = identify::rigidity(&short, settings)?;
+    let friction = identify::friction(&short, rigidity, settings)?;
     let loops = records
         .iter()
         .map(|r| {
-            let force = r.simulate(rigidity, areal_density, settings)?;
-            Ok(r.compared(&force, r.test.kind != FabKind::D2))
+            let simulate =
+                |bending: Bending<'_>| Ok::<_, StudyError>(r.compared(&r.simulate(bending, settings)?.force));
+            let with_law = |f: &Friction| simulate(Bending { rigidity: f.rigidity, law: Some(&f.law) });
+            Ok(BendLoop {
+                kind: r.test.kind,
+                fitted: r.is_fitted(),
+                measured: r.samples.clone(),
+                branches: r.branches.clone(),
+                elastic: simulate(Bending { rigidity, law: None })?,
+                friction: friction.as_ref().map(with_law).transpose()?,
+            })
         })
         .collect::<Result<_, StudyError>>()?;
-    Ok(Some(BendLoops { direction, rigidity, loops, cells: settings.cells }))
-}
-
-/// The samples of a test that lie below the length of the strip, where it is slack.
-struct Record<'a> {
-    test: &'a FabTest,
-    samples: Curve,
-    branches: Vec<usize>,
-}
-
-impl<'a> Record<'a> {
-    fn of(test: &'a FabTest) -> Option<Self> {
-        let (mut samples, mut branches) = (Curve::default(), Vec::new());
-        for branch in &test.branches {
-            branches.push(samples.len());
-            for (d, f) in branch.points().filter(|(d, _)| *d < SLACK * test.length) {
-                samples.x.push(d);
-                samples.y.push(f);
-            }
-        }
-        (samples.len() > 2).then_some(Self { test, samples, branches })
-    }
-
-    /// Where the last approach begins.
-    fn outermost(&self) -> usize {
-        self.branches.len().checked_sub(2).map_or(0, |i| self.branches[i])
-    }
-
-    /// Force on the clamps at every sample (N), pull positive.
-    fn simulate(&self, b: f64, areal_density: f64, settings: &FabSettings) -> Result<Vec<f64>, StudyError> {
-        let length = self.test.length;
-        let section = inextensible(b, areal_density, length);
-        // The weight of the section is all that depends on the direction in which the strip was cut.
-        let mut strip = Strip::new(&section, Direction::Warp, 0.5 * length, None, settings.cells)?;
-        let middle = Support::fix(&strip.start, &[Dof::U, Dof::ThetaY, Dof::ThetaZ]);
-        strip.model.supports.extend([middle, Support::clamped(&strip.end)]);
-        let to = |d: f64, load: f64, steps: usize| Leg {
-            load,
-            held: vec![Support { nodes: strip.end.clone(), held: vec![(Dof::U, 0.5 * (d - length))] }],
-            steps,
-        };
-        let first = self.samples.x[0];
-        // A strip that stands up hangs first, and then is turned over.
-        let way = if self.test.kind == FabKind::U1 { -1.0 } else { 1.0 };
-        let mut legs = vec![to(length, 1.0, 1), to(first, 1.0, MOUNTING), to(first, way, 2)];
-        legs.extend(self.samples.x.iter().map(|d| to(*d, way, settings.steps)));
-        let mut force = Vec::with_capacity(self.samples.len());
-        let (mut step_of_sample, mut sample) = (0, 0);
-        drive(&strip.model, &Settings::default(), &legs, &Options::default(), |step| {
-            if step.number > 1 + MOUNTING + 2 {
-                step_of_sample += 1;
-                if step_of_sample == settings.steps.max(1) {
-                    let pull: f64 = strip.end.iter().map(|n| step.reaction[6 * *n as usize]).sum();
-                    force.push(pull / strip.width * self.test.width);
-                    (step_of_sample, sample) = (0, sample + 1);
-                }
-            }
-            ControlFlow::Continue(())
-        })?;
-        Ok(force)
-    }
-
-    fn compared(&self, force: &[f64], fitted: bool) -> BendLoop {
-        let from = self.outermost();
-        let measured = &self.samples.y;
-        let zero = mean(measured[from..].iter().zip(&force[from..]).map(|(m, s)| m - s));
-        let simulated: Vec<f64> = force.iter().map(|f| f + zero).collect();
-        BendLoop {
-            kind: self.test.kind,
-            fitted,
-            outer: Agreement::of(&measured[from..], &simulated[from..]),
-            inner: Agreement::of(&measured[..from], &simulated[..from]),
-            simulated: Curve { x: self.samples.x.clone(), y: simulated },
-            measured: self.samples.clone(),
-            branches: self.branches.clone(),
-            zero,
-        }
-    }
-}
-
-/// Samples at which the strip is as good as taut are left out.
-const SLACK: f64 = 0.999;
-
-/// Steps from the straight strip to the first clamp distance.
-const MOUNTING: usize = 6;
-
-/// A sheet that bends with `b` and stretches by a few millionths under the forces of bending.
-fn inextensible(b: f64, areal_density: f64, length: f64) -> ShellSection {
-    let thickness = 1e-3 * length;
-    let plane = Matrix3::from_diagonal(&nalgebra::Vector3::new(1.0, 1.0, 0.5));
-    ShellSection {
-        d_m: plane * (12.0 * b / (thickness * thickness)),
-        d_b: plane * b,
-        d_s: Matrix2::identity() * (5.0 * b / (thickness * thickness)),
-        areal_density,
-        thickness,
-    }
-}
-
-fn mean(values: impl Iterator<Item = f64> + Clone) -> f64 {
-    values.clone().sum::<f64>() / values.count().max(1) as f64
-}
-
-/// Gauss-Newton in ln B over the outermost cycles, each with a zero of its own.
-fn identify(short: &[&Record], areal_density: f64, settings: &FabSettings) -> Result<f64, StudyError> {
-    // Any start serves: the force is nearly proportional to B.
-    let mut b = 5e-6;
-    for _ in 0..ITERATIONS {
-        let (mut slope_squared, mut product) = (0.0, 0.0);
-        for record in short {
-            let now = record.simulate(b, areal_density, settings)?;
-            let more = record.simulate(b * (1.0 + DIFFERENCE), areal_density, settings)?;
-            let from = record.outermost();
-            let residual: Vec<f64> =
-                record.samples.y[from..].iter().zip(&now[from..]).map(|(m, s)| m - s).collect();
-            let slope: Vec<f64> =
-                more[from..].iter().zip(&now[from..]).map(|(m, n)| (m - n) / DIFFERENCE).collect();
-            let [r, s] = [mean(residual.iter().copied()), mean(slope.iter().copied())];
-            slope_squared += slope.iter().map(|v| (v - s).powi(2)).sum::<f64>();
-            product += slope.iter().zip(&residual).map(|(v, w)| (v - s) * (w - r)).sum::<f64>();
-        }
-        // At most by a factor e at a time.
-        let change = (product / slope_squared).clamp(-1.0, 1.0);
-        b *= change.exp();
-        if change.abs() < CONVERGED {
-            break;
-        }
-    }
-    Ok(b)
+    Ok(Some(BendLoops { direction, rigidity, friction, loops, cells: settings.cells }))
 }
