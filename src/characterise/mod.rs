@@ -15,6 +15,7 @@ mod onset;
 mod oracles;
 mod settings;
 mod sheet;
+mod simulated;
 mod specimen;
 mod statistics;
 mod strip;
@@ -25,6 +26,7 @@ pub use friction::{Basis, ClosedForm, CycleFit, FrictionLaw, LoopFit, cycle, ext
 pub use graph::LineFit;
 pub use settings::{CycleChoice, Modulus, Settings};
 pub use sheet::{Branch, FabricSheet, Key, SpecimenResult, Window};
+pub use simulated::parameters;
 pub use strip::{Strip, StripCycle};
 
 use crate::instrument::FabricInput;

@@ -105,7 +105,7 @@ fn text(compared: &[(&Task, &Tested)]) -> String {
         let head = [t.name.clone(), task.fabric_name().unwrap_or_default().into(), symbol];
         table.row(head.into_iter().chain([simulated, measured, unit]).chain(edges).chain(figures));
     }
-    let notes: Vec<String> = compared.iter().filter_map(|(_, t)| note(t)).collect();
+    let notes: Vec<String> = compared.iter().filter_map(|(task, t)| note(task, t)).collect();
     [table.text(), notes.concat()].concat()
 }
 
@@ -115,8 +115,9 @@ fn fixed(ratio: f64) -> String {
 }
 
 /// What a tension across the specimen adds, and where the specimen buckles.
-fn note(tested: &Tested) -> Option<String> {
+fn note(task: &Task, tested: &Tested) -> Option<String> {
     let (simulated, name) = (&tested.simulated, &tested.name);
+    let measured = |p| task.measured(p, simulated.direction);
     let pretension = simulated.edge.filter(|e| e.pretension > 0.0).map(|e| {
         let without = significant(simulated.apparent - e.pretension);
         let with = significant(simulated.apparent);
@@ -127,6 +128,11 @@ fn note(tested: &Tested) -> Option<String> {
     });
     let buckles =
         simulated.unstable_from.map(|x| format!("{name}: the specimen buckles before {}\n", significant(x)));
-    let notes: String = pretension.into_iter().chain(buckles).collect();
+    let parameters = simulated.cycle.iter().flat_map(|cycle| &cycle.values).map(|(p, v)| {
+        let (v, unit) = (significant(v / p.kes_factor()), p.kes_unit());
+        let measured = measured(*p).map_or("-".into(), |m| significant(m / p.kes_factor()));
+        format!("{name}: {p} {v} {unit} in the simulated cycle with friction, {measured} measured\n")
+    });
+    let notes: String = pretension.into_iter().chain(buckles).chain(parameters).collect();
     (!notes.is_empty()).then_some(notes)
 }

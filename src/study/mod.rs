@@ -10,6 +10,7 @@ mod prepared;
 mod run;
 mod uncertainty;
 mod virtual_large;
+mod virtual_loop;
 mod virtual_test;
 
 use thiserror::Error;
@@ -25,6 +26,7 @@ pub use nonlinear::{LoadPath, PathStep};
 pub use prepared::PreparedCase;
 pub use run::{CaseResult, CheckResult, Probe, Status, solve_case};
 pub use uncertainty::{Prediction, Uncertainty};
+pub use virtual_loop::{VirtualLoop, simulate_cycle, simulate_loop};
 pub use virtual_test::{EdgeEffect, PreparedTest, VirtualCurve, compression, simulate};
 
 use crate::finding::Place;

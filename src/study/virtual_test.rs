@@ -12,6 +12,7 @@ use super::build;
 use super::case::{Case, TestFormulation, VirtualTest};
 use super::prepared::stand_in;
 use super::virtual_large::LargeTest;
+use super::virtual_loop::VirtualLoop;
 use crate::characterise::FabricSheet;
 use crate::instrument::{Direction, Parameter, Test};
 use crate::mesh;
@@ -21,7 +22,7 @@ use crate::section::ShellSection;
 use crate::solve::{self, Options, Plan};
 
 /// Standard specimen: width between the free edges (m).
-const WIDTH: f64 = 0.20;
+pub(super) const WIDTH: f64 = 0.20;
 
 /// A simulated test. Axes are those of [`Test`].
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +41,8 @@ pub struct VirtualCurve {
     /// The abscissa at which the specimen was found unstable first: a real one buckles before. In large
     /// rotations only.
     pub unstable_from: Option<f64>,
+    /// The whole cycle of the instrument, of a sheet with friction.
+    pub cycle: Option<VirtualLoop>,
     law: Law,
 }
 
@@ -79,6 +82,7 @@ impl VirtualCurve {
             ideal: slope,
             edge: None,
             unstable_from: None,
+            cycle: None,
             law: Law::Line(slope),
         }
     }
@@ -92,8 +96,11 @@ impl VirtualCurve {
         }
     }
 
-    /// The simulated curve over `[from, to]` (SI).
+    /// The simulated curve over `[from, to]` (SI), or the whole cycle of a sheet with friction.
     pub fn curve(&self, from: f64, to: f64) -> Curve {
+        if let Some(cycle) = &self.cycle {
+            return cycle.record.clone();
+        }
         let steps = 100;
         Curve::from_points((0..=steps).map(|k| {
             let x = from + (to - from) * f64::from(k) / f64::from(steps);
@@ -293,6 +300,7 @@ pub fn compression(sheet: &FabricSheet) -> Option<VirtualCurve> {
         ideal: 0.0,
         edge: None,
         unstable_from: None,
+        cycle: None,
         law: Law::Exponential { p0: P0, t0, length },
     })
 }

@@ -17,6 +17,7 @@ use serde::Deserialize;
 
 use crate::constitutive::Assumptions;
 use crate::finding::Place;
+use crate::law::Mode;
 
 pub use analysis::{Analysis, MethodChoice, NonlinearTable};
 pub use check::{Check, ProbeTable, Reference, ReferenceKind};
@@ -110,6 +111,21 @@ impl Case {
                 return refuse("the case gives both `fabric` and [section]: remove one of them");
             }
             _ => {}
+        }
+        if self.assumptions.law != Mode::Elastic {
+            let large = match &self.virtual_test {
+                Some(test) => test.formulation == TestFormulation::Nonlinear,
+                None => matches!(self.analysis, Analysis::Nonlinear(_)),
+            };
+            if self.section.is_some() {
+                return refuse("a [section] has no law of friction: remove `law`, or name a `fabric`");
+            }
+            if !large {
+                return refuse(
+                    "friction needs large rotations: write [analysis] kind = \"nonlinear\" (or [virtual_test] \
+                     formulation = \"nonlinear\"), or [assumptions] law = \"elastic\"",
+                );
+            }
         }
         match (&self.sheet, &self.virtual_test) {
             (None, None) => refuse("the case has neither a [sheet] nor a [virtual_test]: give one of them"),
