@@ -22,7 +22,9 @@ mod strip;
 mod tables;
 mod tensile;
 
-pub use friction::{Basis, ClosedForm, CycleFit, FrictionLaw, LoopFit, cycle, extract};
+pub use friction::{
+    Basis, ClosedForm, CycleFit, FrictionLaw, LawTrace, LoopFit, ReExtracted, cycle, extract,
+};
 pub use graph::LineFit;
 pub use settings::{CycleChoice, Modulus, Settings};
 pub use sheet::{Branch, FabricSheet, Key, SpecimenResult, Window};

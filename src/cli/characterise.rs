@@ -7,8 +7,8 @@ use clap::Args;
 use super::diagnostics::Failure;
 use super::inputs::{EvaluateArgs, Units};
 use super::output::{Columns, Format, OutputArgs};
-use super::{Exit, Ui};
-use crate::characterise::{Basis, FabricSheet};
+use super::{Exit, Ui, friction};
+use crate::characterise::FabricSheet;
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::{Estimate, significant};
 use crate::report::json::{sheet_document, text};
@@ -67,32 +67,7 @@ fn table(sheet: &FabricSheet, units: UnitSystem) -> String {
         }
     }
     let head = format!("{} ({}), mean ± SD (n)", sheet.name, sheet.info.origin.name());
-    format!("{head}\n{}{}", columns.text(), friction(sheet))
-}
-
-/// One line a friction law: the parameters of its simulated cycle are not repeated here.
-fn friction(sheet: &FabricSheet) -> String {
-    if sheet.laws.is_empty() {
-        return String::new();
-    }
-    let mut columns =
-        Columns::new(["friction law", "", "", "fit (%)", "line (%)", "noise (%)", "loop energy (%)"]);
-    let percent = |v: f64| format!("{:.2}", 100.0 * v);
-    for law in &sheet.laws {
-        let basis = match law.basis {
-            Basis::Loop => format!("specimen {}", law.specimen),
-            Basis::Strip => format!("strip S{}", law.specimen),
-            Basis::AssumedSpectrum => "assumed spectrum".into(),
-        };
-        let direction = law.direction.map_or("", Direction::name);
-        let mut row = vec![law.test.name().to_string(), direction.into(), basis];
-        row.extend(match &law.fit {
-            Some(f) => [f.fitted.nrmse, f.fitted.line_nrmse, f.noise, f.fitted.loop_energy].map(percent),
-            None => Default::default(),
-        });
-        columns.row(row);
-    }
-    format!("\n{}", columns.text())
+    format!("{head}\n{}{}", columns.text(), friction::text(sheet, units))
 }
 
 fn estimate(e: &Estimate, factor: f64) -> String {

@@ -11,6 +11,7 @@ mod completions;
 mod diagnostics;
 mod exit;
 mod explain;
+mod friction;
 mod inputs;
 mod list;
 mod output;

@@ -85,6 +85,9 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         // The section is made of the measured value, so this is a closed loop and must say so.
         let subtitle = "closed loop: the measured stiffness, seen again through a simulated test (clamps, edges, element)";
         tree.chart("parity.png", chart::parity(&points, "Simulated against measured", subtitle))?;
+        let points: Vec<_> = reports.iter().flat_map(|r| r.re_extracted.clone()).collect();
+        let subtitle = "parameters read from the simulated cycle of each friction law, by the evaluation of instrument files";
+        tree.chart("friction.png", chart::parity(&points, "Friction laws against measured", subtitle))?;
     }
     tree.write("run.json", text(&about(options, &work))?.as_bytes())?;
     tree.write("index.html", html(&page(&reports, &solved, &failures, tree.charts())).as_bytes())?;

@@ -42,8 +42,12 @@ pub struct FabricReport {
     pub problems: Vec<ProblemRow>,
     /// Tests of which there is a chart.
     pub drawn: Vec<Test>,
+    /// Charts of friction laws.
+    pub friction: Vec<String>,
     /// Points of the parity chart.
     pub parity: Vec<ParityPoint>,
+    /// Points of the parity chart of friction laws.
+    pub re_extracted: Vec<ParityPoint>,
     /// Findings of sheet, section and cases.
     pub findings: Vec<Finding>,
     /// What failed.
@@ -111,6 +115,11 @@ impl FabricReport {
             Ok(drawn) => self.drawn = drawn,
             Err(failure) => self.failures.push(failure),
         }
+        match tree.friction_charts(sheet) {
+            Ok(drawn) => self.friction = drawn,
+            Err(failure) => self.failures.push(failure),
+        }
+        self.re_extracted = super::friction::parity(sheet);
     }
 
     fn solved(&mut self, task: &Task, result: &CaseResult) {
@@ -300,7 +309,11 @@ fn overview(reports: &[FabricReport], failures: &[Failure], charts: bool) -> Vec
         rows: reports.iter().map(row).collect(),
     });
     if charts {
-        blocks.push(Block::Figures(vec![figure("Simulated against measured stiffness", "parity.png")]));
+        let mut figures = vec![figure("Simulated against measured stiffness", "parity.png")];
+        if reports.iter().any(|r| !r.re_extracted.is_empty()) {
+            figures.push(figure("Parameters of friction laws against measured ones", "friction.png"));
+        }
+        blocks.push(Block::Figures(figures));
     }
     blocks.extend(failures.iter().map(|f| {
         let row = f.row();
@@ -319,7 +332,9 @@ fn fabric_section(r: &FabricReport, charts: bool) -> Section {
     if charts {
         let tests = r.drawn.iter().map(|t| figure(t.name(), &format!("{}/{}.png", r.name, t.name())));
         let cases = r.deflections.iter().map(|(case, _)| figure(case, &format!("{}/{case}.png", r.name)));
-        blocks.push(Block::Figures(tests.chain(cases).collect()));
+        let friction =
+            r.friction.iter().map(|f| figure(&f.replace('_', ": "), &format!("{}/{f}.png", r.name)));
+        blocks.push(Block::Figures(tests.chain(friction).chain(cases).collect()));
     }
     blocks.push(Block::Findings(r.findings.clone()));
     Section { heading: r.name.clone(), blocks }

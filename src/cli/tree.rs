@@ -99,6 +99,18 @@ impl Tree {
         Ok(drawn)
     }
 
+    /// `<fabric>/friction_bending.png` ...: laws beside the loops behind them; the names of those drawn.
+    pub fn friction_charts(&self, sheet: &FabricSheet) -> Result<Vec<String>, Failure> {
+        let mut drawn = Vec::new();
+        for test in Test::ALL.map(Some).into_iter().chain([None]) {
+            let name = format!("friction_{}", test.map_or("strips", Test::name));
+            if self.chart(&format!("{}/{name}.png", sheet.name), chart::friction(sheet, test))? {
+                drawn.push(name);
+            }
+        }
+        Ok(drawn)
+    }
+
     /// Writes a chart and says whether there is one; without data it is simply not there.
     pub fn chart(&self, name: &str, picture: Result<Vec<u8>, ChartError>) -> Result<bool, Failure> {
         match picture {

@@ -23,11 +23,11 @@ use rayon::prelude::*;
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use self::identify::Path;
-use super::{CycleChoice, FabricSheet, Settings, SpecimenResult};
+use super::{CycleChoice, FabricSheet, Key, Settings, SpecimenResult};
 use crate::finding::{Finding, Place};
 use crate::instrument::{Direction, Parameter, Test};
 use crate::law::Channel;
-use crate::quantity::Curve;
+use crate::quantity::{Curve, Estimate};
 
 pub use closed_form::ClosedForm;
 pub use loop_fit::{CycleFit, LoopFit};
@@ -107,6 +107,99 @@ impl FabricSheet {
             found.get(found.len().saturating_sub(1) / 2).copied()
         };
         of(direction).or_else(|| of(None))
+    }
+}
+
+/// A measured cycle beside the law, sample by sample; abscissae are those of the test (SI).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LawTrace {
+    /// Cycle, from 0.
+    pub cycle: usize,
+    /// Whether the law was fitted to it; a prediction otherwise.
+    pub fitted: bool,
+    /// Abscissae.
+    pub x: Vec<f64>,
+    /// Measured ordinates, as many.
+    pub measured: Vec<f64>,
+    /// Ordinates of the law.
+    pub law: Vec<f64>,
+    /// Ordinates of the straight line through the fitted cycle.
+    pub line: Vec<f64>,
+}
+
+impl FrictionLaw {
+    /// The cycles behind the law, from the sheet that holds it; none for a law from summary values.
+    pub fn traces(&self, sheet: &FabricSheet) -> Vec<LawTrace> {
+        let Some(fit) = &self.fit else { return Vec::new() };
+        let mut traces = Vec::new();
+        for (cycle, path) in self.cycles(sheet) {
+            let Path { strain, stress, fitted } = path;
+            let law = self.channel.path(Default::default(), strain.iter().copied()).map(|r| r.stress);
+            let law: Vec<f64> = law.skip(fitted.start).take(fitted.len()).collect();
+            let strain = &strain[fitted.clone()];
+            traces.push(LawTrace {
+                cycle,
+                fitted: cycle == fit.fitted.cycle,
+                x: strain.iter().map(|e| self.abscissa(*e)).collect(),
+                measured: stress[fitted].to_vec(),
+                law,
+                line: strain.iter().map(|e| fit.line[0] + fit.line[1] * e).collect(),
+            });
+        }
+        traces
+    }
+
+    /// Number and path of each measured cycle.
+    fn cycles(&self, sheet: &FabricSheet) -> Vec<(usize, Path)> {
+        if self.basis == Basis::Strip {
+            let strip = sheet
+                .strips
+                .iter()
+                .find(|s| Some(s.direction) == self.direction && strip::number(s) == self.specimen);
+            return strip.map(strip::paths).unwrap_or_default().into_iter().enumerate().collect();
+        }
+        let mine = |s: &&SpecimenResult| {
+            let m = &s.measurement;
+            (m.test, m.direction, m.specimen) == (self.test, self.direction, self.specimen)
+        };
+        let one_sided = self.channel.is_one_sided();
+        let specimen = sheet.specimens.iter().find(mine);
+        let found = specimen.and_then(|s| path(s, self.thickness, one_sided, CycleChoice::First));
+        let Some((path, cycles)) = found else { return Vec::new() };
+        let cycle = |(i, range): (usize, std::ops::Range<usize>)| (i, Path { fitted: range, ..path.clone() });
+        cycles.into_iter().enumerate().filter(|(_, r)| !r.is_empty()).map(cycle).collect()
+    }
+}
+
+/// A parameter measured, and re-extracted from the simulated cycles of the laws.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReExtracted {
+    /// Parameter and direction.
+    pub key: Key,
+    /// Over the laws: one a specimen, or that from summary values (SI).
+    pub simulated: Estimate,
+    /// As the sheet has it (SI).
+    pub measured: Estimate,
+    /// Whether the laws rest on loops.
+    pub from_loops: bool,
+}
+
+impl FabricSheet {
+    /// Every parameter that both the instrument and a law give, in order of parameter and direction.
+    pub fn re_extracted(&self) -> Vec<ReExtracted> {
+        let of = |(key, measured): (&Key, &Estimate)| {
+            let mine =
+                |l: &&FrictionLaw| Some(l.test) == key.parameter.test() && l.direction == key.direction;
+            let laws = || self.laws.iter().filter(mine);
+            let values: Vec<f64> = laws().filter_map(|l| l.values.get(&key.parameter).copied()).collect();
+            Some(ReExtracted {
+                key: *key,
+                simulated: Estimate::of(&values)?,
+                measured: measured.clone(),
+                from_loops: laws().any(|l| l.basis == Basis::Loop),
+            })
+        };
+        self.values.iter().filter_map(of).collect()
     }
 }
 

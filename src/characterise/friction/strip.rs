@@ -13,8 +13,8 @@ use crate::law::State;
 /// The law of the last cycle. Strains of all cycles count from its onset of load, so that what the
 /// strip has grown by since is part of what is predicted.
 pub(super) fn law(strip: &Strip) -> Option<FrictionLaw> {
-    let (last, inner) = strip.cycles.split_last()?;
-    let path = path(last, last.onset);
+    let mut unseen = paths(strip);
+    let path = unseen.pop()?;
     let channel = one_sided(&path)?;
     let line = line(&path.strain, &path.stress);
     let fit = |(cycle, path): (usize, &Path)| {
@@ -22,10 +22,9 @@ pub(super) fn law(strip: &Strip) -> Option<FrictionLaw> {
             channel.path(State::default(), path.strain.iter().copied()).map(|r| r.stress).collect();
         CycleFit::of(cycle, &path.strain, &path.stress, &law, line)
     };
-    let unseen: Vec<Path> = inner.iter().map(|c| self::path(c, last.onset)).collect();
     let span = path.stress.iter().copied().fold(0.0, f64::max);
     let fit = LoopFit {
-        fitted: fit((inner.len(), &path)),
+        fitted: fit((unseen.len(), &path)),
         unseen: unseen.iter().enumerate().filter(|(_, p)| p.strain.len() > 3).map(fit).collect(),
         noise: path.noise() / span,
         line,
@@ -33,7 +32,7 @@ pub(super) fn law(strip: &Strip) -> Option<FrictionLaw> {
     Some(FrictionLaw {
         test: Test::Tensile,
         direction: Some(strip.direction),
-        specimen: if strip.kind == FabKind::S1 { 1 } else { 2 },
+        specimen: number(strip),
         basis: Basis::Strip,
         thickness: None,
         channel,
@@ -41,6 +40,17 @@ pub(super) fn law(strip: &Strip) -> Option<FrictionLaw> {
         closed_form: None,
         values: BTreeMap::new(),
     })
+}
+
+/// 1 for the short, 2 for the long clamp distance.
+pub(super) fn number(strip: &Strip) -> usize {
+    if strip.kind == FabKind::S1 { 1 } else { 2 }
+}
+
+/// The cycles, with strains from the onset of load of the last one.
+pub(super) fn paths(strip: &Strip) -> Vec<Path> {
+    let Some(last) = strip.cycles.last() else { return Vec::new() };
+    strip.cycles.iter().map(|c| path(c, last.onset)).collect()
 }
 
 /// The samples beyond the length `gauge` (m), with strains of that length.

@@ -11,6 +11,7 @@ mod canvas;
 mod contour;
 mod fabric;
 mod field;
+mod friction;
 mod loops;
 mod marks;
 mod palette;
@@ -22,6 +23,7 @@ use thiserror::Error;
 
 pub use fabric::{SimulatedCurve, bending, compression, shear, tensile};
 pub use field::{FieldPlot, field};
+pub use friction::friction;
 pub use parity::{ParityPoint, parity};
 
 /// Why there is no chart.
