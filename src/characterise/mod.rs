@@ -15,6 +15,7 @@ mod onset;
 mod oracles;
 mod settings;
 mod sheet;
+mod simulated;
 mod specimen;
 mod spread;
 mod statistics;
@@ -29,6 +30,7 @@ pub use friction::{
 pub use graph::LineFit;
 pub use settings::{CycleChoice, Modulus, Settings};
 pub use sheet::{Branch, FabricSheet, Key, SpecimenResult, Window};
+pub use simulated::parameters;
 pub use spread::{MeanBranch, mean_branches};
 pub use strip::{Strip, StripCycle};
 

@@ -140,7 +140,7 @@ fn text(compared: &[(&Task, &Tested)]) -> String {
         let values = [simulated, half, measured, interval, unit];
         table.row(head.into_iter().chain(values).chain(edges).chain(figures));
     }
-    let notes: Vec<String> = compared.iter().filter_map(|(_, t)| note(t)).collect();
+    let notes: Vec<String> = compared.iter().filter_map(|(task, t)| note(task, t)).collect();
     [table.text(), notes.concat()].concat()
 }
 
@@ -150,8 +150,9 @@ fn fixed(ratio: f64) -> String {
 }
 
 /// What a tension across the specimen adds, and where the specimen buckles.
-fn note(tested: &Tested) -> Option<String> {
+fn note(task: &Task, tested: &Tested) -> Option<String> {
     let (simulated, name) = (&tested.simulated, &tested.name);
+    let measured = |p| task.measured(p, simulated.direction);
     let tension = simulated.edge.and_then(|e| e.tension).map(|t| {
         let [value, adds] = [t.value, t.adds].map(significant);
         let without = significant(simulated.apparent - t.adds);
@@ -164,6 +165,11 @@ fn note(tested: &Tested) -> Option<String> {
     };
     let buckles = simulated.unstable_from;
     let buckles = buckles.map(|x| format!("{name}: the specimen buckles before {} {unit}\n", significant(x)));
-    let notes: String = tension.into_iter().chain(buckles).collect();
+    let parameters = simulated.cycle.iter().flat_map(|cycle| &cycle.values).map(|(p, v)| {
+        let (v, unit) = (significant(v / p.kes_factor()), p.kes_unit());
+        let measured = measured(*p).map_or("-".into(), |m| significant(m / p.kes_factor()));
+        format!("{name}: {p} {v} {unit} in the simulated cycle with friction, {measured} measured\n")
+    });
+    let notes: String = tension.into_iter().chain(buckles).chain(parameters).collect();
     (!notes.is_empty()).then_some(notes)
 }

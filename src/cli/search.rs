@@ -85,7 +85,7 @@ pub fn document(path: &LoadPath, probes: &[&str]) -> (Value, Value) {
             at.filter_map(|(name, u)| Some((name.to_string(), json!(u.get(k)?)))).collect();
         json!({
             "factor": s.factor, "iterations": s.iterations, "cut_backs": s.cut_backs, "residual": s.residual,
-            "strain_energy": s.strain_energy, "w_max": s.w_max, "probes": at,
+            "strain_energy": s.strain_energy, "dissipated": s.dissipated, "w_max": s.w_max, "probes": at,
         })
     };
     let search = json!({

@@ -33,7 +33,7 @@ pub struct Options {
     evaluate: EvaluateArgs,
 }
 
-/// One option for each field of [`Assumptions`].
+/// One option for each field of [`Assumptions`] that the section depends on.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Assumptions")]
 struct AssumptionArgs {
@@ -82,6 +82,7 @@ impl From<&AssumptionArgs> for Assumptions {
             shear: a.shear,
             thickness: a.thickness,
             areal_density: a.areal_density,
+            ..Self::default()
         }
     }
 }

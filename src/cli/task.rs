@@ -18,7 +18,8 @@ use crate::solve::Options as SolveOptions;
 use crate::study::bending::{BendingResult, simulate_records, simulate_strips};
 use crate::study::{
     self, Analysis, BendingKind, BendingTest, Case, CaseResult, Comparison, Drape, Prediction, PreparedCase,
-    PreparedTest, Uncertainty, VirtualCurve, VirtualTest, compare_curves, measured_curve,
+    PreparedTest, StudyError, Uncertainty, VirtualCurve, VirtualLoop, VirtualTest, compare_curves,
+    measured_curve,
 };
 
 /// Cases and fabrics on the command line.
@@ -176,13 +177,21 @@ impl Task<'_> {
         }
     }
 
+    /// The mean of a parameter of its fabric in a direction, or of the fabric as a whole (SI).
+    pub fn measured(&self, parameter: Parameter, direction: Option<Direction>) -> Option<f64> {
+        let sheet = self.fabric?;
+        sheet.get(parameter, direction).or_else(|| sheet.get(parameter, None)).map(|e| e.mean)
+    }
+
     /// Solves a case with a `[sheet]`.
     pub fn solve(&self) -> Result<CaseResult, Failure> {
         let solved = self.section().and_then(|(section, from)| {
-            let inputs = from.map_or_else(Vec::new, |c| c.inputs);
             let prepare = || Ok(PreparedCase::new(self.case, &SolveOptions::default())?);
             let prepared = self.shared.case.get_or_init(prepare).as_ref().map_err(Clone::clone)?;
-            Ok(prepared.solve_measured(section, &inputs)?)
+            Ok(match from {
+                Some(made) => prepared.solve_fabric(&made)?,
+                None => prepared.solve(section)?,
+            })
         });
         solved.map_err(|f| f.of(&self.name()))
     }
@@ -229,14 +238,21 @@ impl Task<'_> {
         let curves = if spec.test == Test::Compression {
             study::compression(sheet).into_iter().collect()
         } else {
-            let (section, from) = self.section()?;
-            let inputs = from.map_or_else(Vec::new, |c| c.inputs);
+            let (section, made) = self.section()?;
+            let inputs = made.as_ref().map_or_else(Vec::new, |c| c.inputs.clone());
             let prepare = || Ok(PreparedTest::new(self.case, spec, &SolveOptions::default())?);
             let prepared = self.shared.test.get_or_init(prepare).as_ref().map_err(Clone::clone)?;
             [Direction::Warp, Direction::Weft]
                 .into_iter()
-                .map(|d| prepared.simulate_measured(d, &section, &inputs))
-                .collect::<Result<Vec<_>, _>>()?
+                .map(|d| {
+                    let mut curve = prepared.simulate_measured(d, &section, &inputs)?;
+                    if let Some(made) = &made {
+                        let options = SolveOptions::default();
+                        curve.cycle = study::simulate_cycle(self.case, spec, d, sheet, made, &options)?;
+                    }
+                    Ok(curve)
+                })
+                .collect::<Result<Vec<_>, StudyError>>()?
         };
         Ok(curves.into_iter().map(|c| self.tested(sheet, c)).collect())
     }
@@ -349,6 +365,15 @@ fn uncertainty(u: &Uncertainty) -> Value {
     })
 }
 
+/// Parameters of a simulated cycle beside the measured ones (SI).
+fn cycle_parameters(task: &Task, cycle: &VirtualLoop) -> Value {
+    let measured = |p: Parameter| task.measured(p, Some(cycle.direction));
+    let entry = |(p, v): (&Parameter, &f64)| {
+        (p.symbol().to_string(), json!({ "simulated": v, "measured": measured(*p), "unit": p.si_unit() }))
+    };
+    cycle.values.iter().map(entry).collect::<serde_json::Map<_, _>>().into()
+}
+
 /// An entry of `kesf.comparison/1`.
 pub fn comparison(task: &Task, tested: &Tested) -> Value {
     let c = tested.comparison.as_ref();
@@ -374,6 +399,7 @@ pub fn comparison(task: &Task, tested: &Tested) -> Value {
         "stiffness": stiffness,
         "edge_effect": tested.simulated.edge,
         "unstable_from": tested.simulated.unstable_from,
+        "cycle": tested.simulated.cycle.as_ref().map(|cycle| cycle_parameters(task, cycle)),
         "x": c.map(|c| &c.measured.x),
         "simulated": c.map(|c| &c.simulated.y),
         "measured": c.map(|c| &c.measured.y),

@@ -7,6 +7,7 @@ use serde::{Deserialize, Deserializer, de};
 use thiserror::Error;
 
 use crate::characterise::Modulus;
+use crate::law::Mode;
 use crate::quantity::{ArealDensity, BendingRigidity, Length, LineForce};
 
 /// Every choice between a sheet and a section. The default of each is stated at its field.
@@ -30,6 +31,10 @@ pub struct Assumptions {
     pub bending_coupling: BendingCoupling,
     /// Where the transverse shear stiffness comes from; `in_plane`.
     pub transverse_shear: TransverseShear,
+    /// Whether bending and shear have friction: `elastic` (the section alone), `friction` (it slips and
+    /// remembers) or `virgin` (the curve of first loading, without memory); `elastic`. For large
+    /// rotations and whole cycles of virtual tests.
+    pub law: Mode,
     /// Stands in for a tensile modulus (N/m) that the sheet lacks; 5000 N/m, the secant of a
     /// fabric that stretches by about 10 % at 500 gf/cm. Linear bending of a flat sheet does not
     /// depend on it.
@@ -52,6 +57,7 @@ impl Default for Assumptions {
             torsion: Torsion::default(),
             bending_coupling: BendingCoupling::default(),
             transverse_shear: TransverseShear::default(),
+            law: Mode::Elastic,
             tensile: LineForce(5000.0),
             shear: LineForce(56.187_965_62),
             thickness: Length(4e-4),

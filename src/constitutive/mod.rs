@@ -5,6 +5,7 @@
 //! | D_m, Eq. (4) | tensile curves, G | which slope, Poisson's ratio | `membrane.rs` |
 //! | D_b, Eq. (5) | B warp, weft (bias) | D12, D66 | `bending.rs` |
 //! | D_s, Eq. (6) | - | χ G_t t | `shear.rs` |
+//! | laws with friction | loops, or B, 2HB, G, 2HG | twist | `friction.rs` |
 //!
 //! x is the warp and y the weft. Everything is per unit width, so thickness cancels.
 //! Whatever is not measured is written down in [`Constitutive::used`], and what a reader
@@ -12,6 +13,7 @@
 
 mod assumptions;
 mod bending;
+mod friction;
 mod membrane;
 mod sensitivity;
 mod shear;
@@ -22,10 +24,12 @@ use thiserror::Error;
 use crate::characterise::FabricSheet;
 use crate::finding::Finding;
 use crate::instrument::{Direction, Parameter};
+use crate::law::LawError;
 use crate::quantity::{Estimate, significant};
-use crate::section::{SectionError, ShellSection};
+use crate::section::{SectionError, SheetLaw, ShellSection};
 
 pub use assumptions::{Assumptions, BendingCoupling, ChoiceError, PoissonRule, Torsion, TransverseShear};
+pub use friction::tension;
 use sensitivity::{Constant, Origin};
 pub use sensitivity::{Entry, Input, SectionDerivative, bands, entries};
 
@@ -34,6 +38,8 @@ pub use sensitivity::{Entry, Input, SectionDerivative, bands, entries};
 pub struct Constitutive {
     /// The matrices, checked.
     pub section: ShellSection,
+    /// Laws with friction for large rotations; `None` if the sheet is to be elastic.
+    pub law: Option<SheetLaw>,
     /// Inputs and assumptions in the order in which they were used.
     pub used: Vec<Used>,
     /// Measured inputs with their spread, and how the section depends on each.
@@ -100,6 +106,14 @@ pub enum ConstitutiveError {
         /// What is wrong with the matrices.
         source: SectionError,
     },
+    /// M020: a law with friction cannot be made.
+    #[error("{source} ({fabric})")]
+    Law {
+        /// Name of the fabric.
+        fabric: String,
+        /// What is wrong with the law.
+        source: LawError,
+    },
 }
 
 impl ConstitutiveError {
@@ -109,6 +123,7 @@ impl ConstitutiveError {
             Self::Missing { .. } => "C004",
             Self::NotPositive { .. } => "C005",
             Self::Poisson { .. } => "C006",
+            Self::Law { .. } => "M020",
             Self::Section { source, .. } => match source {
                 SectionError::NotFinite { .. } => "C001",
                 SectionError::NotSymmetric { .. } => "C002",
@@ -154,8 +169,9 @@ pub fn section(sheet: &FabricSheet, assumptions: &Assumptions) -> Result<Constit
     let section = ShellSection { d_m, d_b, d_s, areal_density, thickness }
         .checked()
         .map_err(|source| ConstitutiveError::Section { fabric: sheet.name.clone(), source })?;
+    let law = friction::law(&section, assumptions.law, &mut notes)?;
     let inputs = sensitivity::inputs(&section, assumptions, notes.origins);
-    Ok(Constitutive { section, used: notes.used, inputs, findings: notes.findings })
+    Ok(Constitutive { section, law, used: notes.used, inputs, findings: notes.findings })
 }
 
 /// T0, else Tm, else `fabric.toml`, else the stand-in (m).

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::virtual_test::VirtualCurve;
-use crate::characterise::FabricSheet;
+use crate::characterise::{Branch, FabricSheet, SpecimenResult};
 use crate::instrument::{Direction, Test};
 use crate::quantity::Curve;
 
@@ -34,14 +34,16 @@ pub struct Comparison {
 
 /// All corrected samples of a test in a direction; empty when only a table is known.
 pub fn measured_curve(sheet: &FabricSheet, test: Test, direction: Option<Direction>) -> Curve {
-    Curve::from_points(
-        sheet
-            .specimens
-            .iter()
-            .filter(|s| s.measurement.test == test && s.measurement.direction == direction)
-            .flat_map(|s| &s.branches)
-            .flat_map(|b| b.curve.points()),
-    )
+    Curve::from_points(measured_branches(sheet, test, direction).flat_map(|b| b.curve.points()))
+}
+
+fn measured_branches(
+    sheet: &FabricSheet,
+    test: Test,
+    direction: Option<Direction>,
+) -> impl Iterator<Item = &Branch> {
+    let of = move |s: &&SpecimenResult| s.measurement.test == test && s.measurement.direction == direction;
+    sheet.specimens.iter().filter(of).flat_map(|s| &s.branches)
 }
 
 /// Compares a simulated test with the sheet's samples; `None` when there are fewer than two.
@@ -51,7 +53,13 @@ pub fn compare_curves(sheet: &FabricSheet, simulated: &VirtualCurve) -> Option<C
         return None;
     }
     let n = measured.len();
-    let ours = Curve::from_points(measured.x.iter().map(|&x| (x, simulated.at(x))));
+    // A cycle has its own ordinates for the way out and the way back.
+    let at = |outgoing: bool, x: f64| match &simulated.cycle {
+        Some(cycle) => cycle.at(outgoing, x),
+        None => simulated.at(x),
+    };
+    let branches = measured_branches(sheet, simulated.test, simulated.direction);
+    let ours = Curve::from_points(branches.flat_map(|b| b.curve.x.iter().map(|&x| (x, at(b.outgoing, x)))));
     let residual: f64 = ours.y.iter().zip(&measured.y).map(|(s, m)| (s - m) * (s - m)).sum();
     let mean = measured.y.iter().sum::<f64>() / n as f64;
     let total: f64 = measured.y.iter().map(|m| (m - mean) * (m - mean)).sum();
@@ -84,7 +92,6 @@ pub fn compare_curves(sheet: &FabricSheet, simulated: &VirtualCurve) -> Option<C
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::characterise::{Branch, SpecimenResult};
     use crate::instrument::{Conditions, Measurement, Source};
     use approx::assert_relative_eq;
 

@@ -13,6 +13,7 @@ mod rigid;
 mod run;
 mod uncertainty;
 mod virtual_large;
+mod virtual_loop;
 mod virtual_test;
 
 use thiserror::Error;
@@ -30,6 +31,7 @@ pub use prepared::PreparedCase;
 pub use rigid::{Place as RigidPlace, RigidTable};
 pub use run::{CaseResult, CheckResult, Probe, Status, solve_case};
 pub use uncertainty::{Prediction, Uncertainty};
+pub use virtual_loop::{VirtualLoop, simulate_cycle, simulate_loop};
 pub use virtual_test::{EdgeEffect, PreparedTest, Tension, VirtualCurve, compression, simulate};
 
 use crate::finding::Place;

@@ -12,6 +12,7 @@ use crate::fields::Locator;
 use crate::finding::{Finding, Place};
 use crate::mesh::QuadMesh;
 use crate::model::Model;
+use crate::section::SheetLaw;
 use crate::solve::nonlinear::{
     self, ArcLength, Flow, Method, NonlinearError, Perturbation, Settings, Stability, State, Step,
 };
@@ -45,8 +46,10 @@ pub struct PathStep {
     pub cut_backs: usize,
     /// Unbalanced forces relative to loads or reactions.
     pub residual: f64,
-    /// Strain energy (J).
+    /// Energy stored (J).
     pub strain_energy: f64,
+    /// Energy lost to friction since the rest (J).
+    pub dissipated: f64,
     /// The largest |w|, with its sign (m).
     pub w_max: f64,
 }
@@ -175,6 +178,7 @@ impl Record<'_> {
             cut_backs: step.cut_backs,
             residual: step.residual,
             strain_energy: step.energy,
+            dissipated: step.state.memory.dissipated,
             w_max: largest_w(&displacement),
         });
         self.state.clone_from(step.state);
@@ -196,10 +200,12 @@ pub(super) fn largest_w(displacement: &[f64]) -> f64 {
 pub(super) fn equilibrium(
     prepared: &PreparedCase<'_>,
     model: &Model,
+    law: Option<&SheetLaw>,
     table: &NonlinearTable,
 ) -> Result<Outcome, StudyError> {
     let (case, options) = (prepared.case, &prepared.options);
     let (settings, method) = way(case, table)?;
+    let settings = Settings { law: law.cloned(), ..settings };
     let perturbs = matches!(method, Method::Newton(Some(_)));
     if perturbs && model.load_vector().iter().all(|f| *f == 0.0) {
         return Err(case.inconsistent(

@@ -9,13 +9,13 @@ use super::dynamics::{History, Large, dynamics, load_history, rayleigh};
 use super::nonlinear::{LoadPath, equilibrium, largest_w};
 use super::uncertainty::{Uncertainty, linear_uncertainty};
 use super::{PreparedCase, StudyError};
-use crate::constitutive::Input;
+use crate::constitutive::{Constitutive, Input};
 use crate::element::Mass;
 use crate::fields::{Locator, ProbeValue, Recovery, Resultants};
 use crate::finding::{Finding, Place};
 use crate::model::{Model, ModelError};
 use crate::quantity::{Curve, Unit, parse_quantity};
-use crate::section::ShellSection;
+use crate::section::{SheetLaw, ShellSection};
 use crate::solve::newmark;
 use crate::solve::nonlinear::State;
 use crate::solve::{self, Factors, Options, Solution};
@@ -185,10 +185,28 @@ impl PreparedCase<'_> {
     /// # Errors
     /// See [`StudyError`].
     pub fn solve_measured(&self, section: ShellSection, inputs: &[Input]) -> Result<CaseResult, StudyError> {
+        self.solve_with_law(section, None, inputs)
+    }
+
+    /// Solves the case for what was made of a fabric: its section, its friction and the spread of its
+    /// inputs.
+    ///
+    /// # Errors
+    /// See [`StudyError`].
+    pub fn solve_fabric(&self, made: &Constitutive) -> Result<CaseResult, StudyError> {
+        self.solve_with_law(made.section.clone(), made.law.as_ref(), &made.inputs)
+    }
+
+    fn solve_with_law(
+        &self,
+        section: ShellSection,
+        law: Option<&SheetLaw>,
+        inputs: &[Input],
+    ) -> Result<CaseResult, StudyError> {
         let case = self.case;
         let model = self.model(section);
         let Outcome { solution, frequencies, history, path, state, factors, findings: own } =
-            analyse(self, &model)?;
+            analyse(self, &model, law)?;
         let uncertainty = match factors.filter(|_| !inputs.is_empty()) {
             Some(factors) => {
                 let names = case.probes.iter().map(|p| p.name.as_str());
@@ -238,7 +256,11 @@ impl PreparedCase<'_> {
     }
 }
 
-fn analyse(prepared: &PreparedCase<'_>, model: &Model) -> Result<Outcome, StudyError> {
+fn analyse(
+    prepared: &PreparedCase<'_>,
+    model: &Model,
+    law: Option<&SheetLaw>,
+) -> Result<Outcome, StudyError> {
     let (case, options) = (prepared.case, &prepared.options);
     match &case.analysis {
         Analysis::Linear => {
@@ -283,7 +305,7 @@ fn analyse(prepared: &PreparedCase<'_>, model: &Model) -> Result<Outcome, StudyE
             let large = Large { rotations: *large_rotations, spectral_radius: *spectral_radius };
             dynamics(prepared, model, &settings, large)
         }
-        Analysis::Nonlinear(table) => equilibrium(prepared, model, table),
+        Analysis::Nonlinear(table) => equilibrium(prepared, model, law, table),
         Analysis::Drape { .. } => {
             Err(case.inconsistent("a drape is a search for many states, not one solve".into()))
         }

@@ -16,6 +16,7 @@ use super::case::{Case, TestFormulation, VirtualTest};
 use super::prepared::stand_in;
 use super::uncertainty::{Prediction, energy_derivative};
 use super::virtual_large::LargeTest;
+use super::virtual_loop::VirtualLoop;
 use crate::characterise::FabricSheet;
 use crate::constitutive::Input;
 use crate::instrument::{Direction, Parameter, Test};
@@ -26,7 +27,7 @@ use crate::section::ShellSection;
 use crate::solve::{self, Options, Plan};
 
 /// Standard specimen: width between the free edges (m).
-const WIDTH: f64 = 0.20;
+pub(super) const WIDTH: f64 = 0.20;
 
 /// A simulated test. Axes are those of [`Test`].
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +48,8 @@ pub struct VirtualCurve {
     pub unstable_from: Option<f64>,
     /// How certain `apparent` is; of a linear test of a section with measured inputs only.
     pub uncertainty: Option<Prediction>,
+    /// The whole cycle of the instrument, of a sheet with friction.
+    pub cycle: Option<VirtualLoop>,
     law: Law,
 }
 
@@ -99,6 +102,7 @@ impl VirtualCurve {
             edge: None,
             unstable_from: None,
             uncertainty: None,
+            cycle: None,
             law: Law::Line(slope),
         }
     }
@@ -143,8 +147,11 @@ impl VirtualCurve {
         }
     }
 
-    /// The simulated curve over `[from, to]` (SI).
+    /// The simulated curve over `[from, to]` (SI), or the whole cycle of a sheet with friction.
     pub fn curve(&self, from: f64, to: f64) -> Curve {
+        if let Some(cycle) = &self.cycle {
+            return cycle.record.clone();
+        }
         let steps = 100;
         Curve::from_points((0..=steps).map(|k| {
             let x = from + (to - from) * f64::from(k) / f64::from(steps);
@@ -392,6 +399,7 @@ pub fn compression(sheet: &FabricSheet) -> Option<VirtualCurve> {
         edge: None,
         unstable_from: None,
         uncertainty: None,
+        cycle: None,
         law: Law::Exponential { t0, tm },
     })
 }

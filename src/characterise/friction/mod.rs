@@ -14,8 +14,6 @@ pub(crate) mod nnls;
 mod record;
 mod strip;
 mod summary;
-#[cfg(test)]
-mod tests;
 
 use std::collections::BTreeMap;
 
@@ -300,3 +298,6 @@ fn by_symbol<S: Serializer>(values: &BTreeMap<Parameter, f64>, s: S) -> Result<S
     }
     map.end()
 }
+
+#[cfg(test)]
+mod tests;

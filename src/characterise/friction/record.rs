@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::FrictionLaw;
-use crate::characterise::{Settings, specimen};
-use crate::instrument::{Conditions, Measurement, Parameter, Source, Test};
+use crate::characterise::{Settings, parameters};
+use crate::instrument::{Conditions, Parameter, Test};
 use crate::law::{Channel, State};
 use crate::quantity::Curve;
 
@@ -30,21 +30,7 @@ pub fn cycle(law: &FrictionLaw, conditions: &Conditions) -> Curve {
 
 /// The KES parameters of [`cycle`], by the evaluation that instrument files go through.
 pub fn extract(law: &FrictionLaw, conditions: &Conditions, settings: &Settings) -> BTreeMap<Parameter, f64> {
-    let measurement = Measurement {
-        test: law.test,
-        sample: None,
-        direction: law.direction,
-        specimen: law.specimen,
-        conditions: conditions.clone(),
-        curve: cycle(law, conditions),
-        lines: Vec::new(),
-        source: Source::default(),
-        metadata: BTreeMap::new(),
-    };
-    // A simulated record has no slack and no zero error; what it cannot give is left out, and what
-    // there is to say about noise or windows is said of the measured one.
-    let settings = Settings { correct_zero: false, ..settings.clone() };
-    specimen::evaluate(&measurement, &settings, &mut Vec::new()).map(|s| s.values).unwrap_or_default()
+    parameters(law.test, law.direction, conditions, &cycle(law, conditions), settings)
 }
 
 fn to_both_sides(channel: &Channel, maximum: f64) -> Vec<(f64, f64)> {

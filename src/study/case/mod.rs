@@ -20,6 +20,7 @@ use super::rigid::RigidTable;
 use crate::characterise::FabricSheet;
 use crate::constitutive::Assumptions;
 use crate::finding::Place;
+use crate::law::Mode;
 
 pub use analysis::{Analysis, MethodChoice, NonlinearTable};
 pub use bending_test::{BendingKind, BendingTest};
@@ -129,6 +130,26 @@ impl Case {
                 return refuse("the case gives both `fabric` and [section]: remove one of them");
             }
             _ => {}
+        }
+        if self.assumptions.law != Mode::Elastic {
+            let large = match &self.virtual_test {
+                Some(test) => test.formulation == TestFormulation::Nonlinear,
+                None => matches!(self.analysis, Analysis::Nonlinear(_) | Analysis::Drape { .. }),
+            };
+            if self.section.is_some() {
+                return refuse("a [section] has no law of friction: remove `law`, or name a `fabric`");
+            }
+            if self.bending_test.is_some() {
+                return refuse(
+                    "a [bending_test] shows the elastic strip and friction beside it: remove `law`",
+                );
+            }
+            if !large {
+                return refuse(
+                    "friction needs large rotations: write [analysis] kind = \"nonlinear\" or \"drape\" (or [virtual_test] \
+                     formulation = \"nonlinear\"), or [assumptions] law = \"elastic\"",
+                );
+            }
         }
         if let Some(test) = &self.bending_test {
             if self.sheet.is_some() || self.virtual_test.is_some() {

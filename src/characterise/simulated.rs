@@ -1,0 +1,34 @@
+//! KES parameters of a simulated record.
+
+use std::collections::BTreeMap;
+
+use super::{Settings, specimen};
+use crate::instrument::{Conditions, Direction, Measurement, Parameter, Source, Test};
+use crate::quantity::Curve;
+
+/// The KES parameters (SI) of a record that an instrument might have made, by the evaluation that its
+/// files go through. Axes of `record` are those of the test.
+///
+/// A simulated record has no slack and no zero error; what it cannot give is left out.
+pub fn parameters(
+    test: Test,
+    direction: Option<Direction>,
+    conditions: &Conditions,
+    record: &Curve,
+    settings: &Settings,
+) -> BTreeMap<Parameter, f64> {
+    let measurement = Measurement {
+        test,
+        sample: None,
+        direction,
+        specimen: 0,
+        conditions: conditions.clone(),
+        curve: record.clone(),
+        lines: Vec::new(),
+        source: Source::default(),
+        metadata: BTreeMap::new(),
+    };
+    let settings = Settings { correct_zero: false, ..settings.clone() };
+    // What there is to say about noise or windows is said of the measured record.
+    specimen::evaluate(&measurement, &settings, &mut Vec::new()).map(|s| s.values).unwrap_or_default()
+}

@@ -1,0 +1,112 @@
+//! Laws with friction for a sheet in large rotations: from the laws of its tests to those of its strains.
+//!
+//! | strain | law |
+//! |---|---|
+//! | κ_x, κ_y | of KES-FB2 along warp and weft: from a loop, or from B and 2HB |
+//! | κ_xy | D66 of the section, and friction in proportion to it: M0_H = √(M01 M02) H / √(B1 B2) |
+//! | γ_xy | of KES-FB1 shear along the warp, else along the weft; linear without |
+//! | ε_x, ε_y | linear: the slope of the section; their laws are for the simulated tension test only |
+//!
+//! A structure has no zero error and no jaws that let go, so the laws pass through the origin and
+//! hold to both sides. Bending has both faces in its law, as the loop of FB2 has.
+
+use super::{ConstitutiveError, Notes};
+use crate::characterise::{Basis, FabricSheet, FrictionLaw};
+use crate::instrument::{Direction, Test};
+use crate::law::{Backbone, Channel, Family, LawError, Mode, Slider};
+use crate::quantity::significant;
+use crate::section::{SheetLaw, ShellSection};
+
+/// The laws of a sheet beside its section; `None` if it is to be elastic.
+pub(super) fn law(
+    section: &ShellSection,
+    mode: Mode,
+    notes: &mut Notes,
+) -> Result<Option<SheetLaw>, ConstitutiveError> {
+    if mode == Mode::Elastic {
+        return Ok(None);
+    }
+    let either = |first, second| {
+        let sheet: &FabricSheet = notes.sheet;
+        let of = |test, direction| sheet.law(test, Some(direction));
+        move |test| of(test, first).or_else(|| of(test, second))
+    };
+    let (along, across) =
+        (either(Direction::Warp, Direction::Weft), either(Direction::Weft, Direction::Warp));
+    let (Some(warp), Some(weft)) = (along(Test::Bending), across(Test::Bending)) else {
+        return Err(notes.missing(
+            "friction law of bending",
+            "add a KES-FB2 loop, or 2HB beside B in a result table, or choose law = \"elastic\"",
+        ));
+    };
+    let shear = along(Test::Shear);
+    let bending = [warp.channel.centred(), weft.channel.centred()];
+    let couples = bending.each_ref().map(couple);
+    let value = format!("warp {} N, weft {} N", significant(couples[0]), significant(couples[1]));
+    notes.used("friction couple of bending", value, source(warp));
+    let (fabric, d) = (notes.sheet.name.clone(), section.d_b);
+    let twist = twist(&bending, [d[(0, 0)], d[(1, 1)], d[(2, 2)]])
+        .map_err(|source| ConstitutiveError::Law { fabric, source })?;
+    let value = format!("{} N", significant(twist.as_ref().map_or(0.0, couple)));
+    notes.used("friction couple of twist", value, "assumed: in proportion to D66");
+    match shear {
+        Some(law) => {
+            let value = format!("{} N/m", significant(couple(&law.channel)));
+            notes.used("friction of shear", value, source(law));
+        }
+        None => notes.used("friction of shear", "none", "assumed: no shear loop and no 2HG"),
+    }
+    let [x, y] = bending;
+    let channels = [None, None, shear.map(|l| l.channel.centred()), Some(x), Some(y), twist];
+    let fabric = notes.sheet.name.clone();
+    let law = SheetLaw::new(mode, channels).checked(section);
+    law.map(Some).map_err(|source| ConstitutiveError::Section { fabric, source })
+}
+
+/// The laws of `ε_x, ε_y` from the tests of tension, to both sides, and nowhere softer than 1e-4 of
+/// their greatest tangent: cloth that is not stretched yet hardly resists, and a shell cannot do
+/// without. The stress at strain 0 stays: it is the slack of the specimen. `None` where there is no law.
+pub fn tension(sheet: &FabricSheet) -> [Option<Channel>; 2] {
+    let firm = |direction| {
+        let law = sheet.law(Test::Tensile, Some(direction))?;
+        let backbone = law.channel.backbone();
+        let knots: Vec<f64> = backbone.knots().collect();
+        let least = 1e-4 * backbone.tangents().fold(0.0, f64::max);
+        let tangents: Vec<f64> = backbone.tangents().map(|t| t.max(least)).collect();
+        // Greater tangents at the same knots, and the same sliders: a law if the first one was.
+        let backbone = Backbone::new(backbone.offset(), &knots, &tangents).ok()?;
+        Channel::new(backbone, law.channel.families().to_vec(), false).ok()
+    };
+    [firm(Direction::Warp), firm(Direction::Weft)]
+}
+
+/// The law of twist with the rigidity `h`; `None` if it has none. The sliders are those of both
+/// bending laws, each family with half of the friction.
+fn twist(bending: &[Channel; 2], [b1, b2, h]: [f64; 3]) -> Result<Option<Channel>, LawError> {
+    if h <= 0.0 {
+        return Ok(None);
+    }
+    let couples = bending.each_ref().map(couple);
+    let friction = (couples[0] * couples[1]).sqrt() * h / (b1 * b2).sqrt();
+    let half = |law: &Channel, own: f64| -> Vec<Family> {
+        let part = if own > 0.0 { 0.5 * friction / own } else { 0.0 };
+        let scaled = |s: &Slider| Slider { stiffness: part * s.stiffness, ..*s };
+        let family = |f: &Family| Family { sliders: f.sliders.iter().map(scaled).collect(), ..f.clone() };
+        law.families().iter().map(family).collect()
+    };
+    let families = [half(&bending[0], couples[0]), half(&bending[1], couples[1])].concat();
+    Channel::new(Backbone::line(h)?, families, false).map(Some)
+}
+
+/// The stress of all sliders when they slip and `q` is 1.
+fn couple(law: &Channel) -> f64 {
+    law.sliders().map(|s| s.stiffness * s.slip).sum()
+}
+
+fn source(law: &FrictionLaw) -> String {
+    match law.basis {
+        Basis::Loop => format!("measured: loop of specimen {}", law.specimen),
+        Basis::Strip => "measured: cycle of a strip".into(),
+        Basis::AssumedSpectrum => "measured: width of the loop; assumed: how friction begins".into(),
+    }
+}

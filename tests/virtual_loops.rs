@@ -1,0 +1,163 @@
+//! Goal: a shell with friction, taken through the cycle of an instrument, gives back the loop and the
+//! parameters of the laws that it is made of.
+//!
+//! Data: `kesf_data`: matsudaira_b (published B and 2HB, the spectrum of its friction is assumed) and
+//! twill (synthetic loops).
+//! References: the law at a point along the same record; the parameters of the law's own cycle, by the
+//! same evaluation (`FrictionLaw::values`); the published B and 2HB.
+
+use std::path::{Path, PathBuf};
+
+use kesf::characterise::{FabricSheet, FrictionLaw, Settings, characterise};
+use kesf::constitutive::{Assumptions, section, tension};
+use kesf::element::Formulation;
+use kesf::instrument::{Direction, Parameter, ReadSettings, Test, read_fabrics};
+use kesf::law::Mode;
+use kesf::section::SheetLaw;
+use kesf::solve::Options;
+use kesf::study::{Case, PreparedCase, TestFormulation, VirtualLoop, VirtualTest, simulate_loop};
+
+fn sheet(name: &str) -> FabricSheet {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("kesf_data").join(name);
+    let batch = read_fabrics(&[folder], &ReadSettings::default(), &|_: &Path| ());
+    assert!(batch.failures.is_empty(), "{:?}", batch.failures);
+    characterise(&batch.fabrics[0], &Settings::default())
+}
+
+fn with_friction() -> Assumptions {
+    Assumptions { law: Mode::Friction, ..Assumptions::default() }
+}
+
+/// The loop of the shell, the warp along the specimen, and the largest distance from that of the
+/// law, over its span.
+fn simulated(sheet: &FabricSheet, test: Test, law: SheetLaw) -> (VirtualLoop, f64) {
+    let made = section(sheet, &with_friction()).unwrap();
+    let spec = VirtualTest {
+        test,
+        cells: [8, 2],
+        formulation: TestFormulation::Nonlinear,
+        curvature: None,
+        pretension: None,
+    };
+    let direction = Direction::Warp;
+    let found = simulate_loop(
+        &spec,
+        Formulation::default(),
+        direction,
+        &made.section,
+        &law,
+        &Settings::default(),
+        &Options::default(),
+    );
+    let found = found.unwrap().unwrap();
+    let own = sheet.law(test, Some(direction)).unwrap();
+    // In bending and shear the shell has no zero error.
+    let channel = if test == Test::Tensile { own.channel.clone() } else { own.channel.centred() };
+    let of_law = FrictionLaw { channel, ..own.clone() }.simulate(&found.record);
+    let apart = found.record.y.iter().zip(&of_law.y).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let [low, high] = of_law.y.iter().fold([0.0f64; 2], |[l, h], y| [l.min(*y), h.max(*y)]);
+    (found, apart / (high - low))
+}
+
+fn off(found: &VirtualLoop, parameter: Parameter, expected: f64) -> f64 {
+    found.values[&parameter] / expected - 1.0
+}
+
+/// Published B and 2HB come back from the shell as from the law at a point: the clamps follow the
+/// arc, so that every cell has the same curvature.
+#[test]
+fn bending_of_a_fabric_from_a_table() {
+    let sheet = sheet("matsudaira_b_wool_tropical");
+    let made = section(&sheet, &with_friction()).unwrap();
+    let law = made.law.clone().unwrap();
+    let (found, apart) = simulated(&sheet, Test::Bending, law.clone());
+    assert!(apart < 1e-6, "{apart:e}");
+    for parameter in [Parameter::B, Parameter::Hb] {
+        let published = sheet.get(parameter, None).unwrap().mean;
+        let off = off(&found, parameter, published);
+        println!("{parameter}: {off:+.4} of the published value");
+        assert!(off.abs() < 0.01, "{parameter}: {off}");
+    }
+    // Half of the friction of twist comes from each direction, in proportion to the rigidities.
+    let couple =
+        |i: usize| law.channels[i].as_ref().unwrap().sliders().map(|s| s.stiffness * s.slip).sum::<f64>();
+    let ratio = made.section.d_b[(2, 2)] / made.section.d_b[(0, 0)];
+    assert!((couple(5) / couple(3) / ratio - 1.0).abs() < 1e-12);
+    assert!(made.used.iter().any(|u| u.source.contains("assumed: how friction begins")), "{:?}", made.used);
+}
+
+/// Loops of the twill: bending to rounding; shear to the second order of its angle, which the small
+/// strains of the element have at 8 degrees; tension, whose coupling is in the laws, to rounding.
+#[test]
+fn the_three_tests_of_a_fabric_with_loops() {
+    let sheet = sheet("twill");
+    let made = section(&sheet, &with_friction()).unwrap();
+    let mut law = made.law.clone().unwrap();
+    for (test, within, parameters) in [
+        (Test::Bending, 1e-6, &[Parameter::B, Parameter::Hb][..]),
+        (Test::Shear, 0.03, &[Parameter::G, Parameter::Hg, Parameter::Hg5]),
+        (Test::Tensile, 1e-3, &[Parameter::Lt, Parameter::Wt, Parameter::Rt, Parameter::Emt]),
+    ] {
+        if test == Test::Tensile {
+            let [x, y] = tension(&sheet);
+            (law.channels[0], law.channels[1]) = (x, y);
+        }
+        let (found, apart) = simulated(&sheet, test, law.clone());
+        println!("{test:?}: {apart:.2e} of the span, {} iterations", found.iterations);
+        let own = &sheet.law(test, Some(Direction::Warp)).unwrap().values;
+        for &parameter in parameters {
+            let of_law = off(&found, parameter, own[&parameter]);
+            let measured = sheet.get(parameter, Some(Direction::Warp)).map_or(f64::NAN, |e| e.mean);
+            println!(
+                "  {parameter}: {of_law:+.4} of the law, {:+.4} of the measurement",
+                off(&found, parameter, measured)
+            );
+            assert!(of_law.abs() < 0.03, "{parameter}: {of_law}");
+        }
+        assert!(apart < within, "{test:?}: {apart}");
+    }
+}
+
+/// Elastic cloth has no law beside its section; cloth without 2HB cannot have friction.
+#[test]
+fn friction_is_a_choice_that_needs_a_loop_or_its_width() {
+    let mut sheet = sheet("matsudaira_b_wool_tropical");
+    assert_eq!(section(&sheet, &Assumptions::default()).unwrap().law, None);
+    sheet.laws.clear();
+    let error = section(&sheet, &with_friction()).unwrap_err();
+    assert_eq!(error.code(), "C004");
+    assert!(error.to_string().contains("friction law of bending"), "{error}");
+}
+
+/// A strip of cloth B under its own weight; `law` is a line of the table of assumptions.
+fn strip(law: &str, analysis: &str) -> Result<Case, String> {
+    let text = format!(
+        "title = \"t\"\nfabric = \"*\"\n[assumptions]\n{law}\n[sheet]\nshape = \"strip\"\nwidth = \"30 mm\"\n\
+         height = \"25 mm\"\ncells = [16, 2]\n[[supports]]\nset = \"left\"\nkind = \"clamped\"\n[[loads]]\n\
+         kind = \"gravity\"\n[analysis]\n{analysis}\n"
+    );
+    Case::parse(Path::new("strip.toml"), &text).map_err(|e| e.to_string())
+}
+
+/// From the text of a case to the result: friction holds the strip up and loses energy; first loading
+/// without memory gives the same shape; small displacements have no friction.
+#[test]
+fn a_case_says_whether_cloth_has_friction() {
+    let sheet = sheet("matsudaira_b_wool_tropical");
+    let solve = |law: &str| {
+        let case = strip(law, "kind = \"nonlinear\"").unwrap();
+        let made = section(&sheet, &case.assumptions).unwrap();
+        let found = PreparedCase::new(&case, &Options::default()).unwrap().solve_fabric(&made).unwrap();
+        let path = found.path.unwrap();
+        assert!(path.converged);
+        (found.w_max, path.steps.last().unwrap().dissipated)
+    };
+    let [elastic, friction, virgin] =
+        ["law = \"elastic\"", "law = \"friction\"", "law = \"virgin\""].map(solve);
+    println!("w_max: elastic {:.4} m, friction {:.4} m, virgin {:.4} m", elastic.0, friction.0, virgin.0);
+    assert!(friction.0.abs() < 0.95 * elastic.0.abs(), "{friction:?} {elastic:?}");
+    assert!((friction.0 - virgin.0).abs() < 1e-6 * virgin.0.abs());
+    assert!(friction.1 > 0.0 && elastic.1 == 0.0 && virgin.1 == 0.0);
+    let refused = strip("law = \"friction\"", "kind = \"linear\"").unwrap_err();
+    assert!(refused.contains("S003") && refused.contains("friction needs large rotations"), "{refused}");
+}
