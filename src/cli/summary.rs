@@ -307,8 +307,11 @@ fn overview(reports: &[FabricReport], failures: &[Failure], charts: bool) -> Vec
     });
     if charts {
         let mut figures = vec![figure("Simulated against measured stiffness", "parity.png")];
-        if reports.iter().any(|r| !r.re_extracted.is_empty()) {
-            figures.push(figure("Parameters of friction laws against measured ones", "friction.png"));
+        for (file, title, parameters) in super::friction::PARITY {
+            let mine = |p: &ParityPoint| parameters.iter().any(|q| q.symbol() == p.quantity);
+            if reports.iter().flat_map(|r| &r.re_extracted).any(mine) {
+                figures.push(figure(title, file));
+            }
         }
         blocks.push(Block::Figures(figures));
     }
