@@ -48,23 +48,27 @@ pub fn text(sheet: &FabricSheet, units: UnitSystem) -> String {
     format!("\n{}{values}", laws.text())
 }
 
-/// Parameters whose agreement is charted over all fabrics.
-const CHARTED: [Parameter; 9] = [
-    Parameter::B,
-    Parameter::Hb,
-    Parameter::G,
-    Parameter::Hg,
-    Parameter::Hg5,
-    Parameter::Wt,
-    Parameter::Rt,
-    Parameter::Wc,
-    Parameter::Rc,
+/// Charts of re-extracted against measured parameters over all fabrics: file, title, parameters.
+/// Four panels are what a page has room for.
+pub const PARITY: [(&str, &str, [Parameter; 4]); 2] = [
+    (
+        "friction_stiffness.png",
+        "Friction laws: stiffness and width",
+        [Parameter::B, Parameter::Hb, Parameter::G, Parameter::Hg],
+    ),
+    (
+        "friction_energy.png",
+        "Friction laws: energy and resilience",
+        [Parameter::Wt, Parameter::Rt, Parameter::Wc, Parameter::Rc],
+    ),
 ];
 
-/// Points of the chart of re-extracted against measured parameters.
+/// Points of the charts of [`PARITY`].
 pub fn parity(sheet: &FabricSheet) -> Vec<ParityPoint> {
-    let charted = sheet.re_extracted().into_iter().filter(|r| CHARTED.contains(&r.key.parameter));
-    charted
+    sheet
+        .re_extracted()
+        .into_iter()
+        .filter(|r| PARITY.iter().any(|page| page.2.contains(&r.key.parameter)))
         .map(|r| {
             let p = r.key.parameter;
             ParityPoint {

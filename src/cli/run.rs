@@ -14,7 +14,7 @@ use super::summary::{FabricReport, page, summary};
 use super::task::{Task, TaskArgs, Work};
 use super::tree::Tree;
 use super::{Exit, Ui};
-use crate::report::chart;
+use crate::report::chart::{self, ParityPoint};
 use crate::report::html::html;
 use crate::report::json::text;
 use crate::report::table::{FabricRow, PredictionRow, ProblemRow, Row, csv, parquet};
@@ -103,9 +103,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         // The section is made of the measured value, so this is a closed loop and must say so.
         let subtitle = "closed loop: the measured stiffness, seen again through a simulated test (clamps, edges, element)";
         tree.chart("parity.png", chart::parity(&points, "Simulated against measured", subtitle))?;
-        let points: Vec<_> = reports.iter().flat_map(|r| r.re_extracted.clone()).collect();
-        let subtitle = "parameters read from the simulated cycle of each friction law, by the evaluation of instrument files";
-        tree.chart("friction.png", chart::parity(&points, "Friction laws against measured", subtitle))?;
+        friction_parity(&tree, &reports)?;
     }
     let draped: Vec<_> = reports.iter().flat_map(|r| r.drape_parity.clone()).collect();
     drape::parity(&tree, &draped)?;
@@ -147,6 +145,18 @@ fn fabrics(work: &Work, tasks: &[Task], tree: &Tree, ui: &Ui) -> Result<Vec<Fabr
     bar.finish_and_clear();
     ui.go_on()?;
     Ok(reports)
+}
+
+/// Parameters re-extracted from friction laws, over all fabrics.
+fn friction_parity(tree: &Tree, reports: &[FabricReport]) -> Result<(), Failure> {
+    let subtitle =
+        "read from the simulated cycle of each friction law, by the evaluation of instrument files";
+    for (file, title, parameters) in super::friction::PARITY {
+        let mine = |p: &&ParityPoint| parameters.iter().any(|q| q.symbol() == p.quantity);
+        let points: Vec<_> = reports.iter().flat_map(|r| &r.re_extracted).filter(mine).cloned().collect();
+        tree.chart(file, chart::parity(&points, title, subtitle))?;
+    }
+    Ok(())
 }
 
 fn table<R: Row>(tree: &Tree, name: &str, rows: &[R]) -> Result<(), Failure> {

@@ -346,8 +346,11 @@ fn overview(reports: &[FabricReport], failures: &[Failure], charts: bool) -> Vec
     });
     if charts {
         let mut figures = vec![figure("Simulated against measured stiffness", "parity.png")];
-        if reports.iter().any(|r| !r.re_extracted.is_empty()) {
-            figures.push(figure("Parameters of friction laws against measured ones", "friction.png"));
+        for (file, title, parameters) in super::friction::PARITY {
+            let mine = |p: &ParityPoint| parameters.iter().any(|q| q.symbol() == p.quantity);
+            if reports.iter().flat_map(|r| &r.re_extracted).any(mine) {
+                figures.push(figure(title, file));
+            }
         }
         if reports.iter().any(|r| !r.drape_parity.is_empty()) {
             figures.push(figure("Simulated against measured drape", "drape_parity.png"));

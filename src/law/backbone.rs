@@ -91,8 +91,8 @@ impl Backbone {
         let lift = offset - backbone.at(0.0).stress;
         backbone.pieces.iter_mut().for_each(|p| p.at.stress += lift);
         for i in 1..backbone.pieces.len() {
-            let last = backbone.pieces[i - 1];
-            backbone.pieces[i].at.energy = last.ahead(knots[i] - last.strain, last.bend).energy;
+            let [last, next] = [i - 1, i].map(|k| backbone.pieces[k]);
+            backbone.pieces[i].at.energy = last.ahead(next.strain - last.strain, last.bend).energy;
         }
         let drop = backbone.at(0.0).energy;
         backbone.pieces.iter_mut().for_each(|p| p.at.energy -= drop);

@@ -7,12 +7,14 @@
 mod curve;
 mod estimate;
 mod propagation;
+mod sobol;
 mod text;
 mod unit;
 
 pub use curve::Curve;
 pub use estimate::Estimate;
 pub use propagation::{Band, Bands, NoSpread};
+pub use sobol::{Population, Sampled, sampled, sobol_points};
 pub use text::significant;
 pub use unit::{Dimension, QuantityError, UNITS, Unit, parse_quantity};
 

@@ -59,6 +59,9 @@ pub struct SheetEntry {
     /// Friction laws (SI; see [`FrictionLaw`]): test, direction, specimen, what the law rests on, its
     /// backbone and sliders, how well it fits, and the parameters of its simulated cycle.
     pub friction: Vec<FrictionLaw>,
+    /// By symbol and direction: the parameter re-extracted from the simulated cycles of the laws
+    /// (`"simulated"`) beside the `"measured"` one, and whether the laws rest on loops.
+    pub re_extracted: Map<String, Value>,
 }
 
 /// A finding of a document.
@@ -136,6 +139,7 @@ pub fn sheet_document<'a>(
             parameters: parameters(sheet),
             moduli: moduli(sheet),
             friction: sheet.laws.clone(),
+            re_extracted: re_extracted(sheet),
         });
     }
     // Two fabrics may come from one file.
@@ -209,6 +213,24 @@ fn moduli(sheet: &FabricSheet) -> Map<String, Value> {
         let entry = all.entry(name.clone()).or_insert_with(|| Map::new().into());
         if let Value::Object(directions) = entry {
             directions.insert(direction.name().into(), estimate(e, "N/m"));
+        }
+    }
+    all
+}
+
+fn re_extracted(sheet: &FabricSheet) -> Map<String, Value> {
+    let mut all: Map<String, Value> = Map::new();
+    for r in sheet.re_extracted() {
+        let unit = r.key.parameter.si_unit();
+        let direction = r.key.direction.map_or("fabric", |d| d.name());
+        let pair = json!({
+            "simulated": estimate(&r.simulated, unit),
+            "measured": estimate(&r.measured, unit),
+            "from_loops": r.from_loops,
+        });
+        let entry = all.entry(r.key.parameter.symbol()).or_insert_with(|| Map::new().into());
+        if let Value::Object(directions) = entry {
+            directions.insert(direction.into(), pair);
         }
     }
     all

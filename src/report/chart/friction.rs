@@ -230,3 +230,36 @@ fn span(values: impl Iterator<Item = f64>) -> f64 {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
     high - low
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::characterise::characterise;
+
+    /// The fabric of `kesf_data`, synthetic; with `KESF_GALLERY=dir` the files are kept.
+    #[test]
+    fn laws_are_drawn_beside_their_loops() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("kesf_data/poplin");
+        let batch = crate::instrument::read_fabrics(&[folder], &Default::default(), &|_| ());
+        let sheet = characterise(&batch.fabrics[0], &Default::default());
+        for test in Test::ALL {
+            let bytes = friction(&sheet, Some(test)).unwrap();
+            assert_eq!(bytes, friction(&sheet, Some(test)).unwrap(), "same data, same bytes");
+            if let Some(folder) = std::env::var_os("KESF_GALLERY") {
+                let name = format!("friction_{}.png", test.name());
+                std::fs::write(std::path::Path::new(&folder).join(name), bytes).unwrap();
+            }
+        }
+        assert!(matches!(friction(&sheet, None), Err(ChartError::NothingToDraw { .. })));
+        // The instrument's own evaluation sees the measured parameters in the simulated cycles.
+        for r in sheet.re_extracted() {
+            let part = r.simulated.mean / r.measured.mean - 1.0;
+            assert!(part.abs() < 0.06, "{:?}: {part}", r.key);
+        }
+    }
+
+    #[test]
+    fn residual_ranges_are_round() {
+        assert_eq!([0.013, 0.02, 1.1, 7.0].map(rounded_up), [0.02, 0.02, 2.0, 10.0]);
+    }
+}
