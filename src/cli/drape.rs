@@ -7,6 +7,7 @@ use super::output::Columns;
 use super::task::Task;
 use super::tree::Tree;
 use crate::instrument::Origin;
+use crate::law::Mode;
 use crate::quantity::significant;
 use crate::report::chart::{self, DrapePlot, ParityPoint};
 use crate::report::json::text;
@@ -28,6 +29,7 @@ pub fn table<'a>(draped: impl Iterator<Item = (&'a Task<'a>, &'a Drape)>) -> Col
     let mut table = Columns::new([
         "drape",
         "fabric",
+        "law",
         "coefficient (%)",
         "band (%)",
         "measured (%)",
@@ -42,6 +44,7 @@ pub fn table<'a>(draped: impl Iterator<Item = (&'a Task<'a>, &'a Drape)>) -> Col
         table.row([
             d.case.clone(),
             task.fabric_name().unwrap_or_default().into(),
+            law(task).into(),
             percent(s.coefficient),
             format!("{} to {}", percent(low), percent(high)),
             measured(task).map_or("-".into(), |(m, _)| percent(m)),
@@ -75,6 +78,7 @@ pub fn entry(task: &Task, d: &Drape) -> Value {
         "status": "ok",
         "model": {"nodes": mesh.nodes.len(), "elements": mesh.quads.len(), "dofs": 6 * mesh.nodes.len()},
         "results": {"drape": {
+            "law": law(task),
             "coefficient": d.finest.coefficient,
             "band": d.band(),
             "measured": measured,
@@ -112,12 +116,21 @@ pub fn predictions(task: &Task, d: &Drape) -> Vec<PredictionRow> {
     ]
 }
 
+/// How the sheet of a case answers to strain.
+fn law(task: &Task) -> &'static str {
+    match task.case.assumptions.law {
+        Mode::Elastic => "elastic",
+        Mode::Virgin => "first loading with friction",
+        Mode::Friction => "friction",
+    }
+}
+
 /// The point of a parity chart, where a coefficient was measured.
 pub fn point(task: &Task, d: &Drape) -> Option<ParityPoint> {
     let (measured, _) = measured(task)?;
     Some(ParityPoint {
         label: task.fabric_name()?.into(),
-        group: "elastic".into(),
+        group: law(task).into(),
         quantity: "Drape coefficient".into(),
         unit: "%".into(),
         measured: 100.0 * measured,
@@ -133,8 +146,7 @@ pub fn parity(tree: &Tree, points: &[ParityPoint]) -> Result<(), Failure> {
     if !tree.charts() {
         return Ok(());
     }
-    let subtitle =
-        "elastic, lowest-energy state and band of the states found; without friction a sheet is too limp";
+    let subtitle = "lowest-energy state and band of the states found; an elastic sheet is too limp, friction holds it up";
     tree.chart("drape_parity.png", chart::parity(points, "Drape, simulated against measured", subtitle))?;
     Ok(())
 }

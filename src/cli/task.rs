@@ -204,9 +204,10 @@ impl Task<'_> {
     /// Searches the states of a drape.
     pub fn drape(&self, progress: &(dyn Fn() + Sync)) -> Result<Drape, Failure> {
         let options = SolveOptions::default();
-        let draped = self
-            .section()
-            .and_then(|(section, _)| Ok(study::drape(self.case, &section, &options, progress)?));
+        let draped = self.section().and_then(|(section, made)| {
+            let law = made.as_ref().and_then(|m| m.law.as_ref());
+            Ok(study::drape(self.case, &section, law, &options, progress)?)
+        });
         draped.map_err(|f| f.of(&self.name()))
     }
 

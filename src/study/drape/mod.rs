@@ -29,7 +29,7 @@ use crate::characterise::FabricSheet;
 use crate::finding::{Finding, Place};
 use crate::model::Model;
 use crate::quantity::Ratio;
-use crate::section::ShellSection;
+use crate::section::{SheetLaw, ShellSection};
 use crate::solve::nonlinear::{Flow, NonlinearError, Settings, Solution, State, plan, relax_from};
 use crate::solve::{Options, Plan};
 
@@ -103,7 +103,7 @@ const STEPS: usize = 600;
 /// Height of the folds at the start over the width of the ring.
 const START_HEIGHT: f64 = 0.15;
 
-/// Solves a drape case for a section; `progress` is called after each search and each refinement.
+/// Solves a drape case for a section, elastic or with a law of friction; `progress` is called after each search and each refinement.
 ///
 /// # Errors
 /// S003 if the case is no drape; the errors of mesh and model; N007 if no search ended in an
@@ -111,6 +111,7 @@ const START_HEIGHT: f64 = 0.15;
 pub fn drape(
     case: &Case,
     section: &ShellSection,
+    law: Option<&SheetLaw>,
     options: &Options,
     progress: &(dyn Fn() + Sync),
 ) -> Result<Drape, StudyError> {
@@ -128,7 +129,7 @@ pub fn drape(
     let searches: Vec<Result<(Solution, DrapeState), (usize, NonlinearError)>> = folds
         .par_iter()
         .map(|&start| {
-            let found = ring.relax(&model, &shared, ring.start(&model, start), &single);
+            let found = ring.relax(&model, law, &shared, ring.start(&model, start), &single);
             progress();
             found.map(|s| (s.clone(), ring.state(&model, &s, start))).map_err(|e| (start, e))
         })
@@ -151,7 +152,7 @@ pub fn drape(
         let finer = ring.refined();
         let fine = build::model(case, &finer.sheet, section.clone())?;
         let from = refine::refined(&solution.state, &model.mesh, &fine.mesh, ring.cells);
-        solution = finer.relax(&fine, &plan(&fine, options)?, from, options)?;
+        solution = finer.relax(&fine, law, &plan(&fine, options)?, from, options)?;
         iterations += solution.iterations;
         progress();
         (ring, model) = (finer, fine);
@@ -159,7 +160,7 @@ pub fn drape(
     let finest = DrapeState { iterations, ..ring.state(&model, &solution, start) };
     let states: Vec<DrapeState> = found.into_iter().map(|(_, s)| s).collect();
     let outline = shadow::outline(&projected(&solution.state), &model.mesh.quads, ring.inner, 360);
-    let findings = findings(case, &finest, &failed, folds.len());
+    let findings = findings(case, &finest, &failed, folds.len(), law.is_none());
     Ok(Drape {
         case: case.name.clone(),
         states,
@@ -242,11 +243,12 @@ impl Ring {
     fn relax(
         &self,
         model: &Model,
+        law: Option<&SheetLaw>,
         plan: &Plan,
         from: State,
         options: &Options,
     ) -> Result<Solution, NonlinearError> {
-        let settings = Settings { tolerance: TOLERANCE, ..Settings::default() };
+        let settings = Settings { tolerance: TOLERANCE, law: law.cloned(), ..Settings::default() };
         let flow = Flow { perturbation: 0.0, seed: self.sheet.seed, steps: STEPS };
         relax_from(model, plan, from, &settings, &flow, options, |_| ControlFlow::Continue(()))
     }
@@ -291,15 +293,19 @@ fn findings(
     finest: &DrapeState,
     failed: &[(usize, NonlinearError)],
     searches: usize,
+    elastic: bool,
 ) -> Vec<Finding> {
     let place = || Place::file(&case.path);
-    let mut findings = vec![
-        Finding::new(
-            "S113",
-            "elastic: the friction between yarns is left out, which holds a sheet up: the coefficient is too low by it",
-        )
-        .at(place()),
-    ];
+    let mut findings = Vec::new();
+    if elastic {
+        findings.push(
+            Finding::new(
+                "S113",
+                "elastic: the friction between yarns is left out, which holds a sheet up: the coefficient is too low by it",
+            )
+            .at(place()),
+        );
+    }
     if !failed.is_empty() {
         let starts: Vec<String> = failed.iter().map(|(start, _)| start.to_string()).collect();
         let message = format!(

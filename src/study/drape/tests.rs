@@ -41,7 +41,7 @@ fn case(b: f64, from: &str, to: &str) -> Case {
 
 fn run(case: &Case) -> Drape {
     let section = build::section(case.section.as_ref().unwrap()).unwrap();
-    drape(case, &section, &Options::default(), &|| ()).unwrap()
+    drape(case, &section, None, &Options::default(), &|| ()).unwrap()
 }
 
 #[test]
@@ -76,7 +76,7 @@ fn what_is_no_drape_is_refused() {
     let refused = |from, to| {
         let case = case(1e-5, from, to);
         let section = build::section(case.section.as_ref().unwrap()).unwrap();
-        drape(&case, &section, &Options::default(), &|| ()).unwrap_err().to_string()
+        drape(&case, &section, None, &Options::default(), &|| ()).unwrap_err().to_string()
     };
     assert!(refused("folds = [3, 5]", "folds = []").contains("S003"));
     assert!(
