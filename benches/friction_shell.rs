@@ -44,6 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         section: section(),
         warp: Vector3::new(0.8, 0.6, 0.0),
         formulation: Formulation::default(),
+        bodies: Vec::new(),
     };
     let shear = sliders(50.0, 1.0, 1e-3)?;
     let [x, y, xy] = [sliders(1e-5, 2e-4, 2.0)?, sliders(6e-6, 1e-4, 2.0)?, sliders(3e-6, 7e-5, 2.0)?];

@@ -66,7 +66,7 @@ pub(super) fn add(sheet: &mut FabricSheet, files: &[FabFile], settings: &Setting
         .collect();
     sheet.bend_tests =
         (files.iter().flat_map(|f| &f.tests)).filter(|t| !t.kind.is_stretch()).cloned().collect();
-    stiffness(sheet, settings, &place);
+    stiffness(sheet, files, settings, &place);
     shear(sheet, settings, &place);
     for direction in Direction::ALL {
         bending(sheet, files, direction, settings, &place);

@@ -33,7 +33,7 @@ const STRAINS: [f64; 4] = [0.001, 0.01, 0.03, 0.05];
 const ANGLES: [f64; 5] = [0.5, 2.5, 4.0, 6.0, 8.0];
 
 /// Elements along and across: see the head of this file for a shear test.
-const CELLS: [usize; 2] = [10, 20];
+pub(super) const CELLS: [usize; 2] = [10, 20];
 const SHEAR_CELLS: [usize; 2] = [8, 128];
 
 /// Steps of a bending test up to its largest curvature.

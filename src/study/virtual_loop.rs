@@ -15,6 +15,7 @@ use std::ops::ControlFlow;
 use nalgebra::Vector3;
 
 use super::case::{Case, VirtualTest};
+use super::virtual_large::CELLS;
 use super::virtual_test::WIDTH;
 use super::{StudyError, build};
 use crate::characterise::{FabricSheet, Settings as Evaluation, parameters};
@@ -143,7 +144,6 @@ pub fn simulate_loop(
         first_step: 1.0 / steps,
         largest_step: 1.0 / steps,
         path,
-        bodies: vec![RigidBody { nodes: right }],
         law: Some(law.clone()),
         ..Settings::default()
     };
@@ -172,7 +172,8 @@ fn model(
     gauge: f64,
     maximum: f64,
 ) -> Result<Model, StudyError> {
-    let mesh = mesh::rectangle(gauge, WIDTH, spec.cells[0], spec.cells[1])?;
+    let [along, across] = spec.cells.unwrap_or(CELLS);
+    let mesh = mesh::rectangle(gauge, WIDTH, along, across)?;
     let (left, right) = (mesh.set("left")?.to_vec(), mesh.set("right")?.to_vec());
     let turns = [(Dof::ThetaX, 0.0), (Dof::ThetaZ, 0.0)];
     let held = match spec.test {
@@ -188,6 +189,7 @@ fn model(
     }
     supports.push(Support { nodes: vec![right[0]], held: [&held[..], &turns].concat() });
     let force = Vector3::new(maximum * WIDTH, 0.0, 0.0);
+    let bodies = vec![RigidBody { nodes: right.clone() }];
     let pull = Load::Point { nodes: right, force, moment: Vector3::zeros() };
     Ok(Model {
         loads: if spec.test == Test::Tensile { vec![pull] } else { Vec::new() },
@@ -200,5 +202,6 @@ fn model(
         },
         formulation: Formulation::default(),
         supports,
+        bodies,
     })
 }
