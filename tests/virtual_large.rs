@@ -83,3 +83,12 @@ fn a_tension_across_adds_itself_to_the_shear() {
     let tension = square.tension.unwrap();
     assert_relative_eq!(tension.adds / tension.value, 0.75, max_relative = 0.1);
 }
+
+/// The cases of `examples/large_rotations` are read; they are no part of `cases`, for they take seconds a fabric.
+#[test]
+fn the_example_cases_are_read() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/large_rotations");
+    let files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    assert_eq!(files.len(), 4);
+    files.iter().for_each(|file| drop(Case::read(file).unwrap_or_else(|e| panic!("{e}"))));
+}
