@@ -34,7 +34,7 @@ fn simulated(sheet: &FabricSheet, test: Test, law: SheetLaw) -> (VirtualLoop, f6
     let made = section(sheet, &with_friction()).unwrap();
     let spec = VirtualTest {
         test,
-        cells: [8, 2],
+        cells: Some([8, 2]),
         formulation: TestFormulation::Nonlinear,
         curvature: None,
         pretension: None,
