@@ -23,7 +23,7 @@ pub enum Widening {
     Loading(Backbone),
 }
 
-/// `q` with its derivative and its integral from strain 0.
+/// `q` with its derivative with respect to, and its integral over, the size of the strain.
 pub(super) struct Growth {
     pub q: f64,
     pub slope: f64,
@@ -40,8 +40,7 @@ impl Widening {
         }
     }
 
-    /// `q`, its derivative with respect to, and its integral over, the size `size >= 0` of the strain
-    /// on the side of `sign`.
+    /// `q` at a strain, with its derivative and integral along the way out from strain 0 on that side.
     pub(super) fn growth(&self, strain: f64) -> Growth {
         let size = strain.abs();
         match self {
