@@ -279,3 +279,42 @@ fn a_second_run_writes_the_same_bytes() {
     }
     assert_eq!((first.len(), second.len()), (again.len(), first.len()));
 }
+
+/// A nonlinear case: its history as CSV and JSON, its record with -v; one without an equilibrium ends with 3, and
+/// its last state is there.
+#[test]
+fn a_nonlinear_case_tells_how_it_came_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/self_weight_clamped.toml");
+    let text = fs::read_to_string(shipped).unwrap().replace("cells = [20, 20]", "cells = [6, 6]");
+    let text = &text[..text.find("[[checks]]").unwrap()];
+    write(folder.path(), "cloth.toml", text);
+    let hard =
+        text.replace("kind = \"nonlinear\"", "kind = \"nonlinear\"\niterations = 2\nsmallest_step = 0.1");
+    write(folder.path(), "hard.toml", &hard);
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let out = path("out");
+    let output = run(&["-v", "solve", &path("cloth.toml"), "-o", &out, "--no-charts"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let shown = stdout(&output);
+    assert!(
+        shown.contains("linear w_max") && shown.contains("iterations") && shown.contains("yes"),
+        "{shown}"
+    );
+    let csv = fs::read_to_string(folder.path().join("out/cases/cloth.csv")).unwrap();
+    assert!(csv.starts_with("step,time,factor,quantity,value,unit\n") && csv.contains("centre.w"), "{csv}");
+    let document: Value =
+        serde_json::from_str(&fs::read_to_string(folder.path().join("out/cases/cloth.json")).unwrap())
+            .unwrap();
+    let solution = &document["solutions"][0];
+    assert_eq!(solution["steps"][0]["factor"], 1.0);
+    assert_eq!(solution["search"]["converged"], true);
+    assert!(solution["search"]["linear_w_max"].as_f64().unwrap() < -0.5);
+    let output = run(&["solve", &path("hard.toml"), "-o", &path("lost"), "--no-charts"]);
+    assert_eq!(code(&output), 3, "{}", stderr(&output));
+    assert!(stderr(&output).contains("N007") && stderr(&output).contains("flow"));
+    assert!(stdout(&output).contains("not converged"));
+    assert!(folder.path().join("lost/cases/hard.vtu").exists());
+    let both = run(&["solve", &path("hard.toml"), &path("cloth.toml")]);
+    assert_eq!(code(&both), 1);
+}

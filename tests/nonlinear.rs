@@ -17,7 +17,10 @@ use kesf::mesh::{QuadMesh, rectangle};
 use kesf::model::{Dof, Load, Model, RigidBody, Support};
 use kesf::section::ShellSection;
 use kesf::solve::Options;
-use kesf::solve::nonlinear::{Flow, NonlinearError, Settings, Solution, Step, relax, solve};
+use kesf::solve::nonlinear::{
+    ArcLength, Flow, Method, NonlinearError, Perturbation, Settings, Solution, Step, plan, relax, search,
+    solve,
+};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
 fn strip_section(b: f64, t: f64) -> ShellSection {
@@ -324,4 +327,57 @@ fn bodies_that_cannot_be_are_refused() {
     assert!(refuse(&model, vec![body.clone(), body.clone()]).starts_with("M010"));
     let reversed = RigidBody { nodes: body.nodes.iter().rev().copied().collect() };
     assert!(refuse(&model, vec![reversed]).contains("hold node"));
+}
+
+/// A strip between two hinges, inflated: an arc of a circle with the tension N = p R, of length
+/// L (1 + N/EA) over a chord L. A dead pressure would give a parabola. Bending stiffness 1e-6 of p L³.
+#[test]
+fn a_pressure_that_follows_blows_a_strip_to_an_arc() {
+    let (pressure, stretch) = (50.0, 100.0);
+    let cells = 32;
+    let mut model =
+        cantilever(cells, (12.0f64 * 1e-6 / stretch).sqrt(), |_| vec![Load::FollowerPressure(pressure)]);
+    model.section = strip_section(1e-6, (12.0f64 * 1e-6 / stretch).sqrt());
+    let ends = [model.mesh.set("left").unwrap(), model.mesh.set("right").unwrap()].concat();
+    model.supports[1] = Support::fix(&ends, &[Dof::U, Dof::W]);
+    // 2 R φ = 1 + p R / EA and 2 R sin φ = 1: the root φ by bisection.
+    let (mut low, mut high) = (1e-3, FRAC_PI_2);
+    for _ in 0..60 {
+        let phi: f64 = 0.5 * (low + high);
+        let r = 0.5 / phi.sin();
+        if 2.0 * r * phi > 1.0 + pressure * r / stretch { high = phi } else { low = phi }
+    }
+    let rise = 0.5 / low.sin() * (1.0 - low.cos());
+    let settings = Settings { first_step: 0.1, ..Settings::default() };
+    let solution = run(&model, &settings);
+    let middle = cells / 2;
+    let found = solution.state.position[middle].z;
+    println!("rise {found} for {rise}, {} iterations", solution.iterations);
+    // Chords of an arc of 32 elements: (φ/32)² of the rise.
+    assert!((found / rise - 1.0).abs() < 2e-3, "{found} for {rise}");
+    assert!(solution.stability.is_stable());
+    let dead = Model { loads: vec![Load::Pressure(pressure)], ..model };
+    let parabola = run(&dead, &settings).state.position[middle].z;
+    assert!((parabola / rise - 1.0).abs() > 0.02, "{parabola}");
+}
+
+/// Newton's method alone stays on the straight column; random loads that are taken away lead it to the bent
+/// one, and the arc length ends on the factor that it was given.
+#[test]
+fn a_perturbation_breaks_the_symmetry_and_a_plan_is_shared() {
+    let load = 1.3 * FRAC_PI_2 * FRAC_PI_2;
+    let model = cantilever(16, 2e-3, end_load(Vector3::new(-load, 0.0, 0.0), Vector3::zeros()));
+    let settings = Settings { first_step: 0.1, largest_step: 0.1, ..Settings::default() };
+    let shared = plan(&model, &settings, &Options::default()).unwrap();
+    let by =
+        |method: Method| search(&model, &shared, &settings, &method, &Options::default(), go_on).unwrap();
+    let straight = by(Method::Newton(None));
+    assert_eq!(straight, run(&model, &settings));
+    assert_eq!(straight.stability.negative_pivots, 1);
+    let bent = by(Method::Newton(Some(Perturbation { size: 1e-3, seed: 1 })));
+    let relaxed = by(Method::Flow(Flow::default()));
+    let [a, b] = [&bent, &relaxed].map(|s| tip(&model, s).z.abs());
+    assert!(bent.stability.is_stable() && bent.residual < 1e-8 && (a - b).abs() < 1e-6, "{a} {b}");
+    let arc = by(Method::ArcLength(ArcLength { until: Some(0.5), ..ArcLength::default() }));
+    assert_eq!(arc.state.factor, 0.5);
 }

@@ -11,6 +11,7 @@ use super::output::Columns;
 use super::task::{Task, TaskArgs, Tested, comparison};
 use super::tree::Tree;
 use super::{Exit, Ui};
+use crate::instrument::Test;
 use crate::quantity::significant;
 
 /// Simulate instrument tests and compare them with the measured curves
@@ -72,7 +73,20 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
 }
 
 fn text(compared: &[(&Task, &Tested)]) -> String {
-    let headings = ["test", "fabric", "", "simulated", "measured", "unit", "RMSE", "NRMSE", "R²", "n"];
+    let headings = [
+        "test",
+        "fabric",
+        "",
+        "simulated",
+        "measured",
+        "unit",
+        "edge effect",
+        "closed form",
+        "RMSE",
+        "NRMSE",
+        "R²",
+        "n",
+    ];
     let mut table = Columns::new(headings);
     for (task, t) in compared {
         let [symbol, simulated, measured, unit] = match &t.stiffness {
@@ -86,8 +100,36 @@ fn text(compared: &[(&Task, &Tested)]) -> String {
             let rmse = format!("{} {}", significant(c.rmse), c.unit);
             [rmse, significant(c.nrmse), significant(c.r2), c.n.to_string()]
         });
+        let edge = t.simulated.edge.as_ref();
+        let closed_form = edge.and_then(|e| e.closed_form).map_or("-".into(), fixed);
+        let edges = [edge.map_or("-".into(), |e| fixed(e.ratio)), closed_form];
         let head = [t.name.clone(), task.fabric_name().unwrap_or_default().into(), symbol];
-        table.row(head.into_iter().chain([simulated, measured, unit]).chain(figures));
+        table.row(head.into_iter().chain([simulated, measured, unit]).chain(edges).chain(figures));
     }
-    table.text()
+    let notes: Vec<String> = compared.iter().filter_map(|(_, t)| note(t)).collect();
+    [table.text(), notes.concat()].concat()
+}
+
+/// A ratio near 1.
+fn fixed(ratio: f64) -> String {
+    format!("{ratio:.5}")
+}
+
+/// What a tension across the specimen adds, and where the specimen buckles.
+fn note(tested: &Tested) -> Option<String> {
+    let (simulated, name) = (&tested.simulated, &tested.name);
+    let tension = simulated.edge.and_then(|e| e.tension).map(|t| {
+        let [value, adds] = [t.value, t.adds].map(significant);
+        let without = significant(simulated.apparent - t.adds);
+        format!("{name}: {without} N/m, and {adds} N/m by the tension of {value} N/m across it\n")
+    });
+    let unit = match simulated.test {
+        Test::Tensile => "strain",
+        Test::Shear => "rad",
+        _ => "1/m",
+    };
+    let buckles = simulated.unstable_from;
+    let buckles = buckles.map(|x| format!("{name}: the specimen buckles before {} {unit}\n", significant(x)));
+    let notes: String = tension.into_iter().chain(buckles).collect();
+    (!notes.is_empty()).then_some(notes)
 }

@@ -236,6 +236,11 @@ impl Diagnostics {
         }
     }
 
+    /// Whether details are wanted.
+    pub fn verbose(&self) -> bool {
+        self.verbose
+    }
+
     /// A remark that is neither an error nor a finding.
     pub fn note(&self, text: &str) {
         if !self.quiet && !self.json {

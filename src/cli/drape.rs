@@ -135,6 +135,7 @@ pub fn parity(tree: &Tree, points: &[ParityPoint]) -> Result<(), Failure> {
     let subtitle =
         "elastic, lowest-energy state and band of the states found; without friction a sheet is too limp";
     tree.chart("drape_parity.png", chart::parity(points, "Drape, simulated against measured", subtitle))
+        .map(drop)
 }
 
 /// `<fabric>/<case>.json`, `.vtu`, `.png` (shadow) and `_view.png`.

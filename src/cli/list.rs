@@ -72,6 +72,17 @@ const ANALYSES: &[&[&str]] = &[
         "[analysis] kind = \"drape\"",
         "a round sheet hangs from a disc; for an annulus held at `inner`",
     ],
+    &["modal", "[analysis] kind = \"modal\"", "natural frequencies and modes; for [sheet]"],
+    &[
+        "newmark",
+        "[analysis] kind = \"newmark\"",
+        "motion from rest; large_rotations = true for rotations of any size",
+    ],
+    &[
+        "nonlinear",
+        "[analysis] kind = \"nonlinear\"",
+        "statics in large rotations: method = newton, arc_length or flow",
+    ],
     &["tensile", "[virtual_test] test = \"tensile\"", "KES-FB1 specimen between jaws"],
     &["shear", "[virtual_test] test = \"shear\"", "KES-FB1 specimen, sheared"],
     &["bending", "[virtual_test] test = \"bending\"", "KES-FB2 specimen, bent to an arc"],

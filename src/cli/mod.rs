@@ -17,6 +17,7 @@ mod list;
 mod output;
 mod read;
 mod run;
+mod search;
 mod section;
 mod solve;
 mod summary;

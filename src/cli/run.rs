@@ -9,6 +9,7 @@ use serde_json::json;
 use super::diagnostics::Failure;
 use super::drape;
 use super::output::Columns;
+use super::search::{NOT_CONVERGED, unconverged};
 use super::summary::{FabricReport, page, summary};
 use super::task::{Task, TaskArgs, Work};
 use super::tree::Tree;
@@ -17,7 +18,7 @@ use crate::report::chart;
 use crate::report::html::html;
 use crate::report::json::text;
 use crate::report::table::{FabricRow, PredictionRow, ProblemRow, Row, csv, parquet};
-use crate::study::{Analysis, Case, CaseResult};
+use crate::study::{Analysis, Case, CaseResult, Status};
 
 /// Do everything: read fabrics, evaluate, solve and compare every case, draw charts, write tables
 #[derive(Debug, Args)]
@@ -73,11 +74,15 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let mut failures = homeless;
     failures.extend(reports.iter().flat_map(|r| r.failures.clone()));
     failures.extend(hung.into_iter().filter_map(Result::err));
-    failures.extend(benchmarks.iter().filter_map(|(_, r)| r.as_ref().err().cloned()));
+    failures.extend(benchmarks.iter().filter_map(|(task, r)| match r {
+        Ok(result) => unconverged(task, result),
+        Err(failure) => Some(failure.clone()),
+    }));
     failures.iter().for_each(|f| ui.diagnostics.error(f));
     failures.splice(0..0, work.failures.iter().cloned());
     let findings = reports.iter().flat_map(|r| &r.findings);
     let of_cases = benchmarks.iter().filter_map(|(_, r)| r.as_ref().ok()).flat_map(|r| &r.findings);
+    let of_cases = of_cases.filter(|f| f.code != NOT_CONVERGED);
     findings.chain(of_cases.clone()).for_each(|f| ui.diagnostics.finding_of_batch(f));
 
     let solved: Vec<(&Task, &CaseResult)> =
@@ -107,8 +112,12 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     tell(options, ui, &shown, checks.as_ref(), &predictions)?;
     let unmet = reports.iter().any(|r| r.unmet) || solved.iter().any(|(_, r)| super::summary::unmet(r));
     let strict = options.task.strict && ui.diagnostics.findings() > 0;
-    Ok(Exit::of_batch(reports.iter().filter(|r| r.useful).count() + solved.len(), &failures)
-        .unless(unmet || strict))
+    Ok(Exit::of_batch(
+        reports.iter().filter(|r| r.useful).count()
+            + solved.iter().filter(|(_, r)| r.status != Status::NotConverged).count(),
+        &failures,
+    )
+    .unless(unmet || strict))
 }
 
 fn is_drape(case: &Case) -> bool {

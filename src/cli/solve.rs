@@ -9,6 +9,7 @@ use serde_json::json;
 use super::diagnostics::Failure;
 use super::drape;
 use super::output::Columns;
+use super::search::{NOT_CONVERGED, searches, steps, unconverged};
 use super::task::{Task, TaskArgs, solution};
 use super::tree::Tree;
 use super::{Exit, Ui};
@@ -65,7 +66,10 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     bar.finish_and_clear();
     ui.go_on()?;
     let mut failures: Vec<Failure> = homeless;
-    failures.extend(results.iter().filter_map(|(_, r)| r.as_ref().err().cloned()));
+    failures.extend(results.iter().filter_map(|(task, r)| match r {
+        Ok(result) => unconverged(task, result),
+        Err(failure) => Some(failure.clone()),
+    }));
     failures.extend(draped.iter().filter_map(|(_, r)| r.as_ref().err().cloned()));
     failures.iter().for_each(|f| ui.diagnostics.error(f));
     failures.extend(work.failures.iter().cloned());
@@ -73,7 +77,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         results.iter().filter_map(|(t, r)| Some((t, r.as_ref().ok()?))).collect();
     let draped: Vec<(&Task, &Drape)> =
         draped.iter().filter_map(|(t, r)| Some((t, r.as_ref().ok()?))).collect();
-    let findings = solved.iter().flat_map(|(_, r)| &r.findings);
+    let findings = solved.iter().flat_map(|(_, r)| &r.findings).filter(|f| f.code != NOT_CONVERGED);
     findings.chain(draped.iter().flat_map(|(_, d)| &d.findings)).for_each(|f| ui.diagnostics.finding(f));
     if let Some(tree) = tree {
         let points: Vec<_> = draped.iter().filter_map(|(t, d)| drape::point(t, d)).collect();
@@ -87,19 +91,23 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     } else {
         let drapes = drape::table(draped.iter().copied());
         let drapes = (!drapes.is_empty()).then(|| drapes.text());
-        let parts: Vec<String> =
-            (!solved.is_empty()).then(|| text(&solved)).into_iter().chain(drapes).collect();
+        let parts: Vec<String> = (!solved.is_empty())
+            .then(|| text(&solved, ui.diagnostics.verbose()))
+            .into_iter()
+            .chain(drapes)
+            .collect();
         if !parts.is_empty() {
             ui.print(&parts.join("\n"))?;
         }
     }
     let unmet = solved.iter().any(|(_, r)| r.status == Status::CheckFailed);
     let strict = options.task.strict && ui.diagnostics.findings() > 0;
-    Ok(Exit::of_batch(solved.len() + draped.len(), &failures).unless(unmet || strict))
+    let useful = solved.iter().filter(|(_, r)| r.status != Status::NotConverged).count();
+    Ok(Exit::of_batch(useful + draped.len(), &failures).unless(unmet || strict))
 }
 
-/// Deflections, then probes, then checks.
-fn text(solved: &[(&Task, &CaseResult)]) -> String {
+/// Deflections, then probes, searches and checks; with `verbose` every step of a search.
+fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
     let mut table = Columns::new(["case", "fabric", "w_max (mm)", "w/t_b", "elements", "status"]);
     let mut probes = Columns::new(["probe", "case", "fabric", "u (mm)", "v (mm)", "w (mm)"]);
     for (task, r) in solved {
@@ -113,7 +121,8 @@ fn text(solved: &[(&Task, &CaseResult)]) -> String {
         }
     }
     let checks = checks(solved.iter().map(|(_, r)| *r));
-    let parts = [Some(table), Some(probes), checks];
+    let every = if verbose { steps(solved) } else { None };
+    let parts = [Some(table), Some(probes), searches(solved), every, checks];
     parts.into_iter().flatten().filter(|t| !t.is_empty()).map(|t| t.text()).collect::<Vec<_>>().join("\n")
 }
 
@@ -140,5 +149,6 @@ pub fn status(status: Status) -> &'static str {
         Status::Ok => "ok",
         Status::BeyondLinear => "beyond linear",
         Status::CheckFailed => "check failed",
+        Status::NotConverged => "not converged",
     }
 }

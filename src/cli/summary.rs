@@ -4,6 +4,7 @@ use super::diagnostics::Failure;
 use super::drape;
 use super::inputs::Fabric;
 use super::output::Columns;
+use super::search::{NOT_CONVERGED, unconverged};
 use super::solve::status;
 use super::task::{Task, Tested, Work};
 use super::tree::Tree;
@@ -126,7 +127,8 @@ impl FabricReport {
 
     fn solved(&mut self, task: &Task, result: &CaseResult) {
         self.deflections.push((result.case.clone(), result.w_max));
-        self.findings.extend(result.findings.iter().cloned());
+        self.findings.extend(result.findings.iter().filter(|f| f.code != NOT_CONVERGED).cloned());
+        self.failures.extend(unconverged(task, result));
         self.predictions.extend(predictions(task, result));
         self.unmet |= unmet(result);
         if result.status != Status::Ok && self.status == "ok" {
@@ -204,9 +206,10 @@ pub fn predictions(task: &Task, result: &CaseResult) -> Vec<PredictionRow> {
     std::iter::once(row("w_max".into(), result.w_max)).chain(probes).collect()
 }
 
-/// Findings as rows of `problems.csv`; `otherwise` is the place of one without a place.
+/// Findings as rows of `problems.csv`; `otherwise` is the place of one without a place. A search that found no
+/// equilibrium is there as a failure.
 pub fn problems(findings: &[Finding], otherwise: &str) -> Vec<ProblemRow> {
-    findings.iter().map(|f| problem_row(f, otherwise)).collect()
+    findings.iter().filter(|f| f.code != NOT_CONVERGED).map(|f| problem_row(f, otherwise)).collect()
 }
 
 /// Headings of the overview before the deflections, in KES units.

@@ -277,11 +277,21 @@ pub fn solution(task: &Task, result: &CaseResult, timings: bool) -> Value {
             "probes": probes,
             "reactions": [sum(0), sum(1), sum(2)],
             "strain_energy": s.strain_energy,
+            "frequencies": result.frequencies,
             "uncertainty": result.uncertainty.as_ref().map(uncertainty),
         },
         "checks": result.checks,
         "findings": result.findings,
     });
+    if let Some(path) = &result.path {
+        let names: Vec<&str> = result.probes.iter().map(|p| p.name.as_str()).collect();
+        let (steps, search) = super::search::document(path, &names);
+        entry["steps"] = steps;
+        entry["search"] = search;
+    }
+    if let Some(history) = &result.history {
+        entry["history"] = json!(history);
+    }
     if timings {
         let t = &s.timings;
         entry["timings"] = json!({
@@ -334,6 +344,8 @@ pub fn comparison(task: &Task, tested: &Tested) -> Value {
         "n": c.map_or(0, |c| c.n),
         "unit": c.map(|c| c.unit),
         "stiffness": stiffness,
+        "edge_effect": tested.simulated.edge,
+        "unstable_from": tested.simulated.unstable_from,
         "x": c.map(|c| &c.measured.x),
         "simulated": c.map(|c| &c.simulated.y),
         "measured": c.map(|c| &c.measured.y),

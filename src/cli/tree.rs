@@ -13,6 +13,7 @@ use crate::instrument::{Origin, Test};
 use crate::report::OutputFolder;
 use crate::report::chart::{self, ChartError, FieldPlot, SimulatedCurve};
 use crate::report::json::{section_document, sheet_document, text};
+use crate::report::table::{csv, history_rows};
 use crate::report::vtu::{MeshField, vtu};
 use crate::study::{CaseResult, StudyError};
 
@@ -55,11 +56,15 @@ impl Tree {
         self.write(&format!("{fabric}/section.json"), text(&document)?.as_bytes())
     }
 
-    /// `<fabric>/<case>.json`, `.vtu` and `.png` of a solved case.
+    /// `<fabric>/<case>.json`, `.vtu` and `.png` of a solved case, and `.csv` of what it has of a history.
     pub fn solved(&self, task: &Task, result: &CaseResult) -> Result<(), Failure> {
         let stem = task.stem();
         let document = json!({"schema": "kesf.solution/1", "solutions": [solution(task, result, false)]});
         self.write(&format!("{stem}.json"), text(&document)?.as_bytes())?;
+        let history = history_rows(result);
+        if !history.is_empty() {
+            self.write(&format!("{stem}.csv"), &csv(&history)?)?;
+        }
         let mesh = Mesh::of(result);
         self.write(&format!("{stem}.vtu"), &mesh.vtu(result)?)?;
         if self.charts {

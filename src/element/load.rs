@@ -1,7 +1,8 @@
 //! Consistent nodal forces of one element.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Point3, SMatrix, Vector3};
 
+use super::prepared::Matrix12;
 use super::quad4::{Frame, GAUSS_2X2, gauss_point};
 
 /// `∫ N_i dA` over the plane quad (m²).
@@ -25,4 +26,83 @@ pub fn pressure_load(frame: &Frame, pressure: f64) -> [Vector3<f64>; 4] {
 /// Global forces (N) of an acceleration field (m/s²) on an areal density (kg/m²).
 pub fn gravity_load(frame: &Frame, areal_density: f64, acceleration: &Vector3<f64>) -> [Vector3<f64>; 4] {
     nodal_areas(frame).map(|a| acceleration * (a * areal_density))
+}
+
+/// Weights and tangents of the bilinear surface through the corners at a Gauss point: N, ∂N/∂ξ, ∂N/∂η,
+/// ∂x/∂ξ, ∂x/∂η.
+type SurfacePoint = ([f64; 4], [f64; 4], [f64; 4], Vector3<f64>, Vector3<f64>);
+
+fn surface(corners: &[Point3<f64>; 4], point: [f64; 2]) -> SurfacePoint {
+    // The derivatives by ξ and η do not depend on the corners: those of the reference cell will do.
+    let at = gauss_point(&[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]], point);
+    let along = |d: &[f64; 4]| corners.iter().zip(d).map(|(x, d)| x.coords * *d).sum::<Vector3<f64>>();
+    (at.n, at.n_xi, at.n_eta, along(&at.n_xi), along(&at.n_eta))
+}
+
+/// Global forces (N) of a pressure (Pa) that stays normal to the surface through the corners, where
+/// they now are: `p ∫ N_i x,ξ × x,η dξ dη`, exact on any quad and [`pressure_load`] on a plane one.
+pub fn follower_pressure(corners: &[Point3<f64>; 4], pressure: f64) -> [Vector3<f64>; 4] {
+    let mut forces = [Vector3::zeros(); 4];
+    for point in GAUSS_2X2 {
+        let (n, .., along_xi, along_eta) = surface(corners, point);
+        let normal = along_xi.cross(&along_eta) * pressure;
+        forces.iter_mut().zip(n).for_each(|(f, n)| *f += normal * n);
+    }
+    forces
+}
+
+/// The derivative of [`follower_pressure`] with respect to the corners, three rows and columns a node:
+/// `p ∫ N_i (N_j,η [x,ξ]× - N_j,ξ [x,η]×) dξ dη`.
+///
+/// Not symmetric; summed over a sheet that is held on its whole boundary, it is.
+pub fn follower_pressure_tangent(corners: &[Point3<f64>; 4], pressure: f64) -> Matrix12 {
+    let mut tangent = SMatrix::<f64, 12, 12>::zeros();
+    for point in GAUSS_2X2 {
+        let (n, by_xi, by_eta, along_xi, along_eta) = surface(corners, point);
+        let (xi, eta) = (along_xi.cross_matrix(), along_eta.cross_matrix());
+        for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
+            let block: Matrix3<f64> = (xi * by_eta[j] - eta * by_xi[j]) * (n[i] * pressure);
+            let mut part = tangent.fixed_view_mut::<3, 3>(3 * i, 3 * j);
+            part += block;
+        }
+    }
+    tangent
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A twisted quad: nothing plane, nothing square.
+    fn corners() -> [Point3<f64>; 4] {
+        [[0.0, 0.1, 0.0], [1.2, 0.0, 0.3], [1.0, 0.9, -0.2], [-0.1, 1.1, 0.25]].map(Point3::from)
+    }
+
+    #[test]
+    fn the_follower_pressure_is_the_dead_one_on_a_plane_quad() {
+        let plane = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.5, 1.0, 0.0], [0.0, 0.7, 0.0]].map(Point3::from);
+        let dead = pressure_load(&Frame::of(&plane), 3.0);
+        for (f, d) in follower_pressure(&plane, 3.0).iter().zip(dead) {
+            assert!((f - d).norm() < 1e-14);
+        }
+    }
+
+    /// Central differences of a function of second degree in the corners are exact up to rounding.
+    #[test]
+    fn the_tangent_of_the_follower_pressure_is_its_derivative() {
+        let (x, h) = (corners(), 1e-3);
+        let tangent = follower_pressure_tangent(&x, 2.0);
+        for column in 0..12 {
+            let moved = |by: f64| {
+                let mut x = x;
+                x[column / 3][column % 3] += by;
+                follower_pressure(&x, 2.0)
+            };
+            let (plus, minus) = (moved(h), moved(-h));
+            for row in 0..12 {
+                let slope = (plus[row / 3][row % 3] - minus[row / 3][row % 3]) / (2.0 * h);
+                assert!((tangent[(row, column)] - slope).abs() < 1e-11, "{row} {column}");
+            }
+        }
+    }
 }

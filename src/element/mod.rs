@@ -15,7 +15,7 @@ mod quad4;
 mod shear;
 mod smoothing;
 
-pub use load::{gravity_load, pressure_load};
+pub use load::{follower_pressure, follower_pressure_tangent, gravity_load, pressure_load};
 pub use mass::{consistent_mass, lumped_mass};
 pub use prepared::{MaterialAxisError, Matrix12, Matrix24, Prepared, Vector24};
 pub use quad4::{Frame, GAUSS_2X2, GaussPoint, gauss_point, shape};

@@ -12,9 +12,11 @@ use nalgebra::{DMatrix, Matrix2, Matrix3, Point3, Vector2, Vector3};
 pub use edge::edge_moments;
 pub use probe::{Line, Locator, ProbeValue};
 
-use crate::element::{Cell, Cells, Matrix24, Prepared, Vector24};
+use crate::element::corotational::{Motion, Reference};
+use crate::element::{Cell, Cells, Frame, Matrix24, Prepared, Vector24};
 use crate::mesh::QuadMesh;
 use crate::model::{Model, ModelError};
+use crate::solve::nonlinear::State;
 use recovery::Patches;
 
 /// Stress resultants in material axes.
@@ -116,20 +118,43 @@ fn element_resultants(geometry: &Geometry, warp: &Vector3<f64>, u: &Vector24) ->
 fn for_each_element(
     model: &Model,
     flat: bool,
-    displacement: &[f64],
+    displacement: impl Fn(usize) -> Vector24,
     mut visit: impl FnMut(usize, ElementResultants),
 ) -> Result<(), ModelError> {
     let mut last: Option<Geometry> = None;
-    for (quad, nodes) in model.mesh.quads.iter().enumerate() {
+    for quad in 0..model.mesh.quads.len() {
         let geometry = match last.take() {
             Some(geometry) if geometry.is_like(&model.mesh.corners(quad)) => geometry,
             _ => Geometry::of(model, quad, flat)?,
         };
-        let u = Vector24::from_fn(|k, _| displacement[6 * nodes[k / 6] as usize + k % 6]);
-        visit(quad, element_resultants(&geometry, &model.warp, &u));
+        visit(quad, element_resultants(&geometry, &model.warp, &displacement(quad)));
         last = Some(geometry);
     }
     Ok(())
+}
+
+/// Displacements of the nodes of an element.
+fn small<'a>(model: &'a Model, displacement: &'a [f64]) -> impl Fn(usize) -> Vector24 + 'a {
+    |quad| {
+        let nodes = &model.mesh.quads[quad];
+        Vector24::from_fn(|k, _| displacement[6 * nodes[k / 6] as usize + k % 6])
+    }
+}
+
+/// The part of the motion of an element's nodes that strains it, turned back to where the element rests.
+fn straining<'a>(model: &'a Model, state: &'a State) -> impl Fn(usize) -> Vector24 + 'a {
+    |quad| {
+        let nodes = model.mesh.quads[quad].map(|n| n as usize);
+        let frame = Frame::of(&model.mesh.corners(quad));
+        let (places, turns) = (nodes.map(|n| state.position[n]), nodes.map(|n| state.rotation[n]));
+        let deformation = Motion::of(&Reference::of(&frame), &places, &turns).deformation;
+        let mut u = Vector24::zeros();
+        for b in 0..8 {
+            let part = frame.rotation.transpose() * deformation.fixed_rows::<3>(3 * b);
+            u.fixed_rows_mut::<3>(3 * b).copy_from(&part);
+        }
+        u
+    }
 }
 
 /// Membrane forces and moments of every smoothing cell, element by element, in the order of the
@@ -139,7 +164,7 @@ fn for_each_element(
 /// M008 if the warp direction is normal to an element.
 pub fn cells(model: &Model, displacement: &[f64]) -> Result<Vec<Vec<Resultants>>, ModelError> {
     let mut all = vec![Vec::new(); model.mesh.quads.len()];
-    for_each_element(model, model.mesh.is_flat(), displacement, |quad, e| {
+    for_each_element(model, model.mesh.is_flat(), small(model, displacement), |quad, e| {
         let of_cell = |(_, membrane, moment)| Resultants { membrane, moment, shear: [0.0; 2] };
         all[quad] = e.cells.into_iter().map(of_cell).collect();
     })?;
@@ -152,7 +177,7 @@ pub fn cells(model: &Model, displacement: &[f64]) -> Result<Vec<Vec<Resultants>>
 /// M008 if the warp direction is normal to an element.
 pub fn element_means(model: &Model, displacement: &[f64]) -> Result<Vec<Resultants>, ModelError> {
     let mut means = Vec::with_capacity(model.mesh.quads.len());
-    for_each_element(model, model.mesh.is_flat(), displacement, |_, e| means.push(e.mean()))?;
+    for_each_element(model, model.mesh.is_flat(), small(model, displacement), |_, e| means.push(e.mean()))?;
     Ok(means)
 }
 
@@ -197,6 +222,22 @@ impl Recovery {
     /// # Errors
     /// M008 if the warp direction is normal to an element.
     pub fn nodal(&self, model: &Model, displacement: &[f64]) -> Result<Vec<Resultants>, ModelError> {
+        self.nodal_of(model, small(model, displacement))
+    }
+
+    /// The same after large rotations: in the axes of the elements as they have turned.
+    ///
+    /// # Errors
+    /// M008 if the warp direction is normal to an element.
+    pub fn nodal_moved(&self, model: &Model, state: &State) -> Result<Vec<Resultants>, ModelError> {
+        self.nodal_of(model, straining(model, state))
+    }
+
+    fn nodal_of(
+        &self,
+        model: &Model,
+        displacement: impl Fn(usize) -> Vector24,
+    ) -> Result<Vec<Resultants>, ModelError> {
         let weights = extrapolation(model.formulation.cells);
         let mut means = Vec::with_capacity(model.mesh.quads.len());
         let mut sums = vec![(Resultants::default(), 0.0); model.mesh.nodes.len()];

@@ -97,6 +97,9 @@ impl Support {
 pub enum Load {
     /// Pressure (Pa) along the element normal, on every element.
     Pressure(f64),
+    /// Pressure (Pa) that stays normal to the sheet as it moves and acts on its area as it stretches; without
+    /// large rotations the same as [`Load::Pressure`].
+    FollowerPressure(f64),
     /// Acceleration (m/s²) on the mass of the sheet.
     Gravity(Vector3<f64>),
     /// Force (N) and moment (N·m), shared equally by some nodes.
@@ -168,15 +171,30 @@ impl Model {
 
     /// Nodal forces and moments of all loads (N, N·m). Six a node.
     pub fn load_vector(&self) -> Vec<f64> {
+        self.nodal_loads(|_| true)
+    }
+
+    /// The same without the follower pressures, which depend on where the sheet is.
+    pub fn dead_load_vector(&self) -> Vec<f64> {
+        self.nodal_loads(|load| !matches!(load, Load::FollowerPressure(_)))
+    }
+
+    /// Sum of the follower pressures (Pa).
+    pub fn follower_pressure(&self) -> f64 {
+        let pressure = |load: &Load| if let Load::FollowerPressure(p) = load { *p } else { 0.0 };
+        self.loads.iter().map(pressure).sum()
+    }
+
+    fn nodal_loads(&self, counts: impl Fn(&Load) -> bool) -> Vec<f64> {
         let mut f = vec![0.0; 6 * self.mesh.nodes.len()];
         let mut add = |node: u32, at: usize, v: Vector3<f64>| {
             for k in 0..3 {
                 f[6 * node as usize + at + k] += v[k];
             }
         };
-        for load in &self.loads {
+        for load in self.loads.iter().filter(|load| counts(load)) {
             match load {
-                Load::Pressure(pressure) => {
+                Load::Pressure(pressure) | Load::FollowerPressure(pressure) => {
                     for (quad, nodes) in self.mesh.quads.iter().enumerate() {
                         let forces = pressure_load(&Frame::of(&self.mesh.corners(quad)), *pressure);
                         nodes.iter().zip(forces).for_each(|(n, force)| add(*n, 0, force));

@@ -6,6 +6,7 @@ use thiserror::Error;
 use crate::characterise::FabricSheet;
 use crate::finding::Finding;
 use crate::instrument::{FabricInput, Measurement, Parameter, Test};
+use crate::study::CaseResult;
 
 /// Why there is no table.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -102,6 +103,24 @@ row! {
 }
 
 row! {
+    /// A value on the way of a nonlinear or dynamic analysis (`<case>.csv`).
+    HistoryRow {
+        /// Number of the step; a dynamic analysis starts with 0.
+        step: u64,
+        /// Time (s); nothing of statics.
+        time: Option<f64>,
+        /// Factor of the loads; nothing of dynamics.
+        factor: Option<f64>,
+        /// E.g. `centre.w`, `strain_energy`.
+        quantity: String,
+        /// Its value.
+        value: f64,
+        /// SI unit of the value.
+        unit: String,
+    }
+}
+
+row! {
     /// Something that a reader of the results must know (`problems.csv`).
     ProblemRow {
         /// `file:line:column`, or the fabric or case.
@@ -191,6 +210,42 @@ pub fn fabric_rows(sheet: &FabricSheet, units: UnitSystem) -> Vec<FabricRow> {
             }
         })
         .collect()
+}
+
+/// Probes and energies against load factor or time; none of analyses without either.
+pub fn history_rows(result: &CaseResult) -> Vec<HistoryRow> {
+    let mut rows = Vec::new();
+    if let Some(path) = &result.path {
+        for (k, step) in path.steps.iter().enumerate() {
+            let mut row = |quantity: String, value, unit: &str| {
+                let (step, factor) = (k as u64 + 1, Some(step.factor));
+                rows.push(HistoryRow { step, time: None, factor, quantity, value, unit: unit.into() });
+            };
+            row("w_max".into(), step.w_max, "m");
+            row("strain_energy".into(), step.strain_energy, "J");
+            for (probe, moved) in result.probes.iter().zip(&path.probes) {
+                for (component, value) in ["u", "v", "w"].iter().zip(moved[k]) {
+                    row(format!("{}.{component}", probe.name), value, "m");
+                }
+            }
+        }
+    }
+    if let Some(history) = &result.history {
+        for (k, (time, energy)) in history.time.iter().zip(&history.energy).enumerate() {
+            let mut row = |quantity: String, value, unit: &str| {
+                let (step, time) = (k as u64, Some(*time));
+                rows.push(HistoryRow { step, time, factor: None, quantity, value, unit: unit.into() });
+            };
+            for (probe, w) in result.probes.iter().zip(&history.probes) {
+                row(format!("{}.w", probe.name), w[k], "m");
+            }
+            row("kinetic_energy".into(), energy.kinetic, "J");
+            row("strain_energy".into(), energy.strain, "J");
+            row("dissipated_energy".into(), energy.dissipated, "J");
+            row("work_of_loads".into(), energy.work, "J");
+        }
+    }
+    rows
 }
 
 /// The row that stands for a fabric that could not be characterised.

@@ -12,13 +12,14 @@
 //! 2. [`relax`]: the implicit gradient flow of the energy, which ends in a stable equilibrium;
 //! 3. [`follow`]: arc length, through limit points of the load.
 //!
-//! Loads are dead: they keep their direction and size, pressure the normals and areas at rest. A
-//! moment is conjugate to the spin about fixed axes. A held rotation is a spin about a global
+//! Loads are dead: they keep their direction and size, pressure the normals and areas at rest; only a
+//! [`FollowerPressure`](crate::model::Load::FollowerPressure) goes with the sheet. A moment is conjugate to the spin about fixed axes. A held rotation is a spin about a global
 //! axis: it may grow beyond π, and about one axis it is the angle itself. A held rotation or a
 //! moment at a node that is free to turn about both other axes is not conservative: the symmetric
 //! tangent then converges linearly; hold a plane of symmetry by both of its rotations.
 
 mod arc;
+pub mod dynamics;
 mod flow;
 mod newton;
 mod stability;
@@ -33,12 +34,15 @@ pub use arc::{ArcLength, follow};
 pub use flow::{Flow, relax, relax_from};
 pub use stability::Stability;
 
-use self::newton::{Converged, Drag, newton};
-use self::system::{Balance, System};
+use self::flow::noise;
+use self::newton::{Converged, Drag, Failure, newton};
+use self::system::{Balance, System, quads_of_leads};
 use super::SolveError;
 use super::linear::Options;
+use super::plan::Plan;
 use crate::mesh::QuadMesh;
-use crate::model::{Model, RigidBody, RigidBodyError};
+use crate::model::rigid::leads;
+use crate::model::{DofGroup, Model, RigidBody, RigidBodyError};
 
 /// Places and rotations of the nodes under a part of the load.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,6 +108,26 @@ impl Default for Settings {
     }
 }
 
+/// A way to an equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Method {
+    /// See [`solve`]; random loads break the symmetry, if asked for, and lead along stable equilibria only.
+    Newton(Option<Perturbation>),
+    /// See [`follow`].
+    ArcLength(ArcLength),
+    /// See [`relax`].
+    Flow(Flow),
+}
+
+/// Random loads that break the symmetry of a model; they are taken away before the end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Perturbation {
+    /// Their size relative to the mean load per area.
+    pub size: f64,
+    /// Seed of the random numbers.
+    pub seed: u64,
+}
+
 /// An equilibrium on the way, handed to the observer.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<'a> {
@@ -111,6 +135,8 @@ pub struct Step<'a> {
     pub number: usize,
     /// Iterations that it took.
     pub iterations: usize,
+    /// Attempts that failed since the step before, each answered by a shorter step.
+    pub cut_backs: usize,
     /// Unbalanced forces relative to loads or reactions.
     pub residual: f64,
     /// Strain energy (J).
@@ -185,9 +211,17 @@ impl NonlinearError {
 struct Progress {
     steps: usize,
     iterations: usize,
+    /// Failed attempts since the last step.
+    cut_backs: usize,
 }
 
 impl Progress {
+    /// Counts an attempt that failed.
+    fn cut_back(&mut self, failure: &Failure) {
+        self.iterations += failure.iterations;
+        self.cut_backs += 1;
+    }
+
     /// Counts a step and shows it.
     fn show(
         &mut self,
@@ -200,6 +234,7 @@ impl Progress {
         observe(&Step {
             number: self.steps,
             iterations: step.iterations,
+            cut_backs: std::mem::take(&mut self.cut_backs),
             residual: step.balance.relative_residual(),
             energy: step.balance.energy,
             state: &step.state,
@@ -234,18 +269,66 @@ pub fn solve(
     model: &Model,
     settings: &Settings,
     options: &Options,
+    observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
+) -> Result<Solution, NonlinearError> {
+    search(model, &plan(model, settings, options)?, settings, &Method::Newton(None), options, observe)
+}
+
+/// What depends on the mesh and the bodies only, shared by every model on them.
+///
+/// # Errors
+/// M010 for the bodies; N002 for memory.
+pub fn plan(model: &Model, settings: &Settings, options: &Options) -> Result<Plan, NonlinearError> {
+    let mesh = &model.mesh;
+    let leads = leads(mesh.nodes.len(), &settings.bodies, &model.constraints())?;
+    Ok(Plan::of_quads(mesh, &quads_of_leads(mesh, &leads), &[DofGroup::Shell], options.path)?)
+}
+
+/// [`solve`], [`follow`] or [`relax`] with a plan that was made before by [`plan`], for a model with the
+/// same mesh and bodies.
+///
+/// # Errors
+/// Those of the method.
+pub fn search(
+    model: &Model,
+    plan: &Plan,
+    settings: &Settings,
+    method: &Method,
+    options: &Options,
+    observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
+) -> Result<Solution, NonlinearError> {
+    let system = System::new(model, plan, settings, options)?;
+    match method {
+        Method::Newton(perturbation) => grow(&system, settings, *perturbation, observe),
+        Method::ArcLength(arc) => arc::follow_path(&system, settings, arc, observe),
+        Method::Flow(flow) => flow::relax_system(&system, State::rest(&model.mesh), settings, flow, observe),
+    }
+}
+
+fn grow(
+    system: &System<'_>,
+    settings: &Settings,
+    perturbation: Option<Perturbation>,
     mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    let system = System::new(model, settings, options)?;
-    let mut state = State::rest(&model.mesh);
-    let mut balance = system.balance(&state, None);
+    let noise = perturbation.filter(|p| p.size > 0.0).map(|p| noise(system, &p));
+    let mut extra = noise.as_deref();
+    let mut state = State::rest(&system.model.mesh);
+    let mut balance = system.balance(&state, extra);
     let (mut step, mut progress) = (settings.first_step, Progress::default());
-    while state.factor < 1.0 {
+    while state.factor < 1.0 || extra.is_some() {
+        if state.factor >= 1.0 {
+            // The whole load is on: the last step takes the perturbation away.
+            extra = None;
+        }
         // The last step ends at 1 exactly, without a sliver after it.
         let factor = if state.factor + 1.001 * step >= 1.0 { 1.0 } else { state.factor + step };
-        match newton(&system, &state, factor, settings, &Drag::default()) {
+        let found = newton(system, &state, factor, settings, &Drag { rate: 0.0, extra });
+        // A long step may land beyond the branch that the perturbation leads to.
+        let found = found.and_then(|c| if extra.is_some() { c.stable(system) } else { Ok(c) });
+        match found {
             Ok(converged) => {
-                let flow = progress.show(&system, &converged, &mut observe);
+                let flow = progress.show(system, &converged, &mut observe);
                 if converged.iterations <= settings.iterations / 3 {
                     step = (1.5 * step).min(settings.largest_step);
                 }
@@ -255,7 +338,7 @@ pub fn solve(
                 }
             }
             Err(failure) => {
-                progress.iterations += failure.iterations;
+                progress.cut_back(&failure);
                 step = 0.5 * (factor - state.factor);
                 if step < settings.smallest_step {
                     return Err(failure.ends(progress.steps + 1, settings, state));
@@ -263,5 +346,5 @@ pub fn solve(
             }
         }
     }
-    progress.finish(&system, state, &balance)
+    progress.finish(system, state, &balance)
 }

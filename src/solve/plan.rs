@@ -20,7 +20,17 @@ impl Plan {
     /// # Errors
     /// N002 when the ordering or symbolic phase fails (out of memory).
     pub fn new(mesh: &QuadMesh, groups: &[DofGroup], path: Path) -> Result<Self, SolveError> {
-        let pattern = Pattern::new(mesh.nodes.len(), &mesh.quads);
+        Self::of_quads(mesh, &mesh.quads, groups, path)
+    }
+
+    /// The same for elements whose nodes are not those of the mesh: those of rigid bodies are their leads.
+    pub(super) fn of_quads(
+        mesh: &QuadMesh,
+        quads: &[[u32; 4]],
+        groups: &[DofGroup],
+        path: Path,
+    ) -> Result<Self, SolveError> {
+        let pattern = Pattern::new(mesh.nodes.len(), quads);
         let coordinates: Vec<[f64; 3]> = mesh.nodes.iter().map(|p| [p.x, p.y, p.z]).collect();
         let groups = groups
             .iter()

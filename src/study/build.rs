@@ -232,7 +232,8 @@ fn load(case: &Case, mesh: &QuadMesh, table: &LoadTable) -> Result<Load, StudyEr
         Ok(edges)
     };
     Ok(match table {
-        LoadTable::Pressure { value } => Load::Pressure(value.si()),
+        LoadTable::Pressure { value, follower: false } => Load::Pressure(value.si()),
+        LoadTable::Pressure { value, follower: true } => Load::FollowerPressure(value.si()),
         LoadTable::Gravity { value, direction } => {
             let g = value.map_or(STANDARD_GRAVITY, |v| v.si());
             Load::Gravity(unit(&direction.unwrap_or([0.0, 0.0, -1.0]))? * g)

@@ -5,24 +5,29 @@ mod build;
 mod case;
 mod compare;
 mod drape;
+mod dynamics;
+mod nonlinear;
 mod prepared;
 mod run;
 mod uncertainty;
+mod virtual_large;
 mod virtual_test;
 
 use thiserror::Error;
 
 pub use build::{formulation, model, section};
 pub use case::{
-    Analysis, Case, CaseError, Check, ProbeTable, Reference, ReferenceKind, SectionTable, Shape, Sheet,
-    VirtualTest,
+    Analysis, Case, CaseError, Check, MethodChoice, NonlinearTable, ProbeTable, Reference, ReferenceKind,
+    SectionTable, Shape, Sheet, TestFormulation, VirtualTest,
 };
 pub use compare::{Comparison, compare_curves, measured_curve};
 pub use drape::{Drape, DrapeState, Folds, drape, drape_stages, measured_drape};
+pub use dynamics::History;
+pub use nonlinear::{LoadPath, PathStep};
 pub use prepared::PreparedCase;
-pub use run::{CaseResult, CheckResult, History, Probe, Status, solve_case};
+pub use run::{CaseResult, CheckResult, Probe, Status, solve_case};
 pub use uncertainty::{Prediction, Uncertainty};
-pub use virtual_test::{PreparedTest, VirtualCurve, compression, simulate};
+pub use virtual_test::{EdgeEffect, PreparedTest, Tension, VirtualCurve, compression, simulate};
 
 use crate::finding::Place;
 use crate::mesh::MeshError;
@@ -78,11 +83,17 @@ impl StudyError {
 
     /// Whether the numerics failed, rather than the input.
     pub fn is_numeric(&self) -> bool {
-        matches!(
-            self,
-            Self::Solve(SolveError::Singular { .. } | SolveError::Factor(_) | SolveError::Residual { .. })
-                | Self::Nonlinear(NonlinearError::NotConverged { .. } | NonlinearError::Solve(_))
-        )
+        match self {
+            Self::Solve(e) | Self::Nonlinear(NonlinearError::Solve(e)) => matches!(
+                e,
+                SolveError::Singular { .. }
+                    | SolveError::Factor(_)
+                    | SolveError::Residual { .. }
+                    | SolveError::StepVanished { .. }
+            ),
+            Self::Nonlinear(NonlinearError::NotConverged { .. }) => true,
+            _ => false,
+        }
     }
 }
 

@@ -5,12 +5,13 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::{Matrix2, Matrix3, Point3};
 
 use super::case::{Analysis, Case};
+use super::nonlinear::way;
 use super::{StudyError, build};
 use crate::fields::{Line, Locator, Recovery};
 use crate::mesh::QuadMesh;
 use crate::model::Model;
 use crate::section::ShellSection;
-use crate::solve::{Options, Plan};
+use crate::solve::{Options, Plan, nonlinear};
 
 /// A case with a `[sheet]`, and everything of it that does not depend on the fabric: mesh, supports,
 /// loads, order of elimination and symbolic factorisation, places of probes. Shared between threads
@@ -21,7 +22,7 @@ pub struct PreparedCase<'a> {
     pub(super) options: Options,
     /// With a stand-in for the section.
     model: Model,
-    /// Of a linear analysis; the others have analyses of their own.
+    /// Of linear and nonlinear statics; the others have analyses of their own.
     pub(super) plan: Option<Plan>,
     pub(super) probes: Vec<Locator>,
     /// The middle line along x.
@@ -45,8 +46,9 @@ impl<'a> PreparedCase<'a> {
             );
         };
         let model = build::model(case, sheet, stand_in())?;
-        let plan = match case.analysis {
+        let plan = match &case.analysis {
             Analysis::Linear => Some(Plan::new(&model.mesh, &Plan::groups(&model, options), options.path)?),
+            Analysis::Nonlinear(table) => Some(nonlinear::plan(&model, &way(case, table)?.0, options)?),
             _ => None,
         };
         let probes = locators(case, &model.mesh)?;

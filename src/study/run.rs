@@ -1,20 +1,22 @@
 //! Solving a case and reading its results.
 
-use std::ops::ControlFlow;
 use std::sync::{Arc, OnceLock};
 
 use serde::Serialize;
 
 use super::case::{Analysis, Case, Check, Reference};
+use super::dynamics::{History, Large, dynamics, load_history, rayleigh};
+use super::nonlinear::{LoadPath, equilibrium, largest_w};
 use super::uncertainty::{Uncertainty, linear_uncertainty};
 use super::{PreparedCase, StudyError};
 use crate::constitutive::Input;
 use crate::fields::{Locator, ProbeValue, Recovery, Resultants};
 use crate::finding::{Finding, Place};
 use crate::model::{Model, ModelError};
-use crate::quantity::{Curve, Frequency, Time, Unit, parse_quantity};
+use crate::quantity::{Curve, Unit, parse_quantity};
 use crate::section::ShellSection;
-use crate::solve::newmark::{self, Energy, LoadHistory, Rayleigh};
+use crate::solve::newmark;
+use crate::solve::nonlinear::State;
 use crate::solve::{self, Factors, Options, Solution};
 
 /// How a case ended.
@@ -27,6 +29,8 @@ pub enum Status {
     BeyondLinear,
     /// Solved, but a check does not hold.
     CheckFailed,
+    /// No equilibrium was found: the results are the last state that was reached.
+    NotConverged,
 }
 
 /// A named point and what was found there.
@@ -93,6 +97,10 @@ pub struct CaseResult {
     pub frequencies: Vec<f64>,
     /// What happened in time; of a dynamic analysis only, whose displacements are those at the end.
     pub history: Option<History>,
+    /// How the equilibrium was found; of a nonlinear analysis only.
+    pub path: Option<LoadPath>,
+    /// Places and rotations of the nodes at the end; of analyses in large rotations only.
+    pub state: Option<State>,
     /// How certain the deflections are; of a linear analysis with measured inputs only.
     pub uncertainty: Option<Uncertainty>,
     /// What a reader of the result must know.
@@ -111,32 +119,41 @@ impl CaseResult {
             return Ok(nodal);
         }
         let recovery = self.recovery.get_or_init(|| Recovery::new(&self.model.mesh));
-        let nodal = recovery.nodal(&self.model, &self.solution.displacement)?;
+        let nodal = match &self.state {
+            Some(state) => recovery.nodal_moved(&self.model, state)?,
+            None => recovery.nodal(&self.model, &self.solution.displacement)?,
+        };
         Ok(self.nodal.get_or_init(|| nodal))
     }
 }
 
-/// A dynamic analysis in time.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct History {
-    /// Instants (s), the start included.
-    pub time: Vec<f64>,
-    /// Deflection w of each probe at each instant (m), in the order of the case's probes.
-    pub probes: Vec<Vec<f64>>,
-    /// Energies at each instant (J).
-    pub energy: Vec<Energy>,
-    /// The largest |w| anywhere at any instant, with its sign (m).
-    pub w_max: f64,
-    /// What the energy balance misses at most, over the largest work of the loads.
-    pub imbalance: f64,
+/// What an analysis gives; most of it is that of one kind only.
+pub(super) struct Outcome {
+    pub solution: Solution,
+    pub frequencies: Vec<f64>,
+    pub history: Option<History>,
+    pub path: Option<LoadPath>,
+    /// Of large rotations.
+    pub state: Option<State>,
+    /// Of a linear analysis.
+    pub factors: Option<Factors>,
+    /// What the analysis itself has to say.
+    pub findings: Vec<Finding>,
 }
 
-struct Outcome {
-    solution: Solution,
-    frequencies: Vec<f64>,
-    history: Option<History>,
-    /// Of a linear analysis only.
-    factors: Option<Factors>,
+impl Outcome {
+    /// Displacements and nothing else.
+    pub fn of(solution: Solution) -> Self {
+        Self {
+            solution,
+            frequencies: Vec::new(),
+            history: None,
+            path: None,
+            state: None,
+            factors: None,
+            findings: Vec::new(),
+        }
+    }
 }
 
 /// Above this ratio of deflection to bending thickness the sheet's own stretching carries part of
@@ -169,7 +186,8 @@ impl PreparedCase<'_> {
     pub fn solve_measured(&self, section: ShellSection, inputs: &[Input]) -> Result<CaseResult, StudyError> {
         let case = self.case;
         let model = self.model(section);
-        let Outcome { solution, frequencies, history, factors } = analyse(self, &model)?;
+        let Outcome { solution, frequencies, history, path, state, factors, findings: own } =
+            analyse(self, &model)?;
         let uncertainty = match factors.filter(|_| !inputs.is_empty()) {
             Some(factors) => {
                 let names = case.probes.iter().map(|p| p.name.as_str());
@@ -179,16 +197,20 @@ impl PreparedCase<'_> {
             None => None,
         };
         let w = |n: usize| solution.displacement[6 * n + 2];
-        let largest = |m: f64, v: f64| if v.abs() > m.abs() { v } else { m };
-        let w_max = (0..model.mesh.nodes.len()).map(w).fold(0.0, largest);
-        let w_max = history.as_ref().map_or(w_max, |h| h.w_max);
+        let w_max = history.as_ref().map_or_else(|| largest_w(&solution.displacement), |h| h.w_max);
         let w_over_thickness = w_max.abs() / model.section.bending_thickness_squared().sqrt();
-        let beyond_linear = frequencies.is_empty() && w_over_thickness > LINEAR_LIMIT;
-        let findings = findings(case, &model, beyond_linear.then_some((w_max, w_over_thickness)));
+        let beyond_linear = frequencies.is_empty() && state.is_none() && w_over_thickness > LINEAR_LIMIT;
+        let mut findings = findings(case, &model, beyond_linear.then_some((w_max, w_over_thickness)));
+        findings.extend(own);
+        let status = match &path {
+            Some(path) if !path.converged => Status::NotConverged,
+            _ if beyond_linear => Status::BeyondLinear,
+            _ => Status::Ok,
+        };
         let profile = self.middle.profile(&model.mesh, w);
         let mut result = CaseResult {
             case: case.name.clone(),
-            status: if beyond_linear { Status::BeyondLinear } else { Status::Ok },
+            status,
             model,
             solution,
             w_max,
@@ -198,6 +220,8 @@ impl PreparedCase<'_> {
             profile,
             frequencies,
             history,
+            path,
+            state,
             uncertainty,
             findings,
             recovery: Arc::clone(&self.recovery),
@@ -205,7 +229,7 @@ impl PreparedCase<'_> {
         };
         result.probes = probes(case, &self.probes, &result)?;
         result.checks = case.checks.iter().map(|c| check(case, c, &result)).collect::<Result<_, _>>()?;
-        if result.checks.iter().any(|c| !c.passed) {
+        if result.status != Status::NotConverged && result.checks.iter().any(|c| !c.passed) {
             result.status = Status::CheckFailed;
         }
         Ok(result)
@@ -217,7 +241,7 @@ fn analyse(prepared: &PreparedCase<'_>, model: &Model) -> Result<Outcome, StudyE
     match &case.analysis {
         Analysis::Linear => {
             let (solution, factors) = solve::solve_keeping(model, prepared.plan.as_ref(), options)?;
-            Ok(Outcome { solution, frequencies: Vec::new(), history: None, factors: Some(factors) })
+            Ok(Outcome { factors: Some(factors), ..Outcome::of(solution) })
         }
         Analysis::Modal { modes, lumped } => {
             let modes = solve::modes(model, *modes, *lumped, options)?;
@@ -228,9 +252,18 @@ fn analyse(prepared: &PreparedCase<'_>, model: &Model) -> Result<Outcome, StudyE
                 solution.displacement = first.shape.iter().map(|v| v / largest).collect();
             }
             let frequencies = modes.iter().map(solve::Mode::frequency).collect();
-            Ok(Outcome { solution, frequencies, history: None, factors: None })
+            Ok(Outcome { frequencies, ..Outcome::of(solution) })
         }
-        Analysis::Newmark { duration, step, tolerance, damping, load, lumped } => {
+        Analysis::Newmark {
+            duration,
+            step,
+            tolerance,
+            damping,
+            load,
+            lumped,
+            large_rotations,
+            spectral_radius,
+        } => {
             let settings = newmark::Settings {
                 duration: duration.si(),
                 step: step.si(),
@@ -242,79 +275,32 @@ fn analyse(prepared: &PreparedCase<'_>, model: &Model) -> Result<Outcome, StudyE
             if !(settings.step > 0.0 && settings.duration >= settings.step) {
                 return Err(case.inconsistent("newmark needs 0 < step <= duration".into()));
             }
-            dynamics(prepared, model, &settings)
+            let large = Large { rotations: *large_rotations, spectral_radius: *spectral_radius };
+            dynamics(prepared, model, &settings, large)
         }
         Analysis::Drape { .. } => {
             Err(case.inconsistent("a drape is a search for many states, not one solve".into()))
         }
+        Analysis::Nonlinear(table) => equilibrium(prepared, model, table),
     }
-}
-
-/// Damping ratios at the first and the third natural frequency become Rayleigh factors.
-fn rayleigh(model: &Model, ratios: Option<[f64; 2]>, options: &Options) -> Result<Rayleigh, StudyError> {
-    let Some(ratios) = ratios else { return Ok(Rayleigh::default()) };
-    let modes = solve::modes(model, 3, false, options)?;
-    let omega: Vec<f64> = modes.iter().map(|m| m.angular_frequency).filter(|w| *w > 0.0).collect();
-    Ok(match (omega.first(), omega.last()) {
-        (Some(first), Some(last)) => Rayleigh::from_ratios(ratios, [*first, *last]),
-        _ => Rayleigh::default(),
-    })
-}
-
-fn load_history(case: &Case, text: &str) -> Result<LoadHistory, StudyError> {
-    let unknown = |reason: String| {
-        case.inconsistent(format!(
-            "load = \"{text}\": {reason}; write \"step\", \"ramp until 0.1 s\" or \"sine 5 Hz\""
-        ))
-    };
-    if text == "step" {
-        return Ok(LoadHistory::Step);
-    }
-    if let Some(until) = text.strip_prefix("ramp until ") {
-        return until.parse::<Time>().map(|t| LoadHistory::Ramp(t.si())).map_err(|e| unknown(e.to_string()));
-    }
-    if let Some(frequency) = text.strip_prefix("sine ") {
-        return frequency
-            .parse::<Frequency>()
-            .map(|f| LoadHistory::Sine(f.si()))
-            .map_err(|e| unknown(e.to_string()));
-    }
-    Err(unknown("no such history".into()))
-}
-
-fn dynamics(
-    prepared: &PreparedCase<'_>,
-    model: &Model,
-    settings: &newmark::Settings,
-) -> Result<Outcome, StudyError> {
-    let locators = &prepared.probes;
-    let mut history = History { probes: vec![Vec::new(); locators.len()], ..History::default() };
-    let mut solution = Solution::at_rest(model);
-    newmark::newmark(model, settings, &prepared.options, |at| {
-        history.time.push(at.time);
-        history.energy.push(at.energy);
-        let w = |n: usize| at.displacement[6 * n + 2];
-        for (locator, out) in locators.iter().zip(&mut history.probes) {
-            out.push(locator.interpolate(&model.mesh, w));
-        }
-        let largest = (0..model.mesh.nodes.len()).map(w);
-        history.w_max = largest.fold(history.w_max, |m, v| if v.abs() > m.abs() { v } else { m });
-        solution.displacement.copy_from_slice(at.displacement);
-        solution.strain_energy = at.energy.strain;
-        ControlFlow::Continue(())
-    })?;
-    let work = history.energy.iter().map(|e| e.work.abs()).fold(f64::MIN_POSITIVE, f64::max);
-    history.imbalance = history.energy.iter().map(|e| e.imbalance().abs()).fold(0.0, f64::max) / work;
-    Ok(Outcome { solution, frequencies: Vec::new(), history: Some(history), factors: None })
 }
 
 fn findings(case: &Case, model: &Model, beyond_linear: Option<(f64, f64)>) -> Vec<Finding> {
     let mut findings = Vec::new();
     let place = || Place::file(&case.path);
     if let Some((w_max, ratio)) = beyond_linear {
+        let cure = match case.analysis {
+            Analysis::Newmark { .. } => {
+                "give [analysis] large_rotations = true for the true motion, or lower the load"
+            }
+            _ => {
+                "take [analysis] kind = \"nonlinear\" for the true shape, lower the load, or read the result as a \
+                 stiffness, not as a shape"
+            }
+        };
         let message = format!(
             "the deflection of {:.3e} m is {ratio:.2e} bending thicknesses: a linear solve is meaningful below {LINEAR_LIMIT} only; \
-             lower the load until it is, or read the result as a stiffness, not as a shape",
+             {cure}",
             w_max.abs()
         );
         findings.push(Finding::new("S101", message).at(place()));

@@ -1,15 +1,17 @@
 //! A KES test as a model: the specimen of the instrument, its clamps, and the curve it would record.
 //!
 //! The linear solve gives one stiffness per test; the curve is that stiffness over the abscissae
-//! of the measurement. What a straight line cannot give (hysteresis, crimp interchange) shows as
+//! of the measurement. In large rotations the clamps move as those of the instrument, and the curve is
+//! what they feel; its stiffness is the slope where the instrument takes it. What a straight line cannot give (hysteresis, crimp interchange) shows as
 //! the difference.
 
 use nalgebra::Vector3;
 
 use super::StudyError;
 use super::build;
-use super::case::{Case, VirtualTest};
+use super::case::{Case, TestFormulation, VirtualTest};
 use super::prepared::stand_in;
+use super::virtual_large::LargeTest;
 use crate::characterise::FabricSheet;
 use crate::instrument::{Direction, Parameter, Test};
 use crate::mesh;
@@ -33,12 +35,41 @@ pub struct VirtualCurve {
     pub apparent: f64,
     /// The entry of the section that the test is meant to measure, same unit.
     pub ideal: f64,
+    /// What clamps and free edges do to the stiffness; none for compression.
+    pub edge: Option<EdgeEffect>,
+    /// The abscissa at which the specimen was found unstable first: a real one buckles before. In large
+    /// rotations only.
+    pub unstable_from: Option<f64>,
     law: Law,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// How far the stiffness of a specimen is from that of the sheet.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct EdgeEffect {
+    /// Stiffness of the specimen over the ideal one, without a tension across.
+    pub ratio: f64,
+    /// The same by a closed form; none where that does not hold.
+    pub closed_form: Option<f64>,
+    /// The closed form.
+    pub formula: &'static str,
+    /// The tension across a sheared specimen; none of other tests.
+    pub tension: Option<Tension>,
+}
+
+/// A tension across a sheared specimen.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Tension {
+    /// Its size per width (N/m): what it adds to the shear stiffness where the yarns carry it, W tan φ.
+    pub value: f64,
+    /// What it adds in the simulation (N/m).
+    pub adds: f64,
+}
+
+#[derive(Clone, Debug, PartialEq)]
 enum Law {
     Line(f64),
+    /// Points from the origin; odd, straight between and beyond them.
+    Points(Curve),
     /// P = P0 exp((T0 - T) / length).
     Exponential {
         p0: f64,
@@ -50,14 +81,23 @@ enum Law {
 impl VirtualCurve {
     /// A straight line through the origin.
     pub(super) fn line(test: Test, direction: Option<Direction>, slope: f64) -> Self {
-        Self { test, direction, apparent: slope, ideal: slope, law: Law::Line(slope) }
+        Self {
+            test,
+            direction,
+            apparent: slope,
+            ideal: slope,
+            edge: None,
+            unstable_from: None,
+            law: Law::Line(slope),
+        }
     }
 
     /// The simulated ordinate at an abscissa (SI).
     pub fn at(&self, x: f64) -> f64 {
-        match self.law {
+        match &self.law {
             Law::Line(slope) => slope * x,
-            Law::Exponential { p0, t0, length } => p0 * ((t0 - x) / length).exp(),
+            Law::Points(curve) => interpolate(curve, x.abs()).copysign(x),
+            Law::Exponential { p0, t0, length } => *p0 * ((t0 - x) / length).exp(),
         }
     }
 
@@ -86,6 +126,9 @@ pub struct PreparedTest {
     model: Model,
     plan: Plan,
     options: Options,
+    gauge: f64,
+    /// In large rotations.
+    large: Option<LargeTest>,
 }
 
 impl PreparedTest {
@@ -103,7 +146,8 @@ impl PreparedTest {
                 ));
             }
         };
-        let mesh = mesh::rectangle(gauge, WIDTH, spec.cells[0], spec.cells[1])?;
+        let [cells_along, cells_across] = spec.cells.unwrap_or([10, 20]);
+        let mesh = mesh::rectangle(gauge, WIDTH, cells_along, cells_across)?;
         let (left, right) = (mesh.set("left")?.to_vec(), mesh.set("right")?.to_vec());
         // A small unit of the abscissa; the solution is scaled, so its size is free.
         let x = match spec.test {
@@ -119,16 +163,28 @@ impl PreparedTest {
                 (Dof::ThetaY, vec![(Dof::ThetaY, x * gauge), (Dof::W, w), (Dof::ThetaX, 0.0)])
             }
         };
+        let formulation = build::formulation(case)?;
+        let large = match spec.formulation {
+            TestFormulation::Nonlinear => {
+                Some(LargeTest::new(spec, (gauge, WIDTH), formulation, stand_in(), options)?)
+            }
+            TestFormulation::Linear if spec.curvature.is_some() || spec.pretension.is_some() => {
+                return Err(case.inconsistent(
+                    "[virtual_test] curvature and pretension need formulation = \"nonlinear\"".into(),
+                ));
+            }
+            TestFormulation::Linear => None,
+        };
         let model = Model {
             mesh,
             section: stand_in(),
             warp: Vector3::x(),
-            formulation: build::formulation(case)?,
+            formulation,
             supports: vec![Support::clamped(&left), Support { nodes: right.clone(), held: moved }],
             loads: Vec::new(),
         };
         let plan = Plan::new(&model.mesh, &Plan::groups(&model, options), options.path)?;
-        Ok(Self { test: spec.test, x, reading, right, model, plan, options: *options })
+        Ok(Self { test: spec.test, x, reading, right, model, plan, options: *options, gauge, large })
     }
 
     /// Simulates the test of a specimen cut along `direction`.
@@ -136,23 +192,87 @@ impl PreparedTest {
     /// # Errors
     /// See [`StudyError`].
     pub fn simulate(&self, direction: Direction, section: &ShellSection) -> Result<VirtualCurve, StudyError> {
-        let warp = match direction {
+        let warp: Vector3<f64> = match direction {
             Direction::Warp => Vector3::x(),
             Direction::Weft => Vector3::y(),
             Direction::Bias => Vector3::new(1.0, 1.0, 0.0),
         };
+        let along = section.rotated(warp.y.atan2(warp.x));
+        let ideal = match self.test {
+            // A wide strip between free edges: uniaxial stiffness, 1 over the compliance.
+            Test::Tensile => uniaxial(&along, 0),
+            Test::Shear => along.d_m[(2, 2)],
+            _ => along.d_b[(0, 0)],
+        };
+        if let Some(large) = &self.large {
+            let reading = large.read(section, warp, &self.options)?;
+            let apparent = slope(self.test, &reading.curve);
+            let slack = reading.slack.as_ref().map_or(apparent, |curve| slope(self.test, curve));
+            let tension = Tension { value: large.pretension(), adds: apparent - slack };
+            let tension = reading.slack.is_some().then_some(tension);
+            let edge = Some(EdgeEffect { tension, ..self.edge(slack / ideal, &along) });
+            return Ok(VirtualCurve {
+                ideal,
+                edge,
+                unstable_from: reading.unstable_from,
+                law: Law::Points(reading.curve),
+                ..VirtualCurve::line(self.test, Some(direction), apparent)
+            });
+        }
         let model = Model { section: section.clone(), warp, ..self.model.clone() };
         let solution = solve::solve_with(&model, &self.plan, &self.options)?;
         let at = |n: &u32| solution.reaction[6 * *n as usize + self.reading as usize];
         let apparent = self.right.iter().map(at).sum::<f64>() / WIDTH / self.x;
-        let along = section.rotated(warp.y.atan2(warp.x));
-        let ideal = match self.test {
-            // A wide strip between free edges: uniaxial stiffness, 1 over the compliance.
-            Test::Tensile => along.d_m.try_inverse().map_or(f64::NAN, |c| 1.0 / c[(0, 0)]),
-            Test::Shear => along.d_m[(2, 2)],
-            _ => along.d_b[(0, 0)],
+        let edge = Some(self.edge(apparent / ideal, &along));
+        Ok(VirtualCurve { ideal, edge, ..VirtualCurve::line(self.test, Some(direction), apparent) })
+    }
+
+    /// The ratio beside its closed form, material axes along the specimen.
+    fn edge(&self, ratio: f64, along: &ShellSection) -> EdgeEffect {
+        let (slenderness, shear) = (self.gauge / WIDTH, along.d_m[(2, 2)]);
+        let (closed_form, formula) = match self.test {
+            Test::Tensile => {
+                let reach = 0.5 / slenderness * (shear / uniaxial(along, 1)).sqrt();
+                let coupling = along.d_m[(0, 1)].powi(2) / (along.d_m[(0, 0)] * along.d_m[(1, 1)]);
+                let ratio = 1.0 + reach * (1.0 / (1.0 - coupling) - 1.0);
+                ((reach < 0.4).then_some(ratio), "1 + φ (1/(1 - ν12 ν21) - 1), φ = 0.5 (W/L) √(G/E2) < 0.4")
+            }
+            Test::Shear => {
+                let ratio = 1.0 - 0.54 * slenderness * (shear / uniaxial(along, 0)).sqrt();
+                (Some(ratio), "1 - 0.54 (L/W) √(G/E1)")
+            }
+            _ => (Some(1.0), "1: a wide specimen bends to a cylinder"),
         };
-        Ok(VirtualCurve { ideal, ..VirtualCurve::line(self.test, Some(direction), apparent) })
+        EdgeEffect { ratio, closed_form, formula, tension: None }
+    }
+}
+
+/// Membrane stiffness along x (0) or y (1) when the other direction is free (N/m).
+fn uniaxial(section: &ShellSection, axis: usize) -> f64 {
+    section.d_m.try_inverse().map_or(f64::NAN, |c| 1.0 / c[(axis, axis)])
+}
+
+/// The slope of a curve where the instrument takes it: B from 0.5 to 1.5 1/cm, G from 0.5 to 2.5 degrees, tension
+/// from the origin. A curve that ends before is taken as a whole.
+fn slope(test: Test, curve: &Curve) -> f64 {
+    let [from, to] = match test {
+        Test::Bending => [50.0, 150.0],
+        Test::Shear => [0.5, 2.5].map(f64::to_radians),
+        _ => [0.0, curve.x.get(1).copied().unwrap_or(0.0)],
+    };
+    let end = curve.x.last().copied().unwrap_or(0.0);
+    let [from, to] = if end < to { [0.0, end] } else { [from, to] };
+    (interpolate(curve, to) - interpolate(curve, from)) / (to - from)
+}
+
+/// The ordinate at x >= 0 of a curve that ascends from the origin; its last piece goes on beyond its end.
+fn interpolate(curve: &Curve, x: f64) -> f64 {
+    let last = curve.len().saturating_sub(1);
+    let end = curve.x.partition_point(|v| *v < x).clamp(1, last.max(1));
+    let at = |k: usize| Some((*curve.x.get(k)?, *curve.y.get(k)?));
+    match (at(end - 1), at(end)) {
+        (Some((x0, y0)), Some((x1, y1))) => y0 + (y1 - y0) * (x - x0) / (x1 - x0),
+        _ => 0.0,
     }
 }
 
@@ -184,6 +304,8 @@ pub fn compression(sheet: &FabricSheet) -> Option<VirtualCurve> {
         direction: None,
         apparent: 0.0,
         ideal: 0.0,
+        edge: None,
+        unstable_from: None,
         law: Law::Exponential { p0: P0, t0, length },
     })
 }

@@ -22,6 +22,7 @@ use crate::element::MaterialAxisError;
 use crate::mesh::MeshError;
 use crate::model::ModelError;
 use crate::solve::SolveError;
+use crate::solve::nonlinear::NonlinearError;
 
 /// One comparison of the suite.
 #[derive(Clone, Debug)]
@@ -68,6 +69,8 @@ pub enum Function {
     ShearFlexible,
     /// Navier's (SSSS) or Ritz's (CCCC, CFFF) frequencies: thin.
     Frequencies,
+    /// The elastica of a strip, loaded at its end or by its weight.
+    Elastica,
 }
 
 /// How far from the reference a value may be, inclusive.
@@ -109,6 +112,9 @@ pub enum VerifyError {
     /// The model cannot be solved.
     #[error(transparent)]
     Solve(#[from] SolveError),
+    /// The model has no equilibrium in large rotations.
+    #[error(transparent)]
+    Nonlinear(#[from] NonlinearError),
     /// S201: the reference function does not cover the problem.
     #[error("S201 the reference function {function:?} does not cover this problem")]
     NoReference {
@@ -122,6 +128,7 @@ impl VerifyError {
     pub fn code(&self) -> &'static str {
         match self {
             Self::Solve(e) => e.code(),
+            Self::Nonlinear(e) => e.code(),
             Self::NoReference { .. } => "S201",
         }
     }

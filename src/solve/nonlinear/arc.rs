@@ -2,9 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use super::newton::{Converged, Failure, is_rounding, limit};
+use super::newton::{Converged, Drag, Failure, is_rounding, limit, newton};
 use super::system::System;
-use super::{NonlinearError, Progress, Settings, Solution, State, Step};
+use super::{Method, NonlinearError, Progress, Settings, Solution, State, Step};
 use crate::model::Model;
 use crate::solve::linear::Options;
 
@@ -19,12 +19,14 @@ pub struct ArcLength {
     pub iterations: usize,
     /// The longest arc, in lengths of the first.
     pub longest: f64,
+    /// Where the path first reaches this factor, Newton's method ends on it; `None` goes on.
+    pub until: Option<f64>,
 }
 
 impl Default for ArcLength {
-    /// A tenth of the load first, 100 steps, 5 iterations, at most 4 times the first length.
+    /// A tenth of the load first, 100 steps, 5 iterations, at most 4 times the first length, no end.
     fn default() -> Self {
-        Self { first: 0.1, steps: 100, iterations: 5, longest: 4.0 }
+        Self { first: 0.1, steps: 100, iterations: 5, longest: 4.0, until: None }
     }
 }
 
@@ -43,29 +45,44 @@ pub fn follow(
     settings: &Settings,
     arc: &ArcLength,
     options: &Options,
+    observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
+) -> Result<Solution, NonlinearError> {
+    let plan = super::plan(model, settings, options)?;
+    super::search(model, &plan, settings, &Method::ArcLength(*arc), options, observe)
+}
+
+pub(super) fn follow_path(
+    system: &System<'_>,
+    settings: &Settings,
+    arc: &ArcLength,
     mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    let system = System::new(model, settings, options)?;
-    let mut state = State::rest(&model.mesh);
+    let mut state = State::rest(&system.model.mesh);
     let mut balance = system.balance(&state, None);
     let mut progress = Progress::default();
     let (mut first, mut length, mut last) = (None, 0.0, Vec::new());
     while progress.steps < arc.steps {
         let shortest = first.map_or(0.0, |f: f64| HALVINGS * f);
-        match advance(&system, &state, settings, arc.first, length, &last) {
-            Ok((converged, travelled, taken)) => {
-                let flow = progress.show(&system, &converged, &mut observe);
+        match advance(system, &state, settings, arc.first, length, &last) {
+            Ok((mut converged, travelled, taken)) => {
+                let end =
+                    arc.until.filter(|end| (state.factor - end) * (converged.state.factor - end) <= 0.0);
+                if let Some(end) = end {
+                    converged = newton(system, &state, end, settings, &Drag::default())
+                        .map_err(|failure| failure.ends(progress.steps + 1, settings, state.clone()))?;
+                }
+                let flow = progress.show(system, &converged, &mut observe);
                 let longest = arc.longest * *first.get_or_insert(taken);
                 let growth = (arc.iterations as f64 / converged.iterations as f64).sqrt();
                 length = (taken * growth.clamp(0.5, 1.5)).min(longest);
                 last = travelled;
                 (state, balance) = (converged.state, converged.balance);
-                if flow.is_break() {
+                if flow.is_break() || end.is_some() {
                     break;
                 }
             }
             Err(failure) => {
-                progress.iterations += failure.iterations;
+                progress.cut_back(&failure);
                 length *= 0.5;
                 if length <= shortest {
                     return Err(failure.ends(progress.steps + 1, settings, state));
@@ -73,7 +90,7 @@ pub fn follow(
             }
         }
     }
-    progress.finish(&system, state, &balance)
+    progress.finish(system, state, &balance)
 }
 
 /// One step of a length (0: that of the factor `first`) on from the displacements `last`. Returns its own

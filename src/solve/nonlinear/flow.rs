@@ -7,7 +7,7 @@ use rand_pcg::Pcg64Mcg;
 
 use super::newton::{Drag, Failure, newton};
 use super::system::System;
-use super::{NonlinearError, Progress, Settings, Solution, State, Step, stability};
+use super::{Method, NonlinearError, Perturbation, Progress, Settings, Solution, State, Step, stability};
 use crate::model::Model;
 use crate::solve::linear::Options;
 
@@ -61,7 +61,8 @@ pub fn relax(
     options: &Options,
     observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    relax_from(model, State::rest(&model.mesh), settings, flow, options, observe)
+    let plan = super::plan(model, settings, options)?;
+    super::search(model, &plan, settings, &Method::Flow(*flow), options, observe)
 }
 
 /// The same from a state of the sheet instead of the rest.
@@ -74,21 +75,32 @@ pub fn relax_from(
     settings: &Settings,
     flow: &Flow,
     options: &Options,
+    observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
+) -> Result<Solution, NonlinearError> {
+    let plan = super::plan(model, settings, options)?;
+    let system = System::new(model, &plan, settings, options)?;
+    relax_system(&system, start, settings, flow, observe)
+}
+
+pub(super) fn relax_system(
+    system: &System<'_>,
+    start: State,
+    settings: &Settings,
+    flow: &Flow,
     mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    let system = System::new(model, settings, options)?;
     let mut state = start;
-    let first = first_rate(&system, model, &State::rest(&model.mesh));
-    let noise = noise(&system, flow);
+    let first = first_rate(system, system.model, &State::rest(&system.model.mesh));
+    let noise = noise(system, &Perturbation { size: flow.perturbation, seed: flow.seed });
     let mut inner = Settings { iterations: INNER_ITERATIONS, ..settings.clone() };
     let (mut pace, mut perturbed, mut kicks) = (Pace::new(first), flow.perturbation > 0.0, 0);
     let mut progress = Progress::default();
     loop {
         let drag = Drag { rate: pace.rate, extra: perturbed.then_some(&noise[..]) };
-        let step = match newton(&system, &state, 1.0, &inner, &drag) {
+        let step = match newton(system, &state, 1.0, &inner, &drag) {
             Ok(step) => step,
             Err(failure) => {
-                progress.iterations += failure.iterations;
+                progress.cut_back(&failure);
                 pace.slow();
                 if pace.rate > LARGEST_RISE * first {
                     return Err(failure.ends(progress.steps + 1, settings, state));
@@ -96,14 +108,14 @@ pub fn relax_from(
                 continue;
             }
         };
-        let stop = progress.show(&system, &step, &mut observe).is_break();
+        let stop = progress.show(system, &step, &mut observe).is_break();
         pace.quicken(step.iterations);
         let residual = step.balance.relative_residual();
         // The flow itself needs no more digits than it has yet to go.
         inner.tolerance = (INNER_TOLERANCE * residual).clamp(settings.tolerance, INNER_TOLERANCE);
         let at_rest = residual <= settings.tolerance || (step.at_rest && step.iterations == 1);
         if stop {
-            return progress.finish(&system, step.state, &step.balance);
+            return progress.finish(system, step.state, &step.balance);
         }
         if progress.steps >= flow.steps {
             return Err(Failure::unfinished(step).ends(progress.steps, settings, state));
@@ -112,9 +124,9 @@ pub fn relax_from(
         if perturbed && (at_rest || residual <= SETTLING) {
             perturbed = false;
         } else if !perturbed && at_rest {
-            let (stability, shape) = stability::check(&system, &state, &step.balance)?;
+            let (stability, shape) = stability::check(system, &state, &step.balance)?;
             if stability.is_stable() || kicks == KICKS {
-                return progress.finish(&system, state, &step.balance);
+                return progress.finish(system, state, &step.balance);
             }
             kicks += 1;
             system.advance(&mut state, &kick(system.size, &shape));
@@ -168,16 +180,16 @@ fn kick(size: f64, shape: &[f64]) -> Vec<f64> {
     shape.iter().map(|s| s / largest).collect()
 }
 
-/// Random forces on the free displacements, of the flow's part of the mean load per area.
-fn noise(system: &System<'_>, flow: &Flow) -> Vec<f64> {
-    let mut random = Pcg64Mcg::seed_from_u64(flow.seed);
+/// Random forces on the free displacements, of a part of the mean load per area.
+pub(super) fn noise(system: &System<'_>, perturbation: &Perturbation) -> Vec<f64> {
+    let mut random = Pcg64Mcg::seed_from_u64(perturbation.seed);
     let area: f64 = system.metric.iter().step_by(6).sum();
     let load = system.total_load() / area;
     (0..system.held.len())
         .map(|d| {
             let part: f64 = random.random_range(-1.0..1.0);
             let moves = d % 6 < 3 && !system.held[d];
-            if moves { flow.perturbation * load * system.metric[d] * part } else { 0.0 }
+            if moves { perturbation.size * load * system.metric[d] * part } else { 0.0 }
         })
         .collect()
 }

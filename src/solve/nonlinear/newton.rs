@@ -25,6 +25,18 @@ pub(super) struct Converged {
     pub at_rest: bool,
 }
 
+impl Converged {
+    /// The same if it is stable.
+    pub fn stable(self, system: &System<'_>) -> Result<Self, Failure> {
+        let (matrix, _) = system.tangent(&self.state, &self.balance, &self.balance.local, 0.0);
+        match system.factorise(&matrix) {
+            Ok(tangent) if tangent.negative_pivots() == 0 => Ok(self),
+            Ok(_) => Err(Failure::unfinished(self)),
+            Err(cause) => Err(Failure { cause: Some(cause), ..Failure::unfinished(self) }),
+        }
+    }
+}
+
 /// Why an attempt was given up.
 pub(super) struct Failure {
     pub iterations: usize,

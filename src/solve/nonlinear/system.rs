@@ -2,18 +2,20 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector3};
 use rayon::prelude::*;
 
 use super::{NonlinearError, Settings, State};
 use crate::element::corotational::{Motion, Reference};
-use crate::element::{Matrix24, Vector24, lumped_mass};
+use crate::element::{Matrix24, Vector24, follower_pressure, follower_pressure_tangent, lumped_mass};
+use crate::mesh::QuadMesh;
 use crate::model::rigid::{leads, lever};
-use crate::model::{DofGroup, Model, ModelError};
+use crate::model::{Model, ModelError};
 use crate::solve::SolveError;
-use crate::solve::assemble::{Pattern, scatter, unit_rows};
-use crate::solve::factor::{self, Analysis, Factor, FactorError};
+use crate::solve::assemble::{scatter, unit_rows};
+use crate::solve::factor::{Factor, FactorError};
 use crate::solve::linear::Options;
+use crate::solve::plan::Plan;
 use crate::solve::sparse::BlockMatrix;
 
 /// Elements whose tangents are held at a time before they are added up in order.
@@ -22,7 +24,8 @@ const BATCH: usize = 512;
 /// What does not change while a model deforms. Vectors hold six numbers a node; followers of a
 /// rigid body have theirs added to the lead's and count as held.
 pub(super) struct System<'a> {
-    model: &'a Model,
+    pub model: &'a Model,
+    pub plan: &'a Plan,
     threads: usize,
     references: Vec<Reference>,
     /// Which stiffness each element has.
@@ -31,10 +34,10 @@ pub(super) struct System<'a> {
     /// Nodes of each element, followers replaced by their leads.
     quads: Vec<[u32; 4]>,
     leads: Vec<u32>,
-    pattern: Pattern,
-    analysis: Analysis,
-    /// Loads at factor 1.
+    /// Dead loads at factor 1.
     load: Vec<f64>,
+    /// Follower pressure at factor 1 (Pa).
+    pressure: f64,
     /// Whether a dof is held.
     pub held: Vec<bool>,
     /// Values of the held dofs at factor 1.
@@ -66,33 +69,33 @@ pub(super) struct Balance {
 }
 
 impl<'a> System<'a> {
-    pub fn new(model: &'a Model, settings: &Settings, options: &Options) -> Result<Self, NonlinearError> {
+    /// Of a model; `plan` is that of [`plan`](super::plan) for its mesh and bodies.
+    pub fn new(
+        model: &'a Model,
+        plan: &'a Plan,
+        settings: &Settings,
+        options: &Options,
+    ) -> Result<Self, NonlinearError> {
         let nodes = model.mesh.nodes.len();
         let mut constraints = model.constraints();
         let leads = leads(nodes, &settings.bodies, &constraints)?;
         for node in (0..nodes).filter(|n| leads[*n] as usize != *n) {
             constraints[6 * node..][..6].fill(Some(0.0));
         }
-        let quads: Vec<[u32; 4]> =
-            model.mesh.quads.iter().map(|quad| quad.map(|n| leads[n as usize])).collect();
-        let pattern = Pattern::new(nodes, &quads);
-        let coordinates: Vec<[f64; 3]> = model.mesh.nodes.iter().map(|p| [p.x, p.y, p.z]).collect();
-        let analysis =
-            factor::analyse(&pattern.graph, DofGroup::Shell.dofs().len(), Some(&coordinates), options.path)
-                .map_err(SolveError::Factor)?;
+        let quads = quads_of_leads(&model.mesh, &leads);
         let first = model.mesh.nodes.first().copied().unwrap_or_default();
         let (low, high) = model.mesh.nodes.iter().fold((first, first), |(l, h), p| (l.inf(p), h.sup(p)));
         let mut system = Self {
             model,
+            plan,
             threads: options.threads,
             references: Vec::with_capacity(quads.len()),
             kinds: Vec::with_capacity(quads.len()),
             stiffnesses: Vec::new(),
             quads,
             leads,
-            pattern,
-            analysis,
-            load: model.load_vector(),
+            load: model.dead_load_vector(),
+            pressure: model.follower_pressure(),
             held: constraints.iter().map(Option::is_some).collect(),
             values: constraints.iter().map(|c| c.unwrap_or(0.0)).collect(),
             metric: vec![0.0; 6 * nodes],
@@ -152,16 +155,21 @@ impl<'a> System<'a> {
             );
             let local = self.stiffness(q) * motion.deformation;
             let force = motion.force(&local);
-            (motion, local, force)
+            (motion, local, force, self.push_of(state, q))
         });
         let mut external: Vec<f64> = self.load.iter().map(|f| f * state.factor).collect();
         if let Some(extra) = extra {
             external.iter_mut().zip(extra).for_each(|(f, e)| *f += e);
         }
+        for (quad, (.., pushes)) in mesh.quads.iter().zip(&parts) {
+            for (node, push) in quad.iter().zip(pushes.iter().flatten()) {
+                (0..3).for_each(|d| external[6 * *node as usize + d] += push[d]);
+            }
+        }
         let mut nodal: Vec<f64> = external.iter().map(|f| -f).collect();
         let (mut motions, mut locals) = (Vec::with_capacity(parts.len()), Vec::with_capacity(parts.len()));
         let mut energy = 0.0;
-        for (quad, (motion, local, force)) in mesh.quads.iter().zip(parts) {
+        for (quad, (motion, local, force, _)) in mesh.quads.iter().zip(parts) {
             for (i, node) in quad.iter().enumerate() {
                 for d in 0..6 {
                     nodal[6 * *node as usize + d] += force[6 * i + d];
@@ -200,14 +208,49 @@ impl<'a> System<'a> {
         reduced
     }
 
+    /// Forces of the follower pressure on the nodes of an element, at the factor of the state; `None` without
+    /// pressure.
+    fn push_of(&self, state: &State, quad: usize) -> Option<[Vector3<f64>; 4]> {
+        let pressure = self.pressure * state.factor;
+        (pressure != 0.0).then(|| follower_pressure(&self.corners(state, quad), pressure))
+    }
+
+    /// Where the corners of an element are.
+    fn corners(&self, state: &State, quad: usize) -> [Point3<f64>; 4] {
+        self.model.mesh.quads[quad].map(|n| state.position[n as usize])
+    }
+
+    /// Takes the follower pressure from a tangent. The part that is not symmetric belongs to free edges; without
+    /// it Newton's method is still quick, but no longer quadratic there.
+    fn soften(&self, state: &State, quad: usize, k: &mut Matrix24) {
+        let pressure = self.pressure * state.factor;
+        if pressure == 0.0 {
+            return;
+        }
+        let tangent = follower_pressure_tangent(&self.corners(state, quad), pressure);
+        for (i, j) in (0..12).flat_map(|i| (0..12).map(move |j| (i, j))) {
+            let mean = 0.5 * (tangent[(i, j)] + tangent[(j, i)]);
+            k[(6 * (i / 3) + i % 3, 6 * (j / 3) + j % 3)] -= mean;
+        }
+    }
+
     /// The loads at factor 1, by dof.
     pub fn reference_load(&self, state: &State) -> Vec<f64> {
-        self.to_leads(state, &self.load)
+        let mut nodal = self.load.clone();
+        if self.pressure != 0.0 {
+            for (q, quad) in self.model.mesh.quads.iter().enumerate() {
+                let forces = follower_pressure(&self.corners(state, q), self.pressure);
+                for (node, force) in quad.iter().zip(forces) {
+                    (0..3).for_each(|d| nodal[6 * *node as usize + d] += force[d]);
+                }
+            }
+        }
+        self.to_leads(state, &nodal)
     }
 
     /// Sum of the sizes of the nodal loads at factor 1 (N).
     pub fn total_load(&self) -> f64 {
-        self.load.chunks_exact(6).map(|n| n[0].hypot(n[1]).hypot(n[2])).sum()
+        self.model.load_vector().chunks_exact(6).map(|n| n[0].hypot(n[1]).hypot(n[2])).sum()
     }
 
     /// The order of the largest eigenvalue per area: the membrane of an element (N/m³).
@@ -226,18 +269,33 @@ impl<'a> System<'a> {
         local: &[Vector24],
         shift: f64,
     ) -> (BlockMatrix, Vec<f64>) {
-        let mut matrix = BlockMatrix::zeros(Arc::clone(&self.pattern.graph), 6);
+        self.tangent_of(state, balance, local, shift, 1.0)
+    }
+
+    /// The same with the stiffnesses of the elements times `stiffening`.
+    pub fn tangent_of(
+        &self,
+        state: &State,
+        balance: &Balance,
+        local: &[Vector24],
+        shift: f64,
+        stiffening: f64,
+    ) -> (BlockMatrix, Vec<f64>) {
+        let pattern = &self.plan.pattern;
+        let mut matrix = BlockMatrix::zeros(Arc::clone(&pattern.graph), 6);
         let mut push = vec![0.0; self.held.len()];
         let pushes = self.values.iter().any(|v| *v != 0.0);
         for start in (0..self.quads.len()).step_by(BATCH) {
             let batch = start..(start + BATCH).min(self.quads.len());
             let tangents = self.each(batch.clone(), |q| {
-                let k = balance.motions[q].tangent(self.stiffness(q), &local[q]);
+                let k = *self.stiffness(q) * stiffening;
+                let mut k = balance.motions[q].tangent(&k, &local[q]);
+                self.soften(state, q, &mut k);
                 self.constrain(state, q, k, pushes)
             });
             for (q, (k, forces)) in batch.zip(tangents) {
                 let nodes = &self.quads[q];
-                scatter(k.as_slice(), 6, nodes, &self.pattern.blocks[q], &mut matrix);
+                scatter(k.as_slice(), 6, nodes, &pattern.blocks[q], &mut matrix);
                 for (i, node) in nodes.iter().enumerate() {
                     for d in 0..6 {
                         push[6 * *node as usize + d] += forces[6 * i + d];
@@ -246,7 +304,7 @@ impl<'a> System<'a> {
             }
         }
         self.add_body_terms(state, balance, &mut matrix);
-        let graph = Arc::clone(&self.pattern.graph);
+        let graph = &pattern.graph;
         for dof in (0..self.held.len()).filter(|d| !self.held[*d]) {
             matrix.values[graph.col_ptr[dof / 6] * 36 + (dof % 6) * 7] += shift * self.metric[dof];
         }
@@ -285,7 +343,7 @@ impl<'a> System<'a> {
 
     /// Forces on followers turn with the body: `n (r · dω) - ...` on the rotation of the lead.
     fn add_body_terms(&self, state: &State, balance: &Balance, matrix: &mut BlockMatrix) {
-        let graph = Arc::clone(&self.pattern.graph);
+        let graph = &self.plan.pattern.graph;
         for node in (0..self.leads.len()).filter(|n| self.leads[*n] as usize != *n) {
             let lead = self.leads[node] as usize;
             let lever = lever(&state.position, &self.leads, node).cross_matrix();
@@ -301,7 +359,7 @@ impl<'a> System<'a> {
     }
 
     pub fn factorise(&self, matrix: &BlockMatrix) -> Result<Factor, FactorError> {
-        self.analysis.factorise_indefinite(matrix, self.threads)
+        self.plan.groups[0].1.factorise_indefinite(matrix, self.threads)
     }
 
     /// Displacement and spin of a node for a step of the dofs, to first order.
@@ -322,6 +380,30 @@ impl<'a> System<'a> {
             }
             balance.local[q] + self.stiffness(q) * balance.motions[q].deformation_rate(&spins)
         })
+    }
+
+    /// Forces by dof of `beta` times the elements' stiffnesses at the rate of their deformation, and the same in
+    /// their frames. Rigid motions cost nothing.
+    pub fn viscous(&self, balance: &Balance, velocity: &[f64], beta: f64) -> (Vec<f64>, Vec<Vector24>) {
+        let mut forces = vec![0.0; velocity.len()];
+        if beta == 0.0 {
+            return (forces, vec![Vector24::zeros(); self.quads.len()]);
+        }
+        let parts = self.each(0..self.quads.len(), |q| {
+            let nodes = &self.quads[q];
+            let rates = Vector24::from_fn(|k, _| velocity[6 * nodes[k / 6] as usize + k % 6]);
+            let motion = &balance.motions[q];
+            let local = self.stiffness(q) * motion.deformation_rate(&rates) * beta;
+            (motion.force(&local), local)
+        });
+        let mut locals = Vec::with_capacity(parts.len());
+        for (nodes, (force, local)) in self.quads.iter().zip(parts) {
+            for k in 0..24 {
+                forces[6 * nodes[k / 6] as usize + k % 6] += force[k];
+            }
+            locals.push(local);
+        }
+        (forces, locals)
     }
 
     /// Moves the nodes by a step of the dofs: rotations compose, bodies stay rigid.
@@ -347,6 +429,11 @@ impl<'a> System<'a> {
     pub fn reactions(&self, balance: &Balance) -> Vec<f64> {
         balance.unbalanced.iter().zip(&self.held).map(|(f, held)| if *held { *f } else { 0.0 }).collect()
     }
+}
+
+/// The elements with the leads of their nodes.
+pub(super) fn quads_of_leads(mesh: &QuadMesh, leads: &[u32]) -> Vec<[u32; 4]> {
+    mesh.quads.iter().map(|quad| quad.map(|n| leads[n as usize])).collect()
 }
 
 /// Three entries as a vector.

@@ -20,7 +20,7 @@ pub enum Analysis {
         #[serde(default)]
         lumped: bool,
     },
-    /// Linear dynamics from rest (Newmark, average acceleration).
+    /// Dynamics from rest (Newmark, average acceleration).
     Newmark {
         /// End of the time range.
         duration: Time,
@@ -36,6 +36,12 @@ pub enum Analysis {
         /// Row sums as mass matrix.
         #[serde(default)]
         lumped: bool,
+        /// Rotations of any size (generalised-α method) instead of small displacements.
+        #[serde(default)]
+        large_rotations: bool,
+        /// How much of the highest frequencies is left after a step, 0 to 1; 0.9 when left out. With large
+        /// rotations only.
+        spectral_radius: Option<f64>,
     },
     /// A round sheet hangs from a disc: an `annulus` held at `inner`, in large rotations.
     Drape {
@@ -46,14 +52,53 @@ pub enum Analysis {
         #[serde(default = "default_refinements")]
         refinements: usize,
     },
+    /// Statics in large rotations.
+    Nonlinear(NonlinearTable),
 }
 
 fn default_folds() -> Vec<usize> {
-    vec![2, 3, 4, 5, 6, 7]
+    vec![3, 4, 5, 6, 7]
 }
 
 fn default_refinements() -> usize {
     1
+}
+
+/// `[analysis]` with `kind = "nonlinear"`; what is left out is chosen by the method.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct NonlinearTable {
+    /// The way to the equilibrium.
+    pub method: MethodChoice,
+    /// Unbalanced forces that are accepted, relative to loads or reactions; 1e-8.
+    pub tolerance: Option<f64>,
+    /// Iterations in a step before it counts as failed; 25.
+    pub iterations: Option<usize>,
+    /// First step of the load factor: `newton` 1, `arc_length` 0.1.
+    pub first_step: Option<f64>,
+    /// Largest step of the load factor (`newton`); 1.
+    pub largest_step: Option<f64>,
+    /// A step that has been halved below this one ends the search (`newton`); 1e-5.
+    pub smallest_step: Option<f64>,
+    /// Steps before the search is given up: `arc_length` 100, `flow` 400.
+    pub steps: Option<usize>,
+    /// Size of random loads that break the symmetry, relative to the mean load: `newton` none, `flow` 1e-3.
+    pub perturbation: Option<f64>,
+    /// Seed of the random loads; 1.
+    pub seed: Option<u64>,
+}
+
+/// Ways to an equilibrium.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MethodChoice {
+    /// Newton's method in adaptive steps of the load.
+    #[default]
+    Newton,
+    /// The path through limit points of the load.
+    ArcLength,
+    /// The implicit gradient flow of the energy, which ends in a stable equilibrium.
+    Flow,
 }
 
 fn default_modes() -> usize {

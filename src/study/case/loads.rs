@@ -42,6 +42,10 @@ pub enum LoadTable {
     Pressure {
         /// Pressure.
         value: Pressure,
+        /// Whether it stays normal to the sheet as it moves; otherwise it keeps the directions and areas of
+        /// the sheet at rest. Without large rotations both are the same.
+        #[serde(default)]
+        follower: bool,
     },
     /// Own weight.
     Gravity {

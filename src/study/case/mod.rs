@@ -18,14 +18,14 @@ use serde::Deserialize;
 use crate::constitutive::Assumptions;
 use crate::finding::Place;
 
-pub use analysis::Analysis;
+pub use analysis::{Analysis, MethodChoice, NonlinearTable};
 pub use check::{Check, ProbeTable, Reference, ReferenceKind};
 pub use element::{DrillingChoice, ElementTable, MembraneChoice, Profile, Subcells};
 pub use error::CaseError;
 pub use loads::{LoadTable, SupportKind, SupportTable};
 pub use section::SectionTable;
 pub use sheet::{Shape, Sheet};
-pub use virtual_test::VirtualTest;
+pub use virtual_test::{TestFormulation, VirtualTest};
 
 /// A case as it is written in its file; unknown keys are refused.
 #[derive(Clone, Debug, Deserialize)]

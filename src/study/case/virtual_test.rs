@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 use crate::instrument::Test;
-use crate::quantity::Curvature;
+use crate::quantity::{Curvature, LineForce};
 
 /// `[virtual_test]`: an instrument's test as a model, once along the warp and once along the weft.
 #[derive(Clone, Debug, Deserialize)]
@@ -11,13 +11,25 @@ use crate::quantity::Curvature;
 pub struct VirtualTest {
     /// Which test.
     pub test: Test,
-    /// Elements along the gauge length and across the specimen.
-    #[serde(default = "default_cells")]
-    pub cells: [usize; 2],
-    /// Largest curvature of a bending test; 2.5 1/cm.
+    /// Elements along the gauge length and across the specimen; 10 and 20, for shear in large rotations 8
+    /// and 128.
+    pub cells: Option<[usize; 2]>,
+    /// Small displacements and one slope, or large rotations and the whole curve.
+    #[serde(default)]
+    pub formulation: TestFormulation,
+    /// Largest curvature of a bending test in large rotations; 2.5 1/cm.
     pub curvature: Option<Curvature>,
+    /// Tension across a specimen that is sheared in large rotations; 10 gf/cm.
+    pub pretension: Option<LineForce>,
 }
 
-fn default_cells() -> [usize; 2] {
-    [10, 20]
+/// How a virtual test is solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TestFormulation {
+    /// One linear solve: milliseconds, and the slope at the origin.
+    #[default]
+    Linear,
+    /// Large rotations: the clamps as they are, the curve as it comes.
+    Nonlinear,
 }

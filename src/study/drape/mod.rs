@@ -288,7 +288,7 @@ fn findings(
     let place = || Place::file(&case.path);
     let mut findings = vec![
         Finding::new(
-            "S110",
+            "S120",
             "elastic: the friction between yarns is left out, which holds a sheet up: the coefficient is too low by it",
         )
         .at(place()),
@@ -300,14 +300,14 @@ fn findings(
             failed.len(),
             starts.join(", ")
         );
-        findings.push(Finding::new("S111", message).at(place()));
+        findings.push(Finding::new("S121", message).at(place()));
     }
     if finest.negative_pivots > 0 {
         let message = format!(
             "the state of lowest energy is unstable in {} directions: it is no shape that a sheet stays in",
             finest.negative_pivots
         );
-        findings.push(Finding::new("S112", message).at(place()));
+        findings.push(Finding::new("S122", message).at(place()));
     }
     findings
 }

@@ -58,7 +58,7 @@ fn a_cloth_hangs_in_folds_and_does_so_always() {
     }
     let [low, high] = drape.band();
     assert!(low <= drape.finest.coefficient && drape.finest.coefficient <= high);
-    assert!(drape.findings.iter().any(|f| f.code == "S110"));
+    assert!(drape.findings.iter().any(|f| f.code == "S120"));
     let again = run(&cloth);
     assert_eq!((again.states, again.finest), (drape.states, drape.finest));
 }

@@ -3,10 +3,12 @@
 mod disc;
 mod dynamics;
 mod element;
+mod large_shell;
 mod patch;
 mod plate;
 mod quad_plate;
 mod shell;
+mod strip;
 
 use nalgebra::{Matrix2, Matrix3, Point3};
 use serde::Deserialize;
@@ -40,6 +42,14 @@ pub enum Problem {
     Skew(quad_plate::Skew),
     /// Curved shells.
     Shell(shell::Shell),
+    /// Plates and shells in large rotations.
+    LargeShell(large_shell::LargeShell),
+    /// Strips in large rotations.
+    Strip(strip::Strip),
+    /// KES-FB2.
+    BendingTest(strip::BendingTest),
+    /// A rigid strip that swings.
+    Pendulum(strip::Pendulum),
     /// Newmark's method against all modes.
     Newmark(dynamics::NewmarkProblem),
 }
@@ -59,6 +69,10 @@ impl Problem {
             Self::Disc(p) => p.value().map(nowhere),
             Self::Skew(p) => p.value().map(nowhere),
             Self::Shell(p) => p.value().map(nowhere),
+            Self::LargeShell(p) => p.value().map(nowhere),
+            Self::Strip(p) => p.value().map(nowhere),
+            Self::BendingTest(p) => p.value().map(nowhere),
+            Self::Pendulum(p) => p.value().map(nowhere),
             Self::Newmark(p) => p.value().map(nowhere),
         }
     }
@@ -67,6 +81,7 @@ impl Problem {
     pub(super) fn exact(&self, function: Function, at: [f64; 2]) -> Option<f64> {
         match self {
             Self::Plate(p) => p.exact(function, at),
+            Self::Strip(p) => p.exact(function),
             _ => None,
         }
     }

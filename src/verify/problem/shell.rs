@@ -92,7 +92,11 @@ impl Shell {
 }
 
 /// A unit square of n x m elements, mapped.
-fn mapped(n: usize, m: usize, map: impl Fn(f64, f64) -> Point3<f64>) -> Result<QuadMesh, VerifyError> {
+pub(super) fn mapped(
+    n: usize,
+    m: usize,
+    map: impl Fn(f64, f64) -> Point3<f64>,
+) -> Result<QuadMesh, VerifyError> {
     let mut mesh = rectangle(1.0, 1.0, n, m)?;
     mesh.nodes.iter_mut().for_each(|p| *p = map(p.x, p.y));
     Ok(mesh)

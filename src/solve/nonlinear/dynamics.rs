@@ -1,0 +1,340 @@
+//! Dynamics in large rotations: the generalised-α method (Chung and Hulbert 1993) in its form for
+//! rotations (Arnold and Brüls, *Multibody Syst. Dyn.* 18 (2007) 185), from rest.
+//!
+//! `M q̈ + α M v + f_visc(q, v) + f_int(q) = λ(t) f_ext` holds at the end of every step; rotations advance by
+//! `R_{n+1} = exp(Δθ) R_n` with spatial increments. Second order in the step. The spectral radius of the
+//! highest frequencies, 0 to 1, sets how quickly what the mesh cannot show dies away: 1 keeps all of it,
+//! which in large rotations of a sheet that hardly stretches may end in divergence.
+//!
+//! Rayleigh damping: `α M v`, and `β` times the rate of the element's own deformation, so that rigid
+//! motions are not damped by it. The rotary inertia of a node is `t²/12` of its mass about every axis, so
+//! that it does not turn with the sheet.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use nalgebra::SMatrix;
+
+use super::newton::{is_rounding, limit};
+use super::system::{Balance, System};
+use super::{NonlinearError, Settings, State, plan};
+use crate::element::{Frame, Vector24, consistent_mass, lumped_mass};
+use crate::model::Model;
+use crate::solve::SolveError;
+use crate::solve::assemble::{scatter, unit_rows};
+use crate::solve::linear::Options;
+use crate::solve::newmark::{Energy, Instant, LoadHistory, Rayleigh};
+use crate::solve::sparse::BlockMatrix;
+
+/// What to integrate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dynamics {
+    /// End of the time range (s).
+    pub duration: f64,
+    /// Time step (s): the first one with a tolerance, and the longest one without.
+    pub step: f64,
+    /// Relative local error of the displacement at which the step is halved or doubled; `None` shortens it
+    /// only where Newton's method fails.
+    pub tolerance: Option<f64>,
+    /// Spectral radius of the highest frequencies, 0 to 1.
+    pub spectral_radius: f64,
+    /// Damping.
+    pub damping: Rayleigh,
+    /// The load in time.
+    pub load: LoadHistory,
+    /// Row sums as mass matrix.
+    pub lumped: bool,
+}
+
+/// Iterations before a step is halved.
+const ITERATIONS: usize = 25;
+
+/// Unbalanced forces that are accepted, relative to loads, reactions or inertia.
+const RESIDUAL: f64 = 1e-9;
+
+/// Integrates from rest and shows every instant, the start included, to `observe`, which may stop it.
+/// Returns the last state.
+///
+/// Held values other than zero are not part of a dynamic run: they count as zero.
+///
+/// # Errors
+/// M008 for the model; N002 for memory; N005 when the step vanishes.
+pub fn integrate(
+    model: &Model,
+    dynamics: &Dynamics,
+    options: &Options,
+    mut observe: impl FnMut(&Instant<'_>) -> ControlFlow<()>,
+) -> Result<State, NonlinearError> {
+    let settings = Settings::default();
+    let plan = plan(model, &settings, options)?;
+    let system = System::new(model, &plan, &settings, options)?;
+    let motion = Motion::new(&system, dynamics);
+    let mut now = motion.start()?;
+    let (mut time, mut step) = (0.0, dynamics.step);
+    let mut energy = Energy::default();
+    let show = |time, now: &Now, energy, observe: &mut dyn FnMut(&Instant<'_>) -> ControlFlow<()>| {
+        observe(&Instant { time, displacement: &now.state.displacement(&model.mesh), energy })
+    };
+    if show(0.0, &now, energy, &mut observe).is_break() {
+        return Ok(now.state);
+    }
+    let mut largest = 0.0f64;
+    // A remainder below a millionth of a step is rounding of the sum of steps.
+    while dynamics.duration - time > 1e-6 * step {
+        let dt = step.min(dynamics.duration - time);
+        let next = motion.advance(&now, time + dt, dt);
+        let error = next.as_ref().map(|next| motion.error(&now, next, dt, largest));
+        let kept = match (error, dynamics.tolerance) {
+            (Some(error), Some(tolerance)) => error <= tolerance,
+            (error, _) => error.is_some(),
+        };
+        let (Some(next), true) = (next, kept) else {
+            step = 0.5 * dt;
+            if step < 1e-9 * dynamics.duration {
+                return Err(SolveError::StepVanished { time }.into());
+            }
+            continue;
+        };
+        motion.account(&now, &next, &mut energy);
+        now = next;
+        time += dt;
+        largest = now.state.displacement(&model.mesh).iter().fold(largest, |m, u| m.max(u.abs()));
+        step = match (error, dynamics.tolerance) {
+            // The error is of third order in the step: doubling it needs a margin of eight, and some.
+            (Some(error), Some(tolerance)) if error < tolerance / 20.0 => 2.0 * step,
+            (_, Some(_)) => step,
+            (_, None) => (2.0 * step).min(dynamics.step),
+        };
+        if show(time, &now, energy, &mut observe).is_break() {
+            break;
+        }
+    }
+    Ok(now.state)
+}
+
+/// The state at an instant.
+struct Now {
+    state: State,
+    velocity: Vec<f64>,
+    acceleration: Vec<f64>,
+    /// The acceleration of the update formulas, a weighted mean in time of the true one.
+    mean_acceleration: Vec<f64>,
+    balance: Balance,
+    /// `α M v` and the forces of the elements' viscosity.
+    damping: Vec<f64>,
+    /// Loads at this instant.
+    load: Vec<f64>,
+    /// Displacements and rotations since the instant before.
+    travelled: Vec<f64>,
+}
+
+/// A model in motion.
+struct Motion<'a> {
+    system: &'a System<'a>,
+    dynamics: &'a Dynamics,
+    mass: BlockMatrix,
+    alpha_m: f64,
+    alpha_f: f64,
+    beta: f64,
+    gamma: f64,
+}
+
+impl<'a> Motion<'a> {
+    fn new(system: &'a System<'a>, dynamics: &'a Dynamics) -> Self {
+        let rho = dynamics.spectral_radius;
+        let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
+        let gamma = 0.5 + alpha_f - alpha_m;
+        let beta = 0.25 * (0.5 + gamma) * (0.5 + gamma);
+        Self { mass: mass(system, dynamics.lumped), system, dynamics, alpha_m, alpha_f, beta, gamma }
+    }
+
+    /// At rest under the loads of the first instant.
+    fn start(&self) -> Result<Now, NonlinearError> {
+        let mut state = State::rest(&self.system.model.mesh);
+        state.factor = self.dynamics.load.at(0.0);
+        let balance = self.system.balance(&state, None);
+        let mut matrix = self.mass.clone();
+        unit_rows(&mut matrix, &self.system.held);
+        let mut acceleration: Vec<f64> = balance.unbalanced.iter().map(|f| -f).collect();
+        self.free(&mut acceleration);
+        self.system.factorise(&matrix).map_err(SolveError::Factor)?.solve(&mut acceleration, 1);
+        let still = vec![0.0; acceleration.len()];
+        Ok(Now {
+            velocity: still.clone(),
+            mean_acceleration: acceleration.clone(),
+            acceleration,
+            balance,
+            damping: still.clone(),
+            load: self.load(&state),
+            travelled: still,
+            state,
+        })
+    }
+
+    fn load(&self, state: &State) -> Vec<f64> {
+        self.system.reference_load(state).iter().map(|f| f * state.factor).collect()
+    }
+
+    /// Empties the held entries of a vector.
+    fn free(&self, values: &mut [f64]) {
+        values.iter_mut().zip(&self.system.held).filter(|(_, held)| **held).for_each(|(v, _)| *v = 0.0);
+    }
+
+    /// A step to a time; `None` if Newton's method does not converge.
+    fn advance(&self, now: &Now, time: f64, dt: f64) -> Option<Now> {
+        let n = now.velocity.len();
+        let (beta, gamma) = (self.beta, self.gamma);
+        let mut travelled: Vec<f64> =
+            (0..n).map(|d| dt * now.velocity[d] + 0.5 * dt * dt * now.mean_acceleration[d]).collect();
+        let mut state = State { factor: self.dynamics.load.at(time), ..now.state.clone() };
+        self.system.advance(&mut state, &travelled);
+        // The straight prediction stretches a sheet that turns: its own forces say nothing.
+        let mut local: Option<Vec<Vector24>> = Some(now.balance.local.clone());
+        for _ in 0..ITERATIONS {
+            let mean_acceleration: Vec<f64> = (0..n)
+                .map(|d| {
+                    let rest = dt * now.velocity[d] + (0.5 - beta) * dt * dt * now.mean_acceleration[d];
+                    (travelled[d] - rest) / (beta * dt * dt)
+                })
+                .collect();
+            let velocity: Vec<f64> = (0..n)
+                .map(|d| {
+                    let mean = (1.0 - gamma) * now.mean_acceleration[d] + gamma * mean_acceleration[d];
+                    now.velocity[d] + dt * mean
+                })
+                .collect();
+            let acceleration: Vec<f64> = (0..n)
+                .map(|d| {
+                    let mean =
+                        (1.0 - self.alpha_m) * mean_acceleration[d] + self.alpha_m * now.mean_acceleration[d];
+                    (mean - self.alpha_f * now.acceleration[d]) / (1.0 - self.alpha_f)
+                })
+                .collect();
+            let balance = self.system.balance(&state, None);
+            let (damping, viscous) = self.damping(&balance, &velocity);
+            let inertia = product(&self.mass, &acceleration);
+            let mut force: Vec<f64> =
+                (0..n).map(|d| -(inertia[d] + damping[d] + balance.unbalanced[d])).collect();
+            self.free(&mut force);
+            let (size, scale) =
+                (self.system.norm(&force, false), balance.scale.max(self.system.norm(&inertia, false)));
+            let done = |state, balance| Now {
+                load: self.load(&state),
+                velocity: velocity.clone(),
+                acceleration: acceleration.clone(),
+                mean_acceleration: mean_acceleration.clone(),
+                balance,
+                damping: damping.clone(),
+                travelled: travelled.clone(),
+                state,
+            };
+            if !size.is_finite() {
+                return None;
+            }
+            if size <= RESIDUAL * scale {
+                return Some(done(state, balance));
+            }
+            let geometric: Vec<Vector24> = match local.take() {
+                Some(predicted) => predicted,
+                None => balance.local.clone(),
+            };
+            let geometric: Vec<Vector24> = geometric.iter().zip(&viscous).map(|(e, v)| e + v).collect();
+            let mut step = force;
+            self.tangent(&state, &balance, &geometric, dt)?.solve(&mut step, 1);
+            if limit(&mut step) == 1.0 && is_rounding(&step, self.system.size) {
+                return Some(done(state, balance));
+            }
+            local = Some(self.system.predict(&state, &balance, &step));
+            self.system.advance(&mut state, &step);
+            travelled = travel(&now.state, &state);
+        }
+        None
+    }
+
+    /// Factor of `(1-α_m)/((1-α_f) β Δt²) M + γ/(β Δt) C + K`.
+    fn tangent(
+        &self,
+        state: &State,
+        balance: &Balance,
+        local: &[Vector24],
+        dt: f64,
+    ) -> Option<crate::solve::factor::Factor> {
+        let by_velocity = self.gamma / (self.beta * dt);
+        let by_acceleration = (1.0 - self.alpha_m) / ((1.0 - self.alpha_f) * self.beta * dt * dt);
+        let stiffening = 1.0 + self.dynamics.damping.beta * by_velocity;
+        let (mut matrix, _) = self.system.tangent_of(state, balance, local, 0.0, stiffening);
+        let factor = by_acceleration + self.dynamics.damping.alpha * by_velocity;
+        matrix.values.iter_mut().zip(&self.mass.values).for_each(|(k, m)| *k += factor * m);
+        self.system.factorise(&matrix).ok()
+    }
+
+    /// Damping forces by dof, and those of the elements in their frames.
+    fn damping(&self, balance: &Balance, velocity: &[f64]) -> (Vec<f64>, Vec<Vector24>) {
+        let Rayleigh { alpha, beta } = self.dynamics.damping;
+        let (mut forces, viscous) = self.system.viscous(balance, velocity, beta);
+        if alpha > 0.0 {
+            forces.iter_mut().zip(product(&self.mass, velocity)).for_each(|(f, p)| *f += alpha * p);
+        }
+        (forces, viscous)
+    }
+
+    /// Local error of the displacement relative to the largest so far (Zienkiewicz and Xie 1991).
+    fn error(&self, now: &Now, next: &Now, dt: f64, largest: f64) -> f64 {
+        let jumps = next.mean_acceleration.iter().zip(&now.mean_acceleration);
+        let jump = jumps.fold(0.0f64, |m, (new, old)| m.max((new - old).abs()));
+        let moved = next.travelled.iter().fold(largest, |m, u| m.max(u.abs()));
+        if moved == 0.0 { 0.0 } else { (self.beta - 1.0 / 6.0).abs() * dt * dt * jump / moved }
+    }
+
+    /// Adds what a step does to the energies; forces count with their means over the step.
+    fn account(&self, now: &Now, next: &Now, energy: &mut Energy) {
+        let mean = |a: &[f64], b: &[f64]| -> f64 {
+            next.travelled.iter().zip(a.iter().zip(b)).map(|(u, (a, b))| 0.5 * (a + b) * u).sum()
+        };
+        energy.work += mean(&now.load, &next.load);
+        energy.dissipated += mean(&now.damping, &next.damping);
+        energy.strain = next.balance.energy;
+        let momentum = product(&self.mass, &next.velocity);
+        energy.kinetic = 0.5 * momentum.iter().zip(&next.velocity).map(|(p, v)| p * v).sum::<f64>();
+    }
+}
+
+/// Displacements and rotations from one state to another.
+fn travel(from: &State, to: &State) -> Vec<f64> {
+    let places = from.position.iter().zip(&to.position);
+    places
+        .zip(from.rotation.iter().zip(&to.rotation))
+        .flat_map(|((a, b), (r, s))| {
+            let (u, turn) = (b - a, (s * r.inverse()).scaled_axis());
+            [u.x, u.y, u.z, turn.x, turn.y, turn.z]
+        })
+        .collect()
+}
+
+/// Mass with rows and columns of held dofs empty.
+fn mass(system: &System<'_>, lumped: bool) -> BlockMatrix {
+    let (model, pattern) = (system.model, &system.plan.pattern);
+    let mut matrix = BlockMatrix::zeros(Arc::clone(&pattern.graph), 6);
+    let rotary = model.section.thickness * model.section.thickness / 12.0;
+    for (quad, nodes) in model.mesh.quads.iter().enumerate() {
+        let frame = Frame::of(&model.mesh.corners(quad));
+        let pairs = if lumped {
+            SMatrix::<f64, 4, 4>::from_diagonal(&lumped_mass(&frame, &model.section).into())
+        } else {
+            consistent_mass(&frame, &model.section)
+        };
+        let element = SMatrix::<f64, 24, 24>::from_fn(|i, j| {
+            let held = |k: usize| system.held[6 * nodes[k / 6] as usize + k % 6];
+            let share = if i % 6 < 3 { 1.0 } else { rotary };
+            if i % 6 == j % 6 && !held(i) && !held(j) { share * pairs[(i / 6, j / 6)] } else { 0.0 }
+        });
+        scatter(element.as_slice(), 6, nodes, &pattern.blocks[quad], &mut matrix);
+    }
+    matrix
+}
+
+fn product(matrix: &BlockMatrix, x: &[f64]) -> Vec<f64> {
+    let mut y = vec![0.0; x.len()];
+    matrix.mul(x, &mut y);
+    y
+}

@@ -1,0 +1,138 @@
+//! Dynamics from a case: small displacements or large rotations.
+
+use std::ops::ControlFlow;
+
+use serde::Serialize;
+
+use super::PreparedCase;
+use super::StudyError;
+use super::case::{Case, LoadTable};
+use super::nonlinear::largest_w;
+use super::run::Outcome;
+use crate::fields::Locator;
+use crate::mesh::QuadMesh;
+use crate::model::Model;
+use crate::quantity::{Frequency, Time};
+use crate::solve::newmark::{self, Energy, Instant, LoadHistory, Rayleigh};
+use crate::solve::nonlinear::dynamics::{Dynamics, integrate};
+use crate::solve::{self, Options, Solution};
+
+/// A dynamic analysis in time.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct History {
+    /// Instants (s), the start included.
+    pub time: Vec<f64>,
+    /// Deflection w of each probe at each instant (m), in the order of the case's probes.
+    pub probes: Vec<Vec<f64>>,
+    /// Energies at each instant (J).
+    pub energy: Vec<Energy>,
+    /// The largest |w| anywhere at any instant, with its sign (m).
+    pub w_max: f64,
+    /// What the energy balance misses at most, over the largest work of the loads.
+    pub imbalance: f64,
+}
+
+/// Spectral radius of large rotations when left out: a tenth of the highest frequencies goes in a step.
+const SPECTRAL_RADIUS: f64 = 0.9;
+
+/// Large rotations: whether, and their spectral radius.
+#[derive(Clone, Copy)]
+pub(super) struct Large {
+    pub rotations: bool,
+    pub spectral_radius: Option<f64>,
+}
+
+/// Damping ratios at the first and the third natural frequency become Rayleigh factors.
+pub(super) fn rayleigh(
+    model: &Model,
+    ratios: Option<[f64; 2]>,
+    options: &Options,
+) -> Result<Rayleigh, StudyError> {
+    let Some(ratios) = ratios else { return Ok(Rayleigh::default()) };
+    let modes = solve::modes(model, 3, false, options)?;
+    let omega: Vec<f64> = modes.iter().map(|m| m.angular_frequency).filter(|w| *w > 0.0).collect();
+    Ok(match (omega.first(), omega.last()) {
+        (Some(first), Some(last)) => Rayleigh::from_ratios(ratios, [*first, *last]),
+        _ => Rayleigh::default(),
+    })
+}
+
+pub(super) fn load_history(case: &Case, text: &str) -> Result<LoadHistory, StudyError> {
+    let unknown = |reason: String| {
+        case.inconsistent(format!(
+            "load = \"{text}\": {reason}; write \"step\", \"ramp until 0.1 s\" or \"sine 5 Hz\""
+        ))
+    };
+    if text == "step" {
+        return Ok(LoadHistory::Step);
+    }
+    if let Some(until) = text.strip_prefix("ramp until ") {
+        return until.parse::<Time>().map(|t| LoadHistory::Ramp(t.si())).map_err(|e| unknown(e.to_string()));
+    }
+    if let Some(frequency) = text.strip_prefix("sine ") {
+        return frequency
+            .parse::<Frequency>()
+            .map(|f| LoadHistory::Sine(f.si()))
+            .map_err(|e| unknown(e.to_string()));
+    }
+    Err(unknown("no such history".into()))
+}
+
+/// What an observer keeps.
+struct Record<'a> {
+    mesh: &'a QuadMesh,
+    locators: &'a [Locator],
+    history: History,
+    solution: Solution,
+}
+
+impl Record<'_> {
+    fn see(&mut self, at: &Instant<'_>) -> ControlFlow<()> {
+        let history = &mut self.history;
+        history.time.push(at.time);
+        history.energy.push(at.energy);
+        for (locator, out) in self.locators.iter().zip(&mut history.probes) {
+            out.push(locator.interpolate(self.mesh, |n| at.displacement[6 * n + 2]));
+        }
+        let w = largest_w(at.displacement);
+        history.w_max = if w.abs() > history.w_max.abs() { w } else { history.w_max };
+        self.solution.displacement.copy_from_slice(at.displacement);
+        self.solution.strain_energy = at.energy.strain;
+        ControlFlow::Continue(())
+    }
+}
+
+/// Integrates in time and keeps the history.
+pub(super) fn dynamics(
+    prepared: &PreparedCase<'_>,
+    model: &Model,
+    settings: &newmark::Settings,
+    large: Large,
+) -> Result<Outcome, StudyError> {
+    let case = prepared.case;
+    if large.spectral_radius.is_some_and(|r| !large.rotations || !(0.0..=1.0).contains(&r)) {
+        return Err(case.inconsistent("spectral_radius is 0 to 1, and needs large_rotations = true".into()));
+    }
+    if large.rotations && case.loads.iter().any(|l| matches!(l, LoadTable::Prescribed { .. })) {
+        return Err(case.inconsistent("a dynamic analysis has no prescribed values: remove them".into()));
+    }
+    let mut record = Record {
+        mesh: &model.mesh,
+        locators: &prepared.probes,
+        history: History { probes: vec![Vec::new(); prepared.probes.len()], ..History::default() },
+        solution: Solution::at_rest(model),
+    };
+    let state = if large.rotations {
+        let newmark::Settings { duration, step, tolerance, damping, load, lumped } = *settings;
+        let spectral_radius = large.spectral_radius.unwrap_or(SPECTRAL_RADIUS);
+        let dynamics = Dynamics { duration, step, tolerance, spectral_radius, damping, load, lumped };
+        Some(integrate(model, &dynamics, &prepared.options, |at| record.see(at))?)
+    } else {
+        newmark::newmark(model, settings, &prepared.options, |at| record.see(at))?;
+        None
+    };
+    let Record { mut history, solution, .. } = record;
+    let work = history.energy.iter().map(|e| e.work.abs()).fold(f64::MIN_POSITIVE, f64::max);
+    history.imbalance = history.energy.iter().map(|e| e.imbalance().abs()).fold(0.0, f64::max) / work;
+    Ok(Outcome { history: Some(history), state, ..Outcome::of(solution) })
+}

@@ -1,0 +1,296 @@
+//! Statics in large rotations from a case.
+
+use std::ops::ControlFlow;
+
+use serde::Serialize;
+
+use super::PreparedCase;
+use super::StudyError;
+use super::case::{Case, MethodChoice, NonlinearTable};
+use super::run::Outcome;
+use crate::fields::Locator;
+use crate::finding::{Finding, Place};
+use crate::mesh::QuadMesh;
+use crate::model::Model;
+use crate::solve::nonlinear::{
+    self, ArcLength, Flow, Method, NonlinearError, Perturbation, Settings, Stability, State, Step,
+};
+use crate::solve::{self, Solution};
+
+/// How a search for an equilibrium went.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LoadPath {
+    /// The way.
+    pub method: MethodChoice,
+    /// Whether the search came to its end; otherwise the last step is where it stopped.
+    pub converged: bool,
+    /// Its steps in order.
+    pub steps: Vec<PathStep>,
+    /// Displacement of each probe after each step (m), in the order of the case's probes.
+    pub probes: Vec<Vec<[f64; 3]>>,
+    /// Whether the last equilibrium is stable; unknown of one that did not converge.
+    pub stability: Option<Stability>,
+    /// The largest |w| of a linear solve, with its sign (m); none if there is no linear solution.
+    pub linear_w_max: Option<f64>,
+}
+
+/// A step of a search: an equilibrium, or a state on the way of the flow.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PathStep {
+    /// Factor of loads and held values.
+    pub factor: f64,
+    /// Iterations that it took.
+    pub iterations: usize,
+    /// Attempts that failed before it.
+    pub cut_backs: usize,
+    /// Unbalanced forces relative to loads or reactions.
+    pub residual: f64,
+    /// Strain energy (J).
+    pub strain_energy: f64,
+    /// The largest |w|, with its sign (m).
+    pub w_max: f64,
+}
+
+impl LoadPath {
+    /// Iterations of the steps that converged.
+    pub fn iterations(&self) -> usize {
+        self.steps.iter().map(|s| s.iterations).sum()
+    }
+
+    /// Attempts that failed and were answered by shorter steps.
+    pub fn cut_backs(&self) -> usize {
+        self.steps.iter().map(|s| s.cut_backs).sum()
+    }
+}
+
+/// Refuses keys that the method does not have, and values out of range.
+fn checked(case: &Case, table: &NonlinearTable) -> Result<(), StudyError> {
+    let method = table.method;
+    let only = |given: bool, key: &str, of: &[MethodChoice]| {
+        let names: Vec<&str> = of.iter().map(|m| name(*m)).collect();
+        if given && !of.contains(&method) {
+            let names = names.join("\" or \"");
+            return Err(case.inconsistent(format!(
+                "[analysis] {key} belongs to method = \"{names}\": remove it, or change the method"
+            )));
+        }
+        Ok(())
+    };
+    use MethodChoice::{ArcLength as Arc, Flow as Relax, Newton};
+    only(table.first_step.is_some(), "first_step", &[Newton, Arc])?;
+    only(table.largest_step.is_some(), "largest_step", &[Newton])?;
+    only(table.smallest_step.is_some(), "smallest_step", &[Newton])?;
+    only(table.steps.is_some(), "steps", &[Arc, Relax])?;
+    only(table.perturbation.is_some() || table.seed.is_some(), "perturbation", &[Newton, Relax])?;
+    if method == Newton && table.seed.is_some() && table.perturbation.is_none() {
+        return Err(
+            case.inconsistent("[analysis] seed needs a perturbation, such as perturbation = 1e-3".into())
+        );
+    }
+    let fractions = [
+        ("tolerance", table.tolerance),
+        ("first_step", table.first_step),
+        ("largest_step", table.largest_step),
+        ("smallest_step", table.smallest_step),
+    ];
+    for (key, value) in fractions {
+        if value.is_some_and(|v| !(v > 0.0 && v <= 1.0)) {
+            return Err(case.inconsistent(format!("[analysis] {key} must be above 0 and at most 1")));
+        }
+    }
+    if table.perturbation.is_some_and(|p| !(0.0..=1.0).contains(&p)) {
+        return Err(case.inconsistent("[analysis] perturbation must be 0 to 1".into()));
+    }
+    if table.iterations == Some(0) || table.steps == Some(0) {
+        return Err(case.inconsistent("[analysis] iterations and steps must be at least 1".into()));
+    }
+    Ok(())
+}
+
+/// Settings and method of a case.
+///
+/// # Errors
+/// S003 for keys that the method does not have, and for values out of range.
+pub(super) fn way(case: &Case, table: &NonlinearTable) -> Result<(Settings, Method), StudyError> {
+    use MethodChoice::{ArcLength as Arc, Flow as Relax, Newton};
+    checked(case, table)?;
+    let default = Settings::default();
+    let largest_step = table.largest_step.unwrap_or(default.largest_step);
+    let settings = Settings {
+        tolerance: table.tolerance.unwrap_or(default.tolerance),
+        iterations: table.iterations.unwrap_or(default.iterations),
+        first_step: table.first_step.unwrap_or(default.first_step).min(largest_step),
+        largest_step,
+        smallest_step: table.smallest_step.unwrap_or(default.smallest_step),
+        ..default
+    };
+    let seed = table.seed.unwrap_or(1);
+    let method = match table.method {
+        Newton => Method::Newton(table.perturbation.map(|size| Perturbation { size, seed })),
+        Arc => {
+            let default = ArcLength::default();
+            Method::ArcLength(ArcLength {
+                first: table.first_step.unwrap_or(default.first),
+                steps: table.steps.unwrap_or(default.steps),
+                until: Some(1.0),
+                ..default
+            })
+        }
+        Relax => {
+            let default = Flow::default();
+            let perturbation = table.perturbation.unwrap_or(default.perturbation);
+            Method::Flow(Flow { perturbation, seed, steps: table.steps.unwrap_or(default.steps) })
+        }
+    };
+    Ok((settings, method))
+}
+
+fn name(method: MethodChoice) -> &'static str {
+    match method {
+        MethodChoice::Newton => "newton",
+        MethodChoice::ArcLength => "arc_length",
+        MethodChoice::Flow => "flow",
+    }
+}
+
+/// What an observer keeps.
+struct Record<'a> {
+    mesh: &'a QuadMesh,
+    locators: &'a [Locator],
+    path: LoadPath,
+    state: State,
+    solution: Solution,
+}
+
+impl Record<'_> {
+    fn see(&mut self, step: &Step<'_>) -> ControlFlow<()> {
+        let displacement = step.state.displacement(self.mesh);
+        let at = |locator: &Locator, k: usize| locator.interpolate(self.mesh, |n| displacement[6 * n + k]);
+        for (locator, out) in self.locators.iter().zip(&mut self.path.probes) {
+            out.push([0, 1, 2].map(|k| at(locator, k)));
+        }
+        self.path.steps.push(PathStep {
+            factor: step.state.factor,
+            iterations: step.iterations,
+            cut_backs: step.cut_backs,
+            residual: step.residual,
+            strain_energy: step.energy,
+            w_max: largest_w(&displacement),
+        });
+        self.state.clone_from(step.state);
+        self.solution.displacement = displacement;
+        self.solution.reaction = step.reaction.to_vec();
+        self.solution.strain_energy = step.energy;
+        self.solution.residual = step.residual;
+        ControlFlow::Continue(())
+    }
+}
+
+/// The largest |w| with its sign (m).
+pub(super) fn largest_w(displacement: &[f64]) -> f64 {
+    let w = displacement.iter().skip(2).step_by(6);
+    w.fold(0.0, |m: f64, w| if w.abs() > m.abs() { *w } else { m })
+}
+
+/// Searches an equilibrium; one that is not found is a finding, and the last state is the result.
+pub(super) fn equilibrium(
+    prepared: &PreparedCase<'_>,
+    model: &Model,
+    table: &NonlinearTable,
+) -> Result<Outcome, StudyError> {
+    let (case, options) = (prepared.case, &prepared.options);
+    let (settings, method) = way(case, table)?;
+    let perturbs = matches!(method, Method::Newton(Some(_)));
+    if perturbs && model.load_vector().iter().all(|f| *f == 0.0) {
+        return Err(case.inconsistent(
+            "[analysis] perturbation is relative to the loads, and held values are the only ones here: \
+             add a small load across the sheet instead"
+                .into(),
+        ));
+    }
+    let own;
+    let plan = match &prepared.plan {
+        Some(plan) => plan,
+        None => {
+            own = nonlinear::plan(model, &settings, options)?;
+            &own
+        }
+    };
+    let linear = solve::solve(model, options).ok();
+    let mut record = Record {
+        mesh: &model.mesh,
+        locators: &prepared.probes,
+        path: LoadPath {
+            method: table.method,
+            converged: true,
+            steps: Vec::new(),
+            probes: vec![Vec::new(); prepared.probes.len()],
+            stability: None,
+            linear_w_max: linear.map(|l| largest_w(&l.displacement)),
+        },
+        state: State::rest(&model.mesh),
+        solution: Solution::at_rest(model),
+    };
+    let found = nonlinear::search(model, plan, &settings, &method, options, |step| record.see(step));
+    let findings = conclude(found, table, &mut record.path)?;
+    let findings = findings.into_iter().map(|f| f.at(Place::file(&case.path))).collect();
+    let mut solution = record.solution;
+    solution.dofs = model.constraints().iter().filter(|c| c.is_none()).count();
+    Ok(Outcome { path: Some(record.path), state: Some(record.state), findings, ..Outcome::of(solution) })
+}
+
+/// What the end of a search means: stability, and what a reader must know.
+fn conclude(
+    found: Result<nonlinear::Solution, NonlinearError>,
+    table: &NonlinearTable,
+    path: &mut LoadPath,
+) -> Result<Vec<Finding>, StudyError> {
+    let mut findings = Vec::new();
+    match found {
+        Ok(solution) => {
+            path.stability = Some(solution.stability);
+            let negative = solution.stability.negative_pivots;
+            if negative > 0 {
+                findings.push(Finding::new("S111", unstable(negative)));
+            }
+            if solution.state.factor != 1.0 {
+                findings.push(Finding::new("S112", unfinished(solution.state.factor, path.steps.len())));
+            }
+        }
+        Err(e @ NonlinearError::NotConverged { .. }) => {
+            path.converged = false;
+            let text = e.to_string();
+            let text = text.strip_prefix("N007 ").unwrap_or(&text);
+            let cure = cure(table);
+            let message = format!("{text}; {cure}; the results are the last state that was reached");
+            findings.push(Finding::new("N007", message));
+        }
+        Err(other) => return Err(other.into()),
+    }
+    Ok(findings)
+}
+
+fn unstable(negative_pivots: usize) -> String {
+    format!(
+        "the equilibrium is unstable: its energy falls in {negative_pivots} direction(s), and a real sheet would leave it; \
+         take [analysis] method = \"flow\", or perturbation = 1e-3 with method = \"newton\""
+    )
+}
+
+fn unfinished(factor: f64, steps: usize) -> String {
+    format!(
+        "the path ended at {factor:.4} of the load after {steps} steps: give [analysis] more steps, or read the result at \
+         that load"
+    )
+}
+
+/// What to change in the case.
+fn cure(table: &NonlinearTable) -> &'static str {
+    match table.method {
+        MethodChoice::Newton => {
+            "in [analysis] try method = \"flow\" or \"arc_length\", or a smaller largest_step"
+        }
+        MethodChoice::ArcLength => "in [analysis] try a smaller first_step, or method = \"flow\"",
+        MethodChoice::Flow => "in [analysis] try more steps or another seed, and in [sheet] more cells",
+    }
+}

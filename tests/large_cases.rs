@@ -1,0 +1,203 @@
+//! Cases in large rotations, from the text of the case to its result.
+//!
+//! References: the heavy elastica for a strip (analytical); M = D11 κ and closed forms of edge effects are with
+//! the virtual tests; von Kármán's equations for the clamped cloth are a check of the shipped case.
+
+use std::path::Path;
+
+use kesf::analytical::elastica::heavy_elastica;
+use kesf::section::ShellSection;
+use kesf::solve::Options;
+use kesf::study::{Case, CaseResult, PreparedCase, Status, StudyError, section, solve_case};
+
+/// A strip of cloth 20 x 1 cm along x, clamped on the left, in plane strain.
+fn strip(analysis: &str, load: &str) -> Case {
+    let text = format!(
+        r#"title = "strip"
+[section]
+tensile_warp = "600 N/m"
+tensile_weft = "600 N/m"
+poisson = 0.0
+shear = "300 N/m"
+bending_warp = "8e-6 N·m"
+bending_weft = "8e-6 N·m"
+bending_coupling = "0 N·m"
+torsion = "4e-6 N·m"
+transverse_shear = "50 N/m"
+areal_density = "0.15 kg/m²"
+thickness = "0.4 mm"
+[sheet]
+shape = "strip"
+width = "20 cm"
+height = "1 cm"
+cells = [20, 1]
+[[supports]]
+set = "all"
+fix = ["v", "theta_x", "theta_z"]
+[[supports]]
+set = "left"
+kind = "clamped"
+[[loads]]
+{load}
+[[probes]]
+name = "tip"
+at = ["20 cm", "5 mm"]
+[analysis]
+{analysis}
+"#
+    );
+    Case::parse(Path::new("strip.toml"), &text).unwrap_or_else(|e| panic!("{e}"))
+}
+
+const WEIGHT: &str = "kind = \"gravity\"";
+const NONLINEAR: &str = "kind = \"nonlinear\"";
+/// Twice Euler's load of the clamped strip, along it.
+const THRUST: &str = "kind = \"edge_force\"\nset = \"right\"\nvalue = \"0.001 N/m\"\ndirection = [-1, 0, 0]";
+
+fn cloth(case: &Case) -> ShellSection {
+    section(case.section.as_ref().unwrap()).unwrap()
+}
+
+fn solved(case: &Case) -> CaseResult {
+    solve_case(case, cloth(case), &Options::default()).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn codes(result: &CaseResult) -> Vec<&str> {
+    result.findings.iter().map(|f| f.code).collect()
+}
+
+#[test]
+fn a_heavy_strip_hangs_as_the_elastica_and_the_linear_answer_stands_beside() {
+    let case = strip(NONLINEAR, WEIGHT);
+    let result = solved(&case);
+    let gamma = 0.15 * 9.80665 * 0.2f64.powi(3) / 8e-6;
+    let exact = heavy_elastica(gamma).unwrap().drop * 0.2;
+    let tip = result.probes[0].value;
+    println!("tip {} exact {exact}", tip.u[2]);
+    // Its stretch under its own weight, w L / 2 EA of the length, is 2.5e-4; the mesh 5e-4.
+    assert!((-tip.u[2] / exact - 1.0).abs() < 1e-3, "{tip:?}");
+    assert_eq!((result.status, codes(&result)), (Status::Ok, vec![]));
+    let path = result.path.as_ref().unwrap();
+    assert!(
+        path.converged && path.stability.unwrap().is_stable() && path.steps.last().unwrap().factor == 1.0
+    );
+    assert_eq!(path.probes[0].len(), path.steps.len());
+    assert_eq!(path.probes[0].last().unwrap()[2], tip.u[2]);
+    // w L⁴/8B, a length and a half and more below.
+    let linear = path.linear_w_max.unwrap();
+    assert!((-linear / (gamma / 8.0 * 0.2) - 1.0).abs() < 0.01, "{linear}");
+    // The moment at the clamp balances the weight about it; resultants are those of the turned elements.
+    let centre = result.solution.reaction.iter().skip(4).step_by(6).sum::<f64>();
+    let nodal = result.nodal().unwrap();
+    let root = nodal[0].moment[0] * 0.01;
+    assert!((root.abs() / centre.abs() - 1.0).abs() < 0.1, "{root} {centre}");
+    let hanging = nodal.iter().map(|n| n.membrane[0]).fold(0.0, f64::max);
+    assert!(hanging < 1.05 * 0.15 * 9.81 * 0.2 && hanging > 0.8 * 0.15 * 9.81 * 0.2, "{hanging}");
+}
+
+#[test]
+fn a_prepared_case_gives_the_same_for_every_fabric() {
+    let case = strip(NONLINEAR, WEIGHT);
+    let prepared = PreparedCase::new(&case, &Options::default()).unwrap();
+    let soft = ShellSection { areal_density: 0.3, ..cloth(&case) };
+    for s in [cloth(&case), soft] {
+        let apart = solve_case(&case, s.clone(), &Options::default()).unwrap();
+        let shared = prepared.solve(s).unwrap();
+        assert_eq!(apart.solution.displacement, shared.solution.displacement);
+        assert_eq!(apart.path, shared.path);
+    }
+}
+
+#[test]
+fn the_straight_column_is_told_to_be_unstable_and_the_cures_work() {
+    let straight = solved(&strip("kind = \"nonlinear\"\nfirst_step = 0.1\nlargest_step = 0.1", THRUST));
+    assert_eq!(codes(&straight), ["S111"]);
+    assert!(straight.findings[0].message.contains("flow") && straight.w_max.abs() < 1e-12);
+    let flow = solved(&strip("kind = \"nonlinear\"\nmethod = \"flow\"\nseed = 3", THRUST));
+    assert_eq!(codes(&flow), [""; 0]);
+    let pushed = solved(&strip(
+        "kind = \"nonlinear\"\nfirst_step = 0.1\nlargest_step = 0.1\nperturbation = 1e-3",
+        THRUST,
+    ));
+    assert_eq!(codes(&pushed), [""; 0]);
+    let [a, b] = [flow.w_max.abs(), pushed.w_max.abs()];
+    assert!(a > 0.01 && (a / b - 1.0).abs() < 1e-4, "{a} {b}");
+    let arc = solved(&strip("kind = \"nonlinear\"\nmethod = \"arc_length\"", WEIGHT));
+    assert_eq!(arc.path.as_ref().unwrap().steps.last().unwrap().factor, 1.0);
+    let short =
+        solved(&strip("kind = \"nonlinear\"\nmethod = \"arc_length\"\nsteps = 2\nfirst_step = 0.01", WEIGHT));
+    assert_eq!(codes(&short), ["S112"]);
+}
+
+/// Four iterations a step and no shorter steps: nothing beyond the start can be found.
+#[test]
+fn what_does_not_converge_keeps_its_last_state_and_says_what_to_try() {
+    let case =
+        strip("kind = \"nonlinear\"\niterations = 4\nfirst_step = 0.02\nsmallest_step = 0.015", WEIGHT);
+    let result = solved(&case);
+    assert_eq!((result.status, codes(&result)), (Status::NotConverged, vec!["N007"]));
+    assert!(result.findings[0].message.contains("method = \"flow\""), "{}", result.findings[0].message);
+    let path = result.path.as_ref().unwrap();
+    assert!(!path.converged && path.stability.is_none());
+    let last = path.steps.last().map_or(0.0, |s| s.factor);
+    assert!(last < 1.0 && result.state.as_ref().unwrap().factor == last);
+}
+
+/// What a pressure does that follows the sheet: a strip of membrane between its ends bulges to an arc, p R = N.
+#[test]
+fn a_follower_pressure_is_a_key_of_the_load() {
+    let solve = |follower: bool, kind: &str| {
+        let load = format!("kind = \"pressure\"\nvalue = \"0.01 Pa\"\nfollower = {follower}");
+        solved(&strip(kind, &load)).probes[0].value.u
+    };
+    let (dead, follower) = (solve(false, NONLINEAR), solve(true, NONLINEAR));
+    // The dead one lifts more: it does not turn with the strip.
+    assert!(
+        dead[2] > follower[2] && follower[2] > 0.0 && (dead[2] / follower[2] - 1.0) < 0.5,
+        "{dead:?} {follower:?}"
+    );
+    let linear = "kind = \"linear\"";
+    assert_eq!(solve(false, linear), solve(true, linear));
+}
+
+#[test]
+fn a_strip_falls_and_the_linear_finding_names_the_cure() {
+    let motion = "kind = \"newmark\"\nduration = \"0.2 s\"\nstep = \"4 ms\"";
+    let large = solved(&strip(&format!("{motion}\nlarge_rotations = true"), WEIGHT));
+    let history = large.history.as_ref().unwrap();
+    println!("imbalance {:e}", history.imbalance);
+    assert!(history.w_max < -0.15 && history.w_max > -0.2 && history.imbalance < 0.02);
+    assert_eq!((large.status, codes(&large)), (Status::Ok, vec![]));
+    assert_eq!(history.time.len(), 51);
+    let small = solved(&strip(motion, WEIGHT));
+    assert_eq!(codes(&small), ["S101"]);
+    assert!(small.findings[0].message.contains("large_rotations = true"));
+    let still = solved(&strip("kind = \"linear\"", WEIGHT));
+    assert!(still.findings[0].message.contains("kind = \"nonlinear\""));
+}
+
+#[test]
+fn keys_that_a_method_does_not_have_are_refused() {
+    let refused = |analysis: &str, load: &str| -> StudyError {
+        let case = strip(analysis, load);
+        solve_case(&case, cloth(&case), &Options::default()).unwrap_err()
+    };
+    for analysis in [
+        "method = \"flow\"\nfirst_step = 0.1",
+        "method = \"arc_length\"\nperturbation = 0.1",
+        "steps = 3",
+        "tolerance = 0.0",
+        "iterations = 0",
+        "perturbation = 2.0",
+    ] {
+        let e = refused(&format!("{NONLINEAR}\n{analysis}"), WEIGHT);
+        assert_eq!(e.code(), "S003", "{analysis}: {e}");
+    }
+    let turned = "kind = \"prescribed\"\nset = \"right\"\ndof = \"theta_y\"\nvalue = \"90 deg\"";
+    assert!(refused(&format!("{NONLINEAR}\nperturbation = 0.1"), turned).to_string().contains("loads"));
+    let newmark = "kind = \"newmark\"\nduration = \"0.2 s\"\nstep = \"4 ms\"";
+    assert!(
+        refused(&format!("{newmark}\nspectral_radius = 0.5"), WEIGHT).to_string().contains("large_rotations")
+    );
+    assert_eq!(refused(&format!("{newmark}\nlarge_rotations = true"), turned).code(), "S003");
+}
