@@ -60,7 +60,7 @@ pub enum Analysis {
 }
 
 fn default_folds() -> Vec<usize> {
-    vec![2, 3, 4, 5, 6, 7]
+    vec![3, 4, 5, 6, 7]
 }
 
 fn default_refinements() -> usize {
