@@ -91,14 +91,16 @@ impl ReadArgs {
         ui.go_on()?;
         let mut failures = Vec::new();
         if !stdin.is_empty() {
-            match from_stdin(&settings) {
-                Ok(fabric) => done.push(work(fabric)),
-                Err(Unread::File(error)) => errors.push(error),
-                Err(Unread::Stream(failure)) => failures.push(failure),
+            match stdin_bytes() {
+                Ok(bytes) => match from_stdin(&bytes, &settings) {
+                    Ok(fabric) => done.push(work(fabric)),
+                    Err(error) => errors.push(error),
+                },
+                Err(failure) => failures.push(failure),
             }
         }
         let inference =
-            |e: &ReadError| Inference { path: e.place.path.clone(), decisions: e.inference.clone() };
+            |e: &ReadError| Inference { path: e.place.path.clone(), decisions: e.inference.to_vec() };
         let of_failures = errors.iter().map(inference).filter(|i| !i.decisions.is_empty()).collect();
         failures.splice(0..0, errors.into_iter().map(Failure::from));
         for failure in &failures {
@@ -226,20 +228,23 @@ pub fn is_stdin(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Why there is no fabric on standard input: the bytes, or getting them.
-enum Unread {
-    File(ReadError),
-    Stream(Failure),
+/// Standard input stands for a file of this name.
+const STDIN: &str = "<stdin>";
+
+fn stdin_bytes() -> Result<Vec<u8>, Failure> {
+    let mut bytes = Vec::new();
+    match std::io::stdin().read_to_end(&mut bytes) {
+        Ok(_) => Ok(bytes),
+        Err(e) => {
+            let text = format!("standard input cannot be read: {e}");
+            Err(Failure::new("O052", text).at(Place::file(STDIN)))
+        }
+    }
 }
 
-fn from_stdin(settings: &ReadSettings) -> Result<FabricInput, Unread> {
-    let path = Path::new("<stdin>");
-    let mut bytes = Vec::new();
-    std::io::stdin().read_to_end(&mut bytes).map_err(|e| {
-        let text = format!("standard input cannot be read: {e}");
-        Unread::Stream(Failure::new("O052", text).at(Place::file(path)))
-    })?;
-    let content = parse(path, &bytes, settings).map_err(Unread::File)?;
+fn from_stdin(bytes: &[u8], settings: &ReadSettings) -> Result<FabricInput, ReadError> {
+    let path = Path::new(STDIN);
+    let content = parse(path, bytes, settings)?;
     let sample = content.measurements.iter().find_map(|m| m.sample.clone());
     let name = sample.unwrap_or_else(|| "stdin".to_string());
     let results: Vec<ResultValue> = content.results.into_iter().map(|(_, value)| value).collect();

@@ -61,13 +61,13 @@ impl Axes<'_> {
     pub fn scale(&self, column: &Column, abscissa: bool) -> Result<Scale, ReadError> {
         let error = |problem| self.context.error(column.line, column.column, problem);
         let Some(text) = column.unit.clone().or_else(|| self.context.default_unit(column.role)) else {
-            let expected = column.role.kes_unit().to_string();
+            let expected = column.role.kes_unit();
             return Err(error(Problem::UnitMissing { found: column.name.clone(), expected }));
         };
-        let wrong = |found: &str, expected: &str| Problem::UnitWrong {
+        let wrong = |found: &str, expected: &'static str| Problem::UnitWrong {
             found: found.to_string(),
             of: column.name.clone(),
-            expected: expected.to_string(),
+            expected,
         };
         if !is_volt(&text) {
             let unit = known_unit(&text).map_err(error)?;
@@ -119,7 +119,7 @@ impl Axes<'_> {
         let (value, unit) = full_scale(entry, self.context)?;
         if unit.dimension != AREA {
             let (found, of) = (entry.text.clone(), "area".to_string());
-            let problem = Problem::UnitWrong { found, of, expected: "cm²".to_string() };
+            let problem = Problem::UnitWrong { found, of, expected: "cm²" };
             return Err(self.context.error(entry.line, entry.column, problem));
         }
         positive(value * unit.factor, Key::Area, self.header, self.context)

@@ -237,7 +237,7 @@ fn quantity_of<Q: FromStr<Err = QuantityError>>(
     header: &Header,
     key: Key,
     name: &str,
-    kes_unit: &str,
+    kes_unit: &'static str,
     context: &Context<'_>,
 ) -> Result<Option<Q>, ReadError> {
     let Some(entry) = header.known.get(&key) else { return Ok(None) };
@@ -248,7 +248,7 @@ fn quantity_of<Q: FromStr<Err = QuantityError>>(
 pub(super) fn quantity<Q: FromStr<Err = QuantityError>>(
     entry: &Entry,
     name: &str,
-    kes_unit: &str,
+    kes_unit: &'static str,
     context: &Context<'_>,
 ) -> Result<Q, ReadError> {
     let mut text =
@@ -262,7 +262,7 @@ pub(super) fn quantity<Q: FromStr<Err = QuantityError>>(
     text.parse().map_err(|e: QuantityError| {
         let problem = match e {
             QuantityError::NoUnit { found, .. } => {
-                Problem::UnitMissing { found: format!("{name} {found}"), expected: kes_unit.to_string() }
+                Problem::UnitMissing { found: format!("{name} {found}"), expected: kes_unit }
             }
             e => Problem::BadValue { key: name.to_string(), reason: e.to_string() },
         };

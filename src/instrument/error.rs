@@ -15,13 +15,13 @@ pub struct ReadError {
     /// What is wrong there.
     pub problem: Problem,
     /// What had been decided about the file until then, for people (`kesf check -v`).
-    pub inference: Vec<String>,
+    pub inference: Box<[String]>,
 }
 
 impl ReadError {
     /// A problem at a place.
     pub fn new(place: Place, problem: Problem) -> Self {
-        Self { place, problem, inference: Vec::new() }
+        Self { place, problem, inference: Box::default() }
     }
 
     /// The stable code, e.g. `R004`; see [`crate::finding::explain`].
@@ -117,7 +117,7 @@ problems! {
         /// The column or key.
         found: String,
         /// An example of a unit.
-        expected: String,
+        expected: &'static str,
     } = "{found:?} has no unit (such as {expected})",
         "write the unit in the heading, or in a unit row below it, or name it in a dialect file; `--assume-kes-units` takes the customary unit";
     /// A unit that is not in the table.
@@ -133,7 +133,7 @@ problems! {
         /// The column or key.
         of: String,
         /// A unit of the right dimension.
-        expected: String,
+        expected: &'static str,
     } = "{found:?} is not a unit of {of} (which needs one like {expected})",
         "correct the unit: force is gf (a gram-force), g is a mass";
     /// Which test it is cannot be told, or is told in two ways.

@@ -74,9 +74,9 @@ pub fn parse(path: &Path, bytes: &[u8], settings: &ReadSettings) -> Result<FileC
     };
     let mut content = FileContent { source, ..FileContent::default() };
     let reader = if workbook::is_workbook(bytes) { sheets } else { text };
-    if let Err(mut error) = reader(path, bytes, settings, &mut content) {
-        content.inference.append(&mut error.inference);
-        return Err(ReadError { inference: content.inference, ..error });
+    if let Err(ReadError { place, problem, inference }) = reader(path, bytes, settings, &mut content) {
+        content.inference.extend(inference);
+        return Err(ReadError { place, problem, inference: content.inference.into() });
     }
     number_specimens(path, &mut content);
     for m in &mut content.measurements {

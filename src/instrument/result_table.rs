@@ -278,7 +278,7 @@ impl Table<'_, '_> {
             _ if p.kes_unit() == "1" || self.context.kes_units => p.kes_unit(),
             _ => {
                 let found = p.symbol().to_string();
-                return Err(error(Problem::UnitMissing { found, expected: p.kes_unit().to_string() }));
+                return Err(error(Problem::UnitMissing { found, expected: p.kes_unit() }));
             }
         };
         let unit = known_unit(text).map_err(error)?;
@@ -289,7 +289,7 @@ impl Table<'_, '_> {
             && !(text.contains("deg") || text.contains("rad") || text.contains('°'));
         if unit.dimension != expected.dimension || per_angle {
             let of = p.symbol().to_string();
-            let expected = p.kes_unit().to_string();
+            let expected = p.kes_unit();
             return Err(error(Problem::UnitWrong { found: text.to_string(), of, expected }));
         }
         Ok(unit)
@@ -302,7 +302,7 @@ impl Table<'_, '_> {
         (line, column): (usize, usize),
     ) -> Result<Unit, ReadError> {
         let error = |problem| self.context.error(line, column, problem);
-        let (of, expected) = (value.symbol().to_string(), value.unit().to_string());
+        let (of, expected) = (value.symbol().to_string(), value.unit());
         let Some(text) = text else {
             return Err(error(Problem::UnitMissing { found: of, expected }));
         };
