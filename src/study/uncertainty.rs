@@ -2,15 +2,13 @@
 //!
 //! `K(p) u = f(p)`, and a result y(u, p) depends on an input p by
 //! `dy/dp = ∂y/∂p + λᵀ (∂f/∂p - ∂K/∂p u)` with the adjoint `K λ = ∂y/∂u`: one more substitution
-//! with the factor at hand for each result, and one loop over the elements for each input. Resultants at
-//! probes are many and depend on the section too: for them the displacements are differentiated instead,
-//! `K ∂u/∂p = ∂f/∂p - ∂K/∂p u`, one substitution for each input.
+//! with the factor at hand for each result, and one loop over the elements for each input.
 
 use serde::Serialize;
 
 use super::StudyError;
 use crate::constitutive::{Input, SectionDerivative, bands};
-use crate::fields::{Locator, Recovery, Resultants};
+use crate::fields::Locator;
 use crate::model::{Dof, DofGroup, Model, ModelError};
 use crate::quantity::Bands;
 use crate::solve::assemble::{Kind, multiply};
@@ -21,8 +19,7 @@ use crate::solve::{Factors, Solution};
 pub struct Uncertainty {
     /// Measured inputs.
     pub inputs: Vec<Input>,
-    /// `w_max`, six components a probe as far as they were solved for, `strain_energy`, and the resultants at
-    /// each probe as far as they were solved for.
+    /// `w_max`, six components a probe as far as they were solved for, `strain_energy`.
     pub predictions: Vec<Prediction>,
 }
 
@@ -84,7 +81,6 @@ pub(super) fn linear_uncertainty(
     factors: &Factors,
     inputs: &[Input],
     probes: &[(&str, Locator)],
-    recovery: &Recovery,
 ) -> Result<Uncertainty, StudyError> {
     let groups: Vec<DofGroup> = factors.groups().collect();
     let changes: Vec<Change> = inputs
@@ -92,7 +88,7 @@ pub(super) fn linear_uncertainty(
         .map(|input| Change::of(model, &input.derivative, &solution.displacement, &groups))
         .collect::<Result<_, _>>()?;
     let load = model.load_vector();
-    let mut predictions: Vec<Prediction> = readings(model, solution, &groups, probes)
+    let predictions = readings(model, solution, &groups, probes)
         .into_iter()
         .map(|(quantity, unit, reading)| {
             let u = &solution.displacement;
@@ -117,76 +113,7 @@ pub(super) fn linear_uncertainty(
             Prediction::new(quantity, unit, value, derivatives, inputs)
         })
         .collect();
-    if !probes.is_empty() {
-        let moved = Moved { model, u: &solution.displacement, factors, recovery, groups: &groups };
-        predictions.extend(moved.resultants(inputs, &changes, probes)?);
-    }
     Ok(Uncertainty { inputs: inputs.to_vec(), predictions })
-}
-
-/// A solved model whose inputs are moved.
-struct Moved<'a> {
-    model: &'a Model,
-    u: &'a [f64],
-    factors: &'a Factors,
-    recovery: &'a Recovery,
-    groups: &'a [DofGroup],
-}
-
-impl Moved<'_> {
-    /// The resultants at every probe.
-    fn resultants(
-        &self,
-        inputs: &[Input],
-        changes: &[Change],
-        probes: &[(&str, Locator)],
-    ) -> Result<Vec<Prediction>, StudyError> {
-        let values = self.at_probes(self.model, self.u, probes)?;
-        let mut derivatives = vec![Vec::with_capacity(inputs.len()); values.len()];
-        for (input, change) in inputs.iter().zip(changes) {
-            let force: Vec<f64> = change.load.iter().zip(&change.internal).map(|(f, k)| f - k).collect();
-            let rate = self.factors.solve(&force);
-            let mut ends = [1.0, -1.0].map(|sign| (sign * STEP, Vec::new()));
-            for (by, end) in &mut ends {
-                let section = input.derivative.step(&self.model.section, *by);
-                let model = Model { section, ..self.model.clone() };
-                let u: Vec<f64> = self.u.iter().zip(&rate).map(|(u, rate)| u + *by * rate).collect();
-                *end = self.at_probes(&model, &u, probes)?;
-            }
-            let [(_, up), (_, down)] = ends;
-            for ((column, up), down) in derivatives.iter_mut().zip(up).zip(down) {
-                column.push((up.2 - down.2) / (2.0 * STEP));
-            }
-        }
-        let named = values.into_iter().zip(derivatives);
-        Ok(named.map(|((name, unit, value), d)| Prediction::new(name, unit, value, d, inputs)).collect())
-    }
-
-    /// Name, unit and value of the resultants at the probes, of the groups that were solved for.
-    fn at_probes(
-        &self,
-        model: &Model,
-        u: &[f64],
-        probes: &[(&str, Locator)],
-    ) -> Result<Vec<(String, &'static str, f64)>, ModelError> {
-        let nodal = self.recovery.nodal(model, u)?;
-        let mut all = Vec::new();
-        for (name, locator) in probes {
-            let Resultants { membrane, moment, shear } = locator.value(&model.mesh, u, &nodal).resultants;
-            let mut add = |what: &str, unit, values: &[f64]| {
-                let components = ["x", "y", "xy"].iter().zip(values);
-                all.extend(components.map(|(c, v)| (format!("{name}.{what}_{c}"), unit, *v)));
-            };
-            if self.groups.iter().any(|g| *g != DofGroup::Membrane) {
-                add("moment", "N", &moment);
-                add("shear", "N/m", &shear);
-            }
-            if self.groups.iter().any(|g| *g != DofGroup::Plate) {
-                add("membrane", "N/m", &membrane);
-            }
-        }
-        Ok(all)
-    }
 }
 
 /// ∂U/∂ln p of the strain energy U of a model that moves by prescribed displacements alone: there the
