@@ -67,6 +67,8 @@ const CASES: &[(&str, &str, &str)] = &[
     ("K032", "k030-fab.json", "k030-fab.json"),
     ("K033", "k030-fab.json", "k030-fab.json"),
     ("K034", "k030-fab.json", "k030-fab.json"),
+    ("K040", "k021-thickness", "k021-thickness"),
+    ("K041", "k041-falling-loop.csv", "k041-falling-loop.csv"),
 ];
 
 /// Codes that no file can trigger, because reading refuses it or sets it right before; programs
