@@ -215,6 +215,10 @@ pub(super) fn add(sheet: &mut FabricSheet, settings: &Settings) {
     summary::add(sheet, settings);
 }
 
+/// A law that misses its own loop by more than this part of the span is none: the stress falls, or the
+/// record is no loop.
+const WORST_FIT: f64 = 0.1;
+
 /// The law of a specimen; `None` if its loop is not one that the law can follow.
 fn of_specimen(specimen: &SpecimenResult, settings: &Settings) -> Option<FrictionLaw> {
     let m = &specimen.measurement;
@@ -229,6 +233,9 @@ fn of_specimen(specimen: &SpecimenResult, settings: &Settings) -> Option<Frictio
     let (path, cycles) = path(specimen, thickness, one_sided, settings.cycle)?;
     let channel = if one_sided { identify::one_sided(&path) } else { identify::two_sided(&path) }?;
     let fit = LoopFit::of(&channel, &path, &cycles);
+    if fit.fitted.nrmse.is_nan() || fit.fitted.nrmse > WORST_FIT {
+        return None;
+    }
     let closed_form = (m.test == Test::Bending).then(|| ClosedForm::of(&path)).flatten();
     let mut law = FrictionLaw {
         test: m.test,
@@ -250,7 +257,7 @@ fn none(specimen: &SpecimenResult) -> Finding {
     let m = &specimen.measurement;
     let direction = m.direction.map_or(String::new(), |d| format!(" {d}"));
     let text = format!(
-        "{}{direction}, specimen {}: no friction law, its loop has too few samples or does not rise",
+        "{}{direction}, specimen {}: no friction law, its loop has too few samples or is not one of cloth",
         m.test.name(),
         m.specimen
     );
