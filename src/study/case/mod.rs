@@ -20,6 +20,7 @@ use super::rigid::RigidTable;
 use crate::characterise::FabricSheet;
 use crate::constitutive::Assumptions;
 use crate::finding::Place;
+use crate::instrument::{Direction, Test};
 use crate::law::Mode;
 
 pub use analysis::{Analysis, MethodChoice, NonlinearTable};
@@ -113,9 +114,12 @@ impl Case {
         self.bending_test.as_ref().is_some_and(|t| t.test == BendingKind::FabBendLoop)
     }
 
-    /// Whether a fabric has the records that the case compares with.
+    /// Whether a fabric has the records that the case compares with, and the law that it asks for.
     pub fn suits(&self, sheet: &FabricSheet) -> bool {
-        !self.is_for_fab_records() || !sheet.bend_tests.is_empty()
+        let has_law = |d| sheet.law(Test::Bending, Some(d)).is_some();
+        (!self.is_for_fab_records() || !sheet.bend_tests.is_empty())
+            && (self.assumptions.law == Mode::Elastic
+                || [Direction::Warp, Direction::Weft].into_iter().all(has_law))
     }
 
     fn consistent(&self) -> Result<(), CaseError> {
