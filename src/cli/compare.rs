@@ -3,14 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use rayon::prelude::*;
 use serde_json::json;
 
 use super::diagnostics::Failure;
 use super::output::Columns;
 use super::task::{Task, TaskArgs, Tested, comparison};
 use super::tree::Tree;
-use super::{Exit, Ui};
+use super::{Exit, Ui, each};
 use crate::quantity::significant;
 
 /// Simulate instrument tests and compare them with the measured curves
@@ -37,17 +36,17 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     }
     let tree = options.output.as_ref().map(|o| Tree::open(o, &options.task)).transpose()?;
     let bar = ui.bar("simulating", tasks.len());
-    let results: Vec<(Task, Result<Vec<Tested>, Failure>)> = tasks
-        .into_par_iter()
-        .filter_map(|task| {
-            let result = task.test(task.case.virtual_test.as_ref()?).and_then(|tested| {
-                tree.as_ref().map_or(Ok(()), |tree| tree.tested(&task, &tested))?;
-                Ok(tested)
-            });
-            bar.inc(1);
-            Some((task, result))
-        })
-        .collect();
+    let results: Vec<(Task, Result<Vec<Tested>, Failure>)> = each(tasks, |task| {
+        let result = task.test(task.case.virtual_test.as_ref()?).and_then(|tested| {
+            tree.as_ref().map_or(Ok(()), |tree| tree.tested(&task, &tested))?;
+            Ok(tested)
+        });
+        bar.inc(1);
+        Some((task, result))
+    })
+    .into_iter()
+    .flatten()
+    .collect();
     bar.finish_and_clear();
     ui.go_on()?;
     let mut failures = homeless;

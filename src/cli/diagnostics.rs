@@ -236,6 +236,11 @@ impl Diagnostics {
         }
     }
 
+    /// Whether more is to be said.
+    pub fn verbose(&self) -> bool {
+        self.verbose
+    }
+
     /// A remark that is neither an error nor a finding.
     pub fn note(&self, text: &str) {
         if !self.quiet && !self.json {

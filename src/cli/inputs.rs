@@ -5,10 +5,9 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use rayon::prelude::*;
 
-use super::Ui;
 use super::diagnostics::Failure;
+use super::{Ui, each};
 use crate::characterise::{FabricSheet, Modulus, Settings, characterise};
 use crate::finding::{Finding, Place};
 use crate::instrument::{Batch, FabricInput, ReadSettings, ResultValue, parse, read_dialect, read_fabrics};
@@ -125,14 +124,11 @@ impl EvaluateArgs {
         }
         let (inputs, failures) = self.reading.fabrics(inputs, ui)?;
         let bar = ui.bar("characterising", inputs.len());
-        let mut fabrics: Vec<Fabric> = inputs
-            .into_par_iter()
-            .map(|input| {
-                let sheet = characterise(&input, &settings);
-                bar.inc(1);
-                Fabric { path: input.path, sheet }
-            })
-            .collect();
+        let mut fabrics: Vec<Fabric> = each(inputs, |input| {
+            let sheet = characterise(&input, &settings);
+            bar.inc(1);
+            Fabric { path: input.path, sheet }
+        });
         bar.finish_and_clear();
         ui.go_on()?;
         distinguish(&mut fabrics);

@@ -3,14 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use rayon::prelude::*;
 use serde_json::json;
 
 use super::diagnostics::Failure;
 use super::output::Columns;
 use super::task::{Task, TaskArgs, solution};
 use super::tree::Tree;
-use super::{Exit, Ui};
+use super::{Exit, Ui, each, effort};
 use crate::quantity::significant;
 use crate::study::{CaseResult, Status};
 
@@ -38,17 +37,14 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     }
     let tree = options.output.as_ref().map(|o| Tree::open(o, &options.task)).transpose()?;
     let bar = ui.bar("solving", tasks.len());
-    let results: Vec<(Task, Result<CaseResult, Failure>)> = tasks
-        .into_par_iter()
-        .map(|task| {
-            let result = task.solve().and_then(|r| {
-                tree.as_ref().map_or(Ok(()), |tree| tree.solved(&task, &r))?;
-                Ok(r)
-            });
-            bar.inc(1);
-            (task, result)
-        })
-        .collect();
+    let results: Vec<(Task, Result<CaseResult, Failure>)> = each(tasks, |task| {
+        let result = task.solve().and_then(|r| {
+            tree.as_ref().map_or(Ok(()), |tree| tree.solved(&task, &r))?;
+            Ok(r)
+        });
+        bar.inc(1);
+        (task, result)
+    });
     bar.finish_and_clear();
     ui.go_on()?;
     let mut failures: Vec<Failure> = homeless;
@@ -65,7 +61,11 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         let entries: Vec<_> = solved.iter().map(|(t, r)| solution(t, r, true)).collect();
         ui.document(&json!({"schema": "kesf.solution/1", "solutions": entries}))?;
     } else if !solved.is_empty() {
-        ui.print(&text(&solved))?;
+        let mut text = text(&solved);
+        if ui.diagnostics.verbose() {
+            text = text + "\n" + &effort::text(solved.iter().map(|(_, r)| *r));
+        }
+        ui.print(&text)?;
     }
     let unmet = solved.iter().any(|(_, r)| r.status == Status::CheckFailed);
     let strict = options.task.strict && ui.diagnostics.findings() > 0;

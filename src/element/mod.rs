@@ -17,7 +17,9 @@ mod smoothing;
 
 pub use load::{gravity_load, pressure_load};
 pub use mass::{consistent_mass, lumped_mass};
-pub use prepared::{MaterialAxisError, Matrix12, Matrix24, Prepared, Vector24};
+pub use prepared::{
+    MaterialAxisError, Matrix12, Matrix24, Prepared, Vector24, membrane_and_plate, strain_matrices,
+};
 pub use quad4::{Frame, GAUSS_2X2, GaussPoint, gauss_point, shape};
 pub use smoothing::{Cell, Cells};
 

@@ -46,6 +46,9 @@ const EXTENSIONS: &[&str] = &[
     "csv", "tsv", "txt", "dat", "asc", "prn", "kes", "fb1", "fb2", "fb3", "xlsx", "xlsm", "xls", "ods",
     "json", "u3m",
 ];
+/// Files that are read by one thread: starting more takes longer.
+const FEW: usize = 16;
+
 /// Text files that are about the data.
 const ABOUT: &[&str] = &["readme", "license", "licence", "notes", "changelog", "citation", "copying"];
 
@@ -88,14 +91,17 @@ pub fn read_fabrics(inputs: &[PathBuf], settings: &ReadSettings, progress: &(dyn
         .enumerate()
         .flat_map(|(g, group)| group.files.iter().map(move |f| (g, f.as_path())))
         .collect();
-    let contents: Vec<(usize, Result<FileContent, ReadError>)> = jobs
-        .par_iter()
-        .map(|&(g, file)| {
-            let content = read(file, &groups[g].settings);
-            progress(file);
-            (g, content)
-        })
-        .collect();
+    let content = |&(g, file): &(usize, &Path)| {
+        let content = read(file, &groups[g].settings);
+        progress(file);
+        (g, content)
+    };
+    // A few files are read before threads have started.
+    let contents: Vec<(usize, Result<FileContent, ReadError>)> = if jobs.len() > FEW {
+        jobs.par_iter().map(content).collect()
+    } else {
+        jobs.iter().map(content).collect()
+    };
     let mut of_group: Vec<Vec<FileContent>> = groups.iter().map(|_| Vec::new()).collect();
     for (g, content) in contents {
         match content {

@@ -227,16 +227,23 @@ impl Analysis {
         }))
     }
 
+    /// `multifrontal` or `faer`.
+    pub fn path(&self) -> &'static str {
+        match &self.symbolic {
+            Symbolic::General(_) => "faer",
+            Symbolic::Multifrontal(_) => "multifrontal",
+        }
+    }
+
     /// Counts of the factorisation.
     pub fn counts(&self) -> Counts {
-        let square = self.block * self.block;
         let counts = match &self.symbolic {
             Symbolic::General(symbolic) => symbolic.counts(),
             Symbolic::Multifrontal(symbolic) => symbolic.counts(),
         };
         Counts {
             rows: self.graph.nodes * self.block,
-            nnz_a: self.graph.row_idx.len() * square - self.graph.nodes * (square - self.block) / 2,
+            nnz_a: self.graph.entries(self.block),
             bytes: counts.stored * size_of::<f64>(),
             ..counts
         }

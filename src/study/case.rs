@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use thiserror::Error;
 
+use super::solver::SolverTable;
 use crate::constitutive::Assumptions;
 use crate::finding::Place;
 use crate::instrument::Test;
@@ -49,6 +50,9 @@ pub struct Case {
     /// What is computed.
     #[serde(default)]
     pub analysis: Analysis,
+    /// How the equations are solved.
+    #[serde(default)]
+    pub solver: SolverTable,
     /// Points whose values are reported.
     #[serde(default)]
     pub probes: Vec<ProbeTable>,

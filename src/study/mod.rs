@@ -6,6 +6,7 @@ mod case;
 mod compare;
 mod prepared;
 mod run;
+mod solver;
 mod uncertainty;
 mod virtual_test;
 
@@ -19,6 +20,7 @@ pub use case::{
 pub use compare::{Comparison, compare_curves, measured_curve};
 pub use prepared::PreparedCase;
 pub use run::{CaseResult, CheckResult, History, Probe, Status, solve_case};
+pub use solver::{Bytes, MethodChoice, SolverTable};
 pub use uncertainty::{Prediction, Uncertainty};
 pub use virtual_test::{PreparedTest, VirtualCurve, compression, simulate};
 

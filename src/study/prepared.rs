@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::{Matrix2, Matrix3, Point3};
 
 use super::case::{Analysis, Case};
-use super::{StudyError, build};
+use super::{StudyError, build, solver};
 use crate::fields::{Line, Locator, Recovery};
 use crate::mesh::QuadMesh;
 use crate::model::Model;
@@ -44,9 +44,10 @@ impl<'a> PreparedCase<'a> {
                 case.inconsistent("the case has no [sheet]; a [virtual_test] is compared, not solved".into())
             );
         };
+        let options = &solver::options(case, options)?;
         let model = build::model(case, sheet, stand_in())?;
         let plan = match case.analysis {
-            Analysis::Linear => Some(Plan::new(&model.mesh, &Plan::groups(&model, options), options.path)?),
+            Analysis::Linear => Some(Plan::of(&model, options)?),
             _ => None,
         };
         let probes = locators(case, &model.mesh)?;

@@ -11,6 +11,7 @@ use crate::constitutive::{Input, SectionDerivative, bands};
 use crate::fields::Locator;
 use crate::model::{Dof, DofGroup, Model, ModelError};
 use crate::quantity::Bands;
+use crate::section::ShellSection;
 use crate::solve::assemble::{Kind, multiply};
 use crate::solve::{Factors, Solution};
 
@@ -86,20 +87,26 @@ pub(super) fn linear_uncertainty(
         .map(|input| Change::of(model, &input.derivative, &solution.displacement, &groups))
         .collect::<Result<_, _>>()?;
     let load = model.load_vector();
-    let predictions = readings(model, solution, &groups, probes)
+    let u = &solution.displacement;
+    let readings = readings(model, solution, &groups, probes);
+    let gradients = readings.iter().map(|(.., reading)| match reading {
+        Reading::Displacement(terms) => {
+            let mut gradient = vec![0.0; u.len()];
+            terms.iter().for_each(|(k, weight)| gradient[*k] += weight);
+            gradient
+        }
+        // U = uᵀ K u / 2 has the gradient K u, which is the load at the free dofs.
+        Reading::StrainEnergy => load.clone(),
+    });
+    let adjoints = factors.solve(&gradients.collect::<Vec<_>>())?;
+    let predictions = readings
         .into_iter()
-        .map(|(quantity, unit, reading)| {
-            let u = &solution.displacement;
-            let (value, gradient) = match &reading {
-                Reading::Displacement(terms) => {
-                    let mut gradient = vec![0.0; u.len()];
-                    terms.iter().for_each(|(k, weight)| gradient[*k] += weight);
-                    (terms.iter().map(|(k, weight)| weight * u[*k]).sum(), gradient)
-                }
-                // U = uᵀ K u / 2 has the gradient K u, which is the load at the free dofs.
-                Reading::StrainEnergy => (solution.strain_energy, load.clone()),
+        .zip(adjoints)
+        .map(|((quantity, unit, reading), adjoint)| {
+            let value = match &reading {
+                Reading::Displacement(terms) => terms.iter().map(|(k, weight)| weight * u[*k]).sum(),
+                Reading::StrainEnergy => solution.strain_energy,
             };
-            let adjoint = factors.solve(&gradient);
             let derivative = |change: &Change| {
                 let explicit = match reading {
                     Reading::Displacement(_) => 0.0,
@@ -154,16 +161,30 @@ impl Change {
         for by in [STEP, -STEP] {
             moved.section = derivative.step(&model.section, by);
             let mut internal = vec![0.0; u.len()];
-            for group in groups {
+            for group in groups.iter().filter(|group| stiffens(**group, &model.section, &moved.section)) {
                 group.scatter(&multiply(&moved, *group, Kind::Stiffness, &group.gather(u))?, &mut internal);
             }
             let add = |sum: &mut Vec<f64>, values: &[f64]| {
                 sum.iter_mut().zip(values).for_each(|(s, v)| *s += v / (2.0 * by));
             };
-            add(&mut change.load, &moved.load_vector());
             add(&mut change.internal, &internal);
+            // Of all loads only the weight depends on the section.
+            if moved.section.areal_density != model.section.areal_density {
+                add(&mut change.load, &moved.load_vector());
+            }
         }
         Ok(change)
+    }
+}
+
+/// Whether a change of the section changes the stiffness of a group.
+fn stiffens(group: DofGroup, from: &ShellSection, to: &ShellSection) -> bool {
+    let bends = (from.d_b, from.d_s) != (to.d_b, to.d_s);
+    // The drilling penalty of a membrane depends on the bending stiffness.
+    if group == DofGroup::Plate {
+        bends
+    } else {
+        bends || from.d_m != to.d_m || from.thickness != to.thickness
     }
 }
 

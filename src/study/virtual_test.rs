@@ -10,6 +10,7 @@ use super::StudyError;
 use super::build;
 use super::case::{Case, VirtualTest};
 use super::prepared::stand_in;
+use super::solver;
 use crate::characterise::FabricSheet;
 use crate::instrument::{Direction, Parameter, Test};
 use crate::mesh;
@@ -127,8 +128,9 @@ impl PreparedTest {
             supports: vec![Support::clamped(&left), Support { nodes: right.clone(), held: moved }],
             loads: Vec::new(),
         };
-        let plan = Plan::new(&model.mesh, &Plan::groups(&model, options), options.path)?;
-        Ok(Self { test: spec.test, x, reading, right, model, plan, options: *options })
+        let options = solver::options(case, options)?;
+        let plan = Plan::of(&model, &options)?;
+        Ok(Self { test: spec.test, x, reading, right, model, plan, options })
     }
 
     /// Simulates the test of a specimen cut along `direction`.
