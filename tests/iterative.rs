@@ -155,6 +155,25 @@ fn a_missing_support_is_an_error() {
     assert!(["N001", "N006", "N008"].contains(&error.code()), "{error}");
 }
 
+/// The factor of 64 x 64 elements with six dofs is worth two threads.
+#[test]
+fn threads_do_not_change_the_solution() {
+    let model = clamped(64, 1e-3, 1.0);
+    let [one, two] = [1, 2].map(|threads| {
+        let options = Options { coupled: true, threads, ..Options::default() };
+        solve(&model, &options).unwrap()
+    });
+    assert_eq!([one.systems[0].threads, two.systems[0].threads], [1, 2]);
+    assert!(one.displacement == two.displacement && one.reaction == two.reaction, "bit by bit");
+}
+
+/// Rounding of u alone would leave a residual that grows with the fourth power of the elements a side.
+#[test]
+fn the_residual_of_a_fine_mesh_is_refined() {
+    let solution = solve(&clamped(160, 1e-3, 1.0), &Options::default()).unwrap();
+    assert!(solution.residual <= 1e-10, "{:.1e}", solution.residual);
+}
+
 #[test]
 fn prescribed_displacements_are_kept() {
     let mut model = clamped(40, 1e-3, 1.0);

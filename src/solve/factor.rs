@@ -58,7 +58,9 @@ pub enum FactorError {
         pivot: f64,
     },
     /// The factor does not fit in memory.
-    #[error("N002 no memory for a factor of {bytes} bytes; use a coarser mesh or the iterative solver")]
+    #[error(
+        "N002 no memory for a factor of {bytes} bytes; use a coarser mesh, or iterate (method = \"iterative\" in [solver])"
+    )]
     OutOfMemory {
         /// Bytes of the factor; 0 where even the analysis did not fit.
         bytes: usize,

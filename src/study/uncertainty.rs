@@ -110,9 +110,9 @@ pub(super) fn linear_uncertainty(
             let derivative = |change: &Change| {
                 let explicit = match reading {
                     Reading::Displacement(_) => 0.0,
-                    Reading::StrainEnergy => 0.5 * dot(u, &change.internal),
+                    Reading::StrainEnergy => 0.5 * along(u, &change.internal),
                 };
-                explicit + dot(&adjoint, &change.load) - dot(&adjoint, &change.internal)
+                explicit + along(&adjoint, &change.load) - along(&adjoint, &change.internal)
             };
             let derivatives = changes.iter().map(derivative).collect();
             Prediction::new(quantity, unit, value, derivatives, inputs)
@@ -143,10 +143,10 @@ impl Prediction {
     }
 }
 
-/// ∂f/∂ln p and ∂K/∂ln p u, six a node.
+/// ∂f/∂ln p and ∂K/∂ln p u, six a node; `None` where nothing changes.
 struct Change {
-    load: Vec<f64>,
-    internal: Vec<f64>,
+    load: Option<Vec<f64>>,
+    internal: Option<Vec<f64>>,
 }
 
 impl Change {
@@ -156,21 +156,31 @@ impl Change {
         u: &[f64],
         groups: &[DofGroup],
     ) -> Result<Self, ModelError> {
-        let mut change = Self { load: vec![0.0; u.len()], internal: vec![0.0; u.len()] };
+        let steps = [STEP, -STEP].map(|by| (derivative.step(&model.section, by), by));
+        let stiffer = |group: &DofGroup| steps.iter().any(|(to, _)| stiffens(*group, &model.section, to));
+        let groups: Vec<DofGroup> = groups.iter().copied().filter(stiffer).collect();
+        // Of all loads only the weight depends on the section.
+        let heavier = steps.iter().any(|(to, _)| to.areal_density != model.section.areal_density);
+        let mut change = Self { load: None, internal: None };
+        if groups.is_empty() && !heavier {
+            return Ok(change);
+        }
+        let add = |sum: &mut Option<Vec<f64>>, values: &[f64], by: f64| {
+            let sum = sum.get_or_insert_with(|| vec![0.0; values.len()]);
+            sum.iter_mut().zip(values).for_each(|(s, v)| *s += v / (2.0 * by));
+        };
         let mut moved = model.clone();
-        for by in [STEP, -STEP] {
-            moved.section = derivative.step(&model.section, by);
+        for (section, by) in steps {
+            moved.section = section;
             let mut internal = vec![0.0; u.len()];
-            for group in groups.iter().filter(|group| stiffens(**group, &model.section, &moved.section)) {
+            for group in &groups {
                 group.scatter(&multiply(&moved, *group, Kind::Stiffness, &group.gather(u))?, &mut internal);
             }
-            let add = |sum: &mut Vec<f64>, values: &[f64]| {
-                sum.iter_mut().zip(values).for_each(|(s, v)| *s += v / (2.0 * by));
-            };
-            add(&mut change.internal, &internal);
-            // Of all loads only the weight depends on the section.
-            if moved.section.areal_density != model.section.areal_density {
-                add(&mut change.load, &moved.load_vector());
+            if !groups.is_empty() {
+                add(&mut change.internal, &internal, by);
+            }
+            if heavier {
+                add(&mut change.load, &moved.load_vector(), by);
             }
         }
         Ok(change)
@@ -214,8 +224,9 @@ fn readings(
     all
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+/// The product with a change, 0 where there is none.
+fn along(a: &[f64], change: &Option<Vec<f64>>) -> f64 {
+    change.as_ref().map_or(0.0, |change| a.iter().zip(change).map(|(a, b)| a * b).sum())
 }
 
 #[cfg(test)]
