@@ -211,14 +211,14 @@ impl Model {
         forces: impl Fn(&Frame) -> [Vector3<f64>; 4],
         mut add: impl FnMut(u32, Vector3<f64>),
     ) {
-        let mut last: Option<([Point3<f64>; 4], [Vector3<f64>; 4])> = None;
+        let (mut last, mut nodal) = (None, [Vector3::zeros(); 4]);
         for (quad, nodes) in self.mesh.quads.iter().enumerate() {
             let corners = self.mesh.corners(quad);
-            let (_, forces) = match last {
-                Some(last) if is_translated(&last.0, &corners) => last,
-                _ => *last.insert((corners, forces(&Frame::of(&corners)))),
-            };
-            nodes.iter().zip(forces).for_each(|(n, force)| add(*n, force));
+            if !last.is_some_and(|last| is_translated(&last, &corners)) {
+                nodal = forces(&Frame::of(&corners));
+                last = Some(corners);
+            }
+            nodes.iter().zip(nodal).for_each(|(n, force)| add(*n, force));
         }
     }
 
