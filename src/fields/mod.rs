@@ -142,7 +142,8 @@ impl Recovery {
             .into_iter()
             .map(|(sum, count)| {
                 let mut mean = Resultants::default();
-                mean.add(&sum, 1.0 / count);
+                // A node that no element uses has none.
+                mean.add(&sum, 1.0 / f64::max(count, 1.0));
                 mean
             })
             .collect();

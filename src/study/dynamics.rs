@@ -97,7 +97,7 @@ impl Record<'_> {
         for (locator, out) in self.locators.iter().zip(&mut history.probes) {
             out.push(locator.interpolate(self.mesh, |n| at.displacement[6 * n + 2]));
         }
-        let w = largest_w(at.displacement);
+        let w = largest_w(self.mesh, at.displacement);
         history.w_max = if w.abs() > history.w_max.abs() { w } else { history.w_max };
         self.solution.displacement.copy_from_slice(at.displacement);
         self.solution.strain_energy = at.energy.strain;

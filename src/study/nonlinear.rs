@@ -179,7 +179,7 @@ impl Record<'_> {
             residual: step.residual,
             strain_energy: step.energy,
             dissipated: step.state.memory.dissipated,
-            w_max: largest_w(&displacement),
+            w_max: largest_w(self.mesh, &displacement),
         });
         self.state.clone_from(step.state);
         self.solution.displacement = displacement;
@@ -190,10 +190,10 @@ impl Record<'_> {
     }
 }
 
-/// The largest |w| with its sign (m).
-pub(super) fn largest_w(displacement: &[f64]) -> f64 {
-    let w = displacement.iter().skip(2).step_by(6);
-    w.fold(0.0, |m: f64, w| if w.abs() > m.abs() { *w } else { m })
+/// The largest |w| with its sign (m) of the nodes that elements use: a point of reference is not of the sheet.
+pub(super) fn largest_w(mesh: &QuadMesh, displacement: &[f64]) -> f64 {
+    let w = mesh.quads.iter().flatten().map(|n| displacement[6 * *n as usize + 2]);
+    w.fold(0.0, |m: f64, w| if w.abs() > m.abs() { w } else { m })
 }
 
 /// Searches an equilibrium; one that is not found is a finding, and the last state is the result.
@@ -224,7 +224,7 @@ pub(super) fn equilibrium(
             steps: Vec::new(),
             probes: vec![Vec::new(); prepared.probes.len()],
             stability: None,
-            linear_w_max: linear.map(|l| largest_w(&l.displacement)),
+            linear_w_max: linear.map(|l| largest_w(&model.mesh, &l.displacement)),
         },
         state: State::rest(&model.mesh),
         solution: Solution::at_rest(model),

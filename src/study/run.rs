@@ -216,7 +216,8 @@ impl PreparedCase<'_> {
             None => None,
         };
         let w = |n: usize| solution.displacement[6 * n + 2];
-        let w_max = history.as_ref().map_or_else(|| largest_w(&solution.displacement), |h| h.w_max);
+        let w_max =
+            history.as_ref().map_or_else(|| largest_w(&model.mesh, &solution.displacement), |h| h.w_max);
         let w_over_thickness = w_max.abs() / model.section.bending_thickness_squared().sqrt();
         let beyond_linear = frequencies.is_empty() && state.is_none() && w_over_thickness > LINEAR_LIMIT;
         let mut findings = findings(case, &model, beyond_linear.then_some((w_max, w_over_thickness)));
