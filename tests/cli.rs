@@ -361,3 +361,29 @@ fn a_sheet_shows_moduli_windows_and_statistics() {
     assert!((b["ci95"].as_f64().unwrap() / half - 1.0).abs() < 1e-7);
     assert_eq!(document["settings"]["B fitted over"], "0.5 1/cm .. 1.5 1/cm");
 }
+
+#[test]
+fn a_solution_says_how_it_was_found_and_at_what_cost() {
+    let case = "cases/benchmark_clamped_orthotropic.toml";
+    let of = |solver: &str| {
+        let output = run(&["--json", "solve", "--solver", solver, case]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        json(&output)["solutions"][0].clone()
+    };
+    let (direct, iterated) = (of("direct"), of("iterative"));
+    let system = |s: &Value| s["solver"]["systems"][0].clone();
+    assert_eq!(system(&direct)["path"], "multifrontal");
+    assert!(system(&direct)["flops"].as_f64().unwrap() > 1e6 && system(&direct)["nnz_l"].is_u64());
+    assert!(direct["timings"]["factor_s"].is_f64() && direct["timings"]["gflop_per_s"].is_f64());
+    assert_eq!(system(&iterated)["path"], "conjugate gradients");
+    let history = system(&iterated)["residual_history"].as_array().unwrap().clone();
+    assert_eq!(history.len() as u64, system(&iterated)["iterations"].as_u64().unwrap() + 1);
+    assert!(history.last().unwrap().as_f64().unwrap() <= 1e-10);
+    for s in [&direct, &iterated] {
+        assert!(s["solver"]["residual"].as_f64().unwrap() <= 1e-8);
+    }
+    let w = |s: &Value| s["results"]["w_max"]["value"].as_f64().unwrap();
+    assert!((w(&iterated) / w(&direct) - 1.0).abs() < 1e-8);
+    let text = stdout(&run(&["-v", "solve", "--solver", "iterative", case]));
+    assert!(text.contains("conjugate gradients") && text.contains("iterations"), "{text}");
+}

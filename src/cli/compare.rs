@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use rayon::prelude::*;
 use serde_json::json;
 
 use super::bending;
@@ -11,7 +10,7 @@ use super::diagnostics::Failure;
 use super::output::Columns;
 use super::task::{Task, TaskArgs, Tested, comparison};
 use super::tree::Tree;
-use super::{Exit, Ui};
+use super::{Exit, Ui, each};
 use crate::instrument::Test;
 use crate::quantity::significant;
 use crate::study::bending::BendingResult;
@@ -43,14 +42,11 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     }
     let tree = options.output.as_ref().map(|o| Tree::open(o, &options.task)).transpose()?;
     let bar = ui.bar("simulating", tasks.len());
-    let results: Vec<(Task, Result<Outcome, Failure>)> = tasks
-        .into_par_iter()
-        .map(|task| {
-            let result = simulated(&task, tree.as_ref());
-            bar.inc(1);
-            (task, result)
-        })
-        .collect();
+    let results: Vec<(Task, Result<Outcome, Failure>)> = each(tasks, |task| {
+        let result = simulated(&task, tree.as_ref());
+        bar.inc(1);
+        (task, result)
+    });
     bar.finish_and_clear();
     ui.go_on()?;
     let mut failures = homeless;

@@ -11,6 +11,7 @@ mod compare;
 mod completions;
 mod diagnostics;
 mod drape;
+mod effort;
 mod exit;
 mod explain;
 mod friction;
@@ -34,6 +35,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::Parser;
 use clap::error::ErrorKind;
 use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
 
 use args::{Cli, Command};
 use diagnostics::{Diagnostics, Failure};
@@ -47,6 +49,8 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 /// What a command may use to speak: the format of the result and the diagnostics.
 struct Ui {
     json: bool,
+    /// Threads that the work may take.
+    threads: usize,
     diagnostics: Diagnostics,
 }
 
@@ -85,7 +89,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return usage(&error, arguments.iter().any(|a| a == "--json")).into(),
     };
-    let mut ui = Ui { json: cli.global.json, diagnostics: Diagnostics::new(&cli.global) };
+    let threads = cli.global.threads.or_else(|| std::thread::available_parallelism().ok());
+    let mut ui = Ui {
+        json: cli.global.json,
+        threads: threads.map_or(1, std::num::NonZero::get),
+        diagnostics: Diagnostics::new(&cli.global),
+    };
     if let Err(failure) = prepare(&cli) {
         ui.diagnostics.error(&failure);
         return failure.exit.into();
@@ -97,13 +106,15 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     exit.into()
 }
 
-/// Threads and Ctrl-C. The first Ctrl-C ends the work at the next item, the second at once.
+/// Threads and Ctrl-C. The first Ctrl-C ends the work at the next item, the second at once. Threads
+/// of which no number was given are started by the first work that can be shared.
 fn prepare(cli: &Cli) -> Result<(), Failure> {
-    let threads = cli.global.threads.map_or(0, std::num::NonZero::get);
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build_global()
-        .map_err(|e| Failure::new("O053", format!("the threads cannot be started: {e}")))?;
+    if let Some(threads) = cli.global.threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.get())
+            .build_global()
+            .map_err(|e| Failure::new("O053", format!("the threads cannot be started: {e}")))?;
+    }
     ctrlc::set_handler(|| {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
             std::process::exit(Exit::Interrupted as i32);
@@ -126,6 +137,11 @@ fn dispatch(command: &Command, ui: &mut Ui) -> Result<Exit, Failure> {
         Command::Explain(options) => explain::run(options, ui),
         Command::Completions(options) => completions::run(options, ui),
     }
+}
+
+/// `f` of every item, in order; by several threads where there is more than one.
+fn each<T: Send, R: Send>(items: Vec<T>, f: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
+    if items.len() > 1 { items.into_par_iter().map(f).collect() } else { items.into_iter().map(f).collect() }
 }
 
 /// Help and version go to standard output; anything else is bad usage.

@@ -3,17 +3,17 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use rayon::prelude::*;
 use serde_json::json;
 
 use super::diagnostics::Failure;
 use super::drape;
+use super::inputs::Fabric;
 use super::output::Columns;
 use super::search::{NOT_CONVERGED, unconverged};
 use super::summary::{FabricReport, page, summary};
 use super::task::{Task, TaskArgs, Work};
 use super::tree::Tree;
-use super::{Exit, Ui};
+use super::{Exit, Ui, each};
 use crate::report::chart::{self, ParityPoint};
 use crate::report::html::html;
 use crate::report::json::text;
@@ -64,13 +64,10 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let (hanging, own): (Vec<Task>, Vec<Task>) = own.into_iter().partition(Task::is_drape);
     let hung: Vec<Result<(), Failure>> =
         hanging.iter().map(|task| task.drape(&|| ()).and_then(|d| drape::write(&tree, task, &d))).collect();
-    let benchmarks: Vec<(Task, Result<CaseResult, Failure>)> = own
-        .into_par_iter()
-        .map(|task| {
-            let result = task.solve().and_then(|r| tree.solved(&task, &r).map(|()| r));
-            (task, result)
-        })
-        .collect();
+    let benchmarks: Vec<(Task, Result<CaseResult, Failure>)> = each(own, |task| {
+        let result = task.solve().and_then(|r| tree.solved(&task, &r).map(|()| r));
+        (task, result)
+    });
     ui.go_on()?;
 
     let mut failures = homeless;
@@ -130,18 +127,15 @@ fn is_drape(case: &Case) -> bool {
 /// Every fabric with its cases, in parallel; reports in name order.
 fn fabrics(work: &Work, tasks: &[Task], tree: &Tree, ui: &Ui) -> Result<Vec<FabricReport>, Failure> {
     let bar = ui.bar("fabrics", work.fabrics.len());
-    let reports: Vec<FabricReport> = work
-        .fabrics
-        .par_iter()
-        .filter_map(|fabric| {
-            ui.go_on().ok()?;
-            let mine = |t: &&Task| t.fabric.is_some_and(|f| std::ptr::eq(f, &raw const fabric.sheet));
-            let mine: Vec<Task> = tasks.iter().filter(mine).cloned().collect();
-            let report = FabricReport::of(fabric, &mine, tree);
-            bar.inc(1);
-            Some(report)
-        })
-        .collect();
+    let report = |fabric: &Fabric| {
+        ui.go_on().ok()?;
+        let mine = |t: &&Task| t.fabric.is_some_and(|f| std::ptr::eq(f, &raw const fabric.sheet));
+        let mine: Vec<Task> = tasks.iter().filter(mine).cloned().collect();
+        let report = FabricReport::of(fabric, &mine, tree);
+        bar.inc(1);
+        Some(report)
+    };
+    let reports = each(work.fabrics.iter().collect(), report).into_iter().flatten().collect();
     bar.finish_and_clear();
     ui.go_on()?;
     Ok(reports)

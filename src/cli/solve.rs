@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use clap::Args;
-use rayon::prelude::*;
 use serde_json::json;
 
 use super::diagnostics::Failure;
@@ -13,7 +12,7 @@ use super::output::Columns;
 use super::search::{NOT_CONVERGED, searches, steps, unconverged};
 use super::task::{Task, TaskArgs, solution};
 use super::tree::Tree;
-use super::{Exit, Ui};
+use super::{Exit, Ui, each, effort};
 use crate::quantity::significant;
 use crate::study::{CaseResult, Drape, Status, drape_stages};
 
@@ -43,27 +42,21 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let (drapes, tasks): (Vec<Task>, Vec<Task>) = tasks.into_iter().partition(Task::is_drape);
     let stages: usize = drapes.iter().map(|t| drape_stages(t.case)).sum();
     let bar = ui.bar("solving", tasks.len() + stages);
-    let results: Vec<(Task, Result<CaseResult, Failure>)> = tasks
-        .into_par_iter()
-        .map(|task| {
-            let result = task.solve().and_then(|r| {
-                tree.as_ref().map_or(Ok(()), |tree| tree.solved(&task, &r))?;
-                Ok(r)
-            });
-            bar.inc(1);
-            (task, result)
-        })
-        .collect();
-    let draped: Vec<(Task, Result<Drape, Failure>)> = drapes
-        .into_par_iter()
-        .map(|task| {
-            let result = ui.go_on().and_then(|()| task.drape(&|| bar.inc(1))).and_then(|d| {
-                tree.as_ref().map_or(Ok(()), |tree| drape::write(tree, &task, &d))?;
-                Ok(d)
-            });
-            (task, result)
-        })
-        .collect();
+    let results: Vec<(Task, Result<CaseResult, Failure>)> = each(tasks, |task| {
+        let result = task.solve().and_then(|r| {
+            tree.as_ref().map_or(Ok(()), |tree| tree.solved(&task, &r))?;
+            Ok(r)
+        });
+        bar.inc(1);
+        (task, result)
+    });
+    let draped: Vec<(Task, Result<Drape, Failure>)> = each(drapes, |task| {
+        let result = ui.go_on().and_then(|()| task.drape(&|| bar.inc(1))).and_then(|d| {
+            tree.as_ref().map_or(Ok(()), |tree| drape::write(tree, &task, &d))?;
+            Ok(d)
+        });
+        (task, result)
+    });
     bar.finish_and_clear();
     ui.go_on()?;
     let mut failures: Vec<Failure> = homeless;
@@ -93,8 +86,9 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         let drapes = drape::table(draped.iter().copied());
         let drapes = (!drapes.is_empty()).then(|| drapes.text());
         let verbose = ui.diagnostics.verbose();
-        let parts: Vec<String> =
-            (!solved.is_empty()).then(|| text(&solved, verbose)).into_iter().chain(drapes).collect();
+        let cases = (!solved.is_empty()).then(|| text(&solved, verbose));
+        let costs = (verbose && !solved.is_empty()).then(|| effort::text(solved.iter().map(|(_, r)| *r)));
+        let parts: Vec<String> = [cases, costs, drapes].into_iter().flatten().collect();
         if !parts.is_empty() {
             ui.print(&parts.join("\n"))?;
         }

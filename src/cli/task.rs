@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::Ui;
 use super::diagnostics::Failure;
+use super::effort;
 use super::inputs::{self, Curves, EvaluateArgs, Fabric};
 use crate::characterise::FabricSheet;
 use crate::constitutive::{self, Constitutive, Input};
@@ -18,8 +19,8 @@ use crate::solve::Options as SolveOptions;
 use crate::study::bending::{BendingResult, simulate_records, simulate_strips};
 use crate::study::{
     self, Analysis, BendingKind, BendingTest, Case, CaseResult, Comparison, Drape, Prediction, PreparedCase,
-    PreparedTest, StudyError, Uncertainty, VirtualCurve, VirtualLoop, VirtualTest, compare_curves,
-    measured_curve,
+    PreparedTest, SolverChoice, StudyError, Uncertainty, VirtualCurve, VirtualLoop, VirtualTest,
+    compare_curves, measured_curve,
 };
 
 /// Cases and fabrics on the command line.
@@ -34,8 +35,32 @@ pub struct TaskArgs {
     /// Exit with 1 if there is a finding
     #[arg(long)]
     pub strict: bool,
+    /// How linear cases are solved, whatever their [solver] says
+    #[arg(long, value_enum, value_name = "METHOD")]
+    pub solver: Option<SolverArg>,
     #[command(flatten)]
     pub evaluate: EvaluateArgs,
+}
+
+/// [`SolverChoice`] as typed.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum SolverArg {
+    /// Direct, unless the factor would be too large
+    Auto,
+    /// Sparse Cholesky factorisation
+    Direct,
+    /// Conjugate gradients, preconditioned by multigrid
+    Iterative,
+}
+
+impl From<SolverArg> for SolverChoice {
+    fn from(typed: SolverArg) -> Self {
+        match typed {
+            SolverArg::Auto => Self::Auto,
+            SolverArg::Direct => Self::Direct,
+            SolverArg::Iterative => Self::Iterative,
+        }
+    }
 }
 
 /// The cases and fabrics that the inputs name, and what could not be read (already told).
@@ -46,6 +71,8 @@ pub struct Work {
     pub fabrics: Vec<Fabric>,
     /// Told already.
     pub failures: Vec<Failure>,
+    /// Threads for all tasks together.
+    threads: usize,
 }
 
 /// A case and its fabric; none for a case with constants of its own.
@@ -60,6 +87,7 @@ pub struct Task<'a> {
 /// other threads' work, so those that wait for it cannot lock each other out.
 #[derive(Default)]
 struct Shared<'a> {
+    options: SolveOptions,
     case: OnceLock<Result<PreparedCase<'a>, Failure>>,
     test: OnceLock<Result<PreparedTest, Failure>>,
 }
@@ -83,7 +111,10 @@ pub struct Tested {
 impl TaskArgs {
     /// Reads everything that the inputs name, and the fabrics that only cases name.
     pub fn load(&self, inputs: &[PathBuf], ui: &mut Ui) -> Result<Work, Failure> {
-        let (cases, mut failures) = inputs::cases(inputs);
+        let (mut cases, mut failures) = inputs::cases(inputs);
+        if let Some(typed) = self.solver {
+            cases.iter_mut().for_each(|case| case.solver.method = Some(typed.into()));
+        }
         failures.iter().for_each(|f| ui.diagnostics.error(f));
         let mut folders: Vec<PathBuf> =
             inputs.iter().filter(|p| p.is_dir() || !inputs::is_case(p)).cloned().collect();
@@ -96,7 +127,7 @@ impl TaskArgs {
         let moduli: Vec<_> = cases.iter().map(|c| c.assumptions.modulus).collect();
         let (fabrics, unread) = self.evaluate.sheets(&folders, &moduli, Curves::Kept, ui)?;
         failures.extend(unread);
-        Ok(Work { cases, fabrics, failures })
+        Ok(Work { cases, fabrics, failures, threads: ui.threads })
     }
 }
 
@@ -118,8 +149,12 @@ impl Work {
     /// Every case with every fabric it is for, cases in order; a case that finds none is a failure.
     pub fn tasks<'w>(&'w self) -> (Vec<Task<'w>>, Vec<Failure>) {
         let (mut tasks, mut failures) = (Vec::new(), Vec::new());
+        // Tasks share the threads; one that is alone has them all.
+        let alone = self.cases.len() == 1 && self.fabrics.len() < 2;
+        let threads = if alone { self.threads } else { 1 };
         for case in &self.cases {
-            let shared = Arc::default();
+            let options = SolveOptions { threads, ..SolveOptions::default() };
+            let shared = Arc::new(Shared { options, ..Shared::default() });
             if case.section.is_some() {
                 tasks.push(Task { case, fabric: None, shared });
                 continue;
@@ -186,7 +221,7 @@ impl Task<'_> {
     /// Solves a case with a `[sheet]`.
     pub fn solve(&self) -> Result<CaseResult, Failure> {
         let solved = self.section().and_then(|(section, from)| {
-            let prepare = || Ok(PreparedCase::new(self.case, &SolveOptions::default())?);
+            let prepare = || Ok(PreparedCase::new(self.case, &self.shared.options)?);
             let prepared = self.shared.case.get_or_init(prepare).as_ref().map_err(Clone::clone)?;
             Ok(match from {
                 Some(made) => prepared.solve_fabric(&made)?,
@@ -241,7 +276,7 @@ impl Task<'_> {
         } else {
             let (section, made) = self.section()?;
             let inputs = made.as_ref().map_or_else(Vec::new, |c| c.inputs.clone());
-            let prepare = || Ok(PreparedTest::new(self.case, spec, &SolveOptions::default())?);
+            let prepare = || Ok(PreparedTest::new(self.case, spec, &self.shared.options)?);
             let prepared = self.shared.test.get_or_init(prepare).as_ref().map_err(Clone::clone)?;
             [Direction::Warp, Direction::Weft]
                 .into_iter()
@@ -312,6 +347,7 @@ pub fn solution(task: &Task, result: &CaseResult, timings: bool) -> Value {
         "fabric": task.fabric_name(),
         "status": result.status,
         "model": {"nodes": mesh.nodes.len(), "elements": mesh.quads.len(), "dofs": s.dofs},
+        "solver": effort::document(s),
         "results": {
             "w_max": {"value": result.w_max, "unit": "m"},
             "w_over_bending_thickness": result.w_over_thickness,
@@ -334,11 +370,7 @@ pub fn solution(task: &Task, result: &CaseResult, timings: bool) -> Value {
         entry["history"] = json!(history);
     }
     if timings {
-        let t = &s.timings;
-        entry["timings"] = json!({
-            "analyse_s": t.analyse_s, "assemble_s": t.assemble_s,
-            "factor_s": t.factor_s, "solve_s": t.solve_s,
-        });
+        entry["timings"] = effort::timings(s);
     }
     entry
 }

@@ -194,7 +194,7 @@ impl Mesh {
 
     fn vtu(&self, result: &CaseResult) -> Result<Vec<u8>, Failure> {
         let six = |values: &[f64], from: usize| -> Vec<f64> {
-            values.chunks_exact(6).flat_map(|v| v[from..from + 3].to_vec()).collect()
+            values.chunks_exact(6).flat_map(|v| [v[from], v[from + 1], v[from + 2]]).collect()
         };
         let (u, r) = (&result.solution.displacement, &result.solution.reaction);
         let nodal = result.nodal().map_err(StudyError::from)?;

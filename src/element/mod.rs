@@ -19,7 +19,9 @@ mod smoothing;
 pub use cellwise::{Cellwise, Strains};
 pub use load::{follower_pressure, follower_pressure_tangent, gravity_load, pressure_load};
 pub use mass::{Mass, consistent_mass, lumped_mass};
-pub use prepared::{MaterialAxisError, Matrix12, Matrix24, Prepared, Vector24};
+pub use prepared::{
+    MaterialAxisError, Matrix12, Matrix24, Prepared, Vector24, membrane_and_plate, strain_matrices,
+};
 pub use quad4::{Frame, GAUSS_2X2, GaussPoint, gauss_point, shape};
 pub use smoothing::{Cell, Cells};
 

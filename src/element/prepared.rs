@@ -209,11 +209,20 @@ impl Prepared {
         (membrane, curvature)
     }
 
-    /// Transverse shear strains at a natural point for local displacements.
-    pub fn shear_strain(&self, natural: [f64; 2], local: &Vector24) -> nalgebra::Vector2<f64> {
-        let at = gauss_point(&self.frame.xy, natural);
-        shear::shear_matrix(&self.frame.xy, &at) * pick(local, PLATE_DOFS)
+    /// Transverse shear strains at a natural point for local displacements `(w, θx, θy)` node by node.
+    pub fn shear_strain_matrix(&self, natural: [f64; 2]) -> SMatrix<f64, 2, 12> {
+        shear::shear_matrix(&self.frame.xy, &gauss_point(&self.frame.xy, natural))
     }
+}
+
+/// Membrane strain and curvature in a cell for local displacements `(u, v, θz)` and `(w, θx, θy)`.
+pub fn strain_matrices(cell: &Cell) -> (SMatrix<f64, 3, 12>, SMatrix<f64, 3, 12>) {
+    (membrane_matrix(cell), bending_matrix(cell))
+}
+
+/// The membrane dofs `(u, v, θz)` and the plate dofs `(w, θx, θy)` of an element, node by node.
+pub fn membrane_and_plate(u: &Vector24) -> (SVector<f64, 12>, SVector<f64, 12>) {
+    (pick(u, MEMBRANE_DOFS), pick(u, PLATE_DOFS))
 }
 
 const MEMBRANE_DOFS: [usize; 3] = [0, 1, 5];

@@ -46,6 +46,9 @@ const EXTENSIONS: &[&str] = &[
     "csv", "tsv", "txt", "dat", "asc", "prn", "kes", "fb1", "fb2", "fb3", "xlsx", "xlsm", "xls", "ods",
     "json", "u3m",
 ];
+/// Files that are read by one thread: starting more takes longer.
+const FEW: usize = 16;
+
 /// Text files that are about the data.
 const ABOUT: &[&str] = &["readme", "license", "licence", "notes", "changelog", "citation", "copying"];
 
@@ -106,13 +109,18 @@ impl Library {
         progress: &(dyn Fn(&Path) + Sync),
         work: impl Fn(FabricInput) -> T + Sync,
     ) -> (Vec<T>, Vec<ReadError>) {
+        let few = self.files() <= FEW;
         let group = |group: Group| {
             let file = |file: &PathBuf| {
                 let content = read(file, &group.settings);
                 progress(file);
                 content
             };
-            let read: Vec<_> = group.files.par_iter().map(file).collect();
+            let read: Vec<_> = if few {
+                group.files.iter().map(file).collect()
+            } else {
+                group.files.par_iter().map(file).collect()
+            };
             let (mut contents, mut failures) = (Vec::new(), Vec::new());
             for content in read {
                 match content {
@@ -123,7 +131,12 @@ impl Library {
             let done: Vec<T> = fabrics(group, contents).into_iter().map(&work).collect();
             (done, failures)
         };
-        let groups: Vec<_> = self.groups.into_par_iter().map(group).collect();
+        // A few files are read before threads have started.
+        let groups: Vec<_> = if few {
+            self.groups.into_iter().map(group).collect()
+        } else {
+            self.groups.into_par_iter().map(group).collect()
+        };
         let (mut all, mut failures) = (Vec::new(), self.failures);
         for (done, unread) in groups {
             all.extend(done);

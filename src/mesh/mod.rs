@@ -119,6 +119,13 @@ impl MeshError {
     }
 }
 
+/// Whether two quads are equal up to a translation, to the rounding of the coordinates.
+#[inline]
+pub fn is_translated(a: &[Point3<f64>; 4], b: &[Point3<f64>; 4]) -> bool {
+    let size = (a[2] - a[0]).norm();
+    (1..4).all(|i| ((a[i] - a[0]) - (b[i] - b[0])).amax() <= 1e-12 * size)
+}
+
 impl QuadMesh {
     /// The four corners of a quad.
     pub fn corners(&self, quad: usize) -> [Point3<f64>; 4] {

@@ -12,7 +12,7 @@ pub use dof::{Dof, DofGroup};
 pub use rigid::{Links, RigidBody, RigidBodyError};
 
 use crate::element::{Formulation, Frame, MaterialAxisError, Prepared, gravity_load, pressure_load};
-use crate::mesh::{MeshError, QuadMesh};
+use crate::mesh::{MeshError, QuadMesh, is_translated};
 use crate::section::ShellSection;
 
 /// A shell model. Vectors over the model hold six numbers a node, `(u, v, w, θx, θy, θz)`, SI.
@@ -221,17 +221,11 @@ impl Model {
         for load in self.loads.iter().filter(|load| counts(load)) {
             match load {
                 Load::Pressure(pressure) | Load::FollowerPressure(pressure) => {
-                    for (quad, nodes) in self.mesh.quads.iter().enumerate() {
-                        let forces = pressure_load(&Frame::of(&self.mesh.corners(quad)), *pressure);
-                        nodes.iter().zip(forces).for_each(|(n, force)| add(*n, 0, force));
-                    }
+                    self.for_each_nodal_force(|frame| pressure_load(frame, *pressure), |n, f| add(n, 0, f));
                 }
                 Load::Gravity(g) => {
-                    for (quad, nodes) in self.mesh.quads.iter().enumerate() {
-                        let frame = Frame::of(&self.mesh.corners(quad));
-                        let forces = gravity_load(&frame, self.section.areal_density, g);
-                        nodes.iter().zip(forces).for_each(|(n, force)| add(*n, 0, force));
-                    }
+                    let weight = |frame: &Frame| gravity_load(frame, self.section.areal_density, g);
+                    self.for_each_nodal_force(weight, |n, force| add(n, 0, force));
                 }
                 Load::Point { nodes, force, moment } => {
                     let share = 1.0 / nodes.len() as f64;
@@ -253,6 +247,23 @@ impl Model {
             }
         }
         f
+    }
+
+    /// Calls `add` with each node of each element and its force; equal elements in a row are computed once.
+    fn for_each_nodal_force(
+        &self,
+        forces: impl Fn(&Frame) -> [Vector3<f64>; 4],
+        mut add: impl FnMut(u32, Vector3<f64>),
+    ) {
+        let (mut last, mut nodal) = (None, [Vector3::zeros(); 4]);
+        for (quad, nodes) in self.mesh.quads.iter().enumerate() {
+            let corners = self.mesh.corners(quad);
+            if !last.is_some_and(|last| is_translated(&last, &corners)) {
+                nodal = forces(&Frame::of(&corners));
+                last = Some(corners);
+            }
+            nodes.iter().zip(nodal).for_each(|(n, force)| add(*n, force));
+        }
     }
 
     /// The element, in the global axes when the sheet is flat.

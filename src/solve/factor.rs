@@ -58,7 +58,9 @@ pub enum FactorError {
         pivot: f64,
     },
     /// The factor does not fit in memory.
-    #[error("N002 no memory for a factor of {bytes} bytes; use a coarser mesh or the iterative solver")]
+    #[error(
+        "N002 no memory for a factor of {bytes} bytes; use a coarser mesh, or iterate (method = \"iterative\" in [solver])"
+    )]
     OutOfMemory {
         /// Bytes of the factor; 0 where even the analysis did not fit.
         bytes: usize,
@@ -75,6 +77,9 @@ impl FactorError {
         }
     }
 }
+
+/// Operations of a factorisation below which more than one thread does not pay: a few milliseconds.
+pub const WORTH_THREADS: f64 = 1e8;
 
 /// What a matrix is taken for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -238,16 +243,28 @@ impl Analysis {
         }))
     }
 
+    /// `multifrontal` or `faer`.
+    pub fn path(&self) -> &'static str {
+        match &self.symbolic {
+            Symbolic::General(_) => "faer",
+            Symbolic::Multifrontal(_) => "multifrontal",
+        }
+    }
+
+    /// As many of these threads as pay.
+    pub fn worth(&self, threads: usize) -> usize {
+        if self.counts().flops < WORTH_THREADS { 1 } else { threads }
+    }
+
     /// Counts of the factorisation.
     pub fn counts(&self) -> Counts {
-        let square = self.block * self.block;
         let counts = match &self.symbolic {
             Symbolic::General(symbolic) => symbolic.counts(),
             Symbolic::Multifrontal(symbolic) => symbolic.counts(),
         };
         Counts {
             rows: self.graph.nodes * self.block,
-            nnz_a: self.graph.row_idx.len() * square - self.graph.nodes * (square - self.block) / 2,
+            nnz_a: self.graph.entries(self.block),
             bytes: counts.stored * size_of::<f64>(),
             ..counts
         }

@@ -1,7 +1,10 @@
 //! Solving: block matrices and their factorisation, and the analyses on top.
 
 pub mod assemble;
+mod error;
 pub mod factor;
+mod group;
+pub mod iterative;
 pub mod linear;
 pub mod modal;
 mod multifrontal;
@@ -11,6 +14,7 @@ pub mod ordering;
 pub mod plan;
 pub mod sparse;
 
-pub use linear::{Factors, Options, Solution, SolveError, Timings, solve, solve_keeping, solve_with};
+pub use error::SolveError;
+pub use linear::{Factors, Method, Options, Solution, System, Timings, solve, solve_keeping, solve_with};
 pub use modal::{Mode, modes, modes_with};
 pub use plan::Plan;

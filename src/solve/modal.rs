@@ -91,8 +91,8 @@ fn group_modes(
     let mut stiffness = assemble(model, group, pattern, &[(Kind::Stiffness, 1.0), (kind, shift)], &held)
         .map_err(ModelError::from)?;
     unit_rows(&mut stiffness, &held);
-    let factor =
-        analysis.factorise(&stiffness, options.threads).map_err(|e| SolveError::of(e, model, group))?;
+    let threads = analysis.worth(options.threads);
+    let factor = analysis.factorise(&stiffness, threads).map_err(|e| SolveError::of(e, model, group))?;
     let (columns, with_mass) = ((2 * count).max(count + 8), massive_dofs(&mass, &held));
     if with_mass == 0 {
         return Ok(Vec::new());

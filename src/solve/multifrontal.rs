@@ -94,8 +94,8 @@ impl Symbolic {
         form: Form,
         threads: usize,
     ) -> Result<Numeric, FactorError> {
-        let mut l = self.storage()?;
-        let input = Input { values: &a.values, form };
+        let (mut l, cleared) = self.storage()?;
+        let input = Input { values: &a.values, form, cleared };
         let result = if threads > 1 {
             self.eliminate_tasks(input, &mut l, threads)
         } else {
@@ -109,17 +109,17 @@ impl Symbolic {
         Err(form.bad_pivot(node, pivot.row % b, pivot.value))
     }
 
-    /// Memory for the panels, holding any values.
-    fn storage(&self) -> Result<Vec<f64>, FactorError> {
+    /// Memory for the panels, and whether it is zero.
+    fn storage(&self) -> Result<(Vec<f64>, bool), FactorError> {
         if let Some(l) = lock(&self.panels).pop() {
-            return Ok(l);
+            return Ok((l, false));
         }
         let bytes = self.tree.stored * size_of::<f64>();
         // Ask first: `vec!` takes pages that are zero already, but does not survive a refusal.
         let mut probe: Vec<f64> = Vec::new();
         probe.try_reserve_exact(self.tree.stored).map_err(|_| FactorError::OutOfMemory { bytes })?;
         drop(probe);
-        Ok(vec![0.0; self.tree.stored])
+        Ok((vec![0.0; self.tree.stored], true))
     }
 
     fn workspace(&self) -> Workspace {

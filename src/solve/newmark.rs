@@ -282,7 +282,7 @@ impl<'a> System<'a> {
     }
 
     fn factorised(&self, matrix: &BlockMatrix) -> Result<Factor, SolveError> {
-        let factor = self.analysis.factorise(matrix, self.threads);
+        let factor = self.analysis.factorise(matrix, self.analysis.worth(self.threads));
         factor.map_err(|e| SolveError::of(e, self.model, self.group))
     }
 

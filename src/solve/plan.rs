@@ -1,9 +1,11 @@
 //! What depends on the mesh and its rigid bodies only, shared by every fabric on it.
 
+use std::time::Instant;
+
 use super::SolveError;
 use super::assemble::Pattern;
 use super::factor::{self, Analysis, Path};
-use super::linear::Options;
+use super::linear::{Method, Options};
 use crate::model::{Dof, DofGroup, Model};
 
 /// Node pattern of a mesh, and ordering and symbolic factorisation for each dof group in use.
@@ -11,26 +13,54 @@ use crate::model::{Dof, DofGroup, Model};
 pub struct Plan {
     pub(super) pattern: Pattern,
     pub(super) groups: Vec<(DofGroup, Analysis)>,
+    /// Groups that are solved by iteration.
+    pub(super) iterated: Vec<DofGroup>,
+    /// Spent on pattern and order, and on the symbolic factorisations.
+    pub(super) seconds: (f64, f64),
 }
 
 impl Plan {
-    /// Analyses the mesh and the rigid bodies of a model for the dof groups that will be solved.
+    /// Analyses the mesh and the rigid bodies of a model for the dof groups that will be factorised.
     ///
     /// # Errors
     /// M010 for bodies that cannot be; N002 when the ordering or symbolic phase fails (out of memory).
     pub fn new(model: &Model, groups: &[DofGroup], path: Path) -> Result<Self, SolveError> {
+        let options = Options { path, method: Method::Direct, ..Options::default() };
+        Self::chosen(model, groups, &options)
+    }
+
+    /// Analyses a model for linear statics: [`groups`](Self::groups), each solved as `options` ask.
+    ///
+    /// # Errors
+    /// M010 and N002 as in [`new`](Self::new).
+    pub fn of(model: &Model, options: &Options) -> Result<Self, SolveError> {
+        Self::chosen(model, &Self::groups(model, options), options)
+    }
+
+    fn chosen(model: &Model, groups: &[DofGroup], options: &Options) -> Result<Self, SolveError> {
+        let start = Instant::now();
         let mesh = &model.mesh;
         let pattern = Pattern::new(mesh, model.links()?);
+        let mut plan = Self { pattern, groups: Vec::new(), iterated: Vec::new(), seconds: (0.0, 0.0) };
+        if options.method == Method::Iterative {
+            plan.iterated = groups.to_vec();
+            return Ok(plan);
+        }
         let coordinates: Vec<[f64; 3]> = mesh.nodes.iter().map(|p| [p.x, p.y, p.z]).collect();
-        let groups = groups
-            .iter()
-            .map(|&group| {
-                factor::analyse(&pattern.graph, group.dofs().len(), Some(&coordinates), path)
-                    .map(|analysis| (group, analysis))
-            })
-            .collect::<Result<_, _>>()
-            .map_err(SolveError::Factor)?;
-        Ok(Self { pattern, groups })
+        let graph = &plan.pattern.graph;
+        let order = factor::order(graph, Some(&coordinates)).map_err(SolveError::Factor)?;
+        plan.seconds.0 = start.elapsed().as_secs_f64();
+        for &group in groups {
+            let analysis = factor::analyse_ordered(graph, group.dofs().len(), &order, options.path)
+                .map_err(SolveError::Factor)?;
+            if options.method == Method::Auto && analysis.counts().bytes > options.factor_limit {
+                plan.iterated.push(group);
+            } else {
+                plan.groups.push((group, analysis));
+            }
+        }
+        plan.seconds.1 = start.elapsed().as_secs_f64() - plan.seconds.0;
+        Ok(plan)
     }
 
     /// The groups of a model that its loads and prescribed values set in motion.

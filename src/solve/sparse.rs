@@ -67,6 +67,12 @@ impl BlockGraph {
         &self.row_idx[self.col_ptr[j]..self.col_ptr[j + 1]]
     }
 
+    /// Entries of the lower triangle of a matrix of `block` x `block` blocks on the graph.
+    pub fn entries(&self, block: usize) -> usize {
+        let square = block * block;
+        self.row_idx.len() * square - self.nodes * (square - block) / 2
+    }
+
     /// Index of the block at (`row`, `col`), `row >= col`; `None` above the diagonal or where
     /// the two nodes share no element.
     pub fn find(&self, row: u32, col: u32) -> Option<usize> {

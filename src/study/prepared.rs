@@ -6,7 +6,7 @@ use nalgebra::{Matrix2, Matrix3, Point3};
 
 use super::case::{Analysis, Case};
 use super::nonlinear::way;
-use super::{StudyError, build};
+use super::{StudyError, build, solver};
 use crate::fields::{Line, Locator, Recovery};
 use crate::mesh::QuadMesh;
 use crate::model::{DofGroup, Model};
@@ -48,6 +48,7 @@ impl<'a> PreparedCase<'a> {
                 case.inconsistent("the case has no [sheet]; a [virtual_test] is compared, not solved".into())
             );
         };
+        let options = &solver::options(case, options)?;
         let model = build::model(case, sheet, stand_in())?;
         let all = Plan::all_groups(&model, options);
         let groups = match &case.analysis {
@@ -60,7 +61,10 @@ impl<'a> PreparedCase<'a> {
             Analysis::Newmark { large_rotations: true, .. } => vec![DofGroup::Shell],
             _ => Plan::groups(&model, options),
         };
-        let plan = Plan::new(&model, &groups, options.path)?;
+        let plan = match case.analysis {
+            Analysis::Linear => Plan::of(&model, options)?,
+            _ => Plan::new(&model, &groups, options.path)?,
+        };
         let damped = matches!(case.analysis, Analysis::Newmark { damping: Some(_), .. });
         let all_groups =
             (damped && all != groups).then(|| Plan::new(&model, &all, options.path)).transpose()?;

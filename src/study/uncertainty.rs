@@ -11,6 +11,7 @@ use crate::constitutive::{Input, SectionDerivative, bands};
 use crate::fields::Locator;
 use crate::model::{Dof, DofGroup, Model, ModelError};
 use crate::quantity::Bands;
+use crate::section::ShellSection;
 use crate::solve::assemble::{Kind, multiply};
 use crate::solve::{Factors, Solution};
 
@@ -88,26 +89,32 @@ pub(super) fn linear_uncertainty(
         .map(|input| Change::of(model, &input.derivative, &solution.displacement, &groups))
         .collect::<Result<_, _>>()?;
     let load = model.load_vector();
-    let predictions = readings(model, solution, &groups, probes)
+    let u = &solution.displacement;
+    let readings = readings(model, solution, &groups, probes);
+    let gradients = readings.iter().map(|(.., reading)| match reading {
+        Reading::Displacement(terms) => {
+            let mut gradient = vec![0.0; u.len()];
+            terms.iter().for_each(|(k, weight)| gradient[*k] += weight);
+            gradient
+        }
+        // U = uᵀ K u / 2 has the gradient K u, which is the load at the free dofs.
+        Reading::StrainEnergy => load.clone(),
+    });
+    let adjoints = factors.solve(&gradients.collect::<Vec<_>>())?;
+    let predictions = readings
         .into_iter()
-        .map(|(quantity, unit, reading)| {
-            let u = &solution.displacement;
-            let (value, gradient) = match &reading {
-                Reading::Displacement(terms) => {
-                    let mut gradient = vec![0.0; u.len()];
-                    terms.iter().for_each(|(k, weight)| gradient[*k] += weight);
-                    (terms.iter().map(|(k, weight)| weight * u[*k]).sum(), gradient)
-                }
-                // U = uᵀ K u / 2 has the gradient K u, which is the load at the free dofs.
-                Reading::StrainEnergy => (solution.strain_energy, load.clone()),
+        .zip(adjoints)
+        .map(|((quantity, unit, reading), adjoint)| {
+            let value = match &reading {
+                Reading::Displacement(terms) => terms.iter().map(|(k, weight)| weight * u[*k]).sum(),
+                Reading::StrainEnergy => solution.strain_energy,
             };
-            let adjoint = factors.solve(&gradient);
             let derivative = |change: &Change| {
                 let explicit = match reading {
                     Reading::Displacement(_) => 0.0,
-                    Reading::StrainEnergy => 0.5 * dot(u, &change.internal),
+                    Reading::StrainEnergy => 0.5 * along(u, &change.internal),
                 };
-                explicit + dot(&adjoint, &change.load) - dot(&adjoint, &change.internal)
+                explicit + along(&adjoint, &change.load) - along(&adjoint, &change.internal)
             };
             let derivatives = changes.iter().map(derivative).collect();
             Prediction::new(quantity, unit, value, derivatives, inputs)
@@ -124,7 +131,7 @@ pub(super) fn energy_derivative(
     u: &[f64],
     groups: &[DofGroup],
 ) -> Result<f64, ModelError> {
-    Ok(0.5 * dot(u, &Change::of(model, derivative, u, groups)?.internal))
+    Ok(0.5 * along(u, &Change::of(model, derivative, u, groups)?.internal))
 }
 
 impl Prediction {
@@ -152,10 +159,10 @@ impl Prediction {
     }
 }
 
-/// ∂f/∂ln p and ∂K/∂ln p u, six a node.
+/// ∂f/∂ln p and ∂K/∂ln p u, six a node; `None` where nothing changes.
 struct Change {
-    load: Vec<f64>,
-    internal: Vec<f64>,
+    load: Option<Vec<f64>>,
+    internal: Option<Vec<f64>>,
 }
 
 impl Change {
@@ -165,21 +172,45 @@ impl Change {
         u: &[f64],
         groups: &[DofGroup],
     ) -> Result<Self, ModelError> {
-        let mut change = Self { load: vec![0.0; u.len()], internal: vec![0.0; u.len()] };
+        let steps = [STEP, -STEP].map(|by| (derivative.step(&model.section, by), by));
+        let stiffer = |group: &DofGroup| steps.iter().any(|(to, _)| stiffens(*group, &model.section, to));
+        let groups: Vec<DofGroup> = groups.iter().copied().filter(stiffer).collect();
+        // Of all loads only the weight depends on the section.
+        let heavier = steps.iter().any(|(to, _)| to.areal_density != model.section.areal_density);
+        let mut change = Self { load: None, internal: None };
+        if groups.is_empty() && !heavier {
+            return Ok(change);
+        }
+        let add = |sum: &mut Option<Vec<f64>>, values: &[f64], by: f64| {
+            let sum = sum.get_or_insert_with(|| vec![0.0; values.len()]);
+            sum.iter_mut().zip(values).for_each(|(s, v)| *s += v / (2.0 * by));
+        };
         let mut moved = model.clone();
-        for by in [STEP, -STEP] {
-            moved.section = derivative.step(&model.section, by);
+        for (section, by) in steps {
+            moved.section = section;
             let mut internal = vec![0.0; u.len()];
-            for group in groups {
+            for group in &groups {
                 group.scatter(&multiply(&moved, *group, Kind::Stiffness, &group.gather(u))?, &mut internal);
             }
-            let add = |sum: &mut Vec<f64>, values: &[f64]| {
-                sum.iter_mut().zip(values).for_each(|(s, v)| *s += v / (2.0 * by));
-            };
-            add(&mut change.load, &moved.load_vector());
-            add(&mut change.internal, &internal);
+            if !groups.is_empty() {
+                add(&mut change.internal, &internal, by);
+            }
+            if heavier {
+                add(&mut change.load, &moved.load_vector(), by);
+            }
         }
         Ok(change)
+    }
+}
+
+/// Whether a change of the section changes the stiffness of a group.
+fn stiffens(group: DofGroup, from: &ShellSection, to: &ShellSection) -> bool {
+    let bends = (from.d_b, from.d_s) != (to.d_b, to.d_s);
+    // The drilling penalty of a membrane depends on the bending stiffness.
+    if group == DofGroup::Plate {
+        bends
+    } else {
+        bends || from.d_m != to.d_m || from.thickness != to.thickness
     }
 }
 
@@ -210,8 +241,9 @@ fn readings(
     all
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+/// The product with a change, 0 where there is none.
+fn along(a: &[f64], change: &Option<Vec<f64>>) -> f64 {
+    change.as_ref().map_or(0.0, |change| a.iter().zip(change).map(|(a, b)| a * b).sum())
 }
 
 #[cfg(test)]

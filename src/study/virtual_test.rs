@@ -14,6 +14,7 @@ use super::StudyError;
 use super::build;
 use super::case::{Case, TestFormulation, VirtualTest};
 use super::prepared::stand_in;
+use super::solver;
 use super::uncertainty::{Prediction, energy_derivative};
 use super::virtual_large::LargeTest;
 use super::virtual_loop::VirtualLoop;
@@ -233,8 +234,9 @@ impl PreparedTest {
             loads: Vec::new(),
             bodies: Vec::new(),
         };
-        let plan = Plan::new(&model, &Plan::groups(&model, options), options.path)?;
-        Ok(Self { test: spec.test, x, reading, right, model, plan, options: *options, gauge, large })
+        let options = solver::options(case, options)?;
+        let plan = Plan::of(&model, &options)?;
+        Ok(Self { test: spec.test, x, reading, right, model, plan, options, gauge, large })
     }
 
     /// Simulates the test of a specimen cut along `direction`.

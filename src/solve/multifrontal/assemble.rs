@@ -15,9 +15,8 @@ pub enum Columns {
     Border,
 }
 
-/// Sets the panel of a front to its blocks of the matrix and its share of the children.
+/// Adds to the panel of a front, which is zero, its blocks of the matrix and its share of the children.
 pub fn assemble_panel(tree: &Tree, node: &Supernode, values: &[f64], panel: &mut [f64], children: &[Update]) {
-    panel.fill(0.0);
     let entries = &tree.entries[node.entries.0..node.entries.1];
     let height = (node.width + node.border) * tree.block;
     match tree.block {

@@ -62,6 +62,8 @@ pub struct BadPivot {
 pub struct Input<'a> {
     pub values: &'a [f64],
     pub form: Form,
+    /// Whether the panels are zero already: pages that the system has just cleared.
+    pub cleared: bool,
 }
 
 /// Assembles and eliminates a front. `panel` takes the columns of L, `children` are the updates
@@ -78,6 +80,9 @@ pub fn eliminate(
     workspace: &mut Workspace,
 ) -> Result<Vec<f64>, BadPivot> {
     let (width, border) = (node.width * tree.block, node.border * tree.block);
+    if !input.cleared {
+        panel.fill(0.0);
+    }
     assemble_panel(tree, node, input.values, panel, children);
     let (mut top, mut bottom) =
         MatMut::from_column_major_slice_mut(panel, width + border, width).split_at_row_mut(width);

@@ -332,7 +332,8 @@ impl<'a> System<'a> {
     }
 
     pub fn factorise(&self, matrix: &BlockMatrix) -> Result<Factor, FactorError> {
-        self.plan.groups[0].1.factorise_indefinite(matrix, self.threads)
+        let analysis = &self.plan.groups[0].1;
+        analysis.factorise_indefinite(matrix, analysis.worth(self.threads))
     }
 
     /// Displacement and spin of a node for a step of the dofs, to first order.

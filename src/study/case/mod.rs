@@ -17,6 +17,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::rigid::RigidTable;
+use super::solver::SolverTable;
 use crate::characterise::FabricSheet;
 use crate::constitutive::Assumptions;
 use crate::finding::Place;
@@ -75,6 +76,9 @@ pub struct Case {
     /// What is computed.
     #[serde(default)]
     pub analysis: Analysis,
+    /// How the equations are solved.
+    #[serde(default)]
+    pub solver: SolverTable,
     /// Points whose values are reported.
     #[serde(default)]
     pub probes: Vec<ProbeTable>,
@@ -166,6 +170,11 @@ impl Case {
             {
                 return refuse(
                     "a [bending_test] brings its own supports and loads: remove [[supports]], [[rigid]], [[loads]], [[probes]]",
+                );
+            }
+            if self.solver != SolverTable::default() {
+                return refuse(
+                    "a [bending_test] is an elastic strip, which has no choice of solver: remove [solver]",
                 );
             }
             return test.contradiction().map_or(Ok(()), refuse);

@@ -24,7 +24,7 @@ use rayon::prelude::*;
 pub use rim::Folds;
 
 use super::case::{Analysis, Case, Shape, Sheet};
-use super::{StudyError, build};
+use super::{StudyError, build, solver};
 use crate::characterise::FabricSheet;
 use crate::finding::{Finding, Place};
 use crate::model::Model;
@@ -124,7 +124,7 @@ pub fn drape(
     };
     let ring = Ring::of(case)?;
     let model = build::model(case, &ring.sheet, section.clone())?;
-    let single = Options { threads: 1, ..*options };
+    let single = Options { threads: 1, ..solver::options(case, options)? };
     let shared = plan(&model, &single)?;
     let searches: Vec<Result<(Solution, DrapeState), (usize, NonlinearError)>> = folds
         .par_iter()

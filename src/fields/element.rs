@@ -1,0 +1,183 @@
+//! Resultants of one element as linear functions of its displacements: found once for all elements
+//! that are equal up to a translation.
+
+use nalgebra::{DMatrix, Matrix2, Matrix3, Point3, SMatrix, Vector3};
+
+use super::Resultants;
+use crate::element::corotational::{Motion, Reference};
+use crate::element::{Cells, Frame, Matrix24, Prepared, Vector24, membrane_and_plate, strain_matrices};
+use crate::mesh::is_translated;
+use crate::model::{Model, ModelError};
+use crate::solve::nonlinear::State;
+
+/// Places of an element that have resultants: its four corners, then its mean.
+const PLACES: usize = 5;
+const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+
+/// The resultants at all places, each with its rows, for local displacements: N for `(u, v, θz)`, M
+/// and Q for `(w, θx, θy)`, node by node.
+struct Operator {
+    corners: [Point3<f64>; 4],
+    /// `None` where the local displacements are the global ones.
+    to_local: Option<Matrix24>,
+    membrane: SMatrix<f64, { 3 * PLACES }, 12>,
+    moment: SMatrix<f64, { 3 * PLACES }, 12>,
+    shear: SMatrix<f64, { 2 * PLACES }, 12>,
+}
+
+impl Operator {
+    /// `weights` are those of [`extrapolation`].
+    fn new(model: &Model, quad: usize, flat: bool, weights: &DMatrix<f64>) -> Result<Self, ModelError> {
+        let element = model.element(quad, flat)?;
+        let (stress, vector) = material_axes(&element, &model.warp);
+        let (of_strain, of_curvature) = (stress * element.d_m, stress * element.d_b);
+        let area: f64 = element.cells().map(|cell| cell.area).sum();
+        let (mut membrane, mut moment) = (SMatrix::zeros(), SMatrix::zeros());
+        for (k, cell) in element.cells().enumerate() {
+            let (strain, curvature) = strain_matrices(&cell);
+            let (n, m) = (of_strain * strain, of_curvature * curvature);
+            for place in 0..PLACES {
+                let weight = if place < 4 { weights[(place, k)] } else { cell.area / area };
+                let add = |sum: &mut SMatrix<f64, { 3 * PLACES }, 12>, part: &SMatrix<f64, 3, 12>| {
+                    let mut rows = sum.fixed_rows_mut::<3>(3 * place);
+                    rows += part * weight;
+                };
+                add(&mut membrane, &n);
+                add(&mut moment, &m);
+            }
+        }
+        let mut shear: SMatrix<f64, { 2 * PLACES }, 12> = SMatrix::zeros();
+        for (place, at) in CORNERS.into_iter().chain([[0.0, 0.0]]).enumerate() {
+            let q: SMatrix<f64, 2, 12> = vector * element.d_s * element.shear_strain_matrix(at);
+            shear.fixed_rows_mut::<2>(2 * place).copy_from(&q);
+        }
+        let to_local = Some(element.to_local()).filter(|t| *t != Matrix24::identity());
+        Ok(Self { corners: model.mesh.corners(quad), to_local, membrane, moment, shear })
+    }
+
+    fn apply(&self, u: &Vector24) -> [Resultants; PLACES] {
+        let (membrane, plate) = membrane_and_plate(&self.to_local.map_or(*u, |t| t * u));
+        let (n, m, q) = (self.membrane * membrane, self.moment * plate, self.shear * plate);
+        std::array::from_fn(|p| Resultants {
+            membrane: [0, 1, 2].map(|i| n[3 * p + i]),
+            moment: [0, 1, 2].map(|i| m[3 * p + i]),
+            shear: [0, 1].map(|i| q[2 * p + i]),
+        })
+    }
+}
+
+/// Turns stresses and vectors from element axes to material axes: the warp seen in the element's plane.
+pub fn material_axes(element: &Prepared, warp: &Vector3<f64>) -> (Matrix3<f64>, Matrix2<f64>) {
+    let a = element.frame.rotation * warp;
+    let (s, c) = a.y.atan2(a.x).sin_cos();
+    #[rustfmt::skip]
+    let stress = Matrix3::new(
+        c * c, s * s, 2.0 * c * s,
+        s * s, c * c, -2.0 * c * s,
+        -c * s, c * s, c * c - s * s,
+    );
+    (stress, Matrix2::new(c, s, -s, c))
+}
+
+/// Displacements of the nodes of an element.
+pub fn small<'a>(model: &'a Model, displacement: &'a [f64]) -> impl Fn(usize) -> Vector24 + 'a {
+    |quad| {
+        let nodes = &model.mesh.quads[quad];
+        Vector24::from_fn(|k, _| displacement[6 * nodes[k / 6] as usize + k % 6])
+    }
+}
+
+/// The part of the motion of an element's nodes that strains it, turned back to where the element rests.
+pub fn straining<'a>(model: &'a Model, state: &'a State) -> impl Fn(usize) -> Vector24 + 'a {
+    |quad| {
+        let nodes = model.mesh.quads[quad].map(|n| n as usize);
+        let frame = Frame::of(&model.mesh.corners(quad));
+        let (places, turns) = (nodes.map(|n| state.position[n]), nodes.map(|n| state.rotation[n]));
+        let deformation = Motion::of(&Reference::of(&frame), &places, &turns).deformation;
+        let mut u = Vector24::zeros();
+        for b in 0..8 {
+            let part = frame.rotation.transpose() * deformation.fixed_rows::<3>(3 * b);
+            u.fixed_rows_mut::<3>(3 * b).copy_from(&part);
+        }
+        u
+    }
+}
+
+/// Calls `visit` with every element and its resultants: at the corners, N and M extrapolated from the
+/// cells and Q as MITC4 has it; then the mean over the cells, with Q at the centre.
+pub fn for_each_element(
+    model: &Model,
+    flat: bool,
+    displacement: impl Fn(usize) -> Vector24,
+    mut visit: impl FnMut(usize, [Resultants; PLACES]),
+) -> Result<(), ModelError> {
+    let weights = extrapolation(model.formulation.cells);
+    let mut last: Option<Operator> = None;
+    for quad in 0..model.mesh.quads.len() {
+        let corners = model.mesh.corners(quad);
+        if !last.as_ref().is_some_and(|operator| is_translated(&operator.corners, &corners)) {
+            last = Some(Operator::new(model, quad, flat, &weights)?);
+        }
+        if let Some(operator) = &last {
+            visit(quad, operator.apply(&displacement(quad)));
+        }
+    }
+    Ok(())
+}
+
+/// Weights (4 corners x cells) of the least-squares surface through the cell values, in natural
+/// coordinates: bilinear through 2 x 2 cells or more, less where there are fewer.
+fn extrapolation(cells: Cells) -> DMatrix<f64> {
+    let middles: Vec<[f64; 2]> = cells.over(&CORNERS).map(|c| c.middle).collect();
+    let terms = match cells {
+        Cells::HalfAndQuarters => 3,
+        Cells::Grid { along_xi: 1, along_eta: 1 } => 1,
+        Cells::Grid { along_eta: 1, .. } => 2,
+        Cells::Grid { along_xi: 1, .. } => return column_extrapolation(&middles),
+        Cells::Grid { .. } => 4,
+    };
+    let basis = |[xi, eta]: [f64; 2]| [1.0, xi, eta, xi * eta];
+    fit(&middles, terms, basis)
+}
+
+fn column_extrapolation(middles: &[[f64; 2]]) -> DMatrix<f64> {
+    fit(middles, 2, |[xi, eta]| [1.0, eta, xi, xi * eta])
+}
+
+fn fit(middles: &[[f64; 2]], terms: usize, basis: impl Fn([f64; 2]) -> [f64; 4]) -> DMatrix<f64> {
+    let at_cells = DMatrix::from_fn(middles.len(), terms, |i, j| basis(middles[i])[j]);
+    let at_corners = DMatrix::from_fn(4, terms, |i, j| basis(CORNERS[i])[j]);
+    // Distinct cell middles give full column rank, so the normal equations are regular.
+    let gram = at_cells.transpose() * &at_cells;
+    match gram.try_inverse() {
+        Some(inverse) => at_corners * inverse * at_cells.transpose(),
+        None => DMatrix::from_element(4, middles.len(), 1.0 / middles.len() as f64),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn extrapolation_is_exact_for_what_the_cells_can_carry() {
+        for (nc, field) in [
+            (1, [2.0, 0.0, 0.0, 0.0]),
+            (2, [2.0, 3.0, 0.0, 0.0]),
+            (3, [2.0, 3.0, -1.0, 0.0]),
+            (4, [2.0, 3.0, -1.0, 0.5]),
+            (9, [2.0, 3.0, -1.0, 0.5]),
+        ] {
+            let cells = Cells::from_count(nc).unwrap();
+            let unit = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+            let value = |[x, y]: [f64; 2]| field[0] + field[1] * x + field[2] * y + field[3] * x * y;
+            let at_cells: Vec<f64> = cells.over(&unit).map(|c| value(c.middle)).collect();
+            let weights = extrapolation(cells);
+            for (i, corner) in unit.into_iter().enumerate() {
+                let got: f64 = at_cells.iter().enumerate().map(|(k, v)| weights[(i, k)] * v).sum();
+                assert_relative_eq!(got, value(corner), max_relative = 1e-12);
+            }
+        }
+    }
+}
