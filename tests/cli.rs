@@ -387,3 +387,19 @@ fn a_solution_says_how_it_was_found_and_at_what_cost() {
     let text = stdout(&run(&["-v", "solve", "--solver", "iterative", case]));
     assert!(text.contains("conjugate gradients") && text.contains("iterations"), "{text}");
 }
+
+/// Frequencies stand in the text and in the JSON; their values are for `kesf verify` to judge.
+#[test]
+fn a_modal_case_tells_its_frequencies() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string("cases/benchmark_clamped_isotropic.toml").unwrap();
+    let head = &text[..text.find("[[loads]]").unwrap()];
+    write(folder.path(), "modes.toml", &format!("{head}[analysis]\nkind = \"modal\"\nmodes = 2\n"));
+    let path = folder.path().join("modes.toml").to_string_lossy().into_owned();
+    let shown = stdout(&run(&["solve", &path]));
+    assert!(shown.contains("frequency (Hz)") && !shown.contains("w_max"), "{shown}");
+    let document = json(&run(&["--json", "solve", &path]));
+    let found = document["solutions"][0]["results"]["frequencies"].as_array().unwrap();
+    assert_eq!(found.len(), 2);
+    assert!(found[0].as_f64() < found[1].as_f64());
+}

@@ -99,14 +99,23 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     Ok(Exit::of_batch(useful + draped.len(), &failures).unless(unmet || strict))
 }
 
-/// Deflections, then probes, searches and checks; with `verbose` every step of a search; last, why a
+/// Deflections, then frequencies, probes, searches and checks; with `verbose` every step of a search; last, why a
 /// deflection has no band.
 fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
     let mut table =
         Columns::new(["case", "fabric", "w_max (mm)", "± 95 % (mm)", "w/t_b", "elements", "status"]);
     let mut probes = Columns::new(["probe", "case", "fabric", "u (mm)", "v (mm)", "w (mm)", "± 95 % (mm)"]);
+    let mut modes = Columns::new(["mode", "case", "fabric", "frequency (Hz)", "elements"]);
     for (task, r) in solved {
         let fabric = task.fabric_name().unwrap_or_default().to_string();
+        for (k, f) in r.frequencies.iter().enumerate() {
+            let elements = r.model.mesh.quads.len().to_string();
+            modes.row([(k + 1).to_string(), r.case.clone(), fabric.clone(), significant(*f), elements]);
+        }
+        if !r.frequencies.is_empty() {
+            // The shape of a mode has no size.
+            continue;
+        }
         let [w, ratio] = [significant(1e3 * r.w_max), significant(r.w_over_thickness)];
         let elements = r.model.mesh.quads.len().to_string();
         table.row([
@@ -127,7 +136,7 @@ fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
     }
     let checks = checks(solved.iter().map(|(_, r)| *r));
     let every = if verbose { steps(solved) } else { None };
-    let parts = [Some(table), Some(probes), searches(solved), every, checks];
+    let parts = [Some(table), Some(modes), Some(probes), searches(solved), every, checks];
     let parts = parts.into_iter().flatten().filter(|t| !t.is_empty()).map(|t| t.text());
     parts.chain(without_band(solved)).collect::<Vec<_>>().join("\n")
 }
