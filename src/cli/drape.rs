@@ -197,8 +197,9 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
     DrapePlot {
         title: task.case.title.clone(),
         subtitle: format!(
-            "{}; state of lowest energy, {}",
+            "{}; {}; state of lowest energy, {}",
             task.fabric_name().unwrap_or("section of the case"),
+            law(task),
             if s.negative_pivots == 0 { "stable" } else { "UNSTABLE" }
         ),
         origin: origin.into(),
