@@ -46,7 +46,7 @@ pub struct FabricReport {
     pub drawn: Vec<Test>,
     /// Charts of friction laws.
     pub friction: Vec<String>,
-    /// Title and file of each chart of a bending test.
+    /// Title and file of each chart of a bending test, and of a test with friction.
     pub bent: Vec<(String, String)>,
     /// Points of the parity chart.
     pub parity: Vec<ParityPoint>,
@@ -101,7 +101,13 @@ impl FabricReport {
             if let Some(spec) = &task.case.virtual_test {
                 let tested = task.test(spec).and_then(|t| tree.tested(task, &t).map(|()| t));
                 match tested {
-                    Ok(tested) => simulated.extend(tested),
+                    Ok(tested) => {
+                        tested.iter().for_each(|t| self.tested(task, t));
+                        if tree.charts() && tested.iter().any(|t| t.simulated.cycle.is_some()) {
+                            self.bent.push((task.case.title.clone(), format!("{}.png", task.stem())));
+                        }
+                        simulated.extend(tested);
+                    }
                     Err(failure) => self.failures.push(failure),
                 }
                 continue;
@@ -128,7 +134,6 @@ impl FabricReport {
                 Err(failure) => self.failures.push(failure),
             }
         }
-        simulated.iter().for_each(|t| self.tested(t));
         self.charts(sheet, &simulated, tree);
     }
 
@@ -165,9 +170,27 @@ impl FabricReport {
         self.drape_parity.extend(drape::point(task, draped));
     }
 
-    fn tested(&mut self, t: &Tested) {
-        let Some((symbol, unit, measured)) = &t.stiffness else { return };
+    fn tested(&mut self, task: &Task, t: &Tested) {
         let direction = t.simulated.direction.map_or("", Direction::name);
+        if let Some(cycle) = &t.simulated.cycle {
+            // What the cycle gives; its elastic part alone is that of the case without friction.
+            let rows = cycle.values.iter().map(|(p, v)| {
+                let measured = task.measured(*p, t.simulated.direction);
+                PredictionRow {
+                    fabric: self.name.clone(),
+                    case: t.case.clone(),
+                    quantity: format!("{p} {direction}"),
+                    simulated: Some(*v),
+                    measured,
+                    unit: p.si_unit().into(),
+                    error: measured.and_then(|m| relative_error(*v, m)),
+                    ..PredictionRow::default()
+                }
+            });
+            self.predictions.extend(rows);
+            return;
+        }
+        let Some((symbol, unit, measured)) = &t.stiffness else { return };
         let simulated = t.simulated.apparent;
         let band = t.simulated.uncertainty.as_ref().and_then(|u| u.bands).map(|b| b.mean_fabric);
         let mean = measured.as_ref().map(|e| e.mean);

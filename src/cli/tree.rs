@@ -112,7 +112,9 @@ impl Tree {
     pub fn fabric_charts(&self, sheet: &FabricSheet, tested: &[Tested]) -> Result<Vec<Test>, Failure> {
         let mut drawn = Vec::new();
         for test in Test::ALL {
-            let picture = draw(sheet, test, &curves(tested.iter(), test));
+            // Cycles with friction have charts of their own.
+            let lines = tested.iter().filter(|t| t.simulated.cycle.is_none());
+            let picture = draw(sheet, test, &curves(lines, test));
             if self.chart(&format!("{}/{}.png", sheet.name, test.name()), picture)? {
                 drawn.push(test);
             }
@@ -154,7 +156,7 @@ fn curves<'a>(tested: impl Iterator<Item = &'a Tested>, test: Test) -> Vec<Simul
     tested
         .filter(|t| t.simulated.test == test && !t.curve.is_empty())
         .map(|t| SimulatedCurve {
-            label: "simulated".into(),
+            label: if t.simulated.cycle.is_some() { "with friction" } else { "simulated" }.into(),
             direction: t.simulated.direction,
             curve: t.curve.clone(),
             rmse: t.comparison.as_ref().map(|c| c.rmse),
@@ -230,7 +232,7 @@ impl Mesh {
             nodes: &self.nodes,
             quads: &self.quads,
             values: &self.w,
-            profile_along: "x on the centre line".into(),
+            profile_along: "x on the middle line of the mesh".into(),
             profile: result.profile.clone(),
             notes: result.findings.iter().map(|f| f.message.clone()).collect(),
             ..FieldPlot::default()

@@ -212,8 +212,8 @@ fn distance_rows(axes: &TestAxes, simulated: &[SimulatedCurve]) -> Vec<Row> {
     let mut rows = Vec::new();
     for curve in simulated.iter().filter(|c| c.rmse.or(c.nrmse).or(c.r2).is_some()) {
         rows.push(Row::Gap);
-        let direction = curve.direction.map_or(String::new(), |d| format!(" {d}"));
-        rows.push(Row::Heading(format!("Simulated{direction}")));
+        let direction = curve.direction.map_or(String::new(), |d| format!("{d}, "));
+        rows.push(Row::Heading(format!("{direction}{}", curve.label)));
         if let Some(rmse) = curve.rmse {
             let value = format!("{} {}", significant(rmse / axes.y_factor, 3), axes.y_unit);
             rows.push(Row::Value("RMSE".into(), value));
