@@ -105,12 +105,13 @@ fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
     let mut table =
         Columns::new(["case", "fabric", "w_max (mm)", "± 95 % (mm)", "w/t_b", "elements", "status"]);
     let mut probes = Columns::new(["probe", "case", "fabric", "u (mm)", "v (mm)", "w (mm)", "± 95 % (mm)"]);
-    let mut modes = Columns::new(["mode", "case", "fabric", "frequency (Hz)", "elements"]);
+    let mut modes = Columns::new(["mode", "case", "fabric", "frequency (Hz)", "± 95 % (Hz)", "elements"]);
     for (task, r) in solved {
         let fabric = task.fabric_name().unwrap_or_default().to_string();
         for (k, f) in r.frequencies.iter().enumerate() {
             let elements = r.model.mesh.quads.len().to_string();
-            modes.row([(k + 1).to_string(), r.case.clone(), fabric.clone(), significant(*f), elements]);
+            let half = half_width(r, &format!("frequency_{}", k + 1), 1.0);
+            modes.row([(k + 1).to_string(), r.case.clone(), fabric.clone(), significant(*f), half, elements]);
         }
         if !r.frequencies.is_empty() {
             // The shape of a mode has no size.
@@ -122,14 +123,14 @@ fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
             r.case.clone(),
             fabric.clone(),
             w,
-            half_width(r, "w_max"),
+            half_width(r, "w_max", 1e3),
             ratio,
             elements,
             status(r.status).into(),
         ]);
         for p in &r.probes {
             let u = p.value.u.map(|u| significant(1e3 * u));
-            let half = half_width(r, &format!("{}.w", p.name));
+            let half = half_width(r, &format!("{}.w", p.name), 1e3);
             probes
                 .row([vec![p.name.clone(), r.case.clone(), fabric.clone()], u.to_vec(), vec![half]].concat());
         }
@@ -141,18 +142,23 @@ fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
     parts.chain(without_band(solved)).collect::<Vec<_>>().join("\n")
 }
 
-/// The inputs without a spread that forbid the band of a largest deflection, if there are any.
+/// The inputs without a spread that forbid the band of a largest deflection or first frequency, if there are any.
 fn without_band(solved: &[(&Task, &CaseResult)]) -> Option<String> {
-    let uncertain = solved.iter().filter_map(|(_, r)| r.uncertainty.as_ref()?.of("w_max"));
-    let names: BTreeSet<&str> = uncertain.flat_map(|p| &p.without_spread).map(String::as_str).collect();
+    let first = |(_, r): &(&Task, &CaseResult)| {
+        let u = r.uncertainty.as_ref()?;
+        u.of("w_max").or_else(|| u.of("frequency_1")).cloned()
+    };
+    let uncertain: Vec<_> = solved.iter().filter_map(first).collect();
+    let names: BTreeSet<&str> =
+        uncertain.iter().flat_map(|p| &p.without_spread).map(String::as_str).collect();
     let names = names.into_iter().collect::<Vec<_>>().join(", ");
     (!names.is_empty()).then(|| format!("no band (-) where a single value is all there is of: {names}\n"))
 }
 
-/// Half of the 95 % band of the mean fabric of a displacement (mm); `-` where it has none.
-fn half_width(result: &CaseResult, quantity: &str) -> String {
+/// Half of the 95 % band of the mean fabric of a quantity, times `unit`; `-` where it has none.
+fn half_width(result: &CaseResult, quantity: &str, unit: f64) -> String {
     let bands = result.uncertainty.as_ref().and_then(|u| u.of(quantity)?.bands);
-    bands.map_or("-".into(), |b| significant(1e3 * b.mean_fabric.half_width))
+    bands.map_or("-".into(), |b| significant(unit * b.mean_fabric.half_width))
 }
 
 /// The checks of cases, if there are any.

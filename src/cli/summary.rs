@@ -235,23 +235,27 @@ pub fn unmet(result: &CaseResult) -> bool {
     result.status == Status::CheckFailed
 }
 
-/// The largest deflection, and the deflection of each probe.
+/// The largest deflection and that of each probe, or the natural frequencies.
 pub fn predictions(task: &Task, result: &CaseResult) -> Vec<PredictionRow> {
-    let row = |quantity: String, value: f64| {
+    let row = |quantity: String, value: f64, unit: &str| {
         let band = result.uncertainty.as_ref().and_then(|u| u.of(&quantity)?.mean_fabric());
         PredictionRow {
             fabric: task.fabric_name().unwrap_or_default().into(),
             case: result.case.clone(),
             quantity,
             simulated: Some(value),
-            unit: "m".into(),
+            unit: unit.into(),
             simulated_low: band.map(|[low, _]| low),
             simulated_high: band.map(|[_, high]| high),
             ..PredictionRow::default()
         }
     };
-    let probes = result.probes.iter().map(|p| row(format!("{}.w", p.name), p.value.u[2]));
-    std::iter::once(row("w_max".into(), result.w_max)).chain(probes).collect()
+    if !result.frequencies.is_empty() {
+        let frequency = |(i, f): (usize, &f64)| row(format!("frequency_{}", i + 1), *f, "1/s");
+        return result.frequencies.iter().enumerate().map(frequency).collect();
+    }
+    let probes = result.probes.iter().map(|p| row(format!("{}.w", p.name), p.value.u[2], "m"));
+    std::iter::once(row("w_max".into(), result.w_max, "m")).chain(probes).collect()
 }
 
 /// Findings as rows of `problems.csv`; `otherwise` is the place of one without a place. A search that found no

@@ -375,13 +375,18 @@ pub fn solution(task: &Task, result: &CaseResult, timings: bool) -> Value {
     entry
 }
 
+/// A value is 0 below this part of the largest of its unit.
+const ROUNDING: f64 = 1e-9;
+
 /// `results.uncertainty`: the inputs, and each quantity with its bands and its sensitivities
-/// ∂ln y/∂ln p (none of a quantity that is 0).
+/// ∂ln y/∂ln p (none of a quantity that is 0 but for rounding: that of a field by its symmetry).
 fn uncertainty(u: &Uncertainty) -> Value {
     let input =
         |i: &Input| json!({"name": i.name, "mean": i.estimate.mean, "sd": i.estimate.sd, "n": i.estimate.n});
     let quantity = |p: &Prediction| {
-        let log = |d: &f64| (p.value != 0.0).then(|| d / p.value);
+        let alike = u.predictions.iter().filter(|q| q.unit == p.unit);
+        let size = alike.map(|q| q.value.abs()).fold(0.0, f64::max);
+        let log = |d: &f64| (p.value.abs() > ROUNDING * size).then(|| d / p.value);
         let of = u.inputs.iter().zip(&p.derivatives);
         let sensitivity: Value = of.map(|(i, d)| (i.name.clone(), json!(log(d)))).collect();
         let entry = json!({
