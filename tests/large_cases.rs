@@ -180,6 +180,14 @@ fn a_strip_falls_and_the_linear_finding_names_the_cure() {
     assert!(history.w_max < -0.15 && history.w_max > -0.2 && history.imbalance < 0.02);
     assert_eq!((large.status, codes(&large)), (Status::Ok, vec![]));
     assert_eq!(history.time.len(), 51);
+    // A rigid bar along an edge that plane strain keeps straight changes nothing.
+    let bar = format!(
+        "{WEIGHT}\n[[rigid]]\nname = \"bar\"\nset = \"right\"\n[[supports]]\nset = \"bar\"\n\
+         fix = [\"v\", \"theta_x\", \"theta_z\"]"
+    );
+    let stiffened = solved(&strip(&format!("{motion}\nlarge_rotations = true"), &bar));
+    let lowest = stiffened.history.as_ref().unwrap().w_max;
+    assert!((lowest / history.w_max - 1.0).abs() < 1e-6, "{lowest} {}", history.w_max);
     let small = solved(&strip(motion, WEIGHT));
     assert_eq!(codes(&small), ["S101"]);
     assert!(small.findings[0].message.contains("large_rotations = true"));

@@ -54,8 +54,11 @@ fn the_command_prints_a_table_and_a_count() {
     let output = kesf(&["verify", "--filter", "rigid_motion"]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0));
-    assert!(text.ends_with("10 of 10 lines hold, 0 fail\n"), "{text}");
+    assert!(text.contains("\n10 of 10 lines hold, 0 fail; "), "{text}");
     assert_eq!(text.matches("PASS").count(), 10);
+    // What is computed and where the reference comes from stand above, once.
+    assert_eq!(text.matches("largest |K r| / (|K| |r|)").count(), 1);
+    assert_eq!(text.matches("  analytical: rigid motions cause no force").count(), 1);
     let output = kesf(&["verify", "--filter", "rigid_motion", "--json"]);
     let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(document["schema"], "kesf.verify/1");

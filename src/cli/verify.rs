@@ -1,23 +1,39 @@
 //! `kesf verify`: the public verification suite.
 
 use std::ops::ControlFlow;
+use std::time::Instant;
 
 use clap::Args;
 use serde_json::json;
 
 use super::diagnostics::Failure;
-use super::output::Columns;
 use super::{Exit, Ui};
-use crate::verify::{Line, Outcome, Tolerance, run as check_all, suite};
+use crate::verify::{Kind, Line, Outcome, RESIDUAL, Tolerance, run as check_all, suite};
 
 /// Solve problems with known answers and compare; exit with 1 if a line does not hold
 #[derive(Debug, Args)]
-#[command(after_help = "Example: kesf verify --filter hemisphere")]
+#[command(after_help = HELP)]
 pub struct Options {
     /// Only lines whose id contains this text
-    #[arg(long, value_name = "PATTERN")]
+    #[arg(long, value_name = "TEXT")]
     filter: Option<String>,
 }
+
+const HELP: &str = "\
+Each group of lines says what is computed (with its unit or normalisation), the kind of its reference, and \
+the source. Kinds:
+  analytical   a closed form, a convergent series, or a property that theory demands
+  independent  another implementation of the same element (NumPy, unpublished), on the same mesh,
+               to its last digit
+  published    a value of the literature
+An error in % is relative to the reference, any other the plain difference; it must not exceed the \
+tolerance. Every linear solve must reach |K u - f| / |f| <= 1e-8.
+The lines are data: src/verify/suite/*.toml. --json has all digits, residuals and times.
+
+Examples:
+  kesf verify
+  kesf verify --filter hemisphere
+  kesf verify --filter published";
 
 pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let mut lines = suite();
@@ -28,6 +44,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
                 .hint("`kesf verify` alone runs every line"));
         }
     }
+    let start = Instant::now();
     let bar = ui.bar("verify", lines.len());
     let outcomes = check_all(&lines, |_| {
         bar.inc(1);
@@ -37,50 +54,153 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let outcomes = outcomes.ok_or_else(Failure::interrupted)?;
     let failed = outcomes.iter().filter(|o| !o.pass).count();
     let all: Vec<_> = lines.iter().zip(&outcomes).collect();
+    let seconds = start.elapsed().as_secs_f64();
     if ui.json {
         ui.document(&json!({
             "schema": "kesf.verify/1",
             "lines": all.iter().map(|(line, outcome)| document(line, outcome)).collect::<Vec<_>>(),
             "failed": failed,
+            "largest_residual": worst(&all).map(|(_, r)| r), "residual_limit": RESIDUAL,
+            "seconds": seconds,
         }))?;
     } else {
-        ui.print(&text(&all, failed))?;
+        ui.print(&text(&all, seconds))?;
     }
     Ok(Exit::Done.unless(failed > 0))
 }
 
-fn text(all: &[(&Line, &Outcome)], failed: usize) -> String {
-    let mut columns =
-        Columns::new(["id", "value", "reference", "error", "tolerance", "kind", "result", "citation"]);
-    for (line, outcome) in all {
-        let relative = matches!(line.tolerance, Tolerance::Relative(_));
-        let share = |v: f64| if relative { format!("{:.4} %", 100.0 * v) } else { format!("{v:.1e}") };
-        let numbers = match &outcome.result {
-            Ok(c) => [digits(c.value), digits(c.reference), share(c.error)],
-            Err(e) => [e.code().to_string(), String::new(), String::new()],
-        };
-        let end = [
-            share(line.tolerance.limit()),
-            line.kind.name().to_string(),
-            if outcome.pass { "PASS" } else { "FAIL" }.to_string(),
-            line.citation.clone(),
-        ];
-        columns.row([line.id.clone()].into_iter().chain(numbers).chain(end));
+type Checked<'a> = (&'a Line, &'a Outcome);
+
+/// The line with the largest residual of a linear solve.
+fn worst<'a>(all: &[Checked<'a>]) -> Option<(&'a Line, f64)> {
+    let residuals = all.iter().filter_map(|(line, outcome)| Some((*line, outcome.residual?)));
+    residuals.max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Groups of lines that share quantity, kind and source under one heading; columns run through.
+fn text(all: &[Checked<'_>], seconds: f64) -> String {
+    let rows: Vec<[String; 6]> = all.iter().map(|checked| row(checked)).collect();
+    let names = ["line", " value", " reference", "error", "tolerance", ""];
+    let width: Vec<usize> = (0..6)
+        .map(|c| rows.iter().map(|r| r[c].chars().count()).max().unwrap_or(0).max(names[c].len()))
+        .collect();
+    let mut text = aligned(&names.map(String::from), &width);
+    let mut last = None;
+    for ((line, _), row) in all.iter().zip(&rows) {
+        let heading = (&line.quantity, line.kind, &line.citation);
+        if last != Some(heading) {
+            text += &format!("\n{}\n  {}: {}\n", line.quantity, line.kind.name(), line.citation);
+            last = Some(heading);
+        }
+        text += &aligned(row, &width);
     }
-    format!("{}{} of {} lines hold, {failed} fail\n", columns.text(), all.len() - failed, all.len())
+    text + &summary(all, seconds)
+}
+
+/// Id, value, reference, error, tolerance, and whether it holds.
+fn row((line, outcome): &Checked<'_>) -> [String; 6] {
+    let relative = matches!(line.tolerance, Tolerance::Relative(_));
+    let share = |v: f64| if relative { percent(v) } else { signed(v) };
+    let [value, reference, error] = match &outcome.result {
+        Ok(c) => [digits(c.value), given(c.reference), share(c.error)],
+        Err(e) => [e.code().to_string(), String::new(), String::new()],
+    };
+    let limit = match line.tolerance {
+        Tolerance::Relative(limit) => format!("{} %", short(100.0 * limit)),
+        Tolerance::Absolute(limit) => short(limit),
+    };
+    let result = if outcome.pass { "PASS" } else { "FAIL" }.to_string();
+    [format!("  {}", line.id), value, reference, error, limit, result]
+}
+
+/// Names, values and references to the left, where their points are; errors and tolerances to the right.
+fn aligned(cells: &[String; 6], width: &[usize]) -> String {
+    let mut line = String::new();
+    for (c, (cell, width)) in cells.iter().zip(width).enumerate() {
+        let padding = " ".repeat(width - cell.chars().count());
+        line += &if c == 3 || c == 4 { padding + cell } else { cell.clone() + &padding };
+        line += "  ";
+    }
+    format!("{}\n", line.trim_end())
+}
+
+/// Counts by kind, the worst residual, what fails, and the time.
+fn summary(all: &[Checked<'_>], seconds: f64) -> String {
+    let mut text = String::from("\n");
+    for kind in [Kind::Analytical, Kind::Independent, Kind::Published] {
+        let of: Vec<_> = all.iter().filter(|(line, _)| line.kind == kind).collect();
+        if !of.is_empty() {
+            let hold = of.iter().filter(|(_, outcome)| outcome.pass).count();
+            text += &format!("{:<11}  {hold} of {} lines hold\n", kind.name(), of.len());
+        }
+    }
+    if let Some((line, residual)) = worst(all) {
+        text += &format!(
+            "largest |K u - f| / |f| of a linear solve: {residual:.1e} ({}); limit {RESIDUAL:e}\n",
+            line.id
+        );
+    }
+    let failed: Vec<_> = all.iter().filter(|(_, outcome)| !outcome.pass).collect();
+    for (line, outcome) in &failed {
+        let why = match &outcome.result {
+            Err(e) => format!(": {e}"),
+            Ok(_) if outcome.residual.is_some_and(|r| r > RESIDUAL) => ": residual".to_string(),
+            Ok(_) => String::new(),
+        };
+        text += &format!("FAIL {}{why}\n", line.id);
+    }
+    let held = all.len() - failed.len();
+    text + &format!("{held} of {} lines hold, {} fail; {seconds:.1} s\n", all.len(), failed.len())
+}
+
+/// A relative error in per cent, with four decimals while they say something.
+fn percent(v: f64) -> String {
+    let percent = 100.0 * v;
+    if percent == 0.0 || percent.abs() >= 1e-3 {
+        format!("{percent:+.4} %")
+    } else {
+        format!("{percent:+.1e} %")
+    }
+}
+
+/// A plain difference.
+fn signed(v: f64) -> String {
+    if v == 0.0 { "0".to_string() } else { format!("{v:+.1e}") }
+}
+
+/// Two significant digits, as they are written by hand.
+fn short(v: f64) -> String {
+    let rounded: f64 = format!("{v:.1e}").parse().unwrap_or(v);
+    if rounded == 0.0 || (1e-3..1e4).contains(&rounded) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+/// A reference with the digits it was given with, at most ten.
+fn given(value: f64) -> String {
+    let rounded: f64 = format!("{value:.9e}").parse().unwrap_or(value);
+    let magnitude = rounded.abs();
+    let sign = if rounded < 0.0 { "" } else { " " };
+    if rounded == 0.0 || (1e-4..1e7).contains(&magnitude) {
+        format!("{sign}{rounded}")
+    } else {
+        format!("{sign}{rounded:e}")
+    }
 }
 
 /// Seven significant digits; whole numbers plain.
 fn digits(value: f64) -> String {
-    let magnitude = value.abs();
+    let (magnitude, sign) = (value.abs(), if value < 0.0 { "" } else { " " });
     if value == value.trunc() && magnitude < 1e6 {
-        return format!("{value}");
+        return format!("{sign}{value}");
     }
-    if (1e-3..1e5).contains(&magnitude) {
+    if (1e-4..1e6).contains(&magnitude) {
         let decimals = 6 - magnitude.log10().floor() as i32;
-        return format!("{value:.*}", decimals.max(0) as usize);
+        return format!("{sign}{value:.*}", decimals.max(0) as usize);
     }
-    format!("{value:.6e}")
+    format!("{sign}{value:.6e}")
 }
 
 fn document(line: &Line, outcome: &Outcome) -> serde_json::Value {
@@ -93,7 +213,7 @@ fn document(line: &Line, outcome: &Outcome) -> serde_json::Value {
         "id": line.id, "quantity": line.quantity, "kind": line.kind, "citation": line.citation,
         "value": compared.map(|c| c.value), "reference": compared.map(|c| c.reference),
         "error": compared.map(|c| c.error), "tolerance": limit, "tolerance_of": tolerance,
-        "pass": outcome.pass, "seconds": outcome.seconds,
+        "residual": outcome.residual, "pass": outcome.pass, "seconds": outcome.seconds,
         "failure": outcome.result.as_ref().err().map(ToString::to_string),
     })
 }

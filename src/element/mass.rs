@@ -14,9 +14,17 @@ use crate::section::ShellSection;
 /// it) for row sums, 0.045 to 0.118 for the consistent matrix and 0.003 to 0.076 for their mean, isotropic or
 /// without torsional rigidity alike. Row sums are thus centred between the two extremes of direction, which
 /// no other mean of the two matrices is, and they are the default. The reason: between the nodes a thin sheet
-/// is curved, and the straight lines of the consistent matrix miss `k²h²/6` of its kinetic energy. In the
-/// plane of the sheet straight lines are what the element has: consistent +k²h²/24, row sums -k²h²/24, and
-/// the mean is of fourth order along the mesh.
+/// is curved, and the straight lines of the consistent matrix miss `k²h²/6` of its kinetic energy.
+///
+/// No mass matrix can be right in every direction: to this order the kinetic energy of a wave is
+/// that of the sheet times `1 + δ k²h²`, with one δ for all directions since a quadratic form of the wave vector that
+/// has the symmetry of a square is a multiple of k², while what the stiffness does depends on the direction.
+/// Deflections that are quadratic between the nodes and linked to their rotations, as MITC4's shear implies,
+/// have δ = 0 like row sums: the first six frequencies of a clamped square of 32 x 32 elements are -0.21 to +0.35 %
+/// off with either, and those of a simply supported one -0.30 to +0.08 %.
+///
+/// In the plane of the sheet straight lines are what the element has: consistent +k²h²/24, row sums -k²h²/24,
+/// and the mean is of fourth order along the mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Mass {

@@ -221,8 +221,7 @@ pub fn internal_forces(
     u: &[f64],
     low: &[f64],
 ) -> Result<Vec<f64>, MaterialAxisError> {
-    // The seed's spring acts on the drilling rotation itself, whether it is rigid or not.
-    let turns = group == DofGroup::Plate || !matches!(model.formulation.drilling, Drilling::Seed(_));
+    let turns = rigid_rotations(model, group);
     match group.dofs().len() {
         3 => products::<3>(model, group, Kind::Stiffness, |nodes| {
             deformation(model, group, turns, nodes, u, low)
@@ -231,6 +230,11 @@ pub fn internal_forces(
             deformation(model, group, turns, nodes, u, low)
         }),
     }
+}
+
+/// Whether rigid rotations cost no energy: the seed's spring acts on the drilling rotation itself.
+pub(super) fn rigid_rotations(model: &Model, group: DofGroup) -> bool {
+    group == DofGroup::Plate || !matches!(model.formulation.drilling, Drilling::Seed(_))
 }
 
 /// The `B` numbers of a node.

@@ -1,6 +1,7 @@
 //! Solving: block matrices and their factorisation, and the analyses on top.
 
 pub mod assemble;
+mod compensated;
 mod error;
 pub mod factor;
 mod group;

@@ -119,11 +119,6 @@ pub(super) fn dynamics(
     if large.rotations && case.loads.iter().any(|l| matches!(l, LoadTable::Prescribed { .. })) {
         return Err(case.inconsistent("a dynamic analysis has no prescribed values: remove them".into()));
     }
-    if large.rotations && !case.rigid.is_empty() {
-        return Err(case.inconsistent(
-            "dynamics in large rotations has no rigid bodies: remove [[rigid]], or large_rotations".into(),
-        ));
-    }
     let mut record = Record {
         mesh: &model.mesh,
         locators: &prepared.probes,

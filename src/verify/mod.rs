@@ -15,6 +15,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use problem::Statics;
+
 pub use problem::Problem;
 pub use suite::suite;
 
@@ -77,7 +79,7 @@ pub enum Function {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Tolerance {
-    /// Of `(value - reference) / |reference|`.
+    /// Of `value / reference - 1`.
     Relative(f64),
     /// Of `value - reference`.
     Absolute(f64),
@@ -152,12 +154,17 @@ impl From<MaterialAxisError> for VerifyError {
     }
 }
 
+/// The residual that every linear static solve of the suite has to reach.
+pub const RESIDUAL: f64 = 1e-8;
+
 /// How a line came out.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// The value, the reference and their difference; or why there are none.
     pub result: Result<Comparison, VerifyError>,
-    /// Whether the difference is within the tolerance.
+    /// Largest `|K u - f| / |f|` of the linear static models that were solved; `None` without any.
+    pub residual: Option<f64>,
+    /// Whether the difference is within the tolerance and the residual within [`RESIDUAL`].
     pub pass: bool,
     /// Time taken (s).
     pub seconds: f64,
@@ -178,14 +185,17 @@ impl Line {
     /// Solves the problem and compares.
     pub fn check(&self) -> Outcome {
         let start = std::time::Instant::now();
-        let result = self.compare();
+        let mut statics = Statics::default();
+        let result = self.compare(&mut statics);
+        let residual = statics.residual;
         // A value that is not a number compares as false.
-        let pass = result.as_ref().is_ok_and(|c| c.error.abs() <= self.tolerance.limit());
-        Outcome { result, pass, seconds: start.elapsed().as_secs_f64() }
+        let pass = result.as_ref().is_ok_and(|c| c.error.abs() <= self.tolerance.limit())
+            && residual.is_none_or(|r| r <= RESIDUAL);
+        Outcome { result, residual, pass, seconds: start.elapsed().as_secs_f64() }
     }
 
-    fn compare(&self) -> Result<Comparison, VerifyError> {
-        let (value, at) = self.problem.value()?;
+    fn compare(&self, statics: &mut Statics) -> Result<Comparison, VerifyError> {
+        let (value, at) = self.problem.value(statics)?;
         let reference = match self.reference {
             Reference::Number(number) => number,
             Reference::Function(function) => {
@@ -194,7 +204,7 @@ impl Line {
         };
         let difference = value - reference;
         let error = match self.tolerance {
-            Tolerance::Relative(_) => difference / reference.abs(),
+            Tolerance::Relative(_) => difference / reference,
             Tolerance::Absolute(_) => difference,
         };
         Ok(Comparison { value, reference, error })

@@ -5,11 +5,13 @@ use toml::{Table, Value};
 
 use super::{Kind, Line, Problem, Reference, Tolerance};
 
-const FILES: [&str; 8] = [
+const FILES: [&str; 10] = [
     include_str!("suite/element.toml"),
     include_str!("suite/patch.toml"),
     include_str!("suite/plates.toml"),
+    include_str!("suite/accuracy.toml"),
     include_str!("suite/orthotropic.toml"),
+    include_str!("suite/rectangles.toml"),
     include_str!("suite/skew.toml"),
     include_str!("suite/shells.toml"),
     include_str!("suite/dynamics.toml"),

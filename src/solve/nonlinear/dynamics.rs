@@ -9,19 +9,24 @@
 //! Rayleigh damping: `α M v`, and `β` times the rate of the element's own deformation, so that rigid
 //! motions are not damped by it. The rotary inertia of a node is `t²/12` of its mass about every axis, so
 //! that it does not turn with the sheet.
+//!
+//! A rigid body has the inertia of its nodes: they move with its lead, `a = a_lead + ω̇ × r + ω × (ω × r)`, and
+//! their forces of inertia act on it about its place. Newton's matrix leaves out how `ω × (ω × r)` changes, which is
+//! small of the order of the turn in a step.
+
+mod inertia;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use nalgebra::SMatrix;
-
+use self::inertia::Inertia;
 use super::newton::{is_rounding, limit};
 use super::system::{Balance, System};
 use super::{NonlinearError, Settings, State, plan};
-use crate::element::{Frame, Mass, Vector24};
+use crate::element::{Mass, Vector24};
 use crate::model::Model;
 use crate::solve::SolveError;
-use crate::solve::assemble::{scatter, unit_rows};
+use crate::solve::assemble::unit_rows;
 use crate::solve::linear::Options;
 use crate::solve::newmark::{Energy, Instant, LoadHistory, Rayleigh};
 use crate::solve::plan::Plan;
@@ -59,7 +64,7 @@ const RESIDUAL: f64 = 1e-9;
 /// Held values other than zero are not part of a dynamic run: they count as zero.
 ///
 /// # Errors
-/// M008 for the model; N002 for memory; N005 when the step vanishes.
+/// M008, M010 for the model; N002 for memory; N005 when the step vanishes.
 pub fn integrate(
     model: &Model,
     dynamics: &Dynamics,
@@ -134,7 +139,7 @@ struct Now {
     /// The acceleration of the update formulas, a weighted mean in time of the true one.
     mean_acceleration: Vec<f64>,
     balance: Balance,
-    /// `α M v` and the forces of the elements' viscosity.
+    /// `α M v` and the forces of the elements' viscosity, by dof.
     damping: Vec<f64>,
     /// Loads at this instant.
     load: Vec<f64>,
@@ -146,7 +151,7 @@ struct Now {
 struct Motion<'a> {
     system: &'a System<'a>,
     dynamics: &'a Dynamics,
-    mass: BlockMatrix,
+    inertia: Inertia,
     alpha_m: f64,
     alpha_f: f64,
     beta: f64,
@@ -159,7 +164,7 @@ impl<'a> Motion<'a> {
         let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
         let gamma = 0.5 + alpha_f - alpha_m;
         let beta = 0.25 * (0.5 + gamma) * (0.5 + gamma);
-        Self { mass: mass(system, dynamics.mass), system, dynamics, alpha_m, alpha_f, beta, gamma }
+        Self { inertia: Inertia::new(system, dynamics.mass), system, dynamics, alpha_m, alpha_f, beta, gamma }
     }
 
     /// At rest under the loads of the first instant.
@@ -167,7 +172,8 @@ impl<'a> Motion<'a> {
         let mut state = State::rest(&self.system.model.mesh);
         state.factor = self.dynamics.load.at(0.0);
         let balance = self.system.balance(&state, None);
-        let mut matrix = self.mass.clone();
+        let mut matrix = BlockMatrix::zeros(Arc::clone(&self.system.plan.pattern.graph), 6);
+        self.inertia.add(self.system, &state, 1.0, &mut matrix);
         unit_rows(&mut matrix, &self.system.held);
         let mut acceleration: Vec<f64> = balance.unbalanced.iter().map(|f| -f).collect();
         self.free(&mut acceleration);
@@ -225,8 +231,8 @@ impl<'a> Motion<'a> {
                 })
                 .collect();
             let balance = self.system.balance(&state, None);
-            let (damping, viscous) = self.damping(&balance, &velocity);
-            let inertia = product(&self.mass, &acceleration);
+            let Forces { inertia, damping, nodal, viscous } =
+                self.forces(&state, &balance, &velocity, &acceleration);
             let mut force: Vec<f64> =
                 (0..n).map(|d| -(inertia[d] + damping[d] + balance.unbalanced[d])).collect();
             self.free(&mut force);
@@ -254,22 +260,26 @@ impl<'a> Motion<'a> {
             };
             let geometric: Vec<Vector24> = geometric.iter().zip(&viscous).map(|(e, v)| e + v).collect();
             let mut step = force;
-            self.tangent(&state, &balance, &geometric, dt)?.solve(&mut step, 1);
+            self.tangent(&state, &balance, &nodal, &geometric, dt)?.solve(&mut step, 1);
             if limit(&mut step) == 1.0 && is_rounding(&step, self.system.size) {
                 return Some(done(state, balance));
             }
             local = Some(self.system.predict(&state, &balance, &step));
             self.system.advance(&mut state, &step);
             travelled = travel(&now.state, &state);
+            // Followers have moved, but their dofs are held.
+            self.free(&mut travelled);
         }
         None
     }
 
-    /// Factor of `(1-α_m)/((1-α_f) β Δt²) M + γ/(β Δt) C + K`.
+    /// Factor of `(1-α_m)/((1-α_f) β Δt²) M + γ/(β Δt) C + K`; `nodal` are the forces of inertia and damping
+    /// on the nodes.
     fn tangent(
         &self,
         state: &State,
         balance: &Balance,
+        nodal: &[f64],
         local: &[Vector24],
         dt: f64,
     ) -> Option<crate::solve::factor::Factor> {
@@ -278,18 +288,28 @@ impl<'a> Motion<'a> {
         let stiffening = 1.0 + self.dynamics.damping.beta * by_velocity;
         let (mut matrix, _) = self.system.tangent_of(state, balance, local, 0.0, stiffening);
         let factor = by_acceleration + self.dynamics.damping.alpha * by_velocity;
-        matrix.values.iter_mut().zip(&self.mass.values).for_each(|(k, m)| *k += factor * m);
+        self.inertia.add(self.system, state, factor, &mut matrix);
+        self.system.add_body_terms(state, nodal, &mut matrix);
         self.system.factorise(&matrix).ok()
     }
 
-    /// Damping forces by dof, and those of the elements in their frames.
-    fn damping(&self, balance: &Balance, velocity: &[f64]) -> (Vec<f64>, Vec<Vector24>) {
+    /// What a motion of the dofs costs besides the forces of the state.
+    fn forces(&self, state: &State, balance: &Balance, velocity: &[f64], acceleration: &[f64]) -> Forces {
         let Rayleigh { alpha, beta } = self.dynamics.damping;
-        let (mut forces, viscous) = self.system.viscous(balance, velocity, beta);
+        let velocities = self.system.node_velocities(state, velocity);
+        let (mut damping, viscous) = self.system.viscous(balance, &velocities, beta);
         if alpha > 0.0 {
-            forces.iter_mut().zip(product(&self.mass, velocity)).for_each(|(f, p)| *f += alpha * p);
+            let drag = self.inertia.times(self.system, &velocities);
+            damping.iter_mut().zip(drag).for_each(|(f, p)| *f += alpha * p);
         }
-        (forces, viscous)
+        let accelerations = self.system.node_accelerations(state, velocity, acceleration);
+        let inertia = self.inertia.times(self.system, &accelerations);
+        Forces {
+            nodal: inertia.iter().zip(&damping).map(|(i, d)| i + d).collect(),
+            inertia: self.system.to_leads(state, &inertia),
+            damping: self.system.to_leads(state, &damping),
+            viscous,
+        }
     }
 
     /// Local error of the displacement relative to the largest so far (Zienkiewicz and Xie 1991).
@@ -308,8 +328,9 @@ impl<'a> Motion<'a> {
         energy.work += mean(&now.load, &next.load);
         energy.dissipated += mean(&now.damping, &next.damping);
         energy.strain = next.balance.energy;
-        let momentum = product(&self.mass, &next.velocity);
-        energy.kinetic = 0.5 * momentum.iter().zip(&next.velocity).map(|(p, v)| p * v).sum::<f64>();
+        let velocities = self.system.node_velocities(&next.state, &next.velocity);
+        let momentum = self.inertia.times(self.system, &velocities);
+        energy.kinetic = 0.5 * momentum.iter().zip(&velocities).map(|(p, v)| p * v).sum::<f64>();
     }
 }
 
@@ -325,26 +346,14 @@ fn travel(from: &State, to: &State) -> Vec<f64> {
         .collect()
 }
 
-/// Mass with rows and columns of held dofs empty.
-fn mass(system: &System<'_>, mass: Mass) -> BlockMatrix {
-    let (model, pattern) = (system.model, &system.plan.pattern);
-    let mut matrix = BlockMatrix::zeros(Arc::clone(&pattern.graph), 6);
-    let rotary = model.section.thickness * model.section.thickness / 12.0;
-    for (quad, nodes) in model.mesh.quads.iter().enumerate() {
-        let frame = Frame::of(&model.mesh.corners(quad));
-        let pairs = mass.pairs(&frame, &model.section);
-        let element = SMatrix::<f64, 24, 24>::from_fn(|i, j| {
-            let held = |k: usize| system.held[6 * nodes[k / 6] as usize + k % 6];
-            let share = if i % 6 < 3 { 1.0 } else { rotary };
-            if i % 6 == j % 6 && !held(i) && !held(j) { share * pairs[(i / 6, j / 6)] } else { 0.0 }
-        });
-        scatter(element.as_slice(), 6, nodes, &pattern.blocks[quad], &mut matrix);
-    }
-    matrix
-}
-
-fn product(matrix: &BlockMatrix, x: &[f64]) -> Vec<f64> {
-    let mut y = vec![0.0; x.len()];
-    matrix.mul(x, &mut y);
-    y
+/// Forces of a motion.
+struct Forces {
+    /// Of inertia, by dof.
+    inertia: Vec<f64>,
+    /// Of damping, by dof.
+    damping: Vec<f64>,
+    /// Both, on every node.
+    nodal: Vec<f64>,
+    /// Of the elements' viscosity, in their frames.
+    viscous: Vec<Vector24>,
 }

@@ -1,5 +1,7 @@
 //! The equations of a model in large rotations: forces, tangent, and the motion of the nodes.
 
+mod rates;
+
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector3};
@@ -165,7 +167,7 @@ impl<'a> System<'a> {
     }
 
     /// Adds the forces of followers to their leads.
-    fn to_leads(&self, state: &State, nodal: &[f64]) -> Vec<f64> {
+    pub fn to_leads(&self, state: &State, nodal: &[f64]) -> Vec<f64> {
         let mut reduced = nodal.to_vec();
         for node in self.links.followers() {
             let (force, moment) = (vector(nodal, 6 * node), vector(nodal, 6 * node + 3));
@@ -276,7 +278,7 @@ impl<'a> System<'a> {
                 }
             }
         }
-        self.add_body_terms(state, balance, &mut matrix);
+        self.add_body_terms(state, &balance.nodal, &mut matrix);
         let graph = &pattern.graph;
         for dof in (0..self.held.len()).filter(|d| !self.held[*d]) {
             matrix.values[graph.col_ptr[dof / 6] * 36 + (dof % 6) * 7] += shift * self.metric[dof];
@@ -287,7 +289,7 @@ impl<'a> System<'a> {
 
     /// Moves the stiffness of followers to their leads, empties the rows and columns of held dofs,
     /// and returns the forces of their values.
-    fn constrain(&self, state: &State, q: usize, mut k: Matrix24, pushes: bool) -> (Matrix24, Vector24) {
+    pub fn constrain(&self, state: &State, q: usize, mut k: Matrix24, pushes: bool) -> (Matrix24, Vector24) {
         let nodes = &self.model.mesh.quads[q];
         for (i, node) in nodes.iter().enumerate() {
             if self.links.leads[*node as usize] == *node {
@@ -314,13 +316,14 @@ impl<'a> System<'a> {
         (k, push)
     }
 
-    /// Forces on followers turn with the body: `n (r · dω) - ...` on the rotation of the lead.
-    fn add_body_terms(&self, state: &State, balance: &Balance, matrix: &mut BlockMatrix) {
+    /// Forces on followers (`nodal`, six a node) turn with the body: `n (r · dω) - ...` on the rotation of
+    /// the lead.
+    pub fn add_body_terms(&self, state: &State, nodal: &[f64], matrix: &mut BlockMatrix) {
         let graph = &self.plan.pattern.graph;
         for node in self.links.followers() {
             let lead = self.links.leads[node] as usize;
             let lever = lever(&state.position, &self.links.leads, node).cross_matrix();
-            let term: Matrix3<f64> = vector(&balance.nodal, 6 * node).cross_matrix() * lever;
+            let term: Matrix3<f64> = vector(nodal, 6 * node).cross_matrix() * lever;
             let at = graph.col_ptr[lead] * 36;
             for (row, column) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
                 if !self.held[6 * lead + 3 + row] && !self.held[6 * lead + 3 + column] {
@@ -334,52 +337,6 @@ impl<'a> System<'a> {
     pub fn factorise(&self, matrix: &BlockMatrix) -> Result<Factor, FactorError> {
         let analysis = &self.plan.groups[0].1;
         analysis.factorise_indefinite(matrix, analysis.worth(self.threads))
-    }
-
-    /// Displacement and spin of a node for a step of the dofs, to first order.
-    fn node_step(&self, state: &State, step: &[f64], node: usize) -> (Vector3<f64>, Vector3<f64>) {
-        let at = 6 * self.links.leads[node] as usize;
-        let (du, spin) = (vector(step, at), vector(step, at + 3));
-        (du + spin.cross(&lever(&state.position, &self.links.leads, node)), spin)
-    }
-
-    /// Element forces that a step is expected to lead to: those of the mixed integration point.
-    pub fn predict(&self, state: &State, balance: &Balance, step: &[f64]) -> Vec<Vector24> {
-        self.each(0..self.plan.pattern.quads.len(), |q| {
-            let mut spins = Vector24::zeros();
-            for (i, node) in self.model.mesh.quads[q].iter().enumerate() {
-                let (du, spin) = self.node_step(state, step, *node as usize);
-                spins.fixed_rows_mut::<3>(6 * i).copy_from(&du);
-                spins.fixed_rows_mut::<3>(6 * i + 3).copy_from(&spin);
-            }
-            let answer = &balance.answers[q];
-            answer.local + self.sheet.force_change(q, answer, &answer.motion.deformation_rate(&spins))
-        })
-    }
-
-    /// Forces by dof of `beta` times the elements' stiffnesses at the rate of their deformation, and the same in
-    /// their frames. Rigid motions cost nothing.
-    pub fn viscous(&self, balance: &Balance, velocity: &[f64], beta: f64) -> (Vec<f64>, Vec<Vector24>) {
-        let mut forces = vec![0.0; velocity.len()];
-        if beta == 0.0 {
-            return (forces, vec![Vector24::zeros(); self.plan.pattern.quads.len()]);
-        }
-        let parts = self.each(0..self.plan.pattern.quads.len(), |q| {
-            let nodes = &self.plan.pattern.quads[q];
-            let rates = Vector24::from_fn(|k, _| velocity[6 * nodes[k / 6] as usize + k % 6]);
-            let answer = &balance.answers[q];
-            let motion = &answer.motion;
-            let local = self.sheet.force_change(q, answer, &motion.deformation_rate(&rates)) * beta;
-            (motion.force(&local), local)
-        });
-        let mut locals = Vec::with_capacity(parts.len());
-        for (nodes, (force, local)) in self.plan.pattern.quads.iter().zip(parts) {
-            for k in 0..24 {
-                forces[6 * nodes[k / 6] as usize + k % 6] += force[k];
-            }
-            locals.push(local);
-        }
-        (forces, locals)
     }
 
     /// Moves the nodes by a step of the dofs: rotations compose, bodies stay rigid.

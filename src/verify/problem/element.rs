@@ -50,6 +50,8 @@ enum Matrix {
     Membrane,
     /// Bending, dofs θx and θy.
     Bending,
+    /// MITC4's transverse shear alone, dofs w, θx, θy.
+    Shear,
     /// Bending and shear, dofs w, θx, θy.
     Plate,
     /// The same without twisting and coupling rigidity, H = B12 = 0.
@@ -70,6 +72,7 @@ impl ZeroModes {
         Ok(match self.matrix {
             Matrix::Membrane => zeros(&strain_energy(&element, [0, 1])),
             Matrix::Bending => zeros(&strain_energy(&element, [3, 4])),
+            Matrix::Shear => zeros(&shear_energy(&element)),
             Matrix::Plate | Matrix::TwistlessPlate => zeros(&dense(&element.plate_stiffness())),
             Matrix::Shell => zeros(&dense(&element.stiffness())),
         } as f64)
@@ -92,6 +95,17 @@ fn strain_energy(element: &Prepared, dofs: [usize; 2]) -> DMatrix<f64> {
         });
     }
     k
+}
+
+/// Square of the shear strains at the 2 x 2 Gauss points.
+fn shear_energy(element: &Prepared) -> DMatrix<f64> {
+    let g = 3f64.sqrt().recip();
+    let mut k = SMatrix::<f64, 12, 12>::zeros();
+    for at in [[-g, -g], [g, -g], [g, g], [-g, g]] {
+        let strain = element.shear_strain_matrix(at);
+        k += strain.tr_mul(&strain);
+    }
+    dense(&k)
 }
 
 /// Eigenvalues below 1e-10 of the largest: round-off is 1e-15, the smallest true one about 1e-4.

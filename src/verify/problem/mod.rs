@@ -1,5 +1,6 @@
 //! The problem families: each a function from parameters to one value.
 
+mod accuracy;
 mod disc;
 mod dynamics;
 mod element;
@@ -17,7 +18,9 @@ use serde::Deserialize;
 use super::{Function, VerifyError};
 use crate::element::{Cells, Drilling, Formulation};
 use crate::mesh::QuadMesh;
+use crate::model::Model;
 use crate::section::ShellSection;
+use crate::solve::{self, Options, Solution};
 
 /// A problem of the suite with its parameters.
 #[derive(Clone, Debug, Deserialize)]
@@ -26,7 +29,9 @@ pub enum Problem {
     /// A rectangular plate.
     Plate(plate::PlateProblem),
     /// Rate at which the error of a plate falls.
-    Convergence(plate::Convergence),
+    Convergence(accuracy::Convergence),
+    /// Error of a plate.
+    Deviation(accuracy::Deviation),
     /// Constant states on an irregular mesh.
     Patch(patch::Patch),
     /// Motions of one element that cost no energy.
@@ -59,26 +64,27 @@ pub enum Problem {
 
 impl Problem {
     /// The value, and the point at which it was taken, for problems that have one.
-    pub(super) fn value(&self) -> Result<(f64, [f64; 2]), VerifyError> {
-        let nowhere = |value| (value, [0.0; 2]);
-        match self {
-            Self::Plate(p) => p.value(),
-            Self::Convergence(p) => p.value().map(nowhere),
-            Self::Patch(p) => p.value().map(nowhere),
-            Self::ZeroModes(p) => p.value().map(nowhere),
-            Self::RigidMotion(p) => p.value().map(nowhere),
-            Self::Mechanisms(p) => p.value().map(nowhere),
-            Self::Distorted(p) => p.value().map(nowhere),
-            Self::Disc(p) => p.value().map(nowhere),
-            Self::Skew(p) => p.value().map(nowhere),
-            Self::Shell(p) => p.value().map(nowhere),
-            Self::LargeShell(p) => p.value().map(nowhere),
-            Self::Strip(p) => p.value().map(nowhere),
-            Self::BendingTest(p) => p.value().map(nowhere),
-            Self::Pendulum(p) => p.value().map(nowhere),
-            Self::Rigid(p) => p.value().map(nowhere),
-            Self::Newmark(p) => p.value().map(nowhere),
-        }
+    pub(super) fn value(&self, statics: &mut Statics) -> Result<(f64, [f64; 2]), VerifyError> {
+        let value = match self {
+            Self::Plate(p) => return p.value(statics),
+            Self::Convergence(p) => p.value(statics),
+            Self::Deviation(p) => p.value(statics),
+            Self::Patch(p) => p.value(statics),
+            Self::ZeroModes(p) => p.value(),
+            Self::RigidMotion(p) => p.value(),
+            Self::Mechanisms(p) => p.value(),
+            Self::Distorted(p) => p.value(statics),
+            Self::Disc(p) => p.value(statics),
+            Self::Skew(p) => p.value(statics),
+            Self::Shell(p) => p.value(statics),
+            Self::LargeShell(p) => p.value(),
+            Self::Strip(p) => p.value(),
+            Self::BendingTest(p) => p.value(),
+            Self::Pendulum(p) => p.value(),
+            Self::Rigid(p) => p.value(statics),
+            Self::Newmark(p) => p.value(),
+        }?;
+        Ok((value, [0.0; 2]))
     }
 
     /// The exact value at a point; `None` where the function does not cover the problem.
@@ -88,6 +94,21 @@ impl Problem {
             Self::Strip(p) => p.exact(function),
             _ => None,
         }
+    }
+}
+
+/// Solves the linear static models of a line and keeps the largest of their residuals.
+#[derive(Debug, Default)]
+pub struct Statics {
+    /// `|K u - f| / |f|`; `None` before the first solve.
+    pub residual: Option<f64>,
+}
+
+impl Statics {
+    fn solve(&mut self, model: &Model) -> Result<Solution, VerifyError> {
+        let solution = solve::solve(model, &Options::default())?;
+        self.residual = Some(self.residual.map_or(solution.residual, |r| r.max(solution.residual)));
+        Ok(solution)
     }
 }
 
@@ -117,6 +138,13 @@ pub enum Law {
         /// Transverse shear stiffness, correction factor included (N/m).
         shear: f64,
     },
+    /// Orthotropic with D22 = 1, D12 = 0 and a transverse shear stiffness of 1e7.
+    Ratio {
+        /// D11/D22.
+        d11: f64,
+        /// T/√(D11 D22), T = D12 + 2 D66.
+        twist: f64,
+    },
 }
 
 impl Law {
@@ -133,6 +161,10 @@ impl Law {
                     areal_density: 1.0,
                     thickness,
                 }
+            }
+            Self::Ratio { d11, twist } => {
+                let d66 = 0.5 * twist * d11.sqrt();
+                Self::Orthotropic { d11, d22: 1.0, d12: 0.0, d66, shear: 1e7 }.section()
             }
             Self::Orthotropic { d11, d22, d12, d66, shear } => {
                 let thickness: f64 = 1e-3;

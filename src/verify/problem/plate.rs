@@ -4,15 +4,15 @@ use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
 use super::super::{Function, VerifyError};
-use super::{Law, Layout, default_alpha, formulation, nearest, unit};
+use super::{Law, Layout, Statics, default_alpha, formulation, nearest, unit};
 use crate::analytical::levy::Edge;
 use crate::analytical::mindlin::MindlinPlate;
 use crate::analytical::{Plate, PlateState};
 use crate::element::Mass;
 use crate::fields;
 use crate::mesh::{distorted, rectangle};
-use crate::model::{DofGroup, Load, Model, Support};
-use crate::solve::{self, Options, modes};
+use crate::model::{Dof, DofGroup, Load, Model, Support};
+use crate::solve::{Options, modes};
 
 /// A rectangle `[0, a] x [0, b]`, one section, unit pressure.
 #[derive(Clone, Debug, Deserialize)]
@@ -81,6 +81,10 @@ enum Measure {
     MomentY,
     /// `M_x / (q a²)` on the edge x = 0, from its reactions.
     EdgeMoment,
+    /// The same from one node's reaction alone, spread over half the edges that meet in it.
+    NodalEdgeMoment,
+    /// `Q_x / (q a)` from the nodal recovery.
+    ShearX,
     /// `ω_k a² √(ρ/D22)` of this mode, from 1.
     Frequency(usize),
 }
@@ -108,20 +112,25 @@ impl PlateProblem {
         })
     }
 
+    /// The same on elements half as large.
+    pub fn refined(&self) -> Self {
+        Self { n: 2 * self.n, ..self.clone() }
+    }
+
     /// The value, and the coordinates of the node at which it was taken.
-    pub fn value(&self) -> Result<(f64, [f64; 2]), VerifyError> {
+    pub fn value(&self, statics: &mut Statics) -> Result<(f64, [f64; 2]), VerifyError> {
         let model = self.model()?;
         let node = nearest(&model.mesh, Point3::new(self.a * self.at[0], self.b * self.at[1], 0.0));
         let at = [model.mesh.nodes[node].x, model.mesh.nodes[node].y];
-        Ok((self.measure_at(&model, node)? * self.unit(), at))
+        Ok((self.measure_at(&model, node, statics)? * self.unit(), at))
     }
 
-    fn measure_at(&self, model: &Model, node: usize) -> Result<f64, VerifyError> {
+    fn measure_at(&self, model: &Model, node: usize, statics: &mut Statics) -> Result<f64, VerifyError> {
         if let Measure::Frequency(k) = self.measure {
             let found = modes(model, k, self.mass, &Options::default())?;
             return Ok(found.get(k - 1).map_or(f64::NAN, |m| m.angular_frequency));
         }
-        let solution = solve::solve(model, &Options::default())?;
+        let solution = statics.solve(model)?;
         Ok(match self.measure {
             Measure::MomentX => fields::nodal(model, &solution.displacement)?[node].moment[0],
             Measure::MomentY => fields::nodal(model, &solution.displacement)?[node].moment[1],
@@ -129,7 +138,18 @@ impl PlateProblem {
                 let edges = model.mesh.set_edges("left")?;
                 at_end(&edges, &fields::edge_moments(&model.mesh, &solution.reaction, &edges), node)
             }
-            _ => solution.displacement[6 * node + 2],
+            Measure::NodalEdgeMoment => {
+                let length = |[a, b]: &[u32; 2]| {
+                    (model.mesh.nodes[*a as usize] - model.mesh.nodes[*b as usize]).norm()
+                };
+                let edges = model.mesh.set_edges("left")?;
+                let meet = edges.iter().filter(|e| e.contains(&(node as u32)));
+                // M_x on x = 0 is a moment against θy.
+                -solution.reaction[6 * node + Dof::ThetaY as usize]
+                    / meet.map(|e| 0.5 * length(e)).sum::<f64>()
+            }
+            Measure::ShearX => fields::nodal(model, &solution.displacement)?[node].shear[0],
+            Measure::Deflection | Measure::Frequency(_) => solution.displacement[6 * node + 2],
         })
     }
 
@@ -138,7 +158,10 @@ impl PlateProblem {
         let d22 = self.law.section().d_b[(1, 1)];
         match self.measure {
             Measure::Deflection => d22 / self.a.powi(4),
-            Measure::MomentX | Measure::MomentY | Measure::EdgeMoment => self.a.powi(-2),
+            Measure::MomentX | Measure::MomentY | Measure::EdgeMoment | Measure::NodalEdgeMoment => {
+                self.a.powi(-2)
+            }
+            Measure::ShearX => self.a.recip(),
             Measure::Frequency(_) => self.a.powi(2) / d22.sqrt(),
         }
     }
@@ -149,9 +172,9 @@ impl PlateProblem {
         let plate = Plate::of_section(self.a, self.b, &section);
         let pick = |s: PlateState| match self.measure {
             Measure::Deflection => Some(s.deflection),
-            Measure::MomentX | Measure::EdgeMoment => Some(s.mx),
+            Measure::MomentX | Measure::EdgeMoment | Measure::NodalEdgeMoment => Some(s.mx),
             Measure::MomentY => Some(s.my),
-            Measure::Frequency(_) => None,
+            Measure::ShearX | Measure::Frequency(_) => None,
         };
         let value = match (function, &self.edges.0) {
             (Function::Navier, b"SSSS") => pick(plate.navier(x, y, 1.0)),
@@ -193,30 +216,6 @@ impl PlateProblem {
 fn at_end(edges: &[[u32; 2]], values: &[[f64; 2]], node: usize) -> f64 {
     let mut ends = edges.iter().zip(values).flat_map(|(e, v)| e.iter().zip(v));
     ends.find(|(n, _)| **n as usize == node).map_or(f64::NAN, |(_, v)| *v)
-}
-
-/// Slope of the error of a plate in a log-log plot, from `n` to `2 n` elements.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Convergence {
-    /// The plate on its coarse mesh.
-    plate: PlateProblem,
-    /// Its exact solution.
-    exact: Function,
-}
-
-impl Convergence {
-    /// `log2(error(n) / error(2n))`.
-    pub fn value(&self) -> Result<f64, VerifyError> {
-        let error = |plate: &PlateProblem| {
-            let (value, at) = plate.value()?;
-            let exact =
-                plate.exact(self.exact, at).ok_or(VerifyError::NoReference { function: self.exact })?;
-            Ok::<f64, VerifyError>((value - exact).abs())
-        };
-        let fine = PlateProblem { n: 2 * self.plate.n, ..self.plate.clone() };
-        Ok((error(&self.plate)? / error(&fine)?).log2())
-    }
 }
 
 /// Plate motions without energy, counted.

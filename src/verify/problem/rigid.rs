@@ -4,11 +4,11 @@ use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
 use super::super::VerifyError;
-use super::Law;
+use super::{Law, Statics};
 use crate::element::{Formulation, Mass};
 use crate::mesh::rectangle;
 use crate::model::{Dof, Load, Model, RigidBody, Support};
-use crate::solve::{self, Options, modes};
+use crate::solve::{Options, modes};
 
 /// A cantilever strip of length 1 and rigidity D = 1 (ν = 0), 2 cm wide, unit mass per area.
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -41,20 +41,19 @@ const WIDTH: f64 = 0.02;
 
 impl Rigid {
     /// The value.
-    pub fn value(&self) -> Result<f64, VerifyError> {
+    pub fn value(&self, statics: &mut Statics) -> Result<f64, VerifyError> {
         match *self {
             Self::Clamp { n } => {
                 let (mut model, reference) = strip(n, 0.0)?;
                 model.supports.push(Support { nodes: vec![reference], held: vec![(Dof::ThetaY, 0.1)] });
-                let solution = solve::solve(&model, &Options::default())?;
+                let solution = statics.solve(&model)?;
                 Ok(solution.reaction[6 * reference as usize + Dof::ThetaY as usize] / (0.1 * WIDTH))
             }
             Self::Lever { n } => {
                 let (mut model, reference) = strip(n, 0.0)?;
                 let (force, moment) = (Vector3::z(), Vector3::zeros());
                 model.loads.push(Load::Point { nodes: vec![reference], force, moment });
-                let w = solve::solve(&model, &Options::default())?.displacement
-                    [6 * reference as usize + Dof::W as usize];
+                let w = statics.solve(&model)?.displacement[6 * reference as usize + Dof::W as usize];
                 let c = 0.5;
                 Ok(w * WIDTH / (1.0 / 3.0 + c + c * c))
             }

@@ -164,12 +164,16 @@ impl BendingTest {
     }
 }
 
-/// A strip hinged at one end and released from the horizontal, rigid: the compound pendulum. Spectral radius 0.9.
+/// A strip hinged at one end and released from the horizontal, stiff or a rigid body: the compound pendulum.
+/// Spectral radius 0.9.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pendulum {
     /// Time steps in five quarters of a period.
     steps: usize,
+    /// Whether its nodes are one rigid body.
+    #[serde(default)]
+    body: bool,
     /// What is taken.
     measure: Swing,
 }
@@ -191,19 +195,27 @@ const QUARTER: f64 = 1.854_074_677_301_372;
 impl Pendulum {
     /// The value.
     pub fn value(&self) -> Result<f64, VerifyError> {
-        let (error, imbalance) = swing(self.steps)?;
+        let (error, imbalance) = swing(self.steps, self.body)?;
         Ok(match self.measure {
             Swing::Error => error,
-            Swing::Slope => (error / swing(2 * self.steps)?.0).log2(),
+            Swing::Slope => (error / swing(2 * self.steps, self.body)?.0).log2(),
             Swing::Imbalance => imbalance,
         })
     }
 }
 
-fn swing(steps: usize) -> Result<(f64, f64), VerifyError> {
+fn swing(steps: usize, body: bool) -> Result<(f64, f64), VerifyError> {
     let (length, g) = (0.2, 9.81);
     let mut model = along_x(length, 2, ShellSection { areal_density: 0.15, ..section(1.0, 4e-4) })?;
     model.supports.push(Support::fix(model.mesh.set("left")?, &[Dof::U, Dof::W]));
+    if body {
+        // Only its lead, on the hinge, may be held.
+        let hinge = model.mesh.set("left")?[0];
+        let all = 0..model.mesh.nodes.len() as u32;
+        let nodes = std::iter::once(hinge).chain(all.filter(|n| *n != hinge)).collect();
+        model.supports = vec![Support::fix(&[hinge], &[Dof::U, Dof::V, Dof::W, Dof::ThetaX, Dof::ThetaZ])];
+        model.bodies = vec![RigidBody { nodes }];
+    }
     model.loads = vec![Load::Gravity(Vector3::new(0.0, 0.0, -g))];
     let end = 6 * model.mesh.set("right")?[0] as usize;
     let duration = 5.0 * QUARTER / (1.5 * g / length).sqrt();

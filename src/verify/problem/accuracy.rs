@@ -1,0 +1,54 @@
+//! How far a plate is from its exact solution, and how fast that falls.
+
+use serde::Deserialize;
+
+use super::super::{Function, VerifyError};
+use super::Statics;
+use super::plate::PlateProblem;
+
+/// Slope of the error of a plate in a log-log plot, from `n` to `2 n` elements.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Convergence {
+    /// The plate on its coarse mesh.
+    plate: PlateProblem,
+    /// Its exact solution.
+    exact: Function,
+}
+
+impl Convergence {
+    /// `log2(error(n) / error(2n))`.
+    pub fn value(&self, statics: &mut Statics) -> Result<f64, VerifyError> {
+        let mut error = |plate: &PlateProblem| {
+            let (value, exact) = both(plate, self.exact, statics)?;
+            Ok::<f64, VerifyError>((value - exact).abs())
+        };
+        let fine = self.plate.refined();
+        Ok((error(&self.plate)? / error(&fine)?).log2())
+    }
+}
+
+/// Error of a plate.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Deviation {
+    /// The plate.
+    plate: PlateProblem,
+    /// Its exact solution.
+    exact: Function,
+}
+
+impl Deviation {
+    /// `value / exact - 1` (%).
+    pub fn value(&self, statics: &mut Statics) -> Result<f64, VerifyError> {
+        let (value, exact) = both(&self.plate, self.exact, statics)?;
+        Ok(100.0 * (value - exact) / exact)
+    }
+}
+
+/// What the plate has, and what it should have at that place.
+fn both(plate: &PlateProblem, function: Function, statics: &mut Statics) -> Result<(f64, f64), VerifyError> {
+    let (value, at) = plate.value(statics)?;
+    let exact = plate.exact(function, at).ok_or(VerifyError::NoReference { function })?;
+    Ok((value, exact))
+}
