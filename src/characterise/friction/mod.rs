@@ -7,6 +7,7 @@
 //! slip levels, a search for the widening, then six sliders that carry equal parts of the friction
 //! in place of the levels found, and the weights again.
 
+mod bands;
 mod closed_form;
 mod identify;
 mod loop_fit;
@@ -27,6 +28,7 @@ use crate::instrument::{Direction, Parameter, Test};
 use crate::law::Channel;
 use crate::quantity::{Curve, Estimate};
 
+pub use bands::LawBand;
 pub use closed_form::ClosedForm;
 pub use loop_fit::{CycleFit, LoopFit};
 pub use record::{cycle, extract};
