@@ -32,6 +32,7 @@ pub use bands::LawBand;
 pub use closed_form::ClosedForm;
 pub use loop_fit::{CycleFit, LoopFit};
 pub use record::{cycle, extract};
+pub use summary::bending_law;
 
 /// A law of one test in one direction.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -151,20 +152,21 @@ impl FrictionLaw {
 
     /// Number and path of each measured cycle.
     fn cycles(&self, sheet: &FabricSheet) -> Vec<(usize, Path)> {
-        if self.basis == Basis::Strip {
-            let strip = sheet
-                .strips
-                .iter()
-                .find(|s| Some(s.direction) == self.direction && strip::number(s) == self.specimen);
-            return strip.map(strip::paths).unwrap_or_default().into_iter().enumerate().collect();
-        }
         let mine = |s: &&SpecimenResult| {
             let m = &s.measurement;
             (m.test, m.direction, m.specimen) == (self.test, self.direction, self.specimen)
         };
         let one_sided = self.channel.is_one_sided();
-        let specimen = sheet.specimens.iter().find(mine);
-        let found = specimen.and_then(|s| path(s, self.thickness, one_sided, CycleChoice::First));
+        let found = if self.basis == Basis::Strip {
+            let strip = sheet
+                .strips
+                .iter()
+                .find(|s| Some(s.direction) == self.direction && strip::number(s) == self.specimen);
+            strip.and_then(strip::history)
+        } else {
+            let specimen = sheet.specimens.iter().find(mine);
+            specimen.and_then(|s| path(s, self.thickness, one_sided, CycleChoice::First))
+        };
         let Some((path, cycles)) = found else { return Vec::new() };
         let cycle = |(i, range): (usize, std::ops::Range<usize>)| (i, Path { fitted: range, ..path.clone() });
         cycles.into_iter().enumerate().filter(|(_, r)| !r.is_empty()).map(cycle).collect()
