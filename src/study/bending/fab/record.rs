@@ -60,6 +60,9 @@ const TURNING: usize = 4;
 /// leaves of its bow (about 100 1/m), and still bends less at its clamps than in the tests.
 const PUSH: f64 = 30.0;
 
+/// Strain of the strip when it is drawn straight between two tests.
+const TAUT: f64 = 1e-4;
+
 impl<'a> Record<'a> {
     pub fn of(test: &'a FabTest, areal_density: f64) -> Option<Self> {
         let (mut samples, mut branches) = (Curve::default(), Vec::new());
@@ -135,7 +138,9 @@ pub(super) fn simulate(
     for (i, record) in tests.iter().enumerate() {
         let (at, side) = (record.samples.x[0], record.way() * way);
         if i > 0 {
-            legs.extend([to(length, way, MOUNTING), to(length, side * PUSH, TURNING)]);
+            // Taut, and with a weight to either side, the straight strip is stable.
+            let taut = (1.0 + TAUT) * length;
+            legs.extend([to(taut, -side * PUSH, MOUNTING), to(taut, side * PUSH, TURNING)]);
             taken += MOUNTING + TURNING;
         }
         let push = if i > 0 { side * PUSH } else { 1.0 };
