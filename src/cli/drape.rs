@@ -82,6 +82,7 @@ pub fn entry(task: &Task, d: &Drape) -> Value {
             "coefficient": d.finest.coefficient,
             "band": d.band(),
             "measured": measured,
+            "uncertainty": task.sampling().map(|s| super::sampled::entry(s, "")),
             "finest": state(&d.finest),
             "states": d.states.iter().map(state).collect::<Vec<_>>(),
             "failed_starts": d.failed.iter().map(|(start, e)| json!({"start_folds": start, "code": e.code()})).collect::<Vec<_>>(),
@@ -185,6 +186,7 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
         ("Drape coefficient".to_string(), format!("{} %", percent(s.coefficient))),
         (format!("band of {} states", d.states.len()), format!("{} to {} %", percent(low), percent(high))),
     ];
+    values.extend(super::sampled::values(task, "drape_coefficient", "%", 0.01));
     if let Some((value, _)) = measured(task) {
         values.push(("measured".into(), format!("{} %", percent(value))));
     }

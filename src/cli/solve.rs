@@ -9,12 +9,13 @@ use serde_json::json;
 use super::diagnostics::Failure;
 use super::drape;
 use super::output::Columns;
+use super::sampled;
 use super::search::{NOT_CONVERGED, searches, steps, unconverged};
 use super::task::{Task, TaskArgs, solution};
 use super::tree::Tree;
 use super::{Exit, Ui, each, effort};
 use crate::quantity::significant;
-use crate::study::{CaseResult, Drape, Status, drape_stages};
+use crate::study::{CaseResult, Drape, Status, drape_stages, sampling_stages};
 
 /// Solve cases: deflections, probes, reactions and checks
 #[derive(Debug, Args)]
@@ -34,6 +35,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let mut work = options.task.load(&options.inputs, ui)?;
     work.cases.retain(|c| c.sheet.is_some());
     let (tasks, homeless) = work.tasks();
+    work.cases.iter().filter_map(|c| work.without_law(c)).for_each(|f| ui.diagnostics.finding(&f));
     if tasks.is_empty() && homeless.is_empty() && work.failures.is_empty() {
         return Err(Failure::new("O055", "there is no case with a [sheet] in the inputs")
             .hint("name a case file; a [virtual_test] belongs to `kesf compare`"));
@@ -41,9 +43,11 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let tree = options.output.as_ref().map(|o| Tree::open(o, &options.task)).transpose()?;
     let (drapes, tasks): (Vec<Task>, Vec<Task>) = tasks.into_iter().partition(Task::is_drape);
     let stages: usize = drapes.iter().map(|t| drape_stages(t.case)).sum();
-    let bar = ui.bar("solving", tasks.len() + stages);
+    let points: usize = drapes.iter().chain(&tasks).map(|t| sampling_stages(t.case)).sum();
+    let bar = ui.bar("solving", tasks.len() + stages + points);
+    let progress = || bar.inc(1);
     let results: Vec<(Task, Result<CaseResult, Failure>)> = each(tasks, |task| {
-        let result = task.solve().and_then(|r| {
+        let result = task.sample(&progress).and_then(|()| task.solve()).and_then(|r| {
             tree.as_ref().map_or(Ok(()), |tree| tree.solved(&task, &r))?;
             Ok(r)
         });
@@ -51,7 +55,8 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         (task, result)
     });
     let draped: Vec<(Task, Result<Drape, Failure>)> = each(drapes, |task| {
-        let result = ui.go_on().and_then(|()| task.drape(&|| bar.inc(1))).and_then(|d| {
+        let result = ui.go_on().and_then(|()| task.drape(&progress)).and_then(|d| {
+            task.sample(&progress)?;
             tree.as_ref().map_or(Ok(()), |tree| drape::write(tree, &task, &d))?;
             Ok(d)
         });
@@ -72,6 +77,9 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let draped: Vec<(&Task, &Drape)> =
         draped.iter().filter_map(|(t, r)| Some((t, r.as_ref().ok()?))).collect();
     let findings = solved.iter().flat_map(|(_, r)| &r.findings).filter(|f| f.code != NOT_CONVERGED);
+    let sampled =
+        results.iter().map(|(t, _)| t).chain(draped.iter().map(|(t, _)| *t)).filter_map(Task::sampling);
+    let findings = findings.chain(sampled.flat_map(|s| &s.findings));
     findings.chain(draped.iter().flat_map(|(_, d)| &d.findings)).for_each(|f| ui.diagnostics.finding(f));
     if let Some(tree) = tree {
         let points: Vec<_> = draped.iter().filter_map(|(t, d)| drape::point(t, d)).collect();
@@ -88,7 +96,9 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         let verbose = ui.diagnostics.verbose();
         let cases = (!solved.is_empty()).then(|| text(&solved, verbose));
         let costs = (verbose && !solved.is_empty()).then(|| effort::text(solved.iter().map(|(_, r)| *r)));
-        let parts: Vec<String> = [cases, costs, drapes].into_iter().flatten().collect();
+        let tasks = solved.iter().map(|(t, _)| *t).chain(draped.iter().map(|(t, _)| *t));
+        let parts: Vec<String> =
+            [cases, costs, drapes, sampled::table(tasks)].into_iter().flatten().collect();
         if !parts.is_empty() {
             ui.print(&parts.join("\n"))?;
         }
