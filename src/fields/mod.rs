@@ -182,7 +182,7 @@ impl Recovery {
                 let mut fitted = Resultants::default();
                 let weight = |quad| patch.iter().find(|(q, _)| *q == quad).map_or(0.0, |(_, weight)| *weight);
                 found.iter().for_each(|(quad, [.., mean])| fitted.add(mean, weight(*quad)));
-                nodal = Resultants { shear: nodal.shear, ..fitted };
+                nodal = fitted;
             }
             value.add(&nodal, share);
         }
