@@ -142,6 +142,34 @@ pub fn point(task: &Task, d: &Drape) -> Option<ParityPoint> {
     })
 }
 
+/// Fabrics that were hung elastic and with friction: both lowest-energy states with their bands, and the measured
+/// coefficient beside them; none without such a fabric.
+pub fn bracket(points: &[ParityPoint]) -> Option<Columns> {
+    let mut table = Columns::new(BRACKET);
+    let of = |label: &str, friction: bool| {
+        points.iter().find(|p| p.label == label && (p.group != "elastic") == friction)
+    };
+    for elastic in points.iter().filter(|p| p.group == "elastic") {
+        let Some(friction) = of(&elastic.label, true) else { continue };
+        let band = |p: &ParityPoint| {
+            let [low, high] = p.simulated_band.unwrap_or([p.simulated; 2]);
+            format!("{:.1} ({low:.1} to {high:.1})", p.simulated)
+        };
+        let [low, high] = [elastic, friction].map(|p| p.simulated_band.unwrap_or([p.simulated; 2]));
+        let place = match elastic.measured {
+            m if m < low[0].min(high[0]) => "below",
+            m if m > low[1].max(high[1]) => "above",
+            _ => "within",
+        };
+        let measured = format!("{:.1}", elastic.measured);
+        table.row([elastic.label.clone(), band(elastic), band(friction), measured, place.into()]);
+    }
+    (!table.is_empty()).then_some(table)
+}
+
+/// Headings of [`bracket`], in per cent.
+const BRACKET: [&str; 5] = ["drape (%)", "elastic", "friction", "measured", "measured is"];
+
 /// `drape_parity.png`, if there is anything to compare.
 pub fn parity(tree: &Tree, points: &[ParityPoint]) -> Result<(), Failure> {
     if !tree.charts() {

@@ -118,7 +118,8 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let shown = summary(&reports, &work);
     let checks = super::solve::checks(solved.iter().map(|(_, r)| *r));
     tree.finish()?;
-    tell(options, ui, &shown, checks.as_ref(), &predictions)?;
+    let brackets = drape::bracket(&draped);
+    tell(options, ui, &[Some(&shown), checks.as_ref(), brackets.as_ref()], &predictions)?;
     let unmet = reports.iter().any(|r| r.unmet) || solved.iter().any(|(_, r)| super::summary::unmet(r));
     let strict = options.task.strict && ui.diagnostics.findings() > 0;
     Ok(Exit::of_batch(
@@ -180,12 +181,11 @@ fn about(options: &Options, work: &Work) -> serde_json::Value {
     })
 }
 
-/// The table of fabrics, the checks, and where the rest is.
+/// The table of fabrics, the checks, the brackets of drapes, and where the rest is.
 fn tell(
     options: &Options,
     ui: &mut Ui,
-    shown: &Columns,
-    checks: Option<&Columns>,
+    tables: &[Option<&Columns>],
     predictions: &[PredictionRow],
 ) -> Result<(), Failure> {
     if ui.json {
@@ -195,7 +195,7 @@ fn tell(
             )
             .map(drop);
     }
-    let parts: Vec<String> = Some(shown).into_iter().chain(checks).map(Columns::text).collect();
+    let parts: Vec<String> = tables.iter().flatten().map(|table| table.text()).collect();
     ui.print(&parts.join("\n"))?;
     let folder = options.output.display();
     let findings = ui.diagnostics.findings();

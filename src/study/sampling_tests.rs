@@ -90,3 +90,14 @@ fn the_table_is_refused_where_it_has_no_meaning() {
     let drape = "[uncertainty]\n[analysis]\nkind = \"drape\"\n[sheet]\nshape = \"annulus\"\n[[supports]]\nset = \"inner\"\nkind = \"clamped\"\n[[loads]]\nkind = \"gravity\"\n";
     assert_eq!(case(drape).unwrap().uncertainty, Some(UncertaintyTable::default()));
 }
+
+/// The examples are cases, and each has the table.
+#[test]
+fn the_examples_are_read() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/uncertainty");
+    let files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|f| f.unwrap().path()).collect();
+    assert_eq!(files.len(), 3);
+    for file in files {
+        assert_eq!(sampling_stages(&Case::read(&file).unwrap()), 256);
+    }
+}
