@@ -79,7 +79,7 @@ fn worst<'a>(all: &[Checked<'a>]) -> Option<(&'a Line, f64)> {
 
 /// Groups of lines that share quantity, kind and source under one heading; columns run through.
 fn text(all: &[Checked<'_>], seconds: f64) -> String {
-    let rows: Vec<[String; 6]> = all.iter().map(|checked| row(checked)).collect();
+    let rows: Vec<[String; 6]> = all.iter().map(row).collect();
     let names = ["line", " value", " reference", "error", "tolerance", ""];
     let width: Vec<usize> = (0..6)
         .map(|c| rows.iter().map(|r| r[c].chars().count()).max().unwrap_or(0).max(names[c].len()))
