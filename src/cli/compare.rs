@@ -7,9 +7,10 @@ use serde_json::json;
 
 use super::bending;
 use super::diagnostics::Failure;
+use super::entry::comparison;
 use super::output::Columns;
 use super::sampled;
-use super::task::{Task, TaskArgs, Tested, comparison};
+use super::task::{Task, TaskArgs, Tested};
 use super::tree::Tree;
 use super::{Exit, Ui, each};
 use crate::instrument::Test;

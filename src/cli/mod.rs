@@ -12,6 +12,7 @@ mod completions;
 mod diagnostics;
 mod drape;
 mod effort;
+mod entry;
 mod exit;
 mod explain;
 mod friction;

@@ -8,10 +8,11 @@ use serde_json::json;
 
 use super::diagnostics::Failure;
 use super::drape;
+use super::entry::solution;
 use super::output::Columns;
 use super::sampled;
 use super::search::{NOT_CONVERGED, searches, steps, unconverged};
-use super::task::{Task, TaskArgs, solution};
+use super::task::{Task, TaskArgs};
 use super::tree::Tree;
 use super::{Exit, Ui, each, effort};
 use crate::quantity::significant;

@@ -6,9 +6,10 @@ use serde_json::json;
 
 use super::bending;
 use super::diagnostics::Failure;
+use super::entry::{comparison, solution};
 use super::sampled;
 use super::section::used;
-use super::task::{Task, TaskArgs, Tested, comparison, solution};
+use super::task::{Task, TaskArgs, Tested};
 use crate::characterise::FabricSheet;
 use crate::constitutive::Constitutive;
 use crate::instrument::{Origin, Parameter, Test};

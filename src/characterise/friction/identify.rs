@@ -19,7 +19,8 @@ const KNOTS: [f64; 7] = [-1.0, -0.64, -0.32, 0.0, 0.32, 0.64, 1.0];
 /// Greatest widening that is tried: with the largest slip level the level still grows more slowly
 /// than the strain (2 x 0.12 x 4 < 1).
 const WIDEST: f64 = 4.0;
-/// The slip levels are chosen with a widening known to this.
+/// The slip levels are chosen with a widening known to this where the noise is [`RIDGE_NOISE`] of the span
+/// or more, and in proportion to the noise.
 const ABOUT: f64 = 0.2;
 /// Second differences of the tangent are held down by this weight where the noise is
 /// [`RIDGE_NOISE`] of the span, and in proportion to the noise.
@@ -99,7 +100,8 @@ pub(super) fn two_sided(path: &Path) -> Option<Channel> {
     };
     // The first search finds the levels and about where the widening lies, the second the widening.
     let places: Vec<f64> = (0..=8).map(|i| f64::from(i) / 8.0 * WIDEST).collect();
-    let (about, offered) = search(&levels(), &places, ABOUT)?;
+    let roughly = (ABOUT * problem.noise / RIDGE_NOISE).clamp(WIDEST * 1e-12, ABOUT);
+    let (about, offered) = search(&levels(), &places, roughly)?;
     let levels = lump(&offered.sliders[0]);
     let near = [(about - 3.0 * ABOUT).max(0.0), about, (about + 3.0 * ABOUT).min(WIDEST)];
     let (alpha, fit) = search(&levels, &near, WIDEST * problem.noise.clamp(1e-12, 1e-2))?;
