@@ -15,6 +15,7 @@ use kesf::analytical::beam::heart_load;
 use kesf::analytical::hanging::slack_strip;
 use kesf::instrument::fab::{FabKind, FabTest};
 use kesf::instrument::{Direction, ReadSettings, read};
+use kesf::law::{Backbone, Channel, Family, Slider, Widening};
 use kesf::quantity::{Curve, STANDARD_GRAVITY};
 use kesf::section::ShellSection;
 use kesf::study::Case;
@@ -111,7 +112,7 @@ fn record(kind: FabKind, b: f64, areal_density: f64, zero: f64) -> FabTest {
         }))
     };
     let branches = vec![branch(from, to), branch(to, from)];
-    FabTest { direction: Direction::Warp, kind, length, width, branches }
+    FabTest { direction: Direction::Warp, kind, length, width, time: None, branches }
 }
 
 #[test]
@@ -136,6 +137,13 @@ fn an_elastic_fab_record_gives_its_rigidity_and_the_long_test() {
     assert_eq!(bend_loops(&tests, Direction::Weft, density, &FabSettings::default()).unwrap(), None);
 }
 
+/// A rigidity beside three sliders of equal moment that slip at 0.03 to 0.1 1/cm.
+fn rubbing(b: f64, couple: f64) -> Channel {
+    let slider = |slip: f64| Slider { stiffness: couple / 3.0 / slip, slip };
+    let family = Family { widening: Widening::Constant, sliders: [3.0, 5.5, 10.0].map(slider).to_vec() };
+    Channel::new(Backbone::line(b).unwrap(), vec![family], false).unwrap()
+}
+
 /// Friction in a cantilever of new cloth: c (1 + 0.423 μ - 0.056 μ²), a fit for friction that slips at once. The
 /// three slip curvatures that are assumed, 0.03 to 0.1 1/cm, take about 1 % off where they are not
 /// small beside 1/c.
@@ -145,7 +153,7 @@ fn friction_makes_the_cantilever_stiffer() {
     for (direction, b) in [(Direction::Warp, 1e-5f64), (Direction::Weft, 4e-6)] {
         let c = (b / (0.15 * STANDARD_GRAVITY)).cbrt();
         for mu in [0.3, 1.0, 2.0] {
-            let test = cantilever(&section, direction, Some(mu * b / c), None, 32).unwrap();
+            let test = cantilever(&section, direction, Some(&rubbing(b, mu * b / c)), None, 32).unwrap();
             let friction = test.friction.unwrap();
             assert!((friction.mu - mu).abs() < 1e-9);
             let ratio = friction.bending_length / friction.estimate;
@@ -155,9 +163,11 @@ fn friction_makes_the_cantilever_stiffer() {
     }
 }
 
-/// The cupro weave of the U3M repository (Vizoo GmbH, BSD-3-Clause): a regression of what was reached (own). A line
-/// misses the hysteresis, which is most of the short tests; the long one hangs by its weight. The hanging warp
-/// strip drifts during its test by half of its span, and so stays above 10 %.
+/// The cupro weave of the U3M repository (Vizoo GmbH, BSD-3-Clause): a regression of what was reached (own). The strip
+/// that stands up (U1) was recorded first, the hanging one (D1) is the same strip 25 s later. NRMSE in %, elastic
+/// and with friction: outer cycle; inner cycles, predicted with the zero of the outer one and with one of their
+/// own, as the load drifts during a test by as much as half of its span. The marks of 10 and 16 % are
+/// missed by the hanging strips of warp and bias (12.2, 10.2) and by the standing one of bias (inner 19.9).
 #[test]
 fn a_measured_fab_record() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/u3m/physics_example2.json");
@@ -168,25 +178,31 @@ fn a_measured_fab_record() {
     let file = read(&path, &ReadSettings::default()).unwrap().fab.unwrap();
     let density = file.areal_density.unwrap();
     let settings = FabSettings { cells: 16, steps: 1 };
-    let of = |d| bend_loops(&file.tests, d, density, &settings).unwrap().unwrap();
-    let check = |loops: &BendLoops, [b, with_friction, couple]: [f64; 3], bounds: [[f64; 2]; 3]| {
-        println!("{} {} {:?}", loops.direction, loops.rigidity, loops.friction);
-        assert!((loops.rigidity * 1e6 / b - 1.0).abs() < 0.02, "{}: {}", loops.direction, loops.rigidity);
+    // B of an elastic strip, then B and 2HB/2 as KES-FB2 would read the law (uN m, uN).
+    let reached = [
+        (Direction::Warp, [9.78, 7.29, 83.9], [[13.8, 8.2, 14.3, 12.7], [20.5, 12.3, 16.1, 12.9]]),
+        (Direction::Weft, [13.92, 10.69, 133.7], [[14.7, 5.0, 11.1, 9.2], [19.9, 6.0, 5.1, 5.0]]),
+        (Direction::Bias, [5.08, 3.28, 59.6], [[14.5, 7.3, 20.0, 14.6], [19.0, 10.3, 7.3, 7.0]]),
+    ];
+    for (direction, values, bounds) in reached {
+        let loops: BendLoops = bend_loops(&file.tests, direction, density, &settings).unwrap().unwrap();
         let friction = loops.friction.as_ref().unwrap();
-        assert!((friction.rigidity * 1e6 / with_friction - 1.0).abs() < 0.02, "{}", friction.rigidity);
-        assert!((friction.couple * 1e6 / couple - 1.0).abs() < 0.02, "{}", friction.couple);
-        for (of, [elastic, friction]) in loops.loops.iter().zip(bounds) {
-            let nrmse = [&of.elastic, of.friction.as_ref().unwrap()].map(|s| s.outer.unwrap().nrmse);
-            assert!(
-                nrmse[0] < elastic && nrmse[1] < friction,
-                "{} {:?}: {nrmse:?}",
-                loops.direction,
-                of.kind
-            );
+        let found = [loops.rigidity, friction.kes_rigidity, friction.kes_couple];
+        for (found, value) in found.into_iter().zip(values) {
+            assert!((found * 1e6 / value - 1.0).abs() < 0.02, "{direction}: {found} {value}");
         }
-    };
-    check(&of(Direction::Warp), [9.73, 5.92, 123.0], [[0.21, 0.14], [0.15, 0.085], [0.06, 0.085]]);
-    check(&of(Direction::Weft), [13.85, 8.37, 201.7], [[0.21, 0.08], [0.155, 0.05], [0.085, 0.235]]);
+        let kinds: Vec<FabKind> = loops.loops.iter().map(|l| l.kind).collect();
+        assert_eq!(kinds, [FabKind::U1, FabKind::D1, FabKind::D2]);
+        for (of, bounds) in loops.loops.iter().zip(bounds) {
+            let with = of.friction.as_ref().unwrap();
+            let all = [of.elastic.outer, with.outer, with.inner, with.inner_with_own_zero];
+            let all = all.map(|a| 100.0 * a.unwrap().nrmse);
+            println!("{direction} {:?}: {all:.2?}", of.kind);
+            assert!(all.iter().zip(bounds).all(|(a, b)| *a < b), "{direction} {:?}: {all:?}", of.kind);
+            // The elastic strip predicts the inner cycles worse.
+            assert!(of.elastic.inner.unwrap().nrmse > with.inner.unwrap().nrmse);
+        }
+    }
 }
 
 #[test]

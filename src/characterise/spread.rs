@@ -1,5 +1,7 @@
 //! The mean curve of repeats and how certain it is.
 
+use serde::Serialize;
+
 use super::graph::Graph;
 use super::{FabricSheet, SpecimenResult};
 use crate::instrument::{Direction, Test};
@@ -9,7 +11,7 @@ use crate::quantity::{Curve, Estimate};
 /// controls: the force of the tensile test and the pressure of the compression test (the mean strain or
 /// thickness at each), the angle of the shear test and the curvature of the bending test (the mean force or
 /// moment at each). SI; abscissae and ordinates are those of the test.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MeanBranch {
     /// Yarn direction; `None` for compression.
     pub direction: Option<Direction>,
@@ -21,6 +23,8 @@ pub struct MeanBranch {
     pub low: Curve,
     /// The other end.
     pub high: Curve,
+    /// Both ends of the 95 % interval of one more specimen at each point.
+    pub next_specimen: [Curve; 2],
 }
 
 /// Points along a branch.
@@ -47,7 +51,8 @@ pub fn mean_branches(sheet: &FabricSheet, test: Test) -> Vec<MeanBranch> {
     directions.into_iter().flat_map(of).collect()
 }
 
-fn mean_branch(test: Test, direction: Option<Direction>, curves: &[&Curve]) -> Option<MeanBranch> {
+/// The mean of curves; `None` for fewer than two, or if they have no range in common.
+pub(super) fn mean_branch(test: Test, direction: Option<Direction>, curves: &[&Curve]) -> Option<MeanBranch> {
     let along_ordinate = matches!(test, Test::Tensile | Test::Compression);
     let turned = |c: &Curve| {
         if along_ordinate { Curve { x: c.y.clone(), y: c.x.clone() } } else { c.clone() }
@@ -72,7 +77,11 @@ fn mean_branch(test: Test, direction: Option<Direction>, curves: &[&Curve]) -> O
         let curve = Curve::from_points(points.iter().map(|(at, mean, half)| (*at, mean + sign * half)));
         turned(&curve)
     };
-    Some(MeanBranch { direction, n: graphs.len(), mean: curve(0.0), low: curve(-1.0), high: curve(1.0) })
+    let n = graphs.len();
+    // The mean has SD/√n, and one more specimen SD √(1 + 1/n).
+    let next = (n as f64 + 1.0).sqrt();
+    let next_specimen = [curve(-next), curve(next)];
+    Some(MeanBranch { direction, n, mean: curve(0.0), low: curve(-1.0), high: curve(1.0), next_specimen })
 }
 
 #[cfg(test)]

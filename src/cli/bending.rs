@@ -3,9 +3,10 @@
 use serde_json::{Value, json};
 
 use super::output::Columns;
+use super::sampled;
 use super::task::Task;
 use crate::characterise::FabricSheet;
-use crate::instrument::Origin;
+use crate::instrument::{Direction, Origin};
 use crate::quantity::{Curve, STANDARD_GRAVITY, significant};
 use crate::report::chart::{self, ChartError, ForcePlot, ProfileLine, ProfilePlot};
 use crate::report::table::{PredictionRow, relative_error};
@@ -23,6 +24,7 @@ pub fn texts(results: &[(&Task, &BendingResult)]) -> Vec<String> {
         "c elastic (mm)",
         "(B/w)^1/3 (mm)",
         "c friction (mm)",
+        "µ = HB c/B",
         "c measured (mm)",
         "B by Peirce's formula",
     ]);
@@ -46,6 +48,7 @@ pub fn texts(results: &[(&Task, &BendingResult)]) -> Vec<String> {
         "outer NRMSE",
         "R²",
         "inner NRMSE",
+        "own zero",
         "zero (gf)",
     ]);
     for (task, result) in results {
@@ -79,6 +82,7 @@ fn cantilever_row(task: &Task, c: &Cantilever) -> Vec<String> {
         mm(c.bending_length),
         mm(c.closed_form),
         or_dash(friction, mm),
+        or_dash(c.friction.as_ref(), |f| significant(f.mu)),
         or_dash(measured(task, c), mm),
         format!("+{} %", significant(100.0 * c.peirce_excess())),
     ]
@@ -110,6 +114,7 @@ fn fab_rows(task: &Task, d: &BendLoops) -> Vec<Vec<String>> {
             percent(s.outer),
             or_dash(s.outer, |a| significant(a.r2)),
             percent(s.inner),
+            percent(s.inner_with_own_zero),
             significant(s.zero / GRAM_FORCE),
         ];
         head.into_iter().chain(law).chain(figures).collect()
@@ -119,8 +124,8 @@ fn fab_rows(task: &Task, d: &BendLoops) -> Vec<Vec<String>> {
         .flat_map(|l| {
             let elastic = row(l, ["elastic".into(), micro(d.rigidity), "-".into()], &l.elastic);
             let friction = d.friction.as_ref().zip(l.friction.as_ref());
-            let friction =
-                friction.map(|(f, s)| row(l, ["friction".into(), micro(f.rigidity), micro(f.couple)], s));
+            let friction = friction
+                .map(|(f, s)| row(l, ["friction".into(), micro(f.kes_rigidity), micro(f.kes_couple)], s));
             std::iter::once(elastic).chain(friction)
         })
         .collect()
@@ -144,6 +149,7 @@ fn measured(task: &Task, c: &Cantilever) -> Option<f64> {
 /// Entries of `kesf.comparison/1`, one a direction.
 pub fn entries(task: &Task, result: &BendingResult) -> Vec<Value> {
     let head = |test: &str, direction: &dyn std::fmt::Display| json!({"name": format!("{test} {direction}"), "case": task.case.name, "fabric": task.fabric_name()});
+    let sampling = |d: Direction| task.sampling().map(|s| sampled::entry(s, d.name()));
     let with = |mut entry: Value, key: &str, value: Value| {
         entry[key] = value;
         entry
@@ -151,10 +157,15 @@ pub fn entries(task: &Task, result: &BendingResult) -> Vec<Value> {
     match result {
         BendingResult::Cantilever(tests) => tests
             .iter()
-            .map(|c| with(head("cantilever", &c.direction), "cantilever", cantilever(c, measured(task, c))))
+            .map(|c| {
+                let entry =
+                    with(head("cantilever", &c.direction), "cantilever", cantilever(c, measured(task, c)));
+                with(entry, "uncertainty", json!(sampling(c.direction)))
+            })
             .collect(),
         BendingResult::HeartLoop(tests) => {
-            tests.iter().map(|h| with(head("heart_loop", &h.direction), "heart_loop", heart(h))).collect()
+            let entry = |h: &HeartLoop| with(head("heart_loop", &h.direction), "heart_loop", heart(h));
+            tests.iter().map(|h| with(entry(h), "uncertainty", json!(sampling(h.direction)))).collect()
         }
         BendingResult::FabBendLoop(directions) => directions
             .iter()
@@ -212,7 +223,8 @@ fn fab(d: &BendLoops) -> Value {
     };
     let friction = d.friction.as_ref().map(|f| {
         json!({
-            "rigidity": {"value": f.rigidity, "unit": "N·m"}, "couple": {"value": f.couple, "unit": "N"},
+            "rigidity": {"value": f.rigidity, "unit": "N·m"},
+            "as_kes": {"B": f.kes_rigidity, "half_2HB": f.kes_couple, "unit": ["N·m", "N"]},
             "law": f.law, "rounds": f.rounds,
         })
     });
@@ -239,8 +251,14 @@ pub fn predictions(task: &Task, result: &BendingResult) -> Vec<PredictionRow> {
     match result {
         BendingResult::Cantilever(tests) => tests
             .iter()
-            .map(|c| {
-                row(format!("bending_length {}", c.direction), Some(c.bending_length), measured(task, c), "m")
+            .flat_map(|c| {
+                let of = |law: &str, value: Option<f64>| {
+                    value.map(|v| {
+                        row(format!("bending_length{law} {}", c.direction), Some(v), measured(task, c), "m")
+                    })
+                };
+                let friction = c.friction.as_ref().map(|f| f.bending_length);
+                of("", Some(c.bending_length)).into_iter().chain(of("_friction", friction))
             })
             .collect(),
         BendingResult::HeartLoop(tests) => tests
@@ -254,8 +272,8 @@ pub fn predictions(task: &Task, result: &BendingResult) -> Vec<PredictionRow> {
                 let friction = d.friction.as_ref();
                 let found = [
                     law("fab_B_elastic", Some(d.rigidity), "N·m"),
-                    law("fab_B_friction", friction.map(|f| f.rigidity), "N·m"),
-                    law("fab_HB_friction", friction.map(|f| f.couple), "N"),
+                    law("fab_B_friction", friction.map(|f| f.kes_rigidity), "N·m"),
+                    law("fab_HB_friction", friction.map(|f| f.kes_couple), "N"),
                 ];
                 let nrmse = d.loops.iter().flat_map(|l| {
                     let of = |law: &str, s: Option<&Simulated>| {
@@ -298,10 +316,13 @@ pub fn charts(task: &Task, result: &BendingResult) -> Pictures {
                 pale: false,
                 name: h.direction.to_string(),
                 shape: h.profile.clone(),
-                values: vec![
+                values: [
                     ("height".into(), format!("{} mm", significant(1e3 * h.height))),
                     ("exact".into(), or_dash(h.closed_form, |m| format!("{} mm", significant(1e3 * m)))),
-                ],
+                ]
+                .into_iter()
+                .chain(sampled::values(task, &format!("heart_loop_height {}", h.direction), "mm", 1e-3))
+                .collect(),
             });
             let plot = ProfilePlot {
                 title,
@@ -341,8 +362,14 @@ fn cantilever_lines(task: &Task, c: &Cantilever) -> Vec<ProfileLine> {
     let mut elastic =
         line(format!("{}, elastic", c.direction), false, &c.profile, c.overhang, c.bending_length);
     elastic.values.push(("c measured".into(), or_dash(measured(task, c), millimetres)));
+    let bands =
+        |law: &str| sampled::values(task, &format!("bending_length{law} {}", c.direction), "mm", 1e-3);
+    elastic.values.extend(bands(""));
     let friction = c.friction.as_ref().map(|f| {
-        line(format!("{}, with friction", c.direction), true, &f.profile, f.overhang, f.bending_length)
+        let name = format!("{}, with friction", c.direction);
+        let mut line = line(name, true, &f.profile, f.overhang, f.bending_length);
+        line.values.extend(bands("_friction"));
+        line
     });
     std::iter::once(elastic).chain(friction).collect()
 }
@@ -353,9 +380,9 @@ fn cantilever_remarks(tests: &[Cantilever]) -> Vec<String> {
         "c is read by the exact function; Peirce's formula gives {} % more for B.",
         significant(100.0 * peirce)
     )];
-    remarks.push("Face up and face down are the same law here.".into());
+    remarks.push("The faces are averaged: either may be up.".into());
     if tests.iter().any(|c| c.friction.is_some()) {
-        remarks.push("Friction: first loading, from 2HB alone (assumed slip curvatures).".into());
+        remarks.push("Friction: first loading by the law of bending, from loops or from B and 2HB.".into());
     }
     remarks
 }

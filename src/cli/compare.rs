@@ -8,12 +8,14 @@ use serde_json::json;
 use super::bending;
 use super::diagnostics::Failure;
 use super::output::Columns;
+use super::sampled;
 use super::task::{Task, TaskArgs, Tested, comparison};
 use super::tree::Tree;
 use super::{Exit, Ui, each};
 use crate::instrument::Test;
 use crate::quantity::significant;
 use crate::study::bending::BendingResult;
+use crate::study::sampling_stages;
 
 /// Simulate instrument tests and compare them with the measured curves
 #[derive(Debug, Args)]
@@ -33,6 +35,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let mut work = options.task.load(&options.inputs, ui)?;
     work.cases.retain(|c| c.virtual_test.is_some() || c.bending_test.is_some());
     let (tasks, homeless) = work.tasks();
+    work.cases.iter().filter_map(|c| work.without_law(c)).for_each(|f| ui.diagnostics.finding(&f));
     if tasks.is_empty() && homeless.is_empty() && work.failures.is_empty() {
         return Err(Failure::new(
             "O055",
@@ -41,10 +44,12 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         .hint("name a case file; a [sheet] belongs to `kesf solve`"));
     }
     let tree = options.output.as_ref().map(|o| Tree::open(o, &options.task)).transpose()?;
-    let bar = ui.bar("simulating", tasks.len());
+    let points: usize = tasks.iter().map(|t| sampling_stages(t.case)).sum();
+    let bar = ui.bar("simulating", tasks.len() + points);
+    let progress = || bar.inc(1);
     let results: Vec<(Task, Result<Outcome, Failure>)> = each(tasks, |task| {
-        let result = simulated(&task, tree.as_ref());
-        bar.inc(1);
+        let result = task.sample(&progress).and_then(|()| simulated(&task, tree.as_ref()));
+        progress();
         (task, result)
     });
     bar.finish_and_clear();
@@ -64,13 +69,16 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         .collect();
     let bent: Vec<(&Task, &BendingResult)> =
         done.iter().filter_map(|(task, outcome)| Some((*task, outcome.bent.as_ref()?))).collect();
+    let sampled = done.iter().filter_map(|(task, _)| task.sampling());
+    sampled.flat_map(|s| &s.findings).for_each(|f| ui.diagnostics.finding(f));
     if ui.json {
         let tests = compared.iter().map(|(task, t)| comparison(task, t));
         let entries: Vec<_> = tests.chain(bent.iter().flat_map(|(t, r)| bending::entries(t, r))).collect();
         ui.document(&json!({"schema": "kesf.comparison/1", "comparisons": entries}))?;
     } else {
         let tests = (!compared.is_empty()).then(|| text(&compared));
-        let parts: Vec<String> = tests.into_iter().chain(bending::texts(&bent)).collect();
+        let bands = sampled::table(done.iter().map(|(task, _)| *task));
+        let parts: Vec<String> = tests.into_iter().chain(bending::texts(&bent)).chain(bands).collect();
         ui.print(&parts.join("\n"))?;
     }
     Ok(Exit::of_batch(done.len(), &failures).unless(options.task.strict && ui.diagnostics.findings() > 0))

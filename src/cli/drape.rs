@@ -82,6 +82,7 @@ pub fn entry(task: &Task, d: &Drape) -> Value {
             "coefficient": d.finest.coefficient,
             "band": d.band(),
             "measured": measured,
+            "uncertainty": task.sampling().map(|s| super::sampled::entry(s, "")),
             "finest": state(&d.finest),
             "states": d.states.iter().map(state).collect::<Vec<_>>(),
             "failed_starts": d.failed.iter().map(|(start, e)| json!({"start_folds": start, "code": e.code()})).collect::<Vec<_>>(),
@@ -141,6 +142,34 @@ pub fn point(task: &Task, d: &Drape) -> Option<ParityPoint> {
     })
 }
 
+/// Fabrics that were hung elastic and with friction: both lowest-energy states with their bands, and the measured
+/// coefficient beside them; none without such a fabric.
+pub fn bracket(points: &[ParityPoint]) -> Option<Columns> {
+    let mut table = Columns::new(BRACKET);
+    let of = |label: &str, friction: bool| {
+        points.iter().find(|p| p.label == label && (p.group != "elastic") == friction)
+    };
+    for elastic in points.iter().filter(|p| p.group == "elastic") {
+        let Some(friction) = of(&elastic.label, true) else { continue };
+        let band = |p: &ParityPoint| {
+            let [low, high] = p.simulated_band.unwrap_or([p.simulated; 2]);
+            format!("{:.1} ({low:.1} to {high:.1})", p.simulated)
+        };
+        let [low, high] = [elastic, friction].map(|p| p.simulated_band.unwrap_or([p.simulated; 2]));
+        let place = match elastic.measured {
+            m if m < low[0].min(high[0]) => "below",
+            m if m > low[1].max(high[1]) => "above",
+            _ => "within",
+        };
+        let measured = format!("{:.1}", elastic.measured);
+        table.row([elastic.label.clone(), band(elastic), band(friction), measured, place.into()]);
+    }
+    (!table.is_empty()).then_some(table)
+}
+
+/// Headings of [`bracket`], in per cent.
+const BRACKET: [&str; 5] = ["drape (%)", "elastic", "friction", "measured", "measured is"];
+
 /// `drape_parity.png`, if there is anything to compare.
 pub fn parity(tree: &Tree, points: &[ParityPoint]) -> Result<(), Failure> {
     if !tree.charts() {
@@ -185,6 +214,7 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
         ("Drape coefficient".to_string(), format!("{} %", percent(s.coefficient))),
         (format!("band of {} states", d.states.len()), format!("{} to {} %", percent(low), percent(high))),
     ];
+    values.extend(super::sampled::values(task, "drape_coefficient", "%", 0.01));
     if let Some((value, _)) = measured(task) {
         values.push(("measured".into(), format!("{} %", percent(value))));
     }

@@ -20,6 +20,7 @@ mod list;
 mod output;
 mod read;
 mod run;
+mod sampled;
 mod search;
 mod section;
 mod solve;

@@ -14,11 +14,12 @@ use super::summary::{FabricReport, page, summary};
 use super::task::{Task, TaskArgs, Work};
 use super::tree::Tree;
 use super::{Exit, Ui, each};
+use crate::finding::Finding;
 use crate::report::chart::{self, ParityPoint};
 use crate::report::html::html;
 use crate::report::json::text;
 use crate::report::table::{FabricRow, PredictionRow, ProblemRow, Row, csv, parquet};
-use crate::study::{Analysis, Case, CaseResult, Status};
+use crate::study::{Analysis, Case, CaseResult, Status, sampling_stages};
 
 /// Do everything: read fabrics, evaluate, solve and compare every case, draw charts, write tables
 #[derive(Debug, Args)]
@@ -56,6 +57,13 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     }
     // A case for FAB records is nothing to a batch of fabrics without them.
     work.cases.retain(|c| !c.is_for_fab_records() || work.fabrics.iter().any(|f| c.suits(&f.sheet)));
+    let lawless: Vec<Finding> = work.cases.iter().filter_map(|c| work.without_law(c)).collect();
+    lawless.iter().for_each(|f| ui.diagnostics.finding(f));
+    let fits: Vec<bool> = (work.cases.iter())
+        .map(|c| work.without_law(c).is_none() || work.fabrics.iter().any(|f| c.suits(&f.sheet)))
+        .collect();
+    let mut fits = fits.into_iter();
+    work.cases.retain(|_| fits.next() != Some(false));
     let (tasks, homeless) = work.tasks();
     let tree = Tree::open(&options.output, &options.task)?;
     let reports = fabrics(&work, &tasks, &tree, ui)?;
@@ -87,6 +95,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let solved: Vec<(&Task, &CaseResult)> =
         benchmarks.iter().filter_map(|(t, r)| Some((t, r.as_ref().ok()?))).collect();
     let mut problems: Vec<ProblemRow> = failures.iter().map(Failure::row).collect();
+    problems.extend(super::summary::problems(&lawless, ""));
     problems.extend(reports.iter().flat_map(|r| r.problems.clone()));
     problems.extend(solved.iter().flat_map(|(t, r)| super::summary::problems(&r.findings, &t.case.name)));
     let fabric_rows: Vec<FabricRow> = reports.iter().flat_map(|r| r.rows.clone()).collect();
@@ -109,7 +118,8 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let shown = summary(&reports, &work);
     let checks = super::solve::checks(solved.iter().map(|(_, r)| *r));
     tree.finish()?;
-    tell(options, ui, &shown, checks.as_ref(), &predictions)?;
+    let brackets = drape::bracket(&draped);
+    tell(options, ui, &[Some(&shown), checks.as_ref(), brackets.as_ref()], &predictions)?;
     let unmet = reports.iter().any(|r| r.unmet) || solved.iter().any(|(_, r)| super::summary::unmet(r));
     let strict = options.task.strict && ui.diagnostics.findings() > 0;
     Ok(Exit::of_batch(
@@ -126,12 +136,13 @@ fn is_drape(case: &Case) -> bool {
 
 /// Every fabric with its cases, in parallel; reports in name order.
 fn fabrics(work: &Work, tasks: &[Task], tree: &Tree, ui: &Ui) -> Result<Vec<FabricReport>, Failure> {
-    let bar = ui.bar("fabrics", work.fabrics.len());
+    let points: usize = tasks.iter().map(|t| sampling_stages(t.case)).sum();
+    let bar = ui.bar("fabrics", work.fabrics.len() + points);
     let report = |fabric: &Fabric| {
         ui.go_on().ok()?;
         let mine = |t: &&Task| t.fabric.is_some_and(|f| std::ptr::eq(f, &raw const fabric.sheet));
         let mine: Vec<Task> = tasks.iter().filter(mine).cloned().collect();
-        let report = FabricReport::of(fabric, &mine, tree);
+        let report = FabricReport::of(fabric, &mine, tree, &|| bar.inc(1));
         bar.inc(1);
         Some(report)
     };
@@ -170,12 +181,11 @@ fn about(options: &Options, work: &Work) -> serde_json::Value {
     })
 }
 
-/// The table of fabrics, the checks, and where the rest is.
+/// The table of fabrics, the checks, the brackets of drapes, and where the rest is.
 fn tell(
     options: &Options,
     ui: &mut Ui,
-    shown: &Columns,
-    checks: Option<&Columns>,
+    tables: &[Option<&Columns>],
     predictions: &[PredictionRow],
 ) -> Result<(), Failure> {
     if ui.json {
@@ -185,7 +195,7 @@ fn tell(
             )
             .map(drop);
     }
-    let parts: Vec<String> = Some(shown).into_iter().chain(checks).map(Columns::text).collect();
+    let parts: Vec<String> = tables.iter().flatten().map(|table| table.text()).collect();
     ui.print(&parts.join("\n"))?;
     let folder = options.output.display();
     let findings = ui.diagnostics.findings();

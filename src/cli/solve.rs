@@ -9,12 +9,13 @@ use serde_json::json;
 use super::diagnostics::Failure;
 use super::drape;
 use super::output::Columns;
+use super::sampled;
 use super::search::{NOT_CONVERGED, searches, steps, unconverged};
 use super::task::{Task, TaskArgs, solution};
 use super::tree::Tree;
 use super::{Exit, Ui, each, effort};
 use crate::quantity::significant;
-use crate::study::{CaseResult, Drape, Status, drape_stages};
+use crate::study::{CaseResult, Drape, Status, drape_stages, sampling_stages};
 
 /// Solve cases: deflections, probes, reactions and checks
 #[derive(Debug, Args)]
@@ -34,6 +35,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let mut work = options.task.load(&options.inputs, ui)?;
     work.cases.retain(|c| c.sheet.is_some());
     let (tasks, homeless) = work.tasks();
+    work.cases.iter().filter_map(|c| work.without_law(c)).for_each(|f| ui.diagnostics.finding(&f));
     if tasks.is_empty() && homeless.is_empty() && work.failures.is_empty() {
         return Err(Failure::new("O055", "there is no case with a [sheet] in the inputs")
             .hint("name a case file; a [virtual_test] belongs to `kesf compare`"));
@@ -41,9 +43,11 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let tree = options.output.as_ref().map(|o| Tree::open(o, &options.task)).transpose()?;
     let (drapes, tasks): (Vec<Task>, Vec<Task>) = tasks.into_iter().partition(Task::is_drape);
     let stages: usize = drapes.iter().map(|t| drape_stages(t.case)).sum();
-    let bar = ui.bar("solving", tasks.len() + stages);
+    let points: usize = drapes.iter().chain(&tasks).map(|t| sampling_stages(t.case)).sum();
+    let bar = ui.bar("solving", tasks.len() + stages + points);
+    let progress = || bar.inc(1);
     let results: Vec<(Task, Result<CaseResult, Failure>)> = each(tasks, |task| {
-        let result = task.solve().and_then(|r| {
+        let result = task.sample(&progress).and_then(|()| task.solve()).and_then(|r| {
             tree.as_ref().map_or(Ok(()), |tree| tree.solved(&task, &r))?;
             Ok(r)
         });
@@ -51,7 +55,8 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         (task, result)
     });
     let draped: Vec<(Task, Result<Drape, Failure>)> = each(drapes, |task| {
-        let result = ui.go_on().and_then(|()| task.drape(&|| bar.inc(1))).and_then(|d| {
+        let result = ui.go_on().and_then(|()| task.drape(&progress)).and_then(|d| {
+            task.sample(&progress)?;
             tree.as_ref().map_or(Ok(()), |tree| drape::write(tree, &task, &d))?;
             Ok(d)
         });
@@ -72,6 +77,9 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let draped: Vec<(&Task, &Drape)> =
         draped.iter().filter_map(|(t, r)| Some((t, r.as_ref().ok()?))).collect();
     let findings = solved.iter().flat_map(|(_, r)| &r.findings).filter(|f| f.code != NOT_CONVERGED);
+    let sampled =
+        results.iter().map(|(t, _)| t).chain(draped.iter().map(|(t, _)| *t)).filter_map(Task::sampling);
+    let findings = findings.chain(sampled.flat_map(|s| &s.findings));
     findings.chain(draped.iter().flat_map(|(_, d)| &d.findings)).for_each(|f| ui.diagnostics.finding(f));
     if let Some(tree) = tree {
         let points: Vec<_> = draped.iter().filter_map(|(t, d)| drape::point(t, d)).collect();
@@ -88,7 +96,9 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         let verbose = ui.diagnostics.verbose();
         let cases = (!solved.is_empty()).then(|| text(&solved, verbose));
         let costs = (verbose && !solved.is_empty()).then(|| effort::text(solved.iter().map(|(_, r)| *r)));
-        let parts: Vec<String> = [cases, costs, drapes].into_iter().flatten().collect();
+        let tasks = solved.iter().map(|(t, _)| *t).chain(draped.iter().map(|(t, _)| *t));
+        let parts: Vec<String> =
+            [cases, costs, drapes, sampled::table(tasks)].into_iter().flatten().collect();
         if !parts.is_empty() {
             ui.print(&parts.join("\n"))?;
         }
@@ -105,12 +115,13 @@ fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
     let mut table =
         Columns::new(["case", "fabric", "w_max (mm)", "± 95 % (mm)", "w/t_b", "elements", "status"]);
     let mut probes = Columns::new(["probe", "case", "fabric", "u (mm)", "v (mm)", "w (mm)", "± 95 % (mm)"]);
-    let mut modes = Columns::new(["mode", "case", "fabric", "frequency (Hz)", "elements"]);
+    let mut modes = Columns::new(["mode", "case", "fabric", "frequency (Hz)", "± 95 % (Hz)", "elements"]);
     for (task, r) in solved {
         let fabric = task.fabric_name().unwrap_or_default().to_string();
         for (k, f) in r.frequencies.iter().enumerate() {
             let elements = r.model.mesh.quads.len().to_string();
-            modes.row([(k + 1).to_string(), r.case.clone(), fabric.clone(), significant(*f), elements]);
+            let half = half_width(r, &format!("frequency_{}", k + 1), 1.0);
+            modes.row([(k + 1).to_string(), r.case.clone(), fabric.clone(), significant(*f), half, elements]);
         }
         if !r.frequencies.is_empty() {
             // The shape of a mode has no size.
@@ -122,14 +133,14 @@ fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
             r.case.clone(),
             fabric.clone(),
             w,
-            half_width(r, "w_max"),
+            half_width(r, "w_max", 1e3),
             ratio,
             elements,
             status(r.status).into(),
         ]);
         for p in &r.probes {
             let u = p.value.u.map(|u| significant(1e3 * u));
-            let half = half_width(r, &format!("{}.w", p.name));
+            let half = half_width(r, &format!("{}.w", p.name), 1e3);
             probes
                 .row([vec![p.name.clone(), r.case.clone(), fabric.clone()], u.to_vec(), vec![half]].concat());
         }
@@ -141,18 +152,23 @@ fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
     parts.chain(without_band(solved)).collect::<Vec<_>>().join("\n")
 }
 
-/// The inputs without a spread that forbid the band of a largest deflection, if there are any.
+/// The inputs without a spread that forbid the band of a largest deflection or first frequency, if there are any.
 fn without_band(solved: &[(&Task, &CaseResult)]) -> Option<String> {
-    let uncertain = solved.iter().filter_map(|(_, r)| r.uncertainty.as_ref()?.of("w_max"));
-    let names: BTreeSet<&str> = uncertain.flat_map(|p| &p.without_spread).map(String::as_str).collect();
+    let first = |(_, r): &(&Task, &CaseResult)| {
+        let u = r.uncertainty.as_ref()?;
+        u.of("w_max").or_else(|| u.of("frequency_1")).cloned()
+    };
+    let uncertain: Vec<_> = solved.iter().filter_map(first).collect();
+    let names: BTreeSet<&str> =
+        uncertain.iter().flat_map(|p| &p.without_spread).map(String::as_str).collect();
     let names = names.into_iter().collect::<Vec<_>>().join(", ");
     (!names.is_empty()).then(|| format!("no band (-) where a single value is all there is of: {names}\n"))
 }
 
-/// Half of the 95 % band of the mean fabric of a displacement (mm); `-` where it has none.
-fn half_width(result: &CaseResult, quantity: &str) -> String {
+/// Half of the 95 % band of the mean fabric of a quantity, times `unit`; `-` where it has none.
+fn half_width(result: &CaseResult, quantity: &str, unit: f64) -> String {
     let bands = result.uncertainty.as_ref().and_then(|u| u.of(quantity)?.bands);
-    bands.map_or("-".into(), |b| significant(1e3 * b.mean_fabric.half_width))
+    bands.map_or("-".into(), |b| significant(unit * b.mean_fabric.half_width))
 }
 
 /// The checks of cases, if there are any.

@@ -5,6 +5,7 @@ use super::diagnostics::Failure;
 use super::drape;
 use super::inputs::Fabric;
 use super::output::Columns;
+use super::sampled;
 use super::search::{NOT_CONVERGED, unconverged};
 use super::solve::status;
 use super::task::{Task, Tested, Work};
@@ -63,8 +64,8 @@ pub struct FabricReport {
 }
 
 impl FabricReport {
-    /// Does all of the work for one fabric and writes its files.
-    pub fn of(fabric: &Fabric, tasks: &[Task], tree: &Tree) -> Self {
+    /// Does all of the work for one fabric and writes its files; `progress` is called after each sampled point.
+    pub fn of(fabric: &Fabric, tasks: &[Task], tree: &Tree, progress: &(dyn Fn() + Sync)) -> Self {
         let sheet = &fabric.sheet;
         let mut report = Self { name: sheet.name.clone(), status: "ok".into(), ..Self::default() };
         report.findings.clone_from(&sheet.findings);
@@ -76,7 +77,7 @@ impl FabricReport {
                 report.useful = true;
                 report.findings.extend(c.findings.iter().cloned());
                 report.keep(tree.section(&sheet.name, &c));
-                report.cases(sheet, tasks, tree);
+                report.cases(sheet, tasks, tree, progress);
             }
             Err(error) => {
                 // Every case needs the section: one line, not one for each of them.
@@ -95,46 +96,52 @@ impl FabricReport {
         self.failures.extend(result.err());
     }
 
-    fn cases(&mut self, sheet: &FabricSheet, tasks: &[Task], tree: &Tree) {
+    fn cases(&mut self, sheet: &FabricSheet, tasks: &[Task], tree: &Tree, progress: &(dyn Fn() + Sync)) {
         let mut simulated: Vec<Tested> = Vec::new();
         for task in tasks {
-            if let Some(spec) = &task.case.virtual_test {
-                let tested = task.test(spec).and_then(|t| tree.tested(task, &t).map(|()| t));
-                match tested {
-                    Ok(tested) => {
-                        tested.iter().for_each(|t| self.tested(task, t));
-                        if tree.charts() && tested.iter().any(|t| t.simulated.cycle.is_some()) {
-                            self.bent.push((task.case.title.clone(), format!("{}.png", task.stem())));
-                        }
-                        simulated.extend(tested);
+            if let Err(failure) = task.sample(progress) {
+                self.failures.push(failure);
+                continue;
+            }
+            self.findings.extend(task.sampling().iter().flat_map(|s| s.findings.iter().cloned()));
+            let before = self.predictions.len();
+            self.case(task, tree, &mut simulated);
+            sampled::fill(&mut self.predictions[before..], task);
+        }
+        self.charts(sheet, &simulated, tree);
+    }
+
+    fn case(&mut self, task: &Task, tree: &Tree, simulated: &mut Vec<Tested>) {
+        if let Some(spec) = &task.case.virtual_test {
+            match task.test(spec).and_then(|t| tree.tested(task, &t).map(|()| t)) {
+                Ok(tested) => {
+                    tested.iter().for_each(|t| self.tested(task, t));
+                    if tree.charts() && tested.iter().any(|t| t.simulated.cycle.is_some()) {
+                        self.bent.push((task.case.title.clone(), format!("{}.png", task.stem())));
                     }
-                    Err(failure) => self.failures.push(failure),
+                    simulated.extend(tested);
                 }
-                continue;
+                Err(failure) => self.failures.push(failure),
             }
-            if let Some(spec) = &task.case.bending_test {
-                match task.bend(spec).and_then(|r| tree.bent(task, &r).map(|drawn| (r, drawn))) {
-                    Ok((result, drawn)) => {
-                        self.predictions.extend(bending::predictions(task, &result));
-                        self.bent.extend(drawn.into_iter().map(|file| (task.case.title.clone(), file)));
-                    }
-                    Err(failure) => self.failures.push(failure),
+        } else if let Some(spec) = &task.case.bending_test {
+            match task.bend(spec).and_then(|r| tree.bent(task, &r).map(|drawn| (r, drawn))) {
+                Ok((result, drawn)) => {
+                    self.predictions.extend(bending::predictions(task, &result));
+                    self.bent.extend(drawn.into_iter().map(|file| (task.case.title.clone(), file)));
                 }
-                continue;
+                Err(failure) => self.failures.push(failure),
             }
-            if task.is_drape() {
-                match task.drape(&|| ()).and_then(|d| drape::write(tree, task, &d).map(|()| d)) {
-                    Ok(draped) => self.draped(task, &draped),
-                    Err(failure) => self.failures.push(failure),
-                }
-                continue;
+        } else if task.is_drape() {
+            match task.drape(&|| ()).and_then(|d| drape::write(tree, task, &d).map(|()| d)) {
+                Ok(draped) => self.draped(task, &draped),
+                Err(failure) => self.failures.push(failure),
             }
+        } else {
             match task.solve().and_then(|r| tree.solved(task, &r).map(|()| r)) {
                 Ok(result) => self.solved(task, &result),
                 Err(failure) => self.failures.push(failure),
             }
         }
-        self.charts(sheet, &simulated, tree);
     }
 
     fn charts(&mut self, sheet: &FabricSheet, simulated: &[Tested], tree: &Tree) {
@@ -235,23 +242,27 @@ pub fn unmet(result: &CaseResult) -> bool {
     result.status == Status::CheckFailed
 }
 
-/// The largest deflection, and the deflection of each probe.
+/// The largest deflection and that of each probe, or the natural frequencies.
 pub fn predictions(task: &Task, result: &CaseResult) -> Vec<PredictionRow> {
-    let row = |quantity: String, value: f64| {
+    let row = |quantity: String, value: f64, unit: &str| {
         let band = result.uncertainty.as_ref().and_then(|u| u.of(&quantity)?.mean_fabric());
         PredictionRow {
             fabric: task.fabric_name().unwrap_or_default().into(),
             case: result.case.clone(),
             quantity,
             simulated: Some(value),
-            unit: "m".into(),
+            unit: unit.into(),
             simulated_low: band.map(|[low, _]| low),
             simulated_high: band.map(|[_, high]| high),
             ..PredictionRow::default()
         }
     };
-    let probes = result.probes.iter().map(|p| row(format!("{}.w", p.name), p.value.u[2]));
-    std::iter::once(row("w_max".into(), result.w_max)).chain(probes).collect()
+    if !result.frequencies.is_empty() {
+        let frequency = |(i, f): (usize, &f64)| row(format!("frequency_{}", i + 1), *f, "1/s");
+        return result.frequencies.iter().enumerate().map(frequency).collect();
+    }
+    let probes = result.probes.iter().map(|p| row(format!("{}.w", p.name), p.value.u[2], "m"));
+    std::iter::once(row("w_max".into(), result.w_max, "m")).chain(probes).collect()
 }
 
 /// Findings as rows of `problems.csv`; `otherwise` is the place of one without a place. A search that found no

@@ -10,8 +10,10 @@ use super::Ui;
 use super::diagnostics::Failure;
 use super::effort;
 use super::inputs::{self, Curves, EvaluateArgs, Fabric};
+use super::sampled;
 use crate::characterise::FabricSheet;
 use crate::constitutive::{self, Constitutive, Input};
+use crate::finding::{Finding, Place};
 use crate::instrument::{Direction, Parameter, Test};
 use crate::quantity::{Curve, Estimate};
 use crate::section::ShellSection;
@@ -19,7 +21,7 @@ use crate::solve::Options as SolveOptions;
 use crate::study::bending::{BendingResult, simulate_records, simulate_strips};
 use crate::study::{
     self, Analysis, BendingKind, BendingTest, Case, CaseResult, Comparison, Drape, Prediction, PreparedCase,
-    PreparedTest, SolverChoice, StudyError, Uncertainty, VirtualCurve, VirtualLoop, VirtualTest,
+    PreparedTest, Sampling, SolverChoice, StudyError, Uncertainty, VirtualCurve, VirtualLoop, VirtualTest,
     compare_curves, measured_curve,
 };
 
@@ -81,6 +83,8 @@ pub struct Task<'a> {
     pub case: &'a Case,
     pub fabric: Option<&'a FabricSheet>,
     shared: Arc<Shared<'a>>,
+    /// Its bands, once they are sampled.
+    sampling: Arc<OnceLock<Option<Sampling>>>,
 }
 
 /// What the tasks of one case share, made by the first that needs it. Nothing in the making waits for
@@ -156,19 +160,31 @@ impl Work {
             let options = SolveOptions { threads, ..SolveOptions::default() };
             let shared = Arc::new(Shared { options, ..Shared::default() });
             if case.section.is_some() {
-                tasks.push(Task { case, fabric: None, shared });
+                tasks.push(Task { case, fabric: None, shared, sampling: Arc::default() });
                 continue;
             }
             let named = named_fabric(case);
             let is_for = |f: &&'w Fabric| named.as_ref().is_none_or(|n| is_within(&f.path, n));
             let before = tasks.len();
-            let task = |f: &'w Fabric| Task { case, fabric: Some(&f.sheet), shared: Arc::clone(&shared) };
+            let task = |f: &'w Fabric| Task {
+                case,
+                fabric: Some(&f.sheet),
+                shared: Arc::clone(&shared),
+                sampling: Arc::default(),
+            };
             tasks.extend(self.fabrics.iter().filter(is_for).filter(|f| case.suits(&f.sheet)).map(task));
             if tasks.len() == before && case.is_for_fab_records() {
                 let text = format!("{} is for a fabric with FAB bend tests, and none is there", case.name);
                 failures.push(Failure::new("O055", text).hint(
                     "name a U3M file with `raw_data`, as in `kesf compare cases/fab_bend_loop.toml FABRIC.u3m`",
                 ));
+            } else if tasks.len() == before && self.without_law(case).is_some() {
+                let text =
+                    format!("{} is for fabrics with a friction law of bending, and none has one", case.name);
+                failures.push(
+                    Failure::new("O055", text)
+                        .hint("add FB2 loops, or 2HB beside B in a result table, or take law = \"elastic\""),
+                );
             } else if tasks.len() == before {
                 let text = format!("{} is for a fabric, and none is there", case.name);
                 failures.push(
@@ -177,6 +193,22 @@ impl Work {
             }
         }
         (tasks, failures)
+    }
+}
+
+impl Work {
+    /// S118: the fabrics that a case with friction is for, and that have no law; `None` without such.
+    pub fn without_law(&self, case: &Case) -> Option<Finding> {
+        let named = named_fabric(case);
+        let is_for = |f: &&Fabric| named.as_ref().is_none_or(|n| is_within(&f.path, n));
+        let lacks = |f: &&Fabric| case.lacks_law(&f.sheet);
+        let names: Vec<&str> =
+            self.fabrics.iter().filter(is_for).filter(lacks).map(|f| f.sheet.name.as_str()).collect();
+        let text = format!(
+            "no friction law of bending (no FB2 loop, no 2HB beside B): left out for {}",
+            names.join(", ")
+        );
+        (!names.is_empty()).then(|| Finding::new("S118", text).at(Place::file(&case.path)))
     }
 }
 
@@ -229,6 +261,22 @@ impl Task<'_> {
             })
         });
         solved.map_err(|f| f.of(&self.name()))
+    }
+
+    /// Samples the bands of a case with `[uncertainty]`; nothing without.
+    pub fn sample(&self, progress: &(dyn Fn() + Sync)) -> Result<(), Failure> {
+        let Some(sheet) = self.fabric.filter(|_| self.case.uncertainty.is_some()) else { return Ok(()) };
+        let sampled = constitutive::section(sheet, &self.case.assumptions)
+            .map_err(Failure::from)
+            .and_then(|made| Ok(study::sample(self.case, sheet, &made, progress)?));
+        let sampling = sampled.map_err(|f| f.of(&self.name()))?;
+        self.sampling.get_or_init(|| sampling);
+        Ok(())
+    }
+
+    /// What [`sample`](Self::sample) has found.
+    pub fn sampling(&self) -> Option<&Sampling> {
+        self.sampling.get()?.as_ref()
     }
 
     /// Whether its case is a drape.
@@ -355,7 +403,10 @@ pub fn solution(task: &Task, result: &CaseResult, timings: bool) -> Value {
             "reactions": [sum(0), sum(1), sum(2)],
             "strain_energy": s.strain_energy,
             "frequencies": result.frequencies,
-            "uncertainty": result.uncertainty.as_ref().map(uncertainty),
+            "uncertainty": match task.sampling() {
+                Some(sampling) => Some(sampled::entry(sampling, "")),
+                None => result.uncertainty.as_ref().map(uncertainty),
+            },
         },
         "checks": result.checks,
         "findings": result.findings,
@@ -375,13 +426,18 @@ pub fn solution(task: &Task, result: &CaseResult, timings: bool) -> Value {
     entry
 }
 
+/// A value is 0 below this part of the largest of its unit.
+const ROUNDING: f64 = 1e-9;
+
 /// `results.uncertainty`: the inputs, and each quantity with its bands and its sensitivities
-/// ∂ln y/∂ln p (none of a quantity that is 0).
+/// ∂ln y/∂ln p (none of a quantity that is 0 but for rounding: that of a field by its symmetry).
 fn uncertainty(u: &Uncertainty) -> Value {
     let input =
         |i: &Input| json!({"name": i.name, "mean": i.estimate.mean, "sd": i.estimate.sd, "n": i.estimate.n});
     let quantity = |p: &Prediction| {
-        let log = |d: &f64| (p.value != 0.0).then(|| d / p.value);
+        let alike = u.predictions.iter().filter(|q| q.unit == p.unit);
+        let size = alike.map(|q| q.value.abs()).fold(0.0, f64::max);
+        let log = |d: &f64| (p.value.abs() > ROUNDING * size).then(|| d / p.value);
         let of = u.inputs.iter().zip(&p.derivatives);
         let sensitivity: Value = of.map(|(i, d)| (i.name.clone(), json!(log(d)))).collect();
         let entry = json!({
@@ -433,6 +489,9 @@ pub fn comparison(task: &Task, tested: &Tested) -> Value {
         "edge_effect": tested.simulated.edge,
         "unstable_from": tested.simulated.unstable_from,
         "cycle": tested.simulated.cycle.as_ref().map(|cycle| cycle_parameters(task, cycle)),
+        "uncertainty": task.sampling().map(|s| {
+            sampled::entry(s, tested.simulated.direction.map_or("", Direction::name))
+        }),
         "x": c.map(|c| &c.measured.x),
         "simulated": c.map(|c| &c.simulated.y),
         "measured": c.map(|c| &c.measured.y),

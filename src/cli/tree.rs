@@ -6,11 +6,12 @@ use serde_json::json;
 
 use super::bending;
 use super::diagnostics::Failure;
+use super::sampled;
 use super::section::used;
 use super::task::{Task, TaskArgs, Tested, comparison, solution};
 use crate::characterise::FabricSheet;
 use crate::constitutive::Constitutive;
-use crate::instrument::{Origin, Test};
+use crate::instrument::{Origin, Parameter, Test};
 use crate::quantity::Curve;
 use crate::report::OutputFolder;
 use crate::report::chart::{self, ChartError, FieldPlot, SimulatedCurve};
@@ -86,7 +87,7 @@ impl Tree {
             return Ok(());
         };
         let test = first.simulated.test;
-        self.chart(&format!("{stem}.png"), draw(sheet, test, &curves(tested.iter(), test)))?;
+        self.chart(&format!("{stem}.png"), draw(sheet, test, &curves(Some(task), tested.iter(), test)))?;
         Ok(())
     }
 
@@ -114,7 +115,7 @@ impl Tree {
         for test in Test::ALL {
             // Cycles with friction have charts of their own.
             let lines = tested.iter().filter(|t| t.simulated.cycle.is_none());
-            let picture = draw(sheet, test, &curves(lines, test));
+            let picture = draw(sheet, test, &curves(None, lines, test));
             if self.chart(&format!("{}/{}.png", sheet.name, test.name()), picture)? {
                 drawn.push(test);
             }
@@ -152,7 +153,12 @@ fn draw(sheet: &FabricSheet, test: Test, simulated: &[SimulatedCurve]) -> Result
     }
 }
 
-fn curves<'a>(tested: impl Iterator<Item = &'a Tested>, test: Test) -> Vec<SimulatedCurve> {
+/// With the bands of the parameters of a cycle, where its task is named.
+fn curves<'a>(
+    task: Option<&Task>,
+    tested: impl Iterator<Item = &'a Tested>,
+    test: Test,
+) -> Vec<SimulatedCurve> {
     tested
         .filter(|t| t.simulated.test == test && !t.curve.is_empty())
         .map(|t| SimulatedCurve {
@@ -163,9 +169,21 @@ fn curves<'a>(tested: impl Iterator<Item = &'a Tested>, test: Test) -> Vec<Simul
             nrmse: t.comparison.as_ref().map(|c| c.nrmse),
             r2: t.comparison.as_ref().map(|c| c.r2).filter(|r| r.is_finite()),
             band: band(t),
+            values: task.map_or_else(Vec::new, |task| sampled_values(task, t)),
             repeats: t.simulated.repeats(),
         })
         .collect()
+}
+
+/// The bands of the parameters of a cycle, in KES units.
+fn sampled_values(task: &Task, t: &Tested) -> Vec<(String, String)> {
+    let Some(cycle) = &t.simulated.cycle else { return Vec::new() };
+    let of = |p: &Parameter| {
+        let name = format!("{p} {}", cycle.direction);
+        let values = sampled::values(task, &name, p.kes_unit(), p.kes_factor());
+        values.into_iter().map(|(band, value)| (format!("{p}, {band}"), value)).collect::<Vec<_>>()
+    };
+    cycle.values.keys().flat_map(of).collect()
 }
 
 /// Both edges of the band of a simulated curve, where it has one at every point.
@@ -234,7 +252,10 @@ impl Mesh {
             values: &self.w,
             profile_along: "x on the middle line of the mesh".into(),
             profile: result.profile.clone(),
-            notes: result.findings.iter().map(|f| f.message.clone()).collect(),
+            notes: (sampled::values(task, "w_max", "mm", 1e-3).into_iter())
+                .map(|(band, value)| format!("{band}: largest |w| {value}"))
+                .chain(result.findings.iter().map(|f| f.message.clone()))
+                .collect(),
             ..FieldPlot::default()
         }
     }

@@ -68,7 +68,7 @@ fn torsion(
                     "measure one at 45°, or choose torsion = \"huber\" or a value",
                 ));
             };
-            notes.origin("B bias", b45, &[(Constant::Bias, 1.0)]);
+            notes.origin_value(Parameter::B, Some(Direction::Bias), &[(Constant::Bias, 1.0)]);
             let b45 = b45.mean;
             (b45 - (b1 + b2 + 2.0 * d12) / 4.0, format!("measured: B at 45° = {} N·m", significant(b45)))
         }

@@ -10,9 +10,9 @@
 //! A structure has no zero error and no jaws that let go, so the laws pass through the origin and
 //! hold to both sides. Bending has both faces in its law, as the loop of FB2 has.
 
-use super::{ConstitutiveError, Notes};
-use crate::characterise::{Basis, FabricSheet, FrictionLaw};
-use crate::instrument::{Direction, Test};
+use super::{Assumptions, ConstitutiveError, Notes};
+use crate::characterise::{Basis, FabricSheet, FrictionLaw, bending_law};
+use crate::instrument::{Direction, Parameter, Test};
 use crate::law::{Backbone, Channel, Family, LawError, Mode, Slider};
 use crate::quantity::significant;
 use crate::section::{SheetLaw, ShellSection};
@@ -20,9 +20,10 @@ use crate::section::{SheetLaw, ShellSection};
 /// The laws of a sheet beside its section; `None` if it is to be elastic.
 pub(super) fn law(
     section: &ShellSection,
-    mode: Mode,
+    assumptions: &Assumptions,
     notes: &mut Notes,
 ) -> Result<Option<SheetLaw>, ConstitutiveError> {
+    let mode = assumptions.law;
     if mode == Mode::Elastic {
         return Ok(None);
     }
@@ -33,34 +34,68 @@ pub(super) fn law(
     };
     let (along, across) =
         (either(Direction::Warp, Direction::Weft), either(Direction::Weft, Direction::Warp));
-    let (Some(warp), Some(weft)) = (along(Test::Bending), across(Test::Bending)) else {
-        return Err(notes.missing(
-            "friction law of bending",
-            "add a KES-FB2 loop, or 2HB beside B in a result table, or choose law = \"elastic\"",
-        ));
-    };
     let shear = along(Test::Shear);
-    let bending = [warp.channel.centred(), weft.channel.centred()];
-    let couples = bending.each_ref().map(couple);
+    // Inputs of the laws alone; B and G are those of the section.
+    let mut widths = vec![];
+    let (bending, from) = match (along(Test::Bending), across(Test::Bending)) {
+        (Some(warp), Some(weft)) => {
+            widths = vec![(Parameter::Hb, warp.direction), (Parameter::Hb, weft.direction)];
+            ([warp.channel.centred(), weft.channel.centred()], source(warp))
+        }
+        _ => (stand_in(section, assumptions, notes)?, "assumed: residual_curvature".to_string()),
+    };
+    let couples = bending.each_ref().map(Channel::couple);
     let value = format!("warp {} N, weft {} N", significant(couples[0]), significant(couples[1]));
-    notes.used("friction couple of bending", value, source(warp));
+    notes.used("friction couple of bending", value, from);
     let (fabric, d) = (notes.sheet.name.clone(), section.d_b);
     let twist = twist(&bending, [d[(0, 0)], d[(1, 1)], d[(2, 2)]])
         .map_err(|source| ConstitutiveError::Law { fabric, source })?;
-    let value = format!("{} N", significant(twist.as_ref().map_or(0.0, couple)));
+    let value = format!("{} N", significant(twist.as_ref().map_or(0.0, Channel::couple)));
     notes.used("friction couple of twist", value, "assumed: in proportion to D66");
     match shear {
         Some(law) => {
-            let value = format!("{} N/m", significant(couple(&law.channel)));
+            let value = format!("{} N/m", significant(law.channel.couple()));
             notes.used("friction of shear", value, source(law));
         }
         None => notes.used("friction of shear", "none", "assumed: no shear loop and no 2HG"),
+    }
+    widths.extend(shear.map(|law| (Parameter::Hg, law.direction)));
+    widths.dedup();
+    for (parameter, direction) in widths {
+        notes.origin_value(parameter, direction, &[]);
     }
     let [x, y] = bending;
     let channels = [None, None, shear.map(|l| l.channel.centred()), Some(x), Some(y), twist];
     let fabric = notes.sheet.name.clone();
     let law = SheetLaw::new(mode, channels).checked(section);
     law.map(Some).map_err(|source| ConstitutiveError::Section { fabric, source })
+}
+
+/// Laws of bending along warp and weft with the residual curvature that is assumed.
+fn stand_in(
+    section: &ShellSection,
+    assumptions: &Assumptions,
+    notes: &mut Notes,
+) -> Result<[Channel; 2], ConstitutiveError> {
+    let Some(residual) = assumptions.residual_curvature else {
+        return Err(notes.missing(
+            "friction law of bending",
+            "add a KES-FB2 loop, or 2HB beside B in a result table, or choose law = \"elastic\", or assume a \
+             residual_curvature",
+        ));
+    };
+    notes.finding(
+        "C017",
+        format!(
+            "no hysteresis of bending is known; a residual curvature 2HB/(2B) of {residual} stands in for it"
+        ),
+    );
+    let along = |b: f64| bending_law(b, 2.0 * b * residual.si());
+    let fabric = notes.sheet.name.clone();
+    match [along(section.d_b[(0, 0)]), along(section.d_b[(1, 1)])] {
+        [Ok(warp), Ok(weft)] => Ok([warp, weft]),
+        [Err(source), _] | [_, Err(source)] => Err(ConstitutiveError::Law { fabric, source }),
+    }
 }
 
 /// The laws of `ε_x, ε_y` from the tests of tension, to both sides, and nowhere softer than 1e-4 of
@@ -86,7 +121,7 @@ fn twist(bending: &[Channel; 2], [b1, b2, h]: [f64; 3]) -> Result<Option<Channel
     if h <= 0.0 {
         return Ok(None);
     }
-    let couples = bending.each_ref().map(couple);
+    let couples = bending.each_ref().map(Channel::couple);
     let friction = (couples[0] * couples[1]).sqrt() * h / (b1 * b2).sqrt();
     let half = |law: &Channel, own: f64| -> Vec<Family> {
         let part = if own > 0.0 { 0.5 * friction / own } else { 0.0 };
@@ -96,11 +131,6 @@ fn twist(bending: &[Channel; 2], [b1, b2, h]: [f64; 3]) -> Result<Option<Channel
     };
     let families = [half(&bending[0], couples[0]), half(&bending[1], couples[1])].concat();
     Channel::new(Backbone::line(h)?, families, false).map(Some)
-}
-
-/// The stress of all sliders when they slip and `q` is 1.
-fn couple(law: &Channel) -> f64 {
-    law.sliders().map(|s| s.stiffness * s.slip).sum()
 }
 
 fn source(law: &FrictionLaw) -> String {

@@ -9,7 +9,7 @@
 
 use nalgebra::Matrix3;
 
-use super::{Assumptions, Constant, ConstitutiveError, Notes, PoissonRule};
+use super::{Assumptions, Constant, ConstitutiveError, Notes, PoissonRule, Standing};
 use crate::characterise::Modulus;
 use crate::instrument::Direction;
 use crate::quantity::{Estimate, significant};
@@ -52,7 +52,7 @@ pub(super) fn matrix(
 fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], ConstitutiveError> {
     let chosen = assumptions.modulus;
     if let Some(e) = known(chosen, notes) {
-        return Ok(record(e, format!("measured: {chosen}"), notes));
+        return Ok(record(e, Some(chosen), format!("measured: {chosen}"), notes));
     }
     if let Modulus::Window(..) = chosen {
         return Err(notes.missing(
@@ -67,7 +67,7 @@ fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], Cons
                 format!("there is no {chosen} modulus; the {other} modulus is used instead"),
             );
             let source = format!("measured: {other}, because there is no {chosen} modulus");
-            return Ok(record(e, source, notes));
+            return Ok(record(e, Some(other), source, notes));
         }
     }
     let e = assumptions.tensile;
@@ -80,14 +80,21 @@ fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], Cons
         ),
     );
     let stand_in = Estimate::single(e.si());
-    Ok(record([&stand_in; 2], "assumed: not measured".into(), notes))
+    Ok(record([&stand_in; 2], None, "assumed: not measured".into(), notes))
 }
 
 /// Writes down the two moduli and gives their values.
-fn record([warp, weft]: [&Estimate; 2], source: String, notes: &mut Notes) -> [f64; 2] {
+/// Writes two moduli down, those of the stand-in without a name.
+fn record(
+    [warp, weft]: [&Estimate; 2],
+    modulus: Option<Modulus>,
+    source: String,
+    notes: &mut Notes,
+) -> [f64; 2] {
     let [e1, e2] = [warp.mean, weft.mean];
-    notes.origin("E warp", warp, &[(Constant::Tensile(0), 1.0)]);
-    notes.origin("E weft", weft, &[(Constant::Tensile(1), 1.0)]);
+    let standing = |direction| modulus.map_or(Standing::Tensile, |m| Standing::Modulus(m.name(), direction));
+    notes.origin("E warp", (warp, standing(Direction::Warp)), &[(Constant::Tensile(0), 1.0)]);
+    notes.origin("E weft", (weft, standing(Direction::Weft)), &[(Constant::Tensile(1), 1.0)]);
     let value = format!("warp {} N/m, weft {} N/m", significant(e1), significant(e2));
     notes.used("tensile modulus", value, source);
     [e1, e2]

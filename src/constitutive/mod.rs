@@ -15,13 +15,14 @@ mod assumptions;
 mod bending;
 mod friction;
 mod membrane;
+mod moved;
 mod sensitivity;
 mod shear;
 
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::characterise::FabricSheet;
+use crate::characterise::{FabricSheet, Key};
 use crate::finding::Finding;
 use crate::instrument::{Direction, Parameter};
 use crate::law::LawError;
@@ -30,6 +31,7 @@ use crate::section::{SectionError, SheetLaw, ShellSection};
 
 pub use assumptions::{Assumptions, BendingCoupling, ChoiceError, PoissonRule, Torsion, TransverseShear};
 pub use friction::tension;
+pub use moved::{Standing, law_inputs, moved};
 use sensitivity::{Constant, Origin};
 pub use sensitivity::{Entry, Input, SectionDerivative, bands, entries};
 
@@ -169,7 +171,7 @@ pub fn section(sheet: &FabricSheet, assumptions: &Assumptions) -> Result<Constit
     let section = ShellSection { d_m, d_b, d_s, areal_density, thickness }
         .checked()
         .map_err(|source| ConstitutiveError::Section { fabric: sheet.name.clone(), source })?;
-    let law = friction::law(&section, assumptions.law, &mut notes)?;
+    let law = friction::law(&section, assumptions, &mut notes)?;
     let inputs = sensitivity::inputs(&section, assumptions, notes.origins);
     Ok(Constitutive { section, law, used: notes.used, inputs, findings: notes.findings })
 }
@@ -179,18 +181,19 @@ fn thickness(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, Consti
     let sheet = notes.sheet;
     let measured = [Parameter::T0, Parameter::Tm]
         .into_iter()
-        .find_map(|p| Some((sheet.get(p, None)?.clone(), format!("measured: {p}"))));
-    let stated = || sheet.info.thickness.map(|t| (Estimate::single(t), "measured: fabric.toml".to_string()));
-    let (estimate, source) = measured.or_else(stated).unwrap_or_else(|| {
+        .find_map(|p| Some((value(sheet, p, None)?, format!("measured: {p}"))));
+    let single = |t: f64| (Estimate::single(t), Standing::Thickness);
+    let stated = || sheet.info.thickness.map(|t| (single(t), "measured: fabric.toml".to_string()));
+    let ((estimate, standing), source) = measured.or_else(stated).unwrap_or_else(|| {
         let t = assumptions.thickness;
         notes.finding(
             "C014",
             format!("no thickness is known; {t} stands in for it (statics do not depend on it)"),
         );
-        (Estimate::single(t.si()), "assumed: not measured".to_string())
+        (single(t.si()), "assumed: not measured".to_string())
     });
     let value = estimate.mean;
-    notes.origin("thickness", &estimate, &[(Constant::Thickness, 1.0)]);
+    notes.origin("thickness", (&estimate, standing), &[(Constant::Thickness, 1.0)]);
     notes.positive("thickness", value, "m", "measure it (KES-FB3) or correct it in fabric.toml")?;
     notes.used("thickness", format!("{} mm", significant(value * 1e3)), source);
     Ok(value)
@@ -199,20 +202,31 @@ fn thickness(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, Consti
 /// W, else `fabric.toml`, else what is assumed explicitly (kg/m²).
 fn areal_density(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, ConstitutiveError> {
     let sheet = notes.sheet;
-    let measured = sheet.get(Parameter::W, None).map(|w| (w.clone(), "measured: W"));
-    let stated = || sheet.info.areal_density.map(|w| (Estimate::single(w), "measured: fabric.toml"));
-    let assumed = || assumptions.areal_density.map(|w| (Estimate::single(w.si()), "assumed: not measured"));
-    let Some((estimate, source)) = measured.or_else(stated).or_else(assumed) else {
+    let measured = value(sheet, Parameter::W, None).map(|w| (w, "measured: W"));
+    let single = |w: f64| (Estimate::single(w), Standing::ArealDensity);
+    let stated = || sheet.info.areal_density.map(|w| (single(w), "measured: fabric.toml"));
+    let assumed = || assumptions.areal_density.map(|w| (single(w.si()), "assumed: not measured"));
+    let Some(((estimate, standing), source)) = measured.or_else(stated).or_else(assumed) else {
         return Err(notes.missing(
             "areal density",
             "weigh the specimen and write areal_density = \"150 g/m²\" in its fabric.toml, or pass --areal-density",
         ));
     };
     let value = estimate.mean;
-    notes.origin("areal density", &estimate, &[(Constant::ArealDensity, 1.0)]);
+    notes.origin("areal density", (&estimate, standing), &[(Constant::ArealDensity, 1.0)]);
     notes.positive("areal density", value, "kg/m²", "correct it in its fabric.toml or result table")?;
     notes.used("areal density", format!("{} g/m²", significant(value * 1e3)), source);
     Ok(value)
+}
+
+/// An estimate of the sheet, and where it stands.
+fn value(
+    sheet: &FabricSheet,
+    parameter: Parameter,
+    direction: Option<Direction>,
+) -> Option<(Estimate, Standing)> {
+    let estimate = sheet.get(parameter, direction)?.clone();
+    Some((estimate, Standing::Value(Key { parameter, direction })))
 }
 
 /// What is written down on the way: the sheet, the inputs used and the findings.
@@ -225,8 +239,30 @@ struct Notes<'a> {
 
 impl Notes<'_> {
     /// Writes down where constants come from; `gives` has `∂ln c/∂ln p` of each.
-    fn origin(&mut self, name: impl Into<String>, estimate: &Estimate, gives: &[(Constant, f64)]) {
-        self.origins.push(Origin { name: name.into(), estimate: estimate.clone(), gives: gives.to_vec() });
+    fn origin(
+        &mut self,
+        name: impl Into<String>,
+        (estimate, standing): (&Estimate, Standing),
+        gives: &[(Constant, f64)],
+    ) {
+        let (estimate, gives) = (estimate.clone(), gives.to_vec());
+        self.origins.push(Origin { name: name.into(), estimate, standing, gives });
+    }
+
+    /// The same for a parameter of the sheet; nothing if the sheet has none.
+    fn origin_value(
+        &mut self,
+        parameter: Parameter,
+        direction: Option<Direction>,
+        gives: &[(Constant, f64)],
+    ) {
+        if let Some((estimate, standing)) = value(self.sheet, parameter, direction) {
+            let name = match direction {
+                Some(direction) => format!("{parameter} {direction}"),
+                None => parameter.symbol().to_string(),
+            };
+            self.origin(name, (&estimate, standing), gives);
+        }
     }
 
     fn used(&mut self, name: &'static str, value: impl Into<String>, source: impl Into<String>) {
@@ -267,20 +303,20 @@ impl Notes<'_> {
         let constants = [0, 1].map(|i| (Constant::Bending(i), 1.0));
         let known = match (get(Some(Direction::Warp)), get(Some(Direction::Weft)), get(None)) {
             (Some(warp), Some(weft), _) => {
-                self.origin("B warp", warp, &constants[..1]);
-                self.origin("B weft", weft, &constants[1..]);
+                self.origin_value(parameter, Some(Direction::Warp), &constants[..1]);
+                self.origin_value(parameter, Some(Direction::Weft), &constants[1..]);
                 return Some([warp.mean, weft.mean]);
             }
-            (_, _, Some(mean)) => (mean, "one value for the fabric"),
-            (Some(warp), None, None) => (warp, "the warp value only"),
-            (None, Some(weft), None) => (weft, "the weft value only"),
+            (_, _, Some(mean)) => (mean, None, "one value for the fabric"),
+            (Some(warp), None, None) => (warp, Some(Direction::Warp), "the warp value only"),
+            (None, Some(weft), None) => (weft, Some(Direction::Weft), "the weft value only"),
             (None, None, None) => return None,
         };
         self.finding(
             "C010",
-            format!("{parameter} is known as {}; it stands for warp and weft alike", known.1),
+            format!("{parameter} is known as {}; it stands for warp and weft alike", known.2),
         );
-        self.origin(parameter.symbol(), known.0, &constants);
+        self.origin_value(parameter, known.1, &constants);
         Some([known.0.mean; 2])
     }
 }

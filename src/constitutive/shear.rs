@@ -8,7 +8,7 @@
 
 use nalgebra::Matrix2;
 
-use super::{Assumptions, Constant, ConstitutiveError, Notes, TransverseShear};
+use super::{Assumptions, Constant, ConstitutiveError, Notes, Standing, TransverseShear};
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::{Estimate, significant};
 
@@ -19,19 +19,19 @@ const CHI: f64 = 5.0 / 6.0;
 pub(super) fn in_plane(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, ConstitutiveError> {
     let sheet = notes.sheet;
     let directions = [Some(Direction::Warp), Some(Direction::Weft), None];
-    let [warp, weft, mean] = directions.map(|d| sheet.get(Parameter::G, d));
+    let [warp, weft, _] = directions.map(|d| sheet.get(Parameter::G, d));
     let (g, source) = match (warp, weft) {
         (Some(warp_test), Some(weft_test)) => {
             let (warp, weft) = (warp_test.mean, weft_test.mean);
             // G = (G1 + G2)/2, so ∂ln G/∂ln G1 = G1/(G1 + G2).
-            notes.origin("G warp", warp_test, &[(Constant::Shear, warp / (warp + weft))]);
-            notes.origin("G weft", weft_test, &[(Constant::Shear, weft / (warp + weft))]);
+            notes.origin_value(Parameter::G, directions[0], &[(Constant::Shear, warp / (warp + weft))]);
+            notes.origin_value(Parameter::G, directions[1], &[(Constant::Shear, weft / (warp + weft))]);
             let values = format!("{} and {} N/m", significant(warp), significant(weft));
             ((warp + weft) / 2.0, format!("measured: mean of G warp and weft, {values}"))
         }
-        _ => match warp.or(weft).or(mean) {
-            Some(g) => {
-                notes.origin("G", g, &[(Constant::Shear, 1.0)]);
+        _ => match directions.into_iter().find_map(|d| Some((d, sheet.get(Parameter::G, d)?))) {
+            Some((direction, g)) => {
+                notes.origin_value(Parameter::G, direction, &[(Constant::Shear, 1.0)]);
                 (g.mean, "measured: G".to_string())
             }
             None => {
@@ -44,7 +44,7 @@ pub(super) fn in_plane(assumptions: &Assumptions, notes: &mut Notes) -> Result<f
                         significant(g.si())
                     ),
                 );
-                notes.origin("G", &Estimate::single(g.si()), &[(Constant::Shear, 1.0)]);
+                notes.origin("G", (&Estimate::single(g.si()), Standing::Shear), &[(Constant::Shear, 1.0)]);
                 (g.si(), "assumed: no shear test".to_string())
             }
         },

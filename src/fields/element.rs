@@ -103,17 +103,18 @@ pub fn straining<'a>(model: &'a Model, state: &'a State) -> impl Fn(usize) -> Ve
     }
 }
 
-/// Calls `visit` with every element and its resultants: at the corners, N and M extrapolated from the
+/// Calls `visit` with each of some elements and its resultants: at the corners, N and M extrapolated from the
 /// cells and Q as MITC4 has it; then the mean over the cells, with Q at the centre.
 pub fn for_each_element(
     model: &Model,
     flat: bool,
+    quads: impl Iterator<Item = usize>,
     displacement: impl Fn(usize) -> Vector24,
     mut visit: impl FnMut(usize, [Resultants; PLACES]),
 ) -> Result<(), ModelError> {
     let weights = extrapolation(model.formulation.cells);
     let mut last: Option<Operator> = None;
-    for quad in 0..model.mesh.quads.len() {
+    for quad in quads {
         let corners = model.mesh.corners(quad);
         if !last.as_ref().is_some_and(|operator| is_translated(&operator.corners, &corners)) {
             last = Some(Operator::new(model, quad, flat, &weights)?);

@@ -30,6 +30,24 @@ pub struct Resultants {
 }
 
 impl Resultants {
+    /// Names of the components and their SI units, in the order of [`components`](Self::components).
+    pub const COMPONENTS: [(&str, &str); 8] = [
+        ("membrane_x", "N/m"),
+        ("membrane_y", "N/m"),
+        ("membrane_xy", "N/m"),
+        ("moment_x", "N"),
+        ("moment_y", "N"),
+        ("moment_xy", "N"),
+        ("shear_x", "N/m"),
+        ("shear_y", "N/m"),
+    ];
+
+    /// N, M and Q in one.
+    pub fn components(&self) -> [f64; 8] {
+        let ([nx, ny, nxy], [mx, my, mxy], [qx, qy]) = (self.membrane, self.moment, self.shear);
+        [nx, ny, nxy, mx, my, mxy, qx, qy]
+    }
+
     fn add(&mut self, other: &Self, weight: f64) {
         (0..3).for_each(|i| self.membrane[i] += weight * other.membrane[i]);
         (0..3).for_each(|i| self.moment[i] += weight * other.moment[i]);
@@ -65,7 +83,8 @@ pub fn cells(model: &Model, displacement: &[f64]) -> Result<Vec<Vec<Resultants>>
 /// M008 if the warp direction is normal to an element.
 pub fn element_means(model: &Model, displacement: &[f64]) -> Result<Vec<Resultants>, ModelError> {
     let mut means = Vec::with_capacity(model.mesh.quads.len());
-    for_each_element(model, model.mesh.is_flat(), small(model, displacement), |_, [.., mean]| {
+    let quads = 0..model.mesh.quads.len();
+    for_each_element(model, model.mesh.is_flat(), quads, small(model, displacement), |_, [.., mean]| {
         means.push(mean)
     })?;
     Ok(means)
@@ -124,6 +143,52 @@ impl Recovery {
         self.nodal_of(model, straining(model, state))
     }
 
+    /// Resultants at one point, as [`nodal`](Self::nodal) and [`Locator::value`] give them, from the
+    /// elements around it alone.
+    ///
+    /// # Errors
+    /// M008 if the warp direction is normal to an element.
+    pub fn at(&self, model: &Model, displacement: &[f64], at: &Locator) -> Result<Resultants, ModelError> {
+        let mesh = &model.mesh;
+        let nodes = mesh.quads[at.quad];
+        let patches = nodes.map(|node| {
+            let found = self.boundary.binary_search_by_key(&node, |b| b.0);
+            found.ok().map(|i| self.boundary[i].1.as_slice())
+        });
+        let touches = |quad: &usize| mesh.quads[*quad].iter().any(|n| nodes.contains(n));
+        let mut quads: Vec<usize> = (0..mesh.quads.len()).filter(touches).collect();
+        quads.extend(patches.iter().flatten().flat_map(|patch| patch.iter().map(|(quad, _)| *quad)));
+        quads.sort_unstable();
+        quads.dedup();
+        let mut found = Vec::with_capacity(quads.len());
+        for_each_element(
+            model,
+            self.flat,
+            quads.iter().copied(),
+            small(model, displacement),
+            |quad, all| {
+                found.push((quad, all));
+            },
+        )?;
+        let mut value = Resultants::default();
+        for ((node, patch), share) in nodes.into_iter().zip(patches).zip(at.weights) {
+            let corner = |(quad, all): &(usize, [Resultants; 5])| {
+                mesh.quads[*quad].iter().position(|n| *n == node).map(|corner| all[corner])
+            };
+            let corners: Vec<Resultants> = found.iter().filter_map(corner).collect();
+            let mut nodal = Resultants::default();
+            corners.iter().for_each(|c| nodal.add(c, 1.0 / corners.len() as f64));
+            if let Some(patch) = patch {
+                let mut fitted = Resultants::default();
+                let weight = |quad| patch.iter().find(|(q, _)| *q == quad).map_or(0.0, |(_, weight)| *weight);
+                found.iter().for_each(|(quad, [.., mean])| fitted.add(mean, weight(*quad)));
+                nodal = fitted;
+            }
+            value.add(&nodal, share);
+        }
+        Ok(value)
+    }
+
     fn nodal_of(
         &self,
         model: &Model,
@@ -131,7 +196,8 @@ impl Recovery {
     ) -> Result<Vec<Resultants>, ModelError> {
         let mut means = Vec::with_capacity(model.mesh.quads.len());
         let mut sums = vec![(Resultants::default(), 0.0); model.mesh.nodes.len()];
-        for_each_element(model, self.flat, displacement, |quad, [corners @ .., mean]| {
+        let quads = 0..model.mesh.quads.len();
+        for_each_element(model, self.flat, quads, displacement, |quad, [corners @ .., mean]| {
             means.push(mean);
             for (corner, node) in corners.iter().zip(model.mesh.quads[quad]) {
                 let (sum, count) = &mut sums[node as usize];

@@ -138,6 +138,18 @@ impl Backbone {
         self.pieces.iter().map(|p| p.at.tangent)
     }
 
+    /// The mean of the curve and its image in the origin, `(E(e) - E(-e))/2`: cloth of which either face
+    /// may be up.
+    pub fn symmetric(&self) -> Self {
+        let mut knots: Vec<f64> = self.knots().flat_map(|k| [k, -k]).chain([0.0]).collect();
+        knots.sort_by(f64::total_cmp);
+        knots.dedup();
+        let tangent = |k: &f64| 0.5 * (self.at(*k).tangent + self.at(-k).tangent);
+        let tangents: Vec<f64> = knots.iter().map(tangent).collect();
+        // Means of tangents that are not negative, at knots that increase.
+        Self::new(0.0, &knots, &tangents).unwrap_or_else(|_| self.with_offset(0.0))
+    }
+
     /// The same curve with other stress at strain 0: without the set or zero error of a record, say.
     pub fn with_offset(&self, offset: f64) -> Self {
         let change = offset - self.offset();

@@ -144,6 +144,30 @@ impl Channel {
         Self { backbone: self.backbone.with_offset(0.0), families: self.families.clone(), one_sided: false }
     }
 
+    /// The same law of cloth of which either face may be up: the backbone [`Backbone::symmetric`].
+    pub fn symmetric(&self) -> Self {
+        Self { backbone: self.backbone.symmetric(), ..self.centred() }
+    }
+
+    /// The stress of all sliders when they slip and `q` is 1.
+    pub fn couple(&self) -> f64 {
+        self.sliders().map(|s| s.stiffness * s.slip).sum()
+    }
+
+    /// The law with the tangents of its backbone and the stiffnesses of its sliders multiplied by factors;
+    /// slip levels and the stress at strain 0 stay.
+    ///
+    /// # Errors
+    /// M020 for factors that are negative or not finite.
+    pub fn scaled(&self, backbone: f64, sliders: f64) -> Result<Self, LawError> {
+        let knots: Vec<f64> = self.backbone.knots().collect();
+        let tangents: Vec<f64> = self.backbone.tangents().map(|t| backbone * t).collect();
+        let stiffer = |s: &Slider| Slider { stiffness: sliders * s.stiffness, ..*s };
+        let family = |f: &Family| Family { sliders: f.sliders.iter().map(stiffer).collect(), ..f.clone() };
+        let families = self.families.iter().map(family).collect();
+        Self::new(Backbone::new(self.backbone.offset(), &knots, &tangents)?, families, self.one_sided)
+    }
+
     /// All sliders, in the order of [`State::slip`].
     pub fn sliders(&self) -> impl Iterator<Item = &Slider> {
         self.families.iter().flat_map(|f| &f.sliders)

@@ -63,19 +63,27 @@ pub fn sobol_points(
     Ok((0..points).map(|i| (0u32..).zip(&columns).map(|c| value(i, c)).collect()).collect())
 }
 
-/// A function at every point, in parallel; `None` if it gives a finite result nowhere. `progress` is
-/// called after each point.
+/// A function of several results at every point, in parallel, summed up for each of the first `results`;
+/// `None` of one that is finite nowhere. `progress` is called after each point. The number of
+/// threads changes nothing.
 pub fn sampled(
     points: &[Vec<f64>],
-    function: impl Fn(&[f64]) -> Option<f64> + Sync,
+    results: usize,
+    function: impl Fn(&[f64]) -> Vec<f64> + Sync,
     progress: impl Fn() + Sync,
-) -> Option<Sampled> {
+) -> Vec<Option<Sampled>> {
     let evaluate = |p: &Vec<f64>| {
-        let y = function(p).filter(|y| y.is_finite());
+        let y = function(p);
         progress();
         y
     };
-    let mut values: Vec<f64> = points.par_iter().filter_map(evaluate).collect();
+    let all: Vec<Vec<f64>> = points.par_iter().map(evaluate).collect();
+    let of = |k: usize| all.iter().filter_map(|y| y.get(k).copied()).filter(|y| y.is_finite()).collect();
+    (0..results).map(|k| summed_up(of(k), points.len())).collect()
+}
+
+/// Median and central 95 % of the results at some of the points.
+fn summed_up(mut values: Vec<f64>, points: usize) -> Option<Sampled> {
     values.sort_by(f64::total_cmp);
     let n = values.len();
     let last = n.checked_sub(1)?;
@@ -89,7 +97,7 @@ pub fn sampled(
         median: quantile(0.5),
         interval: [quantile(0.025), quantile(0.975)],
         n,
-        failed: points.len() - n,
+        failed: points - n,
     })
 }
 
@@ -110,7 +118,7 @@ mod tests {
             [(Population::MeanFabric, 1.0 / 3.0), (Population::NextSpecimen, 4.0 / 3.0)]
         {
             let points = sobol_points(&[&p], population, 1024, 7).unwrap();
-            let y = sampled(&points, |p| Some(p[0].powi(3)), || ()).unwrap();
+            let y = sampled(&points, 1, |p| vec![p[0].powi(3)], || ())[0].unwrap();
             let half = 3.0 * 4.302_652_730 * 0.01 * f64::sqrt(factor);
             // 1024 points: the 2.5 % point lies between order statistics 0.1 % apart.
             assert_relative_eq!(y.interval[1].ln() - 8f64.ln(), half, max_relative = 0.02);
@@ -126,7 +134,7 @@ mod tests {
         let inputs: Vec<Estimate> = (1..=10).map(|i| input(f64::from(i), 0.01 * f64::from(i), 400)).collect();
         let points =
             sobol_points(&inputs.iter().collect::<Vec<_>>(), Population::NextSpecimen, 256, 1).unwrap();
-        let y = sampled(&points, |p| Some(p.iter().product()), || ()).unwrap();
+        let y = sampled(&points, 1, |p| vec![p.iter().product()], || ())[0].unwrap();
         let half = 0.5 * (y.interval[1] / y.interval[0]).ln();
         // z = 1.960, and the sampling error of a 2.5 % point of 256.
         assert_relative_eq!(half, 1.960 * 0.01 * f64::sqrt(10.0 * (1.0 + 1.0 / 400.0)), max_relative = 0.08);
@@ -137,9 +145,11 @@ mod tests {
         let p = input(1.0, 0.1, 5);
         let points = sobol_points(&[&p], Population::NextSpecimen, 64, 3).unwrap();
         assert_eq!(points, sobol_points(&[&p], Population::NextSpecimen, 64, 3).unwrap());
-        let y = sampled(&points, |p| (p[0] > 1.0).then_some(p[0]), || ()).unwrap();
+        let only = |p: &[f64]| if p[0] > 1.0 { vec![p[0], f64::NAN] } else { Vec::new() };
+        let both = sampled(&points, 2, only, || ());
+        let y = both[0].unwrap();
         assert_eq!((y.n, y.failed), (32, 32));
-        assert_eq!(sampled(&points, |_| None, || ()), None);
+        assert_eq!(both[1], None);
         let refused = sobol_points(&[&p, &Estimate::single(1.0)], Population::MeanFabric, 8, 0);
         assert_eq!(refused, Err(NoSpread { term: 1 }));
     }

@@ -8,11 +8,11 @@ use nalgebra::{Matrix2, Matrix3};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use crate::characterise::{FabricSheet, FrictionLaw, Settings};
+use crate::characterise::{FabricSheet, FrictionLaw, LawBand, MeanBranch, Settings};
 use crate::constitutive::{Entry, Input, entries};
 use crate::finding::Finding;
 use crate::instrument::Parameter;
-use crate::quantity::Estimate;
+use crate::quantity::{Curve, Estimate};
 use crate::section::ShellSection;
 
 /// `kesf.sheet/1`: the parameters of fabrics.
@@ -59,6 +59,9 @@ pub struct SheetEntry {
     /// Friction laws (SI; see [`FrictionLaw`]): test, direction, specimen, what the law rests on, its
     /// backbone and sliders, how well it fits, and the parameters of its simulated cycle.
     pub friction: Vec<FrictionLaw>,
+    /// The mean loop of the laws of each test over the specimens, run by run, with the 95 % bands of the
+    /// mean fabric and of one more specimen (SI; every run a curve of abscissae `x` and ordinates `y`).
+    pub friction_bands: Vec<Value>,
     /// By symbol and direction: the parameter re-extracted from the simulated cycles of the laws
     /// (`"simulated"`) beside the `"measured"` one, and whether the laws rest on loops.
     pub re_extracted: Map<String, Value>,
@@ -139,6 +142,7 @@ pub fn sheet_document<'a>(
             parameters: parameters(sheet),
             moduli: moduli(sheet),
             friction: sheet.laws.clone(),
+            friction_bands: sheet.law_bands().iter().map(band).collect(),
             re_extracted: re_extracted(sheet),
         });
     }
@@ -185,6 +189,26 @@ pub fn text<T: Serialize>(document: &T) -> Result<String, serde_json::Error> {
     let mut text = serde_json::to_string_pretty(document)?;
     text.push('\n');
     Ok(text)
+}
+
+/// Every fifth point of a band, 21 a run.
+fn band(band: &LawBand) -> Value {
+    let thinned = |c: &Curve| {
+        json!({
+            "x": c.x.iter().step_by(5).collect::<Vec<_>>(), "y": c.y.iter().step_by(5).collect::<Vec<_>>(),
+        })
+    };
+    let run = |b: &MeanBranch| {
+        json!({
+            "mean": thinned(&b.mean),
+            "mean_fabric": [thinned(&b.low), thinned(&b.high)],
+            "next_specimen": b.next_specimen.each_ref().map(thinned),
+        })
+    };
+    json!({
+        "test": band.test, "direction": band.direction, "n": band.n,
+        "runs": band.branches.iter().map(run).collect::<Vec<_>>(),
+    })
 }
 
 fn parameters(sheet: &FabricSheet) -> Map<String, Value> {

@@ -2,7 +2,7 @@
 //! and the bend loop of FAB strips.
 
 use crate::characterise::FabricSheet;
-use crate::instrument::{Direction, Parameter};
+use crate::instrument::{Direction, Parameter, Test};
 use crate::quantity::Length;
 use crate::section::ShellSection;
 
@@ -29,8 +29,8 @@ pub enum BendingResult {
     FabBendLoop(Vec<BendLoops>),
 }
 
-/// Simulates a cantilever or a heart loop of a section along warp and weft. Where the sheet says the
-/// hysteresis of bending, the cantilever is simulated with friction too.
+/// Simulates a cantilever or a heart loop of a section along warp and weft. Where the sheet has a law of
+/// bending with friction, from loops or from B and 2HB, the cantilever is simulated with it too.
 ///
 /// # Errors
 /// See [`StudyError`]; S003 for a FAB bend loop, which needs records: see [`simulate_records`].
@@ -42,13 +42,10 @@ pub fn simulate_strips(
 ) -> Result<BendingResult, StudyError> {
     let width = spec.width.map(Length::si);
     let both = [Direction::Warp, Direction::Weft].into_iter();
-    let couple = |direction| {
-        let found = sheet.get(Parameter::Hb, Some(direction)).or_else(|| sheet.get(Parameter::Hb, None));
-        found.map(|hysteresis| 0.5 * hysteresis.mean)
-    };
+    let law = |direction| sheet.law(Test::Bending, Some(direction)).map(|law| &law.channel);
     match (spec.test, spec.length) {
         (BendingKind::Cantilever, _) => Ok(BendingResult::Cantilever(
-            both.map(|d| cantilever(section, d, couple(d), width, spec.cells)).collect::<Result<_, _>>()?,
+            both.map(|d| cantilever(section, d, law(d), width, spec.cells)).collect::<Result<_, _>>()?,
         )),
         (BendingKind::HeartLoop, Some(length)) => Ok(BendingResult::HeartLoop(
             both.map(|d| heart_loop(section, d, length.si(), width, spec.cells)).collect::<Result<_, _>>()?,

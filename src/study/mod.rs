@@ -11,6 +11,7 @@ mod nonlinear;
 mod prepared;
 mod rigid;
 mod run;
+mod sampling;
 mod solver;
 mod uncertainty;
 mod virtual_large;
@@ -22,7 +23,7 @@ use thiserror::Error;
 pub use build::{formulation, model, section};
 pub use case::{
     Analysis, BendingKind, BendingTest, Case, CaseError, Check, MethodChoice, NonlinearTable, ProbeTable,
-    Reference, ReferenceKind, SectionTable, Shape, Sheet, TestFormulation, VirtualTest,
+    Reference, ReferenceKind, SectionTable, Shape, Sheet, TestFormulation, UncertaintyTable, VirtualTest,
 };
 pub use compare::{Comparison, compare_curves, measured_curve};
 pub use drape::{Drape, DrapeState, Folds, drape, drape_stages, measured_drape};
@@ -31,6 +32,7 @@ pub use nonlinear::{LoadPath, PathStep};
 pub use prepared::PreparedCase;
 pub use rigid::{Place as RigidPlace, RigidTable};
 pub use run::{CaseResult, CheckResult, Probe, Status, solve_case};
+pub use sampling::{SampledQuantity, Sampling, sample, sampling_stages};
 pub use solver::{Bytes, SolverChoice, SolverTable};
 pub use uncertainty::{Prediction, Uncertainty};
 pub use virtual_loop::{VirtualLoop, simulate_cycle, simulate_loop};

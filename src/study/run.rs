@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::case::{Analysis, Case, Check, Reference};
 use super::dynamics::{History, Large, dynamics, load_history, rayleigh};
 use super::nonlinear::{LoadPath, equilibrium, largest_w};
-use super::uncertainty::{Uncertainty, linear_uncertainty};
+use super::uncertainty::{Uncertainty, linear_uncertainty, modal_uncertainty};
 use super::{PreparedCase, StudyError};
 use crate::constitutive::{Constitutive, Input};
 use crate::element::Mass;
@@ -102,7 +102,7 @@ pub struct CaseResult {
     pub path: Option<LoadPath>,
     /// Places and rotations of the nodes at the end; of analyses in large rotations only.
     pub state: Option<State>,
-    /// How certain the deflections are; of a linear analysis with measured inputs only.
+    /// How certain the results are; of a linear or modal analysis with measured inputs only.
     pub uncertainty: Option<Uncertainty>,
     /// What a reader of the result must know.
     pub findings: Vec<Finding>,
@@ -136,10 +136,18 @@ pub(super) struct Outcome {
     pub path: Option<LoadPath>,
     /// Of large rotations.
     pub state: Option<State>,
-    /// Of a linear analysis.
-    pub factors: Option<Factors>,
+    /// What the uncertainty of the result is found from.
+    pub kept: Kept,
     /// What the analysis itself has to say.
     pub findings: Vec<Finding>,
+}
+
+/// What an analysis leaves that its result does not need, but the uncertainty of it does.
+pub(super) enum Kept {
+    /// Of an analysis that is not linear.
+    Nothing,
+    Factors(Factors),
+    Modes(Vec<solve::Mode>, Mass),
 }
 
 impl Outcome {
@@ -151,7 +159,7 @@ impl Outcome {
             history: None,
             path: None,
             state: None,
-            factors: None,
+            kept: Kept::Nothing,
             findings: Vec::new(),
         }
     }
@@ -205,15 +213,18 @@ impl PreparedCase<'_> {
     ) -> Result<CaseResult, StudyError> {
         let case = self.case;
         let model = self.model(section);
-        let Outcome { solution, frequencies, history, path, state, factors, findings: own } =
+        let Outcome { solution, frequencies, history, path, state, kept, findings: own } =
             analyse(self, &model, law)?;
-        let uncertainty = match factors.filter(|_| !inputs.is_empty()) {
-            Some(factors) => {
+        let uncertainty = match kept {
+            _ if inputs.is_empty() => None,
+            Kept::Nothing => None,
+            Kept::Modes(modes, mass) => Some(modal_uncertainty(&model, (&modes, mass), inputs)?),
+            Kept::Factors(factors) => {
                 let names = case.probes.iter().map(|p| p.name.as_str());
                 let named: Vec<_> = names.zip(self.probes.iter().copied()).collect();
-                Some(linear_uncertainty(&model, &solution, &factors, inputs, &named)?)
+                let recovery = self.recovery.get_or_init(|| Recovery::new(&model.mesh));
+                Some(linear_uncertainty(&model, (&solution, &factors), inputs, &named, recovery)?)
             }
-            None => None,
         };
         let w = |n: usize| solution.displacement[6 * n + 2];
         let w_max =
@@ -265,7 +276,7 @@ fn analyse(
     match &case.analysis {
         Analysis::Linear => {
             let (solution, factors) = solve::solve_keeping(model, Some(&prepared.plan), options)?;
-            Ok(Outcome { factors: Some(factors), ..Outcome::of(solution) })
+            Ok(Outcome { kept: Kept::Factors(factors), ..Outcome::of(solution) })
         }
         Analysis::Modal { modes, mass, lumped } => {
             let mass = mass_choice(case, *mass, *lumped)?;
@@ -277,7 +288,7 @@ fn analyse(
                 solution.displacement = first.shape.iter().map(|v| v / largest).collect();
             }
             let frequencies = modes.iter().map(solve::Mode::frequency).collect();
-            Ok(Outcome { frequencies, ..Outcome::of(solution) })
+            Ok(Outcome { frequencies, kept: Kept::Modes(modes, mass), ..Outcome::of(solution) })
         }
         Analysis::Newmark {
             duration,
@@ -388,7 +399,9 @@ fn lookup(quantity: &str, results: &CaseResult) -> Option<(f64, &'static str)> {
     }
     let (name, component) = quantity.split_once('.')?;
     let v = &results.probes.iter().find(|p| p.name == name)?.value;
-    let r = &v.resultants;
+    if let Some(k) = Resultants::COMPONENTS.iter().position(|(name, _)| *name == component) {
+        return Some((v.resultants.components()[k], Resultants::COMPONENTS[k].1));
+    }
     Some(match component {
         "u" => (v.u[0], "m"),
         "v" => (v.u[1], "m"),
@@ -396,14 +409,6 @@ fn lookup(quantity: &str, results: &CaseResult) -> Option<(f64, &'static str)> {
         "theta_x" => (v.theta[0], "rad"),
         "theta_y" => (v.theta[1], "rad"),
         "theta_z" => (v.theta[2], "rad"),
-        "moment_x" => (r.moment[0], "N"),
-        "moment_y" => (r.moment[1], "N"),
-        "moment_xy" => (r.moment[2], "N"),
-        "membrane_x" => (r.membrane[0], "N/m"),
-        "membrane_y" => (r.membrane[1], "N/m"),
-        "membrane_xy" => (r.membrane[2], "N/m"),
-        "shear_x" => (r.shear[0], "N/m"),
-        "shear_y" => (r.shear[1], "N/m"),
         _ => return None,
     })
 }

@@ -1,26 +1,30 @@
 //! How certain the result of a linear case is: the spread of the measured inputs, to first order.
 //!
-//! `K(p) u = f(p)`, and a result y(u, p) depends on an input p by
-//! `dy/dp = ∂y/∂p + λᵀ (∂f/∂p - ∂K/∂p u)` with the adjoint `K λ = ∂y/∂u`: one more substitution
-//! with the factor at hand for each result, and one loop over the elements for each input.
+//! `K(p) u = f(p)`, so that an input p moves the sheet by `K du/dp = ∂f/∂p - ∂K/∂p u`: one more
+//! substitution with the factor at hand for each input that matters, and every result follows, a
+//! displacement or a resultant. There are fewer inputs than results; the adjoint, one substitution for
+//! each result, gives the same numbers for more work. A frequency needs no solve:
+//! `dω²/dp = φᵀ (∂K/∂p - ω² ∂M/∂p) φ` for a mode of unit modal mass.
 
 use serde::Serialize;
 
 use super::StudyError;
 use crate::constitutive::{Input, SectionDerivative, bands};
-use crate::fields::Locator;
+use crate::element::Mass;
+use crate::fields::{Locator, Recovery, Resultants};
 use crate::model::{Dof, DofGroup, Model, ModelError};
 use crate::quantity::Bands;
 use crate::section::ShellSection;
 use crate::solve::assemble::{Kind, multiply};
-use crate::solve::{Factors, Solution};
+use crate::solve::{Factors, Mode, Solution};
 
 /// The predictions of a linear case and the inputs behind them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
     /// Measured inputs.
     pub inputs: Vec<Input>,
-    /// `w_max`, six components a probe as far as they were solved for, `strain_energy`.
+    /// `w_max`, the displacements, rotations and resultants of the probes as far as they were solved for,
+    /// `strain_energy`; of modes `frequency_1` and so on.
     pub predictions: Vec<Prediction>,
 }
 
@@ -72,55 +76,122 @@ const STEP: f64 = 1e-4;
 enum Reading {
     /// A sum of displacements: place (six a node) and weight.
     Displacement(Vec<(usize, f64)>),
+    /// A resultant at a probe: number of the probe and component.
+    Resultant(usize, usize),
     StrainEnergy,
 }
 
 /// The uncertainty of a solved linear model at named points.
 pub(super) fn linear_uncertainty(
     model: &Model,
-    solution: &Solution,
-    factors: &Factors,
+    (solution, factors): (&Solution, &Factors),
     inputs: &[Input],
     probes: &[(&str, Locator)],
+    recovery: &Recovery,
 ) -> Result<Uncertainty, StudyError> {
     let groups: Vec<DofGroup> = factors.groups().collect();
+    let u = &solution.displacement;
     let changes: Vec<Change> = inputs
         .iter()
-        .map(|input| Change::of(model, &input.derivative, &solution.displacement, &groups))
+        .map(|input| Change::of(model, &input.derivative, u, &groups))
         .collect::<Result<_, _>>()?;
+    // Inputs that change neither stiffness nor load move nothing.
+    let forces: Vec<Vec<f64>> = changes.iter().filter_map(Change::force).collect();
+    let mut moved = factors.solve(&forces)?.into_iter();
+    let motions: Vec<Option<Vec<f64>>> =
+        changes.iter().map(|c| if c.is_none() { None } else { moved.next() }).collect();
+    let resultants = |section: ShellSection, u: &[f64]| -> Result<Vec<[f64; 8]>, ModelError> {
+        let model = Model { section, ..model.clone() };
+        probes.iter().map(|(_, at)| Ok(recovery.at(&model, u, at)?.components())).collect()
+    };
+    // Per input, probe and component: by differences, which are exact to the square of the step,
+    // because a resultant is linear in the section and in the displacements.
+    let slopes: Vec<Vec<[f64; 8]>> = inputs
+        .iter()
+        .zip(&motions)
+        .map(|(input, motion)| {
+            let at = |by: f64| {
+                let mut u = u.clone();
+                motion.iter().flatten().zip(&mut u).for_each(|(du, u)| *u += by * du);
+                resultants(input.derivative.step(&model.section, by), &u)
+            };
+            let (up, down) = (at(STEP)?, at(-STEP)?);
+            let slope = |(up, down): (&[f64; 8], &[f64; 8])| {
+                std::array::from_fn(|k| (up[k] - down[k]) / (2.0 * STEP))
+            };
+            Ok(up.iter().zip(&down).map(slope).collect())
+        })
+        .collect::<Result<_, ModelError>>()?;
+    let values = resultants(model.section.clone(), u)?;
     let load = model.load_vector();
-    let u = &solution.displacement;
-    let readings = readings(model, solution, &groups, probes);
-    let gradients = readings.iter().map(|(.., reading)| match reading {
-        Reading::Displacement(terms) => {
-            let mut gradient = vec![0.0; u.len()];
-            terms.iter().for_each(|(k, weight)| gradient[*k] += weight);
-            gradient
-        }
-        // U = uᵀ K u / 2 has the gradient K u, which is the load at the free dofs.
-        Reading::StrainEnergy => load.clone(),
-    });
-    let adjoints = factors.solve(&gradients.collect::<Vec<_>>())?;
-    let predictions = readings
+    let predictions = readings(model, solution, &groups, probes)
         .into_iter()
-        .zip(adjoints)
-        .map(|((quantity, unit, reading), adjoint)| {
+        .map(|(quantity, unit, reading)| {
             let value = match &reading {
                 Reading::Displacement(terms) => terms.iter().map(|(k, weight)| weight * u[*k]).sum(),
+                Reading::Resultant(probe, component) => values[*probe][*component],
                 Reading::StrainEnergy => solution.strain_energy,
             };
-            let derivative = |change: &Change| {
-                let explicit = match reading {
-                    Reading::Displacement(_) => 0.0,
-                    Reading::StrainEnergy => 0.5 * along(u, &change.internal),
-                };
-                explicit + along(&adjoint, &change.load) - along(&adjoint, &change.internal)
+            let derivative = |i: usize| match &reading {
+                Reading::Displacement(terms) => {
+                    let moved = |du: &Vec<f64>| terms.iter().map(|(k, weight)| weight * du[*k]).sum();
+                    motions[i].as_ref().map_or(0.0, moved)
+                }
+                Reading::Resultant(probe, component) => slopes[i][*probe][*component],
+                // U = uᵀ K u / 2, and K u is the load at the dofs that are free to move.
+                Reading::StrainEnergy => 0.5 * along(u, &changes[i].internal) + along(&load, &motions[i]),
             };
-            let derivatives = changes.iter().map(derivative).collect();
+            let derivatives = (0..inputs.len()).map(derivative).collect();
             Prediction::new(quantity, unit, value, derivatives, inputs)
         })
         .collect();
     Ok(Uncertainty { inputs: inputs.to_vec(), predictions })
+}
+
+/// Frequencies closer than this part of themselves have no derivatives of their own: a change turns
+/// their modes into others.
+const APART: f64 = 1e-4;
+
+/// The uncertainty of natural frequencies (Hz); of a repeated frequency there is none.
+pub(super) fn modal_uncertainty(
+    model: &Model,
+    (modes, mass): (&[Mode], Mass),
+    inputs: &[Input],
+) -> Result<Uncertainty, StudyError> {
+    let mut predictions = Vec::new();
+    for (i, mode) in modes.iter().enumerate() {
+        let value = mode.frequency();
+        let apart = |other: &Mode| (other.frequency() - value).abs() > APART * value;
+        if value == 0.0 || !modes.iter().enumerate().all(|(j, other)| i == j || apart(other)) {
+            continue;
+        }
+        let derivatives = inputs
+            .iter()
+            .map(|input| {
+                let work = |kind| quadratic_change(model, &input.derivative, mode, kind);
+                let square = mode.angular_frequency.powi(2);
+                Ok(0.5 * value * (work(Kind::Stiffness)? / square - work(Kind::Mass(mass))?))
+            })
+            .collect::<Result<_, ModelError>>()?;
+        predictions.push(Prediction::new(format!("frequency_{}", i + 1), "1/s", value, derivatives, inputs));
+    }
+    Ok(Uncertainty { inputs: inputs.to_vec(), predictions })
+}
+
+/// φᵀ ∂A/∂ln p φ of the stiffness or the mass.
+fn quadratic_change(
+    model: &Model,
+    derivative: &SectionDerivative,
+    mode: &Mode,
+    kind: Kind,
+) -> Result<f64, ModelError> {
+    let shape = mode.group.gather(&mode.shape);
+    let at = |by: f64| {
+        let moved = Model { section: derivative.step(&model.section, by), ..model.clone() };
+        let product = multiply(&moved, mode.group, kind, &shape)?;
+        Ok::<f64, ModelError>(shape.iter().zip(product).map(|(a, b)| a * b).sum())
+    };
+    Ok((at(STEP)? - at(-STEP)?) / (2.0 * STEP))
 }
 
 /// ∂U/∂ln p of the strain energy U of a model that moves by prescribed displacements alone: there the
@@ -166,6 +237,20 @@ struct Change {
 }
 
 impl Change {
+    fn is_none(&self) -> bool {
+        self.load.is_none() && self.internal.is_none()
+    }
+
+    /// What moves the sheet: the change of the load less that of the internal forces.
+    fn force(&self) -> Option<Vec<f64>> {
+        match (&self.load, &self.internal) {
+            (None, None) => None,
+            (Some(load), None) => Some(load.clone()),
+            (None, Some(internal)) => Some(internal.iter().map(|f| -f).collect()),
+            (Some(load), Some(internal)) => Some(load.iter().zip(internal).map(|(l, f)| l - f).collect()),
+        }
+    }
+
     fn of(
         model: &Model,
         derivative: &SectionDerivative,
@@ -229,12 +314,17 @@ fn readings(
     if let Some(node) = largest.filter(|_| is_solved(&Dof::W)) {
         all.push(("w_max".into(), "m", Reading::Displacement(vec![(6 * node + 2, 1.0)])));
     }
-    for (name, locator) in probes {
+    for (number, (name, locator)) in probes.iter().enumerate() {
         for dof in Dof::ALL.into_iter().filter(is_solved) {
             let nodes = model.mesh.quads[locator.quad].iter().zip(locator.weights);
             let terms = nodes.map(|(n, weight)| (6 * *n as usize + dof as usize, weight)).collect();
             let unit = if matches!(dof, Dof::U | Dof::V | Dof::W) { "m" } else { "rad" };
             all.push((format!("{name}.{}", dof.name()), unit, Reading::Displacement(terms)));
+        }
+        for (k, (component, unit)) in Resultants::COMPONENTS.into_iter().enumerate() {
+            if is_solved(if k < 3 { &Dof::U } else { &Dof::W }) {
+                all.push((format!("{name}.{component}"), unit, Reading::Resultant(number, k)));
+            }
         }
     }
     all.push(("strain_energy".into(), "J", Reading::StrainEnergy));

@@ -12,7 +12,7 @@ use super::super::{Case, CaseResult, PreparedCase, build};
 use super::*;
 use crate::analytical::Plate;
 use crate::characterise::{FabricSheet, Key};
-use crate::constitutive::{Assumptions, section};
+use crate::constitutive::{Assumptions, Standing, section};
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::Estimate;
 use crate::section::ShellSection;
@@ -42,7 +42,7 @@ fn solved(case: &Case, section: &ShellSection, inputs: &[Input]) -> CaseResult {
 }
 
 fn input(name: &str, derivative: SectionDerivative) -> Input {
-    Input { name: name.into(), estimate: Estimate::single(1.0), derivative }
+    Input { name: name.into(), estimate: Estimate::single(1.0), standing: Standing::Shear, derivative }
 }
 
 /// A bending stiffness D11, D22, D66 and each of them as an input, with the shear as a fourth.
@@ -121,7 +121,7 @@ fn differences_agree(case: &Case) {
     let c = section(&cloth(), &Assumptions::default()).unwrap();
     let result = solved(case, &c.section, &c.inputs);
     let predictions = &result.uncertainty.as_ref().unwrap().predictions;
-    assert_eq!(predictions.len(), 8, "w_max, six components, energy");
+    assert_eq!(predictions.len(), 16, "w_max, six components, eight resultants, energy");
     for (i, input) in c.inputs.iter().enumerate() {
         // Truncation h²/6 of the order of 1e-8; rounding of the solution 1e-10 over h.
         let h = 3e-4;
@@ -131,11 +131,54 @@ fn differences_agree(case: &Case) {
         };
         for ((p, up), down) in predictions.iter().zip(at(h)).zip(at(-h)) {
             let slope = (up.value - down.value) / (2.0 * h);
-            // A small component of a large field has the rounding of the field (1e-12 over h).
+            // A small component of a large field has the rounding of the field (1e-12 over h); resultants
+            // are small differences of displacements and rotations, with a hundred times more.
             let same_unit = predictions.iter().filter(|q| q.unit == p.unit);
             let field = same_unit.map(|q| q.value.abs()).fold(0.0, f64::max);
-            let epsilon = f64::max(1e-6 * p.value.abs(), 1e-8 * field);
+            let rounding = if p.unit.starts_with('N') { 1e-6 } else { 1e-8 };
+            let epsilon = f64::max(1e-6 * p.value.abs(), rounding * field);
             assert_relative_eq!(p.derivatives[i], slope, max_relative = 1e-6, epsilon = epsilon);
+        }
+    }
+}
+
+/// In the middle, beside a side, and in a corner, where patches are fitted.
+#[test]
+fn resultants_of_the_few_elements_around_a_point_are_those_of_the_field() {
+    let probe = |name, at: [&str; 2]| format!("[[probes]]\nname = \"{name}\"\nat = {at:?}\n");
+    let more = [probe("side", ["1 cm", "11 cm"]), probe("corner", ["20 cm", "20 cm"])].concat();
+    let c = section(&cloth(), &Assumptions::default()).unwrap();
+    let result = solved(&case(6, &format!("{MIXED}{more}")), &c.section, &c.inputs);
+    let uncertainty = result.uncertainty.as_ref().unwrap();
+    for p in &result.probes {
+        for ((name, _), value) in Resultants::COMPONENTS.iter().zip(p.value.resultants.components()) {
+            let near = uncertainty.of(&format!("{}.{name}", p.name)).unwrap().value;
+            assert_relative_eq!(near, value, max_relative = 1e-10, epsilon = 1e-16);
+        }
+    }
+}
+
+/// The cloth is not the same along and across, and so no frequency repeats.
+#[test]
+fn derivatives_of_frequencies_agree_with_differences() {
+    for mass in ["lumped", "consistent"] {
+        let rest = format!(
+            "[analysis]\nkind = \"modal\"\nmodes = 4\nmass = \"{mass}\"\n\
+             [[supports]]\nset = \"boundary\"\nkind = \"clamped\"\n"
+        );
+        let case = case(6, &rest);
+        let c = section(&cloth(), &Assumptions::default()).unwrap();
+        let result = solved(&case, &c.section, &c.inputs);
+        let predictions = &result.uncertainty.as_ref().unwrap().predictions;
+        assert_eq!(predictions.len(), 4);
+        for (i, input) in c.inputs.iter().enumerate() {
+            let h = 3e-4;
+            let at = |by: f64| solved(&case, &input.derivative.step(&c.section, by), &[]).frequencies;
+            for (p, (up, down)) in predictions.iter().zip(at(h).into_iter().zip(at(-h))) {
+                let slope = (up - down) / (2.0 * h);
+                // The iteration leaves 1e-11 of an eigenvalue, over h.
+                assert_relative_eq!(p.derivatives[i], slope, max_relative = 1e-6, epsilon = 1e-7 * p.value);
+            }
         }
     }
 }

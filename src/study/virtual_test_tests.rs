@@ -1,6 +1,7 @@
 //! References: closed forms, published estimates, differences of whole solutions, and Monte Carlo.
 
 use super::*;
+use crate::constitutive::Standing;
 use approx::assert_relative_eq;
 use nalgebra::{Matrix2, Matrix3};
 use std::path::Path;
@@ -105,7 +106,12 @@ fn bands_agree_with_monte_carlo() {
             ("B warp", five(1e-5, 0.07), of([0.0; 4], [1.0, 0.0, 0.0])),
             ("B weft", five(6e-6, 0.07), of([0.0; 4], [0.0, 1.0, 0.0])),
         ]
-        .map(|(name, estimate, derivative)| Input { name: name.into(), estimate, derivative })
+        .map(|(name, estimate, derivative)| Input {
+            name: name.into(),
+            estimate,
+            standing: Standing::Shear,
+            derivative,
+        })
         .to_vec();
         let case = Case::parse(
             Path::new("t.toml"),

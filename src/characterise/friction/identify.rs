@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::nnls::nnls;
+use super::nnls::{nnls, triangle};
 use crate::law::{Backbone, Channel, Family, LawError, Slider, Widening};
 
 /// Slip levels offered to the fit, as parts of the greatest strain: log-spaced. Larger ones make
@@ -19,6 +19,8 @@ const KNOTS: [f64; 7] = [-1.0, -0.64, -0.32, 0.0, 0.32, 0.64, 1.0];
 /// Greatest widening that is tried: with the largest slip level the level still grows more slowly
 /// than the strain (2 x 0.12 x 4 < 1).
 const WIDEST: f64 = 4.0;
+/// The slip levels are chosen with a widening known to this.
+const ABOUT: f64 = 0.2;
 /// Second differences of the tangent are held down by this weight where the noise is
 /// [`RIDGE_NOISE`] of the span, and in proportion to the noise.
 const RIDGE: f64 = 1e-3;
@@ -88,16 +90,19 @@ pub(super) fn two_sided(path: &Path) -> Option<Channel> {
     let knots: Vec<f64> = KNOTS.into_iter().filter(|k| *k > low - 0.1).collect();
     let problem = Problem::new(&path, knots, false)?;
     let widening = |alpha| Widening::Quadratic { alpha, e_max: 1.0 };
-    let search = |levels: &[f64]| {
+    let search = |levels: &[f64], places: &[f64], tolerance: f64| {
         let mut active = vec![false; problem.columns(&[levels])];
-        let alpha = lowest(0.0, WIDEST, problem.noise, |alpha| {
+        let alpha = lowest(places, tolerance, |alpha| {
             problem.fit(&[(&widening(alpha), levels)], &mut active).map_or(f64::INFINITY, |f| f.residual)
         });
         Some((alpha, problem.fit(&[(&widening(alpha), levels)], &mut active)?))
     };
-    let (_, offered) = search(&levels())?;
+    // The first search finds the levels and about where the widening lies, the second the widening.
+    let places: Vec<f64> = (0..=8).map(|i| f64::from(i) / 8.0 * WIDEST).collect();
+    let (about, offered) = search(&levels(), &places, ABOUT)?;
     let levels = lump(&offered.sliders[0]);
-    let (alpha, fit) = search(&levels)?;
+    let near = [(about - 3.0 * ABOUT).max(0.0), about, (about + 3.0 * ABOUT).min(WIDEST)];
+    let (alpha, fit) = search(&levels, &near, WIDEST * problem.noise.clamp(1e-12, 1e-2))?;
     fit.channel(&problem.knots, &[widening(alpha)], size, false).ok()
 }
 
@@ -255,22 +260,21 @@ impl<'a> Problem<'a> {
 
     /// The best weights for sliders of given slip levels in families; `active` as in [`nnls`].
     fn fit(&self, families: &[(&Widening, &[f64])], active: &mut [bool]) -> Option<Fit> {
-        let fixed = self.backbone.ncols();
-        let mut a = self.backbone.clone().resize_horizontally(active.len(), 0.0);
+        let (fixed, n) = (self.backbone.ncols(), active.len());
+        let mut a = DMatrix::zeros(self.backbone.nrows(), n + 1);
+        a.columns_mut(0, fixed).copy_from(&self.backbone);
         let mut column = fixed;
         for (widening, levels) in families {
             self.slide(widening, levels, &mut a, column);
             column += levels.len();
         }
-        // The triangle of A has the same normal equations, and far fewer rows.
-        let qr = a.qr();
-        let mut target = self.target.clone();
-        qr.q_tr_mul(&mut target);
-        let r = qr.unpack_r();
-        let lost = target.rows_range(r.nrows()..).norm_squared();
-        let target = target.rows(0, r.nrows()).into_owned();
+        a.set_column(n, &self.target);
+        // The triangle of (A b) has the same normal equations, and far fewer rows.
+        let r = triangle(a);
+        let target = r.column(n).into_owned();
+        let r = r.columns(0, n).into_owned();
         let x = nnls(&r, &target, 1, active);
-        let residual = ((&target - &r * &x).norm_squared() + lost).sqrt();
+        let residual = (&target - &r * &x).norm();
         let mut weights = x.iter().skip(fixed);
         let sliders = families
             .iter()
@@ -344,20 +348,17 @@ impl Fit {
     }
 }
 
-/// The place of the least value of a function between `low` and `high`, to `tolerance` of the
-/// range: golden sections about the best of nine points, as there may be more minima than one.
-fn lowest(low: f64, high: f64, tolerance: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+/// The place of the least value of a function, to `tolerance`: golden sections about the best of
+/// some places in rising order, as there may be more minima than one.
+fn lowest(places: &[f64], tolerance: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
     const PART: f64 = 0.618_033_988_749_894_9;
-    const CELLS: u32 = 8;
-    let cell = (high - low) / f64::from(CELLS);
-    let at = |i: u32| low + cell * f64::from(i);
-    let best = (0..=CELLS).map(|i| (i, f(at(i)))).min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |b| b.0);
-    // The last bits of a residual are noise of their own.
-    let end = (high - low) * tolerance.clamp(1e-12, 1e-2);
-    let (mut a, mut b) = (at(best.saturating_sub(1)), at((best + 1).min(CELLS)));
+    let tried: Vec<f64> = places.iter().map(|&p| f(p)).collect();
+    let best = (0..tried.len()).min_by(|&i, &j| tried[i].total_cmp(&tried[j])).unwrap_or(0);
+    let last = places.len() - 1;
+    let (mut a, mut b) = (places[best.saturating_sub(1)], places[(best + 1).min(last)]);
     let (mut x, mut y) = (b - PART * (b - a), a + PART * (b - a));
     let (mut fx, mut fy) = (f(x), f(y));
-    while b - a > end {
+    while b - a > tolerance {
         if fx <= fy {
             (b, y, fy) = (y, x, fx);
             x = b - PART * (b - a);
@@ -368,8 +369,7 @@ fn lowest(low: f64, high: f64, tolerance: f64, mut f: impl FnMut(f64) -> f64) ->
             fy = f(y);
         }
     }
-    // The end of the range itself, where the least value lies there.
+    // A place that was tried may be the best, the end of the range above all.
     let (place, value) = if fx <= fy { (x, fx) } else { (y, fy) };
-    let ends = [low, high].map(|end| (end, f(end)));
-    ends.into_iter().find(|e| e.1 <= value).map_or(place, |e| e.0)
+    if tried[best] <= value { places[best] } else { place }
 }

@@ -7,6 +7,7 @@
 //! slip levels, a search for the widening, then six sliders that carry equal parts of the friction
 //! in place of the levels found, and the weights again.
 
+mod bands;
 mod closed_form;
 mod identify;
 mod loop_fit;
@@ -27,9 +28,11 @@ use crate::instrument::{Direction, Parameter, Test};
 use crate::law::Channel;
 use crate::quantity::{Curve, Estimate};
 
+pub use bands::LawBand;
 pub use closed_form::ClosedForm;
 pub use loop_fit::{CycleFit, LoopFit};
 pub use record::{cycle, extract};
+pub use summary::bending_law;
 
 /// A law of one test in one direction.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -149,20 +152,21 @@ impl FrictionLaw {
 
     /// Number and path of each measured cycle.
     fn cycles(&self, sheet: &FabricSheet) -> Vec<(usize, Path)> {
-        if self.basis == Basis::Strip {
-            let strip = sheet
-                .strips
-                .iter()
-                .find(|s| Some(s.direction) == self.direction && strip::number(s) == self.specimen);
-            return strip.map(strip::paths).unwrap_or_default().into_iter().enumerate().collect();
-        }
         let mine = |s: &&SpecimenResult| {
             let m = &s.measurement;
             (m.test, m.direction, m.specimen) == (self.test, self.direction, self.specimen)
         };
         let one_sided = self.channel.is_one_sided();
-        let specimen = sheet.specimens.iter().find(mine);
-        let found = specimen.and_then(|s| path(s, self.thickness, one_sided, CycleChoice::First));
+        let found = if self.basis == Basis::Strip {
+            let strip = sheet
+                .strips
+                .iter()
+                .find(|s| Some(s.direction) == self.direction && strip::number(s) == self.specimen);
+            strip.and_then(strip::history)
+        } else {
+            let specimen = sheet.specimens.iter().find(mine);
+            specimen.and_then(|s| path(s, self.thickness, one_sided, CycleChoice::First))
+        };
         let Some((path, cycles)) = found else { return Vec::new() };
         let cycle = |(i, range): (usize, std::ops::Range<usize>)| (i, Path { fitted: range, ..path.clone() });
         cycles.into_iter().enumerate().filter(|(_, r)| !r.is_empty()).map(cycle).collect()

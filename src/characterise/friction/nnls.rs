@@ -1,7 +1,10 @@
 //! Least squares with weights that are not negative.
 //!
-//! The `nnls` crate would bring `ndarray` and a second `rand`; on nalgebra's QR the method is short.
+//! The `nnls` crate would bring `ndarray` and a second `rand`; on a QR factorisation the method is short.
 
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::qr::no_pivoting::factor::{qr_in_place, qr_in_place_scratch};
+use faer::{Mat, MatMut, Par};
 use nalgebra::{DMatrix, DVector};
 
 /// Minimises `|a x - b|` with `x >= 0` except in the first `free` columns (Lawson and Hanson 1974,
@@ -62,17 +65,37 @@ fn solve(a: &DMatrix<f64>, b: &DVector<f64>, columns: &[usize]) -> DVector<f64> 
     if columns.is_empty() {
         return DVector::zeros(0);
     }
-    let qr = a.select_columns(columns).qr();
-    let mut rhs = b.clone();
-    qr.q_tr_mul(&mut rhs);
-    let r = qr.unpack_r();
-    let mut x = DVector::zeros(columns.len());
-    for i in (0..columns.len()).rev() {
-        let rest = rhs[i] - (i + 1..columns.len()).map(|j| r[(i, j)] * x[j]).sum::<f64>();
+    let k = columns.len();
+    let mut chosen = a.select_columns(columns).resize_horizontally(k + 1, 0.0);
+    chosen.set_column(k, b);
+    let r = triangle(chosen);
+    let mut x = DVector::zeros(k);
+    for i in (0..k).rev() {
+        let rest = r[(i, k)] - (i + 1..k).map(|j| r[(i, j)] * x[j]).sum::<f64>();
         let dependent = r[(i, i)].abs() <= 1e-13 * r.column(i).norm();
         x[i] = if dependent { 0.0 } else { rest / r[(i, i)] };
     }
     x
+}
+
+/// The triangle R of A = Q R, with as many rows as A has columns.
+///
+/// By faer: nalgebra's reflections, column after column, took half the time of an import.
+pub(super) fn triangle(mut a: DMatrix<f64>) -> DMatrix<f64> {
+    let (rows, n) = a.shape();
+    let m = rows.min(n);
+    // Measured: blocks pay for the tall matrix of a record only, and narrow ones.
+    let size = if rows < 64 { 1 } else { m.min(8) };
+    let mut coefficients = Mat::zeros(size, m);
+    let mut memory = MemBuffer::new(qr_in_place_scratch::<f64>(rows, n, size, Par::Seq, Default::default()));
+    qr_in_place(
+        MatMut::from_column_major_slice_mut(a.as_mut_slice(), rows, n),
+        coefficients.as_mut(),
+        Par::Seq,
+        MemStack::new(&mut memory),
+        Default::default(),
+    );
+    DMatrix::from_fn(n, n, |i, j| if i <= j && i < rows { a[(i, j)] } else { 0.0 })
 }
 
 #[cfg(test)]

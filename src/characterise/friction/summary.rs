@@ -102,6 +102,14 @@ fn sliders(stress: f64, e_max: f64) -> Vec<Slider> {
     LEVELS.map(slider).to_vec()
 }
 
+/// The law of bending with a rigidity `b` (N·m) and a loop of width 2HB (N), slip levels assumed.
+///
+/// # Errors
+/// M020 for values that are negative or not finite.
+pub fn bending_law(b: f64, width: f64) -> Result<Channel, LawError> {
+    bending(b, width, Curvature(250.0).si())
+}
+
 /// `M = B K` and friction of half the width 2HB.
 fn bending(b: f64, width: f64, e_max: f64) -> Result<Channel, LawError> {
     let family = Family { widening: Widening::Constant, sliders: sliders(0.5 * width, e_max) };

@@ -234,7 +234,9 @@ fn laws_of_summary_values_give_them_back() {
 }
 
 /// Cupro weave (Browzwear FAB, U3M 1.1): last cycle fitted, the one before it predicted. The bounds
-/// are the figures reached, rounded up; those of the straight line stand beside them.
+/// are the figures reached, rounded up; those of the straight line stand beside them. Two strips are beyond the
+/// 4 % that the others keep: at the turn of the drive their stress relaxes (on the bias from 102 to 95 gf/cm while
+/// the clamps still part), which no law without time can follow.
 #[test]
 fn strips_of_a_real_cupro_weave() {
     use crate::instrument::{Direction, fab::FabKind};
@@ -248,12 +250,12 @@ fn strips_of_a_real_cupro_weave() {
     let sheet = crate::characterise::characterise(&batch.fabrics[0], &Default::default());
     // Direction, strip, last cycle, the one before (NRMSE, %).
     let reached = [
-        (Direction::Warp, 1, 0.50, 3.0),
-        (Direction::Warp, 2, 0.30, 2.9),
-        (Direction::Weft, 1, 0.75, 7.3),
-        (Direction::Weft, 2, 0.45, 3.9),
+        (Direction::Warp, 1, 0.50, 2.9),
+        (Direction::Warp, 2, 0.35, 2.8),
+        (Direction::Weft, 1, 0.75, 7.2),
+        (Direction::Weft, 2, 0.55, 3.7),
         (Direction::Bias, 1, 0.45, 3.1),
-        (Direction::Bias, 2, 1.15, 7.0),
+        (Direction::Bias, 2, 1.15, 7.05),
     ];
     assert_eq!(sheet.strips.iter().filter(|s| s.kind == FabKind::S1).count(), 3);
     for (direction, strip, fitted, inner) in reached {

@@ -10,7 +10,7 @@ use super::axes::{Frame, Range};
 use super::canvas::{Canvas, HEIGHT, Point, Stroke, WIDTH};
 use super::loops::{self, TestAxes, Trace};
 use super::marks::{Marks, has_readings, reading_stroke};
-use super::palette::{self, darker, lighter};
+use super::palette::{self, GREY, darker, lighter};
 use super::panel::{self, Row};
 use super::spread::Spread;
 use super::{ChartError, Head, schematic};
@@ -34,6 +34,8 @@ pub struct SimulatedCurve {
     pub band: Option<[Curve; 2]>,
     /// The fewest repeats behind the band.
     pub repeats: Option<usize>,
+    /// Names and values beside the chart.
+    pub values: Vec<(String, String)>,
 }
 
 impl From<&Comparison> for SimulatedCurve {
@@ -53,6 +55,7 @@ impl From<&Comparison> for SimulatedCurve {
             r2: finite(comparison.r2),
             band: None,
             repeats: None,
+            values: Vec::new(),
         }
     }
 }
@@ -210,7 +213,8 @@ fn draw_traces(
 /// How far the simulated curves are from the measured ones.
 fn distance_rows(axes: &TestAxes, simulated: &[SimulatedCurve]) -> Vec<Row> {
     let mut rows = Vec::new();
-    for curve in simulated.iter().filter(|c| c.rmse.or(c.nrmse).or(c.r2).is_some()) {
+    let told = |c: &&SimulatedCurve| c.rmse.or(c.nrmse).or(c.r2).is_some() || !c.values.is_empty();
+    for curve in simulated.iter().filter(told) {
         rows.push(Row::Gap);
         let direction = curve.direction.map_or(String::new(), |d| format!("{d}, "));
         rows.push(Row::Heading(format!("{direction}{}", curve.label)));
@@ -224,6 +228,7 @@ fn distance_rows(axes: &TestAxes, simulated: &[SimulatedCurve]) -> Vec<Row> {
         if let Some(r2) = curve.r2 {
             rows.push(Row::Value("R²".into(), fixed(r2, 4)));
         }
+        rows.extend(curve.values.iter().map(|(name, value)| Row::Remark(format!("{name}: {value}"), GREY)));
     }
     rows
 }

@@ -138,8 +138,8 @@ fn rows(loops: &BendLoops) -> Vec<Row> {
     if let Some(friction) = &loops.friction {
         rows.push(Row::Sample(friction_line(true), "friction, fitted".into()));
         rows.push(Row::Sample(friction_line(false), "friction, predicted".into()));
-        rows.push(Row::Value("B".into(), micro(friction.rigidity, "µN·m")));
-        rows.push(Row::Value("2HB/2".into(), micro(friction.couple, "µN")));
+        rows.push(Row::Value("B as KES".into(), micro(friction.kes_rigidity, "µN·m")));
+        rows.push(Row::Value("2HB/2 as KES".into(), micro(friction.kes_couple, "µN")));
     }
     rows.extend([Row::Gap, Row::Remark("NRMSE: elastic | friction".into(), GREY)]);
     let percent = |a: Option<Agreement>| a.map_or("–".into(), |a| fixed(100.0 * a.nrmse, 1));

@@ -1,11 +1,11 @@
 //! Measured loops beside their friction laws: dots, the law, a straight line, residuals, figures.
 
-use crate::characterise::{Basis, FabricSheet, FrictionLaw, LawTrace};
+use crate::characterise::{Basis, FabricSheet, FrictionLaw, LawBand, LawTrace};
 use crate::instrument::{Direction, Parameter, Test};
 use crate::report::number::{plain_exponent, power_of_ten, significant, unit_text};
 
 use super::axes::{Frame, Label, Range};
-use super::canvas::{Align, Canvas, HEIGHT, Stroke, Type, WIDTH};
+use super::canvas::{Align, Canvas, HEIGHT, Point, Stroke, Type, WIDTH};
 use super::fabric::symbol;
 use super::loops::TestAxes;
 use super::palette::{self, GREY, INK, darker, lighter};
@@ -23,6 +23,8 @@ const HEIGHTS: [f64; 4] = [205.0, 890.0, 995.0, 1225.0];
 struct Loop<'a> {
     law: &'a FrictionLaw,
     traces: Vec<LawTrace>,
+    /// Over the specimens, where there are several.
+    band: Option<LawBand>,
 }
 
 /// The laws of a test beside the loops that they are identified from, one panel a direction (the
@@ -73,8 +75,12 @@ fn loops(sheet: &FabricSheet, test: Option<Test>) -> Vec<Loop<'_>> {
         // The long strips: less of their extension is in the clamps.
         None => sheet.laws.iter().filter(|l| l.basis == Basis::Strip && l.specimen == 2).collect(),
     };
-    let with = |law: &'_ _| -> Vec<LawTrace> { FrictionLaw::traces(law, sheet) };
-    laws.into_iter().map(|law| Loop { law, traces: with(law) }).filter(|l| !l.traces.is_empty()).collect()
+    let bands = if test.is_some() { sheet.law_bands() } else { Vec::new() };
+    let of = |law: &FrictionLaw| {
+        bands.iter().find(|b| (b.test, b.direction) == (law.test, law.direction)).cloned()
+    };
+    let with = |law| Loop { law, traces: FrictionLaw::traces(law, sheet), band: of(law) };
+    laws.into_iter().map(with).filter(|l| !l.traces.is_empty()).collect()
 }
 
 fn law_stroke(law: &FrictionLaw) -> Stroke {
@@ -83,6 +89,14 @@ fn law_stroke(law: &FrictionLaw) -> Stroke {
 }
 
 const LINE: Stroke = Stroke { color: GREY, width: 2.6, dash: Some([14.0, 10.0]) };
+
+/// Edges of the band of one more specimen.
+const NEXT: Stroke = Stroke { color: GREY, width: 2.0, dash: Some([4.0, 6.0]) };
+
+/// The band of the mean fabric.
+fn mean_color(law: &FrictionLaw) -> plotters::prelude::RGBColor {
+    lighter(palette::direction(law.direction, 1.0).color, 0.72)
+}
 
 /// Fitted dots have the colour of the direction, predicted ones the fifth colour.
 fn dot_color(law: &FrictionLaw, fitted: bool) -> plotters::prelude::RGBColor {
@@ -97,9 +111,22 @@ fn draw_loop(
 ) -> Result<(), ChartError> {
     let Some(fit) = &one.law.fit else { return Ok(()) };
     let [top, bottom, lower_top, lower_bottom] = HEIGHTS;
-    let xs = || one.traces.iter().flat_map(|t| t.x.iter().map(|x| x / axes.x_factor));
+    let edges: Vec<[Vec<Point>; 4]> = (one.band.iter().flat_map(|b| &b.branches))
+        .map(|b| [&b.low, &b.high, &b.next_specimen[0], &b.next_specimen[1]].map(|c| axes.convert(c)))
+        .collect();
+    let of_edges = || edges.iter().flatten().flatten().copied();
+    let xs = one.traces.iter().flat_map(|t| t.x.iter().map(|x| x / axes.x_factor));
     let ys = one.traces.iter().flat_map(|t| t.measured.iter().chain(&t.law).map(|y| y / axes.y_factor));
-    let frame = Frame { left, top, right, bottom, x: Range::around(xs()), y: Range::around(ys) };
+    let (xs, ys) = (xs.chain(of_edges().map(|p| p.0)), ys.chain(of_edges().map(|p| p.1)));
+    let frame = Frame { left, top, right, bottom, x: Range::around(xs), y: Range::around(ys) };
+    for [low, high, next_low, next_high] in &edges {
+        let place = |p: &Point| frame.at(p.0, p.1);
+        let around: Vec<Point> = low.iter().chain(high.iter().rev()).map(place).collect();
+        canvas.polygon(&around, mean_color(one.law))?;
+        for edge in [next_low, next_high] {
+            canvas.line(&edge.iter().map(place).collect::<Vec<_>>(), NEXT)?;
+        }
+    }
     let no_x = Label::new("", "");
     frame.draw(canvas, &no_x, &Label { second: None, ..axes.y.clone() }, true)?;
     let title = Type::new(29.0, INK).bold().align(Align::Centre);
@@ -163,6 +190,11 @@ fn legend(loops: &[Loop<'_>]) -> Vec<Row> {
         Row::Sample(LINE, "straight line".into()),
         Row::Sample(Stroke::solid(lighter(GREY, 0.7), 22.0), "± 2 SD of the noise".into()),
     ];
+    if let Some(band) = loops.iter().find_map(|l| l.band.as_ref()) {
+        let mean = format!("95 %, mean (n = {})", band.n);
+        rows.push(Row::Sample(Stroke::solid(mean_color(law), 22.0), mean));
+        rows.push(Row::Sample(NEXT, "95 %, next specimen".into()));
+    }
     if loops.iter().any(|l| l.traces.iter().any(|t| !t.fitted)) {
         rows.insert(1, Row::Sample(dots(false), "measured, not fitted".into()));
         let dashed = Stroke { width: 2.4, dash: Some([9.0, 7.0]), ..law_stroke(law) };

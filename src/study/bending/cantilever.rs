@@ -6,13 +6,13 @@
 //! ([`bending_length_ratio`]), of which "half the overhang" is the value at 41.5°.
 //!
 //! A cantilever loads cloth that was at rest: friction adds its whole moment HB = 2HB/2 wherever the strip
-//! slips, and the strip hangs out farther than its rigidity says. Known from HB alone, the friction is that of
-//! three sliders of equal moment with slip curvatures of 0.03 to 0.1 1/cm.
+//! slips, and the strip hangs out farther than its rigidity says. So it follows the curve of first loading of
+//! its law; either face may be up, so the two sides of the law are averaged.
 
 use crate::analytical::beam::{bending_length, peirce_ratio};
 use crate::analytical::elastica::bending_length_ratio;
 use crate::instrument::Direction;
-use crate::law::{Backbone, Channel, Family, Mode, Slider, Widening};
+use crate::law::{Channel, Mode};
 use crate::model::Support;
 use crate::quantity::{Curve, STANDARD_GRAVITY};
 use crate::section::{SheetLaw, ShellSection};
@@ -50,14 +50,14 @@ pub struct Cantilever {
     pub iterations: usize,
     /// Whether the equilibrium is stable.
     pub stable: bool,
-    /// The test with friction; none where the hysteresis of bending is not known.
+    /// The test with friction; none without a law.
     pub friction: Option<WithFriction>,
 }
 
 /// A cantilever of cloth with friction, loaded for the first time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WithFriction {
-    /// Moment per width at which all of the friction slips, 2HB/2 (N).
+    /// Moment per width at which all of the friction slips near the straight strip, 2HB/2 (N).
     pub couple: f64,
     /// `μ = HB c/B`: friction beside rigidity in this test.
     pub mu: f64,
@@ -82,15 +82,14 @@ impl Cantilever {
 const ANGLE_TOLERANCE: f64 = 1e-9;
 
 /// Simulates the test with `cells` elements along the strip, which is `width` (m) wide with free edges; without a
-/// width it bends to a cylinder. `couple` is half of the bending hysteresis, 2HB/2 (N), where it is known.
+/// width it bends to a cylinder. `law` is that of bending along `direction`, where there is one.
 ///
 /// # Errors
-/// See [`StudyError`]; S004 if no length hangs at the angle; M020 for a couple that is negative or not
-/// finite.
+/// See [`StudyError`]; S004 if no length hangs at the angle.
 pub fn cantilever(
     section: &ShellSection,
     direction: Direction,
-    couple: Option<f64>,
+    law: Option<&Channel>,
     width: Option<f64>,
     cells: usize,
 ) -> Result<Cantilever, StudyError> {
@@ -98,13 +97,15 @@ pub fn cantilever(
     let closed_form = bending_length(rigidity, section.areal_density * STANDARD_GRAVITY);
     let specimen = Specimen { section, direction, width, cells };
     let elastic = specimen.hang(None, closed_form)?;
-    let friction = couple
-        .filter(|couple| *couple != 0.0)
-        .map(|couple| {
+    let friction = law
+        .map(|law| (law, law.couple()))
+        .filter(|(_, couple)| *couple > 0.0)
+        .map(|(law, couple)| {
             let mu = couple * closed_form / rigidity;
             let estimate = closed_form * (1.0 + 0.423 * mu - 0.056 * mu * mu);
-            let law = first_loading(rigidity, couple, direction)?;
-            let hung = specimen.hang(Some(law), estimate)?;
+            let along = if direction == Direction::Weft { 4 } else { 3 };
+            let channels = std::array::from_fn(|i| (i == along).then(|| law.symmetric()));
+            let hung = specimen.hang(Some(SheetLaw::new(Mode::Virgin, channels)), estimate)?;
             let (overhang, bending_length) = (hung.overhang, ratio() * hung.overhang);
             Ok::<_, StudyError>(WithFriction {
                 couple,
@@ -136,20 +137,6 @@ pub fn cantilever(
 fn ratio() -> f64 {
     // It exists for this angle.
     bending_length_ratio(CHORD_ANGLE_DEG.to_radians()).unwrap_or(0.5)
-}
-
-/// Slip curvatures of friction of which only the moment is known (1/m).
-const SLIPS: [f64; 3] = [3.0, 5.5, 10.0];
-
-/// The law of first loading with a rigidity and a friction couple along a direction.
-fn first_loading(rigidity: f64, couple: f64, direction: Direction) -> Result<SheetLaw, StudyError> {
-    let share = couple / SLIPS.len() as f64;
-    let sliders = SLIPS.map(|slip| Slider { stiffness: share / slip, slip }).to_vec();
-    let family = Family { widening: Widening::Constant, sliders };
-    let law = Channel::new(Backbone::line(rigidity)?, vec![family], false)?;
-    let along = if direction == Direction::Weft { 4 } else { 3 };
-    let channels = std::array::from_fn(|i| (i == along).then(|| law.clone()));
-    Ok(SheetLaw::new(Mode::Virgin, channels))
 }
 
 /// What is hung over the edge.

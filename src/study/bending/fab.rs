@@ -2,7 +2,8 @@
 //! hanging down or standing up between them; force against clamp distance.
 //!
 //! The two short tests (`D1` down, `U1` up) identify the bending rigidity, and beside it a law with friction, by
-//! least squares over their outermost cycle. The inner cycles, and the long test (`D2`), are then
+//! least squares over their outermost cycle. Where the file says when they were recorded, and both are of one
+//! mounting, they are one history: the second test finds what the first has left. The inner cycles, and the long test (`D2`), are then
 //! predicted. The zero of the load is unknown in every test of this instrument: one constant a test, the mean
 //! difference over the outermost cycle, is taken off everywhere.
 //!
@@ -94,8 +95,10 @@ impl BendLoop {
 pub struct Friction {
     /// Bending rigidity of its elastic part (N·m).
     pub rigidity: f64,
-    /// Moment per width at which all sliders slip, half the width of the loop, 2HB/2 (N).
-    pub couple: f64,
+    /// B that KES-FB2 would read from the law in its cycle to 2.5 1/cm (N·m).
+    pub kes_rigidity: f64,
+    /// Half of 2HB that it would read (N).
+    pub kes_couple: f64,
     /// The law: moment per width over curvature.
     pub law: Channel,
     /// Times that the strip was bent anew.
@@ -149,29 +152,51 @@ pub fn bend_loops(
         .iter()
         .filter(|t| t.direction == direction && !t.kind.is_stretch() && t.branches.len() >= 2)
         .collect();
-    of_direction.sort_by_key(|t| (t.kind == FabKind::D2, t.kind));
+    of_direction.sort_by(|a, b| {
+        let when = |t: &FabTest| t.time.unwrap_or(0.0);
+        let group = (a.kind == FabKind::D2).cmp(&(b.kind == FabKind::D2));
+        group.then(when(a).total_cmp(&when(b))).then(a.kind.cmp(&b.kind))
+    });
     let records: Vec<Record> = of_direction.iter().filter_map(|t| Record::of(t, areal_density)).collect();
-    let short: Vec<&Record> = records.iter().filter(|r| r.is_fitted()).collect();
+    let sequences = sequences(&records);
+    let short: Vec<Sequence> = sequences.iter().filter(|s| s[0].is_fitted()).cloned().collect();
     if short.is_empty() {
         return Ok(None);
     }
     let rigidity = identify::rigidity(&short, settings)?;
     let friction = identify::friction(&short, rigidity, settings)?;
-    let loops = records
-        .iter()
-        .map(|r| {
-            let simulate =
-                |bending: Bending<'_>| Ok::<_, StudyError>(r.compared(&r.simulate(bending, settings)?.force));
-            let with_law = |f: &Friction| simulate(Bending { rigidity: f.rigidity, law: Some(&f.law) });
-            Ok(BendLoop {
-                kind: r.test.kind,
-                fitted: r.is_fitted(),
-                measured: r.samples.clone(),
-                branches: r.branches.clone(),
-                elastic: simulate(Bending { rigidity, law: None })?,
-                friction: friction.as_ref().map(with_law).transpose()?,
-            })
+    let all = |bending: Bending<'_>| identify::all(&sequences, bending, settings);
+    let elastic = all(Bending { rigidity, law: None })?;
+    let with_law = |f: &Friction| all(Bending { rigidity: f.rigidity, law: Some(&f.law) });
+    let rubbing = friction.as_ref().map(with_law).transpose()?;
+    let loops = (records.iter().enumerate())
+        .map(|(i, r)| BendLoop {
+            kind: r.test.kind,
+            fitted: r.is_fitted(),
+            measured: r.samples.clone(),
+            branches: r.branches.clone(),
+            elastic: r.compared(&elastic[i].force),
+            friction: rubbing.as_ref().map(|runs| r.compared(&runs[i].force)),
         })
-        .collect::<Result<_, StudyError>>()?;
+        .collect();
     Ok(Some(BendLoops { direction, rigidity, friction, loops, cells: settings.cells }))
+}
+
+/// Tests that one strip went through in turn.
+type Sequence<'a> = Vec<&'a Record<'a>>;
+
+/// The records in sequences: a test goes on with the strip of the one before it if both say when they were recorded,
+/// and are of one length between the clamps.
+fn sequences<'a>(records: &'a [Record<'a>]) -> Vec<Sequence<'a>> {
+    let mut all: Vec<Sequence> = Vec::new();
+    for record in records {
+        let goes_on = |last: &&Record| {
+            last.test.length == record.test.length && last.test.time.is_some() && record.test.time.is_some()
+        };
+        match all.last_mut() {
+            Some(sequence) if sequence.last().is_some_and(goes_on) => sequence.push(record),
+            _ => all.push(vec![record]),
+        }
+    }
+    all
 }

@@ -10,6 +10,7 @@ mod section;
 mod sheet;
 #[cfg(test)]
 mod tests;
+mod uncertainty;
 mod virtual_test;
 
 use std::path::{Path, PathBuf};
@@ -32,6 +33,7 @@ pub use error::CaseError;
 pub use loads::{LoadTable, SupportKind, SupportTable};
 pub use section::SectionTable;
 pub use sheet::{Shape, Sheet};
+pub use uncertainty::UncertaintyTable;
 pub use virtual_test::{TestFormulation, VirtualTest};
 
 /// A case as it is written in its file; unknown keys are refused.
@@ -76,6 +78,8 @@ pub struct Case {
     /// What is computed.
     #[serde(default)]
     pub analysis: Analysis,
+    /// Bands by scrambled Sobol points of the measured inputs; none when left out.
+    pub uncertainty: Option<UncertaintyTable>,
     /// How the equations are solved.
     #[serde(default)]
     pub solver: SolverTable,
@@ -120,10 +124,15 @@ impl Case {
 
     /// Whether a fabric has the records that the case compares with, and the law that it asks for.
     pub fn suits(&self, sheet: &FabricSheet) -> bool {
+        (!self.is_for_fab_records() || !sheet.bend_tests.is_empty()) && !self.lacks_law(sheet)
+    }
+
+    /// Whether the case asks for friction, and a fabric has no law of bending.
+    pub fn lacks_law(&self, sheet: &FabricSheet) -> bool {
         let has_law = |d| sheet.law(Test::Bending, Some(d)).is_some();
-        (!self.is_for_fab_records() || !sheet.bend_tests.is_empty())
-            && (self.assumptions.law == Mode::Elastic
-                || [Direction::Warp, Direction::Weft].into_iter().all(has_law))
+        self.assumptions.law != Mode::Elastic
+            && self.assumptions.residual_curvature.is_none()
+            && ![Direction::Warp, Direction::Weft].into_iter().all(has_law)
     }
 
     fn consistent(&self) -> Result<(), CaseError> {
@@ -138,6 +147,15 @@ impl Case {
                 return refuse("the case gives both `fabric` and [section]: remove one of them");
             }
             _ => {}
+        }
+        if self.assumptions.residual_curvature.is_some() && self.assumptions.law == Mode::Elastic {
+            return refuse(
+                "residual_curvature belongs to friction: add [assumptions] law = \"friction\", or remove it",
+            );
+        }
+        if let Some(table) = &self.uncertainty {
+            let problem = table.contradiction().or_else(|| self.against_sampling());
+            problem.map_or(Ok(()), refuse)?;
         }
         if self.assumptions.law != Mode::Elastic {
             let large = match &self.virtual_test {

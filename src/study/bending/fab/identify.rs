@@ -14,18 +14,20 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::characterise::nnls;
-use crate::law::{Backbone, Channel, Family, LawError, Slider, Widening};
+use crate::characterise::{nnls, parameters};
+use crate::instrument::{Parameter, Test, standard_conditions};
+use crate::law::{Backbone, Channel, Family, LawError, Slider, State, Widening};
+use crate::quantity::Curve;
 use crate::study::StudyError;
 
-use super::record::{Bending, Record, Run};
-use super::{FabSettings, Friction};
+use super::record::{Bending, Record, Run, simulate};
+use super::{FabSettings, Friction, Sequence};
 
-/// Slip levels that may have a part, evenly spaced by ratio (1/m): from 0.004 to 0.12 of 500 1/m, about the
-/// largest curvature of these tests.
+/// Slip levels that may have a part, evenly spaced by ratio (1/m), up to the largest curvature of the tests: a slider
+/// that slips beyond is a spring. A fold is sharp, and what it leaves for the next cycle and the next test are
+/// sliders with high levels; loops of KES-FB2, which bend cloth by half as much, do not show them.
 const LEVELS: usize = 20;
 const LOWEST: f64 = 2.0;
-const HIGHEST: f64 = 60.0;
 
 /// Rounds before the identification ends as it is, and the relative change of force that ends it.
 const ROUNDS: usize = 8;
@@ -35,10 +37,11 @@ const SETTLED: f64 = 1e-3;
 const START: f64 = 5e-6;
 
 /// The rigidity (N·m) of an elastic strip.
-pub(super) fn rigidity(records: &[&Record], settings: &FabSettings) -> Result<f64, StudyError> {
+pub(super) fn rigidity(sequences: &[Sequence], settings: &FabSettings) -> Result<f64, StudyError> {
+    let records = &sequences.concat();
     let mut b = START;
     for _ in 0..ROUNDS {
-        let runs = runs(records, Bending { rigidity: b, law: None }, settings)?;
+        let runs = all(sequences, Bending { rigidity: b, law: None }, settings)?;
         let found = fit(records, &runs, &[]).0;
         // A strip that gains nothing from bending is as limp as can be told.
         let next = found.max(1e-3 * b);
@@ -53,12 +56,12 @@ pub(super) fn rigidity(records: &[&Record], settings: &FabSettings) -> Result<f6
 
 /// A law with friction, from the rigidity of an elastic strip; none if no slider has a part in it.
 pub(super) fn friction(
-    records: &[&Record],
+    sequences: &[Sequence],
     elastic: f64,
     settings: &FabSettings,
 ) -> Result<Option<Friction>, StudyError> {
-    let ratio = (HIGHEST / LOWEST).powf(1.0 / (LEVELS - 1) as f64);
-    let levels: Vec<f64> = (0..LEVELS).map(|i| LOWEST * ratio.powi(i as i32)).collect();
+    let records = &sequences.concat();
+    let mut levels: Vec<f64> = Vec::new();
     let mut found: Option<Friction> = None;
     let mut last: Vec<f64> = Vec::new();
     for round in 1..=ROUNDS {
@@ -66,7 +69,10 @@ pub(super) fn friction(
             Some(f) => Bending { rigidity: f.rigidity, law: Some(&f.law) },
             None => Bending { rigidity: elastic, law: None },
         };
-        let runs = runs(records, bending, settings)?;
+        let runs = all(sequences, bending, settings)?;
+        if levels.is_empty() {
+            levels = levels_below(runs.iter().map(Run::largest_curvature).fold(0.0, f64::max));
+        }
         let force: Vec<f64> = runs.iter().flat_map(|r| r.force.iter().copied()).collect();
         if settled(&last, &force) {
             break;
@@ -82,8 +88,10 @@ pub(super) fn friction(
         if sliders.is_empty() || rigidity <= 0.0 {
             return Ok(None);
         }
-        let couple = sliders.iter().map(|s| s.stiffness * s.slip).sum();
-        found = law(rigidity, sliders).ok().map(|law| Friction { rigidity, couple, law, rounds: round });
+        found = law(rigidity, sliders).ok().map(|law| {
+            let [kes_rigidity, kes_couple] = as_kes(&law);
+            Friction { rigidity, kes_rigidity, kes_couple, law, rounds: round }
+        });
     }
     Ok(found)
 }
@@ -92,8 +100,40 @@ fn law(rigidity: f64, sliders: Vec<Slider>) -> Result<Channel, LawError> {
     Channel::new(Backbone::line(rigidity)?, vec![Family { widening: Widening::Constant, sliders }], false)
 }
 
-fn runs(records: &[&Record], bending: Bending, settings: &FabSettings) -> Result<Vec<Run>, StudyError> {
-    records.iter().map(|r| r.simulate(bending, settings)).collect()
+/// B (N·m) and 2HB/2 (N) that KES-FB2 would read from a law; NaN where it has none.
+fn as_kes(law: &Channel) -> [f64; 2] {
+    let conditions = standard_conditions(Test::Bending);
+    let k = conditions.maximum;
+    let runs = [(0.0, k), (k, -k), (-k, 0.0)];
+    let path =
+        runs.iter().flat_map(|(from, to)| (1..=250).map(move |i| from + (to - from) * f64::from(i) / 250.0));
+    let record =
+        law.path(State::default(), std::iter::once(0.0).chain(path)).map(|r| (r.state.strain, r.stress));
+    let values = parameters(
+        Test::Bending,
+        None,
+        &conditions,
+        &Curve::from_points(record),
+        &crate::characterise::Settings::default(),
+    );
+    let value = |p| values.get(&p).copied().unwrap_or(f64::NAN);
+    [value(Parameter::B), 0.5 * value(Parameter::Hb)]
+}
+
+/// The runs of all tests, sequence by sequence.
+pub(super) fn all(
+    sequences: &[Sequence],
+    bending: Bending,
+    settings: &FabSettings,
+) -> Result<Vec<Run>, StudyError> {
+    let runs: Vec<Vec<Run>> =
+        sequences.iter().map(|s| simulate(s, bending, settings)).collect::<Result<_, _>>()?;
+    Ok(runs.into_iter().flatten().collect())
+}
+
+fn levels_below(curvature: f64) -> Vec<f64> {
+    let ratio = (curvature / LOWEST).max(1.0).powf(1.0 / LEVELS as f64);
+    (0..LEVELS).map(|i| LOWEST * ratio.powi(i as i32)).collect()
 }
 
 fn settled(last: &[f64], force: &[f64]) -> bool {
@@ -115,7 +155,7 @@ fn fit(records: &[&Record], runs: &[Run], levels: &[f64]) -> (f64, Vec<f64>) {
         let none = vec![0.0; run.elements()];
         for sample in from..record.samples.len() {
             let step = run.step_of[sample];
-            rest[row(sample)] = record.samples.y[sample] - width * run.force_of(step, &none, record.weight());
+            rest[row(sample)] = record.samples.y[sample] - width * run.force_of(step, &none, run.weight);
             a[(row(sample), test)] = 1.0;
             a[(row(sample), free)] = width * run.force_of(step, &run.curvatures(step), 0.0);
         }
@@ -134,6 +174,12 @@ fn fit(records: &[&Record], runs: &[Run], levels: &[f64]) -> (f64, Vec<f64>) {
 impl Run {
     fn elements(&self) -> usize {
         self.rotations.first().map_or(0, |r| r.len() - 1)
+    }
+
+    /// At the samples of the test (1/m).
+    fn largest_curvature(&self) -> f64 {
+        let of_step = |step: &usize| self.curvatures(*step).into_iter().fold(0.0f64, |m, k| m.max(k.abs()));
+        self.step_of.iter().map(of_step).fold(0.0, f64::max)
     }
 
     /// Of every element (1/m).

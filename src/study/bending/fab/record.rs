@@ -38,12 +38,15 @@ pub(super) struct Record<'a> {
 pub(super) struct Run {
     /// Force on the clamps at every sample (N), pull positive.
     pub force: Vec<f64>,
-    /// Rotations of the nodes from the middle to the clamp, downwards (rad), in every step.
+    /// Rotations of the nodes from the middle to the clamp, downwards (rad), in every step of this test and of
+    /// those before it.
     pub rotations: Vec<Vec<f64>>,
     /// The step of every sample.
     pub step_of: Vec<usize>,
     /// Length of an element (m).
     pub side: f64,
+    /// Weight per area (N/m²), downwards as the rotations.
+    pub weight: f64,
 }
 
 /// Samples at which the strip is as good as taut are left out.
@@ -51,7 +54,14 @@ const SLACK: f64 = 0.999;
 
 /// Steps from the straight strip to the first clamp distance, and those that turn it over.
 const MOUNTING: usize = 6;
-const TURNING: usize = 2;
+const TURNING: usize = 4;
+
+/// Weights that bring a strip to the other side: it deflects ten times as far under them as what a test before
+/// leaves of its bow (about 100 1/m), and still bends less at its clamps than in the tests.
+const PUSH: f64 = 30.0;
+
+/// Strain of the strip when it is drawn straight between two tests.
+const TAUT: f64 = 1e-4;
 
 impl<'a> Record<'a> {
     pub fn of(test: &'a FabTest, areal_density: f64) -> Option<Self> {
@@ -76,53 +86,8 @@ impl<'a> Record<'a> {
         self.branches.len().checked_sub(2).map_or(0, |i| self.branches[i])
     }
 
-    /// Weight per area in the direction of the bow (N/m²): a strip that stands up hangs in reversed gravity.
-    pub fn weight(&self) -> f64 {
-        self.way() * self.areal_density * STANDARD_GRAVITY
-    }
-
     fn way(&self) -> f64 {
         if self.test.kind == FabKind::U1 { -1.0 } else { 1.0 }
-    }
-
-    /// Drives the clamps through all samples, from the straight strip of new cloth.
-    pub fn simulate(&self, bending: Bending, settings: &FabSettings) -> Result<Run, StudyError> {
-        let length = self.test.length;
-        let section = inextensible(bending.rigidity, self.areal_density, length);
-        // What is known of the strip is along it: it may as well be cut along the warp.
-        let mut strip = Strip::new(&section, Direction::Warp, 0.5 * length, None, settings.cells)?;
-        let middle = Support::fix(&strip.start, &[Dof::U, Dof::ThetaY, Dof::ThetaZ]);
-        strip.model.supports.extend([middle, Support::clamped(&strip.end)]);
-        let to = |d: f64, load: f64, steps: usize| Leg {
-            load,
-            held: vec![Support { nodes: strip.end.clone(), held: vec![(Dof::U, 0.5 * (d - length))] }],
-            steps,
-        };
-        let (first, way, steps) = (self.samples.x[0], self.way(), settings.steps.max(1));
-        // A strip that stands up hangs first, and then is turned over.
-        let mut legs = vec![to(length, 1.0, 1), to(first, 1.0, MOUNTING), to(first, way, TURNING)];
-        let before = 1 + MOUNTING + TURNING;
-        legs.extend(self.samples.x.iter().map(|d| to(*d, way, steps)));
-        let law = bending
-            .law
-            .map(|law| SheetLaw::new(Mode::Friction, [None, None, None, Some(law.clone()), None, None]));
-        let numerics = Settings { law, iterations: 40, ..Settings::default() };
-        let side = strip.width;
-        let (mut force, mut rotations, mut step_of) = (Vec::new(), Vec::new(), Vec::new());
-        drive(&strip.model, &numerics, &legs, &Options::default(), |step| {
-            let rotation = |n: &u32| {
-                let q = step.state.rotation[*n as usize];
-                2.0 * q.j.atan2(q.w)
-            };
-            rotations.push(strip.line.iter().map(rotation).collect());
-            if step.number > before && (step.number - before).is_multiple_of(steps) {
-                let pull: f64 = strip.end.iter().map(|n| step.reaction[6 * *n as usize]).sum();
-                force.push(pull / side * self.test.width);
-                step_of.push(rotations.len() - 1);
-            }
-            ControlFlow::Continue(())
-        })?;
-        Ok(Run { force, rotations, step_of, side })
     }
 
     /// The simulated forces with the zero of the load, and their distance from the measured ones.
@@ -141,6 +106,78 @@ impl<'a> Record<'a> {
             zero,
         }
     }
+}
+
+/// Drives the clamps through all samples of tests that one strip went through in turn, from the straight strip
+/// of new cloth; between two tests it is drawn straight. One run a test, whose steps begin with the first test.
+///
+/// The frame is that of the first test, in which the strip hangs: one that stands up hangs in reversed gravity.
+/// A later test that bows to the other side is brought there by a heavier weight.
+pub(super) fn simulate(
+    tests: &[&Record],
+    bending: Bending,
+    settings: &FabSettings,
+) -> Result<Vec<Run>, StudyError> {
+    let Some(first) = tests.first() else { return Ok(Vec::new()) };
+    let length = first.test.length;
+    let section = inextensible(bending.rigidity, first.areal_density, length);
+    // What is known of the strip is along it: it may as well be cut along the warp.
+    let mut strip = Strip::new(&section, Direction::Warp, 0.5 * length, None, settings.cells)?;
+    let middle = Support::fix(&strip.start, &[Dof::U, Dof::ThetaY, Dof::ThetaZ]);
+    strip.model.supports.extend([middle, Support::clamped(&strip.end)]);
+    let to = |d: f64, load: f64, steps: usize| Leg {
+        load,
+        held: vec![Support { nodes: strip.end.clone(), held: vec![(Dof::U, 0.5 * (d - length))] }],
+        steps,
+    };
+    let (way, steps) = (first.way(), settings.steps.max(1));
+    let mut legs = vec![to(length, 1.0, 1)];
+    // The steps that end at samples, by test.
+    let mut due: Vec<Vec<usize>> = Vec::new();
+    let mut taken = 1;
+    for (i, record) in tests.iter().enumerate() {
+        let (at, side) = (record.samples.x[0], record.way() * way);
+        if i > 0 {
+            // Taut, and with a weight to either side, the straight strip is stable.
+            let taut = (1.0 + TAUT) * length;
+            legs.extend([to(taut, -side * PUSH, MOUNTING), to(taut, side * PUSH, TURNING)]);
+            taken += MOUNTING + TURNING;
+        }
+        let push = if i > 0 { side * PUSH } else { 1.0 };
+        legs.extend([to(at, push, MOUNTING), to(at, way, TURNING)]);
+        taken += MOUNTING + TURNING;
+        legs.extend(record.samples.x.iter().map(|d| to(*d, way, steps)));
+        due.push((1..=record.samples.len()).map(|k| taken + k * steps).collect());
+        taken += record.samples.len() * steps;
+    }
+    let law = bending
+        .law
+        .map(|law| SheetLaw::new(Mode::Friction, [None, None, None, Some(law.clone()), None, None]));
+    let numerics = Settings { law, iterations: 40, ..Settings::default() };
+    let (mut force, mut rotations): (Vec<f64>, Vec<Vec<f64>>) = Default::default();
+    drive(&strip.model, &numerics, &legs, &Options::default(), |step| {
+        let rotation = |n: &u32| {
+            let q = step.state.rotation[*n as usize];
+            2.0 * q.j.atan2(q.w)
+        };
+        rotations.push(strip.line.iter().map(rotation).collect());
+        let pull: f64 = strip.end.iter().map(|n| step.reaction[6 * *n as usize]).sum();
+        force.push(pull / strip.width * first.test.width);
+        ControlFlow::Continue(())
+    })?;
+    let run = |numbers: &Vec<usize>| {
+        // Steps count from 1.
+        let step_of: Vec<usize> = numbers.iter().map(|n| n - 1).collect();
+        let end = step_of.last().map_or(0, |last| last + 1);
+        Run {
+            force: step_of.iter().map(|i| force[*i]).collect(),
+            rotations: rotations[..end].to_vec(),
+            step_of,
+            side: strip.width,
+            weight: way * first.areal_density * STANDARD_GRAVITY,
+        }
+    };
+    Ok(due.iter().map(run).collect())
 }
 
 fn mean_difference(measured: &[f64], simulated: &[f64]) -> f64 {

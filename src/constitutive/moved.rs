@@ -1,0 +1,89 @@
+//! A fabric at other values of its inputs, for results that are no linear function of them.
+
+use super::{Assumptions, Input, SectionDerivative};
+use crate::characterise::{Basis, FabricSheet, FrictionLaw, Key};
+use crate::instrument::{Direction, Parameter, Test};
+use crate::quantity::{ArealDensity, Estimate, Length, LineForce};
+
+/// Where the value of an input stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// A parameter of the sheet.
+    Value(Key),
+    /// A modulus of the sheet, by name and direction.
+    Modulus(String, Direction),
+    /// The thickness in `fabric.toml`, or its stand-in.
+    Thickness,
+    /// The areal density in `fabric.toml`, or its stand-in.
+    ArealDensity,
+    /// The stand-in for the tensile moduli.
+    Tensile,
+    /// The stand-in for G.
+    Shear,
+}
+
+/// The sheet and the assumptions with `values` (SI) in place of those of the inputs. Friction laws follow: their
+/// backbones in proportion to B and G, their sliders in proportion to 2HB and 2HG, tensile laws as a whole
+/// in proportion to WT.
+pub fn moved(
+    sheet: &FabricSheet,
+    assumptions: &Assumptions,
+    inputs: &[Input],
+    values: &[f64],
+) -> (FabricSheet, Assumptions) {
+    let (mut sheet, mut assumptions) = (sheet.clone(), assumptions.clone());
+    for (input, &value) in inputs.iter().zip(values) {
+        let set = |estimate: &mut Estimate| estimate.mean = value;
+        match &input.standing {
+            Standing::Value(key) => {
+                sheet.values.get_mut(key).into_iter().for_each(set);
+                let factor = value / input.estimate.mean;
+                sheet.laws.iter_mut().for_each(|law| follow(law, *key, factor));
+            }
+            Standing::Modulus(name, direction) => {
+                sheet.moduli.get_mut(&(name.clone(), *direction)).into_iter().for_each(set);
+            }
+            Standing::Thickness => match &mut sheet.info.thickness {
+                Some(stated) => *stated = value,
+                None => assumptions.thickness = Length(value),
+            },
+            Standing::ArealDensity => match &mut sheet.info.areal_density {
+                Some(stated) => *stated = value,
+                None => assumptions.areal_density = Some(ArealDensity(value)),
+            },
+            Standing::Tensile => assumptions.tensile = LineForce(value),
+            Standing::Shear => assumptions.shear = LineForce(value),
+        }
+    }
+    (sheet, assumptions)
+}
+
+fn follow(law: &mut FrictionLaw, key: Key, factor: f64) {
+    if law.direction != key.direction || law.basis == Basis::Strip {
+        return;
+    }
+    let (backbone, sliders) = match (law.test, key.parameter) {
+        (Test::Bending, Parameter::B) | (Test::Shear, Parameter::G) => (factor, 1.0),
+        (Test::Bending, Parameter::Hb) | (Test::Shear, Parameter::Hg) => (1.0, factor),
+        (Test::Tensile, Parameter::Wt) => (factor, factor),
+        _ => return,
+    };
+    // A positive factor makes no law wrong.
+    if let Ok(channel) = law.channel.scaled(backbone, sliders) {
+        law.channel = channel;
+    }
+}
+
+/// A parameter as inputs that only friction laws follow: 2HB of a cantilever, WT of a simulated tension test.
+pub fn law_inputs(sheet: &FabricSheet, parameter: Parameter) -> Vec<Input> {
+    let input = |direction: Option<Direction>| {
+        let key = Key { parameter, direction };
+        sheet.values.get(&key).map(|estimate| Input {
+            name: direction.map_or(parameter.symbol().into(), |d| format!("{parameter} {d}")),
+            estimate: estimate.clone(),
+            standing: Standing::Value(key),
+            derivative: SectionDerivative::default(),
+        })
+    };
+    [Some(Direction::Warp), Some(Direction::Weft), None].into_iter().filter_map(input).collect()
+}
