@@ -16,9 +16,10 @@ use std::sync::Arc;
 use nalgebra::SMatrix;
 
 use super::newton::{is_rounding, limit};
+use super::sheet::Forces;
 use super::system::{Balance, System};
 use super::{NonlinearError, Settings, State, plan};
-use crate::element::{Frame, Mass, Vector24};
+use crate::element::{Frame, Mass};
 use crate::model::Model;
 use crate::solve::SolveError;
 use crate::solve::assemble::{scatter, unit_rows};
@@ -203,7 +204,7 @@ impl<'a> Motion<'a> {
         let mut state = State { factor: self.dynamics.load.at(time), ..now.state.clone() };
         self.system.advance(&mut state, &travelled);
         // The straight prediction stretches a sheet that turns: its own forces say nothing.
-        let mut local: Option<Vec<Vector24>> = Some(now.balance.local());
+        let mut predicted: Option<Vec<Forces>> = Some(now.balance.forces());
         for _ in 0..ITERATIONS {
             let mean_acceleration: Vec<f64> = (0..n)
                 .map(|d| {
@@ -248,17 +249,14 @@ impl<'a> Motion<'a> {
             if size <= RESIDUAL * scale {
                 return Some(done(state, balance));
             }
-            let geometric: Vec<Vector24> = match local.take() {
-                Some(predicted) => predicted,
-                None => balance.local(),
-            };
-            let geometric: Vec<Vector24> = geometric.iter().zip(&viscous).map(|(e, v)| e + v).collect();
+            let elastic = predicted.take().unwrap_or_else(|| balance.forces());
+            let geometric: Vec<Forces> = elastic.iter().zip(&viscous).map(|(e, v)| e.plus(v)).collect();
             let mut step = force;
             self.tangent(&state, &balance, &geometric, dt)?.solve(&mut step, 1);
             if limit(&mut step) == 1.0 && is_rounding(&step, self.system.size) {
                 return Some(done(state, balance));
             }
-            local = Some(self.system.predict(&state, &balance, &step));
+            predicted = Some(self.system.predict(&state, &balance, &step));
             self.system.advance(&mut state, &step);
             travelled = travel(&now.state, &state);
         }
@@ -270,20 +268,20 @@ impl<'a> Motion<'a> {
         &self,
         state: &State,
         balance: &Balance,
-        local: &[Vector24],
+        forces: &[Forces],
         dt: f64,
     ) -> Option<crate::solve::factor::Factor> {
         let by_velocity = self.gamma / (self.beta * dt);
         let by_acceleration = (1.0 - self.alpha_m) / ((1.0 - self.alpha_f) * self.beta * dt * dt);
         let stiffening = 1.0 + self.dynamics.damping.beta * by_velocity;
-        let (mut matrix, _) = self.system.tangent_of(state, balance, local, 0.0, stiffening);
+        let (mut matrix, _) = self.system.tangent_of(state, balance, forces, 0.0, stiffening);
         let factor = by_acceleration + self.dynamics.damping.alpha * by_velocity;
         matrix.values.iter_mut().zip(&self.mass.values).for_each(|(k, m)| *k += factor * m);
         self.system.factorise(&matrix).ok()
     }
 
     /// Damping forces by dof, and those of the elements in their frames.
-    fn damping(&self, balance: &Balance, velocity: &[f64]) -> (Vec<f64>, Vec<Vector24>) {
+    fn damping(&self, balance: &Balance, velocity: &[f64]) -> (Vec<f64>, Vec<Forces>) {
         let Rayleigh { alpha, beta } = self.dynamics.damping;
         let (mut forces, viscous) = self.system.viscous(balance, velocity, beta);
         if alpha > 0.0 {

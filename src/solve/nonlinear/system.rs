@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector3};
 use rayon::prelude::*;
 
-use super::sheet::{Answer, Sheet};
+use super::sheet::{Answer, Forces, Sheet};
 use super::{NonlinearError, Settings, State};
 use crate::element::corotational::Motion;
 use crate::element::{Matrix24, Vector24, follower_pressure, follower_pressure_tangent, lumped_mass};
@@ -128,7 +128,7 @@ impl<'a> System<'a> {
             let nodes = mesh.quads[q].map(|n| n as usize);
             let (x, r) = (nodes.map(|n| state.position[n]), nodes.map(|n| state.rotation[n]));
             let answer = self.sheet.answer(q, &state.memory, &x, &r);
-            let force = answer.motion.force(&answer.local);
+            let force = answer.motion.force(&answer.forces.local);
             (answer, force, self.push_of(state, q))
         });
         let mut external: Vec<f64> = self.load.iter().map(|f| f * state.factor).collect();
@@ -233,15 +233,15 @@ impl<'a> System<'a> {
     /// Tangent with `shift` times the metric added, held dofs as unit rows, and the forces that the
     /// held values at factor 1 exert on the free dofs.
     ///
-    /// `local` are the element forces that enter the geometric stiffness.
+    /// `forces` are the element forces that enter the geometric stiffness.
     pub fn tangent(
         &self,
         state: &State,
         balance: &Balance,
-        local: &[Vector24],
+        forces: &[Forces],
         shift: f64,
     ) -> (BlockMatrix, Vec<f64>) {
-        self.tangent_of(state, balance, local, shift, 1.0)
+        self.tangent_of(state, balance, forces, shift, 1.0)
     }
 
     /// The same with the stiffnesses of the elements times `stiffening`.
@@ -249,7 +249,7 @@ impl<'a> System<'a> {
         &self,
         state: &State,
         balance: &Balance,
-        local: &[Vector24],
+        forces: &[Forces],
         shift: f64,
         stiffening: f64,
     ) -> (BlockMatrix, Vec<f64>) {
@@ -261,8 +261,9 @@ impl<'a> System<'a> {
             let batch = start..(start + BATCH).min(pattern.quads.len());
             let tangents = self.each(batch.clone(), |q| {
                 let answer = &balance.answers[q];
-                let k = self.sheet.stiffness(q, answer).scale(stiffening);
-                let mut k = answer.motion.tangent(&k, &local[q]);
+                let mut k = self.sheet.stiffness(q, answer).scale(stiffening);
+                self.sheet.add_geometric(q, answer, &forces[q], &mut k);
+                let mut k = answer.motion.tangent(&k, &forces[q].local);
                 self.soften(state, q, &mut k);
                 self.constrain(state, q, k, pushes)
             });
@@ -344,7 +345,7 @@ impl<'a> System<'a> {
     }
 
     /// Element forces that a step is expected to lead to: those of the mixed integration point.
-    pub fn predict(&self, state: &State, balance: &Balance, step: &[f64]) -> Vec<Vector24> {
+    pub fn predict(&self, state: &State, balance: &Balance, step: &[f64]) -> Vec<Forces> {
         self.each(0..self.plan.pattern.quads.len(), |q| {
             let mut spins = Vector24::zeros();
             for (i, node) in self.model.mesh.quads[q].iter().enumerate() {
@@ -353,24 +354,24 @@ impl<'a> System<'a> {
                 spins.fixed_rows_mut::<3>(6 * i + 3).copy_from(&spin);
             }
             let answer = &balance.answers[q];
-            answer.local + self.sheet.force_change(q, answer, &answer.motion.deformation_rate(&spins))
+            answer.forces.plus(&self.sheet.change(q, answer, &answer.motion.deformation_rate(&spins)))
         })
     }
 
     /// Forces by dof of `beta` times the elements' stiffnesses at the rate of their deformation, and the same in
     /// their frames. Rigid motions cost nothing.
-    pub fn viscous(&self, balance: &Balance, velocity: &[f64], beta: f64) -> (Vec<f64>, Vec<Vector24>) {
+    pub fn viscous(&self, balance: &Balance, velocity: &[f64], beta: f64) -> (Vec<f64>, Vec<Forces>) {
         let mut forces = vec![0.0; velocity.len()];
         if beta == 0.0 {
-            return (forces, vec![Vector24::zeros(); self.plan.pattern.quads.len()]);
+            return (forces, vec![Forces::default(); self.plan.pattern.quads.len()]);
         }
         let parts = self.each(0..self.plan.pattern.quads.len(), |q| {
             let nodes = &self.plan.pattern.quads[q];
             let rates = Vector24::from_fn(|k, _| velocity[6 * nodes[k / 6] as usize + k % 6]);
             let answer = &balance.answers[q];
             let motion = &answer.motion;
-            let local = self.sheet.force_change(q, answer, &motion.deformation_rate(&rates)) * beta;
-            (motion.force(&local), local)
+            let viscous = self.sheet.change(q, answer, &(motion.deformation_rate(&rates) * beta));
+            (motion.force(&viscous.local), viscous)
         });
         let mut locals = Vec::with_capacity(parts.len());
         for (nodes, (force, local)) in self.plan.pattern.quads.iter().zip(parts) {
@@ -413,9 +414,9 @@ impl<'a> System<'a> {
 }
 
 impl Balance {
-    /// Element forces in their frames.
-    pub fn local(&self) -> Vec<Vector24> {
-        self.answers.iter().map(|a| a.local).collect()
+    /// Forces of the elements.
+    pub fn forces(&self) -> Vec<Forces> {
+        self.answers.iter().map(|a| a.forces).collect()
     }
 }
 
