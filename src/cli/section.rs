@@ -61,6 +61,9 @@ struct AssumptionArgs {
     /// Stands in for a shear stiffness that was not measured
     #[arg(long, value_name = "VALUE", default_value_t = Assumptions::default().shear)]
     shear: LineForce,
+    /// Tension of the shear test whose share is taken off G: 0, or "10 gf/cm" for KES-FB1
+    #[arg(long, value_name = "VALUE", default_value_t = Assumptions::default().shear_tension)]
+    shear_tension: LineForce,
     /// Stands in for a thickness that was not measured
     #[arg(long, value_name = "VALUE", default_value_t = Assumptions::default().thickness)]
     thickness: Length,
@@ -80,6 +83,7 @@ impl From<&AssumptionArgs> for Assumptions {
             transverse_shear: a.transverse_shear,
             tensile: a.tensile,
             shear: a.shear,
+            shear_tension: a.shear_tension,
             thickness: a.thickness,
             areal_density: a.areal_density,
             ..Self::default()

@@ -110,7 +110,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     Ok(Exit::of_batch(useful + draped.len(), &failures).unless(unmet || strict))
 }
 
-/// Deflections, then frequencies, probes, searches and checks; with `verbose` every step of a search; last, why a
+/// Deflections, then frequencies, probes, histories, searches and checks; with `verbose` every step of a search; last, why a
 /// deflection has no band.
 fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
     let mut table =
@@ -148,9 +148,27 @@ fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
     }
     let checks = checks(solved.iter().map(|(_, r)| *r));
     let every = if verbose { steps(solved) } else { None };
-    let parts = [Some(table), Some(modes), Some(probes), searches(solved), every, checks];
+    let parts = [Some(table), Some(modes), Some(probes), histories(solved), searches(solved), every, checks];
     let parts = parts.into_iter().flatten().filter(|t| !t.is_empty()).map(|t| t.text());
     parts.chain(without_band(solved)).collect::<Vec<_>>().join("\n")
+}
+
+/// How dynamic analyses went, if there are any: instants kept, and what the balance of kinetic, strain and
+/// potential energy, damping and work misses at most, over the largest work.
+fn histories(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
+    let mut table =
+        Columns::new(["dynamics", "fabric", "instants", "end (s)", "energy imbalance (% of work)"]);
+    for (task, r) in solved {
+        let Some(history) = &r.history else { continue };
+        table.row([
+            r.case.clone(),
+            task.fabric_name().unwrap_or_default().to_string(),
+            history.time.len().to_string(),
+            history.time.last().map_or("-".into(), |t| significant(*t)),
+            significant(100.0 * history.imbalance),
+        ]);
+    }
+    (!table.is_empty()).then_some(table)
 }
 
 /// The inputs without a spread that forbid the band of a largest deflection or first frequency, if there are any.

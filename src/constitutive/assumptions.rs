@@ -45,6 +45,10 @@ pub struct Assumptions {
     pub tensile: LineForce,
     /// Stands in for a shear stiffness G (N/m) that the sheet lacks; 56.188 N/m = 1 gf/(cm·deg).
     pub shear: LineForce,
+    /// The tension W across the specimen of the shear test, whose share W tan φ is in the G of the sheet and is taken
+    /// off for D_m; 0, as published G contain it and D_m = G is customary. KES-FB1 has 10 gf/cm. For
+    /// large rotations, where a tension resists shear by itself; not for a G that was evaluated without it.
+    pub shear_tension: LineForce,
     /// Stands in for a thickness that the sheet lacks; 0.4 mm. No stiffness depends on it unless
     /// `torsion = "shear"`.
     pub thickness: Length,
@@ -65,6 +69,7 @@ impl Default for Assumptions {
             residual_curvature: None,
             tensile: LineForce(5000.0),
             shear: LineForce(56.187_965_62),
+            shear_tension: LineForce(0.0),
             thickness: Length(4e-4),
             areal_density: None,
         }

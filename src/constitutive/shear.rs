@@ -3,6 +3,10 @@
 //! KES-FB1 gives G in gf/(cm·deg); 1 gf/(cm·deg) = 56.188 N/m per rad. The warp and the weft test
 //! measure one constant, so their mean is taken.
 //!
+//! The tension W across the specimen resists the shear too, with W tan φ: up to 10 N/m per rad of the
+//! measured slope are no stiffness of the cloth. Published G contain them, and D_m takes G as it is
+//! unless `shear_tension` says how much to take off.
+//!
 //! Nothing measures the transverse shear of cloth. The seed's χ G_t t with G_t = the in-plane G and
 //! χ = 5/6 is kept: any value with χ G_t t h²/B between 1e2 and 1e6 gives the same deflections.
 
@@ -17,22 +21,24 @@ const CHI: f64 = 5.0 / 6.0;
 
 /// G (N/m per rad).
 pub(super) fn in_plane(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, ConstitutiveError> {
-    let sheet = notes.sheet;
+    let (sheet, tension) = (notes.sheet, assumptions.shear_tension.si());
     let directions = [Some(Direction::Warp), Some(Direction::Weft), None];
     let [warp, weft, _] = directions.map(|d| sheet.get(Parameter::G, d));
     let (g, source) = match (warp, weft) {
         (Some(warp_test), Some(weft_test)) => {
             let (warp, weft) = (warp_test.mean, weft_test.mean);
-            // G = (G1 + G2)/2, so ∂ln G/∂ln G1 = G1/(G1 + G2).
-            notes.origin_value(Parameter::G, directions[0], &[(Constant::Shear, warp / (warp + weft))]);
-            notes.origin_value(Parameter::G, directions[1], &[(Constant::Shear, weft / (warp + weft))]);
+            let g = 0.5 * (warp + weft) - tension;
+            // ∂ln G/∂ln G1 = G1/2G.
+            notes.origin_value(Parameter::G, directions[0], &[(Constant::Shear, 0.5 * warp / g)]);
+            notes.origin_value(Parameter::G, directions[1], &[(Constant::Shear, 0.5 * weft / g)]);
             let values = format!("{} and {} N/m", significant(warp), significant(weft));
-            ((warp + weft) / 2.0, format!("measured: mean of G warp and weft, {values}"))
+            (g, format!("measured: mean of G warp and weft, {values}{}", taken_off(tension)))
         }
         _ => match directions.into_iter().find_map(|d| Some((d, sheet.get(Parameter::G, d)?))) {
-            Some((direction, g)) => {
-                notes.origin_value(Parameter::G, direction, &[(Constant::Shear, 1.0)]);
-                (g.mean, "measured: G".to_string())
+            Some((direction, measured)) => {
+                let g = measured.mean - tension;
+                notes.origin_value(Parameter::G, direction, &[(Constant::Shear, measured.mean / g)]);
+                (g, format!("measured: G{}", taken_off(tension)))
             }
             None => {
                 let g = assumptions.shear;
@@ -52,6 +58,14 @@ pub(super) fn in_plane(assumptions: &Assumptions, notes: &mut Notes) -> Result<f
     notes.positive("the shear stiffness G", g, "N/m", "look at the shear chart and its window")?;
     notes.used("shear stiffness G", format!("{} N/m", significant(g)), source);
     Ok(g)
+}
+
+/// What is said of a tension that is not part of G.
+fn taken_off(tension: f64) -> String {
+    if tension == 0.0 {
+        return String::new();
+    }
+    format!(", less {} N/m for the tension across", significant(tension))
 }
 
 /// D_s (N/m), diagonal.

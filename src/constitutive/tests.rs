@@ -55,6 +55,21 @@ fn a_measured_cloth_gives_the_closed_forms_without_a_finding() {
     assert_eq!(names.len(), 9, "{names:?}");
 }
 
+/// F = G φ + W tan φ: what the tension adds to the slope is no stiffness of the cloth (KES-FB1: W = 10 gf/cm).
+#[test]
+fn the_share_of_the_tension_is_taken_off_the_shear_stiffness_on_request() {
+    let assumptions = Assumptions { shear_tension: "10 gf/cm".parse().unwrap(), ..Assumptions::default() };
+    let c = section(&cloth(), &assumptions).unwrap();
+    assert_relative_eq!(c.section.d_m[(2, 2)], 52.0 - 9.80665, max_relative = 1e-12);
+    let used = c.used.iter().find(|u| u.name == "shear stiffness G").unwrap();
+    assert!(used.source.contains("less 9.807 N/m"), "{}", used.source);
+    let of_warp = c.inputs.iter().find(|i| i.name == "G warp").unwrap();
+    assert_relative_eq!(of_warp.derivative.d_m[(2, 2)], 25.0, max_relative = 1e-12);
+    // A tension above the slope leaves nothing.
+    let assumptions = Assumptions { shear_tension: LineForce(60.0), ..Assumptions::default() };
+    assert_eq!(section(&cloth(), &assumptions).unwrap_err().code(), "C005");
+}
+
 #[test]
 fn every_poisson_rule_keeps_the_matrix_symmetric() {
     let rule = |poisson_rule, poisson| {

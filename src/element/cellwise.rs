@@ -14,10 +14,11 @@ use super::prepared::{Matrix24, Vector24};
 pub type Strains = [f64; 6];
 
 /// Dofs that stretch, and dofs that bend a cell.
-const STRETCHING: [usize; 8] = [0, 1, 6, 7, 12, 13, 18, 19];
+pub(super) const STRETCHING: [usize; 8] = [0, 1, 6, 7, 12, 13, 18, 19];
 const BENDING: [usize; 8] = [3, 4, 9, 10, 15, 16, 21, 22];
 
-type Gradient = SMatrix<f64, 3, 8>;
+/// Rows of the strains of a membrane on the dofs that stretch it.
+pub type Gradient = SMatrix<f64, 3, 8>;
 
 /// Area (m²) of a cell, and the rows of its strains on the dofs that stretch and that bend.
 #[derive(Clone, Debug)]
@@ -76,26 +77,33 @@ impl Cellwise {
         self.cells.iter().map(|cell| cell.area)
     }
 
-    /// Strains of the cells for local displacements.
-    pub fn strains(&self, local: &Vector24) -> impl Iterator<Item = Strains> {
+    /// Strains of the cells for local displacements, with the `excess` of all of them in the plane.
+    pub fn strains(&self, local: &Vector24, excess: Vector3<f64>) -> impl Iterator<Item = Strains> {
         let plane = self.links.map_or(*local, |links| links * local);
         let (stretching, bending) = (pick(&plane, &STRETCHING), pick(&plane, &BENDING));
         self.cells.iter().map(move |cell| {
-            let (e, k) = (cell.membrane * stretching, cell.bending * bending);
+            let (e, k) = (cell.membrane * stretching + excess, cell.bending * bending);
             [e.x, e.y, e.z, k.x, k.y, k.z]
         })
     }
 
-    /// Local force of what stays linear, for local displacements.
-    pub fn linear_force(&self, local: &Vector24) -> Vector24 {
-        self.linear * local
+    /// Rates of the strains of the cells with those of the local displacements; `excess` are the rows of the
+    /// excess.
+    pub fn strain_rates(&self, rates: &Vector24, excess: &Gradient) -> impl Iterator<Item = Strains> {
+        let plane = self.links.map_or(*rates, |links| links * rates);
+        self.strains(rates, excess * pick(&plane, &STRETCHING))
     }
 
-    /// Local force of the stresses of the cells.
-    pub fn cell_force(&self, stresses: &[Strains]) -> Vector24 {
+    /// Local stiffness of what stays linear.
+    pub fn linear(&self) -> &Matrix24 {
+        &self.linear
+    }
+
+    /// Local force of the stresses of the cells, `excess` added to the rows of each of them.
+    pub fn cell_force(&self, stresses: &[Strains], excess: &Gradient) -> Vector24 {
         let (mut stretching, mut bending) = (SVector::<f64, 8>::zeros(), SVector::<f64, 8>::zeros());
         for (cell, [nx, ny, nxy, mx, my, mxy]) in self.cells.iter().zip(stresses) {
-            stretching += cell.membrane.tr_mul(&Vector3::new(*nx, *ny, *nxy)) * cell.area;
+            stretching += (cell.membrane + excess).tr_mul(&Vector3::new(*nx, *ny, *nxy)) * cell.area;
             bending += cell.bending.tr_mul(&Vector3::new(*mx, *my, *mxy)) * cell.area;
         }
         let mut plane = Vector24::zeros();
@@ -106,19 +114,19 @@ impl Cellwise {
         self.links.map_or(plane, |links| links.tr_mul(&plane))
     }
 
-    /// Local stiffness for the tangents of the cells.
-    pub fn stiffness(&self, tangents: &[Strains]) -> Matrix24 {
+    /// Local stiffness of the cells for their tangents; `excess` as in [`strain_rates`](Self::strain_rates).
+    pub fn stiffness(&self, tangents: &[Strains], excess: &Gradient) -> Matrix24 {
         let (mut stretching, mut bending) = (SMatrix::<f64, 8, 8>::zeros(), SMatrix::<f64, 8, 8>::zeros());
         for (cell, tangent) in self.cells.iter().zip(tangents) {
-            add(&mut stretching, &cell.membrane, &tangent[..3], cell.area);
+            add(&mut stretching, &(cell.membrane + excess), &tangent[..3], cell.area);
             add(&mut bending, &cell.bending, &tangent[3..], cell.area);
         }
-        let mut plane = if self.links.is_some() { Matrix24::zeros() } else { self.linear };
+        let mut plane = Matrix24::zeros();
         for (i, j) in (0..8).flat_map(|j| (0..8).map(move |i| (i, j))) {
             plane[(STRETCHING[i], STRETCHING[j])] += stretching[(i, j)];
             plane[(BENDING[i], BENDING[j])] += bending[(i, j)];
         }
-        self.links.map_or(plane, |links| self.linear + links.transpose() * plane * links)
+        self.links.map_or(plane, |links| links.transpose() * plane * links)
     }
 }
 
@@ -131,6 +139,6 @@ fn add(k: &mut SMatrix<f64, 8, 8>, g: &Gradient, tangent: &[f64], area: f64) {
     *k += g.tr_mul(&scaled);
 }
 
-fn pick(local: &Vector24, dofs: &[usize; 8]) -> SVector<f64, 8> {
+pub(super) fn pick(local: &Vector24, dofs: &[usize; 8]) -> SVector<f64, 8> {
     SVector::from_fn(|k, _| local[dofs[k]])
 }

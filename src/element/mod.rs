@@ -15,8 +15,9 @@ mod prepared;
 mod quad4;
 mod shear;
 mod smoothing;
+mod yarns;
 
-pub use cellwise::{Cellwise, Strains};
+pub use cellwise::{Cellwise, Gradient, Strains};
 pub use load::{follower_pressure, follower_pressure_tangent, gravity_load, pressure_load};
 pub use mass::{Mass, consistent_mass, lumped_mass};
 pub use prepared::{
@@ -24,6 +25,7 @@ pub use prepared::{
 };
 pub use quad4::{Frame, GAUSS_2X2, GaussPoint, gauss_point, shape};
 pub use smoothing::{Cell, Cells};
+pub use yarns::{YarnStrain, Yarns};
 
 /// How an element is formulated.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,6 +5,7 @@ use thiserror::Error;
 
 use super::cellwise::Cellwise;
 use super::quad4::{Frame, GAUSS_2X2, gauss_point};
+use super::yarns::Yarns;
 use super::{Cell, Cells, Drilling, Formulation, Membrane, drilling, shear};
 use crate::section::{ShellSection, strain_rotation};
 
@@ -31,6 +32,8 @@ pub struct Prepared {
     pub d_b: Matrix3<f64>,
     /// Transverse shear stiffness in element axes, stabilised (N/m).
     pub d_s: Matrix2<f64>,
+    /// Angle of the warp in the element axes (rad).
+    angle: f64,
     /// Strains of the element axes to those of the material axes.
     to_material: Matrix3<f64>,
     gamma: f64,
@@ -67,7 +70,7 @@ impl Prepared {
         let thickness_squared = section.bending_thickness_squared();
         let stabilisation = thickness_squared / (thickness_squared + frame.area());
         let mut element =
-            Self { frame, d_m, d_b, d_s, to_material, gamma, spring: 0.0, stabilisation, formulation };
+            Self { frame, d_m, d_b, d_s, angle, to_material, gamma, spring: 0.0, stabilisation, formulation };
         if let Drilling::Seed(factor) = formulation.drilling {
             let largest = |k: Matrix12| k.diagonal().max();
             let (membrane, plate) = (element.membrane_stiffness(), element.plate_stiffness());
@@ -164,8 +167,17 @@ impl Prepared {
         } else {
             Self { d_m: rest[0], d_b: rest[1], ..*self }.local_stiffness()
         };
-        let links = (!self.frame.is_plane()).then(|| self.links(&Matrix3::identity()));
-        Cellwise::new(self.cells(), t, one_cell, linear, links)
+        Cellwise::new(self.cells(), t, one_cell, linear, self.warp_links())
+    }
+
+    /// The mean displacement gradient along the material axes, for strains in the plane that are not small.
+    pub fn yarns(&self) -> Yarns {
+        Yarns::new(&Cell::whole(&self.frame.xy), self.angle, self.warp_links())
+    }
+
+    /// Rigid links to the plane in its axes; `None` if the corners lie in it.
+    fn warp_links(&self) -> Option<Matrix24> {
+        (!self.frame.is_plane()).then(|| self.links(&Matrix3::identity()))
     }
 
     /// `tᵀ k t` of the stiffness `k` of the element plane.

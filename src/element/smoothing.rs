@@ -67,32 +67,39 @@ impl Cells {
         }
     }
 
-    /// Every cell of the plane quad `xy` (Eqs. (20) to (23), corrected: see the theory).
+    /// Every cell of the plane quad `xy`.
     pub fn over(self, xy: &[[f64; 2]; 4]) -> impl Iterator<Item = Cell> {
-        (0..self.count()).map(move |k| {
-            let [xi0, xi1, eta0, eta1] = self.bounds(k);
-            let n = [shape(xi0, eta0), shape(xi1, eta0), shape(xi1, eta1), shape(xi0, eta1)];
-            let at = n.map(|n| {
-                [0, 1].map(|axis| {
-                    n[0] * xy[0][axis] + n[1] * xy[1][axis] + n[2] * xy[2][axis] + n[3] * xy[3][axis]
-                })
-            });
-            let area = 0.5
-                * ((at[2][0] - at[0][0]) * (at[3][1] - at[1][1])
-                    - (at[2][1] - at[0][1]) * (at[3][0] - at[1][0]));
-            let mut gradient = [[0.0; 2]; 4];
-            for e in 0..4 {
-                let f = (e + 1) % 4;
-                // Outward normal times length of a counter-clockwise edge.
-                let normal = [at[f][1] - at[e][1], at[e][0] - at[f][0]];
-                for (i, g) in gradient.iter_mut().enumerate() {
-                    let middle = 0.5 * (n[e][i] + n[f][i]) / area;
-                    g[0] += middle * normal[0];
-                    g[1] += middle * normal[1];
-                }
+        (0..self.count()).map(move |k| Cell::of(xy, self.bounds(k)))
+    }
+}
+
+impl Cell {
+    /// The whole of the plane quad `xy` as one cell.
+    pub fn whole(xy: &[[f64; 2]; 4]) -> Self {
+        Self::of(xy, [-1.0, 1.0, -1.0, 1.0])
+    }
+
+    /// The rectangle `[ξ0, ξ1, η0, η1]` of the quad (Eqs. (20) to (23), corrected: see the theory).
+    fn of(xy: &[[f64; 2]; 4], [xi0, xi1, eta0, eta1]: [f64; 4]) -> Self {
+        let n = [shape(xi0, eta0), shape(xi1, eta0), shape(xi1, eta1), shape(xi0, eta1)];
+        let at = n.map(|n| {
+            [0, 1]
+                .map(|axis| n[0] * xy[0][axis] + n[1] * xy[1][axis] + n[2] * xy[2][axis] + n[3] * xy[3][axis])
+        });
+        let area = 0.5
+            * ((at[2][0] - at[0][0]) * (at[3][1] - at[1][1]) - (at[2][1] - at[0][1]) * (at[3][0] - at[1][0]));
+        let mut gradient = [[0.0; 2]; 4];
+        for e in 0..4 {
+            let f = (e + 1) % 4;
+            // Outward normal times length of a counter-clockwise edge.
+            let normal = [at[f][1] - at[e][1], at[e][0] - at[f][0]];
+            for (i, g) in gradient.iter_mut().enumerate() {
+                let middle = 0.5 * (n[e][i] + n[f][i]) / area;
+                g[0] += middle * normal[0];
+                g[1] += middle * normal[1];
             }
-            Cell { area, gradient, middle: [0.5 * (xi0 + xi1), 0.5 * (eta0 + eta1)] }
-        })
+        }
+        Self { area, gradient, middle: [0.5 * (xi0 + xi1), 0.5 * (eta0 + eta1)] }
     }
 }
 

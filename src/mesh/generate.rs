@@ -75,6 +75,21 @@ pub fn rectangle(width: f64, height: f64, nx: usize, ny: usize) -> Result<QuadMe
 /// # Errors
 /// M006 unless `0 < inner < outer`, `radial >= 1` and `around >= 3`.
 pub fn annulus(inner: f64, outer: f64, radial: usize, around: usize) -> Result<QuadMesh, MeshError> {
+    graded_annulus(inner, outer, [radial, around], 1.0)
+}
+
+/// The same with cells that grow outwards as a geometric series, to `grading` times their width: `[radial, around]`
+/// of them. Twice as many lie on the same circles and between them.
+///
+/// # Errors
+/// Those of [`annulus`]; M006 for a grading that is not positive.
+pub fn graded_annulus(
+    inner: f64,
+    outer: f64,
+    [radial, around]: [usize; 2],
+    grading: f64,
+) -> Result<QuadMesh, MeshError> {
+    positive("the grading of the cells along the radius", grading)?;
     positive("the inner radius", inner)?;
     positive("the width of the ring (outer - inner radius)", outer - inner)?;
     at_least("the number of cells along the radius", radial, 1)?;
@@ -82,7 +97,9 @@ pub fn annulus(inner: f64, outer: f64, radial: usize, around: usize) -> Result<Q
     let node = |i: usize, k: usize| (i * around + k % around) as u32;
     let mut nodes = Vec::with_capacity((radial + 1) * around);
     for i in 0..=radial {
-        let r = inner + (outer - inner) * i as f64 / radial as f64;
+        let s = i as f64 / radial as f64;
+        let part = if grading == 1.0 { s } else { (grading.powf(s) - 1.0) / (grading - 1.0) };
+        let r = inner + (outer - inner) * part;
         for k in 0..around {
             let (s, c) = (TAU * k as f64 / around as f64).sin_cos();
             nodes.push(Point3::new(r * c, r * s, 0.0));
@@ -218,6 +235,15 @@ mod tests {
         let ring = annulus(0.09, 0.15, 4, 64).unwrap();
         let polygon = 0.5 * 64.0 * (TAU / 64.0).sin();
         assert_relative_eq!(area(&ring), polygon * (0.15f64.powi(2) - 0.09f64.powi(2)), max_relative = 1e-12);
+        // Graded: the same outline; a finer mesh has the circles of the coarser one.
+        let [coarse, fine] = [[4, 64], [8, 64]].map(|cells| graded_annulus(0.09, 0.15, cells, 4.0).unwrap());
+        assert_relative_eq!(area(&coarse), area(&ring), max_relative = 1e-12);
+        let radius = |mesh: &QuadMesh, i: usize| mesh.nodes[64 * i].x;
+        (0..5).for_each(|i| {
+            assert_relative_eq!(radius(&coarse, i), radius(&fine, 2 * i), max_relative = 1e-14)
+        });
+        let width = |i: usize| radius(&fine, i + 1) - radius(&fine, i);
+        assert_relative_eq!(width(7) / width(0), 4f64.powf(7.0 / 8.0), max_relative = 1e-12);
         let disc = disc(0.15, 8).unwrap();
         let polygon = 0.5 * 32.0 * (TAU / 32.0).sin();
         assert_relative_eq!(area(&disc), polygon * 0.15f64.powi(2), max_relative = 1e-12);

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashMap};
 use nalgebra::{Point3, Vector3};
 use thiserror::Error;
 
-pub use generate::{annulus, disc, distorted, rectangle};
+pub use generate::{annulus, disc, distorted, graded_annulus, rectangle};
 pub use gmsh::parse_gmsh;
 
 use crate::finding::Place;

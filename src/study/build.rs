@@ -123,9 +123,9 @@ fn sheet_mesh(case: &Case, sheet: &Sheet) -> Result<QuadMesh, StudyError> {
 
 fn mesh_file(case: &Case, sheet: &Sheet, file: &Path) -> Result<QuadMesh, StudyError> {
     let sizes = [sheet.width, sheet.height, sheet.diameter, sheet.inner_diameter];
-    if sizes.iter().any(Option::is_some) || sheet.cells.is_some() {
+    if sizes.iter().any(Option::is_some) || sheet.cells.is_some() || sheet.grading.is_some() {
         return Err(case.inconsistent(
-            "[sheet] file brings its own sizes: remove width, height, diameters and cells".into(),
+            "[sheet] file brings its own sizes: remove width, height, diameters, cells and grading".into(),
         ));
     }
     let unit = sheet.unit.as_deref().ok_or_else(|| {
@@ -155,6 +155,7 @@ fn outline(case: &Case, sheet: &Sheet, shape: Shape) -> Result<QuadMesh, StudyEr
     })?;
     let unused = match shape {
         _ if sheet.unit.is_some() => Some("unit"),
+        _ if sheet.grading.is_some() && shape != Shape::Annulus => Some("grading"),
         Shape::Rectangle | Shape::Strip => sheet.diameter.or(sheet.inner_diameter).map(|_| "diameters"),
         Shape::Disc => {
             sheet.width.or(sheet.height).or(sheet.inner_diameter).map(|_| "width, height, inner_diameter")
@@ -172,11 +173,11 @@ fn outline(case: &Case, sheet: &Sheet, shape: Shape) -> Result<QuadMesh, StudyEr
         Shape::Disc => {
             return Err(case.inconsistent("cells of a disc: give one number twice, such as [16, 16]".into()));
         }
-        Shape::Annulus => mesh::annulus(
+        Shape::Annulus => mesh::graded_annulus(
             0.5 * need(sheet.inner_diameter, "inner_diameter")?,
             0.5 * need(sheet.diameter, "diameter")?,
-            a,
-            b,
+            [a, b],
+            sheet.grading.unwrap_or(1.0),
         )?,
     })
 }

@@ -106,10 +106,10 @@ fn advance(
     let mut state = start.clone();
     let mut travelled = vec![0.0; system.held.len()];
     let mut balance = system.balance(&state, None);
-    let mut local = balance.local();
+    let mut forces = balance.forces();
     for iterations in 1..=settings.iterations {
         let failure = |residual, cause| Failure { iterations, residual, cause };
-        let (matrix, push) = system.tangent(&state, &balance, &local, 0.0);
+        let (matrix, push) = system.tangent(&state, &balance, &forces, 0.0);
         let tangent = system.factorise(&matrix).map_err(|e| failure(balance.relative_residual(), Some(e)))?;
         // Two right-hand sides: what is out of balance, and the load.
         let load = system.reference_load(&state);
@@ -139,7 +139,7 @@ fn advance(
         let mut step: Vec<f64> = rest.iter().zip(&*by_factor).map(|(r, f)| r + change * f).collect();
         let part = limit(&mut step);
         state.factor += part * change;
-        local = system.predict(&state, &balance, &step);
+        forces = system.predict(&state, &balance, &step);
         system.advance(&mut state, &step);
         travelled.iter_mut().zip(&step).for_each(|(t, s)| *t += s);
         balance = system.balance(&state, None);

@@ -21,9 +21,10 @@ use std::sync::Arc;
 
 use self::inertia::Inertia;
 use super::newton::{is_rounding, limit};
+use super::sheet::Forces;
 use super::system::{Balance, System};
 use super::{NonlinearError, Settings, State, plan};
-use crate::element::{Mass, Vector24};
+use crate::element::Mass;
 use crate::model::Model;
 use crate::solve::SolveError;
 use crate::solve::assemble::unit_rows;
@@ -209,7 +210,7 @@ impl<'a> Motion<'a> {
         let mut state = State { factor: self.dynamics.load.at(time), ..now.state.clone() };
         self.system.advance(&mut state, &travelled);
         // The straight prediction stretches a sheet that turns: its own forces say nothing.
-        let mut local: Option<Vec<Vector24>> = Some(now.balance.local());
+        let mut predicted: Option<Vec<Forces>> = Some(now.balance.forces());
         for _ in 0..ITERATIONS {
             let mean_acceleration: Vec<f64> = (0..n)
                 .map(|d| {
@@ -231,8 +232,8 @@ impl<'a> Motion<'a> {
                 })
                 .collect();
             let balance = self.system.balance(&state, None);
-            let Forces { inertia, damping, nodal, viscous } =
-                self.forces(&state, &balance, &velocity, &acceleration);
+            let Resistance { inertia, damping, nodal, viscous } =
+                self.resistance(&state, &balance, &velocity, &acceleration);
             let mut force: Vec<f64> =
                 (0..n).map(|d| -(inertia[d] + damping[d] + balance.unbalanced[d])).collect();
             self.free(&mut force);
@@ -254,17 +255,14 @@ impl<'a> Motion<'a> {
             if size <= RESIDUAL * scale {
                 return Some(done(state, balance));
             }
-            let geometric: Vec<Vector24> = match local.take() {
-                Some(predicted) => predicted,
-                None => balance.local(),
-            };
-            let geometric: Vec<Vector24> = geometric.iter().zip(&viscous).map(|(e, v)| e + v).collect();
+            let elastic = predicted.take().unwrap_or_else(|| balance.forces());
+            let geometric: Vec<Forces> = elastic.iter().zip(&viscous).map(|(e, v)| e.plus(v)).collect();
             let mut step = force;
             self.tangent(&state, &balance, &nodal, &geometric, dt)?.solve(&mut step, 1);
             if limit(&mut step) == 1.0 && is_rounding(&step, self.system.size) {
                 return Some(done(state, balance));
             }
-            local = Some(self.system.predict(&state, &balance, &step));
+            predicted = Some(self.system.predict(&state, &balance, &step));
             self.system.advance(&mut state, &step);
             travelled = travel(&now.state, &state);
             // Followers have moved, but their dofs are held.
@@ -280,13 +278,13 @@ impl<'a> Motion<'a> {
         state: &State,
         balance: &Balance,
         nodal: &[f64],
-        local: &[Vector24],
+        forces: &[Forces],
         dt: f64,
     ) -> Option<crate::solve::factor::Factor> {
         let by_velocity = self.gamma / (self.beta * dt);
         let by_acceleration = (1.0 - self.alpha_m) / ((1.0 - self.alpha_f) * self.beta * dt * dt);
         let stiffening = 1.0 + self.dynamics.damping.beta * by_velocity;
-        let (mut matrix, _) = self.system.tangent_of(state, balance, local, 0.0, stiffening);
+        let (mut matrix, _) = self.system.tangent_of(state, balance, forces, 0.0, stiffening);
         let factor = by_acceleration + self.dynamics.damping.alpha * by_velocity;
         self.inertia.add(self.system, state, factor, &mut matrix);
         self.system.add_body_terms(state, nodal, &mut matrix);
@@ -294,7 +292,13 @@ impl<'a> Motion<'a> {
     }
 
     /// What a motion of the dofs costs besides the forces of the state.
-    fn forces(&self, state: &State, balance: &Balance, velocity: &[f64], acceleration: &[f64]) -> Forces {
+    fn resistance(
+        &self,
+        state: &State,
+        balance: &Balance,
+        velocity: &[f64],
+        acceleration: &[f64],
+    ) -> Resistance {
         let Rayleigh { alpha, beta } = self.dynamics.damping;
         let velocities = self.system.node_velocities(state, velocity);
         let (mut damping, viscous) = self.system.viscous(balance, &velocities, beta);
@@ -304,7 +308,7 @@ impl<'a> Motion<'a> {
         }
         let accelerations = self.system.node_accelerations(state, velocity, acceleration);
         let inertia = self.inertia.times(self.system, &accelerations);
-        Forces {
+        Resistance {
             nodal: inertia.iter().zip(&damping).map(|(i, d)| i + d).collect(),
             inertia: self.system.to_leads(state, &inertia),
             damping: self.system.to_leads(state, &damping),
@@ -347,7 +351,7 @@ fn travel(from: &State, to: &State) -> Vec<f64> {
 }
 
 /// Forces of a motion.
-struct Forces {
+struct Resistance {
     /// Of inertia, by dof.
     inertia: Vec<f64>,
     /// Of damping, by dof.
@@ -355,5 +359,5 @@ struct Forces {
     /// Both, on every node.
     nodal: Vec<f64>,
     /// Of the elements' viscosity, in their frames.
-    viscous: Vec<Vector24>,
+    viscous: Vec<Forces>,
 }

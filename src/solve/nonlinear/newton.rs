@@ -28,7 +28,7 @@ pub(super) struct Converged {
 impl Converged {
     /// The same if it is stable.
     pub fn stable(self, system: &System<'_>) -> Result<Self, Failure> {
-        let (matrix, _) = system.tangent(&self.state, &self.balance, &self.balance.local(), 0.0);
+        let (matrix, _) = system.tangent(&self.state, &self.balance, &self.balance.forces(), 0.0);
         match system.factorise(&matrix) {
             Ok(tangent) if tangent.negative_pivots() == 0 => Ok(self),
             Ok(_) => Err(Failure::unfinished(self)),
@@ -107,10 +107,10 @@ pub(super) fn newton_with(
     let mut remaining = travel;
     let mut travelled = vec![0.0; system.held.len()];
     let mut balance = system.balance(&state, drag.extra);
-    let mut local = balance.local();
+    let mut forces = balance.forces();
     for iterations in 1..=settings.iterations {
         let failure = |residual, cause| Failure { iterations, residual, cause };
-        let (matrix, push) = system.tangent(&state, &balance, &local, drag.rate);
+        let (matrix, push) = system.tangent(&state, &balance, &forces, drag.rate);
         let tangent = system.factorise(&matrix).map_err(|e| failure(balance.relative_residual(), Some(e)))?;
         if iterations == 1 && drag.rate > 0.0 && tangent.negative_pivots() > 0 {
             // The flow would go uphill.
@@ -128,7 +128,7 @@ pub(super) fn newton_with(
         }
         let part = limit(&mut step);
         remaining -= part * remaining;
-        local = system.predict(&state, &balance, &step);
+        forces = system.predict(&state, &balance, &step);
         system.advance(&mut state, &step);
         travelled.iter_mut().zip(&step).for_each(|(t, s)| *t += s);
         balance = system.balance(&state, drag.extra);

@@ -1,13 +1,11 @@
 //! The elements of a sheet in motion: linear ones with a stiffness that is computed once, or
 //! elements whose cells follow laws with a memory.
 
-use std::borrow::Cow;
-
-use nalgebra::{Point3, UnitQuaternion};
+use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector3};
 
 use super::Memory;
 use crate::element::corotational::{Motion, Reference};
-use crate::element::{Cellwise, Matrix24, Prepared, Strains, Vector24};
+use crate::element::{Cellwise, Matrix24, Prepared, Strains, Vector24, YarnStrain, Yarns};
 use crate::law::{self, Response};
 use crate::model::Model;
 use crate::section::SheetLaw;
@@ -15,12 +13,15 @@ use crate::section::SheetLaw;
 /// The elements. Equal ones share their matrices.
 pub(super) struct Sheet<'a> {
     law: Option<&'a SheetLaw>,
+    /// Membrane stiffness along the material axes of what follows no law (N/m).
+    d_m: Matrix3<f64>,
     references: Vec<Reference>,
     /// Which matrices each element has.
     kinds: Vec<u32>,
-    /// Those of linear elements,
-    stiffnesses: Vec<Matrix24>,
-    /// or those of elements with a law.
+    yarns: Vec<Yarns>,
+    /// Stiffnesses without the mean of the membrane,
+    rests: Vec<Matrix24>,
+    /// and the cells of elements with a law.
     cellwise: Vec<Cellwise>,
     /// Cells of an element.
     cells: usize,
@@ -29,8 +30,8 @@ pub(super) struct Sheet<'a> {
 /// An element's answer to a motion.
 pub(super) struct Answer {
     pub motion: Motion,
-    /// Force in the frame of the element.
-    pub local: Vector24,
+    pub forces: Forces,
+    strain: YarnStrain,
     /// Tangents of its cells; none if it is linear.
     tangents: Vec<Strains>,
     /// Energy stored, and lost since the memory (J).
@@ -38,14 +39,34 @@ pub(super) struct Answer {
     pub dissipation: f64,
 }
 
+/// What the geometric stiffness of an element comes from.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Forces {
+    /// Force in the frame of the element.
+    pub local: Vector24,
+    /// Mean resultants of the membrane along the material axes (N/m).
+    resultant: Vector3<f64>,
+}
+
+impl Forces {
+    pub fn plus(&self, other: &Self) -> Self {
+        Self { local: self.local + other.local, resultant: self.resultant + other.resultant }
+    }
+}
+
 impl<'a> Sheet<'a> {
     pub fn new(model: &Model, law: Option<&'a SheetLaw>) -> Self {
         let quads = model.mesh.quads.len();
+        let replaced = law.map_or([false; 6], SheetLaw::replaced);
+        let mut d_m = model.section.d_m;
+        (0..3).filter(|i| replaced[*i]).for_each(|i| d_m[(i, i)] = 0.0);
         Self {
             law,
+            d_m,
             references: Vec::with_capacity(quads),
             kinds: Vec::with_capacity(quads),
-            stiffnesses: Vec::new(),
+            yarns: Vec::new(),
+            rests: Vec::new(),
             cellwise: Vec::new(),
             cells: model.formulation.cells.count(),
         }
@@ -54,12 +75,21 @@ impl<'a> Sheet<'a> {
     /// Adds an element, which may be equal to the last.
     pub fn push(&mut self, element: &Prepared, model: &Model, like_the_last: bool) {
         if !like_the_last {
-            match self.law {
-                None => self.stiffnesses.push(element.local_stiffness()),
-                Some(law) => self.cellwise.push(element.cellwise(&model.section, law.replaced())),
-            }
+            let yarns = element.yarns();
+            let mut rest = match self.law {
+                None => element.local_stiffness(),
+                Some(law) => {
+                    let cells = element.cellwise(&model.section, law.replaced());
+                    let linear = *cells.linear();
+                    self.cellwise.push(cells);
+                    linear
+                }
+            };
+            yarns.remove_mean(&self.d_m, &mut rest);
+            self.rests.push(rest);
+            self.yarns.push(yarns);
         }
-        self.kinds.push((self.stiffnesses.len() + self.cellwise.len()) as u32 - 1);
+        self.kinds.push(self.yarns.len() as u32 - 1);
         self.references.push(Reference::of(&element.frame));
     }
 
@@ -71,53 +101,83 @@ impl<'a> Sheet<'a> {
         x: &[Point3<f64>; 4],
         r: &[UnitQuaternion<f64>; 4],
     ) -> Answer {
-        let motion = Motion::of(&self.references[quad], x, r);
-        let Some(law) = self.law else {
-            let local = self.stiffnesses[self.kinds[quad] as usize] * motion.deformation;
-            let energy = 0.5 * local.dot(&motion.deformation);
-            return Answer { motion, local, tangents: Vec::new(), energy, dissipation: 0.0 };
-        };
-        let element = &self.cellwise[self.kinds[quad] as usize];
-        let linear = element.linear_force(&motion.deformation);
-        let (mut energy, mut dissipation) = (0.5 * linear.dot(&motion.deformation), 0.0);
-        let (mut stresses, mut tangents) = (Vec::with_capacity(self.cells), Vec::with_capacity(self.cells));
-        let strains = element.strains(&motion.deformation).zip(element.areas());
-        for (cell, (strain, area)) in strains.enumerate() {
-            let (mut stress, mut tangent) = (Strains::default(), Strains::default());
-            respond(law, memory.cells.get(quad * self.cells + cell), &strain, |i, response| {
-                (stress[i], tangent[i]) = (response.stress, response.tangent);
-                energy += area * response.energy;
-                dissipation += area * response.dissipation;
-            });
-            stresses.push(stress);
-            tangents.push(tangent);
+        let (motion, kind) = (Motion::of(&self.references[quad], x, r), self.kinds[quad] as usize);
+        let yarns = &self.yarns[kind];
+        let strain = YarnStrain::of(&yarns.gradient(&motion.deformation));
+        let (mut local, mut resultant) = (self.rests[kind] * motion.deformation, self.d_m * strain.strain);
+        let mean = yarns.area() * resultant.dot(&strain.strain);
+        let mut energy = 0.5 * (local.dot(&motion.deformation) + mean);
+        let (mut dissipation, mut tangents) = (0.0, Vec::new());
+        if let Some(law) = self.law {
+            let element = &self.cellwise[kind];
+            let mut stresses = Vec::with_capacity(self.cells);
+            let strains = element.strains(&motion.deformation, strain.excess).zip(element.areas());
+            for (cell, (strain, area)) in strains.enumerate() {
+                let (mut stress, mut tangent) = (Strains::default(), Strains::default());
+                respond(law, memory.cells.get(quad * self.cells + cell), &strain, |i, response| {
+                    (stress[i], tangent[i]) = (response.stress, response.tangent);
+                    energy += area * response.energy;
+                    dissipation += area * response.dissipation;
+                });
+                stresses.push(stress);
+                tangents.push(tangent);
+            }
+            self.add_cells(kind, &stresses, &mut local, &mut resultant);
         }
-        let local = linear + element.cell_force(&stresses);
-        Answer { motion, local, tangents, energy, dissipation }
+        local += yarns.force(&strain, &resultant);
+        let forces = Forces { local, resultant };
+        Answer { motion, forces, strain, tangents, energy, dissipation }
     }
 
-    /// Tangent stiffness of an element in its frame.
-    pub fn stiffness(&self, quad: usize, answer: &Answer) -> Cow<'_, Matrix24> {
-        let kind = self.kinds[quad] as usize;
-        match self.law {
-            None => Cow::Borrowed(&self.stiffnesses[kind]),
-            Some(_) => Cow::Owned(self.cellwise[kind].stiffness(&answer.tangents)),
+    /// Adds the stresses of the cells: their mean to the resultants, their deviations to the rest of the force.
+    fn add_cells(
+        &self,
+        kind: usize,
+        stresses: &[Strains],
+        rest: &mut Vector24,
+        resultant: &mut Vector3<f64>,
+    ) {
+        let (element, yarns) = (&self.cellwise[kind], &self.yarns[kind]);
+        for (area, [x, y, xy, ..]) in element.areas().zip(stresses) {
+            *resultant += Vector3::new(*x, *y, *xy) * (area / yarns.area());
         }
+        *rest += element.cell_force(stresses, &-yarns.linear_rows());
     }
 
-    /// The change of the local force for a change of the deformation, to first order.
-    pub fn force_change(&self, quad: usize, answer: &Answer, change: &Vector24) -> Vector24 {
+    /// Tangent stiffness of an element in its frame, of its law alone.
+    pub fn stiffness(&self, quad: usize, answer: &Answer) -> Matrix24 {
         let kind = self.kinds[quad] as usize;
-        if self.law.is_none() {
-            return self.stiffnesses[kind] * change;
+        let (yarns, strain) = (&self.yarns[kind], &answer.strain);
+        let mut k = self.rests[kind];
+        if self.law.is_some() {
+            k += self.cellwise[kind].stiffness(&answer.tangents, &yarns.excess_rows(strain));
         }
-        let element = &self.cellwise[kind];
-        let stresses: Vec<Strains> = element
-            .strains(change)
-            .zip(&answer.tangents)
-            .map(|(strain, tangent)| std::array::from_fn(|i| tangent[i] * strain[i]))
-            .collect();
-        element.linear_force(change) + element.cell_force(&stresses)
+        yarns.add(&strain.rate.tr_mul(&(self.d_m * strain.rate)), &mut k);
+        k
+    }
+
+    /// Adds the geometric stiffness of yarns that turn in the frame.
+    pub fn add_geometric(&self, quad: usize, answer: &Answer, forces: &Forces, k: &mut Matrix24) {
+        self.yarns[self.kinds[quad] as usize].add(&answer.strain.geometric(&forces.resultant), k);
+    }
+
+    /// The change of the forces for a change of the deformation, to first order, the yarns where they are.
+    pub fn change(&self, quad: usize, answer: &Answer, change: &Vector24) -> Forces {
+        let kind = self.kinds[quad] as usize;
+        let (yarns, strain) = (&self.yarns[kind], &answer.strain);
+        let mut resultant = self.d_m * (strain.rate * yarns.gradient(change));
+        let mut local = self.rests[kind] * change;
+        if self.law.is_some() {
+            let excess = yarns.excess_rows(strain);
+            let rates = self.cellwise[kind].strain_rates(change, &excess);
+            let stresses: Vec<Strains> = rates
+                .zip(&answer.tangents)
+                .map(|(rate, tangent)| std::array::from_fn(|i| tangent[i] * rate[i]))
+                .collect();
+            self.add_cells(kind, &stresses, &mut local, &mut resultant);
+        }
+        local += yarns.force(strain, &resultant);
+        Forces { local, resultant }
     }
 
     /// Keeps in the memory what the elements have been through.
@@ -129,7 +189,8 @@ impl<'a> Sheet<'a> {
         let elements = memory.cells.chunks_exact_mut(self.cells);
         for (quad, (answer, cells)) in answers.iter().zip(elements).enumerate() {
             let element = &self.cellwise[self.kinds[quad] as usize];
-            for (strain, states) in element.strains(&answer.motion.deformation).zip(cells) {
+            let strains = element.strains(&answer.motion.deformation, answer.strain.excess);
+            for (strain, states) in strains.zip(cells) {
                 let from = *states;
                 respond(law, Some(&from), &strain, |i, response| states[i] = response.state);
             }

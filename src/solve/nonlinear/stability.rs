@@ -33,9 +33,9 @@ pub(super) fn check(
     state: &State,
     balance: &Balance,
 ) -> Result<(Stability, Vec<f64>), NonlinearError> {
-    let local = balance.local();
+    let forces = balance.forces();
     let tangent = |shift: f64| -> Result<(BlockMatrix, Factor), FactorError> {
-        let (matrix, _) = system.tangent(state, balance, &local, shift);
+        let (matrix, _) = system.tangent(state, balance, &forces, shift);
         let factor = system.factorise(&matrix)?;
         Ok((matrix, factor))
     };

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector3};
 use rayon::prelude::*;
 
-use super::sheet::{Answer, Sheet};
+use super::sheet::{Answer, Forces, Sheet};
 use super::{NonlinearError, Settings, State};
 use crate::element::corotational::Motion;
 use crate::element::{Matrix24, Vector24, follower_pressure, follower_pressure_tangent, lumped_mass};
@@ -130,7 +130,7 @@ impl<'a> System<'a> {
             let nodes = mesh.quads[q].map(|n| n as usize);
             let (x, r) = (nodes.map(|n| state.position[n]), nodes.map(|n| state.rotation[n]));
             let answer = self.sheet.answer(q, &state.memory, &x, &r);
-            let force = answer.motion.force(&answer.local);
+            let force = answer.motion.force(&answer.forces.local);
             (answer, force, self.push_of(state, q))
         });
         let mut external: Vec<f64> = self.load.iter().map(|f| f * state.factor).collect();
@@ -235,15 +235,15 @@ impl<'a> System<'a> {
     /// Tangent with `shift` times the metric added, held dofs as unit rows, and the forces that the
     /// held values at factor 1 exert on the free dofs.
     ///
-    /// `local` are the element forces that enter the geometric stiffness.
+    /// `forces` are the element forces that enter the geometric stiffness.
     pub fn tangent(
         &self,
         state: &State,
         balance: &Balance,
-        local: &[Vector24],
+        forces: &[Forces],
         shift: f64,
     ) -> (BlockMatrix, Vec<f64>) {
-        self.tangent_of(state, balance, local, shift, 1.0)
+        self.tangent_of(state, balance, forces, shift, 1.0)
     }
 
     /// The same with the stiffnesses of the elements times `stiffening`.
@@ -251,7 +251,7 @@ impl<'a> System<'a> {
         &self,
         state: &State,
         balance: &Balance,
-        local: &[Vector24],
+        forces: &[Forces],
         shift: f64,
         stiffening: f64,
     ) -> (BlockMatrix, Vec<f64>) {
@@ -263,8 +263,9 @@ impl<'a> System<'a> {
             let batch = start..(start + BATCH).min(pattern.quads.len());
             let tangents = self.each(batch.clone(), |q| {
                 let answer = &balance.answers[q];
-                let k = self.sheet.stiffness(q, answer).scale(stiffening);
-                let mut k = answer.motion.tangent(&k, &local[q]);
+                let mut k = self.sheet.stiffness(q, answer).scale(stiffening);
+                self.sheet.add_geometric(q, answer, &forces[q], &mut k);
+                let mut k = answer.motion.tangent(&k, &forces[q].local);
                 self.soften(state, q, &mut k);
                 self.constrain(state, q, k, pushes)
             });
@@ -370,9 +371,9 @@ impl<'a> System<'a> {
 }
 
 impl Balance {
-    /// Element forces in their frames.
-    pub fn local(&self) -> Vec<Vector24> {
-        self.answers.iter().map(|a| a.local).collect()
+    /// Forces of the elements.
+    pub fn forces(&self) -> Vec<Forces> {
+        self.answers.iter().map(|a| a.forces).collect()
     }
 }
 

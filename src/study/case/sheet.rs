@@ -27,6 +27,9 @@ pub struct Sheet {
     /// Cells along x and y; across the core of a disc (one number twice); along the radius and
     /// around an annulus.
     pub cells: Option<[usize; 2]>,
+    /// Width of the outermost cells of an `annulus` over that of the innermost; 1, equal widths. Where a sheet bends
+    /// sharply over the edge that holds it, narrow cells belong there.
+    pub grading: Option<f64>,
     /// Angle of the warp from x.
     #[serde(default)]
     pub warp_angle_deg: f64,

@@ -43,7 +43,9 @@ pub struct Drape {
     pub states: Vec<DrapeState>,
     /// Folds at the start of the searches that did not, and why.
     pub failed: Vec<(usize, NonlinearError)>,
-    /// The state of lowest energy on the finest mesh.
+    /// The state of lowest energy on each mesh, from that of the case to the finest.
+    pub meshes: Vec<DrapeState>,
+    /// The last of them.
     pub finest: DrapeState,
     /// The model on the finest mesh.
     pub model: Model,
@@ -100,6 +102,9 @@ const TOLERANCE: f64 = 1e-6;
 /// Steps of a search.
 const STEPS: usize = 600;
 
+/// What the mesh may be expected to leave of the coefficient without a word.
+const MESH_ERROR: f64 = 0.02;
+
 /// Height of the folds at the start over the width of the ring.
 const START_HEIGHT: f64 = 0.15;
 
@@ -147,24 +152,26 @@ pub fn drape(
         return Err(failed.swap_remove(0).1.into());
     };
     let (mut ring, mut model, mut solution, start) = (ring, model, lowest.clone(), found[0].1.start);
-    let mut iterations = solution.iterations;
+    let mut meshes = vec![found[0].1.clone()];
     for _ in 0..refinements {
         let finer = ring.refined();
         let fine = build::model(case, &finer.sheet, section.clone())?;
         let from = refine::refined(&solution.state, &model.mesh, &fine.mesh, ring.cells);
         solution = finer.relax(&fine, law, &plan(&fine, options)?, from, options)?;
-        iterations += solution.iterations;
+        meshes.push(finer.state(&fine, &solution, start));
         progress();
         (ring, model) = (finer, fine);
     }
-    let finest = DrapeState { iterations, ..ring.state(&model, &solution, start) };
+    // `meshes` holds the first one at least.
+    let finest = meshes.last().unwrap_or(&found[0].1).clone();
     let states: Vec<DrapeState> = found.into_iter().map(|(_, s)| s).collect();
     let outline = shadow::outline(&projected(&solution.state), &model.mesh.quads, ring.inner, 360);
-    let findings = findings(case, &finest, &failed, folds.len(), law.is_none());
+    let findings = findings(case, &meshes, &failed, folds.len(), law.is_none());
     Ok(Drape {
         case: case.name.clone(),
         states,
         failed,
+        meshes,
         finest,
         model,
         solution,
@@ -290,7 +297,7 @@ fn projected(state: &State) -> Vec<[f64; 2]> {
 
 fn findings(
     case: &Case,
-    finest: &DrapeState,
+    meshes: &[DrapeState],
     failed: &[(usize, NonlinearError)],
     searches: usize,
     elastic: bool,
@@ -315,12 +322,25 @@ fn findings(
         );
         findings.push(Finding::new("S114", message).at(place()));
     }
-    if finest.negative_pivots > 0 {
+    if let Some(finest) = meshes.last().filter(|s| s.negative_pivots > 0) {
         let message = format!(
             "the state of lowest energy is unstable in {} directions: it is no shape that a sheet stays in",
             finest.negative_pivots
         );
         findings.push(Finding::new("S115", message).at(place()));
+    }
+    if let [.., coarser, finest] = meshes {
+        // The error of the mesh falls with the square of the cells: a third of the last change is left.
+        let left = (finest.coefficient - coarser.coefficient) / 3.0;
+        if left.abs() > MESH_ERROR {
+            let message = format!(
+                "about {:+.1} points of the coefficient are left to the mesh: the last refinement, to {} elements, changed it by {:+.1}",
+                100.0 * left,
+                finest.elements,
+                300.0 * left
+            );
+            findings.push(Finding::new("S119", message).at(place()));
+        }
     }
     findings
 }

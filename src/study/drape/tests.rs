@@ -63,6 +63,44 @@ fn a_cloth_hangs_in_folds_and_does_so_always() {
     assert_eq!((again.states, again.finest), (drape.states, drape.finest));
 }
 
+/// The three specimens of the test: the more of a cloth hangs, the deeper, and the smaller its coefficient.
+#[test]
+fn specimens_of_24_30_and_36_cm_hang_deeper_in_turn() {
+    let [small, middle, large] = ["24 cm", "30 cm", "36 cm"].map(|diameter| {
+        let size = format!("\ndiameter = \"{diameter}\"\ngrading = 2");
+        let drape = run(&case(2e-5, "\ndiameter = \"30 cm\"", &size));
+        assert!(drape.failed.is_empty() && drape.finest.negative_pivots == 0, "{:?}", drape.finest);
+        drape.finest.coefficient
+    });
+    println!("{small:.3} {middle:.3} {large:.3}");
+    assert!(1.0 > small && small > middle && middle > large && large > 0.1);
+}
+
+/// The last refinement tells what the mesh leaves: a third of its change, if that is above two points.
+#[test]
+fn a_coarse_mesh_is_a_finding() {
+    let state = |coefficient| DrapeState {
+        start: 3,
+        elements: 5040,
+        coefficient,
+        folds: Folds::default(),
+        energy: -1.0,
+        strain_energy: 1.0,
+        residual: 1e-7,
+        negative_pivots: 0,
+        lowest_eigenvalue: 1.0,
+        iterations: 1,
+    };
+    let case = case(1e-6, "", "");
+    let told = |coefficients: &[f64]| {
+        let meshes: Vec<DrapeState> = coefficients.iter().map(|c| state(*c)).collect();
+        findings(&case, &meshes, &[], 1, false).first().map(|f| (f.code, f.message.clone()))
+    };
+    let (code, message) = told(&[0.6, 0.503, 0.425]).unwrap();
+    assert!(code == "S119" && message.contains("-2.6 points") && message.contains("by -7.8"), "{message}");
+    assert_eq!((told(&[0.288, 0.282]), told(&[0.5])), (None, None));
+}
+
 /// A ring as stiff as card stays flat: its shadow is the sheet.
 #[test]
 fn a_stiff_sheet_stays_flat() {

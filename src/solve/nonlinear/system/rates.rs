@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Balance, State, System, vector};
+use super::{Balance, Forces, State, System, vector};
 use crate::element::Vector24;
 use crate::model::rigid::lever;
 
@@ -38,7 +38,7 @@ impl System<'_> {
     }
 
     /// Element forces that a step is expected to lead to: those of the mixed integration point.
-    pub fn predict(&self, state: &State, balance: &Balance, step: &[f64]) -> Vec<Vector24> {
+    pub fn predict(&self, state: &State, balance: &Balance, step: &[f64]) -> Vec<Forces> {
         self.each(0..self.plan.pattern.quads.len(), |q| {
             let mut spins = Vector24::zeros();
             for (i, node) in self.model.mesh.quads[q].iter().enumerate() {
@@ -47,25 +47,25 @@ impl System<'_> {
                 spins.fixed_rows_mut::<3>(6 * i + 3).copy_from(&spin);
             }
             let answer = &balance.answers[q];
-            answer.local + self.sheet.force_change(q, answer, &answer.motion.deformation_rate(&spins))
+            answer.forces.plus(&self.sheet.change(q, answer, &answer.motion.deformation_rate(&spins)))
         })
     }
 
     /// Forces on the nodes of `beta` times the elements' stiffnesses at the rate of their deformation, and
     /// the same in their frames; `velocity` is that of all nodes. Rigid motions cost nothing.
-    pub fn viscous(&self, balance: &Balance, velocity: &[f64], beta: f64) -> (Vec<f64>, Vec<Vector24>) {
+    pub fn viscous(&self, balance: &Balance, velocity: &[f64], beta: f64) -> (Vec<f64>, Vec<Forces>) {
         let mut forces = vec![0.0; velocity.len()];
         let quads = &self.model.mesh.quads;
         if beta == 0.0 {
-            return (forces, vec![Vector24::zeros(); quads.len()]);
+            return (forces, vec![Forces::default(); quads.len()]);
         }
         let parts = self.each(0..quads.len(), |q| {
             let nodes = &quads[q];
             let rates = Vector24::from_fn(|k, _| velocity[6 * nodes[k / 6] as usize + k % 6]);
             let answer = &balance.answers[q];
             let motion = &answer.motion;
-            let local = self.sheet.force_change(q, answer, &motion.deformation_rate(&rates)) * beta;
-            (motion.force(&local), local)
+            let viscous = self.sheet.change(q, answer, &(motion.deformation_rate(&rates) * beta));
+            (motion.force(&viscous.local), viscous)
         });
         let mut locals = Vec::with_capacity(parts.len());
         for (nodes, (force, local)) in quads.iter().zip(parts) {
