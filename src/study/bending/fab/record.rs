@@ -60,8 +60,8 @@ const TURNING: usize = 4;
 /// leaves of its bow (about 100 1/m), and still bends less at its clamps than in the tests.
 const PUSH: f64 = 30.0;
 
-/// Unbalanced forces relative to loads or reactions: rounding leaves 1e-8 in a strip that hardly stretches, and
-/// the load cell 1e-2.
+/// Unbalanced forces relative to loads or reactions: the load cell resolves 1e-2, and below this sliders may
+/// alternate between sticking and slipping without end.
 const TOLERANCE: f64 = 1e-6;
 
 /// Strain of the strip when it is drawn straight between two tests.
