@@ -167,7 +167,7 @@ fn friction_makes_the_cantilever_stiffer() {
 /// that stands up (U1) was recorded first, the hanging one (D1) is the same strip 25 s later. NRMSE in %, elastic
 /// and with friction: outer cycle; inner cycles, predicted with the zero of the outer one and with one of their
 /// own, as the load drifts during a test by as much as half of its span. The marks of 10 and 16 % are
-/// missed by the hanging strips of warp and bias (12.2, 10.2) and by the standing one of bias (inner 19.9).
+/// missed by the hanging strips of warp and bias (12.2, 10.2) and by the standing one of bias (inner 20).
 #[test]
 fn a_measured_fab_record() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/u3m/physics_example2.json");
@@ -177,12 +177,12 @@ fn a_measured_fab_record() {
     }
     let file = read(&path, &ReadSettings::default()).unwrap().fab.unwrap();
     let density = file.areal_density.unwrap();
-    let settings = FabSettings { cells: 16, steps: 1 };
+    let settings = FabSettings { cells: 24, steps: 1 };
     // B of an elastic strip, then B and 2HB/2 as KES-FB2 would read the law (uN m, uN).
     let reached = [
-        (Direction::Warp, [9.78, 7.29, 83.9], [[13.8, 8.2, 14.3, 12.7], [20.5, 12.3, 16.1, 12.9]]),
-        (Direction::Weft, [13.92, 10.69, 133.7], [[14.7, 5.0, 11.1, 9.2], [19.9, 6.0, 5.1, 5.0]]),
-        (Direction::Bias, [5.08, 3.28, 59.6], [[14.5, 7.3, 20.0, 14.6], [19.0, 10.3, 7.3, 7.0]]),
+        (Direction::Warp, [9.78, 7.26, 87.5], [[13.8, 8.2, 15.2, 13.3], [20.5, 12.4, 16.2, 12.7]]),
+        (Direction::Weft, [13.92, 10.64, 134.2], [[14.7, 5.0, 11.1, 9.2], [19.9, 6.0, 5.1, 5.0]]),
+        (Direction::Bias, [5.08, 3.26, 59.5], [[14.5, 7.4, 20.1, 14.6], [19.0, 10.4, 7.6, 7.2]]),
     ];
     for (direction, values, bounds) in reached {
         let loops: BendLoops = bend_loops(&file.tests, direction, density, &settings).unwrap().unwrap();
