@@ -15,7 +15,7 @@ const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("quantity", &[], &[]),
     ("law", &[], &[]),
     ("instrument", &["finding", "quantity"], &["csv", "calamine", "cfb", "encoding_rs", "toml", "zip"]),
-    ("characterise", &["finding", "quantity", "law", "instrument"], &[]),
+    ("characterise", &["finding", "quantity", "law", "instrument"], &["faer"]),
     ("section", &["finding", "quantity", "law"], &[]),
     ("analytical", &["section"], &[]),
     ("mesh", &["finding", "quantity"], &[]),
@@ -79,7 +79,8 @@ const ABOVE_CLI: [&str; 12] = [
 ];
 
 /// Paths under which alone a crate may be named.
-const ONE_PLACE: &[(&str, &[&str])] = &[("faer", &["src/solve/factor", "src/solve/multifrontal"])];
+const ONE_PLACE: &[(&str, &[&str])] =
+    &[("faer", &["src/solve/factor", "src/solve/multifrontal", "src/characterise/friction/nnls.rs"])];
 
 /// What only `cli` may call.
 const PRINTING: &[&str] = &["println!", "eprintln!", "print!", "eprint!", "dbg!"];
