@@ -12,7 +12,7 @@ use super::StudyError;
 use crate::constitutive::{Input, SectionDerivative, bands};
 use crate::element::Mass;
 use crate::fields::{Locator, Recovery, Resultants};
-use crate::model::{Dof, DofGroup, Model, ModelError};
+use crate::model::{Dof, DofGroup, Load, Model, ModelError};
 use crate::quantity::Bands;
 use crate::section::ShellSection;
 use crate::solve::assemble::{Kind, multiply};
@@ -95,33 +95,34 @@ pub(super) fn linear_uncertainty(
         .iter()
         .map(|input| Change::of(model, &input.derivative, u, &groups))
         .collect::<Result<_, _>>()?;
-    // Inputs that change neither stiffness nor load move nothing.
+    // Inputs that change neither load nor stiffness of what was solved move nothing, and no resultant of it.
     let forces: Vec<Vec<f64>> = changes.iter().filter_map(Change::force).collect();
-    let mut moved = factors.solve(&forces)?.into_iter();
+    let moved = if forces.is_empty() { Vec::new() } else { factors.solve(&forces)? };
+    let mut moved = moved.into_iter();
     let motions: Vec<Option<Vec<f64>>> =
         changes.iter().map(|c| if c.is_none() { None } else { moved.next() }).collect();
-    let resultants = |section: ShellSection, u: &[f64]| -> Result<Vec<[f64; 8]>, ModelError> {
-        let model = Model { section, ..model.clone() };
-        probes.iter().map(|(_, at)| Ok(recovery.at(&model, u, at)?.components())).collect()
+    let mut at_section = model.clone();
+    let mut resultants = |section: ShellSection, u: &[f64]| -> Result<Vec<[f64; 8]>, ModelError> {
+        at_section.section = section;
+        probes.iter().map(|(_, at)| Ok(recovery.at(&at_section, u, at)?.components())).collect()
     };
     // Per input, probe and component: by differences, which are exact to the square of the step,
     // because a resultant is linear in the section and in the displacements.
-    let slopes: Vec<Vec<[f64; 8]>> = inputs
-        .iter()
-        .zip(&motions)
-        .map(|(input, motion)| {
-            let at = |by: f64| {
-                let mut u = u.clone();
-                motion.iter().flatten().zip(&mut u).for_each(|(du, u)| *u += by * du);
-                resultants(input.derivative.step(&model.section, by), &u)
-            };
-            let (up, down) = (at(STEP)?, at(-STEP)?);
-            let slope = |(up, down): (&[f64; 8], &[f64; 8])| {
-                std::array::from_fn(|k| (up[k] - down[k]) / (2.0 * STEP))
-            };
-            Ok(up.iter().zip(&down).map(slope).collect())
-        })
-        .collect::<Result<_, ModelError>>()?;
+    let mut slopes: Vec<Vec<[f64; 8]>> = Vec::with_capacity(inputs.len());
+    for (input, motion) in inputs.iter().zip(&motions) {
+        let Some(motion) = motion else {
+            slopes.push(vec![[0.0; 8]; probes.len()]);
+            continue;
+        };
+        let mut at = |by: f64| {
+            let u: Vec<f64> = u.iter().zip(motion).map(|(u, du)| u + by * du).collect();
+            resultants(input.derivative.step(&model.section, by), &u)
+        };
+        let (up, down) = (at(STEP)?, at(-STEP)?);
+        let slope =
+            |(up, down): (&[f64; 8], &[f64; 8])| std::array::from_fn(|k| (up[k] - down[k]) / (2.0 * STEP));
+        slopes.push(up.iter().zip(&down).map(slope).collect());
+    }
     let values = resultants(model.section.clone(), u)?;
     let load = model.load_vector();
     let predictions = readings(model, solution, &groups, probes)
@@ -261,7 +262,9 @@ impl Change {
         let stiffer = |group: &DofGroup| steps.iter().any(|(to, _)| stiffens(*group, &model.section, to));
         let groups: Vec<DofGroup> = groups.iter().copied().filter(stiffer).collect();
         // Of all loads only the weight depends on the section.
-        let heavier = steps.iter().any(|(to, _)| to.areal_density != model.section.areal_density);
+        let has_weight = model.loads.iter().any(|load| matches!(load, Load::Gravity(_)));
+        let heavier =
+            has_weight && steps.iter().any(|(to, _)| to.areal_density != model.section.areal_density);
         let mut change = Self { load: None, internal: None };
         if groups.is_empty() && !heavier {
             return Ok(change);
