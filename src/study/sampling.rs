@@ -5,6 +5,7 @@
 //! |---|---|---|
 //! | drape | drape coefficient | the search on the mesh of the case, without refinement |
 //! | nonlinear | largest deflection, displacements of probes | the whole path |
+//! | newmark | largest deflection in time, displacements of probes at the end | the whole motion |
 //! | cantilever, heart loop | bending length (elastic, with friction), height | the whole test |
 //! | virtual test in large rotations | stiffness; with friction the KES parameters of the cycle | the whole test |
 //!
@@ -209,10 +210,13 @@ impl Case {
         let linear = match (&self.virtual_test, &self.bending_test) {
             (Some(test), _) => test.formulation == TestFormulation::Linear,
             (_, Some(_)) => false,
-            _ => !matches!(self.analysis, Analysis::Nonlinear(_) | Analysis::Drape { .. }),
+            _ => !matches!(
+                self.analysis,
+                Analysis::Nonlinear(_) | Analysis::Drape { .. } | Analysis::Newmark { .. }
+            ),
         };
         linear.then_some(
-            "[uncertainty] is for drapes, nonlinear statics, cantilevers, heart loops and virtual tests in large \
+            "[uncertainty] is for drapes, nonlinear statics, dynamics, cantilevers, heart loops and virtual tests in large \
              rotations: remove it, the bands of linear cases need no points",
         )
     }

@@ -79,6 +79,27 @@ fn an_input_without_spread_forbids_the_band() {
     assert!(sample(&exact, &sheet, &made, &|| ()).unwrap_err().to_string().contains("areal density"));
 }
 
+/// Under a load that comes at once and stays, an undamped sheet swings to twice its rest, whatever its
+/// stiffness: the deflection in time has the spread of 1/B over all its cases.
+#[test]
+fn a_motion_has_bands() {
+    let text = "[uncertainty]\npoints = 32\nexact = [\"areal density\"]\n\
+        [analysis]\nkind = \"newmark\"\nduration = \"2 s\"\nstep = \"20 ms\"\n\
+        [sheet]\nshape = \"rectangle\"\nwidth = \"20 cm\"\nheight = \"20 cm\"\ncells = [4, 4]\n\
+        [[supports]]\nset = \"boundary\"\nkind = \"clamped\"\n\
+        [[loads]]\nkind = \"pressure\"\nvalue = \"2e-6 Pa\"\n";
+    let case = case(text).unwrap();
+    let sheet = sheet(Estimate::single(0.15));
+    let made = constitutive::section(&sheet, &case.assumptions).unwrap();
+    let found = sample(&case, &sheet, &made, &|| ()).unwrap().unwrap();
+    let w = found.of("w_max").unwrap();
+    let [low, high] = w.mean_fabric.unwrap().interval;
+    // Two independent halves of 1/B: t s/√n √(1/2), and the torsion that follows them.
+    let half = 4.302_653 * 0.06 / f64::sqrt(3.0 * 2.0);
+    assert_relative_eq!(0.5 * (high / low).abs().ln().abs(), half, max_relative = 0.3);
+    assert_relative_eq!(w.mean_fabric.unwrap().median, w.value, max_relative = 3e-2);
+}
+
 #[test]
 fn the_table_is_refused_where_it_has_no_meaning() {
     let refused = |text: &str| case(text).unwrap_err().to_string();
