@@ -101,29 +101,11 @@ pub(super) fn linear_uncertainty(
     let mut moved = moved.into_iter();
     let motions: Vec<Option<Vec<f64>>> =
         changes.iter().map(|c| if c.is_none() { None } else { moved.next() }).collect();
-    let mut at_section = model.clone();
-    let mut resultants = |section: ShellSection, u: &[f64]| -> Result<Vec<[f64; 8]>, ModelError> {
-        at_section.section = section;
-        probes.iter().map(|(_, at)| Ok(recovery.at(&at_section, u, at)?.components())).collect()
-    };
-    // Per input, probe and component: by differences, which are exact to the square of the step,
-    // because a resultant is linear in the section and in the displacements.
-    let mut slopes: Vec<Vec<[f64; 8]>> = Vec::with_capacity(inputs.len());
-    for (input, motion) in inputs.iter().zip(&motions) {
-        let Some(motion) = motion else {
-            slopes.push(vec![[0.0; 8]; probes.len()]);
-            continue;
-        };
-        let mut at = |by: f64| {
-            let u: Vec<f64> = u.iter().zip(motion).map(|(u, du)| u + by * du).collect();
-            resultants(input.derivative.step(&model.section, by), &u)
-        };
-        let (up, down) = (at(STEP)?, at(-STEP)?);
-        let slope =
-            |(up, down): (&[f64; 8], &[f64; 8])| std::array::from_fn(|k| (up[k] - down[k]) / (2.0 * STEP));
-        slopes.push(up.iter().zip(&down).map(slope).collect());
-    }
-    let values = resultants(model.section.clone(), u)?;
+    let mut at_probes = AtProbes { model: model.clone(), probes, recovery };
+    let values = at_probes.components(model.section.clone(), u)?;
+    let slopes: Vec<Vec<[f64; 8]>> = (inputs.iter().zip(&motions))
+        .map(|(input, motion)| at_probes.slopes((&model.section, u), input, motion.as_deref()))
+        .collect::<Result<_, _>>()?;
     let load = model.load_vector();
     let predictions = readings(model, solution, &groups, probes)
         .into_iter()
@@ -147,6 +129,41 @@ pub(super) fn linear_uncertainty(
         })
         .collect();
     Ok(Uncertainty { inputs: inputs.to_vec(), predictions })
+}
+
+/// Resultants at the probes.
+struct AtProbes<'a> {
+    model: Model,
+    probes: &'a [(&'a str, Locator)],
+    recovery: &'a Recovery,
+}
+
+impl AtProbes<'_> {
+    /// The components at each probe of a sheet of the section.
+    fn components(&mut self, section: ShellSection, u: &[f64]) -> Result<Vec<[f64; 8]>, ModelError> {
+        self.model.section = section;
+        let at = |(_, at): &(&str, Locator)| Ok(self.recovery.at(&self.model, u, at)?.components());
+        self.probes.iter().map(at).collect()
+    }
+
+    /// Their ∂/∂ln p, where `motion` is ∂u/∂ln p: by differences, which are exact to the square of the
+    /// step, because a resultant is linear in the section and in the displacements.
+    fn slopes(
+        &mut self,
+        (section, u): (&ShellSection, &[f64]),
+        input: &Input,
+        motion: Option<&[f64]>,
+    ) -> Result<Vec<[f64; 8]>, ModelError> {
+        let Some(motion) = motion else { return Ok(vec![[0.0; 8]; self.probes.len()]) };
+        let mut at = |by: f64| {
+            let u: Vec<f64> = u.iter().zip(motion).map(|(u, du)| u + by * du).collect();
+            self.components(input.derivative.step(section, by), &u)
+        };
+        let (up, down) = (at(STEP)?, at(-STEP)?);
+        let slope =
+            |(up, down): (&[f64; 8], &[f64; 8])| std::array::from_fn(|k| (up[k] - down[k]) / (2.0 * STEP));
+        Ok(up.iter().zip(&down).map(slope).collect())
+    }
 }
 
 /// Frequencies closer than this part of themselves have no derivatives of their own: a change turns
