@@ -87,8 +87,8 @@ fn bending_of_a_fabric_from_a_table() {
 }
 
 /// Loops of the twill: bending to rounding; shear to the second order of its angle, by which the force along the
-/// clamps is more than the couple of the yarns; tension, whose coupling is in the laws, to 0.25 %: 1e-4 of strain
-/// from the first step on, which leads out of the slack of the law.
+/// clamps is more than the couple of the yarns; tension, whose coupling is in the laws, to what the solver leaves in
+/// the slack, where the sheet hardly resists.
 #[test]
 fn the_three_tests_of_a_fabric_with_loops() {
     let sheet = sheet("twill");
@@ -97,7 +97,7 @@ fn the_three_tests_of_a_fabric_with_loops() {
     for (test, within, parameters) in [
         (Test::Bending, 1e-6, &[Parameter::B, Parameter::Hb][..]),
         (Test::Shear, 0.03, &[Parameter::G, Parameter::Hg, Parameter::Hg5]),
-        (Test::Tensile, 3e-3, &[Parameter::Lt, Parameter::Wt, Parameter::Rt, Parameter::Emt]),
+        (Test::Tensile, 1e-4, &[Parameter::Lt, Parameter::Wt, Parameter::Rt, Parameter::Emt]),
     ] {
         if test == Test::Tensile {
             let [x, y] = tension(&sheet);

@@ -6,7 +6,6 @@ use super::diagnostics::Failure;
 use super::output::Columns;
 use super::task::Task;
 use super::tree::Tree;
-use crate::instrument::Origin;
 use crate::law::Mode;
 use crate::quantity::significant;
 use crate::report::chart::{self, DrapePlot, ParityPoint};
@@ -128,18 +127,21 @@ fn law(task: &Task) -> &'static str {
 }
 
 /// Where the fabric of a task comes from.
-fn origin(task: &Task) -> &'static str {
-    task.fabric.map_or("", |f| match f.info.origin {
-        Origin::Measured => "measured data",
-        Origin::Published => "published data",
-        Origin::Synthetic => "synthetic data",
-    })
+fn origin(task: &Task) -> String {
+    task.fabric.map_or(String::new(), |f| format!("{} data", f.info.origin.name()))
 }
 
-/// The point of a parity chart, where a coefficient was measured.
-pub fn point(task: &Task, d: &Drape) -> Option<ParityPoint> {
+/// A drape beside its measured coefficient.
+#[derive(Clone, Debug)]
+pub struct DrapePoint {
+    law: Mode,
+    point: ParityPoint,
+}
+
+/// The drape beside its measured coefficient (in %); none where none was measured.
+pub fn point(task: &Task, d: &Drape) -> Option<DrapePoint> {
     let (measured, _) = measured(task)?;
-    Some(ParityPoint {
+    let point = ParityPoint {
         label: task.fabric_name()?.into(),
         group: format!("{}, {}", law(task), origin(task)),
         quantity: "Drape coefficient".into(),
@@ -149,44 +151,42 @@ pub fn point(task: &Task, d: &Drape) -> Option<ParityPoint> {
         simulated: 100.0 * d.finest.coefficient,
         simulated_half_width: None,
         simulated_band: Some(d.band().map(|b| 100.0 * b)),
-    })
+    };
+    Some(DrapePoint { law: task.case.assumptions.law, point })
 }
 
 /// Fabrics that were hung elastic and with friction: both lowest-energy states with their bands, and the measured
 /// coefficient beside them; none without such a fabric.
-pub fn bracket(points: &[ParityPoint]) -> Option<Columns> {
-    let mut table = Columns::new(BRACKET);
-    let of = |label: &str, friction: bool| {
-        points.iter().find(|p| p.label == label && (p.group != "elastic") == friction)
-    };
-    for elastic in points.iter().filter(|p| p.group == "elastic") {
-        let Some(friction) = of(&elastic.label, true) else { continue };
-        let band = |p: &ParityPoint| {
-            let [low, high] = p.simulated_band.unwrap_or([p.simulated; 2]);
+pub fn bracket(points: &[DrapePoint]) -> Option<Columns> {
+    let mut table = Columns::new(["drape (%)", "elastic", "friction", "measured", "measured is"]);
+    let of = |law: Mode| points.iter().filter(move |p| p.law == law).map(|p| &p.point);
+    for elastic in of(Mode::Elastic) {
+        let Some(friction) = of(Mode::Friction).find(|p| p.label == elastic.label) else { continue };
+        let band = |p: &ParityPoint| p.simulated_band.unwrap_or([p.simulated; 2]);
+        let cell = |p: &ParityPoint| {
+            let [low, high] = band(p);
             format!("{:.1} ({low:.1} to {high:.1})", p.simulated)
         };
-        let [low, high] = [elastic, friction].map(|p| p.simulated_band.unwrap_or([p.simulated; 2]));
+        let ([low, high], [low_friction, high_friction]) = (band(elastic), band(friction));
         let place = match elastic.measured {
-            m if m < low[0].min(high[0]) => "below",
-            m if m > low[1].max(high[1]) => "above",
+            m if m < low.min(low_friction) => "below",
+            m if m > high.max(high_friction) => "above",
             _ => "within",
         };
         let measured = format!("{:.1}", elastic.measured);
-        table.row([elastic.label.clone(), band(elastic), band(friction), measured, place.into()]);
+        table.row([elastic.label.clone(), cell(elastic), cell(friction), measured, place.into()]);
     }
     (!table.is_empty()).then_some(table)
 }
 
-/// Headings of [`bracket`], in per cent.
-const BRACKET: [&str; 5] = ["drape (%)", "elastic", "friction", "measured", "measured is"];
-
 /// `drape_parity.png`, if there is anything to compare.
-pub fn parity(tree: &Tree, points: &[ParityPoint]) -> Result<(), Failure> {
+pub fn parity(tree: &Tree, points: &[DrapePoint]) -> Result<(), Failure> {
     if !tree.charts() {
         return Ok(());
     }
     let subtitle = "point: state of lowest energy, bar: all states found; the friction that elastic cloth lacks would raise its points";
-    tree.chart("drape_parity.png", chart::parity(points, "Drape, simulated against measured", subtitle))?;
+    let points: Vec<ParityPoint> = points.iter().map(|p| p.point.clone()).collect();
+    tree.chart("drape_parity.png", chart::parity(&points, "Drape, simulated against measured", subtitle))?;
     Ok(())
 }
 
@@ -237,7 +237,7 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
             law(task),
             if s.negative_pivots == 0 { "stable" } else { "UNSTABLE" }
         ),
-        origin: origin(task).into(),
+        origin: origin(task),
         nodes,
         quads: &d.model.mesh.quads,
         disc_radius: d.disc_radius,
@@ -245,5 +245,39 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
         outline: &d.outline,
         values,
         remarks: d.findings.iter().map(|f| f.message.clone()).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(label: &str, law: Mode, simulated: f64, band: [f64; 2]) -> DrapePoint {
+        let point = ParityPoint {
+            label: label.into(),
+            measured: 50.0,
+            simulated,
+            simulated_band: Some(band),
+            ..ParityPoint::default()
+        };
+        DrapePoint { law, point }
+    }
+
+    #[test]
+    fn a_fabric_hung_both_ways_has_a_bracket() {
+        let hung = [
+            point("a", Mode::Elastic, 40.0, [39.0, 45.0]),
+            point("b", Mode::Elastic, 60.0, [55.0, 61.0]),
+            point("c", Mode::Elastic, 60.0, [55.0, 61.0]),
+            point("b", Mode::Friction, 70.0, [52.0, 71.0]),
+            point("a", Mode::Friction, 55.0, [48.0, 56.0]),
+        ];
+        let text = bracket(&hung).unwrap().text();
+        let rows: Vec<&str> = text.lines().skip(1).map(str::trim_end).collect();
+        assert_eq!(rows.len(), 2, "{text}");
+        assert!(rows[0].starts_with("a ") && rows[0].ends_with("within"), "{text}");
+        assert!(rows[0].contains("40.0 (39.0 to 45.0)") && rows[0].contains("55.0 (48.0 to 56.0)"), "{text}");
+        assert!(rows[1].starts_with("b ") && rows[1].ends_with("below"), "{text}");
+        assert!(bracket(&hung[..3]).is_none());
     }
 }

@@ -55,18 +55,17 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         }
         return Ok(Exit::Bad);
     }
-    // A case for FAB records is nothing to a batch of fabrics without them.
-    work.cases.retain(|c| !c.is_for_fab_records() || work.fabrics.iter().any(|f| c.suits(&f.sheet)));
     let lawless: Vec<Finding> = work.cases.iter().filter_map(|c| work.without_law(c)).collect();
     lawless.iter().for_each(|f| ui.diagnostics.finding(f));
-    let fits: Vec<bool> = (work.cases.iter())
-        .map(|c| work.without_law(c).is_none() || work.fabrics.iter().any(|f| c.suits(&f.sheet)))
-        .collect();
-    let mut fits = fits.into_iter();
-    work.cases.retain(|_| fits.next() != Some(false));
+    // A case for FAB records or laws is nothing to a batch of fabrics without them.
+    let fabrics = &work.fabrics;
+    work.cases.retain(|c| {
+        let choosy = c.is_for_fab_records() || fabrics.iter().any(|f| c.lacks_law(&f.sheet));
+        !choosy || fabrics.iter().any(|f| c.suits(&f.sheet))
+    });
     let (tasks, homeless) = work.tasks();
     let tree = Tree::open(&options.output, &options.task)?;
-    let reports = fabrics(&work, &tasks, &tree, ui)?;
+    let reports = of_fabrics(&work, &tasks, &tree, ui)?;
     let own: Vec<Task> =
         tasks.iter().filter(|t| t.fabric.is_none() && t.case.sheet.is_some()).cloned().collect();
     let (hanging, own): (Vec<Task>, Vec<Task>) = own.into_iter().partition(Task::is_drape);
@@ -135,7 +134,7 @@ fn is_drape(case: &Case) -> bool {
 }
 
 /// Every fabric with its cases, in parallel; reports in name order.
-fn fabrics(work: &Work, tasks: &[Task], tree: &Tree, ui: &Ui) -> Result<Vec<FabricReport>, Failure> {
+fn of_fabrics(work: &Work, tasks: &[Task], tree: &Tree, ui: &Ui) -> Result<Vec<FabricReport>, Failure> {
     let points: usize = tasks.iter().map(|t| sampling_stages(t.case)).sum();
     let bar = ui.bar("fabrics", work.fabrics.len() + points);
     let report = |fabric: &Fabric| {

@@ -56,7 +56,7 @@ pub struct FabricReport {
     /// Names of its drape cases.
     pub drapes: Vec<String>,
     /// Points of the parity chart of drape coefficients.
-    pub drape_parity: Vec<ParityPoint>,
+    pub drape_parity: Vec<drape::DrapePoint>,
     /// Findings of sheet, section and cases.
     pub findings: Vec<Finding>,
     /// What failed.

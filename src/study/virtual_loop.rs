@@ -22,6 +22,7 @@ use crate::characterise::{FabricSheet, Settings as Evaluation, parameters};
 use crate::constitutive::{Constitutive, tension};
 use crate::element::Formulation;
 use crate::instrument::{Direction, Parameter, Test, standard_conditions};
+use crate::law::Channel;
 use crate::mesh;
 use crate::model::{Dof, Load, Model, RigidBody, Support};
 use crate::quantity::Curve;
@@ -108,7 +109,8 @@ pub fn simulate_cycle(
 /// have.
 ///
 /// In tension the coupling of warp and weft is left out where `law` replaces both: the laws are those
-/// of specimens that were clamped as this one is.
+/// of specimens that were clamped as this one is. Across the pull nothing is clamped, so that the law there has
+/// no slack: with it the free edges would part by millimetres, and take the yarns of the pull along.
 ///
 /// # Errors
 /// See [`StudyError`].
@@ -129,9 +131,13 @@ pub fn simulate_loop(
         conditions.maximum = curvature.si();
     }
     let (gauge, maximum) = (conditions.gauge, conditions.maximum);
-    let mut section = section.clone();
-    if spec.test == Test::Tensile && law.channels[0].is_some() && law.channels[1].is_some() {
-        (section.d_m[(0, 1)], section.d_m[(1, 0)]) = (0.0, 0.0);
+    let (mut section, mut law) = (section.clone(), law.clone());
+    if spec.test == Test::Tensile {
+        if law.channels[0].is_some() && law.channels[1].is_some() {
+            (section.d_m[(0, 1)], section.d_m[(1, 0)]) = (0.0, 0.0);
+        }
+        let across = if direction == Direction::Weft { 0 } else { 1 };
+        law.channels[across] = law.channels[across].as_ref().map(Channel::centred);
     }
     let model = Model { formulation, ..model(spec, direction, section, gauge, maximum)? };
     let right = model.mesh.set("right")?.to_vec();
@@ -144,7 +150,7 @@ pub fn simulate_loop(
         first_step: 1.0 / steps,
         largest_step: 1.0 / steps,
         path,
-        law: Some(law.clone()),
+        law: Some(law),
         ..Settings::default()
     };
     let mut record = vec![(0.0, 0.0)];

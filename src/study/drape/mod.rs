@@ -102,7 +102,8 @@ const TOLERANCE: f64 = 1e-6;
 /// Steps of a search.
 const STEPS: usize = 600;
 
-/// What the mesh may be expected to leave of the coefficient without a word.
+/// How much the last refinement may change the coefficient without a word. No order of convergence is taken
+/// off it: a limp sheet that went from 43.2 to 40.3 % ended at 37.0 % with the next one.
 const MESH_ERROR: f64 = 0.02;
 
 /// Height of the folds at the start over the width of the ring.
@@ -330,14 +331,12 @@ fn findings(
         findings.push(Finding::new("S115", message).at(place()));
     }
     if let [.., coarser, finest] = meshes {
-        // The error of the mesh falls with the square of the cells: a third of the last change is left.
-        let left = (finest.coefficient - coarser.coefficient) / 3.0;
-        if left.abs() > MESH_ERROR {
+        let change = finest.coefficient - coarser.coefficient;
+        if change.abs() > MESH_ERROR {
             let message = format!(
-                "about {:+.1} points of the coefficient are left to the mesh: the last refinement, to {} elements, changed it by {:+.1}",
-                100.0 * left,
+                "the last refinement, to {} elements, changed the coefficient by {:+.1} points: as much may be left to the mesh",
                 finest.elements,
-                300.0 * left
+                100.0 * change
             );
             findings.push(Finding::new("S119", message).at(place()));
         }
