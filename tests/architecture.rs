@@ -29,7 +29,7 @@ const LAYERS: &[(&str, &[&str], &[&str])] = &[
     (
         "report",
         &ABOVE_REPORT,
-        &["base64", "csv", "dejavu", "percent_encoding", "plotters", "png", "polars", "vtkio"],
+        &["base64", "csv", "dejavu", "percent_encoding", "plotters", "png", "polars", "quick_xml"],
     ),
     ("cli", &ABOVE_CLI, &["clap", "clap_complete", "indicatif", "ctrlc", "toml"]),
 ];

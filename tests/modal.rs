@@ -8,6 +8,7 @@ use kesf::element::{Formulation, Mass};
 use kesf::mesh::rectangle;
 use kesf::model::{DofGroup, Model, Support};
 use kesf::section::ShellSection;
+use kesf::solve::assemble::{ElementMatrices, Kind, multiply};
 use kesf::solve::{Options, modes};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
@@ -90,13 +91,8 @@ fn every_mode_can_be_asked_for() {
     let plates: Vec<_> = all.iter().filter(|m| m.group == DofGroup::Plate).collect();
     assert_eq!(plates.len(), 27);
     let image = |q: &[f64]| {
-        kesf::solve::assemble::multiply(
-            &model,
-            DofGroup::Plate,
-            kesf::solve::assemble::Kind::Mass(Mass::Consistent),
-            &DofGroup::Plate.gather(q),
-        )
-        .unwrap()
+        let elements = ElementMatrices::new(&model, DofGroup::Plate, Kind::Mass(Mass::Consistent));
+        multiply(elements, &DofGroup::Plate.gather(q)).unwrap()
     };
     for (i, a) in plates.iter().enumerate() {
         let m = image(&a.shape);

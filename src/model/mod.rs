@@ -271,8 +271,21 @@ impl Model {
     /// # Errors
     /// M008 if the warp direction is normal to it.
     pub fn element(&self, quad: usize, flat: bool) -> Result<Prepared, MaterialAxisError> {
+        self.element_of(&self.section, quad, flat)
+    }
+
+    /// The element if the sheet had this section.
+    ///
+    /// # Errors
+    /// M008 if the warp direction is normal to it.
+    pub fn element_of(
+        &self,
+        section: &ShellSection,
+        quad: usize,
+        flat: bool,
+    ) -> Result<Prepared, MaterialAxisError> {
         let corners: [Point3<f64>; 4] = self.mesh.corners(quad);
         let frame = if flat { Frame::global(&corners) } else { Frame::of(&corners) };
-        Prepared::new(frame, &self.section, self.formulation, &self.warp)
+        Prepared::new(frame, section, self.formulation, &self.warp)
     }
 }

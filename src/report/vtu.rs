@@ -1,10 +1,12 @@
 //! Meshes and fields as VTU files (VTK XML unstructured grid) for ParaView and PyVista.
 
+use std::io;
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use quick_xml::Writer;
+use quick_xml::events::BytesText;
 use thiserror::Error;
-use vtkio::model::{
-    Attribute, Attributes, ByteOrder, CellType, Cells, DataSet, UnstructuredGridPiece, Version,
-    VertexNumbers, Vtk,
-};
 
 /// Values at the nodes or in the cells of a mesh (SI).
 #[derive(Clone, Copy, Debug)]
@@ -44,7 +46,7 @@ pub enum VtuError {
         /// Number of nodes.
         nodes: usize,
     },
-    /// O022: the VTK library refused.
+    /// O022: the XML library refused.
     #[error("O022 the VTU file could not be made: {0}")]
     Encode(String),
 }
@@ -62,60 +64,137 @@ pub fn vtu(
     if let Some(&node) = quads.iter().flatten().find(|&&n| n as usize >= nodes.len()) {
         return Err(VtuError::Node { node, nodes: nodes.len() });
     }
-    let data = Attributes {
-        point: attributes(point_data, "nodes", nodes.len())?,
-        cell: attributes(cell_data, "cells", quads.len())?,
-    };
-    let cells = Cells {
-        cell_verts: VertexNumbers::XML {
-            connectivity: quads.iter().flatten().map(|&n| u64::from(n)).collect(),
-            offsets: (1..=quads.len() as u64).map(|i| 4 * i).collect(),
-        },
-        types: vec![CellType::Quad; quads.len()],
-    };
-    let file = Vtk {
-        version: Version::new_xml(1, 0),
-        title: String::new(),
-        // Fixed, so that the bytes do not depend on the machine.
-        byte_order: ByteOrder::LittleEndian,
-        file_path: None,
-        data: DataSet::inline(UnstructuredGridPiece { points: nodes.concat().into(), cells, data }),
-    };
-    let numbers = 3 * nodes.len() + 5 * quads.len() + values(point_data) + values(cell_data);
+    for (fields, kind, places) in [(point_data, "nodes", nodes.len()), (cell_data, "cells", quads.len())] {
+        fields.iter().try_for_each(|field| field.fits(kind, places))?;
+    }
+    document(nodes, quads, point_data, cell_data).map_err(|e| VtuError::Encode(e.to_string()))
+}
+
+impl MeshField<'_> {
+    fn fits(&self, kind: &'static str, places: usize) -> Result<(), VtuError> {
+        let (components, found) = (self.components, self.values.len());
+        if components > 0 && found == places * components {
+            return Ok(());
+        }
+        Err(VtuError::Length { name: self.name.into(), kind, places, components, found })
+    }
+}
+
+/// Number of a quad among the cell types of VTK.
+const VTK_QUAD: u8 = 9;
+
+fn document(
+    nodes: &[[f64; 3]],
+    quads: &[[u32; 4]],
+    point_data: &[MeshField],
+    cell_data: &[MeshField],
+) -> io::Result<Vec<u8>> {
+    let numbers: usize = point_data.iter().chain(cell_data).map(|field| field.values.len()).sum();
+    let numbers = 3 * nodes.len() + 4 * quads.len() + numbers;
     // Eight bytes each, in base64; then the tags.
-    let mut bytes = Vec::with_capacity(numbers * 8 * 4 / 3 + 8192);
-    file.write_xml(&mut bytes).map_err(|e| VtuError::Encode(e.to_string()))?;
-    Ok(bytes)
-}
-
-fn values(fields: &[MeshField]) -> usize {
-    fields.iter().map(|field| field.values.len()).sum()
-}
-
-fn attributes(fields: &[MeshField], kind: &'static str, places: usize) -> Result<Vec<Attribute>, VtuError> {
-    fields
-        .iter()
-        .map(|field| {
-            let (name, components) = (field.name, field.components);
-            if components == 0 || field.values.len() != places * components {
-                let found = field.values.len();
-                return Err(VtuError::Length { name: name.into(), kind, places, components, found });
-            }
-            let attribute = match components {
-                1 => Attribute::scalars(name, 1),
-                3 => Attribute::vectors(name),
-                // Fewer than a component count of u32 fits by far.
-                n => Attribute::generic(name, n as u32),
-            };
-            Ok(attribute.with_data(field.values.to_vec()))
+    let mut writer = Writer::new(Vec::with_capacity(numbers * 8 * 4 / 3 + 8192));
+    // Little-endian on every machine, so that the bytes do not depend on it.
+    let file = [
+        ("type", "UnstructuredGrid"),
+        ("version", "1.0"),
+        ("byte_order", "LittleEndian"),
+        ("header_type", "UInt64"),
+    ];
+    writer.create_element("VTKFile").with_attributes(file).write_inner_content(|writer| {
+        inside(writer, "UnstructuredGrid", |writer| {
+            let piece =
+                [("NumberOfPoints", nodes.len().to_string()), ("NumberOfCells", quads.len().to_string())];
+            let piece = piece.iter().map(|(name, number)| (*name, number.as_str()));
+            writer.create_element("Piece").with_attributes(piece).write_inner_content(|writer| {
+                fields(writer, "PointData", point_data)?;
+                fields(writer, "CellData", cell_data)?;
+                inside(writer, "Points", |writer| array(writer, "Points", 3, nodes.as_flattened()))?;
+                inside(writer, "Cells", |writer| {
+                    array(writer, "connectivity", 1, quads.as_flattened())?;
+                    let offsets: Vec<u32> = (1..=quads.len() as u32).map(|i| 4 * i).collect();
+                    array(writer, "offsets", 1, &offsets)?;
+                    array(writer, "types", 1, &vec![VTK_QUAD; quads.len()])
+                })
+            })?;
+            Ok(())
         })
-        .collect()
+    })?;
+    Ok(writer.into_inner())
+}
+
+fn inside(
+    writer: &mut Writer<Vec<u8>>,
+    tag: &str,
+    content: impl FnOnce(&mut Writer<Vec<u8>>) -> io::Result<()>,
+) -> io::Result<()> {
+    writer.create_element(tag).write_inner_content(content).map(drop)
+}
+
+/// The fields of one kind; the first vector is what a program warps the mesh by unless told otherwise.
+fn fields(writer: &mut Writer<Vec<u8>>, tag: &str, fields: &[MeshField]) -> io::Result<()> {
+    let vector = fields.iter().find(|field| field.components == 3).map(|field| ("Vectors", field.name));
+    writer
+        .create_element(tag)
+        .with_attributes(vector)
+        .write_inner_content(|writer| {
+            fields.iter().try_for_each(|f| array(writer, f.name, f.components, f.values))
+        })
+        .map(drop)
+}
+
+/// Numbers that VTK has a name for.
+trait Number: Copy {
+    const TYPE: &'static str;
+    fn append(self, bytes: &mut Vec<u8>);
+}
+
+impl Number for f64 {
+    const TYPE: &'static str = "Float64";
+    fn append(self, bytes: &mut Vec<u8>) {
+        bytes.extend_from_slice(&self.to_le_bytes());
+    }
+}
+
+impl Number for u32 {
+    /// Cells of VTK have signed numbers; no mesh has 2³¹ nodes.
+    const TYPE: &'static str = "Int32";
+    fn append(self, bytes: &mut Vec<u8>) {
+        bytes.extend_from_slice(&self.to_le_bytes());
+    }
+}
+
+impl Number for u8 {
+    const TYPE: &'static str = "UInt8";
+    fn append(self, bytes: &mut Vec<u8>) {
+        bytes.push(self);
+    }
+}
+
+/// An array of values of some components: their length in bytes and the bytes, in base64.
+fn array<T: Number>(
+    writer: &mut Writer<Vec<u8>>,
+    name: &str,
+    components: usize,
+    values: &[T],
+) -> io::Result<()> {
+    let length = size_of_val(values);
+    let mut bytes = Vec::with_capacity(8 + length);
+    bytes.extend_from_slice(&(length as u64).to_le_bytes());
+    values.iter().for_each(|value| value.append(&mut bytes));
+    writer
+        .create_element("DataArray")
+        .with_attribute(("type", T::TYPE))
+        .with_attribute(("Name", name))
+        .with_attribute(("NumberOfComponents", components.to_string().as_str()))
+        .with_attribute(("format", "binary"))
+        .write_text_content(BytesText::from_escaped(STANDARD.encode(&bytes)))
+        .map(drop)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vtkio::model::Piece;
+    use vtkio::model::{Attribute, CellType, DataSet, Piece, Vtk};
 
     const NODES: [[f64; 3]; 6] =
         [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [2.0, 1.0, 0.25]];

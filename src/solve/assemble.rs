@@ -8,6 +8,7 @@ use super::sparse::{BlockGraph, BlockMatrix};
 use crate::element::{Drilling, Mass, MaterialAxisError, Prepared};
 use crate::mesh::{QuadMesh, is_translated};
 use crate::model::{Dof, DofGroup, Links, Model};
+use crate::section::ShellSection;
 
 /// The node graph of a model and the place of every element's blocks in it: computed once per mesh.
 #[derive(Clone, Debug)]
@@ -58,6 +59,9 @@ pub enum Kind {
 /// Element matrices of a model in one dof group; equal elements in a row are computed once.
 pub struct ElementMatrices<'a> {
     model: &'a Model,
+    section: &'a ShellSection,
+    /// The section whose matrices are taken off.
+    less: Option<&'a ShellSection>,
     group: DofGroup,
     kind: Kind,
     last: Option<[Point3<f64>; 4]>,
@@ -67,7 +71,12 @@ pub struct ElementMatrices<'a> {
 impl<'a> ElementMatrices<'a> {
     /// Matrices of one kind of `model` restricted to `group`.
     pub fn new(model: &'a Model, group: DofGroup, kind: Kind) -> Self {
-        Self { model, group, kind, last: None, matrix: Vec::new() }
+        Self { model, section: &model.section, less: None, group, kind, last: None, matrix: Vec::new() }
+    }
+
+    /// What they change by from one section to another.
+    pub fn change(model: &'a Model, [from, to]: [&'a ShellSection; 2], group: DofGroup, kind: Kind) -> Self {
+        Self { section: to, less: Some(from), ..Self::new(model, group, kind) }
     }
 
     /// The matrix of a quad, column-major, `4 b` square with `b` dofs a node.
@@ -77,27 +86,35 @@ impl<'a> ElementMatrices<'a> {
     pub fn of(&mut self, quad: usize) -> Result<&[f64], MaterialAxisError> {
         let corners = self.model.mesh.corners(quad);
         if !self.last.is_some_and(|last| is_translated(&last, &corners)) {
-            let flat = self.group != DofGroup::Shell;
-            let element: Prepared = self.model.element(quad, flat)?;
             self.matrix.clear();
-            match (self.kind, self.group) {
-                (Kind::Stiffness, DofGroup::Plate) => {
-                    self.matrix.extend_from_slice(element.plate_stiffness().as_slice());
-                }
-                (Kind::Stiffness, DofGroup::Membrane) => {
-                    self.matrix.extend_from_slice(element.membrane_stiffness().as_slice());
-                }
-                (Kind::Stiffness, DofGroup::Shell) => {
-                    self.matrix.extend_from_slice(element.stiffness().as_slice());
-                }
-                (Kind::Mass(mass), group) => {
-                    let mass = mass.matrix(&element.frame, &self.model.section);
-                    of_group(mass.as_slice(), group, &mut self.matrix);
-                }
+            self.append(self.section, quad)?;
+            if let Some(less) = self.less {
+                let matrix = std::mem::take(&mut self.matrix);
+                self.append(less, quad)?;
+                self.matrix.iter_mut().zip(matrix).for_each(|(off, k)| *off = k - *off);
             }
             self.last = Some(corners);
         }
         Ok(&self.matrix)
+    }
+
+    fn append(&mut self, section: &ShellSection, quad: usize) -> Result<(), MaterialAxisError> {
+        let element: Prepared = self.model.element_of(section, quad, self.group != DofGroup::Shell)?;
+        let matrix = &mut self.matrix;
+        match (self.kind, self.group) {
+            (Kind::Stiffness, DofGroup::Plate) => {
+                matrix.extend_from_slice(element.plate_stiffness().as_slice());
+            }
+            (Kind::Stiffness, DofGroup::Membrane) => {
+                matrix.extend_from_slice(element.membrane_stiffness().as_slice());
+            }
+            (Kind::Stiffness, DofGroup::Shell) => matrix.extend_from_slice(element.stiffness().as_slice()),
+            (Kind::Mass(mass), group) => {
+                let mass = mass.matrix(&element.frame, section);
+                of_group(mass.as_slice(), group, matrix);
+            }
+        }
+        Ok(())
     }
 }
 
@@ -154,12 +171,19 @@ pub fn assemble(
 
 /// Adds an element matrix to the blocks of the lower triangle. Nodes of the element may coincide.
 pub(super) fn scatter(k: &[f64], b: usize, nodes: &[u32; 4], blocks: &[u32; 10], matrix: &mut BlockMatrix) {
-    let n = 4 * b;
+    match b {
+        3 => scatter_blocks::<3>(k, nodes, blocks, matrix),
+        _ => scatter_blocks::<6>(k, nodes, blocks, matrix),
+    }
+}
+
+fn scatter_blocks<const B: usize>(k: &[f64], nodes: &[u32; 4], blocks: &[u32; 10], matrix: &mut BlockMatrix) {
+    // Column-major: the parts of a column that belong to the four nodes.
+    let columns = k.as_chunks::<B>().0.as_chunks::<4>().0.as_chunks::<B>().0;
+    let targets = matrix.values.as_chunks_mut::<B>().0.as_chunks_mut::<B>().0;
     let mut add = |row: usize, column: usize, block: u32| {
-        let target = &mut matrix.values[block as usize * b * b..][..b * b];
-        for c in 0..b {
-            let source = &k[(column * b + c) * n + row * b..][..b];
-            target[c * b..][..b].iter_mut().zip(source).for_each(|(t, s)| *t += s);
+        for (target, source) in targets[block as usize].iter_mut().zip(&columns[column]) {
+            target.iter_mut().zip(source[row]).for_each(|(t, s)| *t += s);
         }
     };
     for (&(i, j), &block) in PAIRS.iter().zip(blocks) {
@@ -189,20 +213,15 @@ pub fn unit_rows(matrix: &mut BlockMatrix, held: &[bool]) {
     }
 }
 
-/// A matrix of the model times a vector of the group, by a loop over the elements: independent of
-/// the assembled matrix, held dofs included; followers of rigid bodies are nodes like any other.
+/// The sum of the element matrices times a vector of the group, without the matrix of the whole: held dofs
+/// included; followers of rigid bodies are nodes like any other.
 ///
 /// # Errors
 /// M008 if the warp direction is normal to an element.
-pub fn multiply(
-    model: &Model,
-    group: DofGroup,
-    kind: Kind,
-    u: &[f64],
-) -> Result<Vec<f64>, MaterialAxisError> {
-    match group.dofs().len() {
-        3 => products::<3>(model, group, kind, |nodes| nodes.map(|n| of_node(u, n))),
-        _ => products::<6>(model, group, kind, |nodes| nodes.map(|n| of_node(u, n))),
+pub fn multiply(elements: ElementMatrices, u: &[f64]) -> Result<Vec<f64>, MaterialAxisError> {
+    match elements.group.dofs().len() {
+        3 => products::<3>(elements, |nodes| nodes.map(|n| of_node(u, n))),
+        _ => products::<6>(elements, |nodes| nodes.map(|n| of_node(u, n))),
     }
 }
 
@@ -222,13 +241,10 @@ pub fn internal_forces(
     low: &[f64],
 ) -> Result<Vec<f64>, MaterialAxisError> {
     let turns = rigid_rotations(model, group);
+    let elements = ElementMatrices::new(model, group, Kind::Stiffness);
     match group.dofs().len() {
-        3 => products::<3>(model, group, Kind::Stiffness, |nodes| {
-            deformation(model, group, turns, nodes, u, low)
-        }),
-        _ => products::<6>(model, group, Kind::Stiffness, |nodes| {
-            deformation(model, group, turns, nodes, u, low)
-        }),
+        3 => products::<3>(elements, |nodes| deformation(model, group, turns, nodes, u, low)),
+        _ => products::<6>(elements, |nodes| deformation(model, group, turns, nodes, u, low)),
     }
 }
 
@@ -273,14 +289,12 @@ fn deformation<const B: usize>(
 
 /// Sum over the elements of their matrix times what `local` gives for their nodes.
 fn products<const B: usize>(
-    model: &Model,
-    group: DofGroup,
-    kind: Kind,
+    mut elements: ElementMatrices,
     local: impl Fn([u32; 4]) -> [[f64; B]; 4],
 ) -> Result<Vec<f64>, MaterialAxisError> {
-    let mut elements = ElementMatrices::new(model, group, kind);
-    let mut product = vec![0.0; model.mesh.nodes.len() * B];
-    for (quad, nodes) in model.mesh.quads.iter().enumerate() {
+    let mesh = &elements.model.mesh;
+    let mut product = vec![0.0; mesh.nodes.len() * B];
+    for (quad, nodes) in mesh.quads.iter().enumerate() {
         let columns = elements.of(quad)?.as_chunks::<B>().0.as_chunks::<4>().0;
         let mut forces = [[0.0; B]; 4];
         for (column, value) in columns.iter().zip(local(*nodes).as_flattened()) {

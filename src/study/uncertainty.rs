@@ -15,7 +15,7 @@ use crate::fields::{Locator, Recovery, Resultants};
 use crate::model::{Dof, DofGroup, Load, Model, ModelError};
 use crate::quantity::Bands;
 use crate::section::ShellSection;
-use crate::solve::assemble::{Kind, multiply};
+use crate::solve::assemble::{ElementMatrices, Kind, multiply};
 use crate::solve::{Factors, Mode, Solution};
 
 /// The predictions of a linear case and the inputs behind them.
@@ -204,12 +204,14 @@ fn quadratic_change(
     kind: Kind,
 ) -> Result<f64, ModelError> {
     let shape = mode.group.gather(&mode.shape);
-    let at = |by: f64| {
-        let moved = Model { section: derivative.step(&model.section, by), ..model.clone() };
-        let product = multiply(&moved, mode.group, kind, &shape)?;
-        Ok::<f64, ModelError>(shape.iter().zip(product).map(|(a, b)| a * b).sum())
-    };
-    Ok((at(STEP)? - at(-STEP)?) / (2.0 * STEP))
+    let [down, up] = stepped(model, derivative);
+    let product = multiply(ElementMatrices::change(model, [&down, &up], mode.group, kind), &shape)?;
+    Ok(shape.iter().zip(product).map(|(a, b)| a * b).sum::<f64>() / (2.0 * STEP))
+}
+
+/// The section with ln p a step lower and a step higher.
+fn stepped(model: &Model, derivative: &SectionDerivative) -> [ShellSection; 2] {
+    [-STEP, STEP].map(|by| derivative.step(&model.section, by))
 }
 
 /// ∂U/∂ln p of the strain energy U of a model that moves by prescribed displacements alone: there the
@@ -275,36 +277,25 @@ impl Change {
         u: &[f64],
         groups: &[DofGroup],
     ) -> Result<Self, ModelError> {
-        let steps = [STEP, -STEP].map(|by| (derivative.step(&model.section, by), by));
-        let stiffer = |group: &DofGroup| steps.iter().any(|(to, _)| stiffens(*group, &model.section, to));
-        let groups: Vec<DofGroup> = groups.iter().copied().filter(stiffer).collect();
+        let [down, up] = stepped(model, derivative);
+        let is_changed = |group: &DofGroup| stiffens(*group, &down, &up);
+        let groups: Vec<DofGroup> = groups.iter().copied().filter(is_changed).collect();
         // Of all loads only the weight depends on the section.
         let has_weight = model.loads.iter().any(|load| matches!(load, Load::Gravity(_)));
-        let heavier =
-            has_weight && steps.iter().any(|(to, _)| to.areal_density != model.section.areal_density);
-        let mut change = Self { load: None, internal: None };
-        if groups.is_empty() && !heavier {
-            return Ok(change);
+        let heavier = has_weight && up.areal_density != down.areal_density;
+        let slope = |change: f64| change / (2.0 * STEP);
+        let load = heavier.then(|| {
+            let of =
+                |section: &ShellSection| Model { section: section.clone(), ..model.clone() }.load_vector();
+            of(&up).iter().zip(of(&down)).map(|(up, down)| slope(up - down)).collect()
+        });
+        let mut internal = vec![0.0; u.len()];
+        for group in &groups {
+            let elements = ElementMatrices::change(model, [&down, &up], *group, Kind::Stiffness);
+            let change = multiply(elements, &group.gather(u))?;
+            group.scatter(&change.into_iter().map(slope).collect::<Vec<f64>>(), &mut internal);
         }
-        let add = |sum: &mut Option<Vec<f64>>, values: &[f64], by: f64| {
-            let sum = sum.get_or_insert_with(|| vec![0.0; values.len()]);
-            sum.iter_mut().zip(values).for_each(|(s, v)| *s += v / (2.0 * by));
-        };
-        let mut moved = model.clone();
-        for (section, by) in steps {
-            moved.section = section;
-            let mut internal = vec![0.0; u.len()];
-            for group in &groups {
-                group.scatter(&multiply(&moved, *group, Kind::Stiffness, &group.gather(u))?, &mut internal);
-            }
-            if !groups.is_empty() {
-                add(&mut change.internal, &internal, by);
-            }
-            if heavier {
-                add(&mut change.load, &moved.load_vector(), by);
-            }
-        }
-        Ok(change)
+        Ok(Self { load, internal: (!groups.is_empty()).then_some(internal) })
     }
 }
 
