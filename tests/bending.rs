@@ -123,17 +123,20 @@ fn an_elastic_fab_record_gives_its_rigidity_and_the_long_test() {
     let at =
         |settings: FabSettings| bend_loops(&tests, Direction::Warp, density, &settings).unwrap().unwrap();
     let [coarse, fine] = [12, 24].map(|cells| at(FabSettings { cells, steps: 1 }));
-    let off = [&coarse, &fine].map(|l| (l.rigidity / b - 1.0).abs());
+    let off = [&coarse, &fine].map(|l| (l.elastic.rigidity / b - 1.0).abs());
     assert!(off[0] < 0.02 && off[1] < 0.3 * off[0] + 1e-4, "{off:?}: O(h²)");
-    for (of, zero) in fine.loops.iter().zip([-0.02, 0.03, 0.004]) {
+    for (of, (kind, zero)) in
+        fine.loops.iter().zip([(FabKind::U1, 0.03), (FabKind::D1, -0.02), (FabKind::D2, 0.004)])
+    {
         let elastic = &of.elastic;
+        assert_eq!(of.kind, kind);
         assert!((elastic.zero - zero).abs() < 3e-4, "{:?}: zero {}", of.kind, elastic.zero);
         assert!(elastic.outer.unwrap().nrmse < 2e-3, "{:?}: {:?}", of.kind, elastic.outer);
         assert_eq!(of.fitted, of.kind != FabKind::D2);
     }
     // An elastic strip does not remember how it came: more steps change nothing.
     let steps = at(FabSettings { cells: 12, steps: 3 });
-    assert!((steps.rigidity / coarse.rigidity - 1.0).abs() < 1e-6);
+    assert!((steps.elastic.rigidity / coarse.elastic.rigidity - 1.0).abs() < 1e-6);
     assert_eq!(bend_loops(&tests, Direction::Weft, density, &FabSettings::default()).unwrap(), None);
 }
 
@@ -163,11 +166,69 @@ fn friction_makes_the_cantilever_stiffer() {
     }
 }
 
-/// The cupro weave of the U3M repository (Vizoo GmbH, BSD-3-Clause): a regression of what was reached (own). The strip
-/// that stands up (U1) was recorded first, the hanging one (D1) is the same strip 25 s later. NRMSE in %, elastic
+/// A weightless strip of length 1 and rigidity 1 between clamps that are turned by `turn` (rad) against its bow,
+/// from its curvature in the middle: distance of the clamps and pull. `θ'' = F sin θ` from the middle,
+/// where θ = 0, to a clamp; F by bisection, Runge and Kutta's method along the strip.
+fn turned_strip(curvature: f64, turn: f64) -> (f64, f64) {
+    const N: usize = 400;
+    let h = 0.5 / N as f64;
+    let along = |pull: f64| {
+        let rate = |[theta, k, _]: [f64; 3]| [k, pull * theta.sin(), 2.0 * theta.cos()];
+        let by = |y: [f64; 3], d: [f64; 3], h: f64| std::array::from_fn(|i| y[i] + h * d[i]);
+        (0..N).fold([0.0, -curvature, 0.0], |y, _| {
+            let k1 = rate(y);
+            let k2 = rate(by(y, k1, 0.5 * h));
+            let k3 = rate(by(y, k2, 0.5 * h));
+            let k4 = rate(by(y, k3, h));
+            std::array::from_fn(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]))
+        })
+    };
+    // The more it is pushed the farther θ has come back; past 8 π² it would go through a second bow.
+    let (mut weak, mut strong) = (0.0, -80.0);
+    for _ in 0..60 {
+        let pull = 0.5 * (weak + strong);
+        if along(pull)[0] < turn { weak = pull } else { strong = pull }
+    }
+    (along(weak)[2], weak)
+}
+
+/// Standing and hanging strips between clamps that lead them upwards are told from level ones. The records are
+/// without weight; it takes a little to give the strip its bow.
+#[test]
+fn inclined_clamps_are_found() {
+    let (b, length, width, inclination) = (6e-6, 0.0208, 0.05, 0.15);
+    let record = |kind: FabKind, inclination: f64| {
+        let turn = if kind == FabKind::U1 { -inclination } else { inclination };
+        let branch = |curvatures: &mut dyn Iterator<Item = f64>| {
+            Curve::from_points(curvatures.map(|k| {
+                let (distance, pull) = turned_strip(k, turn);
+                (distance * length, pull * b / (length * length) * width)
+            }))
+        };
+        let k = |i: i32| 3.0 + 0.6 * f64::from(i);
+        let branches = vec![branch(&mut (0..=8).map(k)), branch(&mut (0..=8).rev().map(k))];
+        FabTest { direction: Direction::Warp, kind, length, width, time: None, branches }
+    };
+    let at = |kinds: &[FabKind], inclination: f64| {
+        let tests: Vec<FabTest> = kinds.iter().map(|kind| record(*kind, inclination)).collect();
+        let settings = FabSettings { cells: 24, steps: 1 };
+        bend_loops(&tests, Direction::Warp, 0.01, &settings).unwrap().unwrap().elastic
+    };
+    let both = [FabKind::U1, FabKind::D1];
+    for inclination in [inclination, 0.0, -inclination] {
+        let found = at(&both, inclination);
+        println!("{inclination}: {found:?}");
+        // The weight makes up for 0.002.
+        assert!((found.inclination - inclination).abs() < 4e-3, "{found:?}");
+        assert!((found.rigidity / b - 1.0).abs() < 0.01, "{found:?}");
+    }
+    // One way only: a strip in inclined clamps looks stiffer or limper.
+    assert_eq!(at(&both[..1], inclination).inclination, 0.0);
+}
+
+/// The cupro weave of the U3M repository (Vizoo GmbH, BSD-3-Clause): a regression of what was reached (own). NRMSE in %, elastic
 /// and with friction: outer cycle; inner cycles, predicted with the zero of the outer one and with one of their
-/// own, as the load drifts during a test by as much as half of its span. The marks of 10 and 16 % are
-/// missed by the hanging strips of warp and bias (12.2, 10.2) and by the standing one of bias (inner 20).
+/// own, as the load drifts during a test by as much as half of its span.
 #[test]
 fn a_measured_fab_record() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/u3m/physics_example2.json");
@@ -180,19 +241,21 @@ fn a_measured_fab_record() {
     let settings = FabSettings { cells: 24, steps: 1 };
     // B of an elastic strip, then B and 2HB/2 as KES-FB2 would read the law (uN m, uN).
     let reached = [
-        (Direction::Warp, [9.78, 7.26, 87.5], [[13.8, 8.2, 15.2, 13.3], [20.5, 12.4, 16.2, 12.7]]),
-        (Direction::Weft, [13.92, 10.64, 134.2], [[14.7, 5.0, 11.1, 9.2], [19.9, 6.0, 5.1, 5.0]]),
-        (Direction::Bias, [5.08, 3.26, 59.5], [[14.5, 7.4, 20.1, 14.6], [19.0, 10.4, 7.6, 7.2]]),
+        (Direction::Warp, [9.77, 5.44, 129.6], [[10.2, 1.9, 4.5, 4.3], [17.9, 4.5, 13.8, 8.7]]),
+        (Direction::Weft, [13.90, 8.26, 204.0], [[13.6, 2.7, 5.1, 5.0], [19.7, 4.7, 12.3, 9.3]]),
+        (Direction::Bias, [5.06, 2.65, 74.2], [[11.5, 2.4, 4.8, 3.7], [17.4, 3.6, 12.6, 12.5]]),
     ];
     for (direction, values, bounds) in reached {
         let loops: BendLoops = bend_loops(&file.tests, direction, density, &settings).unwrap().unwrap();
         let friction = loops.friction.as_ref().unwrap();
-        let found = [loops.rigidity, friction.kes_rigidity, friction.kes_couple];
+        let found = [loops.elastic.rigidity, friction.kes_rigidity, friction.kes_couple];
         for (found, value) in found.into_iter().zip(values) {
             assert!((found * 1e6 / value - 1.0).abs() < 0.02, "{direction}: {found} {value}");
         }
         let kinds: Vec<FabKind> = loops.loops.iter().map(|l| l.kind).collect();
         assert_eq!(kinds, [FabKind::U1, FabKind::D1, FabKind::D2]);
+        let inclination = friction.inclination.to_degrees();
+        assert!((7.0..17.0).contains(&inclination), "{direction}: {inclination}°");
         for (of, bounds) in loops.loops.iter().zip(bounds) {
             let with = of.friction.as_ref().unwrap();
             let all = [of.elastic.outer, with.outer, with.inner, with.inner_with_own_zero];

@@ -45,6 +45,7 @@ pub fn texts(results: &[(&Task, &BendingResult)]) -> Vec<String> {
         "law",
         "B (µN·m)",
         "HB (µN)",
+        "clamps (°)",
         "outer NRMSE",
         "R²",
         "inner NRMSE",
@@ -103,7 +104,8 @@ fn heart_row(task: &Task, h: &HeartLoop) -> Vec<String> {
 /// Two rows a test: elastic, and with friction.
 fn fab_rows(task: &Task, d: &BendLoops) -> Vec<Vec<String>> {
     let percent = |a: Option<Agreement>| or_dash(a, |a| format!("{} %", significant(100.0 * a.nrmse)));
-    let row = |l: &BendLoop, law: [String; 3], s: &Simulated| {
+    let degrees = |angle: f64| significant(angle.to_degrees());
+    let row = |l: &BendLoop, law: [String; 4], s: &Simulated| {
         let head = [
             d.direction.to_string(),
             task.fabric_name().unwrap_or_default().into(),
@@ -122,10 +124,13 @@ fn fab_rows(task: &Task, d: &BendLoops) -> Vec<Vec<String>> {
     d.loops
         .iter()
         .flat_map(|l| {
-            let elastic = row(l, ["elastic".into(), micro(d.rigidity), "-".into()], &l.elastic);
-            let friction = d.friction.as_ref().zip(l.friction.as_ref());
-            let friction = friction
-                .map(|(f, s)| row(l, ["friction".into(), micro(f.kes_rigidity), micro(f.kes_couple)], s));
+            let e = &d.elastic;
+            let law = ["elastic".into(), micro(e.rigidity), "-".into(), degrees(e.inclination)];
+            let elastic = row(l, law, &l.elastic);
+            let friction = d.friction.as_ref().zip(l.friction.as_ref()).map(|(f, s)| {
+                let [b, hb] = [f.kes_rigidity, f.kes_couple].map(micro);
+                row(l, ["friction".into(), b, hb, degrees(f.inclination)], s)
+            });
             std::iter::once(elastic).chain(friction)
         })
         .collect()
@@ -225,11 +230,13 @@ fn fab(d: &BendLoops) -> Value {
         json!({
             "rigidity": {"value": f.rigidity, "unit": "N·m"},
             "as_kes": {"B": f.kes_rigidity, "half_2HB": f.kes_couple, "unit": ["N·m", "N"]},
+            "clamp_inclination": {"value": f.inclination, "unit": "rad"},
             "law": f.law, "rounds": f.rounds,
         })
     });
     json!({
-        "rigidity": {"value": d.rigidity, "unit": "N·m"},
+        "rigidity": {"value": d.elastic.rigidity, "unit": "N·m"},
+        "clamp_inclination": {"value": d.elastic.inclination, "unit": "rad"},
         "friction": friction,
         "elements": d.cells,
         "tests": d.loops.iter().map(test).collect::<Vec<_>>(),
@@ -271,7 +278,7 @@ pub fn predictions(task: &Task, result: &BendingResult) -> Vec<PredictionRow> {
                 let law = |name: &str, value, unit| row(format!("{name} {}", d.direction), value, None, unit);
                 let friction = d.friction.as_ref();
                 let found = [
-                    law("fab_B_elastic", Some(d.rigidity), "N·m"),
+                    law("fab_B_elastic", Some(d.elastic.rigidity), "N·m"),
                     law("fab_B_friction", friction.map(|f| f.kes_rigidity), "N·m"),
                     law("fab_HB_friction", friction.map(|f| f.kes_couple), "N"),
                 ];

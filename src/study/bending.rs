@@ -1,6 +1,8 @@
 //! Bending tests of other laboratories, as shells in large rotations: cantilever, heart loop,
 //! and the bend loop of FAB strips.
 
+use rayon::prelude::*;
+
 use crate::characterise::FabricSheet;
 use crate::instrument::{Direction, Parameter, Test};
 use crate::quantity::Length;
@@ -15,7 +17,7 @@ mod heart;
 mod strip;
 
 pub use cantilever::{CHORD_ANGLE_DEG, Cantilever, WithFriction, cantilever};
-pub use fab::{Agreement, BendLoop, BendLoops, FabSettings, Friction, Simulated, bend_loops};
+pub use fab::{Agreement, BendLoop, BendLoops, Elastic, FabSettings, Friction, Simulated, bend_loops};
 pub use heart::{HeartLoop, heart_loop};
 
 /// What a bending test gives, by direction.
@@ -68,7 +70,7 @@ pub fn simulate_records(
     })?;
     let settings = FabSettings { cells: spec.cells, ..FabSettings::default() };
     let loops = Direction::ALL
-        .into_iter()
+        .into_par_iter()
         .filter_map(|d| bend_loops(&sheet.bend_tests, d, density.mean, &settings).transpose())
         .collect::<Result<_, _>>()?;
     Ok(BendingResult::FabBendLoop(loops))

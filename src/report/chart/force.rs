@@ -28,7 +28,8 @@ const CM: f64 = 1e-2;
 const GF: f64 = 9.80665e-3;
 
 /// Measured samples as dots (those of inner cycles paler), a panel a test; of the outermost cycle the elastic
-/// simulation as a grey line, and that with friction in colour. The errors stand beside.
+/// simulation as a grey line, and that with friction in colour; of the inner cycles, which are predicted, that with
+/// friction as a thin line. The errors stand beside.
 ///
 /// # Errors
 /// [`ChartError::NothingToDraw`] without a test.
@@ -73,9 +74,9 @@ fn draw_test(
     let (measured, elastic) = (points(&test.measured), points(&test.elastic.force));
     let friction = test.friction.as_ref().map(|s| points(&s.force));
     let outermost = test.outermost();
-    // The curves of inner cycles are not drawn: they do not stretch the axes either.
+    // The elastic curve of the inner cycles lies on that of the outermost: it is not drawn.
     let drawn = || measured.iter().chain(&elastic[outermost..]);
-    let with_friction = || friction.iter().flat_map(|f| &f[outermost..]);
+    let with_friction = || friction.iter().flatten();
     let x = Range::around(drawn().map(|p| p.0));
     let y = Range::around(drawn().chain(with_friction()).map(|p| p.1));
     let frame = Frame { left, top, right, bottom, x, y };
@@ -89,13 +90,17 @@ fn draw_test(
         let color = if i < outermost { pale() } else { INK };
         canvas.dot(frame.at(p.0, p.1), 6.0, color)?;
     }
-    for (curve, stroke) in [(Some(&elastic), elastic_line()), (friction.as_ref(), friction_line(test.fitted))]
-    {
-        let Some(curve) = curve else { continue };
-        let ends = test.branches.iter().copied().skip(1).chain([curve.len()]);
-        for (from, to) in test.branches.iter().copied().zip(ends).filter(|(from, _)| *from >= outermost) {
+    let ends = test.branches.iter().copied().skip(1).chain([measured.len()]);
+    for (from, to) in test.branches.iter().copied().zip(ends) {
+        let mut draw = |curve: &[Point], stroke| {
             let branch: Vec<Point> = curve[from..to].iter().map(|p| frame.at(p.0, p.1)).collect();
-            canvas.line(&branch, stroke)?;
+            canvas.line(&branch, stroke)
+        };
+        if from >= outermost {
+            draw(&elastic, elastic_line())?;
+        }
+        if let Some(curve) = &friction {
+            draw(curve, if from < outermost { inner_line() } else { friction_line(test.fitted) })?;
         }
     }
     Ok(())
@@ -118,6 +123,11 @@ fn friction_line(fitted: bool) -> Stroke {
     }
 }
 
+/// Predicted in every test.
+fn inner_line() -> Stroke {
+    Stroke { color: lighter(VERMILLION, 0.35), width: 2.0, dash: Some([10.0, 7.0]) }
+}
+
 fn words(kind: FabKind) -> &'static str {
     match kind {
         FabKind::D1 => "2 cm, hanging",
@@ -133,13 +143,18 @@ fn rows(loops: &BendLoops) -> Vec<Row> {
         Row::Remark("● measured, outer cycle".into(), INK),
         Row::Remark("● measured, inner cycles".into(), pale()),
         Row::Sample(elastic_line(), "elastic".into()),
-        Row::Value("B".into(), micro(loops.rigidity, "µN·m")),
+        Row::Value("B".into(), micro(loops.elastic.rigidity, "µN·m")),
     ];
     if let Some(friction) = &loops.friction {
         rows.push(Row::Sample(friction_line(true), "friction, fitted".into()));
         rows.push(Row::Sample(friction_line(false), "friction, predicted".into()));
+        rows.push(Row::Sample(inner_line(), "inner, predicted".into()));
         rows.push(Row::Value("B as KES".into(), micro(friction.kes_rigidity, "µN·m")));
         rows.push(Row::Value("2HB/2 as KES".into(), micro(friction.kes_couple, "µN")));
+    }
+    let turned = loops.friction.as_ref().map_or(loops.elastic.inclination, |f| f.inclination);
+    if turned != 0.0 {
+        rows.push(Row::Value("clamps inclined".into(), format!("{}°", fixed(turned.to_degrees(), 1))));
     }
     rows.extend([Row::Gap, Row::Remark("NRMSE: elastic | friction".into(), GREY)]);
     let percent = |a: Option<Agreement>| a.map_or("–".into(), |a| fixed(100.0 * a.nrmse, 1));

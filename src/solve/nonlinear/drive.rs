@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use super::flow::settle;
 use super::newton::{Drag, newton_with};
 use super::system::System;
 use super::{NonlinearError, Progress, Settings, Solution, State, Step, plan};
@@ -19,9 +20,13 @@ pub struct Leg {
     pub steps: usize,
 }
 
+/// A step that has been cut to this part is not left to Newton's method alone.
+const SMALL: f64 = 1.0 / 64.0;
+
 /// Takes the sheet from rest through the legs of a programme and shows every step's equilibrium to
 /// `observe`, which may stop. A step that does not converge is taken in smaller ones, which are not
-/// shown, down to the smallest step of the settings.
+/// shown; a small one that does not converge either flows to its equilibrium. The smallest step of the
+/// settings is the last.
 ///
 /// The supports of the model hold at zero until a leg moves them; what a leg moves is held from the
 /// beginning. `first_step` and `largest_step` of the settings are not used.
@@ -60,7 +65,13 @@ pub fn drive(
             let goal = shown as f64 * whole;
             let next = if done + 1.001 * part >= goal { goal } else { done + part };
             let factor = load + next * (leg.load - load);
-            match newton_with(&system, &state, [factor, next - done], settings, &Drag::default()) {
+            let to = [factor, next - done];
+            let found = if part >= SMALL * whole {
+                newton_with(&system, &state, to, settings, &Drag::default())
+            } else {
+                settle(&system, &state, to, settings)
+            };
+            match found {
                 Ok(converged) => {
                     done = next;
                     part = (1.5 * part).min(whole);

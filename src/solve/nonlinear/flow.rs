@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use super::newton::{Drag, Failure, newton};
+use super::newton::{Converged, Drag, Failure, newton, newton_with};
 use super::system::System;
 use super::{Method, NonlinearError, Perturbation, Progress, Settings, Solution, State, Step, stability};
 use crate::model::Model;
@@ -42,6 +42,9 @@ const INNER_TOLERANCE: f64 = 0.01;
 
 /// Drag over the first one at which the search is given up.
 const LARGEST_RISE: f64 = 1e8;
+
+/// Steps after which [`settle`] gives up.
+const SETTLING_STEPS: usize = 1000;
 
 /// Unstable equilibria that may be left before the search is given up.
 const KICKS: usize = 20;
@@ -133,6 +136,46 @@ pub(super) fn relax_system(
             pace = Pace::new(-2.0 * stability.lowest_eigenvalue);
         }
     }
+}
+
+/// From an equilibrium to one at another factor of the loads and with the held values `travel` times their way, where
+/// Newton's method finds none: the first step is dragged, and so are those after it, less and less, until
+/// nothing is left to balance. Of sliders that alternate between sticking and slipping without end the drag makes one
+/// of the two, and a sheet that jumps comes down on the other side.
+pub(super) fn settle(
+    system: &System<'_>,
+    start: &State,
+    [factor, travel]: [f64; 2],
+    settings: &Settings,
+) -> Result<Converged, Failure> {
+    let first = first_rate(system, system.model, &State::rest(&system.model.mesh));
+    let (mut pace, mut state, mut travel) = (Pace::new(first), start.clone(), travel);
+    let mut iterations = 0;
+    let mut inner = Settings { iterations: INNER_ITERATIONS, ..settings.clone() };
+    for _ in 0..SETTLING_STEPS {
+        let drag = Drag { rate: pace.rate, extra: None };
+        match newton_with(system, &state, [factor, travel], &inner, &drag) {
+            Ok(step) => {
+                iterations += step.iterations;
+                let residual = step.balance.relative_residual();
+                if residual <= settings.tolerance {
+                    return Ok(Converged { iterations, ..step });
+                }
+                inner.tolerance = (INNER_TOLERANCE * residual).clamp(settings.tolerance, INNER_TOLERANCE);
+                pace.quicken(step.iterations);
+                (state, travel) = (step.state, 0.0);
+            }
+            Err(failure) => {
+                iterations += failure.iterations;
+                pace.slow();
+                if pace.rate > LARGEST_RISE * first {
+                    return Err(Failure { iterations, ..failure });
+                }
+            }
+        }
+    }
+    let residual = system.balance(&state, None).relative_residual();
+    Err(Failure { iterations, residual, cause: None })
 }
 
 /// How strongly the sheet is dragged.

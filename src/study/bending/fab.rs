@@ -2,10 +2,14 @@
 //! hanging down or standing up between them; force against clamp distance.
 //!
 //! The two short tests (`D1` down, `U1` up) identify the bending rigidity, and beside it a law with friction, by
-//! least squares over their outermost cycle. Where the file says when they were recorded, and both are of one
-//! mounting, they are one history: the second test finds what the first has left. The inner cycles, and the long test (`D2`), are then
-//! predicted. The zero of the load is unknown in every test of this instrument: one constant a test, the mean
+//! least squares over their outermost cycle. The inner cycles, and the long test (`D2`), are then
+//! predicted. Every test begins with new cloth: what one leaves for the next
+//! changes no NRMSE of a cupro weave by more than 0.03. The zero of the load is unknown in every test of this instrument: one constant a test, the mean
 //! difference over the outermost cycle, is taken off everywhere.
+//!
+//! A strip that is bent both ways in level clamps and one law leave the two short tests apart: they come together as if the
+//! clamps were inclined. That angle is identified with the law where both tests are there, and serves all tests
+//! of the direction.
 //!
 //! Half of the strip is a shell in large rotations, from its middle, where it is symmetric, to a clamp.
 
@@ -18,7 +22,7 @@ use crate::law::Channel;
 use crate::quantity::Curve;
 use crate::study::StudyError;
 
-use self::record::{Bending, Record};
+use self::record::{Record, simulate};
 
 /// How far a simulated curve is from a measured one.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -90,6 +94,15 @@ impl BendLoop {
     }
 }
 
+/// An elastic strip, identified.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Elastic {
+    /// Bending rigidity (N·m): friction is in it, so it is too high.
+    pub rigidity: f64,
+    /// Inclination of the clamps (rad), positive where they lead the strip upwards; 0 if it was bent one way only.
+    pub inclination: f64,
+}
+
 /// A bending law with friction, identified.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Friction {
@@ -101,6 +114,8 @@ pub struct Friction {
     pub kes_couple: f64,
     /// The law: moment per width over curvature.
     pub law: Channel,
+    /// Inclination of the clamps (rad), as in [`Elastic`].
+    pub inclination: f64,
     /// Times that the strip was bent anew.
     pub rounds: usize,
 }
@@ -110,8 +125,8 @@ pub struct Friction {
 pub struct BendLoops {
     /// Direction of the strip.
     pub direction: Direction,
-    /// Bending rigidity of an elastic strip (N·m): friction is in it, so it is too high.
-    pub rigidity: f64,
+    /// The strip without friction.
+    pub elastic: Elastic,
     /// With friction; none if the tests show none.
     pub friction: Option<Friction>,
     /// The short tests, then the long one, as far as they were recorded.
@@ -152,51 +167,26 @@ pub fn bend_loops(
         .iter()
         .filter(|t| t.direction == direction && !t.kind.is_stretch() && t.branches.len() >= 2)
         .collect();
-    of_direction.sort_by(|a, b| {
-        let when = |t: &FabTest| t.time.unwrap_or(0.0);
-        let group = (a.kind == FabKind::D2).cmp(&(b.kind == FabKind::D2));
-        group.then(when(a).total_cmp(&when(b))).then(a.kind.cmp(&b.kind))
-    });
+    of_direction.sort_by_key(|t| [FabKind::U1, FabKind::D1, FabKind::D2].iter().position(|k| *k == t.kind));
     let records: Vec<Record> = of_direction.iter().filter_map(|t| Record::of(t, areal_density)).collect();
-    let sequences = sequences(&records);
-    let short: Vec<Sequence> = sequences.iter().filter(|s| s[0].is_fitted()).cloned().collect();
+    let short: Vec<&Record> = records.iter().filter(|r| r.is_fitted()).collect();
     if short.is_empty() {
         return Ok(None);
     }
-    let rigidity = identify::rigidity(&short, settings)?;
-    let friction = identify::friction(&short, rigidity, settings)?;
-    let all = |bending: Bending<'_>| identify::all(&sequences, bending, settings);
-    let elastic = all(Bending { rigidity, law: None })?;
-    let with_law = |f: &Friction| all(Bending { rigidity: f.rigidity, law: Some(&f.law) });
-    let rubbing = friction.as_ref().map(with_law).transpose()?;
+    let elastic = identify::elastic(&short, settings)?;
+    let friction = identify::friction(&short, &elastic, settings)?;
+    let all = |strip| records.iter().map(|r| simulate(r, strip, settings)).collect::<Result<Vec<_>, _>>();
+    let smooth = all(elastic.mounted())?;
+    let rubbing = friction.as_ref().map(|f| all(f.mounted())).transpose()?;
     let loops = (records.iter().enumerate())
         .map(|(i, r)| BendLoop {
             kind: r.test.kind,
             fitted: r.is_fitted(),
             measured: r.samples.clone(),
             branches: r.branches.clone(),
-            elastic: r.compared(&elastic[i].force),
+            elastic: r.compared(&smooth[i].force),
             friction: rubbing.as_ref().map(|runs| r.compared(&runs[i].force)),
         })
         .collect();
-    Ok(Some(BendLoops { direction, rigidity, friction, loops, cells: settings.cells }))
-}
-
-/// Tests that one strip went through in turn.
-type Sequence<'a> = Vec<&'a Record<'a>>;
-
-/// The records in sequences: a test goes on with the strip of the one before it if both say when they were recorded,
-/// and are of one length between the clamps.
-fn sequences<'a>(records: &'a [Record<'a>]) -> Vec<Sequence<'a>> {
-    let mut all: Vec<Sequence> = Vec::new();
-    for record in records {
-        let goes_on = |last: &&Record| {
-            last.test.length == record.test.length && last.test.time.is_some() && record.test.time.is_some()
-        };
-        match all.last_mut() {
-            Some(sequence) if sequence.last().is_some_and(goes_on) => sequence.push(record),
-            _ => all.push(vec![record]),
-        }
-    }
-    all
+    Ok(Some(BendLoops { direction, elastic, friction, loops, cells: settings.cells }))
 }

@@ -17,11 +17,13 @@ use crate::study::StudyError;
 use super::super::strip::Strip;
 use super::{Agreement, FabSettings, Simulated};
 
-/// How a strip bends: its rigidity (N·m), or a law with friction whose first tangent is that.
+/// A strip in its clamps: its rigidity (N·m), or a law with friction whose first tangent is that, and the
+/// inclination of the clamps (rad), positive where they lead it upwards.
 #[derive(Clone, Copy)]
-pub(super) struct Bending<'a> {
+pub(super) struct Mounted<'a> {
     pub rigidity: f64,
     pub law: Option<&'a Channel>,
+    pub inclination: f64,
 }
 
 /// The samples of a test that lie below the length of the strip, where it is slack.
@@ -38,14 +40,13 @@ pub(super) struct Record<'a> {
 pub(super) struct Run {
     /// Force on the clamps at every sample (N), pull positive.
     pub force: Vec<f64>,
-    /// Rotations of the nodes from the middle to the clamp, downwards (rad), in every step of this test and of
-    /// those before it.
+    /// Rotations of the nodes from the middle to the clamp, towards the side of the bow (rad), in every step.
     pub rotations: Vec<Vec<f64>>,
     /// The step of every sample.
     pub step_of: Vec<usize>,
     /// Length of an element (m).
     pub side: f64,
-    /// Weight per area (N/m²), downwards as the rotations.
+    /// Weight per area (N/m²), positive to the side of the bow.
     pub weight: f64,
 }
 
@@ -56,16 +57,9 @@ const SLACK: f64 = 0.999;
 const MOUNTING: usize = 6;
 const TURNING: usize = 4;
 
-/// Weights that bring a strip to the other side: it deflects ten times as far under them as what a test before
-/// leaves of its bow (about 100 1/m), and still bends less at its clamps than in the tests.
-const PUSH: f64 = 30.0;
-
 /// Unbalanced forces relative to loads or reactions: the load cell resolves 1e-2, and below this sliders may
 /// alternate between sticking and slipping without end.
 const TOLERANCE: f64 = 1e-6;
-
-/// Strain of the strip when it is drawn straight between two tests.
-const TAUT: f64 = 1e-4;
 
 impl<'a> Record<'a> {
     pub fn of(test: &'a FabTest, areal_density: f64) -> Option<Self> {
@@ -90,7 +84,8 @@ impl<'a> Record<'a> {
         self.branches.len().checked_sub(2).map_or(0, |i| self.branches[i])
     }
 
-    fn way(&self) -> f64 {
+    /// 1 hanging, -1 standing.
+    pub fn way(&self) -> f64 {
         if self.test.kind == FabKind::U1 { -1.0 } else { 1.0 }
     }
 
@@ -112,52 +107,28 @@ impl<'a> Record<'a> {
     }
 }
 
-/// Drives the clamps through all samples of tests that one strip went through in turn, from the straight strip
-/// of new cloth; between two tests it is drawn straight. One run a test, whose steps begin with the first test.
+/// Drives the clamps through all samples of a test, from the straight strip of new cloth.
 ///
-/// The frame is that of the first test, in which the strip hangs: one that stands up hangs in reversed gravity.
-/// A later test that bows to the other side is brought there by a heavier weight.
-pub(super) fn simulate(
-    tests: &[&Record],
-    bending: Bending,
-    settings: &FabSettings,
-) -> Result<Vec<Run>, StudyError> {
-    let Some(first) = tests.first() else { return Ok(Vec::new()) };
-    let length = first.test.length;
-    let section = inextensible(bending.rigidity, first.areal_density, length);
+/// The strip hangs in the frame of the simulation: one that stands up hangs in reversed gravity.
+pub(super) fn simulate(record: &Record, strip: Mounted, settings: &FabSettings) -> Result<Run, StudyError> {
+    let Mounted { rigidity, law, inclination } = strip;
+    let length = record.test.length;
+    let section = inextensible(rigidity, record.areal_density, length);
     // What is known of the strip is along it: it may as well be cut along the warp.
     let mut strip = Strip::new(&section, Direction::Warp, 0.5 * length, None, settings.cells)?;
     let middle = Support::fix(&strip.start, &[Dof::U, Dof::ThetaY, Dof::ThetaZ]);
     strip.model.supports.extend([middle, Support::clamped(&strip.end)]);
-    let to = |d: f64, load: f64, steps: usize| Leg {
-        load,
-        held: vec![Support { nodes: strip.end.clone(), held: vec![(Dof::U, 0.5 * (d - length))] }],
-        steps,
+    let (way, steps) = (record.way(), settings.steps.max(1));
+    let leg = |d: f64, turn: f64, load: f64, steps: usize| {
+        let held = vec![(Dof::U, 0.5 * (d - length)), (Dof::ThetaY, turn)];
+        Leg { load, held: vec![Support { nodes: strip.end.clone(), held }], steps }
     };
-    let (way, steps) = (first.way(), settings.steps.max(1));
-    let mut legs = vec![to(length, 1.0, 1)];
-    // The steps that end at samples, by test.
-    let mut due: Vec<Vec<usize>> = Vec::new();
-    let mut taken = 1;
-    for (i, record) in tests.iter().enumerate() {
-        let (at, side) = (record.samples.x[0], record.way() * way);
-        if i > 0 {
-            // Taut, and with a weight to either side, the straight strip is stable.
-            let taut = (1.0 + TAUT) * length;
-            legs.extend([to(taut, -side * PUSH, MOUNTING), to(taut, side * PUSH, TURNING)]);
-            taken += MOUNTING + TURNING;
-        }
-        let push = if i > 0 { side * PUSH } else { 1.0 };
-        legs.extend([to(at, push, MOUNTING), to(at, way, TURNING)]);
-        taken += MOUNTING + TURNING;
-        legs.extend(record.samples.x.iter().map(|d| to(*d, way, steps)));
-        due.push((1..=record.samples.len()).map(|k| taken + k * steps).collect());
-        taken += record.samples.len() * steps;
-    }
-    let law = bending
-        .law
-        .map(|law| SheetLaw::new(Mode::Friction, [None, None, None, Some(law.clone()), None, None]));
-    let numerics = Settings { law, iterations: 40, tolerance: TOLERANCE, ..Settings::default() };
+    // Clamps in line, and the weight gives the straight strip its bow; then both as they are in the test.
+    let (at, turn) = (record.samples.x[0], way * inclination);
+    let mut legs = vec![leg(length, 0.0, 1.0, 1), leg(at, 0.0, 1.0, MOUNTING), leg(at, turn, way, TURNING)];
+    legs.extend(record.samples.x.iter().map(|d| leg(*d, turn, way, steps)));
+    let law = law.map(|law| SheetLaw::new(Mode::Friction, [None, None, None, Some(law.clone()), None, None]));
+    let numerics = Settings { law, iterations: 12, tolerance: TOLERANCE, ..Settings::default() };
     let (mut force, mut rotations): (Vec<f64>, Vec<Vec<f64>>) = Default::default();
     drive(&strip.model, &numerics, &legs, &Options::default(), |step| {
         let rotation = |n: &u32| {
@@ -166,22 +137,18 @@ pub(super) fn simulate(
         };
         rotations.push(strip.line.iter().map(rotation).collect());
         let pull: f64 = strip.end.iter().map(|n| step.reaction[6 * *n as usize]).sum();
-        force.push(pull / strip.width * first.test.width);
+        force.push(pull / strip.width * record.test.width);
         ControlFlow::Continue(())
     })?;
-    let run = |numbers: &Vec<usize>| {
-        // Steps count from 1.
-        let step_of: Vec<usize> = numbers.iter().map(|n| n - 1).collect();
-        let end = step_of.last().map_or(0, |last| last + 1);
-        Run {
-            force: step_of.iter().map(|i| force[*i]).collect(),
-            rotations: rotations[..end].to_vec(),
-            step_of,
-            side: strip.width,
-            weight: way * first.areal_density * STANDARD_GRAVITY,
-        }
-    };
-    Ok(due.iter().map(run).collect())
+    // The steps after mounting, the last of each sample.
+    let step_of: Vec<usize> = (1..=record.samples.len()).map(|k| MOUNTING + TURNING + k * steps).collect();
+    Ok(Run {
+        force: step_of.iter().map(|i| force[*i]).collect(),
+        rotations,
+        step_of,
+        side: strip.width,
+        weight: way * record.areal_density * STANDARD_GRAVITY,
+    })
 }
 
 fn mean_difference(measured: &[f64], simulated: &[f64]) -> f64 {
