@@ -70,8 +70,10 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         .collect();
     let bent: Vec<(&Task, &BendingResult)> =
         done.iter().filter_map(|(task, outcome)| Some((*task, outcome.bent.as_ref()?))).collect();
-    let sampled = done.iter().filter_map(|(task, _)| task.sampling());
-    sampled.flat_map(|s| &s.findings).for_each(|f| ui.diagnostics.finding(f));
+    for (task, _) in &done {
+        let findings = task.sampling().into_iter().flat_map(|s| &s.findings);
+        findings.for_each(|f| ui.diagnostics.finding_of(task.fabric_name(), f));
+    }
     if ui.json {
         let tests = compared.iter().map(|(task, t)| comparison(task, t));
         let entries: Vec<_> = tests.chain(bent.iter().flat_map(|(t, r)| bending::entries(t, r))).collect();

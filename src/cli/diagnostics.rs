@@ -223,13 +223,19 @@ impl Diagnostics {
 
     /// A finding of one result; with `--json` it is in the document instead.
     pub fn finding(&mut self, finding: &Finding) {
+        self.finding_of(None, finding);
+    }
+
+    /// The same, said of a fabric.
+    pub fn finding_of(&mut self, fabric: Option<&str>, finding: &Finding) {
         self.findings += 1;
         if self.quiet || self.json {
             return;
         }
         let place = finding.place.as_ref().map_or_else(|| "kesf".to_string(), ToString::to_string);
         let code = self.paint("33", finding.code);
-        self.line(&format!("{place}: {code} {}", finding.message));
+        let fabric = fabric.map(|name| format!("{name}: ")).unwrap_or_default();
+        self.line(&format!("{place}: {code} {fabric}{}", finding.message));
     }
 
     /// The findings of a batch: counted, and shown one by one only with `-v`.

@@ -77,11 +77,17 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         results.iter().filter_map(|(t, r)| Some((t, r.as_ref().ok()?))).collect();
     let draped: Vec<(&Task, &Drape)> =
         draped.iter().filter_map(|(t, r)| Some((t, r.as_ref().ok()?))).collect();
-    let findings = solved.iter().flat_map(|(_, r)| &r.findings).filter(|f| f.code != NOT_CONVERGED);
-    let sampled =
-        results.iter().map(|(t, _)| t).chain(draped.iter().map(|(t, _)| *t)).filter_map(Task::sampling);
-    let findings = findings.chain(sampled.flat_map(|s| &s.findings));
-    findings.chain(draped.iter().flat_map(|(_, d)| &d.findings)).for_each(|f| ui.diagnostics.finding(f));
+    for (task, result) in &solved {
+        let findings = result.findings.iter().filter(|f| f.code != NOT_CONVERGED);
+        findings.for_each(|f| ui.diagnostics.finding_of(task.fabric_name(), f));
+    }
+    for (task, drape) in &draped {
+        drape.findings.iter().for_each(|f| ui.diagnostics.finding_of(task.fabric_name(), f));
+    }
+    for task in results.iter().map(|(t, _)| t).chain(draped.iter().map(|(t, _)| *t)) {
+        let sampling = task.sampling().into_iter().flat_map(|s| &s.findings);
+        sampling.for_each(|f| ui.diagnostics.finding_of(task.fabric_name(), f));
+    }
     if let Some(tree) = tree {
         let points: Vec<_> = draped.iter().filter_map(|(t, d)| drape::point(t, d)).collect();
         drape::parity(&tree, &points)?;
