@@ -42,7 +42,8 @@ pub fn table<'a>(tasks: impl Iterator<Item = &'a Task<'a>>) -> Option<String> {
     (!table.is_empty()).then(|| table.text())
 }
 
-fn interval(band: Option<Sampled>, factor: f64) -> String {
+/// `LOW to HIGH` of a band in the unit of a factor, `-` for none.
+pub fn interval(band: Option<Sampled>, factor: f64) -> String {
     band.map_or("-".into(), |b| {
         let [low, high] = b.interval.map(|v| significant(v / factor));
         format!("{low} to {high}")
@@ -81,12 +82,12 @@ pub fn fill(rows: &mut [PredictionRow], task: &Task) {
     }
 }
 
-/// Names and values for a chart: both bands of a result, in a unit of a chart.
+/// Names, short enough for the margin of a chart, and values: the bands of the mean fabric and of the next specimen.
 pub fn values(task: &Task, quantity: &str, unit: &str, factor: f64) -> Vec<(String, String)> {
     let Some(q) = task.sampling().and_then(|s| s.of(quantity)) else { return Vec::new() };
     let line = |name: &str, band: Option<Sampled>| {
         band.map(|b| (name.to_string(), format!("{} {unit}", interval(Some(b), factor))))
     };
-    let lines = [line("95 %, mean fabric", q.mean_fabric), line("95 %, next specimen", q.next_specimen)];
+    let lines = [line("95 %, mean", q.mean_fabric), line("95 %, next", q.next_specimen)];
     lines.into_iter().flatten().collect()
 }

@@ -170,21 +170,20 @@ fn curves<'a>(
             nrmse: t.comparison.as_ref().map(|c| c.nrmse),
             r2: t.comparison.as_ref().map(|c| c.r2).filter(|r| r.is_finite()),
             band: band(t),
-            values: task.map_or_else(Vec::new, |task| sampled_values(task, t)),
+            bands: task.map_or_else(Vec::new, |task| sampled_values(task, t)),
             repeats: t.simulated.repeats(),
         })
         .collect()
 }
 
-/// The bands of the parameters of a cycle, in KES units.
+/// The bands of the parameters of a cycle for the mean fabric, in KES units.
 fn sampled_values(task: &Task, t: &Tested) -> Vec<(String, String)> {
-    let Some(cycle) = &t.simulated.cycle else { return Vec::new() };
+    let Some((cycle, sampling)) = t.simulated.cycle.as_ref().zip(task.sampling()) else { return Vec::new() };
     let of = |p: &Parameter| {
-        let name = format!("{p} {}", cycle.direction);
-        let values = sampled::values(task, &name, p.kes_unit(), p.kes_factor());
-        values.into_iter().map(|(band, value)| (format!("{p}, {band}"), value)).collect::<Vec<_>>()
+        let band = sampling.of(&format!("{p} {}", cycle.direction))?.mean_fabric;
+        band.map(|_| (p.to_string(), sampled::interval(band, p.kes_factor())))
     };
-    cycle.values.keys().flat_map(of).collect()
+    cycle.values.keys().filter_map(of).collect()
 }
 
 /// Both edges of the band of a simulated curve, where it has one at every point.

@@ -34,8 +34,8 @@ pub struct SimulatedCurve {
     pub band: Option<[Curve; 2]>,
     /// The fewest repeats behind the band.
     pub repeats: Option<usize>,
-    /// Names and values beside the chart.
-    pub values: Vec<(String, String)>,
+    /// Parameters and their 95 % bands of the mean fabric, in KES units.
+    pub bands: Vec<(String, String)>,
 }
 
 impl From<&Comparison> for SimulatedCurve {
@@ -55,7 +55,7 @@ impl From<&Comparison> for SimulatedCurve {
             r2: finite(comparison.r2),
             band: None,
             repeats: None,
-            values: Vec::new(),
+            bands: Vec::new(),
         }
     }
 }
@@ -213,7 +213,7 @@ fn draw_traces(
 /// How far the simulated curves are from the measured ones.
 fn distance_rows(axes: &TestAxes, simulated: &[SimulatedCurve]) -> Vec<Row> {
     let mut rows = Vec::new();
-    let told = |c: &&SimulatedCurve| c.rmse.or(c.nrmse).or(c.r2).is_some() || !c.values.is_empty();
+    let told = |c: &&SimulatedCurve| c.rmse.or(c.nrmse).or(c.r2).is_some() || !c.bands.is_empty();
     for curve in simulated.iter().filter(told) {
         rows.push(Row::Gap);
         let direction = curve.direction.map_or(String::new(), |d| format!("{d}, "));
@@ -228,7 +228,10 @@ fn distance_rows(axes: &TestAxes, simulated: &[SimulatedCurve]) -> Vec<Row> {
         if let Some(r2) = curve.r2 {
             rows.push(Row::Value("R²".into(), fixed(r2, 4)));
         }
-        rows.extend(curve.values.iter().map(|(name, value)| Row::Remark(format!("{name}: {value}"), GREY)));
+        if !curve.bands.is_empty() {
+            rows.push(Row::Remark("95 %, mean fabric".into(), GREY));
+        }
+        rows.extend(curve.bands.iter().map(|(name, band)| Row::Value(name.clone(), band.clone())));
     }
     rows
 }

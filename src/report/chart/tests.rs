@@ -232,7 +232,7 @@ fn simulated(direction: Option<Direction>, points: impl IntoIterator<Item = (f64
         r2: Some(0.9942),
         band: None,
         repeats: None,
-        values: Vec::new(),
+        bands: Vec::new(),
     }
 }
 
