@@ -266,6 +266,19 @@ fn a_measured_fab_record() {
             assert!(of.elastic.inner.unwrap().nrmse > with.inner.unwrap().nrmse);
         }
     }
+    // Neither the mesh nor the steps between samples make the figures.
+    let of = |cells: usize, steps: usize| {
+        let settings = FabSettings { cells, steps };
+        let loops = bend_loops(&file.tests, Direction::Warp, density, &settings).unwrap().unwrap();
+        let figures = loops.loops.iter().filter_map(|l| l.friction.as_ref());
+        figures.flat_map(|s| [s.outer, s.inner]).map(|a| a.unwrap().nrmse).collect::<Vec<f64>>()
+    };
+    let reference = of(24, 1);
+    for (cells, steps) in [(12, 1), (24, 3)] {
+        let moved = reference.iter().zip(of(cells, steps)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        println!("{cells} elements, {steps} steps: NRMSE by {:.2} %", 100.0 * moved);
+        assert!(moved < 5e-3, "{cells} elements, {steps} steps: {moved}");
+    }
 }
 
 #[test]
