@@ -337,7 +337,7 @@ mod tests {
     }
 
     fn test_of(kind: FabKind, branches: Vec<Curve>) -> FabTest {
-        FabTest { direction: Direction::Warp, kind, length: 0.02, width: 0.05, time: None, branches }
+        FabTest { direction: Direction::Warp, kind, length: 0.02, width: 0.05, branches }
     }
 
     #[test]

@@ -64,8 +64,6 @@ pub struct FabTest {
     pub length: f64,
     /// Width of the strip (m).
     pub width: f64,
-    /// When it was recorded (s, from any beginning), where the file says so.
-    pub time: Option<f64>,
     /// Clamp distance (m) and force (N) of each branch, in recorded order: load, unload, load ...
     pub branches: Vec<Curve>,
 }
@@ -184,7 +182,6 @@ fn strip(
         kind,
         length: length_of("length")?,
         width: length_of("width")?,
-        time: test.get("time").map(|t| number(t, path, &format!("{at}.time"))).transpose()?,
         branches: branches(test, path, at)?,
     })
 }

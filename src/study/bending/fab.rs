@@ -3,13 +3,13 @@
 //!
 //! The two short tests (`D1` down, `U1` up) identify the bending rigidity, and beside it a law with friction, by
 //! least squares over their outermost cycle. The inner cycles, and the long test (`D2`), are then
-//! predicted. Every test begins with new cloth: what one leaves for the next
-//! changes no NRMSE of a cupro weave by more than 0.03. The zero of the load is unknown in every test of this instrument: one constant a test, the mean
-//! difference over the outermost cycle, is taken off everywhere.
+//! predicted. Every test begins with new cloth: what one leaves for the next changes no NRMSE of a cupro
+//! weave by more than 0.03. The zero of the load is unknown in every test of this instrument: one constant
+//! a test, the mean difference over the outermost cycle, is taken off everywhere.
 //!
-//! A strip that is bent both ways in level clamps and one law leave the two short tests apart: they come together as if the
-//! clamps were inclined. That angle is identified with the law where both tests are there, and serves all tests
-//! of the direction.
+//! Level clamps and one law leave the two short tests apart: they come together as if the clamps were
+//! inclined. That angle is identified with the law where both tests are there, and serves all tests of the
+//! direction; nobody has measured it.
 //!
 //! Half of the strip is a shell in large rotations, from its middle, where it is symmetric, to a clamp.
 

@@ -28,7 +28,7 @@ use super::{Elastic, FabSettings, Friction};
 
 /// Slip levels that may have a part, evenly spaced by ratio (1/m), from the lowest to a part of the largest curvature of
 /// the tests. A slider that slips beyond is nearly a spring to the outermost cycle, which then trades it for the line, and
-/// inner cycles come out wrong. From 0.2 to 0.35 the inner cycles of a cupro weave are predicted equally well; 0.12, as for
+/// inner cycles come out wrong. From 0.2 to 0.3 the inner cycles of a cupro weave are predicted equally well; 0.12, as for
 /// KES loops, is too little for a fold, and 0.45 too much.
 const LEVELS: usize = 20;
 const LOWEST: f64 = 2.0;
