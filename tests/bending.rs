@@ -13,13 +13,16 @@ use std::path::Path;
 
 use kesf::analytical::beam::heart_load;
 use kesf::analytical::hanging::slack_strip;
+use kesf::characterise::{FabricSheet, Key};
 use kesf::instrument::fab::{FabKind, FabTest};
-use kesf::instrument::{Direction, ReadSettings, read};
+use kesf::instrument::{Direction, Parameter, ReadSettings, read};
 use kesf::law::{Backbone, Channel, Family, Slider, Widening};
-use kesf::quantity::{Curve, STANDARD_GRAVITY};
+use kesf::quantity::{Curve, Estimate, STANDARD_GRAVITY};
 use kesf::section::ShellSection;
 use kesf::study::Case;
-use kesf::study::bending::{BendLoops, FabSettings, bend_loops, cantilever, heart_loop};
+use kesf::study::bending::{
+    BendLoops, BendingResult, FabSettings, bend_loops, cantilever, heart_loop, simulate_records,
+};
 use nalgebra::{Matrix2, Matrix3};
 
 /// 1 gf·cm²/cm.
@@ -138,6 +141,30 @@ fn an_elastic_fab_record_gives_its_rigidity_and_the_long_test() {
     let steps = at(FabSettings { cells: 12, steps: 3 });
     assert!((steps.elastic.rigidity / coarse.elastic.rigidity - 1.0).abs() < 1e-6);
     assert_eq!(bend_loops(&tests, Direction::Weft, density, &FabSettings::default()).unwrap(), None);
+}
+
+#[test]
+fn a_direction_that_fails_leaves_the_others() {
+    let density = 0.1056;
+    let good = record(FabKind::D1, 6e-6, density, 0.0);
+    // Clamps that pass each other until the strip is three times as long as it can be.
+    let away = |from: f64, to: f64| {
+        Curve::from_points(
+            (0..=10).map(|i| (0.0208 * (from + (to - from) * f64::from(i) / 10.0), f64::from(i))),
+        )
+    };
+    let branches = vec![away(0.9, -3.0), away(-3.0, 0.9)];
+    let torn = FabTest { direction: Direction::Weft, branches, ..good.clone() };
+    let mut sheet = FabricSheet { bend_tests: vec![good, torn], ..FabricSheet::default() };
+    let case = "title = \"t\"\nfabric = \"*\"\n[bending_test]\ntest = \"fab_bend_loop\"\ncells = 12\n";
+    let case = Case::parse(Path::new("t.toml"), case).unwrap();
+    let spec = case.bending_test.as_ref().unwrap();
+    assert_eq!(simulate_records(&case, spec, &sheet).unwrap_err().code(), "S003", "no areal density");
+    sheet.values.insert(Key { parameter: Parameter::W, direction: None }, Estimate::single(density));
+    let (result, failed) = simulate_records(&case, spec, &sheet).unwrap();
+    let BendingResult::FabBendLoop(found) = result else { unreachable!("it is a FAB case") };
+    assert!(found.len() == 1 && found[0].direction == Direction::Warp);
+    assert!(failed.len() == 1 && failed[0].0 == Direction::Weft, "{failed:?}");
 }
 
 /// A rigidity beside three sliders of equal moment that slip at 0.03 to 0.1 1/cm.

@@ -56,7 +56,12 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     bar.finish_and_clear();
     ui.go_on()?;
     let mut failures = homeless;
-    failures.extend(results.iter().filter_map(|(_, r)| r.as_ref().err().cloned()));
+    for (_, result) in &results {
+        match result {
+            Ok(outcome) => failures.extend(outcome.failures.iter().cloned()),
+            Err(failure) => failures.push(failure.clone()),
+        }
+    }
     failures.iter().for_each(|f| ui.diagnostics.error(f));
     failures.extend(work.failures.iter().cloned());
     if let Some(tree) = tree {
@@ -84,22 +89,33 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         let parts: Vec<String> = tests.into_iter().chain(bending::texts(&bent)).chain(bands).collect();
         ui.print(&parts.join("\n"))?;
     }
-    Ok(Exit::of_batch(done.len(), &failures).unless(options.task.strict && ui.diagnostics.findings() > 0))
+    let useful = done.iter().filter(|(_, outcome)| outcome.is_useful()).count();
+    Ok(Exit::of_batch(useful, &failures).unless(options.task.strict && ui.diagnostics.findings() > 0))
 }
 
 /// What a case gives: curves of KES tests, or a bending test of another laboratory.
 struct Outcome {
     tested: Vec<Tested>,
     bent: Option<BendingResult>,
+    /// Directions that gave nothing.
+    failures: Vec<Failure>,
+}
+
+impl Outcome {
+    fn is_useful(&self) -> bool {
+        let found = |b: &BendingResult| !matches!(b, BendingResult::FabBendLoop(found) if found.is_empty());
+        self.failures.is_empty() || self.bent.as_ref().is_some_and(found)
+    }
 }
 
 fn simulated(task: &Task, tree: Option<&Tree>) -> Result<Outcome, Failure> {
-    let mut outcome = Outcome { tested: Vec::new(), bent: None };
+    let mut outcome = Outcome { tested: Vec::new(), bent: None, failures: Vec::new() };
     if let Some(spec) = &task.case.virtual_test {
         outcome.tested = task.test(spec)?;
         tree.map_or(Ok(()), |tree| tree.tested(task, &outcome.tested))?;
     } else if let Some(spec) = &task.case.bending_test {
-        let result = task.bend(spec)?;
+        let (result, failed) = task.bend(spec)?;
+        outcome.failures = failed;
         tree.map_or(Ok(Vec::new()), |tree| tree.bent(task, &result))?;
         outcome.bent = Some(result);
     }

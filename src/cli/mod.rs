@@ -19,6 +19,7 @@ mod friction;
 mod inputs;
 mod list;
 mod output;
+mod page;
 mod read;
 mod run;
 mod sampled;

@@ -7,6 +7,7 @@ use clap::Args;
 
 use super::diagnostics::Failure;
 use super::inputs::is_stdin;
+use crate::report::html::Block;
 use crate::report::write::write_file;
 
 /// Where a single result goes.
@@ -94,6 +95,12 @@ impl Columns {
     /// Whether there is nothing below the headings.
     pub fn is_empty(&self) -> bool {
         self.rows.len() == 1
+    }
+
+    /// The same table for a page.
+    pub fn block(&self, caption: &str) -> Block {
+        let (header, rows) = (self.rows[0].clone(), self.rows[1..].to_vec());
+        Block::Table { caption: caption.into(), header, rows }
     }
 
     /// The text, with a final newline.

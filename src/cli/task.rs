@@ -296,21 +296,25 @@ impl Task<'_> {
         self.simulate(spec).map_err(|f| f.of(&self.name()))
     }
 
-    /// Simulates a `[bending_test]`.
-    pub fn bend(&self, spec: &BendingTest) -> Result<BendingResult, Failure> {
+    /// Simulates a `[bending_test]`; with the result, the directions that failed.
+    pub fn bend(&self, spec: &BendingTest) -> Result<(BendingResult, Vec<Failure>), Failure> {
         let result = match (spec.test, self.fabric) {
             // It finds a rigidity of its own and needs no section.
-            (BendingKind::FabBendLoop, Some(sheet)) => {
-                simulate_records(self.case, spec, sheet).map_err(Failure::from)
-            }
+            (BendingKind::FabBendLoop, Some(sheet)) => simulate_records(self.case, spec, sheet)
+                .map_err(Failure::from)
+                .map(|(result, failed)| (result, failed.into_iter().map(|f| self.failed(f)).collect())),
             (_, fabric) => {
                 let nothing = FabricSheet::default();
                 let sheet = fabric.unwrap_or(&nothing);
                 let simulate = |(section, _)| Ok(simulate_strips(self.case, spec, sheet, &section)?);
-                self.section().and_then(simulate)
+                self.section().and_then(simulate).map(|result| (result, Vec::new()))
             }
         };
         result.map_err(|f| f.of(&self.name()))
+    }
+
+    fn failed(&self, (direction, error): (Direction, StudyError)) -> Failure {
+        Failure::from(error).of(&direction.to_string()).of(&self.name())
     }
 
     fn simulate(&self, spec: &VirtualTest) -> Result<Vec<Tested>, Failure> {

@@ -56,24 +56,30 @@ pub fn simulate_strips(
     }
 }
 
-/// Simulates the FAB bend tests of a sheet along every direction that has them.
+/// Simulates the FAB bend tests of a sheet along every direction that has them. A direction that fails does not
+/// take the others with it: it comes back beside the result, with its error.
 ///
 /// # Errors
-/// See [`StudyError`]; S003 for a sheet without areal density.
+/// S003 for a sheet without areal density.
 pub fn simulate_records(
     case: &Case,
     spec: &BendingTest,
     sheet: &FabricSheet,
-) -> Result<BendingResult, StudyError> {
+) -> Result<(BendingResult, Vec<(Direction, StudyError)>), StudyError> {
     let density = sheet.get(Parameter::W, None).ok_or_else(|| {
         case.inconsistent("a fab_bend_loop needs the areal density of the fabric (`M` of its file)".into())
     })?;
     let settings = FabSettings { cells: spec.cells, ..FabSettings::default() };
-    let loops = Direction::ALL
-        .into_par_iter()
-        .filter_map(|d| bend_loops(&sheet.bend_tests, d, density.mean, &settings).transpose())
-        .collect::<Result<_, _>>()?;
-    Ok(BendingResult::FabBendLoop(loops))
+    let of = |d| bend_loops(&sheet.bend_tests, d, density.mean, &settings);
+    let along: Vec<_> = Direction::ALL.into_par_iter().map(|d| (d, of(d))).collect();
+    let (mut loops, mut failed) = (Vec::new(), Vec::new());
+    for (direction, result) in along {
+        match result {
+            Ok(found) => loops.extend(found),
+            Err(error) => failed.push((direction, error)),
+        }
+    }
+    Ok((BendingResult::FabBendLoop(loops), failed))
 }
 
 /// A measured bending length (m) of the fabric's `[[results]]`: along the direction, or without one.
