@@ -65,6 +65,36 @@ fn a_modal_case_gives_frequencies_and_the_first_shape() {
     let omega = result.frequencies[0] * std::f64::consts::TAU;
     assert!((omega / 35.98519 - 1.0).abs() < 0.02, "{omega}");
     assert!((result.w_max.abs() - 1.0).abs() < 1e-12 && result.findings.is_empty());
+    assert!(result.modes.len() == 3 && result.modes[0] == result.solution.displacement);
+    assert!(result.is_modal() && !result.has_reactions() && result.solution.dofs > 0);
+    let all = parsed("kind = \"modal\"\nmodes = 10000", "");
+    let result =
+        solve_case(&all, section(all.section.as_ref().unwrap()).unwrap(), &Options::default()).unwrap();
+    assert_eq!(result.findings[0].code, "S104");
+}
+
+/// A clamp that moves takes the sheet with it: no strain, and no force to compare a residual with.
+#[test]
+fn a_moved_clamp_carries_the_sheet() {
+    let load = "[[loads]]\nkind = \"prescribed\"\nset = \"boundary\"\ndof = \"w\"\nvalue = \"1 µm\"\n";
+    let case = parsed("kind = \"linear\"", load);
+    let s = section(case.section.as_ref().unwrap()).unwrap();
+    let result = solve_case(&case, s, &Options::default()).unwrap();
+    let w = result.solution.displacement.iter().skip(2).step_by(6);
+    assert!(w.into_iter().all(|w| (w / 1e-6 - 1.0).abs() < 1e-9));
+}
+
+/// Damping ratios are those of the modes that deform the sheet: a free one is damped like a held one.
+#[test]
+fn a_free_sheet_is_damped() {
+    let analysis = "kind = \"newmark\"\nduration = \"0.02 s\"\nstep = \"0.5 ms\"\ndamping = [0.05, 0.05]";
+    let load = "[[loads]]\nkind = \"point\"\nset = \"boundary\"\nvalue = \"1e-9 N\"\ndirection = [0, 0, 1]\n";
+    let mut case = parsed(analysis, load);
+    case.supports.clear();
+    let s = section(case.section.as_ref().unwrap()).unwrap();
+    let history = solve_case(&case, s, &Options::default()).unwrap().history.unwrap();
+    let last = history.energy.last().unwrap();
+    assert!(last.dissipated > 1e-3 * last.work.abs(), "{last:?}");
 }
 
 /// A suddenly applied load swings to about twice the static deflection and conserves energy. The

@@ -123,7 +123,7 @@ fn the_straight_column_is_told_to_be_unstable_and_the_cures_work() {
     assert_eq!(arc.path.as_ref().unwrap().steps.last().unwrap().factor, 1.0);
     let short =
         solved(&strip("kind = \"nonlinear\"\nmethod = \"arc_length\"\nsteps = 1\nfirst_step = 1e-4", WEIGHT));
-    assert_eq!(codes(&short), ["S112"]);
+    assert_eq!((short.status, codes(&short)), (Status::NotConverged, vec!["S112"]));
 }
 
 /// Four iterations a step and no shorter steps: nothing beyond the start can be found.
@@ -218,5 +218,4 @@ fn keys_that_a_method_does_not_have_are_refused() {
     assert!(
         refused(&format!("{newmark}\nspectral_radius = 0.5"), WEIGHT).to_string().contains("large_rotations")
     );
-    assert_eq!(refused(&format!("{newmark}\nlarge_rotations = true"), turned).code(), "S003");
 }

@@ -377,3 +377,22 @@ fn a_perturbation_breaks_the_symmetry_and_a_plan_is_shared() {
     let arc = by(Method::ArcLength(ArcLength { until: Some(0.5), ..ArcLength::default() }));
     assert_eq!(arc.state.factor, 0.5);
 }
+
+/// An end that is held at an angle and free to follow bends the strip to an arc, E = B θ² / 2 L: whole turns are
+/// followed, whatever the first step and the way.
+#[test]
+fn a_held_end_turns_more_than_once() {
+    let turn = 400f64.to_radians();
+    let ways =
+        [Method::Newton(None), Method::ArcLength(ArcLength { until: Some(1.0), ..ArcLength::default() })];
+    for method in ways {
+        let mut model = cantilever(40, 2e-3, |_| Vec::new());
+        let end = model.mesh.set("right").unwrap().to_vec();
+        model.supports.push(Support { nodes: end, held: vec![(Dof::ThetaY, -turn)] });
+        let options = Options::default();
+        let plan = plan(&model, &options).unwrap();
+        let found = search(&model, &plan, &Settings::default(), &method, &options, go_on).unwrap();
+        let (found, exact) = (found.energy, 0.5 * turn * turn / 40.0);
+        assert!((found / exact - 1.0).abs() < 1e-6, "{method:?}: {found} {exact}");
+    }
+}

@@ -36,8 +36,9 @@ pub fn solution(task: &Task, result: &CaseResult, timings: bool) -> Value {
             "w_max": {"value": result.w_max, "unit": "m"},
             "w_over_bending_thickness": result.w_over_thickness,
             "probes": probes,
-            "reactions": [sum(0), sum(1), sum(2)],
-            "strain_energy": s.strain_energy,
+            // A motion in time and a mode have none.
+            "reactions": result.has_reactions().then(|| [sum(0), sum(1), sum(2)]),
+            "strain_energy": (!result.is_modal()).then_some(s.strain_energy),
             "frequencies": result.frequencies,
             "uncertainty": match task.sampling() {
                 Some(sampling) => Some(sampled::entry(sampling, "")),

@@ -10,7 +10,7 @@ use super::drape;
 use super::inputs::Fabric;
 use super::output::Columns;
 use super::page::page;
-use super::search::{NOT_CONVERGED, unconverged};
+use super::search::{is_unconverged, unconverged};
 use super::summary::{FabricReport, summary};
 use super::task::{Task, TaskArgs, Work};
 use super::tree::Tree;
@@ -89,7 +89,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     failures.splice(0..0, work.failures.iter().cloned());
     let findings = reports.iter().flat_map(|r| &r.findings);
     let of_cases = benchmarks.iter().filter_map(|(_, r)| r.as_ref().ok()).flat_map(|r| &r.findings);
-    let of_cases = of_cases.filter(|f| f.code != NOT_CONVERGED);
+    let of_cases = of_cases.filter(|f| !is_unconverged(f));
     findings.chain(of_cases.clone()).for_each(|f| ui.diagnostics.finding_of_batch(f));
 
     let solved: Vec<(&Task, &CaseResult)> =

@@ -6,15 +6,18 @@ use super::diagnostics::Failure;
 use super::exit::Exit;
 use super::output::Columns;
 use super::task::Task;
+use crate::finding::Finding;
 use crate::quantity::significant;
 use crate::study::{CaseResult, LoadPath, MethodChoice};
 
-/// The code of a search that found no equilibrium.
-pub const NOT_CONVERGED: &str = "N007";
+/// Whether a finding says that a search found no equilibrium, or none at the whole load.
+pub fn is_unconverged(finding: &Finding) -> bool {
+    matches!(finding.code, "N007" | "S112")
+}
 
 /// The failure of a result that is only the last state of a search.
 pub fn unconverged(task: &Task, result: &CaseResult) -> Option<Failure> {
-    let finding = result.findings.iter().find(|f| f.code == NOT_CONVERGED)?;
+    let finding = result.findings.iter().find(|f| is_unconverged(f))?;
     let mut failure = Failure::new(finding.code, finding.message.clone()).of(&task.name());
     failure.place.clone_from(&finding.place);
     Some(Failure { exit: Exit::Numerics, ..failure })

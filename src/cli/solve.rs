@@ -11,7 +11,7 @@ use super::drape;
 use super::entry::solution;
 use super::output::Columns;
 use super::sampled;
-use super::search::{NOT_CONVERGED, searches, steps, unconverged};
+use super::search::{is_unconverged, searches, steps, unconverged};
 use super::task::{Task, TaskArgs};
 use super::tree::Tree;
 use super::{Exit, Ui, each, effort};
@@ -78,7 +78,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let draped: Vec<(&Task, &Drape)> =
         draped.iter().filter_map(|(t, r)| Some((t, r.as_ref().ok()?))).collect();
     for (task, result) in &solved {
-        let findings = result.findings.iter().filter(|f| f.code != NOT_CONVERGED);
+        let findings = result.findings.iter().filter(|f| !is_unconverged(f));
         findings.for_each(|f| ui.diagnostics.finding_of(task.fabric_name(), f));
     }
     for (task, drape) in &draped {

@@ -6,7 +6,7 @@ use super::drape;
 use super::inputs::Fabric;
 use super::output::Columns;
 use super::sampled;
-use super::search::{NOT_CONVERGED, unconverged};
+use super::search::{is_unconverged, unconverged};
 use super::solve::status;
 use super::task::{Task, Tested, Work};
 use super::tree::Tree;
@@ -161,7 +161,7 @@ impl FabricReport {
 
     fn solved(&mut self, task: &Task, result: &CaseResult) {
         self.deflections.push((result.case.clone(), result.w_max));
-        self.findings.extend(result.findings.iter().filter(|f| f.code != NOT_CONVERGED).cloned());
+        self.findings.extend(result.findings.iter().filter(|f| !is_unconverged(f)).cloned());
         self.failures.extend(unconverged(task, result));
         self.predictions.extend(predictions(task, result));
         self.unmet |= unmet(result);
@@ -268,7 +268,7 @@ pub fn predictions(task: &Task, result: &CaseResult) -> Vec<PredictionRow> {
 /// Findings as rows of `problems.csv`; `otherwise` is the place of one without a place. A search that found no
 /// equilibrium is there as a failure.
 pub fn problems(findings: &[Finding], otherwise: &str) -> Vec<ProblemRow> {
-    findings.iter().filter(|f| f.code != NOT_CONVERGED).map(|f| problem_row(f, otherwise)).collect()
+    findings.iter().filter(|f| !is_unconverged(f)).map(|f| problem_row(f, otherwise)).collect()
 }
 
 /// Headings of the overview before the deflections, in KES units.

@@ -216,16 +216,19 @@ impl Mesh {
         let six = |values: &[f64], from: usize| -> Vec<f64> {
             values.chunks_exact(6).flat_map(|v| [v[from], v[from + 1], v[from + 2]]).collect()
         };
-        let (u, r) = (&result.solution.displacement, &result.solution.reaction);
+        let u = &result.solution.displacement;
+        let reactions = result.has_reactions().then(|| six(&result.solution.reaction, 0));
+        let modes: Vec<(String, Vec<f64>)> =
+            result.modes.iter().enumerate().map(|(k, m)| (format!("mode_{}", k + 1), six(m, 0))).collect();
         let nodal = result.nodal().map_err(StudyError::from)?;
-        let fields = [
-            ("displacement", 3, six(u, 0)),
-            ("rotation", 3, six(u, 3)),
-            ("reaction_force", 3, six(r, 0)),
+        let mut fields = vec![("displacement", 3, six(u, 0)), ("rotation", 3, six(u, 3))];
+        fields.extend(reactions.map(|r| ("reaction_force", 3, r)));
+        fields.extend([
             ("membrane_force", 3, nodal.iter().flat_map(|n| n.membrane).collect()),
             ("moment", 3, nodal.iter().flat_map(|n| n.moment).collect()),
             ("shear_force", 2, nodal.iter().flat_map(|n| n.shear).collect()),
-        ];
+        ]);
+        fields.extend(modes.iter().map(|(name, shape)| (name.as_str(), 3, shape.clone())));
         let fields: Vec<_> = fields
             .iter()
             .map(|(name, components, values)| MeshField { name, components: *components, values })

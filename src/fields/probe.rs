@@ -1,9 +1,9 @@
 //! Values at a point of the undeformed sheet, and along a line of it.
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector2};
 
 use super::Resultants;
-use crate::element::{Frame, gauss_point, shape};
+use crate::element::{Frame, shape};
 use crate::mesh::QuadMesh;
 use crate::quantity::Curve;
 
@@ -73,21 +73,31 @@ impl Locator {
     }
 }
 
-/// Natural coordinates of a plane point by Newton's method on the bilinear map.
+/// Natural coordinates of a plane point: the inverse of the bilinear map `a + b ξ + c η + d ξ η`, of which the root
+/// that lies nearer to the quad counts; `None` if the map does not reach the point.
+///
+/// Crossing with the direction of η leaves `(p - a - b ξ) x (c + d ξ) = 0`. Newton's method would do in a
+/// rectangle only: from points outside of other quads it may come to rest anywhere.
 fn natural(xy: &[[f64; 2]; 4], point: [f64; 2]) -> Option<[f64; 2]> {
-    let (mut xi, mut eta) = (0.0, 0.0);
-    for _ in 0..20 {
-        let at = gauss_point(xy, [xi, eta]);
-        let residual = [0, 1].map(|k| point[k] - (0..4).map(|i| at.n[i] * xy[i][k]).sum::<f64>());
-        // d(x, y) = Jᵀ d(ξ, η).
-        let j = at.j_inverse;
-        let (dxi, deta) =
-            (j[0][0] * residual[0] + j[1][0] * residual[1], j[0][1] * residual[0] + j[1][1] * residual[1]);
-        (xi, eta) = (xi + dxi, eta + deta);
-        if dxi.abs() + deta.abs() < 1e-13 {
-            break;
-        }
+    let sum = |signs: [f64; 4]| {
+        let of = |k: usize| 0.25 * (0..4).map(|i| signs[i] * xy[i][k]).sum::<f64>();
+        Vector2::new(of(0), of(1))
+    };
+    let [a, b] = [[1.0, 1.0, 1.0, 1.0], [-1.0, 1.0, 1.0, -1.0]].map(sum);
+    let [c, d] = [[-1.0, -1.0, 1.0, 1.0], [1.0, -1.0, 1.0, -1.0]].map(sum);
+    let p = Vector2::from(point) - a;
+    // d x b ξ² + (p x d - b x c) ξ + p x c = 0, divided by the size of the linear term.
+    let (square, linear, constant) = (d.perp(&b), p.perp(&d) - b.perp(&c), p.perp(&c));
+    let discriminant = linear * linear - 4.0 * square * constant;
+    if discriminant < 0.0 {
+        return None;
     }
+    // Without cancellation; the second root is far away or nowhere where the sides are parallel.
+    let q = -0.5 * (linear + discriminant.sqrt().copysign(linear));
+    let near = |a: f64, b: f64| if b.abs() < a.abs() || !a.is_finite() { b } else { a };
+    let xi = near(constant / q, q / square);
+    let side = c + d * xi;
+    let eta = (p - b * xi).dot(&side) / side.norm_squared();
     (xi.is_finite() && eta.is_finite()).then_some([xi, eta])
 }
 
@@ -128,8 +138,30 @@ impl Line {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{distorted, rectangle};
+    use crate::mesh::{disc, distorted, rectangle};
     use approx::assert_relative_eq;
+
+    /// Every point of quads of any convex shape, seen from its neighbours too.
+    #[test]
+    fn points_are_found_in_the_quad_that_holds_them() {
+        let meshes = [
+            disc(0.1, 8).unwrap(),
+            distorted(rectangle(0.2, 0.1, 10, 10).unwrap(), 0.5, 0).unwrap(),
+            rectangle(0.2, 0.1, 3, 5).unwrap(),
+        ];
+        for mesh in meshes {
+            for (quad, at) in (0..mesh.quads.len()).flat_map(|q| (0..25).map(move |k| (q, k))) {
+                let part = |k: usize| -0.9 + 0.45 * k as f64;
+                let weights = shape(part(at % 5), part(at / 5));
+                let corners = mesh.corners(quad);
+                let point: Point3<f64> =
+                    (0..4).map(|i| weights[i] * corners[i].coords).sum::<nalgebra::Vector3<f64>>().into();
+                let found = Locator::find(&mesh, &point).unwrap();
+                assert_eq!(found.quad, quad);
+                assert!((0..4).all(|i| (found.weights[i] - weights[i]).abs() < 1e-9), "{quad} {point}");
+            }
+        }
+    }
 
     #[test]
     fn linear_fields_are_found_exactly_on_a_distorted_mesh() {

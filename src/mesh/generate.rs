@@ -65,7 +65,7 @@ pub fn rectangle(width: f64, height: f64, nx: usize, ny: usize) -> Result<QuadMe
         ("bottom".to_string(), bottom),
         ("top".to_string(), top),
     ]);
-    Ok(QuadMesh { nodes, quads, node_sets })
+    Ok(QuadMesh { nodes, quads, node_sets, ..QuadMesh::default() })
 }
 
 /// A ring `inner <= r <= outer` about the origin in z = 0: `radial` by `around` cells.
@@ -118,7 +118,7 @@ pub fn graded_annulus(
         ("inner".to_string(), inner_set),
         ("outer".to_string(), outer_set),
     ]);
-    Ok(QuadMesh { nodes, quads, node_sets })
+    Ok(QuadMesh { nodes, quads, node_sets, ..QuadMesh::default() })
 }
 
 /// A disc about the origin in z = 0: a core of `cells` by `cells` quads with bulged sides, and
@@ -181,7 +181,7 @@ pub fn disc(radius: f64, cells: usize) -> Result<QuadMesh, MeshError> {
     if n.is_multiple_of(2) {
         node_sets.insert("centre".to_string(), vec![core_node(n / 2, n / 2)]);
     }
-    Ok(QuadMesh { nodes, quads, node_sets })
+    Ok(QuadMesh { nodes, quads, node_sets, ..QuadMesh::default() })
 }
 
 /// The mesh with its interior nodes moved in x and y by up to `amount` of half the shortest

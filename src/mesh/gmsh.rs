@@ -11,9 +11,9 @@ use crate::finding::Place;
 /// Reads MSH 4.1 text; `scale` is the length of the file's unit (m), `path` names it in messages.
 ///
 /// Each physical group with a name becomes a node set, whatever its dimension; `boundary` and `all`
-/// are added unless the file has groups of these names. Lines and points only name sets. Nodes of
-/// geometry points that belong to no element (centres of arcs) are left out. A sheet in a plane
-/// z = const whose quads all turn clockwise is turned over, so that its normal is +z.
+/// are added unless the file has groups of these names. Lines and points only name sets; the lines of a group are
+/// its edges. Nodes of geometry points that belong to no element (centres of arcs) are left out. Quads are turned over
+/// until neighbours agree: a sheet in a plane z = const has the normal +z, any other that of most of its quads.
 ///
 /// # Errors
 /// M011 with file and line: not this format, a damaged section, elements other than quads.
@@ -48,6 +48,8 @@ struct File {
     quads: Vec<[u64; 4]>,
     /// Named group to node tags.
     sets: BTreeMap<String, HashSet<u64>>,
+    /// Named group to its lines, the lower tag first.
+    lines: BTreeMap<String, HashSet<[u64; 2]>>,
 }
 
 struct Reader<'a> {
@@ -200,6 +202,9 @@ impl<'a> Reader<'a> {
                 }
                 for group in &groups {
                     file.sets.entry(group.clone()).or_default().extend(nodes);
+                    if let [a, b] = *nodes {
+                        file.lines.entry(group.clone()).or_default().insert([a.min(b), a.max(b)]);
+                    }
                 }
             }
         }
@@ -215,7 +220,7 @@ impl File {
         let mut mesh = QuadMesh {
             nodes: kept.iter().map(|t| self.nodes[t]).collect(),
             quads: self.quads.iter().map(|q| q.map(|t| index[&t])).collect(),
-            node_sets: BTreeMap::new(),
+            ..QuadMesh::default()
         };
         for (name, tags) in self.sets {
             let mut nodes: Vec<u32> = tags.iter().filter_map(|t| index.get(t).copied()).collect();
@@ -225,9 +230,28 @@ impl File {
             }
             mesh.node_sets.insert(name, nodes);
         }
-        let flat = mesh.nodes.iter().all(|n| n.z == mesh.nodes[0].z);
-        if flat && (0..mesh.quads.len()).all(|q| super::normal(&mesh.corners(q)).z < 0.0) {
-            mesh.quads.iter_mut().for_each(|q| q.reverse());
+        mesh.orient();
+        let [low, high] = mesh.bounds();
+        // Coordinates of a plane may carry the rounding of another program.
+        if high.z - low.z <= 1e-12 * (high - low).norm() {
+            mesh.nodes.iter_mut().for_each(|n| n.z = low.z);
+            for quad in 0..mesh.quads.len() {
+                if super::normal(&mesh.corners(quad)).z < 0.0 {
+                    mesh.quads[quad].reverse();
+                }
+            }
+        }
+        let mut taken = HashSet::new();
+        let edges: Vec<[u32; 2]> = (mesh.quads.iter())
+            .flat_map(|q| (0..4).map(move |i| [q[i], q[(i + 1) % 4]]))
+            .filter(|&[a, b]| taken.insert([a.min(b), a.max(b)]))
+            .collect();
+        for (name, lines) in self.lines {
+            let on_line = |[a, b]: &[u32; 2]| {
+                let [a, b] = [kept[*a as usize], kept[*b as usize]];
+                lines.contains(&[a.min(b), a.max(b)])
+            };
+            mesh.edge_sets.insert(name, edges.iter().filter(|e| on_line(e)).copied().collect());
         }
         let mut boundary: Vec<u32> = mesh.boundary_edges().into_iter().flatten().collect();
         boundary.sort_unstable();
@@ -301,6 +325,32 @@ $EndElements
         assert_eq!(mesh.set("clamp line").unwrap(), [0, 3]);
         assert_eq!(mesh.set("cloth").unwrap().len(), 6);
         assert_eq!(mesh.set("boundary").unwrap().len(), 6);
+        // Node 3 follows node 0 when the quad is counter-clockwise.
+        assert_eq!(mesh.set_edges("clamp line").unwrap(), [[3, 0]]);
+        assert_eq!(mesh.set_edges("boundary").unwrap().len(), 6);
+        // One of the two upside down, and z with the rounding of another program.
+        let mixed =
+            parse(&TWO.replace("3 2 5 6 3", "3 3 6 5 2").replace("2 1 0\n$", "2 1 1e-17\n$")).unwrap();
+        assert!(mixed.is_flat() && mixed.opposed().is_none());
+    }
+
+    /// The nodes of two lines with one element between them are neighbours, but that edge is none of theirs.
+    #[test]
+    fn the_edges_of_a_group_are_its_lines() {
+        let nodes = "0 0 0\n1 0 0\n2 0 0\n3 0 0\n0 1 0\n1 1 0\n2 1 0\n3 1 0";
+        let text = TWO
+            .replace(
+                "2 7 1 9\n0 9 0 1\n9\n5 5 0\n2 1 0 6\n1\n2\n3\n4\n5\n6\n",
+                "1 8 1 8\n2 1 0 8\n1\n2\n3\n4\n5\n6\n7\n8\n",
+            )
+            .replace("0 0 0\n1 0 0\n2 0 0\n0 1 0\n1 1 0\n2 1 0", nodes)
+            .replace(
+                "2 3 1 3\n1 1 1 1\n1 1 4\n2 1 3 2\n2 1 4 5 2\n3 2 5 6 3",
+                "2 5 1 5\n1 1 1 2\n1 1 2\n2 3 4\n2 1 3 3\n3 1 2 6 5\n4 2 3 7 6\n5 3 4 8 7",
+            );
+        let mesh = parse(&text).unwrap();
+        assert_eq!(mesh.set("clamp line").unwrap(), [0, 1, 2, 3]);
+        assert_eq!(mesh.set_edges("clamp line").unwrap(), [[0, 1], [2, 3]]);
     }
 
     #[test]

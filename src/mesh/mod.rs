@@ -2,6 +2,7 @@
 
 mod generate;
 mod gmsh;
+mod orient;
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -10,6 +11,7 @@ use thiserror::Error;
 
 pub use generate::{annulus, disc, distorted, graded_annulus, rectangle};
 pub use gmsh::parse_gmsh;
+pub use orient::Opposed;
 
 use crate::finding::Place;
 
@@ -28,6 +30,9 @@ pub struct QuadMesh {
     pub quads: Vec<[u32; 4]>,
     /// Named sets of nodes, each sorted.
     pub node_sets: BTreeMap<String, Vec<u32>>,
+    /// The edges of sets that were given as lines, each counter-clockwise along a quad: a set of nodes alone does not
+    /// know whether the edge between two of them belongs to it.
+    pub edge_sets: BTreeMap<String, Vec<[u32; 2]>>,
 }
 
 /// Why a mesh cannot be used.
@@ -93,6 +98,21 @@ pub enum MeshError {
         /// The names that exist.
         known: String,
     },
+    /// M012: neighbours whose normals point to different sides.
+    #[error(
+        "M012 quads {} and {} (counted from 0) have their normals on different sides of the sheet: turn one of them over",
+        quads[0], quads[1]
+    )]
+    Opposed {
+        /// The two quads.
+        quads: [usize; 2],
+    },
+    /// M013: the same quad twice.
+    #[error("M013 quads {} and {} (counted from 0) have the same nodes: remove one of them", quads[0], quads[1])]
+    Twice {
+        /// The two quads.
+        quads: [usize; 2],
+    },
     /// M011: a mesh file that cannot be used.
     #[error("{place}: M011 {message}")]
     File {
@@ -115,6 +135,8 @@ impl MeshError {
             Self::Parameters { .. } => "M006",
             Self::NoSuchSet { .. } => "M007",
             Self::File { .. } => "M011",
+            Self::Opposed { .. } => "M012",
+            Self::Twice { .. } => "M013",
         }
     }
 }
@@ -161,12 +183,15 @@ impl QuadMesh {
         edges().filter(|&[a, b]| uses[&[a.min(b), a.max(b)]] == 1).collect()
     }
 
-    /// Boundary edges both of whose nodes lie in the set.
+    /// The edges of a set that was given as lines; of another, the boundary edges both of whose nodes lie in it.
     ///
     /// # Errors
     /// M007 if there is no such set.
     pub fn set_edges(&self, name: &str) -> Result<Vec<[u32; 2]>, MeshError> {
         let set = self.set(name)?;
+        if let Some(edges) = self.edge_sets.get(name) {
+            return Ok(edges.clone());
+        }
         let inside = |n: u32| set.binary_search(&n).is_ok();
         Ok(self.boundary_edges().into_iter().filter(|&[a, b]| inside(a) && inside(b)).collect())
     }
@@ -199,6 +224,17 @@ impl QuadMesh {
                 used[node as usize] = true;
             }
             self.check_shape(quad)?;
+        }
+        let mut seen = HashMap::with_capacity(self.quads.len());
+        for (quad, nodes) in self.quads.iter().enumerate() {
+            let mut nodes = *nodes;
+            nodes.sort_unstable();
+            if let Some(first) = seen.insert(nodes, quad) {
+                return Err(MeshError::Twice { quads: [first, quad] });
+            }
+        }
+        if let Some(Opposed { quads }) = self.opposed() {
+            return Err(MeshError::Opposed { quads });
         }
         if let Some(node) = used.iter().position(|u| !u) {
             let p = self.nodes[node];
@@ -235,7 +271,7 @@ impl QuadMesh {
 }
 
 /// Unit normal of a quad: the cross product of its diagonals.
-fn normal(c: &[Point3<f64>; 4]) -> Vector3<f64> {
+pub fn normal(c: &[Point3<f64>; 4]) -> Vector3<f64> {
     (c[2] - c[0]).cross(&(c[3] - c[1])).normalize()
 }
 

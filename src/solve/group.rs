@@ -233,6 +233,8 @@ impl<'a> Equations<'a> {
         // Prescribed values act on the free dofs as forces.
         let moved = u.iter().any(|v| *v != 0.0);
         let internal = if moved { self.internal(compensated, &u, &low)? } else { low.clone() };
+        // A support that moves without straining the sheet leaves no other forces than these to compare with.
+        let push = internal.iter().map(|f| f * f).sum::<f64>();
         let mut best = Refined { u, low, internal, residual: f64::INFINITY };
         let mut reduced = 1.0;
         for _ in 0..ROUNDS {
@@ -245,7 +247,7 @@ impl<'a> Equations<'a> {
                 before.zip(&step).map(|((u, low), s)| two_sum(*u, low + s)).unzip();
             // The residual of the elements themselves, not of the assembled matrix.
             let internal = self.internal(compensated, &u, &low)?;
-            let residual = self.residual(&internal);
+            let residual = self.residual(&internal, push);
             if residual < best.residual {
                 best = Refined { u, low, internal, residual };
                 if residual <= solver.refined() && reduced <= solver.settings.tolerance {
@@ -256,7 +258,7 @@ impl<'a> Equations<'a> {
             } else {
                 compensated = true;
                 best.internal = self.internal(compensated, &best.u, &best.low)?;
-                best.residual = self.residual(&best.internal);
+                best.residual = self.residual(&best.internal, push);
             }
         }
         Ok(best)
@@ -298,9 +300,9 @@ impl<'a> Equations<'a> {
         Ok(history.last().copied().unwrap_or(0.0))
     }
 
-    /// |K u - f| over the free dofs, relative to all forces.
-    fn residual(&self, internal: &[f64]) -> f64 {
-        let (mut residual, mut scale) = (0.0, 0.0);
+    /// |K u - f| over the free dofs, relative to all forces; `push` is the square of those of the held values alone.
+    fn residual(&self, internal: &[f64], push: f64) -> f64 {
+        let (mut residual, mut scale) = (0.0, push);
         for ((f, l), held) in internal.iter().zip(&self.load).zip(&self.is_held) {
             scale += f * f + l * l;
             if !held {

@@ -46,7 +46,7 @@ pub use flow::{Flow, relax, relax_from};
 pub use stability::Stability;
 
 use self::flow::noise;
-use self::newton::{Converged, Drag, Failure, newton};
+use self::newton::{Converged, Drag, Failure, longest_travel, newton};
 use self::system::{Balance, System};
 use super::SolveError;
 use super::linear::Options;
@@ -337,13 +337,14 @@ fn grow(
     let mut extra = noise.as_deref();
     let mut state = State::rest(&system.model.mesh);
     let mut balance = system.balance(&state, extra);
-    let (mut step, mut progress) = (settings.first_step, Progress::default());
+    let longest = settings.largest_step.min(longest_travel(system));
+    let (mut step, mut progress) = (settings.first_step.min(longest), Progress::default());
     let (mut targets, mut target) = (settings.path.iter(), state.factor);
     loop {
         if state.factor == target {
             match targets.next() {
                 Some(next) => {
-                    (target, step) = (*next, settings.first_step);
+                    (target, step) = (*next, settings.first_step.min(longest));
                     continue;
                 }
                 // The path is at its end: the last step takes the perturbation away.
@@ -361,7 +362,7 @@ fn grow(
             Ok(converged) => {
                 let flow = progress.show(system, &converged, &mut observe);
                 if converged.iterations <= settings.iterations / 3 {
-                    step = (1.5 * step).min(settings.largest_step);
+                    step = (1.5 * step).min(longest);
                 }
                 (state, balance) = (converged.state, converged.balance);
                 if flow.is_break() {

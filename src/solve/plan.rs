@@ -20,6 +20,11 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// Rows of the equations of a model: those of all of its groups, held ones included.
+    pub fn rows(&self, model: &Model) -> usize {
+        self.groups.iter().map(|(group, _)| group.dofs().len() * model.mesh.nodes.len()).sum()
+    }
+
     /// Analyses the mesh and the rigid bodies of a model for the dof groups that will be factorised.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::PreparedCase;
 use super::StudyError;
-use super::case::{Case, LoadTable};
+use super::case::Case;
 use super::nonlinear::largest_w;
 use super::run::Outcome;
 use crate::element::Mass;
@@ -43,7 +43,11 @@ pub(super) struct Large {
     pub spectral_radius: Option<f64>,
 }
 
-/// Damping ratios at the first and the third natural frequency become Rayleigh factors.
+/// Motions of a free sheet as a whole.
+const RIGID_MOTIONS: usize = 6;
+
+/// Damping ratios at the first and the third natural frequency of deformation become Rayleigh factors: those of
+/// rigid motions, 0, do not count.
 pub(super) fn rayleigh(
     prepared: &PreparedCase<'_>,
     model: &Model,
@@ -52,12 +56,27 @@ pub(super) fn rayleigh(
 ) -> Result<Rayleigh, StudyError> {
     let Some(ratios) = ratios else { return Ok(Rayleigh::default()) };
     let plan = prepared.all_groups.as_ref().unwrap_or(&prepared.plan);
-    let modes = solve::modes_with(model, plan, 3, mass, &prepared.options)?;
-    let omega: Vec<f64> = modes.iter().map(|m| m.angular_frequency).filter(|w| *w > 0.0).collect();
-    Ok(match (omega.first(), omega.last()) {
-        (Some(first), Some(last)) => Rayleigh::from_ratios(ratios, [*first, *last]),
-        _ => Rayleigh::default(),
-    })
+    let lowest = |count: usize| -> Result<Vec<f64>, StudyError> {
+        let modes = solve::modes_with(model, plan, count, mass, &prepared.options)?;
+        Ok(modes.iter().map(|m| m.angular_frequency).filter(|w| *w > 0.0).take(3).collect())
+    };
+    let mut omega = lowest(3)?;
+    if omega.len() < 3 {
+        omega = lowest(3 + RIGID_MOTIONS)?;
+    }
+    let inconsistent = |message: String| Err(prepared.case.inconsistent(message));
+    let (Some(first), Some(last)) = (omega.first(), omega.last()) else {
+        return inconsistent("[analysis] damping: the sheet has no natural frequency to damp".into());
+    };
+    let factors = Rayleigh::from_ratios(ratios, [*first, *last]);
+    if factors.alpha < 0.0 || factors.beta < 0.0 {
+        let [low, high] = [first, last].map(|w| crate::quantity::significant(w / std::f64::consts::TAU));
+        return inconsistent(format!(
+            "[analysis] damping = {ratios:?} at {low} Hz and {high} Hz needs a negative factor of the mass or the \
+             stiffness, which feeds other modes: take ratios that differ less"
+        ));
+    }
+    Ok(factors)
 }
 
 pub(super) fn load_history(case: &Case, text: &str) -> Result<LoadHistory, StudyError> {
@@ -69,14 +88,16 @@ pub(super) fn load_history(case: &Case, text: &str) -> Result<LoadHistory, Study
     if text == "step" {
         return Ok(LoadHistory::Step);
     }
+    let above_zero = |value: f64| {
+        if value > 0.0 { Ok(value) } else { Err(unknown(format!("{value} is not above 0"))) }
+    };
     if let Some(until) = text.strip_prefix("ramp until ") {
-        return until.parse::<Time>().map(|t| LoadHistory::Ramp(t.si())).map_err(|e| unknown(e.to_string()));
+        let end = until.parse::<Time>().map_err(|e| unknown(e.to_string()))?;
+        return above_zero(end.si()).map(LoadHistory::Ramp);
     }
     if let Some(frequency) = text.strip_prefix("sine ") {
-        return frequency
-            .parse::<Frequency>()
-            .map(|f| LoadHistory::Sine(f.si()))
-            .map_err(|e| unknown(e.to_string()));
+        let frequency = frequency.parse::<Frequency>().map_err(|e| unknown(e.to_string()))?;
+        return above_zero(frequency.si()).map(LoadHistory::Sine);
     }
     Err(unknown("no such history".into()))
 }
@@ -116,14 +137,11 @@ pub(super) fn dynamics(
     if large.spectral_radius.is_some_and(|r| !large.rotations || !(0.0..=1.0).contains(&r)) {
         return Err(case.inconsistent("spectral_radius is 0 to 1, and needs large_rotations = true".into()));
     }
-    if large.rotations && case.loads.iter().any(|l| matches!(l, LoadTable::Prescribed { .. })) {
-        return Err(case.inconsistent("a dynamic analysis has no prescribed values: remove them".into()));
-    }
     let mut record = Record {
         mesh: &model.mesh,
         locators: &prepared.probes,
         history: History { probes: vec![Vec::new(); prepared.probes.len()], ..History::default() },
-        solution: Solution::at_rest(model),
+        solution: Solution { dofs: prepared.plan.rows(model), ..Solution::at_rest(model) },
     };
     let state = if large.rotations {
         let newmark::Settings { duration, step, tolerance, damping, load, mass } = *settings;

@@ -253,6 +253,7 @@ fn conclude(
                 findings.push(Finding::new("S111", unstable(negative)));
             }
             if solution.state.factor != 1.0 {
+                path.converged = false;
                 findings.push(Finding::new("S112", unfinished(solution.state.factor, path.steps.len())));
             }
         }

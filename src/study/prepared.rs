@@ -62,7 +62,7 @@ impl<'a> PreparedCase<'a> {
             _ => Plan::groups(&model, options),
         };
         let plan = match case.analysis {
-            Analysis::Linear => Plan::of(&model, options)?,
+            Analysis::Linear {} => Plan::of(&model, options)?,
             _ => Plan::new(&model, &groups, options.path)?,
         };
         let damped = matches!(case.analysis, Analysis::Newmark { damping: Some(_), .. });

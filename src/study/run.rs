@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::case::{Analysis, Case, Check, Reference};
@@ -13,6 +14,7 @@ use crate::constitutive::{Constitutive, Input};
 use crate::element::Mass;
 use crate::fields::{Locator, ProbeValue, Recovery, Resultants};
 use crate::finding::{Finding, Place};
+use crate::mesh::{QuadMesh, normal};
 use crate::model::{Model, ModelError};
 use crate::quantity::{Curve, Unit, parse_quantity};
 use crate::section::{SheetLaw, ShellSection};
@@ -85,7 +87,8 @@ pub struct CaseResult {
     pub solution: Solution,
     /// The largest |w| with its sign (m).
     pub w_max: f64,
-    /// |w_max| over the bending thickness t_b = √(12 B / D_m).
+    /// The largest displacement normal to the sheet, |w_max| of a flat one, over the bending thickness
+    /// t_b = √(12 B / D_m).
     pub w_over_thickness: f64,
     /// Probes of the case.
     pub probes: Vec<Probe>,
@@ -94,8 +97,10 @@ pub struct CaseResult {
     /// Deflection along the middle line, x = distance (m), y = w (m).
     pub profile: Curve,
     /// Natural frequencies (Hz), ascending; of a modal analysis only, whose displacements are the
-    /// first mode with a largest displacement of 1 m.
+    /// first mode. It has no loads, reactions and energy.
     pub frequencies: Vec<f64>,
+    /// The shape of each mode, six a node, with a largest displacement of 1 m; of a modal analysis only.
+    pub modes: Vec<Vec<f64>>,
     /// What happened in time; of a dynamic analysis only, whose displacements are those at the end.
     pub history: Option<History>,
     /// How the equilibrium was found; of a nonlinear analysis only.
@@ -111,6 +116,16 @@ pub struct CaseResult {
 }
 
 impl CaseResult {
+    /// Whether there are reactions: a motion in time and a natural mode have none here.
+    pub fn has_reactions(&self) -> bool {
+        self.history.is_none() && !self.is_modal()
+    }
+
+    /// Whether this is a natural mode, which has a shape and no size.
+    pub fn is_modal(&self) -> bool {
+        !self.frequencies.is_empty()
+    }
+
     /// Resultants at the nodes, found when first asked for.
     ///
     /// # Errors
@@ -132,6 +147,7 @@ impl CaseResult {
 pub(super) struct Outcome {
     pub solution: Solution,
     pub frequencies: Vec<f64>,
+    pub modes: Vec<Vec<f64>>,
     pub history: Option<History>,
     pub path: Option<LoadPath>,
     /// Of large rotations.
@@ -156,6 +172,7 @@ impl Outcome {
         Self {
             solution,
             frequencies: Vec::new(),
+            modes: Vec::new(),
             history: None,
             path: None,
             state: None,
@@ -169,6 +186,18 @@ impl Outcome {
 /// the load: an immovable clamped square is 3 % off at 0.24 and 12 % off at 0.47 (von Karman
 /// solutions, ν = 0.316).
 const LINEAR_LIMIT: f64 = 0.3;
+
+/// Above this part of the size of the sheet a displacement in its plane is no small one: strains and turns are of
+/// that order, and what they neglect of its square.
+const DISPLACEMENT_LIMIT: f64 = 0.1;
+
+/// How a linear result is beyond its meaning.
+enum Beyond {
+    /// The displacement normal to the sheet (m) and its ratio to the bending thickness.
+    Deflection(f64, f64),
+    /// The displacement (m) and its ratio to the size of the sheet.
+    Displacement(f64, f64),
+}
 
 /// Solves a case that has a `[sheet]`, for one section; many sections share a [`PreparedCase`].
 ///
@@ -213,7 +242,7 @@ impl PreparedCase<'_> {
     ) -> Result<CaseResult, StudyError> {
         let case = self.case;
         let model = self.model(section);
-        let Outcome { solution, frequencies, history, path, state, kept, findings: own } =
+        let Outcome { solution, frequencies, modes: shapes, history, path, state, kept, findings: own } =
             analyse(self, &model, law)?;
         let uncertainty = match kept {
             _ if inputs.is_empty() => None,
@@ -229,13 +258,28 @@ impl PreparedCase<'_> {
         let w = |n: usize| solution.displacement[6 * n + 2];
         let w_max =
             history.as_ref().map_or_else(|| largest_w(&model.mesh, &solution.displacement), |h| h.w_max);
-        let w_over_thickness = w_max.abs() / model.section.bending_thickness_squared().sqrt();
-        let beyond_linear = frequencies.is_empty() && state.is_none() && w_over_thickness > LINEAR_LIMIT;
-        let mut findings = findings(case, &model, beyond_linear.then_some((w_max, w_over_thickness)));
+        let deflection = if history.is_some() || model.mesh.is_flat() {
+            w_max.abs()
+        } else {
+            largest_deflection(&model.mesh, &solution.displacement)
+        };
+        let w_over_thickness = deflection / model.section.bending_thickness_squared().sqrt();
+        let [low, high] = model.mesh.bounds();
+        let displacement = largest_displacement(&model.mesh, &solution.displacement);
+        let over_size = displacement / (high - low).norm();
+        let is_linear = frequencies.is_empty() && state.is_none();
+        let beyond = if is_linear && w_over_thickness > LINEAR_LIMIT {
+            Some(Beyond::Deflection(deflection, w_over_thickness))
+        } else if is_linear && over_size > DISPLACEMENT_LIMIT {
+            Some(Beyond::Displacement(displacement, over_size))
+        } else {
+            None
+        };
+        let mut findings = findings(case, &model, beyond.as_ref());
         findings.extend(own);
         let status = match &path {
             Some(path) if !path.converged => Status::NotConverged,
-            _ if beyond_linear => Status::BeyondLinear,
+            _ if beyond.is_some() => Status::BeyondLinear,
             _ => Status::Ok,
         };
         let profile = self.middle.profile(&model.mesh, w);
@@ -250,6 +294,7 @@ impl PreparedCase<'_> {
             checks: Vec::new(),
             profile,
             frequencies,
+            modes: shapes,
             history,
             path,
             state,
@@ -274,21 +319,28 @@ fn analyse(
 ) -> Result<Outcome, StudyError> {
     let (case, options) = (prepared.case, &prepared.options);
     match &case.analysis {
-        Analysis::Linear => {
+        Analysis::Linear {} => {
             let (solution, factors) = solve::solve_keeping(model, Some(&prepared.plan), options)?;
             Ok(Outcome { kept: Kept::Factors(factors), ..Outcome::of(solution) })
         }
-        Analysis::Modal { modes, mass, lumped } => {
+        Analysis::Modal { modes: count, mass, lumped } => {
             let mass = mass_choice(case, *mass, *lumped)?;
-            let modes = solve::modes_with(model, &prepared.plan, *modes, mass, options)?;
-            let mut solution = Solution::at_rest(model);
-            if let Some(first) = modes.first() {
-                let translations = first.shape.chunks_exact(6).flat_map(|node| &node[..3]);
-                let largest = translations.fold(0.0f64, |m, v| m.max(v.abs()));
-                solution.displacement = first.shape.iter().map(|v| v / largest).collect();
+            let modes = solve::modes_with(model, &prepared.plan, *count, mass, options)?;
+            let wanted = *count;
+            let mut solution = Solution { dofs: prepared.plan.rows(model), ..Solution::at_rest(model) };
+            let shapes: Vec<Vec<f64>> = modes.iter().map(|m| of_unit_size(&m.shape)).collect();
+            if let Some(first) = shapes.first() {
+                solution.displacement.clone_from(first);
             }
             let frequencies = modes.iter().map(solve::Mode::frequency).collect();
-            Ok(Outcome { frequencies, kept: Kept::Modes(modes, mass), ..Outcome::of(solution) })
+            let findings = (modes.len() < wanted).then(|| fewer_modes(case, modes.len(), wanted));
+            Ok(Outcome {
+                frequencies,
+                modes: shapes,
+                kept: Kept::Modes(modes, mass),
+                findings: findings.into_iter().collect(),
+                ..Outcome::of(solution)
+            })
         }
         Analysis::Newmark {
             duration,
@@ -323,6 +375,39 @@ fn analyse(
     }
 }
 
+/// A mode with a largest displacement of 1 m.
+fn of_unit_size(shape: &[f64]) -> Vec<f64> {
+    let translations = shape.chunks_exact(6).flat_map(|node| &node[..3]);
+    let largest = translations.fold(0.0f64, |m, v| m.max(v.abs()));
+    shape.iter().map(|v| v / largest).collect()
+}
+
+fn fewer_modes(case: &Case, found: usize, wanted: usize) -> Finding {
+    let message = format!(
+        "the model has {found} modes, and {wanted} were asked for: refine the mesh, or ask for fewer"
+    );
+    Finding::new("S104", message).at(Place::file(&case.path))
+}
+
+/// The largest displacement of the sheet normal to itself (m).
+fn largest_deflection(mesh: &QuadMesh, displacement: &[f64]) -> f64 {
+    (0..mesh.quads.len())
+        .flat_map(|quad| {
+            let normal = normal(&mesh.corners(quad));
+            mesh.quads[quad].map(|n| translation(displacement, n).dot(&normal).abs())
+        })
+        .fold(0.0, f64::max)
+}
+
+/// The largest displacement of the sheet in any direction (m).
+fn largest_displacement(mesh: &QuadMesh, displacement: &[f64]) -> f64 {
+    mesh.quads.iter().flatten().map(|n| translation(displacement, *n).norm()).fold(0.0, f64::max)
+}
+
+fn translation(displacement: &[f64], node: u32) -> Vector3<f64> {
+    Vector3::from_column_slice(&displacement[6 * node as usize..][..3])
+}
+
 /// The mass matrix of a case: the key `mass`, or the older `lumped`.
 fn mass_choice(case: &Case, mass: Option<Mass>, lumped: Option<bool>) -> Result<Mass, StudyError> {
     match (mass, lumped) {
@@ -336,10 +421,10 @@ fn mass_choice(case: &Case, mass: Option<Mass>, lumped: Option<bool>) -> Result<
     }
 }
 
-fn findings(case: &Case, model: &Model, beyond_linear: Option<(f64, f64)>) -> Vec<Finding> {
+fn findings(case: &Case, model: &Model, beyond: Option<&Beyond>) -> Vec<Finding> {
     let mut findings = Vec::new();
     let place = || Place::file(&case.path);
-    if let Some((w_max, ratio)) = beyond_linear {
+    if let Some(beyond) = beyond {
         let cure = match case.analysis {
             Analysis::Newmark { .. } => {
                 "give [analysis] large_rotations = true for the true motion, or lower the load"
@@ -349,11 +434,16 @@ fn findings(case: &Case, model: &Model, beyond_linear: Option<(f64, f64)>) -> Ve
                  stiffness, not as a shape"
             }
         };
-        let message = format!(
-            "the deflection of {:.3e} m is {ratio:.2e} bending thicknesses: a linear solve is meaningful below {LINEAR_LIMIT} only; \
-             {cure}",
-            w_max.abs()
-        );
+        let message = match beyond {
+            Beyond::Deflection(w, ratio) => format!(
+                "the deflection of {w:.3e} m is {ratio:.2e} bending thicknesses: a linear solve is meaningful below {LINEAR_LIMIT} only; \
+                 {cure}"
+            ),
+            Beyond::Displacement(u, ratio) => format!(
+                "the displacement of {u:.3e} m is {ratio:.2e} of the size of the sheet: a linear solve is meaningful for small \
+                 ones, below {DISPLACEMENT_LIMIT}; {cure}"
+            ),
+        };
         findings.push(Finding::new("S101", message).at(place()));
     }
     let nc = model.formulation.cells.count();
@@ -390,6 +480,7 @@ fn probes(case: &Case, locators: &[Locator], result: &CaseResult) -> Result<Vec<
 fn lookup(quantity: &str, results: &CaseResult) -> Option<(f64, &'static str)> {
     match quantity {
         "w_max" => return Some((results.w_max, "m")),
+        "strain_energy" if results.is_modal() => return None,
         "strain_energy" => return Some((results.solution.strain_energy, "J")),
         _ => {}
     }

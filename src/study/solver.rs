@@ -82,12 +82,18 @@ pub fn options(case: &Case, options: &Options) -> Result<Options, StudyError> {
     let SolverTable { method, tolerance, max_iterations, factor_limit } = case.solver;
     let nonlinear_test =
         case.virtual_test.as_ref().is_some_and(|t| t.formulation == TestFormulation::Nonlinear);
-    let direct_only = nonlinear_test || !matches!(case.analysis, Analysis::Linear);
+    let direct_only = nonlinear_test || !matches!(case.analysis, Analysis::Linear {});
     let iterates = [tolerance.is_some(), max_iterations.is_some(), factor_limit.is_some()].contains(&true);
     if direct_only && (iterates || method == Some(SolverChoice::Iterative)) {
         return Err(case.inconsistent(
             "only a linear analysis can iterate: modes, dynamics and large rotations factorise; take method = \"direct\", \
              and remove the other keys of [solver]"
+                .into(),
+        ));
+    }
+    if iterates && method == Some(SolverChoice::Direct) {
+        return Err(case.inconsistent(
+            "[solver] tolerance, max_iterations and factor_limit are of an iteration: remove them beside method = \"direct\""
                 .into(),
         ));
     }

@@ -218,11 +218,6 @@ impl PreparedTest {
             TestFormulation::Nonlinear => {
                 Some(LargeTest::new(spec, (gauge, WIDTH), formulation, stand_in(), options)?)
             }
-            TestFormulation::Linear if spec.curvature.is_some() || spec.pretension.is_some() => {
-                return Err(case.inconsistent(
-                    "[virtual_test] curvature and pretension need formulation = \"nonlinear\"".into(),
-                ));
-            }
             TestFormulation::Linear => None,
         };
         let model = Model {

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::newton::{Converged, Drag, Failure, is_rounding, limit, newton};
+use super::newton::{Converged, Drag, Failure, is_rounding, limit, longest_travel, newton};
 use super::system::System;
 use super::{Method, NonlinearError, Progress, Settings, Solution, State, Step};
 use crate::model::Model;
@@ -61,9 +61,10 @@ pub(super) fn follow_path(
     let mut balance = system.balance(&state, None);
     let mut progress = Progress::default();
     let (mut first, mut length, mut last) = (None, 0.0, Vec::new());
+    let start = arc.first.abs().min(longest_travel(system)).copysign(arc.first);
     while progress.steps < arc.steps {
         let shortest = first.map_or(0.0, |f: f64| HALVINGS * f);
-        match advance(system, &state, settings, arc.first, length, &last) {
+        match advance(system, &state, settings, start, length, &last) {
             Ok((mut converged, travelled, taken)) => {
                 let end =
                     arc.until.filter(|end| (state.factor - end) * (converged.state.factor - end) <= 0.0);
@@ -147,6 +148,9 @@ fn advance(
             return Err(failure(balance.residual, None));
         }
         let at_rest = is_rounding(&step, system.size);
+        if (state.factor - start.factor).abs() > 1.001 * longest_travel(system) {
+            return Err(failure(balance.relative_residual(), None));
+        }
         if part == 1.0 && (at_rest || balance.residual <= settings.tolerance * balance.scale) {
             system.remember(&balance, &mut state);
             return Ok((Converged { state, balance, iterations, at_rest }, travelled, length));

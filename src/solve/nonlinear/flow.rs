@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use super::newton::{Converged, Drag, Failure, newton, newton_with};
+use super::newton::{Converged, Drag, Failure, longest_travel, newton, newton_with};
 use super::system::System;
 use super::{Method, NonlinearError, Perturbation, Progress, Settings, Solution, State, Step, stability};
 use crate::model::Model;
@@ -100,7 +100,8 @@ pub(super) fn relax_system(
     let mut progress = Progress::default();
     loop {
         let drag = Drag { rate: pace.rate, extra: perturbed.then_some(&noise[..]) };
-        let step = match newton(system, &state, 1.0, &inner, &drag) {
+        let factor = (state.factor + longest_travel(system)).min(1.0);
+        let step = match newton(system, &state, factor, &inner, &drag) {
             Ok(step) => step,
             Err(failure) => {
                 progress.cut_back(&failure);
@@ -116,7 +117,8 @@ pub(super) fn relax_system(
         let residual = step.balance.relative_residual();
         // The flow itself needs no more digits than it has yet to go.
         inner.tolerance = (INNER_TOLERANCE * residual).clamp(settings.tolerance, INNER_TOLERANCE);
-        let at_rest = residual <= settings.tolerance || (step.at_rest && step.iterations == 1);
+        let at_rest =
+            factor == 1.0 && (residual <= settings.tolerance || (step.at_rest && step.iterations == 1));
         if stop {
             return progress.finish(system, step.state, &step.balance);
         }
@@ -124,7 +126,7 @@ pub(super) fn relax_system(
             return Err(Failure::unfinished(step).ends(progress.steps, settings, state));
         }
         state = step.state;
-        if perturbed && (at_rest || residual <= SETTLING) {
+        if perturbed && (at_rest || (factor == 1.0 && residual <= SETTLING)) {
             perturbed = false;
         } else if !perturbed && at_rest {
             let (stability, shape) = stability::check(system, &state, &step.balance)?;

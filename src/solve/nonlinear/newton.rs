@@ -12,6 +12,10 @@ const LARGEST_SPIN: f64 = 1.0;
 /// rounding allows.
 const ROUNDING: f64 = 1e-11;
 
+/// Held rotations may turn so far in a step of the load (rad): the elements follow whole turns only one after
+/// the other, and more than half of one would end at the same place with less strain.
+const LARGEST_TURN: f64 = 0.8;
+
 /// A node may turn so far against its element in an equilibrium (rad); more is a fold that the
 /// mesh cannot show.
 const LARGEST_FOLD: f64 = std::f64::consts::FRAC_PI_2;
@@ -103,6 +107,9 @@ pub(super) fn newton_with(
     drag: &Drag<'_>,
 ) -> Result<Converged, Failure> {
     let mut state = State { factor, ..start.clone() };
+    if travel.abs() > 1.001 * longest_travel(system) {
+        return Err(Failure { iterations: 0, residual: f64::INFINITY, cause: None });
+    }
     // Part of the held values that is still to come.
     let mut remaining = travel;
     let mut travelled = vec![0.0; system.held.len()];
@@ -146,6 +153,12 @@ pub(super) fn newton_with(
         }
     }
     Err(Failure { iterations: settings.iterations, residual: balance.relative_residual(), cause: None })
+}
+
+/// The part of their way that the held values may go in one step.
+pub(super) fn longest_travel(system: &System<'_>) -> f64 {
+    let turns = system.values.chunks_exact(6).map(|v| v[3].hypot(v[4]).hypot(v[5]));
+    LARGEST_TURN / turns.fold(0.0, f64::max)
 }
 
 /// Shortens a step whose spins are too large; the part that is left of it.

@@ -6,12 +6,12 @@ use crate::element::Mass;
 use crate::quantity::Time;
 
 /// `[analysis]`.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Analysis {
     /// Small displacements, one solve.
-    #[default]
-    Linear,
+    // With braces, unknown keys are refused here too.
+    Linear {},
     /// Natural frequencies and modes; loads are not used.
     Modal {
         /// How many of the lowest.
@@ -57,6 +57,25 @@ pub enum Analysis {
         #[serde(default = "default_refinements")]
         refinements: usize,
     },
+}
+
+impl Default for Analysis {
+    fn default() -> Self {
+        Self::Linear {}
+    }
+}
+
+impl Analysis {
+    /// What does not fit together, if anything does not.
+    pub(super) fn contradiction(&self) -> Option<&'static str> {
+        match self {
+            Self::Modal { modes: 0, .. } => Some("[analysis] modes = 0 asks for nothing: take 1 or more"),
+            Self::Newmark { damping: Some(ratios), .. } if ratios.iter().any(|r| !(0.0..1.0).contains(r)) => {
+                Some("[analysis] damping ratios are parts of the critical damping: take 0 to below 1")
+            }
+            _ => None,
+        }
+    }
 }
 
 fn default_folds() -> Vec<usize> {

@@ -24,6 +24,7 @@ use crate::constitutive::Assumptions;
 use crate::finding::Place;
 use crate::instrument::{Direction, Test};
 use crate::law::Mode;
+use crate::quantity::parse_quantity;
 
 pub use analysis::{Analysis, MethodChoice, NonlinearTable};
 pub use bending_test::{BendingKind, BendingTest};
@@ -113,7 +114,8 @@ impl Case {
         })?;
         case.path = path.to_path_buf();
         case.name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-        case.consistent()?;
+        let keys: toml::Table = toml::from_str(text).unwrap_or_default();
+        case.consistent(&|key| keys.contains_key(key))?;
         Ok(case)
     }
 
@@ -135,7 +137,8 @@ impl Case {
             && ![Direction::Warp, Direction::Weft].into_iter().all(has_law)
     }
 
-    fn consistent(&self) -> Result<(), CaseError> {
+    /// `has` tells whether a top-level key is in the file, as one that has no meaning there is not just ignored.
+    fn consistent(&self, has: &dyn Fn(&str) -> bool) -> Result<(), CaseError> {
         let refuse = |message: &str| {
             Err(CaseError::Inconsistent { place: Place::file(&self.path), message: message.into() })
         };
@@ -177,7 +180,42 @@ impl Case {
                 );
             }
         }
+        if self.section.is_some() && has("assumptions") {
+            return refuse(
+                "[assumptions] lie between the sheet of a fabric and its section: remove them beside a [section]",
+            );
+        }
+        let names: Vec<&str> = self.probes.iter().map(|p| p.name.as_str()).collect();
+        if let Some(k) = (1..names.len()).find(|k| names[..*k].contains(&names[*k])) {
+            return refuse(&format!("two [[probes]] are called `{}`: give each a name of its own", names[k]));
+        }
+        let zero = |c: &&Check| parse_quantity(&c.expected, "3.1 mm").is_ok_and(|(value, _)| value == 0.0);
+        if let Some(check) = self.checks.iter().find(zero) {
+            return refuse(&format!(
+                "the check of {} expects 0, from which no value has a relative error: check the quantity where it \
+                 is not 0",
+                check.quantity
+            ));
+        }
+        self.analysis.contradiction().map_or(Ok(()), refuse)?;
+        let dynamic = matches!(self.analysis, Analysis::Newmark { .. });
+        if dynamic && self.loads.iter().any(|l| matches!(l, LoadTable::Prescribed { .. })) {
+            return refuse("a dynamic analysis has no prescribed values: remove them");
+        }
+        if (self.virtual_test.is_some() || self.bending_test.is_some()) && (has("analysis") || has("checks"))
+        {
+            return refuse(
+                "a [virtual_test] or [bending_test] brings its own analysis and is compared with what was measured: \
+                 remove [analysis] and [[checks]]",
+            );
+        }
+        if let Some(test) = &self.virtual_test {
+            test.contradiction().map_or(Ok(()), refuse)?;
+        }
         if let Some(test) = &self.bending_test {
+            if has("element") {
+                return refuse("a [bending_test] has its own elements: remove [element]");
+            }
             if self.sheet.is_some() || self.virtual_test.is_some() {
                 return refuse("a [bending_test] brings its own specimen: remove [sheet] and [virtual_test]");
             }

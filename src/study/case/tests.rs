@@ -39,3 +39,34 @@ fn mistakes_are_placed_and_say_what_was_expected() {
     assert_eq!(error("fabric = \"*\"", "").code(), "S003");
     assert_eq!(error("[sheet]", "[shet]").code(), "S002");
 }
+
+/// What has no meaning where it stands is refused, not ignored.
+#[test]
+fn keys_without_a_meaning_are_refused() {
+    let with = |more: &str| {
+        let text = format!("{GOOD}{more}\n");
+        Case::parse(Path::new("c.toml"), &text).unwrap_err().to_string()
+    };
+    assert!(with("[analysis]\nkind = \"linear\"\nlarge_rotations = true").contains("large_rotations"));
+    assert!(with("[analysis]\nkind = \"modal\"\nmodes = 0").contains("modes = 0"));
+    let newmark = "[analysis]\nkind = \"newmark\"\nduration = \"1 s\"\nstep = \"0.1 s\"\n";
+    assert!(with(&format!("{newmark}damping = [-0.1, 0.1]")).contains("critical"));
+    let pushed = "[[loads]]\nkind = \"prescribed\"\nset = \"left\"\ndof = \"w\"\nvalue = \"1 mm\"\n";
+    assert!(with(&format!("{pushed}{newmark}")).contains("prescribed"));
+    let probe = "[[probes]]\nname = \"p\"\nat = [\"1 cm\", \"1 cm\"]\n";
+    assert!(with(&format!("{probe}{probe}")).contains("`p`"));
+    let check = "[[checks]]\nquantity = \"w_max\"\nexpected = \"0 mm\"\nrelative_tolerance = 0.1\n\
+                 reference = { kind = \"own\", source = \"s\" }";
+    assert!(with(check).contains("expects 0"));
+    let test = |lines: &str| {
+        let text = format!("title = \"t\"\nfabric = \"*\"\n[virtual_test]\n{lines}\n");
+        Case::parse(Path::new("c.toml"), &text).unwrap_err().to_string()
+    };
+    assert!(test("test = \"bending\"\n[analysis]\nkind = \"linear\"").contains("[analysis]"));
+    let check = check.replace("0 mm", "1 mm");
+    assert!(test(&format!("test = \"bending\"\n{check}")).contains("[[checks]]"));
+    assert!(test("test = \"compression\"\ncells = [4, 4]").contains("closed form"));
+    let large = "formulation = \"nonlinear\"";
+    assert!(test(&format!("test = \"tensile\"\n{large}\ncurvature = \"1 1/cm\"")).contains("bending"));
+    assert!(test(&format!("test = \"bending\"\n{large}\npretension = \"10 gf/cm\"")).contains("shear"));
+}

@@ -23,6 +23,28 @@ pub struct VirtualTest {
     pub pretension: Option<LineForce>,
 }
 
+impl VirtualTest {
+    /// What does not fit together, if anything does not.
+    pub(super) fn contradiction(&self) -> Option<&'static str> {
+        let large = self.formulation == TestFormulation::Nonlinear;
+        match self.test {
+            Test::Compression if self.cells.is_some() || large => {
+                Some("compression is a closed form: remove `cells` and `formulation`")
+            }
+            _ if !large && (self.curvature.is_some() || self.pretension.is_some()) => {
+                Some("[virtual_test] curvature and pretension need formulation = \"nonlinear\"")
+            }
+            _ if self.curvature.is_some() && self.test != Test::Bending => {
+                Some("[virtual_test] curvature belongs to test = \"bending\": remove it")
+            }
+            _ if self.pretension.is_some() && self.test != Test::Shear => {
+                Some("[virtual_test] pretension belongs to test = \"shear\": remove it")
+            }
+            _ => None,
+        }
+    }
+}
+
 /// How a virtual test is solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, serde::Serialize)]
 #[serde(rename_all = "snake_case")]

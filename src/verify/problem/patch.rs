@@ -1,5 +1,7 @@
 //! Patch tests: a constant state on an irregular mesh, given on the boundary, must be found inside.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{Matrix2, Matrix3, Point3, Rotation3, Vector2, Vector3};
 use serde::Deserialize;
 
@@ -170,6 +172,7 @@ impl Mesh {
             nodes: points.iter().map(|[x, y]| Point3::new(*x, *y, 0.0)).collect(),
             quads: vec![[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7], [4, 5, 6, 7]],
             node_sets: [("boundary".to_string(), vec![0, 1, 2, 3])].into(),
+            edge_sets: BTreeMap::new(),
         })
     }
 }
