@@ -209,12 +209,94 @@ fn a_case_holds_its_checks_and_a_wrong_expectation_is_exit_code_1() {
     write(folder.path(), "case.toml", &free);
     let output = run(&["solve", wrong.to_str().unwrap()]);
     assert_eq!((code(&output), output.stdout.len()), (3, 0), "{}", stderr(&output));
-    assert!(stderr(&output).starts_with("kesf: N00"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("case.toml: N00"), "{}", stderr(&output));
     // A misspelt key names its place.
     write(folder.path(), "case.toml", &text.replace("[sheet]", "[shet]"));
     let output = run(&["check", wrong.to_str().unwrap()]);
     assert_eq!(code(&output), 2);
     assert!(stderr(&output).contains("case.toml:") && stderr(&output).contains("S002"));
+}
+
+/// A library in one table: a bad cell costs its own fabric, an outlier among repeats is told, and names are folders'.
+#[test]
+fn a_table_of_fabrics_loses_only_the_bad_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    let head = "fabric,specimen,B warp (gf·cm²/cm),B weft (gf·cm²/cm)\n";
+    let repeats: String = [0.1, 0.101, 0.099, 0.102, 0.3]
+        .iter()
+        .enumerate()
+        .map(|(i, b)| format!("a/b,{i},{b},0.1\n"))
+        .collect();
+    write(folder.path(), "t.csv", &format!("{head}{repeats}B,1,0.1,n/a\nC,1,0.1,0.1\n"));
+    let table = folder.path().join("t.csv");
+    let output = run(&["--json", "characterise", table.to_str().unwrap()]);
+    assert_eq!(code(&output), 1, "{}", stderr(&output));
+    let document = json(&output);
+    let names: Vec<&str> =
+        document["fabrics"].as_array().unwrap().iter().map(|f| f["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["C", "a-b"]);
+    assert_eq!(document["failures"][0]["code"], "R017");
+    assert_eq!(document["failures"][0]["line"], 7);
+    let found: Vec<&Value> = document["findings"].as_array().unwrap().iter().collect();
+    assert!(found.iter().any(|f| f["code"] == "K010" && f["fabric"] == "a-b"), "{found:?}");
+    assert_eq!(found.iter().filter(|f| f["code"] == "R101").count(), 1);
+}
+
+/// Nothing takes the place of another's files.
+#[test]
+fn fabrics_and_cases_of_the_same_name_are_told_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = "parameter,unit,warp,weft\nB,gf·cm²/cm,0.1,0.1\nW,mg/cm²,10,10\n";
+    let case = fs::read_to_string(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/benchmark_clamped_isotropic.toml"),
+    )
+    .unwrap();
+    for (name, text) in [
+        ("d/x-2/t.csv", table),
+        ("a/x/t.csv", table),
+        ("b/x/t.csv", table),
+        ("a/plate.toml", &case),
+        ("b/plate.toml", &case),
+    ] {
+        fs::create_dir_all(folder.path().join(name).parent().unwrap()).unwrap();
+        write(folder.path(), name, text);
+    }
+    let (root, results) = (folder.path().to_str().unwrap(), folder.path().join("out"));
+    let output = run(&["run", root, "-o", results.to_str().unwrap(), "--no-charts"]);
+    assert!(stderr(&output).contains("O056"), "{}", stderr(&output));
+    for name in ["x", "x-2", "x-3"] {
+        assert!(results.join(name).join("sheet.json").is_file(), "{name}");
+    }
+    for name in ["plate.json", "plate-2.json"] {
+        assert!(results.join("cases").join(name).is_file(), "{name}");
+    }
+}
+
+/// What solving would refuse is refused by the check as well.
+#[test]
+fn a_check_builds_the_case() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = fs::read_to_string(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/benchmark_clamped_isotropic.toml"),
+    )
+    .unwrap();
+    for (from, to, code_of) in [
+        ("set = \"boundary\"", "set = \"boundry\"", "M007"),
+        ("cells = [40, 40]", "cells = [0, 40]", "M006"),
+        ("quantity = \"", "quantity = \"x", "S003"),
+    ] {
+        assert!(case.contains(from), "{from}");
+        write(folder.path(), "case.toml", &case.replace(from, to));
+        let output = run(&["check", folder.path().join("case.toml").to_str().unwrap()]);
+        assert_eq!(code(&output), 2, "{to}");
+        assert!(stderr(&output).contains(code_of), "{to}: {}", stderr(&output));
+    }
+    let output = run(&["characterise", folder.path().join("nothing").to_str().unwrap()]);
+    assert_eq!(code(&output), 2);
+    fs::create_dir(folder.path().join("empty")).unwrap();
+    let output = run(&["characterise", folder.path().join("empty").to_str().unwrap()]);
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("O055"));
 }
 
 #[test]

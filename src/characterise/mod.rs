@@ -62,7 +62,7 @@ pub fn characterise(input: &FabricInput, settings: &Settings) -> FabricSheet {
     let mut found = statistics::outliers(&sheet, settings);
     found.extend(statistics::swapped(&sheet));
     sheet.findings.append(&mut found);
-    tables::merge(&mut sheet, input);
+    tables::merge(&mut sheet, input, settings);
     strip::add(&mut sheet, &input.fab, settings);
     tables::metadata(&mut sheet, input);
     tables::moduli(&mut sheet, settings);
@@ -74,5 +74,8 @@ pub fn characterise(input: &FabricInput, settings: &Settings) -> FabricSheet {
     for finding in sheet.findings.iter_mut().filter(|f| f.place.is_none() && *input.path != *"") {
         finding.place = Some(Place::file(&input.path));
     }
+    // Several ways may lead to the same remark.
+    let mut told = std::collections::BTreeSet::new();
+    sheet.findings.retain(|f| told.insert(f.clone()));
     sheet
 }

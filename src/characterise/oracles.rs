@@ -383,6 +383,7 @@ fn tables_stand_beside_curves() {
         mean,
         sd: Some(0.1 * mean),
         n: 5,
+        values: Vec::new(),
         inferred,
         place: Place::at("results.csv", 2, 3),
     };

@@ -96,4 +96,9 @@ impl FabricSheet {
     pub fn get(&self, parameter: Parameter, direction: Option<Direction>) -> Option<&Estimate> {
         self.values.get(&Key { parameter, direction })
     }
+
+    /// Whether anything could be evaluated.
+    pub fn has_values(&self) -> bool {
+        !(self.values.is_empty() && self.moduli.is_empty() && self.bend_tests.is_empty())
+    }
 }

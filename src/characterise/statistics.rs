@@ -74,7 +74,7 @@ pub(super) fn name(key: Key) -> String {
 ///
 /// The median absolute deviation of three repeats is easily small by chance, so deviations below
 /// `floor` (relative to the median) never count there; Grubbs' test needs four repeats.
-fn outlier(values: &[f64], floor: f64) -> Option<(usize, &'static str)> {
+pub(super) fn outlier(values: &[f64], floor: f64) -> Option<(usize, &'static str)> {
     let n = values.len();
     if n < 3 {
         return None;

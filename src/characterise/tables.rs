@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::statistics::name;
+use super::statistics::{name, outlier};
 use super::{FabricSheet, Key, Modulus, Settings};
 use crate::finding::Finding;
 use crate::instrument::{Direction, FabricInput, Parameter, ResultValue};
@@ -12,7 +12,7 @@ use crate::quantity::Estimate;
 const DISAGREEMENT: f64 = 0.05;
 
 /// Adds table values to the sheet. What was evaluated from curves stays; where the two differ, both are told.
-pub(super) fn merge(sheet: &mut FabricSheet, input: &FabricInput) {
+pub(super) fn merge(sheet: &mut FabricSheet, input: &FabricInput, settings: &Settings) {
     let mut cells: BTreeMap<Key, Vec<&ResultValue>> = BTreeMap::new();
     for value in &input.results {
         let key = Key { parameter: value.parameter, direction: value.direction };
@@ -24,6 +24,16 @@ pub(super) fn merge(sheet: &mut FabricSheet, input: &FabricInput) {
             sheet.findings.push(Finding::new("K014", text).at(value.place.clone()));
         }
         let Some(estimate) = together(&values) else { continue };
+        if let Some((i, test)) = outlier(&estimate.values, settings.outlier_floor.si()) {
+            let text = format!(
+                "{}: repeat {} of the table stands apart from the other {} ({test}); it is kept in the mean",
+                name(key),
+                i + 1,
+                estimate.n - 1
+            );
+            let cell = if values.len() > 1 { values[i] } else { values[0] };
+            sheet.findings.push(Finding::new("K010", text).at(cell.place.clone()));
+        }
         match sheet.values.get(&key) {
             None => {
                 sheet.values.insert(key, estimate);
@@ -50,7 +60,7 @@ fn kes(parameter: Parameter, value: f64) -> String {
 /// One cell as it stands; several cells of one key are repeats.
 fn together(values: &[&ResultValue]) -> Option<Estimate> {
     match values {
-        [one] => Some(Estimate { mean: one.mean, sd: one.sd, n: one.n, values: Vec::new() }),
+        [one] => Some(Estimate { mean: one.mean, sd: one.sd, n: one.n, values: one.values.clone() }),
         _ => Estimate::of(&values.iter().map(|v| v.mean).collect::<Vec<_>>()),
     }
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::diagnostics::Failure;
-use super::inputs::{Curves, EvaluateArgs, Units};
+use super::inputs::{Curves, EvaluateArgs, Units, names, nothing_to_read, unread};
 use super::output::{Columns, Format, OutputArgs};
 use super::{Exit, Ui, friction};
 use crate::characterise::{FabricSheet, Settings};
@@ -37,27 +37,36 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let format = options.output.format(ui.json)?;
     let (fabrics, failures) = options.evaluate.sheets(&options.inputs, &[], Curves::Dropped, ui)?;
     let sheets: Vec<&FabricSheet> = fabrics.iter().map(|f| &f.sheet).collect();
-    for finding in sheets.iter().flat_map(|s| &s.findings) {
-        ui.diagnostics.finding(finding);
+    let named = names(&fabrics);
+    for fabric in &fabrics {
+        fabric.sheet.findings.iter().for_each(|f| ui.diagnostics.finding_of(named(fabric), f));
     }
-    if sheets.is_empty() {
+    if sheets.is_empty() && failures.is_empty() {
+        return Err(nothing_to_read());
+    }
+    if sheets.is_empty() && !ui.json {
         return Ok(Exit::of_batch(0, &failures));
     }
     let units = options.units.into();
     let settings = options.evaluate.settings()?;
-    let rows = || sheets.iter().flat_map(|s| fabric_rows(s, units)).collect::<Vec<FabricRow>>();
+    let told = unread(&fabrics, &failures);
+    let rows =
+        || sheets.iter().flat_map(|s| fabric_rows(s, units)).chain(told.clone()).collect::<Vec<FabricRow>>();
     let bytes = match format {
         Format::Text => {
             let shown = if ui.diagnostics.is_verbose() { statistics } else { table };
             let tables = sheets.iter().map(|s| shown(s, units)).chain([evaluation(&settings)]);
             tables.collect::<Vec<_>>().join("\n").into_bytes()
         }
-        Format::Json => text(&sheet_document(sheets.iter().copied(), Some(&settings)))?.into_bytes(),
+        Format::Json => {
+            text(&ui.complete(sheet_document(sheets.iter().copied(), Some(&settings))))?.into_bytes()
+        }
         Format::Csv => csv(&rows())?,
         Format::Parquet => parquet(&rows())?,
     };
     options.output.emit(&bytes)?;
-    Ok(Exit::of_batch(sheets.len(), &failures))
+    let useful = sheets.iter().filter(|s| s.has_values()).count();
+    Ok(Exit::of_batch(useful, &failures))
 }
 
 /// One line a parameter: `mean ± SD (n)` in each direction.

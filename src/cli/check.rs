@@ -9,8 +9,9 @@ use super::diagnostics::Failure;
 use super::inputs::{self, ReadArgs, Worked};
 use super::output::Columns;
 use super::{Exit, Ui};
+use crate::finding::Place;
 use crate::instrument::{FabricInput, Inference};
-use crate::study::Case;
+use crate::study::{Case, validate};
 
 /// Validate measurement files and cases, compute nothing
 #[derive(Debug, Args)]
@@ -30,6 +31,13 @@ pub struct Options {
 
 pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let (cases, mut failures) = inputs::cases(&options.inputs);
+    let (cases, bad): (Vec<_>, Vec<_>) =
+        cases.into_iter().map(|c| (validate(&c), c)).partition(|(r, _)| r.is_ok());
+    let cases: Vec<Case> = cases.into_iter().map(|(_, case)| case).collect();
+    failures.extend(bad.into_iter().filter_map(|(result, case)| {
+        let failure = Failure::from(result.err()?);
+        Some(if failure.place.is_some() { failure } else { failure.at(Place::file(&case.path)) })
+    }));
     for failure in &failures {
         ui.diagnostics.error(failure);
     }
@@ -49,7 +57,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     }
     let inference: Vec<&Inference> = fabrics.iter().flat_map(|f| &f.inference).chain(&of_failures).collect();
     if ui.json {
-        ui.document(&document(&fabrics, &cases, failures.len(), &inference))?;
+        ui.document(document(&fabrics, &cases, failures.len(), &inference))?;
     } else {
         let told = if ui.diagnostics.is_verbose() { explanation(&inference) } else { String::new() };
         ui.print(&(told + &text(&fabrics, &cases, failures.len())))?;

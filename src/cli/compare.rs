@@ -82,7 +82,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     if ui.json {
         let tests = compared.iter().map(|(task, t)| comparison(task, t));
         let entries: Vec<_> = tests.chain(bent.iter().flat_map(|(t, r)| bending::entries(t, r))).collect();
-        ui.document(&json!({"schema": "kesf.comparison/1", "comparisons": entries}))?;
+        ui.document(json!({"schema": "kesf.comparison/1", "comparisons": entries}))?;
     } else {
         let tests = (!compared.is_empty()).then(|| text(&compared));
         let bands = sampled::table(done.iter().map(|(task, _)| *task));

@@ -3,7 +3,7 @@
 use std::io::{IsTerminal, Write};
 
 use clap::ColorChoice;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::args::Global;
 use super::exit::Exit;
@@ -66,16 +66,23 @@ impl Failure {
         self
     }
 
+    /// Why a fabric has no section; some of these errors name the fabric themselves.
+    pub fn of_fabric(error: ConstitutiveError, name: &str) -> Self {
+        let failure = Self::from(error);
+        if failure.message.contains(name) { failure } else { failure.of(name) }
+    }
+
     /// The row of `problems.csv`.
     pub fn row(&self) -> ProblemRow {
         ProblemRow {
             place: self.place.as_ref().map_or_else(|| "kesf".to_string(), ToString::to_string),
             code: self.code.clone(),
             message: self.message.clone(),
+            fabric: None,
         }
     }
 
-    fn json(&self) -> serde_json::Value {
+    fn json(&self) -> Value {
         let place = self.place.clone().unwrap_or_default();
         let number = |n: usize| (n > 0).then_some(n);
         json!({"error": {
@@ -136,7 +143,11 @@ impl From<OutputError> for Failure {
             }
             other @ OutputError::Name { .. } => return Self::coded("O003", &other.to_string()),
         };
-        let failure = Self::new(code, message).hint("write elsewhere with -o, or overwrite it with --force");
+        let hint = match code {
+            "O001" => "make the folder, free the place or its permissions, or write elsewhere with -o",
+            _ => "write elsewhere with -o, or overwrite it with --force",
+        };
+        let failure = Self::new(code, message).hint(hint);
         Self { place: path.map(Place::file), ..failure }
     }
 }
@@ -174,6 +185,8 @@ pub struct Diagnostics {
     verbose: bool,
     color: bool,
     findings: usize,
+    /// Findings and failures, for a document.
+    said: [Vec<Value>; 2],
 }
 
 impl Diagnostics {
@@ -185,12 +198,19 @@ impl Diagnostics {
             ColorChoice::Never => false,
             ColorChoice::Auto => !plain && std::io::stderr().is_terminal(),
         };
-        Self { json: global.json, quiet: global.quiet, verbose: global.verbose, color, findings: 0 }
+        Self {
+            json: global.json,
+            quiet: global.quiet,
+            verbose: global.verbose,
+            color,
+            findings: 0,
+            said: Default::default(),
+        }
     }
 
     /// For errors in the options themselves, which are not known then.
     pub fn json_only() -> Self {
-        Self { json: true, quiet: true, verbose: false, color: false, findings: 0 }
+        Self { json: true, quiet: true, verbose: false, color: false, findings: 0, said: Default::default() }
     }
 
     /// Whether a progress bar may be drawn.
@@ -208,10 +228,17 @@ impl Diagnostics {
         self.findings
     }
 
+    /// Findings and failures so far.
+    pub fn said(&self) -> [Vec<Value>; 2] {
+        self.said.clone()
+    }
+
     /// An error: always shown.
     pub fn error(&mut self, failure: &Failure) {
+        let json = failure.json();
+        self.said[1].push(json["error"].clone());
         if self.json {
-            return self.line(&failure.json().to_string());
+            return self.line(&json.to_string());
         }
         let place = failure.place.as_ref().map_or_else(|| "kesf".to_string(), ToString::to_string);
         let hint = failure.hint.as_ref().map(|h| format!("; {h}")).unwrap_or_default();
@@ -229,6 +256,8 @@ impl Diagnostics {
     /// The same, said of a fabric.
     pub fn finding_of(&mut self, fabric: Option<&str>, finding: &Finding) {
         self.findings += 1;
+        let Finding { code, message, place } = finding;
+        self.said[0].push(json!({"fabric": fabric, "code": code, "message": message, "place": place}));
         if self.quiet || self.json {
             return;
         }
@@ -240,7 +269,7 @@ impl Diagnostics {
 
     /// The findings of a batch: counted, and shown one by one only with `-v`.
     pub fn finding_of_batch(&mut self, finding: &Finding) {
-        if self.verbose {
+        if self.verbose || self.json {
             self.finding(finding);
         } else {
             self.findings += 1;

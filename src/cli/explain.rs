@@ -29,7 +29,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         })?);
     }
     if ui.json {
-        return ui.document(&json!({"schema": "kesf.explanations/1", "codes": found}));
+        return ui.document(json!({"schema": "kesf.explanations/1", "codes": found}));
     }
     let texts: Vec<_> = found.iter().map(|e| text(e)).collect();
     ui.print(&texts.join("\n"))

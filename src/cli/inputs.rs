@@ -1,10 +1,11 @@
 //! What the arguments name: fabrics (folders, files, `-`) and cases (`.toml`).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use serde_json::json;
 
 use super::Ui;
 use super::diagnostics::Failure;
@@ -13,7 +14,8 @@ use crate::finding::{Finding, Place};
 use crate::instrument::{
     FabricInput, Inference, Library, ReadError, ReadSettings, ResultValue, parse, read_dialect,
 };
-use crate::report::table::UnitSystem;
+use crate::report::table::{FabricRow, UnitSystem};
+use crate::report::write::hash;
 use crate::study::Case;
 
 /// How instrument files are read where they do not say it themselves.
@@ -23,7 +25,7 @@ pub struct ReadArgs {
     /// Dialect file (TOML) that describes the laboratory's layout; tried first
     #[arg(long, value_name = "FILE")]
     dialect: Option<PathBuf>,
-    /// Cell delimiter, such as `;` or `tab` [default: inferred]
+    /// Cell delimiter, such as `;`, `tab` or `space` [default: inferred]
     #[arg(long, value_name = "CHAR", value_parser = delimiter)]
     delimiter: Option<char>,
     /// Decimal mark [default: inferred]
@@ -38,8 +40,9 @@ fn delimiter(text: &str) -> Result<char, String> {
     let mut chars = text.chars();
     match (text, chars.next(), chars.next()) {
         ("tab" | "\\t", ..) => Ok('\t'),
+        ("space", ..) => Ok(' '),
         (_, Some(c), None) => Ok(c),
-        _ => Err("one character, or `tab`".into()),
+        _ => Err("one character, `tab` or `space`".into()),
     }
 }
 
@@ -93,7 +96,10 @@ impl ReadArgs {
         if !stdin.is_empty() {
             match stdin_bytes() {
                 Ok(bytes) => match from_stdin(&bytes, &settings) {
-                    Ok(fabric) => done.push(work(fabric)),
+                    Ok((fabric, left_out)) => {
+                        done.push(work(fabric));
+                        errors.extend(left_out);
+                    }
                     Err(error) => errors.push(error),
                 },
                 Err(failure) => failures.push(failure),
@@ -178,6 +184,16 @@ impl EvaluateArgs {
         Ok((fabrics, failures))
     }
 
+    /// The options as they were given, with the hashes of the files that they name.
+    pub fn told(&self) -> serde_json::Value {
+        let file = |path: &PathBuf| json!({"path": path, "sha256": sha256(path)});
+        let ReadArgs { dialect, delimiter, decimal, assume_kes_units } = &self.reading;
+        json!({
+            "settings": self.settings.as_ref().map(file), "dialect": dialect.as_ref().map(file),
+            "delimiter": delimiter, "decimal": decimal, "assume_kes_units": assume_kes_units,
+        })
+    }
+
     /// The settings of the evaluation.
     pub fn settings(&self) -> Result<Settings, Failure> {
         let Some(path) = &self.settings else { return Ok(Settings::default()) };
@@ -189,19 +205,89 @@ impl EvaluateArgs {
     }
 }
 
-/// Numbers fabrics that share a name, so that none hides another.
+/// A name that a folder can have: nothing of it leads into another.
+fn folder_name(name: &str) -> String {
+    let flat = name.replace(['/', '\\'], "-");
+    let bare = flat.trim_matches('.').trim();
+    if bare.is_empty() { "fabric".into() } else { bare.into() }
+}
+
+/// Numbers cases that share a name, so that the files of none take the place of another's.
+pub fn distinguish_cases(cases: &mut [Case]) -> Vec<Finding> {
+    let own: BTreeSet<String> = cases.iter().map(|c| c.name.clone()).collect();
+    let (mut seen, mut findings) = (BTreeSet::new(), Vec::new());
+    for case in cases {
+        if seen.insert(case.name.clone()) {
+            continue;
+        }
+        let numbered = |n: usize| format!("{}-{n}", case.name);
+        let free = |name: &String| !own.contains(name) && !seen.contains(name);
+        let Some(name) = (2..).map(numbered).find(free) else { continue };
+        let text = format!("another case is named {} too; this one is called {name}", case.name);
+        findings.push(Finding::new("O056", text).at(Place::file(&case.path)));
+        seen.insert(name.clone());
+        case.name = name;
+    }
+    findings
+}
+
+/// Numbers fabrics that share a name, so that none hides another: the invented names are nobody else's.
 fn distinguish(fabrics: &mut [Fabric]) {
+    for Fabric { path, sheet } in fabrics.iter_mut() {
+        let name = folder_name(&sheet.name);
+        if name != sheet.name {
+            let text =
+                format!("{:?} cannot be the name of a folder; this fabric is called {name}", sheet.name);
+            sheet.findings.push(Finding::new("O056", text).at(Place::file(path)));
+            sheet.name = name;
+        }
+    }
+    let own: BTreeSet<String> = fabrics.iter().map(|f| f.sheet.name.clone()).collect();
     let mut seen: BTreeMap<String, usize> = BTreeMap::new();
     for Fabric { path, sheet } in fabrics {
         let count = seen.entry(sheet.name.clone()).or_default();
         *count += 1;
         if *count > 1 {
-            let name = format!("{}-{count}", sheet.name);
+            let mut name = format!("{}-{count}", sheet.name);
+            while own.contains(&name) {
+                *count += 1;
+                name = format!("{}-{count}", sheet.name);
+            }
             let text = format!("another fabric is named {} too; this one is called {name}", sheet.name);
             sheet.findings.push(Finding::new("O056", text).at(Place::file(path)));
             sheet.name = name;
         }
     }
+}
+
+/// SHA-256 of a file; none if it cannot be read.
+pub fn sha256(path: &Path) -> Option<String> {
+    Some(hash(&std::fs::read(path).ok()?))
+}
+
+/// The error of inputs without any measurement.
+pub fn nothing_to_read() -> Failure {
+    Failure::new("O055", "there is no measurement in the inputs")
+        .hint("name a fabric folder or a measurement file, as in `kesf characterise kesf_data/poplin`")
+}
+
+/// How a finding names its fabric: not where the place of it does so already.
+pub fn names(fabrics: &[Fabric]) -> impl Fn(&Fabric) -> Option<&str> {
+    let mut count: BTreeMap<PathBuf, usize> = BTreeMap::new();
+    fabrics.iter().for_each(|f| *count.entry(f.path.clone()).or_default() += 1);
+    move |fabric| (count.get(&fabric.path) > Some(&1)).then_some(fabric.sheet.name.as_str())
+}
+
+/// A row for each input that could not be read: the fabric that it belongs to, and the code of the failure.
+pub fn unread(fabrics: &[Fabric], failures: &[Failure]) -> Vec<FabricRow> {
+    let row = |failure: &Failure| {
+        let path = &failure.place.as_ref().filter(|_| failure.code.starts_with('R'))?.path;
+        let own = fabrics.iter().find(|f| f.path.is_dir() && path.starts_with(&f.path));
+        let stem = || path.file_stem().map(|s| s.to_string_lossy().into_owned());
+        let fabric = own.map(|f| f.sheet.name.clone()).or_else(stem)?;
+        Some(FabricRow { fabric, status: failure.code.clone(), ..FabricRow::default() })
+    };
+    failures.iter().filter_map(row).collect()
 }
 
 /// Units of tables.
@@ -242,13 +328,14 @@ fn stdin_bytes() -> Result<Vec<u8>, Failure> {
     }
 }
 
-fn from_stdin(bytes: &[u8], settings: &ReadSettings) -> Result<FabricInput, ReadError> {
+/// The fabric, and the errors of those that a table on standard input could not give.
+fn from_stdin(bytes: &[u8], settings: &ReadSettings) -> Result<(FabricInput, Vec<ReadError>), ReadError> {
     let path = Path::new(STDIN);
     let content = parse(path, bytes, settings)?;
     let sample = content.measurements.iter().find_map(|m| m.sample.clone());
     let name = sample.unwrap_or_else(|| "stdin".to_string());
     let results: Vec<ResultValue> = content.results.into_iter().map(|(_, value)| value).collect();
-    Ok(FabricInput {
+    let fabric = FabricInput {
         name,
         path: path.to_path_buf(),
         measurements: content.measurements,
@@ -258,7 +345,8 @@ fn from_stdin(bytes: &[u8], settings: &ReadSettings) -> Result<FabricInput, Read
         sources: vec![content.source],
         findings: content.findings,
         ..FabricInput::default()
-    })
+    };
+    Ok((fabric, content.failures))
 }
 
 /// The cases among the inputs: `.toml` files, and those in a folder or below it, in name order.

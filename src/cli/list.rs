@@ -51,7 +51,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
             headings.iter().map(ToString::to_string).zip(row.iter().cloned()).collect()
         };
         let items: Vec<Value> = rows.iter().map(object).collect();
-        return ui.document(&json!({"schema": "kesf.list/1", "items": items}));
+        return ui.document(json!({"schema": "kesf.list/1", "items": items}));
     }
     let mut columns = Columns::new(headings.iter().copied());
     for row in &rows {

@@ -32,6 +32,7 @@ mod tree;
 mod verify;
 
 use std::ffi::OsString;
+use std::io::Write as _;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -39,6 +40,8 @@ use clap::Parser;
 use clap::error::ErrorKind;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
+use serde::Serialize;
+use serde_json::Value;
 
 use args::{Cli, Command};
 use diagnostics::{Diagnostics, Failure};
@@ -57,6 +60,15 @@ struct Ui {
     diagnostics: Diagnostics,
 }
 
+/// A document with what was said beside it.
+#[derive(Serialize)]
+struct Complete<D> {
+    #[serde(flatten)]
+    document: D,
+    findings: Vec<Value>,
+    failures: Vec<Value>,
+}
+
 impl Ui {
     /// Prints a result as it is.
     fn print(&mut self, text: &str) -> Result<Exit, Failure> {
@@ -64,9 +76,16 @@ impl Ui {
         Ok(Exit::Done)
     }
 
-    /// Prints a JSON document.
-    fn document(&mut self, document: &serde_json::Value) -> Result<Exit, Failure> {
-        self.print(&text(document)?)
+    /// Prints a JSON document, with all that was said of the work.
+    fn document(&mut self, document: impl Serialize) -> Result<Exit, Failure> {
+        let text = text(&self.complete(document))?;
+        self.print(&text)
+    }
+
+    /// A JSON document with `findings` and `failures`: what was found, and what gave no result.
+    fn complete<D: Serialize>(&self, document: D) -> Complete<D> {
+        let [findings, failures] = self.diagnostics.said();
+        Complete { document, findings, failures }
     }
 
     /// A bar over `length` items on a terminal; nothing elsewhere.
@@ -81,7 +100,7 @@ impl Ui {
 
     /// An error if Ctrl-C was pressed.
     fn go_on(&self) -> Result<(), Failure> {
-        if INTERRUPTED.load(Ordering::Relaxed) { Err(Failure::interrupted()) } else { Ok(()) }
+        if interrupted() { Err(Failure::interrupted()) } else { Ok(()) }
     }
 }
 
@@ -109,6 +128,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     exit.into()
 }
 
+/// Whether Ctrl-C was pressed.
+fn interrupted() -> bool {
+    INTERRUPTED.load(Ordering::Relaxed)
+}
+
 /// Threads and Ctrl-C. The first Ctrl-C ends the work at the next item, the second at once. Threads
 /// of which no number was given are started by the first work that can be shared.
 fn prepare(cli: &Cli) -> Result<(), Failure> {
@@ -118,9 +142,14 @@ fn prepare(cli: &Cli) -> Result<(), Failure> {
             .build_global()
             .map_err(|e| Failure::new("O053", format!("the threads cannot be started: {e}")))?;
     }
-    ctrlc::set_handler(|| {
+    let silent = cli.global.json || cli.global.quiet;
+    ctrlc::set_handler(move || {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
             std::process::exit(Exit::Interrupted as i32);
+        }
+        if !silent {
+            let _ =
+                writeln!(std::io::stderr(), "interrupted: the work in hand ends; Ctrl-C again stops at once");
         }
     })
     .map_err(|e| Failure::new("O053", format!("Ctrl-C cannot be caught: {e}")))

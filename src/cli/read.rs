@@ -6,9 +6,10 @@ use clap::Args;
 use serde_json::json;
 
 use super::diagnostics::Failure;
-use super::inputs::{ReadArgs, Units};
+use super::inputs::{ReadArgs, Units, nothing_to_read};
 use super::output::{Format, OutputArgs};
 use super::{Exit, Ui};
+use crate::instrument::FabricInput;
 use crate::report::json::text;
 use crate::report::table::{CurveRow, csv, curve_rows, parquet};
 
@@ -34,15 +35,21 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     for finding in fabrics.iter().flat_map(|f| &f.findings) {
         ui.diagnostics.finding(finding);
     }
-    if fabrics.is_empty() {
+    if fabrics.is_empty() && failures.is_empty() {
+        return Err(nothing_to_read());
+    }
+    if fabrics.is_empty() && !ui.json {
         return Ok(Exit::of_batch(0, &failures));
     }
     let rows: Vec<CurveRow> = fabrics.iter().flat_map(|f| curve_rows(f, options.units.into())).collect();
     let bytes = match format {
         Format::Text | Format::Csv => csv(&rows)?,
         Format::Parquet => parquet(&rows)?,
-        Format::Json => text(&json!({"schema": "kesf.curves/1", "fabrics": fabrics}))?.into_bytes(),
+        Format::Json => {
+            text(&ui.complete(json!({"schema": "kesf.curves/1", "fabrics": fabrics})))?.into_bytes()
+        }
     };
     options.output.emit(&bytes)?;
-    Ok(Exit::of_batch(fabrics.len(), &failures))
+    let useful = |f: &&FabricInput| !(f.measurements.is_empty() && f.results.is_empty() && f.fab.is_empty());
+    Ok(Exit::of_batch(fabrics.iter().filter(useful).count(), &failures))
 }

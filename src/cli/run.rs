@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::diagnostics::Failure;
 use super::drape;
-use super::inputs::Fabric;
+use super::inputs::{Fabric, sha256, unread};
 use super::output::Columns;
 use super::page::page;
 use super::search::{is_unconverged, unconverged};
@@ -66,7 +66,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     });
     let (tasks, homeless) = work.tasks();
     let tree = Tree::open(&options.output, &options.task)?;
-    let reports = of_fabrics(&work, &tasks, &tree, ui)?;
+    let mut reports = of_fabrics(&work, &tasks, &tree, ui)?;
     let own: Vec<Task> =
         tasks.iter().filter(|t| t.fabric.is_none() && t.case.sheet.is_some()).cloned().collect();
     let (hanging, own): (Vec<Task>, Vec<Task>) = own.into_iter().partition(Task::is_drape);
@@ -98,7 +98,15 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     problems.extend(super::summary::problems(&lawless, ""));
     problems.extend(reports.iter().flat_map(|r| r.problems.clone()));
     problems.extend(solved.iter().flat_map(|(t, r)| super::summary::problems(&r.findings, &t.case.name)));
-    let fabric_rows: Vec<FabricRow> = reports.iter().flat_map(|r| r.rows.clone()).collect();
+    let unread = unread(&work.fabrics, &work.failures);
+    let fabric_rows: Vec<FabricRow> =
+        reports.iter().flat_map(|r| r.rows.clone()).chain(unread.iter().cloned()).collect();
+    for row in &unread {
+        let of_fabric = |r: &&mut FabricReport| r.name == row.fabric && r.status == "ok";
+        if let Some(report) = reports.iter_mut().find(of_fabric) {
+            report.status.clone_from(&row.status);
+        }
+    }
     let mut predictions: Vec<PredictionRow> = reports.iter().flat_map(|r| r.predictions.clone()).collect();
     predictions.extend(solved.iter().flat_map(|(t, r)| super::summary::predictions(t, r)));
     table(&tree, "fabrics", &fabric_rows)?;
@@ -172,12 +180,19 @@ fn table<R: Row>(tree: &Tree, name: &str, rows: &[R]) -> Result<(), Failure> {
 /// Version, options and the hashes of what was read; no date, so that a second run is the same.
 fn about(options: &Options, work: &Work) -> serde_json::Value {
     let sources: Vec<_> = work.fabrics.iter().flat_map(|f| &f.sheet.sources).collect();
+    let stated = work.fabrics.iter().map(|f| f.path.join("fabric.toml")).filter(|p| p.is_file());
+    let stated: Vec<_> = stated.map(|path| json!({"path": path, "sha256": sha256(&path)})).collect();
     json!({
         "schema": "kesf.run/1",
         "version": env!("CARGO_PKG_VERSION"),
-        "options": {"inputs": options.inputs, "charts": !options.task.no_charts},
+        "options": {
+            "inputs": options.inputs, "charts": !options.task.no_charts, "drape": options.drape,
+            "strict": options.task.strict, "solver": options.task.solver.map(|s| format!("{s:?}").to_lowercase()),
+            "evaluation": options.task.evaluate.told(),
+        },
         "inputs": sources,
-        "cases": work.cases.iter().map(|c| json!({"name": c.name, "path": c.path})).collect::<Vec<_>>(),
+        "fabrics": stated,
+        "cases": work.cases.iter().map(|c| json!({"name": c.name, "path": c.path, "sha256": sha256(&c.path)})).collect::<Vec<_>>(),
     })
 }
 
@@ -191,7 +206,7 @@ fn tell(
     if ui.json {
         return ui
             .document(
-                &json!({"schema": "kesf.results/1", "output": options.output, "predictions": predictions}),
+                json!({"schema": "kesf.results/1", "output": options.output, "predictions": predictions}),
             )
             .map(drop);
     }
@@ -199,8 +214,9 @@ fn tell(
     ui.print(&parts.join("\n"))?;
     let folder = options.output.display();
     let findings = ui.diagnostics.findings();
+    let charts = if options.task.no_charts { "" } else { ", charts" };
     ui.diagnostics.note(&format!(
-        "{folder}: index.html, fabrics.csv, predictions.csv, charts; {findings} findings in problems.csv"
+        "{folder}: index.html, fabrics.csv, predictions.csv{charts}; {findings} findings in problems.csv"
     ));
     Ok(())
 }

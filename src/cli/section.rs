@@ -8,13 +8,14 @@ use nalgebra::Matrix3;
 use serde_json::{Value, json};
 
 use super::diagnostics::Failure;
-use super::inputs::{Curves, EvaluateArgs};
+use super::inputs::{Curves, EvaluateArgs, names, nothing_to_read};
 use super::output::{Columns, Format, OutputArgs};
 use super::{Exit, Ui};
 use crate::characterise::{FabricSheet, Modulus};
 use crate::constitutive::{
     Assumptions, BendingCoupling, Constitutive, PoissonRule, Torsion, TransverseShear, Used, entries, section,
 };
+use crate::finding::Place;
 use crate::quantity::{ArealDensity, Bands, Length, LineForce, significant};
 use crate::report::json::{section_document, text};
 
@@ -38,37 +39,37 @@ pub struct Options {
 #[command(next_help_heading = "Assumptions")]
 struct AssumptionArgs {
     /// Slope of the tensile curve: tangent_low, secant, energy or "window(5 gf/cm, 20 gf/cm)"
-    #[arg(long, value_name = "CHOICE", default_value_t = Assumptions::default().modulus)]
+    #[arg(long, allow_hyphen_values = true, value_name = "CHOICE", default_value_t = Assumptions::default().modulus)]
     modulus: Modulus,
     /// Poisson's ratio
-    #[arg(long, value_name = "NU", default_value_t = Assumptions::default().poisson)]
+    #[arg(long, allow_hyphen_values = true, value_name = "NU", default_value_t = Assumptions::default().poisson)]
     poisson: f64,
     /// What the ratio is: geometric (the root of nu12 nu21), major (nu12) or zero
     #[arg(long, value_name = "RULE", default_value_t = Assumptions::default().poisson_rule)]
     poisson_rule: PoissonRule,
     /// Torsional rigidity D66: huber, bias, shear, neglect or a value such as "3e-6 N·m"
-    #[arg(long, value_name = "CHOICE", default_value_t = Assumptions::default().torsion)]
+    #[arg(long, allow_hyphen_values = true, value_name = "CHOICE", default_value_t = Assumptions::default().torsion)]
     torsion: Torsion,
     /// Coupling D12: a ratio (of the root of B1 B2) or a value such as "1e-6 N·m"
-    #[arg(long, value_name = "CHOICE", default_value_t = Assumptions::default().bending_coupling)]
+    #[arg(long, allow_hyphen_values = true, value_name = "CHOICE", default_value_t = Assumptions::default().bending_coupling)]
     bending_coupling: BendingCoupling,
     /// Transverse shear stiffness: in_plane (5/6 of G) or a value such as "416 N/m"
-    #[arg(long, value_name = "CHOICE", default_value_t = Assumptions::default().transverse_shear)]
+    #[arg(long, allow_hyphen_values = true, value_name = "CHOICE", default_value_t = Assumptions::default().transverse_shear)]
     transverse_shear: TransverseShear,
     /// Stands in for a tensile modulus that was not measured
-    #[arg(long, value_name = "VALUE", default_value_t = Assumptions::default().tensile)]
+    #[arg(long, allow_hyphen_values = true, value_name = "VALUE", default_value_t = Assumptions::default().tensile)]
     tensile: LineForce,
     /// Stands in for a shear stiffness that was not measured
-    #[arg(long, value_name = "VALUE", default_value_t = Assumptions::default().shear)]
+    #[arg(long, allow_hyphen_values = true, value_name = "VALUE", default_value_t = Assumptions::default().shear)]
     shear: LineForce,
     /// Tension of the shear test whose share is taken off G: 0, or "10 gf/cm" for KES-FB1
-    #[arg(long, value_name = "VALUE", default_value_t = Assumptions::default().shear_tension)]
+    #[arg(long, allow_hyphen_values = true, value_name = "VALUE", default_value_t = Assumptions::default().shear_tension)]
     shear_tension: LineForce,
     /// Stands in for a thickness that was not measured
-    #[arg(long, value_name = "VALUE", default_value_t = Assumptions::default().thickness)]
+    #[arg(long, allow_hyphen_values = true, value_name = "VALUE", default_value_t = Assumptions::default().thickness)]
     thickness: Length,
     /// Stands in for an areal density that was not measured, such as "150 g/m²"
-    #[arg(long, value_name = "VALUE")]
+    #[arg(long, allow_hyphen_values = true, value_name = "VALUE")]
     areal_density: Option<ArealDensity>,
 }
 
@@ -93,32 +94,43 @@ impl From<&AssumptionArgs> for Assumptions {
 
 pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let format = options.output.format(ui.json)?;
+    if matches!(format, Format::Csv | Format::Parquet) {
+        return Err(options.output.no_such_format(".txt or .json"));
+    }
     let assumptions = Assumptions::from(&options.assume);
     let (fabrics, mut failures) =
         options.evaluate.sheets(&options.inputs, &[assumptions.modulus], Curves::Dropped, ui)?;
     let mut sections: Vec<(&FabricSheet, Constitutive)> = Vec::new();
+    let named = names(&fabrics);
     for fabric in &fabrics {
+        let place = Place::file(&fabric.path);
         match section(&fabric.sheet, &assumptions) {
             Ok(c) => {
-                c.findings.iter().for_each(|f| ui.diagnostics.finding(f));
+                for finding in &c.findings {
+                    let mut finding = finding.clone();
+                    finding.place.get_or_insert(place.clone());
+                    ui.diagnostics.finding_of(named(fabric), &finding);
+                }
                 sections.push((&fabric.sheet, c));
             }
             Err(error) => {
-                let failure = Failure::from(error);
+                let failure = Failure::of_fabric(error, &fabric.sheet.name).at(place);
                 ui.diagnostics.error(&failure);
                 failures.push(failure);
             }
         }
     }
-    if sections.is_empty() {
+    if fabrics.is_empty() && failures.is_empty() {
+        return Err(nothing_to_read());
+    }
+    if sections.is_empty() && !ui.json {
         return Ok(Exit::of_batch(0, &failures));
     }
     let documents =
         || sections.iter().map(|(sheet, c)| (sheet.name.as_str(), &c.section, &c.inputs[..], used(&c.used)));
     let bytes = match format {
         Format::Text => sections.iter().map(|(s, c)| page(s, c)).collect::<Vec<_>>().join("\n").into_bytes(),
-        Format::Json => text(&section_document(documents()))?.into_bytes(),
-        Format::Csv | Format::Parquet => return Err(options.output.no_such_format(".txt or .json")),
+        _ => text(&ui.complete(section_document(documents())))?.into_bytes(),
     };
     options.output.emit(&bytes)?;
     Ok(Exit::of_batch(sections.len(), &failures))

@@ -96,7 +96,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     if ui.json {
         let entries = solved.iter().map(|(t, r)| solution(t, r, true));
         let entries: Vec<_> = entries.chain(draped.iter().map(|(t, d)| drape::entry(t, d))).collect();
-        ui.document(&json!({"schema": "kesf.solution/1", "solutions": entries}))?;
+        ui.document(json!({"schema": "kesf.solution/1", "solutions": entries}))?;
     } else {
         let drapes = drape::table(draped.iter().copied());
         let drapes = (!drapes.is_empty()).then(|| drapes.text());

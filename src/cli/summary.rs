@@ -12,7 +12,7 @@ use super::task::{Task, Tested, Work};
 use super::tree::Tree;
 use crate::characterise::FabricSheet;
 use crate::constitutive::{Assumptions, section};
-use crate::finding::Finding;
+use crate::finding::{Finding, Place};
 use crate::instrument::{Direction, Parameter, Test};
 use crate::quantity::significant;
 use crate::report::chart::ParityPoint;
@@ -26,7 +26,7 @@ use crate::study::{Analysis, CaseResult, Drape, Status};
 pub struct FabricReport {
     /// Its name.
     pub name: String,
-    /// Whether it has a section.
+    /// Whether it has values.
     pub useful: bool,
     /// Whether a check of one of its cases does not hold.
     pub unmet: bool,
@@ -70,23 +70,26 @@ impl FabricReport {
         report.findings.clone_from(&sheet.findings);
         report.rows = fabric_rows(sheet, UnitSystem::Si);
         report.cells = cells(sheet);
+        report.useful = sheet.has_values();
         report.keep(tree.sheet(sheet));
         match section(sheet, &Assumptions::default()) {
             Ok(c) => {
-                report.useful = true;
                 report.findings.extend(c.findings.iter().cloned());
                 report.keep(tree.section(&sheet.name, &c));
                 report.cases(sheet, tasks, tree, progress);
             }
             Err(error) => {
                 // Every case needs the section: one line, not one for each of them.
-                report.keep(Err(error.into()));
+                report.keep(Err(Failure::of_fabric(error, &sheet.name).at(Place::file(&fabric.path))));
                 report.charts(sheet, &[], tree);
             }
         }
         report.problems = problems(&report.findings, &sheet.name);
+        report.problems.iter_mut().for_each(|p| p.fabric = Some(sheet.name.clone()));
         if let Some(failure) = report.failures.first() {
             report.status.clone_from(&failure.code);
+            let fabric = report.name.clone();
+            report.rows.push(FabricRow { fabric, status: failure.code.clone(), ..FabricRow::default() });
         }
         report
     }

@@ -18,7 +18,7 @@ use crate::solve::Options as SolveOptions;
 use crate::study::bending::{BendingResult, simulate_records, simulate_strips};
 use crate::study::{
     self, Analysis, BendingKind, BendingTest, Case, CaseResult, Comparison, Drape, PreparedCase,
-    PreparedTest, Sampling, SolverChoice, StudyError, VirtualCurve, VirtualTest, compare_curves,
+    PreparedTest, Sampling, SolverChoice, StudyError, VirtualCurve, VirtualTest, Watch, compare_curves,
     measured_curve,
 };
 
@@ -113,6 +113,7 @@ impl TaskArgs {
     /// Reads everything that the inputs name, and the fabrics that only cases name.
     pub fn load(&self, inputs: &[PathBuf], ui: &mut Ui) -> Result<Work, Failure> {
         let (mut cases, mut failures) = inputs::cases(inputs);
+        inputs::distinguish_cases(&mut cases).iter().for_each(|f| ui.diagnostics.finding(f));
         if let Some(typed) = self.solver {
             cases.iter_mut().for_each(|case| case.solver.method = Some(typed.into()));
         }
@@ -130,6 +131,11 @@ impl TaskArgs {
         failures.extend(unread);
         Ok(Work { cases, fabrics, failures, threads: ui.threads })
     }
+}
+
+/// Long work ends at its next step once Ctrl-C was pressed.
+fn watch<'a>(stage: &'a (dyn Fn() + Sync)) -> Watch<'a> {
+    Watch { stage, stopped: &super::interrupted }
 }
 
 /// The folder that a case names: as it stands, else beside the case file.
@@ -163,6 +169,7 @@ impl Work {
             let named = named_fabric(case);
             let is_for = |f: &&'w Fabric| named.as_ref().is_none_or(|n| is_within(&f.path, n));
             let before = tasks.len();
+            let homeless = |text: String| Failure::new("O055", text).at(Place::file(&case.path));
             let task = |f: &'w Fabric| Task {
                 case,
                 fabric: Some(&f.sheet),
@@ -172,21 +179,19 @@ impl Work {
             tasks.extend(self.fabrics.iter().filter(is_for).filter(|f| case.suits(&f.sheet)).map(task));
             if tasks.len() == before && case.is_for_fab_records() {
                 let text = format!("{} is for a fabric with FAB bend tests, and none is there", case.name);
-                failures.push(Failure::new("O055", text).hint(
+                failures.push(homeless(text).hint(
                     "name a U3M file with `raw_data`, as in `kesf compare cases/fab_bend_loop.toml FABRIC.u3m`",
                 ));
             } else if tasks.len() == before && self.without_law(case).is_some() {
                 let text =
                     format!("{} is for fabrics with a friction law of bending, and none has one", case.name);
                 failures.push(
-                    Failure::new("O055", text)
+                    homeless(text)
                         .hint("add FB2 loops, or 2HB beside B in a result table, or take law = \"elastic\""),
                 );
             } else if tasks.len() == before {
                 let text = format!("{} is for a fabric, and none is there", case.name);
-                failures.push(
-                    Failure::new("O055", text).hint("name one, as in `kesf solve CASE kesf_data/poplin`"),
-                );
+                failures.push(homeless(text).hint("name one, as in `kesf solve CASE kesf_data/poplin`"));
             }
         }
         (tasks, failures)
@@ -210,6 +215,12 @@ impl Work {
 }
 
 impl Task<'_> {
+    /// A failure of this task: with its name, at its case file unless it has a place of its own.
+    fn told(&self, failure: Failure) -> Failure {
+        let failure = failure.of(&self.name());
+        if failure.place.is_some() { failure } else { failure.at(Place::file(&self.case.path)) }
+    }
+
     /// Names the task in messages: `case`, or `case of fabric`.
     pub fn name(&self) -> String {
         match self.fabric {
@@ -257,16 +268,16 @@ impl Task<'_> {
                 None => prepared.solve(section)?,
             })
         });
-        solved.map_err(|f| f.of(&self.name()))
+        solved.map_err(|f| self.told(f))
     }
 
     /// Samples the bands of a case with `[uncertainty]`; nothing without.
-    pub fn sample(&self, progress: &(dyn Fn() + Sync)) -> Result<(), Failure> {
+    pub fn sample(&self, stage: &(dyn Fn() + Sync)) -> Result<(), Failure> {
         let Some(sheet) = self.fabric.filter(|_| self.case.uncertainty.is_some()) else { return Ok(()) };
         let sampled = constitutive::section(sheet, &self.case.assumptions)
             .map_err(Failure::from)
-            .and_then(|made| Ok(study::sample(self.case, sheet, &made, progress)?));
-        let sampling = sampled.map_err(|f| f.of(&self.name()))?;
+            .and_then(|made| Ok(study::sample(self.case, sheet, &made, watch(stage))?));
+        let sampling = sampled.map_err(|f| self.told(f))?;
         self.sampling.get_or_init(|| sampling);
         Ok(())
     }
@@ -282,18 +293,18 @@ impl Task<'_> {
     }
 
     /// Searches the states of a drape.
-    pub fn drape(&self, progress: &(dyn Fn() + Sync)) -> Result<Drape, Failure> {
+    pub fn drape(&self, stage: &(dyn Fn() + Sync)) -> Result<Drape, Failure> {
         let options = SolveOptions::default();
         let draped = self.section().and_then(|(section, made)| {
             let law = made.as_ref().and_then(|m| m.law.as_ref());
-            Ok(study::drape(self.case, &section, law, &options, progress)?)
+            Ok(study::drape(self.case, &section, law, &options, watch(stage))?)
         });
-        draped.map_err(|f| f.of(&self.name()))
+        draped.map_err(|f| self.told(f))
     }
 
     /// Simulates a `[virtual_test]` along warp and weft and compares it with the sheet.
     pub fn test(&self, spec: &VirtualTest) -> Result<Vec<Tested>, Failure> {
-        self.simulate(spec).map_err(|f| f.of(&self.name()))
+        self.simulate(spec).map_err(|f| self.told(f))
     }
 
     /// Simulates a `[bending_test]`; with the result, the directions that failed.
@@ -310,11 +321,11 @@ impl Task<'_> {
                 self.section().and_then(simulate).map(|result| (result, Vec::new()))
             }
         };
-        result.map_err(|f| f.of(&self.name()))
+        result.map_err(|f| self.told(f))
     }
 
     fn failed(&self, (direction, error): (Direction, StudyError)) -> Failure {
-        Failure::from(error).of(&direction.to_string()).of(&self.name())
+        self.told(Failure::from(error).of(&direction.to_string()))
     }
 
     fn simulate(&self, spec: &VirtualTest) -> Result<Vec<Tested>, Failure> {

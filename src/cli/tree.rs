@@ -253,7 +253,7 @@ impl Mesh {
             nodes: &self.nodes,
             quads: &self.quads,
             values: &self.w,
-            profile_along: "x on the middle line of the mesh".into(),
+            profile_along: "x, middle line of the mesh".into(),
             profile: result.profile.clone(),
             notes: (sampled::values(task, "w_max", "mm", 1e-3).into_iter())
                 .map(|(band, value)| format!("{band}: largest |w| {value}"))

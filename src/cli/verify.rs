@@ -56,7 +56,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let all: Vec<_> = lines.iter().zip(&outcomes).collect();
     let seconds = start.elapsed().as_secs_f64();
     if ui.json {
-        ui.document(&json!({
+        ui.document(json!({
             "schema": "kesf.verify/1",
             "lines": all.iter().map(|(line, outcome)| document(line, outcome)).collect::<Vec<_>>(),
             "failed": failed,

@@ -209,7 +209,7 @@ fn areal_density(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, Co
     let Some(((estimate, standing), source)) = measured.or_else(stated).or_else(assumed) else {
         return Err(notes.missing(
             "areal density",
-            "weigh the specimen and write areal_density = \"150 g/m²\" in its fabric.toml, or pass --areal-density",
+            "weigh the specimen and write areal_density = \"150 g/m²\" in its fabric.toml, or areal_density in the [assumptions] of the case (`kesf section`: --areal-density)",
         ));
     };
     let value = estimate.mean;

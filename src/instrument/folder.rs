@@ -72,12 +72,14 @@ struct Group {
 pub struct Library {
     groups: Vec<Group>,
     failures: Vec<ReadError>,
+    /// Folders that were searched, by their true paths.
+    seen: BTreeSet<PathBuf>,
 }
 
 impl Library {
     /// Finds the measurement files among the inputs and below them.
     pub fn find(inputs: &[PathBuf], settings: &ReadSettings) -> Self {
-        let mut library = Self { groups: Vec::new(), failures: Vec::new() };
+        let mut library = Self { groups: Vec::new(), failures: Vec::new(), seen: BTreeSet::new() };
         for input in inputs {
             if input.is_dir() {
                 walk(input, settings, &mut library);
@@ -124,7 +126,10 @@ impl Library {
             let (mut contents, mut failures) = (Vec::new(), Vec::new());
             for content in read {
                 match content {
-                    Ok(content) => contents.push(content),
+                    Ok(mut content) => {
+                        failures.append(&mut content.failures);
+                        contents.push(content);
+                    }
                     Err(error) => failures.push(error),
                 }
             }
@@ -188,6 +193,10 @@ fn is_data(path: &Path) -> bool {
 }
 
 fn walk(folder: &Path, settings: &ReadSettings, library: &mut Library) {
+    // A link to a folder above would be followed without end, and one to a folder beside read it twice.
+    if std::fs::canonicalize(folder).is_ok_and(|real| !library.seen.insert(real)) {
+        return;
+    }
     let paths = match entries(folder) {
         Ok(paths) => paths,
         Err(error) => return library.failures.push(error),
@@ -200,6 +209,9 @@ fn walk(folder: &Path, settings: &ReadSettings, library: &mut Library) {
         // Everything below belongs to this fabric.
         let mut folders: Vec<PathBuf> = visible().filter(|p| p.is_dir()).cloned().collect();
         while let Some(folder) = folders.pop() {
+            if std::fs::canonicalize(&folder).is_ok_and(|real| !library.seen.insert(real)) {
+                continue;
+            }
             match entries(&folder) {
                 Ok(inner) => {
                     files.extend(inner.iter().filter(|p| !is_hidden(p) && is_data(p)).cloned());
@@ -331,7 +343,12 @@ fn fabrics(group: Group, contents: Vec<FileContent>) -> Vec<FabricInput> {
             input.fab.extend(content.fab);
         }
     }
-    out.into_values().map(finished).collect()
+    // What is said of the table as a whole is said once.
+    let once = |(i, mut fabric): (usize, FabricInput)| {
+        fabric.findings.retain(|f| i == 0 || !group.findings.contains(f));
+        finished(fabric)
+    };
+    out.into_values().enumerate().map(once).collect()
 }
 
 fn blank(name: &str, group: &Group) -> FabricInput {

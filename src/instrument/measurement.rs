@@ -152,6 +152,8 @@ pub struct ResultValue {
     pub sd: Option<f64>,
     /// Number of repeats behind the mean; 1 if the table does not say.
     pub n: usize,
+    /// The repeats (SI), where the table has a row for each; else empty.
+    pub values: Vec<f64>,
     /// Whether the table itself marks it as inferred rather than measured.
     pub inferred: bool,
     /// Cell it was read from.

@@ -84,7 +84,9 @@ pub(super) fn decode(bytes: &[u8], label: Option<&str>) -> Result<Text, (usize, 
         let code = text[at..].chars().next().map_or(0, u32::from);
         return Err((line, column, not_text(format!("control character U+{code:04X}"))));
     }
-    Ok(Text { text: text.to_string(), encoding: encoding.name(), why })
+    // Old programs end lines with a carriage return alone.
+    let text = if text.contains('\n') { text.to_string() } else { text.replace('\r', "\n") };
+    Ok(Text { text, encoding: encoding.name(), why })
 }
 
 fn not_text(found: String) -> Problem {

@@ -46,6 +46,8 @@ pub struct FileContent {
     pub fab: Option<FabFile>,
     /// What a reader of the data must know.
     pub findings: Vec<Finding>,
+    /// Fabrics of a result table that cannot be read, an error each; the others are there.
+    pub failures: Vec<ReadError>,
     /// The file.
     pub source: Source,
     /// What was inferred and why, for people (`kesf check -v`).
@@ -206,10 +208,10 @@ fn table(
                 }
             }
             Block::Table { header, heading, rows } => {
-                let (values, findings) =
-                    result_table::read(&header, heading, &rows, context, &mut content.inference)?;
-                content.results.extend(values);
-                content.findings.extend(findings);
+                let read = result_table::read(&header, heading, &rows, context, &mut content.inference)?;
+                content.results.extend(read.values);
+                content.findings.extend(read.findings);
+                content.failures.extend(read.failures);
             }
         }
     }
@@ -232,6 +234,7 @@ fn weight(header: &Header, context: &Context<'_>, content: &mut FileContent) -> 
             mean: value.si(),
             sd: None,
             n: 1,
+            values: Vec::new(),
             inferred: false,
             place,
         };

@@ -3,7 +3,7 @@
 //! `fabric,direction,B (gf·cm²/cm),2HB (gf·cm/cm)`, `id,B_warp_uN_m,EMT_weft_percent_inferred`,
 //! `parameter,unit,warp,weft` and `fabric,parameter,direction,mean,sd,n,unit` are all read.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::curves::finite;
 use super::dialect::TableColumn;
@@ -21,7 +21,16 @@ use crate::quantity::{Estimate, Unit};
 /// Values with the fabric that each belongs to.
 pub(super) type Values = Vec<(Option<String>, ResultValue)>;
 
-/// Reads the rows of a table.
+/// What a table gives.
+#[derive(Debug)]
+pub(super) struct Contents {
+    pub values: Values,
+    pub findings: Vec<Finding>,
+    /// Fabrics that are left out, each with what is wrong in one of its rows.
+    pub failures: Vec<ReadError>,
+}
+
+/// Reads the rows of a table. In a table of several fabrics a bad row leaves out its own fabric only.
 ///
 /// # Errors
 /// `R004`, `R008`, `R009`, `R010`, `R017`, `R018`.
@@ -31,7 +40,7 @@ pub(super) fn read(
     rows: &[&Row<'_>],
     context: &Context<'_>,
     log: &mut Vec<String>,
-) -> Result<(Values, Vec<Finding>), ReadError> {
+) -> Result<Contents, ReadError> {
     let columns = columns(heading, context.vocabulary);
     let mut table = Table {
         header,
@@ -42,12 +51,20 @@ pub(super) fn read(
         fast: Vec::new(),
         ignored: Vec::new(),
         findings: Vec::new(),
+        failures: BTreeMap::new(),
+        several: false,
     };
     let long = table.meta(TableColumn::Parameter).is_some();
     log.push(table.told(long));
     let rows = if long { rows } else { table.unit_row(rows) };
+    let names: BTreeSet<Option<String>> = rows.iter().map(|row| table.fabric(row)).collect();
+    table.several = names.len() > 1;
     for row in rows {
-        if long { table.long_row(row)? } else { table.wide_row(row)? }
+        let read = if long { table.long_row(row) } else { table.wide_row(row) };
+        // An error in the heading is every row's.
+        read.or_else(
+            |e| if e.place.line == row.line { table.leave_out(table.fabric(row), e) } else { Err(e) },
+        )?;
     }
     if !long {
         table.ignored = table.unused(rows);
@@ -76,9 +93,29 @@ struct Table<'t, 'a> {
     /// Texts that name no KES parameter.
     ignored: Vec<String>,
     findings: Vec<Finding>,
+    /// Fabrics that are left out.
+    failures: BTreeMap<String, ReadError>,
+    /// Whether the rows name more than one fabric.
+    several: bool,
 }
 
 impl Table<'_, '_> {
+    /// Leaves out the fabric of a bad row, for the first thing that is wrong with it; the error of a table that is
+    /// all of one fabric is that of the table.
+    fn leave_out(&mut self, fabric: Option<String>, error: ReadError) -> Result<(), ReadError> {
+        match fabric.filter(|_| self.several) {
+            Some(name) => {
+                self.failures.entry(name).or_insert(error);
+                Ok(())
+            }
+            None => Err(error),
+        }
+    }
+
+    fn is_left_out(&self, fabric: &Option<String>) -> bool {
+        fabric.as_ref().is_some_and(|name| self.failures.contains_key(name))
+    }
+
     /// The form of the table and what its columns hold, for people.
     fn told(&self, long: bool) -> String {
         let form = if long { "one row a parameter" } else { "one column a parameter" };
@@ -323,8 +360,16 @@ impl Table<'_, '_> {
         (line, column): (usize, usize),
     ) {
         let place = Place::at(self.context.path, line, column);
-        let value =
-            ResultValue { parameter: p.parameter, direction, mean, sd: None, n, inferred: p.inferred, place };
+        let value = ResultValue {
+            parameter: p.parameter,
+            direction,
+            mean,
+            sd: None,
+            n,
+            values: Vec::new(),
+            inferred: p.inferred,
+            place,
+        };
         self.values.push((fabric, value));
     }
 
@@ -347,6 +392,9 @@ impl Table<'_, '_> {
     /// B from the bending length and G from EB5, where the table does not state them.
     fn derive_from_fast(&mut self) {
         for cell in std::mem::take(&mut self.fast) {
+            if self.is_left_out(&cell.fabric) {
+                continue;
+            }
             let parameter = cell.value.parameter();
             let of_fabric = |v: &&(Option<String>, ResultValue)| v.0 == cell.fabric;
             let has = |p: Parameter| self.values.iter().filter(of_fabric).find(|(_, v)| v.parameter == p);
@@ -366,6 +414,7 @@ impl Table<'_, '_> {
                 mean,
                 sd: None,
                 n: 1,
+                values: Vec::new(),
                 inferred: true,
                 place: place.clone(),
             };
@@ -376,11 +425,11 @@ impl Table<'_, '_> {
     }
 
     /// Averages repeated rows, refuses contradictions, and says what was left out.
-    fn finish(mut self) -> Result<(Values, Vec<Finding>), ReadError> {
+    fn finish(mut self) -> Result<Contents, ReadError> {
         let repeats = self.meta(TableColumn::Specimen).is_some();
         let mut out: Vec<(Option<String>, ResultValue, Vec<f64>)> = Vec::new();
         let mut known: BTreeMap<_, usize> = BTreeMap::new();
-        for (fabric, value) in self.values {
+        for (fabric, value) in std::mem::take(&mut self.values) {
             let key = (fabric.clone(), value.parameter, value.direction);
             let Some(&at) = known.get(&key) else {
                 known.insert(key, out.len());
@@ -394,11 +443,17 @@ impl Table<'_, '_> {
             } else if value.parameter.is_directional() {
                 let found =
                     format!("{} is given twice (first in line {})", value.parameter, out[at].1.place.line);
-                return Err(ReadError::new(value.place, Problem::BadTable { found }));
+                self.leave_out(fabric, ReadError::new(value.place, Problem::BadTable { found }))?;
             } else if !means.contains(&value.mean) {
                 // A thickness in each direction's row: the fabric has one.
                 means.push(value.mean);
             }
+        }
+        out.retain(|(fabric, ..)| !self.is_left_out(fabric));
+        if out.is_empty()
+            && let Some((_, error)) = self.failures.pop_first()
+        {
+            return Err(error);
         }
         if out.is_empty() {
             let found = "the table has no value of a KES parameter".to_string();
@@ -406,7 +461,7 @@ impl Table<'_, '_> {
         }
         let averaged = |(fabric, mut value, means): (Option<String>, ResultValue, Vec<f64>)| {
             if let Some(e) = Estimate::of(&means).filter(|e| e.n > 1) {
-                (value.mean, value.sd, value.n) = (e.mean, e.sd, e.n);
+                (value.mean, value.sd, value.n, value.values) = (e.mean, e.sd, e.n, e.values);
             }
             (fabric, value)
         };
@@ -416,7 +471,9 @@ impl Table<'_, '_> {
             let place = Place::at(self.context.path, self.heading.line, 0);
             self.findings.push(Finding::new("R104", message).at(place));
         }
-        Ok((out.into_iter().map(averaged).collect(), self.findings))
+        let values = out.into_iter().map(averaged).collect();
+        let failures = self.failures.into_values().collect();
+        Ok(Contents { values, findings: self.findings, failures })
     }
 }
 

@@ -72,7 +72,6 @@ impl QuadMesh {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::mesh::{MeshError, rectangle};
 
     #[test]

@@ -134,6 +134,8 @@ row! {
         code: String,
         /// One sentence.
         message: String,
+        /// The fabric that it is about.
+        fabric: Option<String>,
     }
 }
 
@@ -279,6 +281,7 @@ pub fn problem_row(finding: &Finding, otherwise: &str) -> ProblemRow {
         place: finding.place.as_ref().map_or(otherwise.to_string(), ToString::to_string),
         code: finding.code.into(),
         message: finding.message.clone(),
+        fabric: None,
     }
 }
 
@@ -383,7 +386,7 @@ mod tests {
 
     #[test]
     fn an_empty_table_keeps_its_header() {
-        assert_eq!(csv::<ProblemRow>(&[]).unwrap(), b"place,code,message\n");
+        assert_eq!(csv::<ProblemRow>(&[]).unwrap(), b"place,code,message,fabric\n");
     }
 
     #[test]

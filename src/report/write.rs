@@ -96,7 +96,8 @@ fn existing(path: &Path) -> Result<Option<Vec<u8>>, OutputError> {
     }
 }
 
-fn hash(bytes: &[u8]) -> String {
+/// SHA-256 in hexadecimal digits.
+pub fn hash(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
 }
 

@@ -17,6 +17,7 @@ mod uncertainty;
 mod virtual_large;
 mod virtual_loop;
 mod virtual_test;
+mod watch;
 
 use thiserror::Error;
 
@@ -29,7 +30,7 @@ pub use compare::{Comparison, compare_curves, measured_curve};
 pub use drape::{Drape, DrapeState, Folds, drape, drape_stages, measured_drape};
 pub use dynamics::History;
 pub use nonlinear::{LoadPath, PathStep};
-pub use prepared::PreparedCase;
+pub use prepared::{PreparedCase, validate};
 pub use rigid::{Place as RigidPlace, RigidTable};
 pub use run::{CaseResult, CheckResult, Probe, Status, solve_case};
 pub use sampling::{SampledQuantity, Sampling, sample, sampling_stages};
@@ -37,6 +38,7 @@ pub use solver::{Bytes, SolverChoice, SolverTable};
 pub use uncertainty::{Prediction, Uncertainty};
 pub use virtual_loop::{VirtualLoop, simulate_cycle, simulate_loop};
 pub use virtual_test::{EdgeEffect, PreparedTest, Tension, VirtualCurve, compression, simulate};
+pub use watch::Watch;
 
 use crate::finding::Place;
 use crate::law::LawError;
@@ -70,6 +72,9 @@ pub enum StudyError {
     /// M020: numbers that make no law.
     #[error(transparent)]
     Law(#[from] LawError),
+    /// O054: [`Watch::stopped`] said so.
+    #[error("O054 interrupted")]
+    Stopped,
     /// S004: no overhang of the cantilever test brings the chord to its angle.
     #[error("S004 no length of the strip hangs at {angle_deg} degrees; the last one tried was {tried} m")]
     NoOverhang {
@@ -91,6 +96,7 @@ impl StudyError {
             Self::Solve(e) => e.code(),
             Self::Nonlinear(e) => e.code(),
             Self::Law(_) => "M020",
+            Self::Stopped => "O054",
             Self::NoOverhang { .. } => "S004",
         }
     }

@@ -5,7 +5,9 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::{Matrix2, Matrix3, Point3};
 
 use super::case::{Analysis, Case};
+use super::dynamics::load_history;
 use super::nonlinear::way;
+use super::run::expected;
 use super::{StudyError, build, solver};
 use crate::fields::{Line, Locator, Recovery};
 use crate::mesh::QuadMesh;
@@ -87,6 +89,27 @@ impl<'a> PreparedCase<'a> {
     pub fn model(&self, section: ShellSection) -> Model {
         Model { section, ..self.model.clone() }
     }
+}
+
+/// Whether a case can be solved, as far as that shows without solving it: its own section, mesh, supports, loads,
+/// probes, checks and solver.
+///
+/// # Errors
+/// See [`StudyError`].
+pub fn validate(case: &Case) -> Result<(), StudyError> {
+    if let Some(table) = &case.section {
+        build::section(table)?;
+    }
+    let Some(sheet) = &case.sheet else { return Ok(()) };
+    solver::options(case, &Options::default())?;
+    let model = build::model(case, sheet, stand_in())?;
+    match &case.analysis {
+        Analysis::Nonlinear(table) => drop(way(case, table)?),
+        Analysis::Newmark { load, .. } => drop(load_history(case, load)?),
+        _ => {}
+    }
+    locators(case, &model.mesh)?;
+    case.checks.iter().try_for_each(|c| expected(case, c).map(drop))
 }
 
 /// Ones: which dofs the loads set in motion does not depend on the section, whose density is positive.

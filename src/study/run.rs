@@ -476,37 +476,56 @@ fn probes(case: &Case, locators: &[Locator], result: &CaseResult) -> Result<Vec<
         .collect())
 }
 
-/// Value and SI unit of a quantity by name.
-fn lookup(quantity: &str, results: &CaseResult) -> Option<(f64, &'static str)> {
+/// The value of a quantity by name (SI), one of those that [`unit_of`] knows.
+fn lookup(quantity: &str, results: &CaseResult) -> Option<f64> {
     match quantity {
-        "w_max" => return Some((results.w_max, "m")),
-        "strain_energy" if results.is_modal() => return None,
-        "strain_energy" => return Some((results.solution.strain_energy, "J")),
+        "w_max" => return Some(results.w_max),
+        "strain_energy" => return Some(results.solution.strain_energy),
         _ => {}
     }
     if let Some(number) = quantity.strip_prefix("frequency_") {
-        let index = number.parse::<usize>().ok()?.checked_sub(1)?;
-        return results.frequencies.get(index).map(|f| (*f, "1/s"));
+        return results.frequencies.get(number.parse::<usize>().ok()?.checked_sub(1)?).copied();
     }
     let (name, component) = quantity.split_once('.')?;
     let v = &results.probes.iter().find(|p| p.name == name)?.value;
-    if let Some(k) = Resultants::COMPONENTS.iter().position(|(name, _)| *name == component) {
-        return Some((v.resultants.components()[k], Resultants::COMPONENTS[k].1));
+    match ["u", "v", "w", "theta_x", "theta_y", "theta_z"].iter().position(|c| *c == component) {
+        Some(k) if k < 3 => Some(v.u[k]),
+        Some(k) => Some(v.theta[k - 3]),
+        None => {
+            let k = Resultants::COMPONENTS.iter().position(|(name, _)| *name == component)?;
+            Some(v.resultants.components()[k])
+        }
     }
-    Some(match component {
-        "u" => (v.u[0], "m"),
-        "v" => (v.u[1], "m"),
-        "w" => (v.u[2], "m"),
-        "theta_x" => (v.theta[0], "rad"),
-        "theta_y" => (v.theta[1], "rad"),
-        "theta_z" => (v.theta[2], "rad"),
-        _ => return None,
-    })
 }
 
-fn check(case: &Case, check: &Check, results: &CaseResult) -> Result<CheckResult, StudyError> {
-    let (value, unit) = lookup(&check.quantity, results).ok_or_else(|| {
-        let names: Vec<&str> = results.probes.iter().map(|p| p.name.as_str()).collect();
+/// SI unit of a quantity by name, if the case has it.
+fn unit_of(case: &Case, quantity: &str) -> Option<&'static str> {
+    let modes = if let Analysis::Modal { modes, .. } = case.analysis { modes } else { 0 };
+    match quantity {
+        "w_max" => return Some("m"),
+        "strain_energy" => return (modes == 0).then_some("J"),
+        _ => {}
+    }
+    if let Some(number) = quantity.strip_prefix("frequency_") {
+        return number.parse::<usize>().is_ok_and(|n| (1..=modes).contains(&n)).then_some("1/s");
+    }
+    let (name, component) = quantity.split_once('.')?;
+    case.probes.iter().find(|p| p.name == name)?;
+    let resultant = Resultants::COMPONENTS.iter().find(|(name, _)| *name == component);
+    match component {
+        "u" | "v" | "w" => Some("m"),
+        "theta_x" | "theta_y" | "theta_z" => Some("rad"),
+        _ => resultant.map(|(_, unit)| *unit),
+    }
+}
+
+/// The value that a check expects (SI), and its unit.
+///
+/// # Errors
+/// S003 for a quantity that the case does not have, or a value of another dimension.
+pub(super) fn expected(case: &Case, check: &Check) -> Result<(f64, &'static str), StudyError> {
+    let unit = unit_of(case, &check.quantity).ok_or_else(|| {
+        let names: Vec<&str> = case.probes.iter().map(|p| p.name.as_str()).collect();
         case.inconsistent(format!(
             "there is no quantity `{}` to check: take w_max, strain_energy, frequency_1 ..., or PROBE.COMPONENT with the probes [{}] and \
              u v w theta_x theta_y theta_z moment_x moment_y moment_xy membrane_x membrane_y membrane_xy shear_x shear_y",
@@ -522,7 +541,14 @@ fn check(case: &Case, check: &Check, results: &CaseResult) -> Result<CheckResult
             check.quantity, check.expected
         )));
     }
-    let expected = number * given.factor;
+    Ok((number * given.factor, unit))
+}
+
+fn check(case: &Case, check: &Check, results: &CaseResult) -> Result<CheckResult, StudyError> {
+    let (expected, unit) = expected(case, check)?;
+    let value = lookup(&check.quantity, results).ok_or_else(|| {
+        case.inconsistent(format!("the result has no {}: fewer modes were found", check.quantity))
+    })?;
     let relative_error = (value - expected).abs() / expected.abs();
     Ok(CheckResult {
         quantity: check.quantity.clone(),

@@ -14,7 +14,7 @@
 
 use super::bending::{BendingResult, simulate_strips};
 use super::case::{Analysis, BendingKind, Case, TestFormulation, UncertaintyTable};
-use super::{PreparedCase, PreparedTest, Status, StudyError, drape, simulate_cycle};
+use super::{PreparedCase, PreparedTest, Status, StudyError, Watch, drape, simulate_cycle};
 use crate::characterise::FabricSheet;
 use crate::constitutive::{self, Constitutive, Input, law_inputs, moved};
 use crate::finding::{Finding, Place};
@@ -85,12 +85,12 @@ const STEP: f64 = 0.05;
 /// ... and moves a result if that changes by more than this part of the step.
 const NEGLIGIBLE: f64 = 1e-3;
 
-/// How often `progress` of [`sample`] is called at most.
+/// How often [`Watch::stage`] of [`sample`] is called at most.
 pub fn sampling_stages(case: &Case) -> usize {
     case.uncertainty.as_ref().map_or(0, |table| 2 * table.points as usize)
 }
 
-/// The bands of a case with `[uncertainty]`; `None` without that table. The points are solved in parallel; `progress`
+/// The bands of a case with `[uncertainty]`; `None` without that table. The points are solved in parallel; [`Watch::stage`]
 /// is called after each.
 ///
 /// # Errors
@@ -99,12 +99,12 @@ pub fn sample(
     case: &Case,
     sheet: &FabricSheet,
     made: &Constitutive,
-    progress: &(dyn Fn() + Sync),
+    watch: Watch<'_>,
 ) -> Result<Option<Sampling>, StudyError> {
     let Some(table) = &case.uncertainty else { return Ok(None) };
     let options = &Options { threads: 1, ..Options::default() };
     let mut inputs = made.inputs.clone();
-    let sampler = |inputs, evaluate| Sampler { case, table, inputs, evaluate }.run(sheet, made, progress);
+    let sampler = |inputs, evaluate| Sampler { case, table, inputs, evaluate }.run(sheet, made, watch);
     if let Some(spec) = &case.bending_test {
         if spec.test == BendingKind::Cantilever {
             inputs.extend(law_inputs(sheet, Parameter::Hb));
@@ -142,7 +142,8 @@ pub fn sample(
         let analysis = Analysis::Drape { folds: folds.clone(), refinements: 0 };
         let coarse = Case { analysis, ..case.clone() };
         let hang = |_: &FabricSheet, made: &Constitutive| {
-            let hung = drape(&coarse, &made.section, made.law.as_ref(), options, &|| ())?;
+            let hung =
+                drape(&coarse, &made.section, made.law.as_ref(), options, Watch { stage: &|| (), ..watch })?;
             Ok(vec![Reading::new("drape_coefficient", hung.finest.coefficient, "1")])
         };
         return sampler(inputs, &hang).map(Some);
@@ -230,12 +231,7 @@ struct Sampler<'a> {
 }
 
 impl Sampler<'_> {
-    fn run(
-        self,
-        sheet: &FabricSheet,
-        made: &Constitutive,
-        progress: &(dyn Fn() + Sync),
-    ) -> Result<Sampling, StudyError> {
+    fn run(self, sheet: &FabricSheet, made: &Constitutive, watch: Watch<'_>) -> Result<Sampling, StudyError> {
         let sheet = &without_records(sheet);
         let mut quantities: Vec<SampledQuantity> = ((self.evaluate)(sheet, made)?.into_iter())
             .map(|Reading { quantity, unit, value }| SampledQuantity {
@@ -273,7 +269,10 @@ impl Sampler<'_> {
         }
         if !spread.is_empty() && quantities.iter().any(|q| q.without_spread.is_empty()) {
             for population in [Population::MeanFabric, Population::NextSpecimen] {
-                self.band(sheet, &spread, population, &mut quantities, progress);
+                self.band(sheet, &spread, population, &mut quantities, watch);
+                if (watch.stopped)() {
+                    return Err(StudyError::Stopped);
+                }
             }
         }
         let findings = self.findings(&quantities);
@@ -287,15 +286,20 @@ impl Sampler<'_> {
         inputs: &[Input],
         population: Population,
         quantities: &mut [SampledQuantity],
-        progress: &(dyn Fn() + Sync),
+        watch: Watch<'_>,
     ) {
         let estimates: Vec<&Estimate> = inputs.iter().map(|i| &i.estimate).collect();
         // All of them have a spread.
         let Ok(points) = sobol_points(&estimates, population, self.table.points, self.table.seed) else {
             return;
         };
-        let at = |values: &[f64]| self.at(sheet, quantities, inputs, values);
-        let bands = sampled(&points, quantities.len(), at, progress);
+        let at = |values: &[f64]| {
+            if (watch.stopped)() {
+                return vec![f64::NAN; quantities.len()];
+            }
+            self.at(sheet, quantities, inputs, values)
+        };
+        let bands = sampled(&points, quantities.len(), at, watch.stage);
         for (q, band) in quantities.iter_mut().zip(bands).filter(|(q, _)| q.without_spread.is_empty()) {
             match population {
                 Population::MeanFabric => q.mean_fabric = band,

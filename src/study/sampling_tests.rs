@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use super::super::Watch;
 use super::*;
 use crate::characterise::Key;
 use approx::assert_relative_eq;
@@ -37,7 +38,8 @@ fn a_cantilever_has_the_band_of_its_closed_form() {
     let progress = || {
         count.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
     };
-    let found = sample(&case, &sheet, &made, &progress).unwrap().unwrap();
+    let found =
+        sample(&case, &sheet, &made, Watch { stage: &progress, ..Watch::default() }).unwrap().unwrap();
     assert_eq!(count.into_inner(), sampling_stages(&case));
     for direction in ["warp", "weft"] {
         let q = found.of(&format!("bending_length {direction}")).unwrap();
@@ -52,7 +54,7 @@ fn a_cantilever_has_the_band_of_its_closed_form() {
     }
     // The number of threads changes nothing.
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let again = one.install(|| sample(&case, &sheet, &made, &|| ())).unwrap().unwrap();
+    let again = one.install(|| sample(&case, &sheet, &made, Watch::default())).unwrap().unwrap();
     assert_eq!(again, found);
 }
 
@@ -63,7 +65,7 @@ fn an_input_without_spread_forbids_the_band() {
         case("[bending_test]\ntest = \"cantilever\"\ncells = 8\n[uncertainty]\npoints = 16\n").unwrap();
     let sheet = sheet(Estimate::single(0.15));
     let made = constitutive::section(&sheet, &case.assumptions).unwrap();
-    let found = sample(&case, &sheet, &made, &|| ()).unwrap().unwrap();
+    let found = sample(&case, &sheet, &made, Watch::default()).unwrap().unwrap();
     for q in &found.quantities {
         assert_eq!(q.without_spread, ["areal density"]);
         assert_eq!((q.mean_fabric, q.next_specimen), (None, None));
@@ -73,10 +75,12 @@ fn an_input_without_spread_forbids_the_band() {
     let mut exact = case.clone();
     let table = exact.uncertainty.as_mut().unwrap();
     table.exact = vec!["areal density".into()];
-    let found = sample(&exact, &sheet, &made, &|| ()).unwrap().unwrap();
+    let found = sample(&exact, &sheet, &made, Watch::default()).unwrap().unwrap();
     assert!(found.findings.is_empty() && found.quantities.iter().all(|q| q.mean_fabric.is_some()));
     exact.uncertainty.as_mut().unwrap().exact = vec!["weight".into()];
-    assert!(sample(&exact, &sheet, &made, &|| ()).unwrap_err().to_string().contains("areal density"));
+    assert!(
+        sample(&exact, &sheet, &made, Watch::default()).unwrap_err().to_string().contains("areal density")
+    );
 }
 
 /// Under a load that comes at once and stays, an undamped sheet swings to twice its rest, whatever its
@@ -91,7 +95,7 @@ fn a_motion_has_bands() {
     let case = case(text).unwrap();
     let sheet = sheet(Estimate::single(0.15));
     let made = constitutive::section(&sheet, &case.assumptions).unwrap();
-    let found = sample(&case, &sheet, &made, &|| ()).unwrap().unwrap();
+    let found = sample(&case, &sheet, &made, Watch::default()).unwrap().unwrap();
     let w = found.of("w_max").unwrap();
     let [low, high] = w.mean_fabric.unwrap().interval;
     // Two independent halves of 1/B: t s/√n √(1/2), and the torsion that follows them.

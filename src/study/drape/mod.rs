@@ -24,13 +24,13 @@ use rayon::prelude::*;
 pub use rim::Folds;
 
 use super::case::{Analysis, Case, Shape, Sheet};
-use super::{StudyError, build, solver};
+use super::{StudyError, Watch, build, solver};
 use crate::characterise::FabricSheet;
 use crate::finding::{Finding, Place};
 use crate::model::Model;
 use crate::quantity::Ratio;
 use crate::section::{SheetLaw, ShellSection};
-use crate::solve::nonlinear::{Flow, NonlinearError, Settings, Solution, State, plan, relax_from};
+use crate::solve::nonlinear::{Flow, NonlinearError, Settings, Solution, State, Step, plan, relax_from};
 use crate::solve::{Options, Plan};
 
 /// A draped sheet.
@@ -119,7 +119,7 @@ pub fn drape(
     section: &ShellSection,
     law: Option<&SheetLaw>,
     options: &Options,
-    progress: &(dyn Fn() + Sync),
+    watch: Watch<'_>,
 ) -> Result<Drape, StudyError> {
     let (folds, refinements) = match &case.analysis {
         Analysis::Drape { folds, refinements } if !folds.is_empty() => (folds, *refinements),
@@ -135,11 +135,13 @@ pub fn drape(
     let searches: Vec<Result<(Solution, DrapeState), (usize, NonlinearError)>> = folds
         .par_iter()
         .map(|&start| {
-            let found = ring.relax(&model, law, &shared, ring.start(&model, start), &single);
-            progress();
+            let found = ring.relax(&model, law, &shared, ring.start(&model, start), &single, watch);
+            (watch.stage)();
             found.map(|s| (s.clone(), ring.state(&model, &s, start))).map_err(|e| (start, e))
         })
         .collect();
+    let go_on = || if (watch.stopped)() { Err(StudyError::Stopped) } else { Ok(()) };
+    go_on()?;
     let (mut found, mut failed) = (Vec::new(), Vec::new());
     for search in searches {
         match search {
@@ -158,9 +160,10 @@ pub fn drape(
         let finer = ring.refined();
         let fine = build::model(case, &finer.sheet, section.clone())?;
         let from = refine::refined(&solution.state, &model.mesh, &fine.mesh, ring.cells);
-        solution = finer.relax(&fine, law, &plan(&fine, options)?, from, options)?;
+        solution = finer.relax(&fine, law, &plan(&fine, options)?, from, options, watch)?;
+        go_on()?;
         meshes.push(finer.state(&fine, &solution, start));
-        progress();
+        (watch.stage)();
         (ring, model) = (finer, fine);
     }
     // `meshes` holds the first one at least.
@@ -183,7 +186,7 @@ pub fn drape(
     })
 }
 
-/// How often `progress` is called for a case.
+/// How often [`Watch::stage`] is called for a case.
 pub fn drape_stages(case: &Case) -> usize {
     match &case.analysis {
         Analysis::Drape { folds, refinements } => folds.len() + refinements,
@@ -255,10 +258,13 @@ impl Ring {
         plan: &Plan,
         from: State,
         options: &Options,
+        watch: Watch<'_>,
     ) -> Result<Solution, NonlinearError> {
         let settings = Settings { tolerance: TOLERANCE, law: law.cloned(), ..Settings::default() };
         let flow = Flow { perturbation: 0.0, seed: self.sheet.seed, steps: STEPS };
-        relax_from(model, plan, from, &settings, &flow, options, |_| ControlFlow::Continue(()))
+        let observe =
+            |_: &Step<'_>| if (watch.stopped)() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+        relax_from(model, plan, from, &settings, &flow, options, observe)
     }
 
     fn state(&self, model: &Model, solution: &Solution, start: usize) -> DrapeState {
