@@ -126,6 +126,19 @@ fn the_straight_column_is_told_to_be_unstable_and_the_cures_work() {
     assert_eq!((short.status, codes(&short)), (Status::NotConverged, vec!["S112"]));
 }
 
+/// A linear answer is that of a sheet that cannot buckle: beyond Euler's load, π² B / 4 L² of the clamped strip, that is
+/// said, and below it is not. Tension is no matter at any load.
+#[test]
+fn a_linear_answer_beyond_buckling_is_told() {
+    let euler = (0.5 * std::f64::consts::PI / 0.2).powi(2) * 8e-6;
+    for (load, expected) in [(0.97 * euler, vec![]), (1.03 * euler, vec!["S105"]), (-3.0 * euler, vec![])] {
+        let thrust = THRUST.replace("0.001 N/m", &format!("{load} N/m"));
+        let result = solved(&strip("kind = \"linear\"", &thrust));
+        assert_eq!(codes(&result), expected, "{load}");
+        assert_eq!(result.status == Status::BeyondLinear, !expected.is_empty());
+    }
+}
+
 /// Four iterations a step and no shorter steps: nothing beyond the start can be found.
 #[test]
 fn what_does_not_converge_keeps_its_last_state_and_says_what_to_try() {

@@ -43,7 +43,7 @@ use thiserror::Error;
 pub use arc::{ArcLength, follow};
 pub use drive::{Leg, drive};
 pub use flow::{Flow, relax, relax_from};
-pub use stability::Stability;
+pub use stability::{Stability, lost_directions};
 
 use self::flow::noise;
 use self::newton::{Converged, Drag, Failure, longest_travel, newton};

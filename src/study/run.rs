@@ -19,7 +19,7 @@ use crate::model::{Model, ModelError};
 use crate::quantity::{Curve, Unit, parse_quantity};
 use crate::section::{SheetLaw, ShellSection};
 use crate::solve::newmark;
-use crate::solve::nonlinear::State;
+use crate::solve::nonlinear::{State, lost_directions};
 use crate::solve::{self, Factors, Options, Solution};
 
 /// How a case ended.
@@ -191,6 +191,9 @@ const LINEAR_LIMIT: f64 = 0.3;
 /// that order, and what they neglect of its square.
 const DISPLACEMENT_LIMIT: f64 = 0.1;
 
+/// Compression below this part of the largest membrane force is that of rounding.
+const COMPRESSED: f64 = 1e-6;
+
 /// How a linear result is beyond its meaning.
 enum Beyond {
     /// The displacement normal to the sheet (m) and its ratio to the bending thickness.
@@ -303,6 +306,16 @@ impl PreparedCase<'_> {
             recovery: Arc::clone(&self.recovery),
             nodal: OnceLock::new(),
         };
+        if result.status == Status::Ok
+            && matches!(case.analysis, Analysis::Linear {})
+            && is_compressed(&result)?
+        {
+            let lost = lost_directions(&result.model, &result.solution.displacement, &self.options)?;
+            if lost > 0 {
+                result.status = Status::BeyondLinear;
+                result.findings.push(buckles(case, lost));
+            }
+        }
         result.probes = probes(case, &self.probes, &result)?;
         result.checks = case.checks.iter().map(|c| check(case, c, &result)).collect::<Result<_, _>>()?;
         if result.status != Status::NotConverged && result.checks.iter().any(|c| !c.passed) {
@@ -373,6 +386,31 @@ fn analyse(
             Err(case.inconsistent("a drape is a search for many states, not one solve".into()))
         }
     }
+}
+
+/// Whether the sheet is pressed in its plane anywhere, beyond rounding.
+fn is_compressed(result: &CaseResult) -> Result<bool, StudyError> {
+    let (mesh, u) = (&result.model.mesh, &result.solution.displacement);
+    // Loads across a flat sheet leave its plane alone.
+    if mesh.is_flat() && u.chunks_exact(6).all(|u| u[0] == 0.0 && u[1] == 0.0) {
+        return Ok(false);
+    }
+    let principal = |[nx, ny, nxy]: [f64; 3]| {
+        let (mean, radius) = (0.5 * (nx + ny), (0.5 * (nx - ny)).hypot(nxy));
+        [mean - radius, mean + radius]
+    };
+    let forces = result.nodal()?.iter().map(|r| principal(r.membrane));
+    let [low, high] = forces.fold([0.0f64; 2], |[low, high], [a, b]| [low.min(a), high.max(b)]);
+    Ok(low < -COMPRESSED * high.max(-low))
+}
+
+fn buckles(case: &Case, directions: usize) -> Finding {
+    let message = format!(
+        "under these loads the sheet has lost its stiffness in {directions} direction(s): it buckles or wrinkles before, and the \
+         linear answer is that of a sheet that is kept from it; take [analysis] kind = \"nonlinear\" with method = \"flow\", or \
+         lower the load"
+    );
+    Finding::new("S105", message).at(Place::file(&case.path))
 }
 
 /// A mode with a largest displacement of 1 m.

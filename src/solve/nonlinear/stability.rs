@@ -1,9 +1,13 @@
 //! Whether an equilibrium is stable: the lowest eigenvalue of its tangent.
 
 use super::system::{Balance, System};
-use super::{NonlinearError, State};
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::{NonlinearError, Settings, State, plan};
+use crate::model::Model;
 use crate::solve::SolveError;
 use crate::solve::factor::{Factor, FactorError};
+use crate::solve::linear::Options;
 use crate::solve::sparse::BlockMatrix;
 
 /// Inverse iterations, and the relative change that ends them: an eigenvalue to three digits.
@@ -54,6 +58,37 @@ pub(super) fn check(
     }
     let (lowest_eigenvalue, shape) = inverse_iteration(system, &matrix, &factor);
     Ok((Stability { negative_pivots, lowest_eigenvalue }, shape))
+}
+
+/// Directions in which a sheet under the displacements of a linear solution (six a node) has lost its stiffness: above
+/// 0 it buckles before it has its loads. A sheet that is not held against every motion has no answer, 0.
+///
+/// # Errors
+/// M008, M010 for the model; N002 for memory.
+pub fn lost_directions(
+    model: &Model,
+    displacement: &[f64],
+    options: &Options,
+) -> Result<usize, NonlinearError> {
+    let (plan, settings) = (plan(model, options)?, Settings::default());
+    let system = System::new(model, &plan, &settings, options)?;
+    let negative = |state: &State| -> Result<usize, NonlinearError> {
+        let balance = system.balance(state, None);
+        let (matrix, _) = system.tangent(state, &balance, &balance.forces(), 0.0);
+        match system.factorise(&matrix) {
+            Ok(factor) => Ok(factor.negative_pivots()),
+            Err(FactorError::Singular { .. }) => Ok(0),
+            Err(other) => Err(SolveError::Factor(other).into()),
+        }
+    };
+    let mut state = State::rest(&model.mesh);
+    let at_rest = negative(&state)?;
+    for (node, u) in displacement.chunks_exact(6).enumerate() {
+        state.position[node] += Vector3::new(u[0], u[1], u[2]);
+        state.rotation[node] = UnitQuaternion::from_scaled_axis(Vector3::new(u[3], u[4], u[5]));
+    }
+    state.factor = 1.0;
+    Ok(if at_rest > 0 { 0 } else { negative(&state)? })
 }
 
 fn inverse_iteration(system: &System<'_>, matrix: &BlockMatrix, factor: &Factor) -> (f64, Vec<f64>) {
