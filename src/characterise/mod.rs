@@ -25,8 +25,8 @@ mod tensile;
 
 pub(crate) use friction::nnls::nnls;
 pub use friction::{
-    Basis, ClosedForm, CycleFit, FrictionLaw, LawBand, LawTrace, LoopFit, ReExtracted, bending_law, cycle,
-    extract,
+    Basis, ClosedForm, CycleFit, FrictionLaw, LawBand, LawTrace, LoopFit, ReExtracted, Relaxation,
+    bending_law, cycle, extract,
 };
 pub use graph::LineFit;
 pub use settings::{CycleChoice, Modulus, Settings};

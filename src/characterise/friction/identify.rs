@@ -5,6 +5,7 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 
 use super::nnls::{nnls, triangle};
+use super::relaxation::{Relaxation, TIMES, Term, faded};
 use crate::law::{Backbone, Channel, Family, LawError, Slider, Widening};
 
 /// Slip levels offered to the fit, as parts of the greatest strain: log-spaced. Larger ones make
@@ -41,6 +42,8 @@ pub(super) struct Path {
     pub strain: Vec<f64>,
     /// Stresses, as many.
     pub stress: Vec<f64>,
+    /// Times (s), as many, or none: then nothing depends on time.
+    pub time: Vec<f64>,
     /// The samples that are fitted; the path up to there is the history.
     pub fitted: Range<usize>,
 }
@@ -63,6 +66,7 @@ impl Path {
             let path = Self {
                 strain: scaled(&self.strain, e),
                 stress: scaled(&self.stress, s),
+                time: self.time.clone(),
                 fitted: self.fitted.clone(),
             };
             (path, [e, s])
@@ -108,25 +112,32 @@ pub(super) fn two_sided(path: &Path) -> Option<Channel> {
     fit.channel(&problem.knots, &[widening(alpha)], size, false).ok()
 }
 
-/// The law of a test to one side: friction that is constant, and friction that grows with the load.
-pub(super) fn one_sided(path: &Path) -> Option<Channel> {
+/// The law of a test to one side: friction that is constant, and friction that grows with the load; and what dies away,
+/// where the path has times.
+pub(super) fn one_sided(path: &Path) -> Option<(Channel, Option<Relaxation>)> {
     let (path, size) = path.normalised()?;
     let curve = loading_curve(&path)?;
     let top = curve.at(1.0).stress;
     let knots: Vec<f64> = curve.knots().collect();
-    let problem = Problem::new(&path, knots, true)?;
+    let mut problem = Problem::new(&path, knots, true)?;
+    if path.time.len() == path.strain.len() {
+        let load: Vec<f64> = path.strain.iter().map(|e| curve.at(*e).stress).collect();
+        problem.fading = TIMES.iter().map(|tau| faded(&load, &path.time, *tau)).collect();
+    }
     // Levels may not widen faster than the strain grows.
     let steepest = curve.tangents().fold(0.0, f64::max) / top;
     let offered = levels();
     let gentle: Vec<f64> = offered.iter().copied().filter(|x| x * steepest < 1.0).collect();
-    let widenings = [Widening::Constant, Widening::Loading(curve)];
+    let widenings = [Widening::Constant, Widening::Loading(curve.clone())];
     let fit = |levels: [&[f64]; 2]| {
         let mut active = vec![false; problem.columns(&levels)];
         problem.fit(&[(&widenings[0], levels[0]), (&widenings[1], levels[1])], &mut active)
     };
     let all = fit([&offered, &gentle])?;
     let [a, b] = [0, 1].map(|i| lump(&all.sliders[i]));
-    fit([&a, &b])?.channel(&problem.knots, &widenings, size, true).ok()
+    let found = fit([&a, &b])?;
+    let relaxation = found.relaxation(&curve, size);
+    Some((found.channel(&problem.knots, &widenings, size, true).ok()?, relaxation))
 }
 
 /// A monotone curve through the outgoing branch of the fitted cycle of a normalised path, through
@@ -207,6 +218,8 @@ struct Problem<'a> {
     /// Stresses at the rows, and 0 for the ridge.
     target: DVector<f64>,
     noise: f64,
+    /// Columns of stresses that die away, along the whole path.
+    fading: Vec<Vec<f64>>,
 }
 
 /// The solution of a [`Problem`], in its normalised units.
@@ -215,6 +228,8 @@ struct Fit {
     tangents: Vec<f64>,
     /// Per family.
     sliders: Vec<Vec<Slider>>,
+    /// Of what dies away with each of the times.
+    fading: Vec<f64>,
     /// Root mean square of the residual.
     residual: f64,
 }
@@ -253,11 +268,11 @@ impl<'a> Problem<'a> {
                 backbone[(n + i, 1 + i + j)] = ridge * weight;
             }
         }
-        Some(Self { path, knots, rows, backbone, target, noise })
+        Some(Self { path, knots, rows, backbone, target, noise, fading: Vec::new() })
     }
 
     fn columns(&self, levels: &[&[f64]]) -> usize {
-        self.backbone.ncols() + levels.iter().map(|l| l.len()).sum::<usize>()
+        self.backbone.ncols() + levels.iter().map(|l| l.len()).sum::<usize>() + self.fading.len()
     }
 
     /// The best weights for sliders of given slip levels in families; `active` as in [`nnls`].
@@ -269,6 +284,11 @@ impl<'a> Problem<'a> {
         for (widening, levels) in families {
             self.slide(widening, levels, &mut a, column);
             column += levels.len();
+        }
+        let scale = 1.0 / (self.rows.len() as f64).sqrt();
+        for fading in &self.fading {
+            self.rows.iter().enumerate().for_each(|(row, &k)| a[(row, column)] = scale * fading[k]);
+            column += 1;
         }
         a.set_column(n, &self.target);
         // The triangle of (A b) has the same normal equations, and far fewer rows.
@@ -285,7 +305,9 @@ impl<'a> Problem<'a> {
                 levels.iter().zip(&mut weights).map(slider).collect()
             })
             .collect();
+        let fading = weights.copied().collect();
         Some(Fit {
+            fading,
             offset: x[0],
             tangents: x.iter().take(fixed).skip(1).copied().collect(),
             sliders,
@@ -316,6 +338,18 @@ impl<'a> Problem<'a> {
 }
 
 impl Fit {
+    /// What dies away, in the units of the record, beside the curve of loading in normalised ones.
+    fn relaxation(&self, curve: &Backbone, [e, s]: [f64; 2]) -> Option<Relaxation> {
+        let (knots, tangents): (Vec<f64>, Vec<f64>) =
+            curve.knots().zip(curve.tangents()).map(|(k, t)| (k * e, t * s / e)).unzip();
+        let terms: Vec<Term> = (TIMES.into_iter().zip(&self.fading))
+            .filter(|(_, weight)| **weight > 0.0)
+            .map(|(time, weight)| Term { time, weight: *weight })
+            .collect();
+        let loading = Backbone::new(0.0, &knots, &tangents).ok()?;
+        (!terms.is_empty()).then_some(Relaxation { loading, terms })
+    }
+
     /// The law in the units of the record: `size` are its greatest strain and its span of stress.
     fn channel(
         self,

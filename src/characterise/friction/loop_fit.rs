@@ -5,7 +5,6 @@ use std::ops::Range;
 use serde::Serialize;
 
 use super::identify::Path;
-use crate::law::{Channel, State};
 
 /// A law beside the loop that it was identified from.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -36,15 +35,13 @@ pub struct CycleFit {
 }
 
 impl LoopFit {
-    /// The law along the path, cycle by cycle.
-    pub(super) fn of(channel: &Channel, path: &Path, cycles: &[Range<usize>]) -> Self {
-        let law: Vec<f64> =
-            channel.path(State::default(), path.strain.iter().copied()).map(|r| r.stress).collect();
+    /// The stresses of a law along the path, cycle by cycle.
+    pub(super) fn of(law: &[f64], path: &Path, cycles: &[Range<usize>]) -> Self {
         let line = line(&path.strain[path.fitted.clone()], &path.stress[path.fitted.clone()]);
         let fits: Vec<CycleFit> = (cycles.iter().enumerate())
             .filter(|(_, range)| range.len() > 3)
             .map(|(cycle, range)| {
-                let [e, measured, law] = [&path.strain, &path.stress, &law].map(|v| &v[range.clone()]);
+                let [e, measured, law] = [&path.strain[..], &path.stress, law].map(|v| &v[range.clone()]);
                 CycleFit::of(cycle, e, measured, law, line)
             })
             .collect();

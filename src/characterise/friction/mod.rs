@@ -5,7 +5,8 @@
 //! per width, shear angle and force, strain and force, approach of the faces and pressure).
 //! Identification is linear in the weights: least squares with weights not below zero over 20
 //! slip levels, a search for the widening, then six sliders that carry equal parts of the friction
-//! in place of the levels found, and the weights again.
+//! in place of the levels found, and the weights again. FAB strips are drawn fast: what of their stress dies away
+//! with time is identified beside the law and stays out of it.
 
 mod bands;
 mod closed_form;
@@ -13,6 +14,7 @@ mod identify;
 mod loop_fit;
 pub(crate) mod nnls;
 mod record;
+mod relaxation;
 mod strip;
 mod summary;
 
@@ -32,6 +34,7 @@ pub use bands::LawBand;
 pub use closed_form::ClosedForm;
 pub use loop_fit::{CycleFit, LoopFit};
 pub use record::{cycle, extract};
+pub use relaxation::Relaxation;
 pub use summary::bending_law;
 
 /// A law of one test in one direction.
@@ -49,6 +52,9 @@ pub struct FrictionLaw {
     pub thickness: Option<f64>,
     /// The law (SI: 1/m and N; rad and N/m; 1 and N/m; m and Pa).
     pub channel: Channel,
+    /// What of the stress dies away with time; of a FAB strip whose file says how fast it was sampled. Slow tests, and
+    /// cloth that hangs, do not see it.
+    pub relaxation: Option<Relaxation>,
     /// Measured beside simulated; `None` without a loop.
     pub fit: Option<LoopFit>,
     /// B and 2HB by a closed form, as a check on the fit; bending loops only.
@@ -134,9 +140,9 @@ impl FrictionLaw {
         let Some(fit) = &self.fit else { return Vec::new() };
         let mut traces = Vec::new();
         for (cycle, path) in self.cycles(sheet) {
-            let Path { strain, stress, fitted } = path;
-            let law = self.channel.path(Default::default(), strain.iter().copied()).map(|r| r.stress);
-            let law: Vec<f64> = law.skip(fitted.start).take(fitted.len()).collect();
+            let law = stresses(&self.channel, self.relaxation.as_ref(), &path);
+            let Path { strain, stress, fitted, .. } = path;
+            let law = law[fitted.clone()].to_vec();
             let strain = &strain[fitted.clone()];
             traces.push(LawTrace {
                 cycle,
@@ -219,6 +225,19 @@ pub(super) fn add(sheet: &mut FabricSheet, settings: &Settings) {
     summary::add(sheet, settings);
 }
 
+/// The stresses of a law along a path from cloth never deformed, with what dies away with time.
+fn stresses(channel: &Channel, relaxation: Option<&Relaxation>, path: &Path) -> Vec<f64> {
+    let Some(relaxation) = relaxation else {
+        return channel.path(Default::default(), path.strain.iter().copied()).map(|r| r.stress).collect();
+    };
+    let both = channel.to_both_sides();
+    let slow = both.path(Default::default(), path.strain.iter().copied()).map(|r| r.stress);
+    let fading = relaxation.path(&path.strain, &path.time);
+    // A strip goes slack where the sum of both would be below zero.
+    let cut = |s: f64| if channel.is_one_sided() { s.max(0.0) } else { s };
+    slow.zip(fading).map(|(s, f)| cut(s + f)).collect()
+}
+
 /// A law that misses its own loop by more than this part of the span is none: the stress falls, or the
 /// record is no loop.
 const WORST_FIT: f64 = 0.1;
@@ -235,8 +254,8 @@ fn of_specimen(specimen: &SpecimenResult, settings: &Settings) -> Option<Frictio
     };
     let one_sided = matches!(m.test, Test::Tensile | Test::Compression);
     let (path, cycles) = path(specimen, thickness, one_sided, settings.cycle)?;
-    let channel = if one_sided { identify::one_sided(&path) } else { identify::two_sided(&path) }?;
-    let fit = LoopFit::of(&channel, &path, &cycles);
+    let channel = if one_sided { identify::one_sided(&path)?.0 } else { identify::two_sided(&path)? };
+    let fit = LoopFit::of(&stresses(&channel, None, &path), &path, &cycles);
     if fit.fitted.nrmse.is_nan() || fit.fitted.nrmse > WORST_FIT {
         return None;
     }
@@ -248,6 +267,7 @@ fn of_specimen(specimen: &SpecimenResult, settings: &Settings) -> Option<Frictio
         basis: Basis::Loop,
         thickness,
         channel,
+        relaxation: None,
         fit: Some(fit),
         closed_form,
         values: BTreeMap::new(),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::identify::{Path, one_sided};
-use super::{Basis, FrictionLaw, LoopFit};
+use super::{Basis, FrictionLaw, LoopFit, stresses};
 use crate::characterise::Strip;
 use crate::instrument::Test;
 use crate::instrument::fab::FabKind;
@@ -13,8 +13,8 @@ use crate::instrument::fab::FabKind;
 /// the onset of load of the last, so that what the strip has grown by since is part of what is predicted.
 pub(super) fn law(strip: &Strip) -> Option<FrictionLaw> {
     let (path, cycles) = history(strip)?;
-    let channel = one_sided(&path)?;
-    let fit = LoopFit::of(&channel, &path, &cycles);
+    let (channel, relaxation) = one_sided(&path)?;
+    let fit = LoopFit::of(&stresses(&channel, relaxation.as_ref(), &path), &path, &cycles);
     Some(FrictionLaw {
         test: Test::Tensile,
         direction: Some(strip.direction),
@@ -22,6 +22,7 @@ pub(super) fn law(strip: &Strip) -> Option<FrictionLaw> {
         basis: Basis::Strip,
         thickness: None,
         channel,
+        relaxation,
         fit: Some(fit),
         closed_form: None,
         values: BTreeMap::new(),
@@ -37,13 +38,17 @@ pub(super) fn number(strip: &Strip) -> usize {
 /// of the last one. The slack strip is left out.
 pub(super) fn history(strip: &Strip) -> Option<(Path, Vec<Range<usize>>)> {
     let gauge = strip.cycles.last()?.onset;
-    let (mut path, mut cycles) = (Path::default(), Vec::new());
+    let (mut path, mut cycles, mut sample) = (Path::default(), Vec::new(), 0);
     for cycle in &strip.cycles {
         let (start, longer) = (path.strain.len(), cycle.onset / gauge);
-        let points = cycle.branches.iter().flat_map(|b| b.curve.points());
-        for (e, f) in points.map(|(e, f)| ((1.0 + e) * longer - 1.0, f)).filter(|p| p.0 >= 0.0) {
-            path.strain.push(e);
-            path.stress.push(f);
+        for (e, f) in cycle.branches.iter().flat_map(|b| b.curve.points()) {
+            let e = (1.0 + e) * longer - 1.0;
+            if e >= 0.0 {
+                path.strain.push(e);
+                path.stress.push(f);
+                path.time.extend(strip.rate.map(|rate| f64::from(sample) / rate));
+            }
+            sample += 1;
         }
         cycles.push(start..path.strain.len());
     }

@@ -72,7 +72,7 @@ fn nrmse(channel: &Channel, strain: &[f64], stress: &[f64]) -> f64 {
 
 fn whole(strain: Vec<f64>, stress: Vec<f64>) -> Path {
     let fitted = 0..strain.len();
-    Path { strain, stress, fitted }
+    Path { strain, stress, fitted, ..Path::default() }
 }
 
 /// Ordinate of the run from turn to turn at `x`, linear between samples.
@@ -169,7 +169,7 @@ fn tension(turns: &[f64], n: usize) -> (Vec<f64>, Vec<f64>) {
 fn a_tensile_loop_is_fitted_and_inner_ones_predicted() {
     let (strain, truth) = tension(&[0.0, 0.06, 0.0], 150);
     let measured: Vec<f64> = noisy(&truth, 0.0023, 3).into_iter().map(|f| f.max(0.0)).collect();
-    let law = one_sided(&whole(strain.clone(), measured.clone())).unwrap();
+    let law = one_sided(&whole(strain.clone(), measured.clone())).unwrap().0;
     let fit = nrmse(&law, &strain, &measured);
     assert!(fit < 0.0035, "{fit}");
     for turns in [vec![0.0, 0.04, 0.0], vec![0.0, 0.045, 0.02, 0.045, 0.0]] {
@@ -194,7 +194,7 @@ fn a_compression_loop_is_fitted() {
     };
     let truth: Vec<f64> = strain.iter().map(pressure).collect();
     let measured = noisy(&truth, 0.0023, 9);
-    let law = one_sided(&whole(strain.clone(), measured.clone())).unwrap();
+    let law = one_sided(&whole(strain.clone(), measured.clone())).unwrap().0;
     let fit = nrmse(&law, &strain, &measured);
     assert!(fit < 0.0035, "{fit}");
 }
@@ -234,9 +234,10 @@ fn laws_of_summary_values_give_them_back() {
 }
 
 /// Cupro weave (Browzwear FAB, U3M 1.1): last cycle fitted, the one before it predicted. The bounds
-/// are the figures reached, rounded up; those of the straight line stand beside them. Two strips are beyond the
-/// 4 % that the others keep: at the turn of the drive their stress relaxes (on the bias from 102 to 95 gf/cm while
-/// the clamps still part), which no law without time can follow.
+/// are the figures reached, rounded up; those of the straight line stand beside them. Without relaxation the last
+/// cycle of the long bias strip is 1.14 % off, as its stress falls at the turn while the clamps still part, and five of
+/// the six predictions are worse. Two strips are beyond the 4 % that the others keep: every cycle that goes
+/// further than those before leaves them softer, and a last cycle does not tell by how much.
 #[test]
 fn strips_of_a_real_cupro_weave() {
     use crate::instrument::{Direction, fab::FabKind};
@@ -250,12 +251,12 @@ fn strips_of_a_real_cupro_weave() {
     let sheet = crate::characterise::characterise(&batch.fabrics[0], &Default::default());
     // Direction, strip, last cycle, the one before (NRMSE, %).
     let reached = [
-        (Direction::Warp, 1, 0.50, 2.9),
-        (Direction::Warp, 2, 0.35, 2.8),
-        (Direction::Weft, 1, 0.75, 7.2),
-        (Direction::Weft, 2, 0.55, 3.7),
-        (Direction::Bias, 1, 0.45, 3.1),
-        (Direction::Bias, 2, 1.15, 7.05),
+        (Direction::Warp, 1, 0.50, 2.7),
+        (Direction::Warp, 2, 0.35, 2.3),
+        (Direction::Weft, 1, 0.75, 6.0),
+        (Direction::Weft, 2, 0.30, 2.4),
+        (Direction::Bias, 1, 0.45, 2.0),
+        (Direction::Bias, 2, 0.90, 7.4),
     ];
     assert_eq!(sheet.strips.iter().filter(|s| s.kind == FabKind::S1).count(), 3);
     for (direction, strip, fitted, inner) in reached {

@@ -217,6 +217,10 @@ fn figures(sheet: &FabricSheet, one: &Loop<'_>) -> Vec<Row> {
         value("R²", format!("{:.5}", fit.fitted.r_squared)),
         value("loop energy", percent(fit.fitted.loop_energy)),
     ];
+    if let Some(relaxation) = &law.relaxation {
+        let all: f64 = relaxation.terms.iter().map(|t| t.weight).sum();
+        rows.push(value("relaxing part", percent(all)));
+    }
     for u in &fit.unseen {
         let text = format!("{} (line {})", percent(u.nrmse), percent(u.line_nrmse));
         rows.push(value(&format!("cycle {}", u.cycle + 1), text));
