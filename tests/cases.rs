@@ -82,6 +82,14 @@ fn a_moved_clamp_carries_the_sheet() {
     let result = solve_case(&case, s, &Options::default()).unwrap();
     let w = result.solution.displacement.iter().skip(2).step_by(6);
     assert!(w.into_iter().all(|w| (w / 1e-6 - 1.0).abs() < 1e-9));
+    // A clamped edge that is pushed: its force is that of the other edges, to all digits that matter.
+    let pushed = load.replace("boundary", "left");
+    let case = parsed("kind = \"linear\"", &pushed);
+    let s = section(case.section.as_ref().unwrap()).unwrap();
+    let result = solve_case(&case, s, &Options::default()).unwrap();
+    let reactions = || result.solution.reaction.iter().skip(2).step_by(6);
+    let (sum, largest) = (reactions().sum::<f64>(), reactions().fold(0.0f64, |m, r| m.max(r.abs())));
+    assert!(sum.abs() < 1e-9 * largest, "{sum:e} {largest:e}");
 }
 
 /// Damping ratios are those of the modes that deform the sheet: a free one is damped like a held one.

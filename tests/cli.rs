@@ -242,6 +242,40 @@ fn a_table_of_fabrics_loses_only_the_bad_ones() {
     assert_eq!(found.iter().filter(|f| f["code"] == "R101").count(), 1);
 }
 
+/// Two fabrics in the table of a folder, one of them bad: the other keeps its name and its good standing. A folder that
+/// two fabrics share by a link is read for both, and one that leads back is not followed.
+#[cfg(unix)]
+#[test]
+fn folders_keep_their_fabrics_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = folder.path();
+    let table = "fabric,B warp (gf·cm²/cm),B weft (gf·cm²/cm),W (mg/cm²)\nA,x,0.1,10\nC,0.2,0.2,10\n";
+    fs::create_dir_all(root.join("lib/two")).unwrap();
+    write(&root.join("lib/two"), "t.csv", table);
+    let results = root.join("out");
+    let run_lib = ["run", root.join("lib").to_str().unwrap(), "-o", results.to_str().unwrap(), "--no-charts"]
+        .map(String::from);
+    let output = run(&run_lib.each_ref().map(String::as_str));
+    assert_eq!(code(&output), 1, "{}", stderr(&output));
+    let rows = fs::read_to_string(results.join("fabrics.csv")).unwrap();
+    assert!(rows.contains("\nC,B,warp,") && rows.contains("\nA,,,,,0,,R004,,"), "{rows}");
+    assert!(!rows.contains("C,,"), "{rows}");
+
+    fs::create_dir(root.join("shared")).unwrap();
+    write(&root.join("shared"), "t.csv", "parameter,unit,warp,weft\nB,gf·cm²/cm,0.1,0.1\nW,mg/cm²,10,10\n");
+    for name in ["p", "q"] {
+        fs::create_dir_all(root.join("links").join(name)).unwrap();
+        write(&root.join("links").join(name), "fabric.toml", "");
+        std::os::unix::fs::symlink(root.join("shared"), root.join("links").join(name).join("more")).unwrap();
+        std::os::unix::fs::symlink(root.join("links"), root.join("links").join(name).join("back")).unwrap();
+    }
+    let output = run(&["--json", "characterise", root.join("links").to_str().unwrap()]);
+    let document = json(&output);
+    let fabrics = document["fabrics"].as_array().unwrap();
+    assert_eq!(fabrics.len(), 2);
+    assert!(fabrics.iter().all(|f| f["parameters"]["B"]["warp"]["n"] == 1), "{fabrics:?}");
+}
+
 /// Nothing takes the place of another's files.
 #[test]
 fn fabrics_and_cases_of_the_same_name_are_told_apart() {

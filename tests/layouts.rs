@@ -265,7 +265,7 @@ fn inference_is_told() {
     assert!(unknown.to_string().contains("foo"), "{unknown}");
     assert!(!unknown.hint().is_empty());
     // The error carries what was decided before it, and what a dialect file could say.
-    let told = unknown.inference.join("\n");
+    let told = unknown.about.inference.join("\n");
     for expected in [
         "encoding UTF-8",
         "headings foo (1/cm) | moment (gf)",

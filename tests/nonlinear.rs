@@ -383,9 +383,8 @@ fn a_perturbation_breaks_the_symmetry_and_a_plan_is_shared() {
 #[test]
 fn a_held_end_turns_more_than_once() {
     let turn = 400f64.to_radians();
-    let ways =
-        [Method::Newton(None), Method::ArcLength(ArcLength { until: Some(1.0), ..ArcLength::default() })];
-    for method in ways {
+    let arc = |first: f64| Method::ArcLength(ArcLength { first, until: Some(1.0), ..ArcLength::default() });
+    for method in [Method::Newton(None), arc(0.1), arc(1.0)] {
         let mut model = cantilever(40, 2e-3, |_| Vec::new());
         let end = model.mesh.set("right").unwrap().to_vec();
         model.supports.push(Support { nodes: end, held: vec![(Dof::ThetaY, -turn)] });

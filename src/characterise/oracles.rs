@@ -384,6 +384,7 @@ fn tables_stand_beside_curves() {
         sd: Some(0.1 * mean),
         n: 5,
         values: Vec::new(),
+        lines: Vec::new(),
         inferred,
         place: Place::at("results.csv", 2, 3),
     };

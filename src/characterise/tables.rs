@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::statistics::{name, outlier};
 use super::{FabricSheet, Key, Modulus, Settings};
-use crate::finding::Finding;
+use crate::finding::{Finding, Place};
 use crate::instrument::{Direction, FabricInput, Parameter, ResultValue};
 use crate::quantity::Estimate;
 
@@ -31,8 +31,9 @@ pub(super) fn merge(sheet: &mut FabricSheet, input: &FabricInput, settings: &Set
                 i + 1,
                 estimate.n - 1
             );
-            let cell = if values.len() > 1 { values[i] } else { values[0] };
-            sheet.findings.push(Finding::new("K010", text).at(cell.place.clone()));
+            let cell = values[if values.len() > 1 { i } else { 0 }];
+            let line = cell.lines.get(i).copied().unwrap_or(cell.place.line);
+            sheet.findings.push(Finding::new("K010", text).at(Place { line, ..cell.place.clone() }));
         }
         match sheet.values.get(&key) {
             None => {

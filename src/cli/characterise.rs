@@ -59,7 +59,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
             tables.collect::<Vec<_>>().join("\n").into_bytes()
         }
         Format::Json => {
-            text(&ui.complete(sheet_document(sheets.iter().copied(), Some(&settings))))?.into_bytes()
+            text(&ui.with_failures(sheet_document(sheets.iter().copied(), Some(&settings))))?.into_bytes()
         }
         Format::Csv => csv(&rows())?,
         Format::Parquet => parquet(&rows())?,

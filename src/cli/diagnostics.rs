@@ -20,13 +20,15 @@ use crate::study::{CaseError, StudyError};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failure {
     /// Stable code.
-    pub code: String,
+    pub code: Box<str>,
     /// The place, where there is one.
     pub place: Option<Place>,
     /// What is wrong, without code and place.
     pub message: String,
+    /// The fabric that gave nothing, where a file has several.
+    pub fabric: Option<Box<str>>,
     /// What to do.
-    pub hint: Option<String>,
+    pub hint: Option<Box<str>>,
     /// The exit code if nothing else was done.
     pub exit: Exit,
 }
@@ -34,12 +36,19 @@ pub struct Failure {
 impl Failure {
     /// A failure of usage, input or output.
     pub fn new(code: &str, message: impl Into<String>) -> Self {
-        Self { code: code.into(), place: None, message: message.into(), hint: None, exit: Exit::Bad }
+        Self {
+            code: code.into(),
+            place: None,
+            message: message.into(),
+            fabric: None,
+            hint: None,
+            exit: Exit::Bad,
+        }
     }
 
     /// The same with what to do about it.
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
-        self.hint = Some(hint.into());
+        self.hint = Some(hint.into().into());
         self
     }
 
@@ -76,9 +85,9 @@ impl Failure {
     pub fn row(&self) -> ProblemRow {
         ProblemRow {
             place: self.place.as_ref().map_or_else(|| "kesf".to_string(), ToString::to_string),
-            code: self.code.clone(),
+            code: self.code.to_string(),
             message: self.message.clone(),
-            fabric: None,
+            fabric: self.fabric.as_deref().map(str::to_string),
         }
     }
 
@@ -98,7 +107,11 @@ impl Failure {
 
 impl From<ReadError> for Failure {
     fn from(e: ReadError) -> Self {
-        Self::new(e.code(), e.problem.to_string()).hint(e.hint()).at(e.place)
+        let failure = Self::new(e.code(), e.problem.to_string()).hint(e.hint()).at(e.place);
+        match e.about.fabric {
+            Some(fabric) => Self { fabric: Some(fabric.as_str().into()), ..failure.of(&fabric) },
+            None => failure,
+        }
     }
 }
 
@@ -256,8 +269,13 @@ impl Diagnostics {
     /// The same, said of a fabric.
     pub fn finding_of(&mut self, fabric: Option<&str>, finding: &Finding) {
         self.findings += 1;
-        let Finding { code, message, place } = finding;
-        self.said[0].push(json!({"fabric": fabric, "code": code, "message": message, "place": place}));
+        let place = finding.place.as_ref();
+        let path = place.map(|p| p.path.to_string_lossy());
+        let line = place.map(|p| p.line).filter(|line| *line > 0);
+        let entry = json!({
+            "fabric": fabric, "code": finding.code, "message": finding.message, "path": path, "line": line,
+        });
+        self.said[0].push(entry);
         if self.quiet || self.json {
             return;
         }

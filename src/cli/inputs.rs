@@ -106,7 +106,7 @@ impl ReadArgs {
             }
         }
         let inference =
-            |e: &ReadError| Inference { path: e.place.path.clone(), decisions: e.inference.to_vec() };
+            |e: &ReadError| Inference { path: e.place.path.clone(), decisions: e.about.inference.clone() };
         let of_failures = errors.iter().map(inference).filter(|i| !i.decisions.is_empty()).collect();
         failures.splice(0..0, errors.into_iter().map(Failure::from));
         for failure in &failures {
@@ -212,18 +212,26 @@ fn folder_name(name: &str) -> String {
     if bare.is_empty() { "fabric".into() } else { bare.into() }
 }
 
+/// Whether a fabric has files of its own of that name.
+fn is_reserved(name: &str) -> bool {
+    ["sheet", "section", "tensile", "shear", "bending", "compression"].contains(&name)
+        || name.starts_with("friction_")
+}
+
 /// Numbers cases that share a name, so that the files of none take the place of another's.
 pub fn distinguish_cases(cases: &mut [Case]) -> Vec<Finding> {
     let own: BTreeSet<String> = cases.iter().map(|c| c.name.clone()).collect();
     let (mut seen, mut findings) = (BTreeSet::new(), Vec::new());
     for case in cases {
-        if seen.insert(case.name.clone()) {
+        let reserved = case.fabric.is_some() && is_reserved(&case.name);
+        if !reserved && seen.insert(case.name.clone()) {
             continue;
         }
         let numbered = |n: usize| format!("{}-{n}", case.name);
         let free = |name: &String| !own.contains(name) && !seen.contains(name);
         let Some(name) = (2..).map(numbered).find(free) else { continue };
-        let text = format!("another case is named {} too; this one is called {name}", case.name);
+        let why = if reserved { "a file of every fabric" } else { "another case" };
+        let text = format!("{why} is named {} too; this case is called {name}", case.name);
         findings.push(Finding::new("O056", text).at(Place::file(&case.path)));
         seen.insert(name.clone());
         case.name = name;
@@ -282,10 +290,12 @@ pub fn names(fabrics: &[Fabric]) -> impl Fn(&Fabric) -> Option<&str> {
 pub fn unread(fabrics: &[Fabric], failures: &[Failure]) -> Vec<FabricRow> {
     let row = |failure: &Failure| {
         let path = &failure.place.as_ref().filter(|_| failure.code.starts_with('R'))?.path;
-        let own = fabrics.iter().find(|f| f.path.is_dir() && path.starts_with(&f.path));
+        let mut inside = fabrics.iter().filter(|f| f.path.is_dir() && path.starts_with(&f.path));
+        // A file of a folder of several fabrics is nobody's in particular.
+        let own = inside.next().filter(|_| inside.next().is_none()).map(|f| f.sheet.name.clone());
         let stem = || path.file_stem().map(|s| s.to_string_lossy().into_owned());
-        let fabric = own.map(|f| f.sheet.name.clone()).or_else(stem)?;
-        Some(FabricRow { fabric, status: failure.code.clone(), ..FabricRow::default() })
+        let fabric = failure.fabric.as_deref().map(str::to_string).or(own).or_else(stem)?;
+        Some(FabricRow { fabric, status: failure.code.to_string(), ..FabricRow::default() })
     };
     failures.iter().filter_map(row).collect()
 }
@@ -360,7 +370,8 @@ pub fn cases(inputs: &[PathBuf]) -> (Vec<Case>, Vec<Failure>) {
             files.push(input.clone());
         }
     }
-    let (mut cases, mut failures) = (Vec::new(), Vec::new());
+    let (mut cases, mut failures, mut seen) = (Vec::new(), Vec::new(), BTreeSet::new());
+    files.retain(|file| file.canonicalize().map_or(true, |real| seen.insert(real)));
     for file in files {
         match Case::read(&file) {
             Ok(case) => cases.push(case),

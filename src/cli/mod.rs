@@ -65,7 +65,8 @@ struct Ui {
 struct Complete<D> {
     #[serde(flatten)]
     document: D,
-    findings: Vec<Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    findings: Option<Vec<Value>>,
     failures: Vec<Value>,
 }
 
@@ -85,7 +86,13 @@ impl Ui {
     /// A JSON document with `findings` and `failures`: what was found, and what gave no result.
     fn complete<D: Serialize>(&self, document: D) -> Complete<D> {
         let [findings, failures] = self.diagnostics.said();
-        Complete { document, findings, failures }
+        Complete { document, findings: Some(findings), failures }
+    }
+
+    /// The same for a document that has its findings.
+    fn with_failures<D: Serialize>(&self, document: D) -> Complete<D> {
+        let [_, failures] = self.diagnostics.said();
+        Complete { document, findings: None, failures }
     }
 
     /// A bar over `length` items on a terminal; nothing elsewhere.

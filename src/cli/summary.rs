@@ -87,9 +87,9 @@ impl FabricReport {
         report.problems = problems(&report.findings, &sheet.name);
         report.problems.iter_mut().for_each(|p| p.fabric = Some(sheet.name.clone()));
         if let Some(failure) = report.failures.first() {
-            report.status.clone_from(&failure.code);
+            report.status = failure.code.to_string();
             let fabric = report.name.clone();
-            report.rows.push(FabricRow { fabric, status: failure.code.clone(), ..FabricRow::default() });
+            report.rows.push(FabricRow { fabric, status: failure.code.to_string(), ..FabricRow::default() });
         }
         report
     }

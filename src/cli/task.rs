@@ -18,8 +18,8 @@ use crate::solve::Options as SolveOptions;
 use crate::study::bending::{BendingResult, simulate_records, simulate_strips};
 use crate::study::{
     self, Analysis, BendingKind, BendingTest, Case, CaseResult, Comparison, Drape, PreparedCase,
-    PreparedTest, Sampling, SolverChoice, StudyError, VirtualCurve, VirtualTest, Watch, compare_curves,
-    measured_curve,
+    PreparedTest, Sampling, SolverChoice, SolverTable, StudyError, VirtualCurve, VirtualTest, Watch,
+    compare_curves, measured_curve,
 };
 
 /// Cases and fabrics on the command line.
@@ -115,7 +115,11 @@ impl TaskArgs {
         let (mut cases, mut failures) = inputs::cases(inputs);
         inputs::distinguish_cases(&mut cases).iter().for_each(|f| ui.diagnostics.finding(f));
         if let Some(typed) = self.solver {
-            cases.iter_mut().for_each(|case| case.solver.method = Some(typed.into()));
+            for case in &mut cases {
+                let iterates = !matches!(typed, SolverArg::Direct);
+                let kept = if iterates { case.solver } else { SolverTable::default() };
+                case.solver = SolverTable { method: Some(typed.into()), ..kept };
+            }
         }
         failures.iter().for_each(|f| ui.diagnostics.error(f));
         let mut folders: Vec<PathBuf> =

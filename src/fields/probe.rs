@@ -30,9 +30,10 @@ pub struct ProbeValue {
 /// How far outside of a quad, relative to its size, a point still counts as on its edge.
 const OUTSIDE: f64 = 1.0 + 1e-6;
 
-/// The longer diagonal of a quad (m).
+/// The largest distance between corners of a quad (m).
 fn reach(corners: &[Point3<f64>; 4]) -> f64 {
-    (corners[2] - corners[0]).norm().max((corners[3] - corners[1]).norm())
+    let pairs = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
+    pairs.into_iter().map(|(a, b)| (corners[b] - corners[a]).norm()).fold(0.0, f64::max)
 }
 
 impl Locator {
@@ -112,7 +113,7 @@ impl Line {
     /// The points at `count` equal steps from `from` to `to`; those outside the mesh are left out.
     pub fn new(mesh: &QuadMesh, from: &Point3<f64>, to: &Point3<f64>, count: usize) -> Self {
         let (low, high) = (from.inf(to), from.sup(to));
-        // A quad holds only points within its longer diagonal of its first corner.
+        // A quad holds only points within its reach of its first corner.
         let near: Vec<usize> = (0..mesh.quads.len())
             .filter(|&quad| {
                 let corners = mesh.corners(quad);

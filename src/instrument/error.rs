@@ -14,14 +14,23 @@ pub struct ReadError {
     pub place: Place,
     /// What is wrong there.
     pub problem: Problem,
+    /// What else is known.
+    pub about: Box<About>,
+}
+
+/// What is known of an error besides its place.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct About {
+    /// The fabric of a table that is left out for it; none if it concerns the whole file.
+    pub fabric: Option<String>,
     /// What had been decided about the file until then, for people (`kesf check -v`).
-    pub inference: Box<[String]>,
+    pub inference: Vec<String>,
 }
 
 impl ReadError {
     /// A problem at a place.
     pub fn new(place: Place, problem: Problem) -> Self {
-        Self { place, problem, inference: Box::default() }
+        Self { place, problem, about: Box::default() }
     }
 
     /// The stable code, e.g. `R004`; see [`crate::finding::explain`].

@@ -72,14 +72,14 @@ struct Group {
 pub struct Library {
     groups: Vec<Group>,
     failures: Vec<ReadError>,
-    /// Folders that were searched, by their true paths.
-    seen: BTreeSet<PathBuf>,
+    /// True paths of the folders that are being searched, each below the one before.
+    above: Vec<PathBuf>,
 }
 
 impl Library {
     /// Finds the measurement files among the inputs and below them.
     pub fn find(inputs: &[PathBuf], settings: &ReadSettings) -> Self {
-        let mut library = Self { groups: Vec::new(), failures: Vec::new(), seen: BTreeSet::new() };
+        let mut library = Self { groups: Vec::new(), failures: Vec::new(), above: Vec::new() };
         for input in inputs {
             if input.is_dir() {
                 walk(input, settings, &mut library);
@@ -126,13 +126,11 @@ impl Library {
             let (mut contents, mut failures) = (Vec::new(), Vec::new());
             for content in read {
                 match content {
-                    Ok(mut content) => {
-                        failures.append(&mut content.failures);
-                        contents.push(content);
-                    }
+                    Ok(content) => contents.push(content),
                     Err(error) => failures.push(error),
                 }
             }
+            failures.extend(contents.iter().flat_map(|c| c.failures.iter().cloned()));
             let done: Vec<T> = fabrics(group, contents).into_iter().map(&work).collect();
             (done, failures)
         };
@@ -193,10 +191,18 @@ fn is_data(path: &Path) -> bool {
 }
 
 fn walk(folder: &Path, settings: &ReadSettings, library: &mut Library) {
-    // A link to a folder above would be followed without end, and one to a folder beside read it twice.
-    if std::fs::canonicalize(folder).is_ok_and(|real| !library.seen.insert(real)) {
-        return;
-    }
+    // A link to a folder above would be followed without end.
+    let Ok(real) = std::fs::canonicalize(folder).map(|real| (!library.above.contains(&real)).then_some(real))
+    else {
+        return library.failures.extend(entries(folder).err());
+    };
+    let Some(real) = real else { return };
+    library.above.push(real);
+    search(folder, settings, library);
+    library.above.pop();
+}
+
+fn search(folder: &Path, settings: &ReadSettings, library: &mut Library) {
     let paths = match entries(folder) {
         Ok(paths) => paths,
         Err(error) => return library.failures.push(error),
@@ -208,8 +214,9 @@ fn walk(folder: &Path, settings: &ReadSettings, library: &mut Library) {
     if has_fabric_file {
         // Everything below belongs to this fabric.
         let mut folders: Vec<PathBuf> = visible().filter(|p| p.is_dir()).cloned().collect();
+        let mut seen = BTreeSet::from_iter(std::fs::canonicalize(folder));
         while let Some(folder) = folders.pop() {
-            if std::fs::canonicalize(&folder).is_ok_and(|real| !library.seen.insert(real)) {
+            if std::fs::canonicalize(&folder).is_ok_and(|real| !seen.insert(real)) {
                 continue;
             }
             match entries(&folder) {
@@ -304,10 +311,12 @@ fn fabrics(group: Group, contents: Vec<FileContent>) -> Vec<FabricInput> {
         contents.iter().flat_map(|c| c.results.iter().filter_map(|(name, _)| name.as_ref())).collect();
     let sample = contents.iter().flat_map(|c| &c.measurements).find_map(|m| m.sample.clone());
     let of_fab = contents.iter().find_map(|c| c.fab.as_ref()?.name.clone());
+    // One that is left out makes a table of several as well.
+    let left_out = contents.iter().flat_map(|c| c.failures.iter().filter_map(|e| e.about.fabric.as_ref()));
+    let several = names.iter().copied().chain(left_out).collect::<BTreeSet<_>>().len() > 1;
     let only = if names.len() == 1 { names.first().map(|n| (*n).clone()) } else { None };
     let stem = || group.path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let name = group.name.clone().or(sample).or(only).or(of_fab).unwrap_or_else(stem);
-    let several = names.len() > 1;
     let mut out: BTreeMap<String, FabricInput> = BTreeMap::new();
     if !several {
         out.insert(name.clone(), blank(&name, &group));

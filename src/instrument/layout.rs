@@ -415,7 +415,7 @@ impl<'t> Scanner<'t, '_> {
             }
         };
         let mut error = self.context.error(row.line, row.column(0), Problem::UnknownLayout { found });
-        error.inference = suggest::layout(words, &closest).into();
+        error.about.inference = suggest::layout(words, &closest);
         error
     }
 }

@@ -154,6 +154,8 @@ pub struct ResultValue {
     pub n: usize,
     /// The repeats (SI), where the table has a row for each; else empty.
     pub values: Vec<f64>,
+    /// The line of each repeat.
+    pub lines: Vec<usize>,
     /// Whether the table itself marks it as inferred rather than measured.
     pub inferred: bool,
     /// Cell it was read from.

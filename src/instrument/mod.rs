@@ -31,7 +31,7 @@ pub use conditions::{
     standard_conditions,
 };
 pub use dialect::{DIALECT_FILES, Dialect, Key, Role, TableColumn, dialects};
-pub use error::{Problem, ReadError};
+pub use error::{About, Problem, ReadError};
 pub use folder::{Batch, Library, read_dialect, read_fabrics};
 pub use measurement::{
     Conditions, FabricInfo, FabricInput, Inference, MeasuredResult, Measurement, Origin, ResultValue, Source,

@@ -76,9 +76,10 @@ pub fn parse(path: &Path, bytes: &[u8], settings: &ReadSettings) -> Result<FileC
     };
     let mut content = FileContent { source, ..FileContent::default() };
     let reader = if workbook::is_workbook(bytes) { sheets } else { text };
-    if let Err(ReadError { place, problem, inference }) = reader(path, bytes, settings, &mut content) {
-        content.inference.extend(inference);
-        return Err(ReadError { place, problem, inference: content.inference.into() });
+    if let Err(mut error) = reader(path, bytes, settings, &mut content) {
+        content.inference.append(&mut error.about.inference);
+        error.about.inference = content.inference;
+        return Err(error);
     }
     number_specimens(path, &mut content);
     for m in &mut content.measurements {
@@ -235,6 +236,7 @@ fn weight(header: &Header, context: &Context<'_>, content: &mut FileContent) -> 
             sd: None,
             n: 1,
             values: Vec::new(),
+            lines: Vec::new(),
             inferred: false,
             place,
         };

@@ -52,6 +52,7 @@ pub(super) fn read(
         ignored: Vec::new(),
         findings: Vec::new(),
         failures: BTreeMap::new(),
+        derived: Vec::new(),
         several: false,
     };
     let long = table.meta(TableColumn::Parameter).is_some();
@@ -95,6 +96,8 @@ struct Table<'t, 'a> {
     findings: Vec<Finding>,
     /// Fabrics that are left out.
     failures: BTreeMap<String, ReadError>,
+    /// What is said of values that were calculated, with their fabrics.
+    derived: Vec<(Option<String>, Finding)>,
     /// Whether the rows name more than one fabric.
     several: bool,
 }
@@ -105,6 +108,8 @@ impl Table<'_, '_> {
     fn leave_out(&mut self, fabric: Option<String>, error: ReadError) -> Result<(), ReadError> {
         match fabric.filter(|_| self.several) {
             Some(name) => {
+                let mut error = error;
+                error.about.fabric = Some(name.clone());
                 self.failures.entry(name).or_insert(error);
                 Ok(())
             }
@@ -367,6 +372,7 @@ impl Table<'_, '_> {
             sd: None,
             n,
             values: Vec::new(),
+            lines: Vec::new(),
             inferred: p.inferred,
             place,
         };
@@ -415,11 +421,12 @@ impl Table<'_, '_> {
                 sd: None,
                 n: 1,
                 values: Vec::new(),
+                lines: Vec::new(),
                 inferred: true,
                 place: place.clone(),
             };
             let message = format!("{parameter} was calculated from the FAST value {}", cell.value.symbol());
-            self.findings.push(Finding::new("R107", message).at(place));
+            self.derived.push((cell.fabric.clone(), Finding::new("R107", message).at(place)));
             self.values.push((cell.fabric, value));
         }
     }
@@ -433,13 +440,14 @@ impl Table<'_, '_> {
             let key = (fabric.clone(), value.parameter, value.direction);
             let Some(&at) = known.get(&key) else {
                 known.insert(key, out.len());
-                let mean = value.mean;
-                out.push((fabric, value, vec![mean]));
+                let (mean, line) = (value.mean, value.place.line);
+                out.push((fabric, ResultValue { lines: vec![line], ..value }, vec![mean]));
                 continue;
             };
             let means = &mut out[at].2;
             if repeats {
                 means.push(value.mean);
+                out[at].1.lines.push(value.place.line);
             } else if value.parameter.is_directional() {
                 let found =
                     format!("{} is given twice (first in line {})", value.parameter, out[at].1.place.line);
@@ -450,12 +458,7 @@ impl Table<'_, '_> {
             }
         }
         out.retain(|(fabric, ..)| !self.is_left_out(fabric));
-        if out.is_empty()
-            && let Some((_, error)) = self.failures.pop_first()
-        {
-            return Err(error);
-        }
-        if out.is_empty() {
+        if out.is_empty() && self.failures.is_empty() {
             let found = "the table has no value of a KES parameter".to_string();
             return Err(self.context.error(self.heading.line, 0, Problem::BadTable { found }));
         }
@@ -465,6 +468,11 @@ impl Table<'_, '_> {
             }
             (fabric, value)
         };
+        for (fabric, finding) in std::mem::take(&mut self.derived) {
+            if !self.is_left_out(&fabric) {
+                self.findings.push(finding);
+            }
+        }
         self.ignored.dedup();
         if !self.ignored.is_empty() {
             let message = format!("no KES parameters, and left out: {}", self.ignored.join(", "));

@@ -21,6 +21,8 @@ const REFINE: f64 = 1e-10;
 const REFINE_ITERATED: f64 = 1e-9;
 /// Residual above which a refinement that no longer gains goes on with compensated products.
 const COMPENSATE: f64 = 1e-9;
+/// Forces below this part of those that the held values alone would take are rounding.
+const ROUNDING: f64 = 1e-6;
 /// Rounds of refinement; each gains the digits that the solver has.
 const ROUNDS: usize = 10;
 /// Reduction that an iteration is asked for in one round: the next goes on from a residual that
@@ -233,8 +235,8 @@ impl<'a> Equations<'a> {
         // Prescribed values act on the free dofs as forces.
         let moved = u.iter().any(|v| *v != 0.0);
         let internal = if moved { self.internal(compensated, &u, &low)? } else { low.clone() };
-        // A support that moves without straining the sheet leaves no other forces than these to compare with.
-        let push = internal.iter().map(|f| f * f).sum::<f64>();
+        // A support that moves without straining the sheet leaves no other forces than the rounding of these.
+        let push = ROUNDING * ROUNDING * internal.iter().map(|f| f * f).sum::<f64>();
         let mut best = Refined { u, low, internal, residual: f64::INFINITY };
         let mut reduced = 1.0;
         for _ in 0..ROUNDS {
@@ -300,15 +302,16 @@ impl<'a> Equations<'a> {
         Ok(history.last().copied().unwrap_or(0.0))
     }
 
-    /// |K u - f| over the free dofs, relative to all forces; `push` is the square of those of the held values alone.
+    /// |K u - f| over the free dofs, relative to all forces, whose square is `push` at least.
     fn residual(&self, internal: &[f64], push: f64) -> f64 {
-        let (mut residual, mut scale) = (0.0, push);
+        let (mut residual, mut scale) = (0.0, 0.0);
         for ((f, l), held) in internal.iter().zip(&self.load).zip(&self.is_held) {
             scale += f * f + l * l;
             if !held {
                 residual += (f - l) * (f - l);
             }
         }
+        let scale = push.max(scale);
         if scale == 0.0 { 0.0 } else { (residual / scale).sqrt() }
     }
 

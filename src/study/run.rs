@@ -111,6 +111,7 @@ pub struct CaseResult {
     pub uncertainty: Option<Uncertainty>,
     /// What a reader of the result must know.
     pub findings: Vec<Finding>,
+    pub(super) modal: bool,
     pub(super) recovery: Arc<OnceLock<Recovery>>,
     pub(super) nodal: OnceLock<Vec<Resultants>>,
 }
@@ -123,7 +124,7 @@ impl CaseResult {
 
     /// Whether this is a natural mode, which has a shape and no size.
     pub fn is_modal(&self) -> bool {
-        !self.frequencies.is_empty()
+        self.modal
     }
 
     /// Resultants at the nodes, found when first asked for.
@@ -303,6 +304,7 @@ impl PreparedCase<'_> {
             state,
             uncertainty,
             findings,
+            modal: matches!(case.analysis, Analysis::Modal { .. }),
             recovery: Arc::clone(&self.recovery),
             nodal: OnceLock::new(),
         };
@@ -413,10 +415,12 @@ fn buckles(case: &Case, directions: usize) -> Finding {
     Finding::new("S105", message).at(Place::file(&case.path))
 }
 
-/// A mode with a largest displacement of 1 m.
+/// A mode with a largest displacement of 1 m; of 1 rad if it has rotations only.
 fn of_unit_size(shape: &[f64]) -> Vec<f64> {
-    let translations = shape.chunks_exact(6).flat_map(|node| &node[..3]);
-    let largest = translations.fold(0.0f64, |m, v| m.max(v.abs()));
+    let size = |part: std::ops::Range<usize>| {
+        shape.chunks_exact(6).flat_map(|node| &node[part.clone()]).fold(0.0f64, |m, v| m.max(v.abs()))
+    };
+    let largest = if size(0..3) > 0.0 { size(0..3) } else { size(3..6) };
     shape.iter().map(|v| v / largest).collect()
 }
 

@@ -61,7 +61,8 @@ pub(super) fn follow_path(
     let mut balance = system.balance(&state, None);
     let mut progress = Progress::default();
     let (mut first, mut length, mut last) = (None, 0.0, Vec::new());
-    let start = arc.first.abs().min(longest_travel(system)).copysign(arc.first);
+    // The corrector may go beyond the first guess, and a turn that is too long is refused.
+    let mut start = arc.first.abs().min(0.5 * longest_travel(system)).copysign(arc.first);
     while progress.steps < arc.steps {
         let shortest = first.map_or(0.0, |f: f64| HALVINGS * f);
         match advance(system, &state, settings, start, length, &last) {
@@ -85,7 +86,13 @@ pub(super) fn follow_path(
             Err(failure) => {
                 progress.cut_back(&failure);
                 length *= 0.5;
-                if length <= shortest {
+                start *= 0.5;
+                let spent = if first.is_some() {
+                    length <= shortest
+                } else {
+                    start.abs() <= HALVINGS * arc.first.abs()
+                };
+                if spent {
                     return Err(failure.ends(progress.steps + 1, settings, state));
                 }
             }
