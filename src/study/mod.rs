@@ -4,9 +4,11 @@
 pub mod bending;
 mod build;
 mod case;
+mod checked;
 mod compare;
 mod drape;
 mod dynamics;
+mod limits;
 mod nonlinear;
 mod prepared;
 mod rigid;

@@ -5,9 +5,10 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::{Matrix2, Matrix3, Point3};
 
 use super::case::{Analysis, Case};
+use super::checked::expected;
 use super::dynamics::load_history;
+use super::limits::Extent;
 use super::nonlinear::way;
-use super::run::expected;
 use super::{StudyError, build, solver};
 use crate::fields::{Line, Locator, Recovery};
 use crate::mesh::QuadMesh;
@@ -30,6 +31,7 @@ pub struct PreparedCase<'a> {
     /// loads leave at rest.
     pub(super) all_groups: Option<Plan>,
     pub(super) probes: Vec<Locator>,
+    pub(super) extent: Extent,
     /// The middle line along x.
     pub(super) middle: Line,
     /// Made when a result first asks for it.
@@ -73,6 +75,7 @@ impl<'a> PreparedCase<'a> {
         let probes = locators(case, &model.mesh)?;
         let [from, to] = middle_line(&model.mesh);
         let middle = Line::new(&model.mesh, &from, &to, STEPS);
+        let extent = Extent::of(&model.mesh);
         Ok(Self {
             case,
             options: *options,
@@ -80,6 +83,7 @@ impl<'a> PreparedCase<'a> {
             plan,
             all_groups,
             probes,
+            extent,
             middle,
             recovery: Arc::default(),
         })

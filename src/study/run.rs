@@ -2,11 +2,12 @@
 
 use std::sync::{Arc, OnceLock};
 
-use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::case::{Analysis, Case, Check, Reference};
+use super::case::{Analysis, Case, Reference};
+use super::checked::check;
 use super::dynamics::{History, Large, dynamics, load_history, rayleigh};
+use super::limits::{Beyond, buckles, findings, is_compressed};
 use super::nonlinear::{LoadPath, equilibrium, largest_w};
 use super::uncertainty::{Uncertainty, linear_uncertainty, modal_uncertainty};
 use super::{PreparedCase, StudyError};
@@ -14,9 +15,8 @@ use crate::constitutive::{Constitutive, Input};
 use crate::element::Mass;
 use crate::fields::{Locator, ProbeValue, Recovery, Resultants};
 use crate::finding::{Finding, Place};
-use crate::mesh::{QuadMesh, normal};
 use crate::model::{Model, ModelError};
-use crate::quantity::{Curve, Unit, parse_quantity};
+use crate::quantity::Curve;
 use crate::section::{SheetLaw, ShellSection};
 use crate::solve::newmark;
 use crate::solve::nonlinear::{State, lost_directions};
@@ -183,26 +183,6 @@ impl Outcome {
     }
 }
 
-/// Above this ratio of deflection to bending thickness the sheet's own stretching carries part of
-/// the load: an immovable clamped square is 3 % off at 0.24 and 12 % off at 0.47 (von Karman
-/// solutions, ν = 0.316).
-const LINEAR_LIMIT: f64 = 0.3;
-
-/// Above this part of the size of the sheet a displacement in its plane is no small one: strains and turns are of
-/// that order, and what they neglect of its square.
-const DISPLACEMENT_LIMIT: f64 = 0.1;
-
-/// Compression below this part of the largest membrane force is that of rounding.
-const COMPRESSED: f64 = 1e-6;
-
-/// How a linear result is beyond its meaning.
-enum Beyond {
-    /// The displacement normal to the sheet (m) and its ratio to the bending thickness.
-    Deflection(f64, f64),
-    /// The displacement (m) and its ratio to the size of the sheet.
-    Displacement(f64, f64),
-}
-
 /// Solves a case that has a `[sheet]`, for one section; many sections share a [`PreparedCase`].
 ///
 /// # Errors
@@ -262,24 +242,16 @@ impl PreparedCase<'_> {
         let w = |n: usize| solution.displacement[6 * n + 2];
         let w_max =
             history.as_ref().map_or_else(|| largest_w(&model.mesh, &solution.displacement), |h| h.w_max);
-        let deflection = if history.is_some() || model.mesh.is_flat() {
-            w_max.abs()
-        } else {
-            largest_deflection(&model.mesh, &solution.displacement)
+        let deflection = match &history {
+            Some(_) => w_max.abs(),
+            None => self.extent.deflection(&model.mesh, &solution.displacement, w_max),
         };
         let w_over_thickness = deflection / model.section.bending_thickness_squared().sqrt();
-        let [low, high] = model.mesh.bounds();
-        let displacement = largest_displacement(&model.mesh, &solution.displacement);
-        let over_size = displacement / (high - low).norm();
         let is_linear = frequencies.is_empty() && state.is_none();
-        let beyond = if is_linear && w_over_thickness > LINEAR_LIMIT {
-            Some(Beyond::Deflection(deflection, w_over_thickness))
-        } else if is_linear && over_size > DISPLACEMENT_LIMIT {
-            Some(Beyond::Displacement(displacement, over_size))
-        } else {
-            None
-        };
-        let mut findings = findings(case, &model, beyond.as_ref());
+        let ratio = [deflection, w_over_thickness];
+        let beyond =
+            is_linear.then(|| Beyond::of(&model, &self.extent, &solution.displacement, ratio)).flatten();
+        let mut findings = findings(case, &model, &self.extent, beyond.as_ref());
         findings.extend(own);
         let status = match &path {
             Some(path) if !path.converged => Status::NotConverged,
@@ -310,7 +282,7 @@ impl PreparedCase<'_> {
         };
         if result.status == Status::Ok
             && matches!(case.analysis, Analysis::Linear {})
-            && is_compressed(&result)?
+            && is_compressed(&result, &self.extent)?
         {
             let lost = lost_directions(&result.model, &result.solution.displacement, &self.options)?;
             if lost > 0 {
@@ -390,31 +362,6 @@ fn analyse(
     }
 }
 
-/// Whether the sheet is pressed in its plane anywhere, beyond rounding.
-fn is_compressed(result: &CaseResult) -> Result<bool, StudyError> {
-    let (mesh, u) = (&result.model.mesh, &result.solution.displacement);
-    // Loads across a flat sheet leave its plane alone.
-    if mesh.is_flat() && u.chunks_exact(6).all(|u| u[0] == 0.0 && u[1] == 0.0) {
-        return Ok(false);
-    }
-    let principal = |[nx, ny, nxy]: [f64; 3]| {
-        let (mean, radius) = (0.5 * (nx + ny), (0.5 * (nx - ny)).hypot(nxy));
-        [mean - radius, mean + radius]
-    };
-    let forces = result.nodal()?.iter().map(|r| principal(r.membrane));
-    let [low, high] = forces.fold([0.0f64; 2], |[low, high], [a, b]| [low.min(a), high.max(b)]);
-    Ok(low < -COMPRESSED * high.max(-low))
-}
-
-fn buckles(case: &Case, directions: usize) -> Finding {
-    let message = format!(
-        "under these loads the sheet has lost its stiffness in {directions} direction(s): it buckles or wrinkles before, and the \
-         linear answer is that of a sheet that is kept from it; take [analysis] kind = \"nonlinear\" with method = \"flow\", or \
-         lower the load"
-    );
-    Finding::new("S105", message).at(Place::file(&case.path))
-}
-
 /// A mode with a largest displacement of 1 m; of 1 rad if it has rotations only.
 fn of_unit_size(shape: &[f64]) -> Vec<f64> {
     let size = |part: std::ops::Range<usize>| {
@@ -431,25 +378,6 @@ fn fewer_modes(case: &Case, found: usize, wanted: usize) -> Finding {
     Finding::new("S104", message).at(Place::file(&case.path))
 }
 
-/// The largest displacement of the sheet normal to itself (m).
-fn largest_deflection(mesh: &QuadMesh, displacement: &[f64]) -> f64 {
-    (0..mesh.quads.len())
-        .flat_map(|quad| {
-            let normal = normal(&mesh.corners(quad));
-            mesh.quads[quad].map(|n| translation(displacement, n).dot(&normal).abs())
-        })
-        .fold(0.0, f64::max)
-}
-
-/// The largest displacement of the sheet in any direction (m).
-fn largest_displacement(mesh: &QuadMesh, displacement: &[f64]) -> f64 {
-    mesh.quads.iter().flatten().map(|n| translation(displacement, *n).norm()).fold(0.0, f64::max)
-}
-
-fn translation(displacement: &[f64], node: u32) -> Vector3<f64> {
-    Vector3::from_column_slice(&displacement[6 * node as usize..][..3])
-}
-
 /// The mass matrix of a case: the key `mass`, or the older `lumped`.
 fn mass_choice(case: &Case, mass: Option<Mass>, lumped: Option<bool>) -> Result<Mass, StudyError> {
     match (mass, lumped) {
@@ -461,47 +389,6 @@ fn mass_choice(case: &Case, mass: Option<Mass>, lumped: Option<bool>) -> Result<
         (None, Some(true)) => Ok(Mass::Lumped),
         (None, None) => Ok(Mass::default()),
     }
-}
-
-fn findings(case: &Case, model: &Model, beyond: Option<&Beyond>) -> Vec<Finding> {
-    let mut findings = Vec::new();
-    let place = || Place::file(&case.path);
-    if let Some(beyond) = beyond {
-        let cure = match case.analysis {
-            Analysis::Newmark { .. } => {
-                "give [analysis] large_rotations = true for the true motion, or lower the load"
-            }
-            _ => {
-                "take [analysis] kind = \"nonlinear\" for the true shape, lower the load, or read the result as a \
-                 stiffness, not as a shape"
-            }
-        };
-        let message = match beyond {
-            Beyond::Deflection(w, ratio) => format!(
-                "the deflection of {w:.3e} m is {ratio:.2e} bending thicknesses: a linear solve is meaningful below {LINEAR_LIMIT} only; \
-                 {cure}"
-            ),
-            Beyond::Displacement(u, ratio) => format!(
-                "the displacement of {u:.3e} m is {ratio:.2e} of the size of the sheet: a linear solve is meaningful for small \
-                 ones, below {DISPLACEMENT_LIMIT}; {cure}"
-            ),
-        };
-        findings.push(Finding::new("S101", message).at(place()));
-    }
-    let nc = model.formulation.cells.count();
-    if nc == 1 {
-        let message = "one smoothing cell leaves spurious zero-energy modes: take subcells = 4";
-        findings.push(Finding::new("S102", message).at(place()));
-    }
-    if nc == 2 && model.section.d_b[(2, 2)] == 0.0 {
-        let message = "two smoothing cells with H = 0 leave a spurious mode: take subcells = 4";
-        findings.push(Finding::new("S102", message).at(place()));
-    }
-    if !model.mesh.is_flat() && matches!(model.formulation.drilling, crate::element::Drilling::Seed(_)) {
-        let message = "the seed's drilling spring strains rigid rotations of a curved sheet: take drilling = \"scaled\"";
-        findings.push(Finding::new("S103", message).at(place()));
-    }
-    findings
 }
 
 fn probes(case: &Case, locators: &[Locator], result: &CaseResult) -> Result<Vec<Probe>, StudyError> {
@@ -516,90 +403,4 @@ fn probes(case: &Case, locators: &[Locator], result: &CaseResult) -> Result<Vec<
         .zip(locators)
         .map(|(p, at)| Probe { name: p.name.clone(), at: p.at.map(|c| c.si()), value: value(at) })
         .collect())
-}
-
-/// The value of a quantity by name (SI), one of those that [`unit_of`] knows.
-fn lookup(quantity: &str, results: &CaseResult) -> Option<f64> {
-    match quantity {
-        "w_max" => return Some(results.w_max),
-        "strain_energy" => return Some(results.solution.strain_energy),
-        _ => {}
-    }
-    if let Some(number) = quantity.strip_prefix("frequency_") {
-        return results.frequencies.get(number.parse::<usize>().ok()?.checked_sub(1)?).copied();
-    }
-    let (name, component) = quantity.split_once('.')?;
-    let v = &results.probes.iter().find(|p| p.name == name)?.value;
-    match ["u", "v", "w", "theta_x", "theta_y", "theta_z"].iter().position(|c| *c == component) {
-        Some(k) if k < 3 => Some(v.u[k]),
-        Some(k) => Some(v.theta[k - 3]),
-        None => {
-            let k = Resultants::COMPONENTS.iter().position(|(name, _)| *name == component)?;
-            Some(v.resultants.components()[k])
-        }
-    }
-}
-
-/// SI unit of a quantity by name, if the case has it.
-fn unit_of(case: &Case, quantity: &str) -> Option<&'static str> {
-    let modes = if let Analysis::Modal { modes, .. } = case.analysis { modes } else { 0 };
-    match quantity {
-        "w_max" => return Some("m"),
-        "strain_energy" => return (modes == 0).then_some("J"),
-        _ => {}
-    }
-    if let Some(number) = quantity.strip_prefix("frequency_") {
-        return number.parse::<usize>().is_ok_and(|n| (1..=modes).contains(&n)).then_some("1/s");
-    }
-    let (name, component) = quantity.split_once('.')?;
-    case.probes.iter().find(|p| p.name == name)?;
-    let resultant = Resultants::COMPONENTS.iter().find(|(name, _)| *name == component);
-    match component {
-        "u" | "v" | "w" => Some("m"),
-        "theta_x" | "theta_y" | "theta_z" => Some("rad"),
-        _ => resultant.map(|(_, unit)| *unit),
-    }
-}
-
-/// The value that a check expects (SI), and its unit.
-///
-/// # Errors
-/// S003 for a quantity that the case does not have, or a value of another dimension.
-pub(super) fn expected(case: &Case, check: &Check) -> Result<(f64, &'static str), StudyError> {
-    let unit = unit_of(case, &check.quantity).ok_or_else(|| {
-        let names: Vec<&str> = case.probes.iter().map(|p| p.name.as_str()).collect();
-        case.inconsistent(format!(
-            "there is no quantity `{}` to check: take w_max, strain_energy, frequency_1 ..., or PROBE.COMPONENT with the probes [{}] and \
-             u v w theta_x theta_y theta_z moment_x moment_y moment_xy membrane_x membrane_y membrane_xy shear_x shear_y",
-            check.quantity,
-            names.join(", ")
-        ))
-    })?;
-    let (number, given) = parse_quantity(&check.expected, "3.1 mm")
-        .map_err(|e| case.inconsistent(format!("check of {}: {e}", check.quantity)))?;
-    if Unit::parse(unit).map(|u| u.dimension) != Ok(given.dimension) {
-        return Err(case.inconsistent(format!(
-            "check of {}: `{}` has the wrong dimension, it is in {unit}",
-            check.quantity, check.expected
-        )));
-    }
-    Ok((number * given.factor, unit))
-}
-
-fn check(case: &Case, check: &Check, results: &CaseResult) -> Result<CheckResult, StudyError> {
-    let (expected, unit) = expected(case, check)?;
-    let value = lookup(&check.quantity, results).ok_or_else(|| {
-        case.inconsistent(format!("the result has no {}: fewer modes were found", check.quantity))
-    })?;
-    let relative_error = (value - expected).abs() / expected.abs();
-    Ok(CheckResult {
-        quantity: check.quantity.clone(),
-        value,
-        expected,
-        unit,
-        relative_error,
-        relative_tolerance: check.relative_tolerance,
-        passed: relative_error <= check.relative_tolerance,
-        reference: check.reference.clone(),
-    })
 }

@@ -1,0 +1,97 @@
+//! `[[checks]]` of a case against its result.
+
+use super::StudyError;
+use super::case::{Analysis, Case, Check};
+use super::run::{CaseResult, CheckResult};
+use crate::fields::Resultants;
+use crate::quantity::{Unit, parse_quantity};
+
+/// The value of a quantity by name (SI), one of those that [`unit_of`] knows.
+fn lookup(quantity: &str, results: &CaseResult) -> Option<f64> {
+    match quantity {
+        "w_max" => return Some(results.w_max),
+        "strain_energy" => return Some(results.solution.strain_energy),
+        _ => {}
+    }
+    if let Some(number) = quantity.strip_prefix("frequency_") {
+        return results.frequencies.get(number.parse::<usize>().ok()?.checked_sub(1)?).copied();
+    }
+    let (name, component) = quantity.split_once('.')?;
+    let v = &results.probes.iter().find(|p| p.name == name)?.value;
+    match ["u", "v", "w", "theta_x", "theta_y", "theta_z"].iter().position(|c| *c == component) {
+        Some(k) if k < 3 => Some(v.u[k]),
+        Some(k) => Some(v.theta[k - 3]),
+        None => {
+            let k = Resultants::COMPONENTS.iter().position(|(name, _)| *name == component)?;
+            Some(v.resultants.components()[k])
+        }
+    }
+}
+
+/// SI unit of a quantity by name, if the case has it.
+fn unit_of(case: &Case, quantity: &str) -> Option<&'static str> {
+    let modes = if let Analysis::Modal { modes, .. } = case.analysis { modes } else { 0 };
+    match quantity {
+        "w_max" => return Some("m"),
+        "strain_energy" => return (modes == 0).then_some("J"),
+        _ => {}
+    }
+    if let Some(number) = quantity.strip_prefix("frequency_") {
+        return number.parse::<usize>().is_ok_and(|n| (1..=modes).contains(&n)).then_some("1/s");
+    }
+    let (name, component) = quantity.split_once('.')?;
+    case.probes.iter().find(|p| p.name == name)?;
+    let resultant = Resultants::COMPONENTS.iter().find(|(name, _)| *name == component);
+    match component {
+        "u" | "v" | "w" => Some("m"),
+        "theta_x" | "theta_y" | "theta_z" => Some("rad"),
+        _ => resultant.map(|(_, unit)| *unit),
+    }
+}
+
+/// The value that a check expects (SI), and its unit.
+///
+/// # Errors
+/// S003 for a quantity that the case does not have, or a value of another dimension.
+pub(super) fn expected(case: &Case, check: &Check) -> Result<(f64, &'static str), StudyError> {
+    let unit = unit_of(case, &check.quantity).ok_or_else(|| {
+        let names: Vec<&str> = case.probes.iter().map(|p| p.name.as_str()).collect();
+        case.inconsistent(format!(
+            "there is no quantity `{}` to check: take w_max, strain_energy, frequency_1 ..., or PROBE.COMPONENT with the probes [{}] and \
+             u v w theta_x theta_y theta_z moment_x moment_y moment_xy membrane_x membrane_y membrane_xy shear_x shear_y",
+            check.quantity,
+            names.join(", ")
+        ))
+    })?;
+    let (number, given) = parse_quantity(&check.expected, "3.1 mm")
+        .map_err(|e| case.inconsistent(format!("check of {}: {e}", check.quantity)))?;
+    if Unit::parse(unit).map(|u| u.dimension) != Ok(given.dimension) {
+        return Err(case.inconsistent(format!(
+            "check of {}: `{}` has the wrong dimension, it is in {unit}",
+            check.quantity, check.expected
+        )));
+    }
+    Ok((number * given.factor, unit))
+}
+
+/// A check of the case with its outcome.
+///
+/// # Errors
+/// See [`expected`].
+pub(super) fn check(case: &Case, check: &Check, results: &CaseResult) -> Result<CheckResult, StudyError> {
+    let (expected, unit) = expected(case, check)?;
+    let value = lookup(&check.quantity, results).ok_or_else(|| {
+        case.inconsistent(format!("the result has no {}: fewer modes were found", check.quantity))
+    })?;
+    let relative_error = (value - expected).abs() / expected.abs();
+    Ok(CheckResult {
+        quantity: check.quantity.clone(),
+        value,
+        expected,
+        unit,
+        relative_error,
+        relative_tolerance: check.relative_tolerance,
+        passed: relative_error <= check.relative_tolerance,
+        reference: check.reference.clone(),
+    })
+}
