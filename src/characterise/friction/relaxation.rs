@@ -1,9 +1,10 @@
 //! Stress that dies away with time, beside a law that knows no time.
 //!
 //! A strip that is drawn fast and turned loses force while its clamps still part. Quasi-linear viscoelasticity
-//! (Fung, *Biomechanics* 1981, article 7.6) adds `Σ g_k ∫ exp(-(t - s)/τ_k) dq(e(s))` to the stress: q is the
-//! curve of loading, so that relaxation grows with the load as friction does. With the times given it is linear in
-//! the weights, which are found with those of the law and are not below zero either.
+//! (Fung, *Biomechanics: Mechanical Properties of Living Tissues*, 1981, chapter 7) adds
+//! `Σ g_k ∫ exp(-(t - s)/τ_k) dq(e(s))` to the stress: q is the curve of loading, so that relaxation grows with the
+//! load as friction does. With the times given it is linear in the weights, which are found with those of the law and
+//! are not below zero either.
 
 use serde::Serialize;
 
