@@ -78,7 +78,7 @@ impl Failure {
     /// Why a fabric has no section; some of these errors name the fabric themselves.
     pub fn of_fabric(error: ConstitutiveError, name: &str) -> Self {
         let failure = Self::from(error);
-        if failure.message.contains(name) { failure } else { failure.of(name) }
+        if failure.message.starts_with(&format!("{name} ")) { failure } else { failure.of(name) }
     }
 
     /// The row of `problems.csv`.

@@ -242,10 +242,8 @@ impl File {
             }
         }
         let mut taken = HashSet::new();
-        let edges: Vec<[u32; 2]> = (mesh.quads.iter())
-            .flat_map(|q| (0..4).map(move |i| [q[i], q[(i + 1) % 4]]))
-            .filter(|&[a, b]| taken.insert([a.min(b), a.max(b)]))
-            .collect();
+        let edges: Vec<[u32; 2]> =
+            mesh.edges().filter(|&[a, b]| taken.insert([a.min(b), a.max(b)])).collect();
         for (name, lines) in self.lines {
             let on_line = |[a, b]: &[u32; 2]| {
                 let [a, b] = [kept[*a as usize], kept[*b as usize]];

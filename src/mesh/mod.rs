@@ -11,7 +11,6 @@ use thiserror::Error;
 
 pub use generate::{annulus, disc, distorted, graded_annulus, rectangle};
 pub use gmsh::parse_gmsh;
-pub use orient::Opposed;
 
 use crate::finding::Place;
 
@@ -173,14 +172,18 @@ impl QuadMesh {
         })
     }
 
+    /// The four edges of every quad in turn, each counter-clockwise along it.
+    fn edges(&self) -> impl Iterator<Item = [u32; 2]> {
+        self.quads.iter().flat_map(|q| (0..4).map(move |i| [q[i], q[(i + 1) % 4]]))
+    }
+
     /// Edges that belong to one quad only, in quad order, each counter-clockwise along its quad.
     pub fn boundary_edges(&self) -> Vec<[u32; 2]> {
-        let edges = || self.quads.iter().flat_map(|q| (0..4).map(move |i| [q[i], q[(i + 1) % 4]]));
         let mut uses: HashMap<[u32; 2], u32> = HashMap::new();
-        for [a, b] in edges() {
+        for [a, b] in self.edges() {
             *uses.entry([a.min(b), a.max(b)]).or_default() += 1;
         }
-        edges().filter(|&[a, b]| uses[&[a.min(b), a.max(b)]] == 1).collect()
+        self.edges().filter(|&[a, b]| uses[&[a.min(b), a.max(b)]] == 1).collect()
     }
 
     /// The edges of a set that was given as lines; of another, the boundary edges both of whose nodes lie in it.
@@ -225,15 +228,17 @@ impl QuadMesh {
             }
             self.check_shape(quad)?;
         }
-        let mut seen = HashMap::with_capacity(self.quads.len());
-        for (quad, nodes) in self.quads.iter().enumerate() {
+        let sorted = |(quad, nodes): (usize, &[u32; 4])| {
             let mut nodes = *nodes;
             nodes.sort_unstable();
-            if let Some(first) = seen.insert(nodes, quad) {
-                return Err(MeshError::Twice { quads: [first, quad] });
-            }
+            (nodes, quad)
+        };
+        let mut quads: Vec<_> = self.quads.iter().enumerate().map(sorted).collect();
+        quads.sort_unstable();
+        if let Some(twice) = quads.windows(2).find(|w| w[0].0 == w[1].0) {
+            return Err(MeshError::Twice { quads: [twice[0].1, twice[1].1] });
         }
-        if let Some(Opposed { quads }) = self.opposed() {
+        if let Some(quads) = self.opposed() {
             return Err(MeshError::Opposed { quads });
         }
         if let Some(node) = used.iter().position(|u| !u) {

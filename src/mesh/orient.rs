@@ -1,45 +1,36 @@
 //! Which side of a quad is up: the same for neighbours.
 
-use std::collections::HashMap;
-
 use super::QuadMesh;
 
-/// Two quads that run along a common edge the same way, so that their normals point to different sides.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Opposed {
-    /// The quads.
-    pub quads: [usize; 2],
-}
-
-/// The quads at each edge, with whether they run along it from the lower to the higher node.
-fn sides(quads: &[[u32; 4]]) -> HashMap<[u32; 2], Vec<(usize, bool)>> {
-    let mut sides: HashMap<[u32; 2], Vec<(usize, bool)>> = HashMap::with_capacity(2 * quads.len());
-    for (quad, nodes) in quads.iter().enumerate() {
-        for i in 0..4 {
-            let (a, b) = (nodes[i], nodes[(i + 1) % 4]);
-            sides.entry([a.min(b), a.max(b)]).or_default().push((quad, a < b));
-        }
-    }
-    sides
-}
+/// An edge, lower node first, with a quad that has it and whether that runs along it from the lower node.
+type Side = ([u32; 2], usize, bool);
 
 impl QuadMesh {
-    /// Neighbours whose normals point to different sides, the first in quad order. Edges at which more than two
+    /// The sides of all quads; those of an edge follow each other.
+    fn sides(&self) -> Vec<Side> {
+        let side = |(k, [a, b]): (usize, [u32; 2])| ([a.min(b), a.max(b)], k / 4, a < b);
+        let mut sides: Vec<Side> = self.edges().enumerate().map(side).collect();
+        sides.sort_unstable();
+        sides
+    }
+
+    /// Two neighbours whose normals point to different sides, the first in quad order. Edges at which more than two
     /// quads meet tell nothing.
-    pub fn opposed(&self) -> Option<Opposed> {
-        let found = sides(&self.quads).into_values().filter_map(|at| match at[..] {
-            [(a, way), (b, other)] if way == other => Some([a, b]),
+    pub fn opposed(&self) -> Option<[usize; 2]> {
+        let sides = self.sides();
+        let found = sides.chunk_by(|a, b| a.0 == b.0).filter_map(|at| match *at {
+            [(_, a, way), (_, b, other)] if way == other => Some([a, b]),
             _ => None,
         });
-        found.min().map(|quads| Opposed { quads })
+        found.min()
     }
 
     /// Turns quads over until neighbours agree: each connected part to the side of most of its quads. A part that has
     /// but one side, such as a Möbius strip, keeps two quads that are [`opposed`](Self::opposed).
     pub fn orient(&mut self) {
         let mut neighbours: Vec<Vec<(usize, bool)>> = vec![Vec::new(); self.quads.len()];
-        for at in sides(&self.quads).into_values() {
-            if let [(a, way), (b, other)] = at[..] {
+        for at in self.sides().chunk_by(|a, b| a.0 == b.0) {
+            if let [(_, a, way), (_, b, other)] = *at {
                 neighbours[a].push((b, way == other));
                 neighbours[b].push((a, way == other));
             }

@@ -20,6 +20,11 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// Whether any group is solved by iteration.
+    pub fn iterates(&self) -> bool {
+        !self.iterated.is_empty()
+    }
+
     /// Rows of the equations of a model: those of all of its groups, held ones included.
     pub fn rows(&self, model: &Model) -> usize {
         self.groups.iter().map(|(group, _)| group.dofs().len() * model.mesh.nodes.len()).sum()
