@@ -40,6 +40,7 @@ pub fn solution(task: &Task, result: &CaseResult, timings: bool) -> Value {
             "reactions": result.has_reactions().then(|| [sum(0), sum(1), sum(2)]),
             "strain_energy": (!result.is_modal()).then_some(s.strain_energy),
             "frequencies": result.frequencies,
+            "convergence": result.convergence,
             "uncertainty": match task.sampling() {
                 Some(sampling) => Some(sampled::entry(sampling, "")),
                 None => result.uncertainty.as_ref().map(uncertainty),

@@ -9,6 +9,7 @@ mod characterise;
 mod check;
 mod compare;
 mod completions;
+mod convergence;
 mod diagnostics;
 mod drape;
 mod effort;

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
+use super::convergence;
 use super::diagnostics::Failure;
 use super::drape;
 use super::entry::solution;
@@ -116,7 +117,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     Ok(Exit::of_batch(useful + draped.len(), &failures).unless(unmet || strict))
 }
 
-/// Deflections, then frequencies, probes, histories, searches and checks; with `verbose` every step of a search; last, why a
+/// Deflections, then frequencies, probes, what the mesh leaves open, histories, searches and checks; with `verbose` every step of a search; last, why a
 /// deflection has no band.
 fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
     let mut table =
@@ -154,7 +155,9 @@ fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
     }
     let checks = checks(solved.iter().map(|(_, r)| *r));
     let every = if verbose { steps(solved) } else { None };
-    let parts = [Some(table), Some(modes), Some(probes), histories(solved), searches(solved), every, checks];
+    let meshes = convergence::table(solved);
+    let parts =
+        [Some(table), Some(modes), Some(probes), meshes, histories(solved), searches(solved), every, checks];
     let parts = parts.into_iter().flatten().filter(|t| !t.is_empty()).map(|t| t.text());
     parts.chain(without_band(solved)).collect::<Vec<_>>().join("\n")
 }

@@ -5,10 +5,12 @@
 
 mod edge;
 mod element;
+mod extrapolation;
 mod probe;
 mod recovery;
 
 pub use edge::edge_moments;
+pub use extrapolation::Extrapolation;
 pub use probe::{Line, Locator, ProbeValue};
 
 use crate::element::Vector24;

@@ -7,7 +7,7 @@ use crate::fields::Resultants;
 use crate::quantity::{Unit, parse_quantity};
 
 /// The value of a quantity by name (SI), one of those that [`unit_of`] knows.
-fn lookup(quantity: &str, results: &CaseResult) -> Option<f64> {
+pub(super) fn lookup(quantity: &str, results: &CaseResult) -> Option<f64> {
     match quantity {
         "w_max" => return Some(results.w_max),
         "strain_energy" => return Some(results.solution.strain_energy),
@@ -29,7 +29,7 @@ fn lookup(quantity: &str, results: &CaseResult) -> Option<f64> {
 }
 
 /// SI unit of a quantity by name, if the case has it.
-fn unit_of(case: &Case, quantity: &str) -> Option<&'static str> {
+pub(super) fn unit_of(case: &Case, quantity: &str) -> Option<&'static str> {
     let modes = if let Analysis::Modal { modes, .. } = case.analysis { modes } else { 0 };
     match quantity {
         "w_max" => return Some("m"),

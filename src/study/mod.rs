@@ -6,6 +6,7 @@ mod build;
 mod case;
 mod checked;
 mod compare;
+mod convergence;
 mod drape;
 mod dynamics;
 mod limits;
@@ -25,10 +26,12 @@ use thiserror::Error;
 
 pub use build::{formulation, model, section};
 pub use case::{
-    Analysis, BendingKind, BendingTest, Case, CaseError, Check, MethodChoice, NonlinearTable, ProbeTable,
-    Reference, ReferenceKind, SectionTable, Shape, Sheet, TestFormulation, UncertaintyTable, VirtualTest,
+    Analysis, BendingKind, BendingTest, Case, CaseError, Check, ConvergenceTable, MethodChoice,
+    NonlinearTable, ProbeTable, Reference, ReferenceKind, SectionTable, Shape, Sheet, TestFormulation,
+    UncertaintyTable, VirtualTest,
 };
 pub use compare::{Comparison, compare_curves, measured_curve};
+pub use convergence::{Convergence, MeshSeries};
 pub use drape::{Drape, DrapeState, Folds, drape, drape_stages, measured_drape};
 pub use dynamics::History;
 pub use nonlinear::{LoadPath, PathStep};

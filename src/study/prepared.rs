@@ -4,8 +4,9 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::{Matrix2, Matrix3, Point3};
 
-use super::case::{Analysis, Case};
+use super::case::{Analysis, Case, Sheet};
 use super::checked::expected;
+use super::convergence::Convergence;
 use super::dynamics::load_history;
 use super::limits::Extent;
 use super::nonlinear::way;
@@ -36,6 +37,8 @@ pub struct PreparedCase<'a> {
     pub(super) middle: Line,
     /// Made when a result first asks for it.
     pub(super) recovery: Arc<OnceLock<Recovery>>,
+    /// The case on coarser meshes, coarsest first.
+    pub(super) coarser: Vec<Self>,
 }
 
 /// Steps of the profile along the middle line.
@@ -53,6 +56,13 @@ impl<'a> PreparedCase<'a> {
             );
         };
         let options = &solver::options(case, options)?;
+        let coarser = Convergence::coarser(case);
+        let coarser = coarser.iter().map(|sheet| Self::on(case, sheet, options)).collect::<Result<_, _>>()?;
+        Ok(Self { coarser, ..Self::on(case, sheet, options)? })
+    }
+
+    /// The case on the mesh of a sheet.
+    fn on(case: &'a Case, sheet: &Sheet, options: &Options) -> Result<Self, StudyError> {
         let model = build::model(case, sheet, stand_in())?;
         let all = Plan::all_groups(&model, options);
         let groups = match &case.analysis {
@@ -86,6 +96,7 @@ impl<'a> PreparedCase<'a> {
             extent,
             middle,
             recovery: Arc::default(),
+            coarser: Vec::new(),
         })
     }
 

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::case::{Analysis, Case, Reference};
 use super::checked::check;
+use super::convergence::Convergence;
 use super::dynamics::{History, Large, dynamics, load_history, rayleigh};
 use super::limits::{Beyond, buckles, findings, is_compressed};
 use super::nonlinear::{LoadPath, equilibrium, largest_w};
@@ -109,6 +110,8 @@ pub struct CaseResult {
     pub state: Option<State>,
     /// How certain the results are; of a linear or modal analysis with measured inputs only.
     pub uncertainty: Option<Uncertainty>,
+    /// What the mesh leaves open in the results; of a case with `[convergence]` only.
+    pub convergence: Option<Convergence>,
     /// What a reader of the result must know.
     pub findings: Vec<Finding>,
     pub(super) modal: bool,
@@ -225,6 +228,40 @@ impl PreparedCase<'_> {
         inputs: &[Input],
     ) -> Result<CaseResult, StudyError> {
         let case = self.case;
+        let mut result = self.results(section, law, inputs)?;
+        // A mesh that is too large to factorise is not examined, and the result stands where that cannot be done.
+        let examined = matches!(case.analysis, Analysis::Linear {}) && !self.plan.iterates();
+        if result.status == Status::Ok && examined && is_compressed(&result, &self.extent)? {
+            let lost = lost_directions(&result.model, &result.solution.displacement, &self.options);
+            if let Some(lost) = lost.ok().filter(|n| *n > 0) {
+                result.status = Status::BeyondLinear;
+                result.findings.push(buckles(case, lost));
+            }
+        }
+        if !self.coarser.is_empty() {
+            let section = &result.model.section;
+            let on = |coarser: &Self| coarser.results(section.clone(), law, &[]);
+            let coarser = self.coarser.iter().map(on).collect::<Result<Vec<_>, _>>()?;
+            let meshes: Vec<&CaseResult> = coarser.iter().chain([&result]).collect();
+            let convergence = Convergence::of(case, &meshes)?;
+            result.findings.extend(convergence.finding(case));
+            result.convergence = Some(convergence);
+        }
+        result.checks = case.checks.iter().map(|c| check(case, c, &result)).collect::<Result<_, _>>()?;
+        if result.status != Status::NotConverged && result.checks.iter().any(|c| !c.passed) {
+            result.status = Status::CheckFailed;
+        }
+        Ok(result)
+    }
+
+    /// What the mesh of this case gives, not yet checked.
+    fn results(
+        &self,
+        section: ShellSection,
+        law: Option<&SheetLaw>,
+        inputs: &[Input],
+    ) -> Result<CaseResult, StudyError> {
+        let case = self.case;
         let model = self.model(section);
         let Outcome { solution, frequencies, modes: shapes, history, path, state, kept, findings: own } =
             analyse(self, &model, law)?;
@@ -275,25 +312,13 @@ impl PreparedCase<'_> {
             path,
             state,
             uncertainty,
+            convergence: None,
             findings,
             modal: matches!(case.analysis, Analysis::Modal { .. }),
             recovery: Arc::clone(&self.recovery),
             nodal: OnceLock::new(),
         };
-        // A mesh that is too large to factorise is not examined, and the result stands where that cannot be done.
-        let examined = matches!(case.analysis, Analysis::Linear {}) && !self.plan.iterates();
-        if result.status == Status::Ok && examined && is_compressed(&result, &self.extent)? {
-            let lost = lost_directions(&result.model, &result.solution.displacement, &self.options);
-            if let Some(lost) = lost.ok().filter(|n| *n > 0) {
-                result.status = Status::BeyondLinear;
-                result.findings.push(buckles(case, lost));
-            }
-        }
         result.probes = probes(case, &self.probes, &result)?;
-        result.checks = case.checks.iter().map(|c| check(case, c, &result)).collect::<Result<_, _>>()?;
-        if result.status != Status::NotConverged && result.checks.iter().any(|c| !c.passed) {
-            result.status = Status::CheckFailed;
-        }
         Ok(result)
     }
 }

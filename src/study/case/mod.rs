@@ -3,6 +3,7 @@
 mod analysis;
 mod bending_test;
 mod check;
+mod convergence;
 mod element;
 mod error;
 mod loads;
@@ -29,6 +30,7 @@ use crate::quantity::parse_quantity;
 pub use analysis::{Analysis, MethodChoice, NonlinearTable};
 pub use bending_test::{BendingKind, BendingTest};
 pub use check::{Check, ProbeTable, Reference, ReferenceKind};
+pub use convergence::ConvergenceTable;
 pub use element::{DrillingChoice, ElementTable, MembraneChoice, Profile, Subcells};
 pub use error::CaseError;
 pub use loads::{LoadTable, SupportKind, SupportTable};
@@ -81,6 +83,8 @@ pub struct Case {
     pub analysis: Analysis,
     /// Bands by scrambled Sobol points of the measured inputs; none when left out.
     pub uncertainty: Option<UncertaintyTable>,
+    /// What the mesh leaves open, by coarser meshes; not asked when left out.
+    pub convergence: Option<ConvergenceTable>,
     /// How the equations are solved.
     #[serde(default)]
     pub solver: SolverTable,
@@ -159,6 +163,9 @@ impl Case {
         if let Some(table) = &self.uncertainty {
             let problem = table.contradiction().or_else(|| self.against_sampling());
             problem.map_or(Ok(()), refuse)?;
+        }
+        if let Some(problem) = self.convergence.and_then(|table| table.contradiction(self)) {
+            return refuse(&problem);
         }
         if self.assumptions.law != Mode::Elastic {
             let large = match &self.virtual_test {

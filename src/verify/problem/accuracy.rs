@@ -5,6 +5,7 @@ use serde::Deserialize;
 use super::super::{Function, VerifyError};
 use super::Statics;
 use super::plate::PlateProblem;
+use crate::fields::Extrapolation;
 
 /// Slope of the error of a plate in a log-log plot, from `n` to `2 n` elements.
 #[derive(Clone, Debug, Deserialize)]
@@ -43,6 +44,30 @@ impl Deviation {
     pub fn value(&self, statics: &mut Statics) -> Result<f64, VerifyError> {
         let (value, exact) = both(&self.plate, self.exact, statics)?;
         Ok(100.0 * (value - exact) / exact)
+    }
+}
+
+/// A plate on meshes of which each halves the elements of the next, and what its values approach.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Extrapolated {
+    /// The plate on its finest mesh.
+    plate: PlateProblem,
+}
+
+impl Extrapolated {
+    /// The value on elements of no size, from three meshes; not a number where there is none.
+    pub fn value(&self, statics: &mut Statics) -> Result<(f64, [f64; 2]), VerifyError> {
+        let coarse = self.plate.coarsened();
+        let plates = [&coarse.coarsened(), &coarse, &self.plate];
+        let taken = plates.map(|p| p.value(statics)).into_iter().collect::<Result<Vec<_>, _>>()?;
+        let values: Vec<f64> = taken.iter().map(|(value, _)| *value).collect();
+        Ok((Extrapolation::of(&values).map_or(f64::NAN, |e| e.value), taken[2].1))
+    }
+
+    /// The analytical value at a point.
+    pub fn exact(&self, function: Function, at: [f64; 2]) -> Option<f64> {
+        self.plate.exact(function, at)
     }
 }
 

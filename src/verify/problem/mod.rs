@@ -32,6 +32,8 @@ pub enum Problem {
     Convergence(accuracy::Convergence),
     /// Error of a plate.
     Deviation(accuracy::Deviation),
+    /// What a plate approaches on ever finer meshes.
+    Extrapolated(accuracy::Extrapolated),
     /// Constant states on an irregular mesh.
     Patch(patch::Patch),
     /// Motions of one element that cost no energy.
@@ -67,6 +69,7 @@ impl Problem {
     pub(super) fn value(&self, statics: &mut Statics) -> Result<(f64, [f64; 2]), VerifyError> {
         let value = match self {
             Self::Plate(p) => return p.value(statics),
+            Self::Extrapolated(p) => return p.value(statics),
             Self::Convergence(p) => p.value(statics),
             Self::Deviation(p) => p.value(statics),
             Self::Patch(p) => p.value(statics),
@@ -91,6 +94,7 @@ impl Problem {
     pub(super) fn exact(&self, function: Function, at: [f64; 2]) -> Option<f64> {
         match self {
             Self::Plate(p) => p.exact(function, at),
+            Self::Extrapolated(p) => p.exact(function, at),
             Self::Strip(p) => p.exact(function),
             _ => None,
         }

@@ -117,6 +117,11 @@ impl PlateProblem {
         Self { n: 2 * self.n, ..self.clone() }
     }
 
+    /// The same on elements twice as large.
+    pub fn coarsened(&self) -> Self {
+        Self { n: self.n / 2, ..self.clone() }
+    }
+
     /// The value, and the coordinates of the node at which it was taken.
     pub fn value(&self, statics: &mut Statics) -> Result<(f64, [f64; 2]), VerifyError> {
         let model = self.model()?;

@@ -1,0 +1,265 @@
+//! What the mesh leaves open in a result: the case on coarser meshes, and what its values approach.
+
+use serde::Serialize;
+
+use super::StudyError;
+use super::case::{Analysis, Case, Sheet};
+use super::checked::{lookup, unit_of};
+use super::run::CaseResult;
+use crate::fields::{Extrapolation, Resultants};
+use crate::finding::{Finding, Place};
+use crate::model::Dof;
+
+/// A case on its own mesh and on coarser ones.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Convergence {
+    /// `cells` of the meshes, coarsest first.
+    pub cells: Vec<[usize; 2]>,
+    /// The results, as in the checks of a case, less those that are 0 by symmetry or not solved for.
+    pub quantities: Vec<MeshSeries>,
+}
+
+/// One result on each mesh.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MeshSeries {
+    /// `w_max`, `PROBE.w`, `strain_energy`, `frequency_1` ...
+    pub quantity: String,
+    /// SI unit of the values.
+    pub unit: &'static str,
+    /// Its values, coarsest mesh first.
+    pub values: Vec<f64>,
+    /// What they approach.
+    pub extrapolation: Extrapolation,
+    /// The largest value of its kind in the whole sheet, on the finest mesh.
+    #[serde(skip)]
+    size: f64,
+}
+
+/// A value is 0 below this part of the largest of its kind in the sheet.
+const ROUNDING: f64 = 1e-9;
+/// A value below this part of the largest of its kind in the sheet is not warned of.
+const SMALL: f64 = 0.01;
+/// Part of a value that the mesh may leave open without a warning.
+const COARSE: f64 = 0.05;
+
+impl Convergence {
+    /// The coarser sheets of a case, coarsest first; none without `[convergence]`.
+    pub(super) fn coarser(case: &Case) -> Vec<Sheet> {
+        let (Some(table), Some(sheet)) = (case.convergence, &case.sheet) else { return Vec::new() };
+        let halved =
+            |times: u32| Sheet { cells: sheet.cells.map(|c| c.map(|n| n >> times)), ..sheet.clone() };
+        (1..table.meshes).rev().map(halved).collect()
+    }
+
+    /// From the results on the meshes, coarsest first.
+    ///
+    /// # Errors
+    /// M008 if the warp direction is normal to an element.
+    pub(super) fn of(case: &Case, results: &[&CaseResult]) -> Result<Self, StudyError> {
+        let sheets = Self::coarser(case);
+        let cells = sheets.iter().chain(&case.sheet).filter_map(|s| s.cells).collect();
+        let sizes = results.last().map_or(Ok(Sizes::default()), |finest| Sizes::of(finest))?;
+        let series = |quantity: String| {
+            let values: Vec<f64> = results.iter().filter_map(|r| lookup(&quantity, r)).collect();
+            let (unit, finest) = (unit_of(case, &quantity)?, values.last()?.abs());
+            let size = sizes.like(&quantity).unwrap_or(finest);
+            // A coarse mesh may have fewer modes.
+            let told = values.len() == results.len() && finest > ROUNDING * size;
+            let extrapolation = Extrapolation::of(&values).filter(|_| told)?;
+            Some(MeshSeries { quantity, unit, values, extrapolation, size })
+        };
+        Ok(Self { cells, quantities: names(case).into_iter().filter_map(series).collect() })
+    }
+
+    /// The series of a quantity.
+    pub fn get(&self, quantity: &str) -> Option<&MeshSeries> {
+        self.quantities.iter().find(|q| q.quantity == quantity)
+    }
+
+    /// What the mesh leaves too open.
+    pub(super) fn finding(&self, case: &Case) -> Option<Finding> {
+        let open = |q: &&MeshSeries| q.left() > COARSE && q.finest().abs() > SMALL * q.size;
+        let open: Vec<String> = (self.quantities.iter().filter(open))
+            .map(|q| format!("{} (± {:.1} %)", q.quantity, 100.0 * q.left()))
+            .collect();
+        (!open.is_empty()).then(|| {
+            let message = format!("the mesh is coarse for {}: take more `cells`", open.join(", "));
+            Finding::new("S106", message).at(Place::file(&case.path))
+        })
+    }
+}
+
+impl MeshSeries {
+    /// The value on the finest mesh.
+    pub fn finest(&self) -> f64 {
+        self.values.last().copied().unwrap_or(f64::NAN)
+    }
+
+    /// Part of the value on the finest mesh by which it may be off: the grid convergence index.
+    pub fn left(&self) -> f64 {
+        self.extrapolation.index / self.finest().abs()
+    }
+}
+
+/// The largest values in a sheet.
+#[derive(Default)]
+struct Sizes {
+    /// Displacement (m) and rotation (rad).
+    motion: [f64; 2],
+    /// Membrane force (N/m), moment (N), shear force (N/m).
+    resultants: [f64; 3],
+}
+
+impl Sizes {
+    fn of(result: &CaseResult) -> Result<Self, StudyError> {
+        let largest = |values: &[f64], size: f64| values.iter().fold(size, |m, v| m.max(v.abs()));
+        let mut sizes = Self::default();
+        if result.is_modal() {
+            return Ok(sizes);
+        }
+        for node in result.solution.displacement.chunks_exact(6) {
+            let [u, theta] = sizes.motion;
+            sizes.motion = [largest(&node[..3], u), largest(&node[3..], theta)];
+        }
+        for r in result.nodal()? {
+            let [n, m, q] = sizes.resultants;
+            sizes.resultants = [largest(&r.membrane, n), largest(&r.moment, m), largest(&r.shear, q)];
+        }
+        Ok(sizes)
+    }
+
+    /// The largest of the kind of a probe's value; `None` for other results.
+    fn like(&self, quantity: &str) -> Option<f64> {
+        let (_, component) = quantity.split_once('.')?;
+        let kind = component.split('_').next()?;
+        Some(match kind {
+            "membrane" => self.resultants[0],
+            "moment" => self.resultants[1],
+            "shear" => self.resultants[2],
+            "theta" => self.motion[1],
+            _ => self.motion[0],
+        })
+    }
+}
+
+/// The results of a case by name.
+fn names(case: &Case) -> Vec<String> {
+    if let Analysis::Modal { modes, .. } = case.analysis {
+        return (1..=modes).map(|k| format!("frequency_{k}")).collect();
+    }
+    let components = || {
+        let dofs = Dof::ALL.into_iter().map(Dof::name);
+        dofs.chain(Resultants::COMPONENTS.into_iter().map(|(name, _)| name))
+    };
+    let of_probe =
+        |p: &super::ProbeTable| components().map(|c| format!("{}.{c}", p.name)).collect::<Vec<_>>();
+    let all = ["w_max".to_string(), "strain_energy".to_string()];
+    all.into_iter().chain(case.probes.iter().flat_map(of_probe)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::solve::Options;
+    use crate::study::{build, solve_case};
+
+    /// A clamped square of side 1 m, D = 1 N·m, nu = 0.3, t = 1 mm, under 1 mPa.
+    const SQUARE: &str = r#"
+title = "t"
+[section]
+tensile_warp = "10.92e6 N/m"
+tensile_weft = "10.92e6 N/m"
+poisson = 0.3
+shear = "4.2e6 N/m"
+bending_warp = "1 N·m"
+bending_weft = "1 N·m"
+bending_coupling = "0.3 N·m"
+torsion = "0.35 N·m"
+transverse_shear = "3.5e6 N/m"
+areal_density = "1 kg/m²"
+thickness = "1 mm"
+[sheet]
+shape = "rectangle"
+width = "1 m"
+height = "1 m"
+cells = [CELLS, CELLS]
+[[supports]]
+set = "boundary"
+kind = "clamped"
+"#;
+
+    const PRESSED: &str = r#"
+[[loads]]
+kind = "pressure"
+value = "0.001 Pa"
+[[probes]]
+name = "centre"
+at = ["0.5 m", "0.5 m"]
+[[probes]]
+name = "edge"
+at = ["0 m", "0.5 m"]
+"#;
+
+    fn case(cells: usize, more: &str) -> Case {
+        let text = format!("{}{more}", SQUARE.replace("CELLS", &cells.to_string()));
+        Case::parse(Path::new("c.toml"), &text).unwrap()
+    }
+
+    fn solved(case: &Case) -> CaseResult {
+        let section = build::section(case.section.as_ref().unwrap()).unwrap();
+        solve_case(case, section, &Options::default()).unwrap()
+    }
+
+    /// The meshes are those of cases of their own, and the index holds the distance to the series of
+    /// superposition, which is eight times smaller after extrapolation, and more.
+    #[test]
+    fn coarser_meshes_tell_the_error_of_the_finest() {
+        let result = solved(&case(16, &format!("{PRESSED}[convergence]\nmeshes = 3\n")));
+        let found = result.convergence.as_ref().unwrap();
+        assert_eq!(found.cells, [[4, 4], [8, 8], [16, 16]]);
+        let w = found.get("centre.w").unwrap();
+        for (value, cells) in w.values.iter().zip([4, 8, 16]) {
+            assert_eq!(*value, solved(&case(cells, PRESSED)).probes[0].value.u[2], "{cells}");
+        }
+        for (quantity, exact) in [("centre.w", 1.26531908748e-6), ("centre.moment_x", 2.29050907842e-5)] {
+            let series = found.get(quantity).unwrap();
+            let error = |v: f64| (v - exact).abs() / exact;
+            assert!(error(series.finest()) < series.left(), "{quantity}");
+            assert!(5.0 * error(series.extrapolation.value) < error(series.finest()), "{quantity}");
+        }
+        // By symmetry there is no rotation at the centre, and on the edge nothing moves at all.
+        let absent = ["centre.theta_x", "centre.shear_y", "edge.w", "centre.membrane_x", "edge.moment_xy"];
+        assert!(absent.iter().all(|q| found.get(q).is_none()));
+        assert!(found.get("edge.moment_x").is_some() && found.get("strain_energy").is_some());
+        assert!(result.findings.iter().all(|f| f.code != "S106"));
+    }
+
+    #[test]
+    fn frequencies_of_which_a_coarse_mesh_has_none_are_left_out_and_coarse_ones_told() {
+        let result =
+            solved(&case(8, "[analysis]\nkind = \"modal\"\nmodes = 12\n[convergence]\nmeshes = 3\n"));
+        let found = result.convergence.as_ref().unwrap();
+        // 2 x 2 elements have one free node: three displacements, three modes across the sheet and two in it.
+        assert!(found.quantities.len() < 12 && found.get("frequency_1").is_some());
+        let coarse = result.findings.iter().find(|f| f.code == "S106").unwrap();
+        assert!(coarse.message.contains("frequency_2 ("), "{}", coarse.message);
+    }
+
+    #[test]
+    fn what_has_no_coarser_meshes_is_refused() {
+        let refused = |cells: usize, more: &str, why: &str| {
+            let text = format!("{}{more}", SQUARE.replace("CELLS", &cells.to_string()));
+            let e = Case::parse(Path::new("c.toml"), &text).unwrap_err();
+            assert!(e.code() == "S003" && e.to_string().contains(why), "{e}");
+        };
+        let with = |more: &str| format!("{PRESSED}{more}");
+        refused(18, &with("[convergence]\n"), "multiples of 4");
+        refused(16, &with("[convergence]\nmeshes = 4\n"), "take 2 or 3");
+        refused(16, &with("[convergence]\n[analysis]\nkind = \"nonlinear\"\n"), "linear and modal");
+        let file = SQUARE.replace("cells = [CELLS, CELLS]", "cells = [16, 16]\ndistortion = 0.2");
+        let e = Case::parse(Path::new("c.toml"), &format!("{file}{PRESSED}[convergence]\n")).unwrap_err();
+        assert!(e.to_string().contains("distorted"), "{e}");
+    }
+}
