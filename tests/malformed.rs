@@ -69,6 +69,7 @@ const CASES: &[(&str, &str, &str)] = &[
     ("K034", "k030-fab.json", "k030-fab.json"),
     ("K040", "k021-thickness", "k021-thickness"),
     ("K041", "k041-falling-loop.csv", "k041-falling-loop.csv"),
+    ("K042", "k042-widths", "k042-widths"),
 ];
 
 /// Codes that no file can trigger, because reading refuses it or sets it right before; programs

@@ -7,6 +7,10 @@ use super::{Branch, CycleChoice, Settings, Window, branch};
 use crate::instrument::Parameter;
 use crate::quantity::Curve;
 
+/// Part of the abscissa where the drive turned up to which a width is read: nearer to the turn the yarns have not slid
+/// back yet, and at the turn itself every loop has no width.
+const TURNED: f64 = 0.9;
+
 /// What is read from the loop.
 struct Readings {
     /// The mean slope of both sides.
@@ -80,7 +84,7 @@ fn evaluate(
     }
     slopes(&mut e, &sides, readings, settings, notes);
     for &(parameter, at) in &readings.widths {
-        width(&mut e, &sides, (parameter, at), notes);
+        width(&mut e, &sides, (parameter, at), readings.units[0], notes);
     }
     for side in sides.iter().flatten() {
         let observed = side.out.x.iter().copied().map(f64::abs).fold(0.0, f64::max);
@@ -168,17 +172,26 @@ fn width(
     e: &mut Evaluation,
     sides: &[Option<Side>; 2],
     (parameter, at): (Parameter, f64),
+    unit: &str,
     notes: &mut Notes<'_>,
 ) {
     let mut found = Vec::new();
     for side in sides.iter().flatten() {
         let x = side.sign * at;
+        let place = if side.sign > 0.0 { "positive" } else { "negative" };
+        let mut missing = |why: &str| notes.missing(&format!("{parameter} on the {place} side"), why);
         let (Some(out), Some(back)) = (side.out.at(x), side.back.at(x)) else {
-            let place = if side.sign > 0.0 { "positive" } else { "negative" };
-            notes
-                .missing(&format!("{parameter} on the {place} side"), "the loop does not cover its abscissa");
+            missing("the loop does not cover its abscissa");
             continue;
         };
+        let turn = side.out.x.iter().fold(0.0f64, |far, x| far.max(x.abs()));
+        if at > TURNED * turn {
+            let [read, turn] = [at, turn].map(|x| in_unit(x, unit));
+            missing(&format!(
+                "the loop turns at {turn}, too near to {read} for the yarns to have slid back there"
+            ));
+            continue;
+        }
         found.push(side.sign * (out - back));
         e.windows.push(Window { parameter, from: x, to: x, ordinates: [out.min(back), out.max(back)] });
     }

@@ -55,9 +55,14 @@ pub fn characterise(input: &FabricInput, settings: &Settings) -> FabricSheet {
         info: input.info.clone(),
         specimens,
         sources: input.sources.clone(),
+        settings: settings.clone(),
         findings,
         ..Default::default()
     };
+    for specimen in sheet.specimens.iter().rev() {
+        let m = &specimen.measurement;
+        sheet.run_to.insert((m.test, m.direction), specimen.conditions());
+    }
     statistics::pool(&mut sheet);
     let mut found = statistics::outliers(&sheet, settings);
     found.extend(statistics::swapped(&sheet));

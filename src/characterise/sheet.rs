@@ -4,10 +4,12 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{FrictionLaw, LineFit, Strip};
+use super::{FrictionLaw, LineFit, Settings, Strip};
 use crate::finding::Finding;
 use crate::instrument::fab::FabTest;
-use crate::instrument::{Direction, FabricInfo, Measurement, Parameter, Source};
+use crate::instrument::{
+    Conditions, Direction, FabricInfo, Measurement, Parameter, Source, Test, standard_conditions,
+};
 use crate::quantity::{Curve, Estimate};
 
 /// A parameter in a direction (`None`: the fabric as a whole).
@@ -83,10 +85,27 @@ pub struct FabricSheet {
     pub laws: Vec<FrictionLaw>,
     /// Bend tests of FAB strips as recorded, in file order.
     pub bend_tests: Vec<FabTest>,
+    /// How the values were evaluated.
+    pub settings: Settings,
+    /// What each test was run to, of the first specimen; see [`conditions`](Self::conditions).
+    pub run_to: BTreeMap<(Test, Option<Direction>), Conditions>,
     /// Files behind the sheet.
     pub sources: Vec<Source>,
     /// What a reader of the sheet must know.
     pub findings: Vec<Finding>,
+}
+
+impl SpecimenResult {
+    /// The conditions of the test; the maximum is the set one, or what the record reaches if that is less.
+    pub fn conditions(&self) -> Conditions {
+        let m = &self.measurement;
+        let by_strain = matches!(m.test, Test::Shear | Test::Bending);
+        let driven = |b: &Branch| if by_strain { b.curve.x.clone() } else { b.curve.y.clone() };
+        let reached = self.branches.iter().flat_map(driven).fold(0.0f64, |far, v| far.max(v.abs()));
+        let set = m.conditions.maximum;
+        let maximum = if set.is_finite() && set > 0.0 { set.min(reached) } else { reached };
+        Conditions { maximum, ..m.conditions.clone() }
+    }
 }
 
 impl FabricSheet {
@@ -95,6 +114,19 @@ impl FabricSheet {
     /// A directional parameter for which only a fabric mean is known is found under `None`.
     pub fn get(&self, parameter: Parameter, direction: Option<Direction>) -> Option<&Estimate> {
         self.values.get(&Key { parameter, direction })
+    }
+
+    /// The conditions under which a test was run, and a simulated one is to be: those of the first specimen, whose
+    /// maximum is what its record reaches; the customary ones where no record is known.
+    pub fn conditions(&self, test: Test, direction: Option<Direction>) -> Conditions {
+        self.run_to.get(&(test, direction)).cloned().unwrap_or_else(|| {
+            let standard = standard_conditions(test);
+            let maximum = match test {
+                Test::Tensile => self.settings.table_maximum.si(),
+                _ => standard.maximum,
+            };
+            Conditions { maximum, ..standard }
+        })
     }
 
     /// Whether anything could be evaluated.

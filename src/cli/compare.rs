@@ -10,7 +10,7 @@ use super::diagnostics::Failure;
 use super::entry::comparison;
 use super::output::Columns;
 use super::sampled;
-use super::task::{Task, TaskArgs, Tested};
+use super::task::{Task, TaskArgs, Tested, findings};
 use super::tree::Tree;
 use super::{Exit, Ui, each};
 use crate::instrument::Test;
@@ -75,6 +75,9 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         .collect();
     let bent: Vec<(&Task, &BendingResult)> =
         done.iter().filter_map(|(task, outcome)| Some((*task, outcome.bent.as_ref()?))).collect();
+    for (fabric, finding) in findings(results.iter().map(|(task, _)| task)) {
+        ui.diagnostics.finding_of(Some(&fabric), &finding);
+    }
     for (task, _) in &done {
         let findings = task.sampling().into_iter().flat_map(|s| &s.findings);
         findings.for_each(|f| ui.diagnostics.finding_of(task.fabric_name(), f));

@@ -109,11 +109,15 @@ pub fn predictions(task: &Task, d: &Drape) -> Vec<PredictionRow> {
         simulated_high: None,
     };
     let [low, high] = d.band();
+    let nodes = task.fabric.and_then(|sheet| {
+        let of_nodes = sheet.info.results.iter().find(|r| r.quantity == "drape_nodes")?;
+        of_nodes.value.parse::<f64>().ok()
+    });
     vec![
         row("drape_coefficient", d.finest.coefficient, measured),
         row("drape_coefficient_least", low, None),
         row("drape_coefficient_greatest", high, None),
-        row("drape_nodes", d.finest.folds.count as f64, None),
+        row("drape_nodes", d.finest.folds.count as f64, nodes),
     ]
 }
 
@@ -144,7 +148,7 @@ pub fn point(task: &Task, d: &Drape) -> Option<DrapePoint> {
     let point = ParityPoint {
         label: task.fabric_name()?.into(),
         group: format!("{}, {}", law(task), origin(task)),
-        quantity: "Drape coefficient".into(),
+        quantity: format!("Drape coefficient, {}", law(task)),
         unit: "%".into(),
         measured: 100.0 * measured,
         measured_half_width: None,

@@ -23,10 +23,10 @@ pub fn text(sheet: &FabricSheet, units: UnitSystem) -> String {
             Basis::AssumedSpectrum => "assumed spectrum".into(),
         };
         let direction = law.direction.map_or("", Direction::name);
-        let fit = law
-            .fit
-            .as_ref()
-            .map(|f| [f.fitted.nrmse, f.fitted.line_nrmse, f.noise, f.fitted.loop_energy].map(percent));
+        let fit = law.fit.as_ref().map(|f| {
+            let of = [Some(f.fitted.nrmse), Some(f.fitted.line_nrmse), Some(f.noise), f.fitted.loop_energy];
+            of.map(|v| v.map_or("-".into(), percent))
+        });
         laws.row(
             [law.test.name().into(), direction.into(), basis].into_iter().chain(fit.unwrap_or_default()),
         );
@@ -40,7 +40,7 @@ pub fn text(sheet: &FabricSheet, units: UnitSystem) -> String {
             r.key.direction.map_or("", Direction::name).into(),
             significant(ours / factor),
             significant(theirs / factor),
-            percent(ours / theirs - 1.0),
+            if theirs == 0.0 { "-".into() } else { percent(ours / theirs - 1.0) },
             unit.to_string(),
         ]);
     }

@@ -13,7 +13,7 @@ use super::entry::solution;
 use super::output::Columns;
 use super::sampled;
 use super::search::{is_unconverged, searches, steps, unconverged};
-use super::task::{Task, TaskArgs};
+use super::task::{Task, TaskArgs, findings};
 use super::tree::Tree;
 use super::{Exit, Ui, each, effort};
 use crate::quantity::significant;
@@ -78,6 +78,10 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         results.iter().filter_map(|(t, r)| Some((t, r.as_ref().ok()?))).collect();
     let draped: Vec<(&Task, &Drape)> =
         draped.iter().filter_map(|(t, r)| Some((t, r.as_ref().ok()?))).collect();
+    let all = || results.iter().map(|(t, _)| t).chain(draped.iter().map(|(t, _)| *t));
+    for (fabric, finding) in findings(all()) {
+        ui.diagnostics.finding_of(Some(&fabric), &finding);
+    }
     for (task, result) in &solved {
         let findings = result.findings.iter().filter(|f| !is_unconverged(f));
         findings.for_each(|f| ui.diagnostics.finding_of(task.fabric_name(), f));
@@ -85,7 +89,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     for (task, drape) in &draped {
         drape.findings.iter().for_each(|f| ui.diagnostics.finding_of(task.fabric_name(), f));
     }
-    for task in results.iter().map(|(t, _)| t).chain(draped.iter().map(|(t, _)| *t)) {
+    for task in all() {
         let sampling = task.sampling().into_iter().flat_map(|s| &s.findings);
         sampling.for_each(|f| ui.diagnostics.finding_of(task.fabric_name(), f));
     }

@@ -1,5 +1,6 @@
 //! A case together with the fabric it is for: what solve, compare and run have in common.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
@@ -216,6 +217,24 @@ impl Work {
         );
         (!names.is_empty()).then(|| Finding::new("S118", text).at(Place::file(&case.path)))
     }
+}
+
+/// What is known of the fabrics of tasks, and of the sections that were made of them, each thing once.
+pub fn findings<'a>(tasks: impl Iterator<Item = &'a Task<'a>>) -> Vec<(String, Finding)> {
+    let mut told = BTreeSet::new();
+    let mut all = Vec::new();
+    for task in tasks {
+        let Some(sheet) = task.fabric else { continue };
+        let uses_section = !task.case.is_for_fab_records()
+            && task.case.virtual_test.as_ref().is_none_or(|t| t.test != Test::Compression);
+        let made = if uses_section { task.section().ok().and_then(|(_, made)| made) } else { None };
+        for finding in sheet.findings.iter().chain(made.iter().flat_map(|c| &c.findings)) {
+            if told.insert((sheet.name.clone(), finding.clone())) {
+                all.push((sheet.name.clone(), finding.clone()));
+            }
+        }
+    }
+    all
 }
 
 impl Task<'_> {

@@ -13,6 +13,7 @@ use super::task::{Task, TaskArgs, Tested};
 use crate::characterise::FabricSheet;
 use crate::constitutive::Constitutive;
 use crate::instrument::{Origin, Parameter, Test};
+use crate::law::Mode;
 use crate::quantity::Curve;
 use crate::report::OutputFolder;
 use crate::report::chart::{self, ChartError, FieldPlot, SimulatedCurve};
@@ -163,7 +164,12 @@ fn curves<'a>(
     tested
         .filter(|t| t.simulated.test == test && !t.curve.is_empty())
         .map(|t| SimulatedCurve {
-            label: if t.simulated.cycle.is_some() { "with friction" } else { "simulated" }.into(),
+            label: match t.simulated.cycle.as_ref().map(|c| c.mode) {
+                None => "simulated",
+                Some(Mode::Virgin) => "first loading with friction",
+                Some(_) => "with friction",
+            }
+            .into(),
             direction: t.simulated.direction,
             curve: t.curve.clone(),
             rmse: t.comparison.as_ref().map(|c| c.rmse),

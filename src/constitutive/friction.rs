@@ -7,6 +7,9 @@
 //! | γ_xy | of KES-FB1 shear along the warp, else along the weft; linear without |
 //! | ε_x, ε_y | linear: the slope of the section; their laws are for the simulated tension test only |
 //!
+//! The law of a specimen is brought to what the section and the sheet have: B and G of the section, 2HB and the mean
+//! of 2HG of the sheet ([`FrictionLaw::with_values`]), so that elastic and friction are of one fabric.
+//!
 //! A structure has no zero error and no jaws that let go, so the laws pass through the origin and
 //! hold to both sides. Bending has both faces in its law, as the loop of FB2 has.
 
@@ -27,23 +30,30 @@ pub(super) fn law(
     if mode == Mode::Elastic {
         return Ok(None);
     }
-    let either = |first, second| {
-        let sheet: &FabricSheet = notes.sheet;
-        let of = |test, direction| sheet.law(test, Some(direction));
-        move |test| of(test, first).or_else(|| of(test, second))
-    };
-    let (along, across) =
-        (either(Direction::Warp, Direction::Weft), either(Direction::Weft, Direction::Warp));
-    let shear = along(Test::Shear);
+    let sheet: &FabricSheet = notes.sheet;
+    let [warp, weft] = [Direction::Warp, Direction::Weft];
+    let either = |test, first, second| sheet.law(test, Some(first)).or_else(|| sheet.law(test, Some(second)));
+    let shear = either(Test::Shear, warp, weft);
     // Inputs of the laws alone; B and G are those of the section.
     let mut widths = vec![];
-    let (bending, from) = match (along(Test::Bending), across(Test::Bending)) {
-        (Some(warp), Some(weft)) => {
-            widths = vec![(Parameter::Hb, warp.direction), (Parameter::Hb, weft.direction)];
-            ([warp.channel.centred(), weft.channel.centred()], source(warp))
+    let (bending, from) = match (either(Test::Bending, warp, weft), either(Test::Bending, weft, warp)) {
+        (Some(along), Some(across)) => {
+            widths = vec![(Parameter::Hb, along.direction), (Parameter::Hb, across.direction)];
+            let d = section.d_b;
+            ([of_fabric(along, d[(0, 0)], sheet), of_fabric(across, d[(1, 1)], sheet)], source(along))
         }
         _ => (stand_in(section, assumptions, notes)?, "assumed: residual_curvature".to_string()),
     };
+    // The warp and the weft test measure one shear, as for G.
+    let shears: Vec<Option<Direction>> = [Some(warp), Some(weft)]
+        .into_iter()
+        .filter(|d| shear.is_some() && sheet.get(Parameter::Hg, *d).is_some())
+        .collect();
+    let shear = shear.map(|law| {
+        let width = shears.iter().filter_map(|d| sheet.get(Parameter::Hg, *d)).map(|e| e.mean).sum::<f64>();
+        let width = (!shears.is_empty()).then(|| width / shears.len() as f64);
+        (law.with_values(Some(section.d_m[(2, 2)]), width).centred(), source(law))
+    });
     let couples = bending.each_ref().map(Channel::couple);
     let value = format!("warp {} N, weft {} N", significant(couples[0]), significant(couples[1]));
     notes.used("friction couple of bending", value, from);
@@ -52,23 +62,28 @@ pub(super) fn law(
         .map_err(|source| ConstitutiveError::Law { fabric, source })?;
     let value = format!("{} N", significant(twist.as_ref().map_or(0.0, Channel::couple)));
     notes.used("friction couple of twist", value, "assumed: in proportion to D66");
-    match shear {
-        Some(law) => {
-            let value = format!("{} N/m", significant(law.channel.couple()));
-            notes.used("friction of shear", value, source(law));
+    match &shear {
+        Some((law, from)) => {
+            let value = format!("{} N/m", significant(law.couple()));
+            notes.used("friction of shear", value, from.as_str());
         }
         None => notes.used("friction of shear", "none", "assumed: no shear loop and no 2HG"),
     }
-    widths.extend(shear.map(|law| (Parameter::Hg, law.direction)));
+    widths.extend(shears.into_iter().map(|d| (Parameter::Hg, d)));
     widths.dedup();
     for (parameter, direction) in widths {
         notes.origin_value(parameter, direction, &[]);
     }
     let [x, y] = bending;
-    let channels = [None, None, shear.map(|l| l.channel.centred()), Some(x), Some(y), twist];
+    let channels = [None, None, shear.map(|(law, _)| law), Some(x), Some(y), twist];
     let fabric = notes.sheet.name.clone();
     let law = SheetLaw::new(mode, channels).checked(section);
     law.map(Some).map_err(|source| ConstitutiveError::Section { fabric, source })
+}
+
+/// The law of bending with the rigidity `b` (N·m), and with the 2HB that the sheet has along it.
+fn of_fabric(law: &FrictionLaw, b: f64, sheet: &FabricSheet) -> Channel {
+    law.with_values(Some(b), sheet.get(Parameter::Hb, law.direction).map(|e| e.mean)).centred()
 }
 
 /// Laws of bending along warp and weft with the residual curvature that is assumed.
@@ -98,19 +113,19 @@ fn stand_in(
     }
 }
 
-/// The laws of `ε_x, ε_y` from the tests of tension, to both sides, and nowhere softer than 1e-4 of
+/// The laws of `ε_x, ε_y` from the tests of tension, with the mean WT, to both sides, and nowhere softer than 1e-4 of
 /// their greatest tangent: cloth that is not stretched yet hardly resists, and a shell cannot do
 /// without. The stress at strain 0 stays: it is the slack of the specimen. `None` where there is no law.
 pub fn tension(sheet: &FabricSheet) -> [Option<Channel>; 2] {
     let firm = |direction| {
-        let law = sheet.law(Test::Tensile, Some(direction))?;
-        let backbone = law.channel.backbone();
+        let law = sheet.mean_law(Test::Tensile, Some(direction))?;
+        let backbone = law.backbone();
         let knots: Vec<f64> = backbone.knots().collect();
         let least = 1e-4 * backbone.tangents().fold(0.0, f64::max);
         let tangents: Vec<f64> = backbone.tangents().map(|t| t.max(least)).collect();
         // Greater tangents at the same knots, and the same sliders: a law if the first one was.
         let backbone = Backbone::new(backbone.offset(), &knots, &tangents).ok()?;
-        Channel::new(backbone, law.channel.families().to_vec(), false).ok()
+        Channel::new(backbone, law.families().to_vec(), false).ok()
     };
     [firm(Direction::Warp), firm(Direction::Weft)]
 }
@@ -135,7 +150,7 @@ fn twist(bending: &[Channel; 2], [b1, b2, h]: [f64; 3]) -> Result<Option<Channel
 
 fn source(law: &FrictionLaw) -> String {
     match law.basis {
-        Basis::Loop => format!("measured: loop of specimen {}", law.specimen),
+        Basis::Loop => format!("measured: loop of specimen {}, with the means of the fabric", law.specimen),
         Basis::Strip => "measured: cycle of a strip".into(),
         Basis::AssumedSpectrum => "measured: width of the loop; assumed: how friction begins".into(),
     }

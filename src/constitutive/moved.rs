@@ -1,8 +1,8 @@
 //! A fabric at other values of its inputs, for results that are no linear function of them.
 
 use super::{Assumptions, Input, SectionDerivative};
-use crate::characterise::{Basis, FabricSheet, FrictionLaw, Key};
-use crate::instrument::{Direction, Parameter, Test};
+use crate::characterise::{FabricSheet, Key};
+use crate::instrument::{Direction, Parameter};
 use crate::quantity::{ArealDensity, Estimate, Length, LineForce};
 
 /// Where the value of an input stands.
@@ -22,9 +22,8 @@ pub enum Standing {
     Shear,
 }
 
-/// The sheet and the assumptions with `values` (SI) in place of those of the inputs. Friction laws follow: their
-/// backbones in proportion to B and G, their sliders in proportion to 2HB and 2HG, tensile laws as a whole
-/// in proportion to WT.
+/// The sheet and the assumptions with `values` (SI) in place of those of the inputs. Friction laws follow, as they are
+/// brought to the values of the sheet where they are used ([`FabricSheet::mean_law`]).
 pub fn moved(
     sheet: &FabricSheet,
     assumptions: &Assumptions,
@@ -35,11 +34,7 @@ pub fn moved(
     for (input, &value) in inputs.iter().zip(values) {
         let set = |estimate: &mut Estimate| estimate.mean = value;
         match &input.standing {
-            Standing::Value(key) => {
-                sheet.values.get_mut(key).into_iter().for_each(set);
-                let factor = value / input.estimate.mean;
-                sheet.laws.iter_mut().for_each(|law| follow(law, *key, factor));
-            }
+            Standing::Value(key) => sheet.values.get_mut(key).into_iter().for_each(set),
             Standing::Modulus(name, direction) => {
                 sheet.moduli.get_mut(&(name.clone(), *direction)).into_iter().for_each(set);
             }
@@ -56,22 +51,6 @@ pub fn moved(
         }
     }
     (sheet, assumptions)
-}
-
-fn follow(law: &mut FrictionLaw, key: Key, factor: f64) {
-    if law.direction != key.direction || law.basis == Basis::Strip {
-        return;
-    }
-    let (backbone, sliders) = match (law.test, key.parameter) {
-        (Test::Bending, Parameter::B) | (Test::Shear, Parameter::G) => (factor, 1.0),
-        (Test::Bending, Parameter::Hb) | (Test::Shear, Parameter::Hg) => (1.0, factor),
-        (Test::Tensile, Parameter::Wt) => (factor, factor),
-        _ => return,
-    };
-    // A positive factor makes no law wrong.
-    if let Ok(channel) = law.channel.scaled(backbone, sliders) {
-        law.channel = channel;
-    }
 }
 
 /// A parameter as inputs that only friction laws follow: 2HB of a cantilever, WT of a simulated tension test.

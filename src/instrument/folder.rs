@@ -12,7 +12,7 @@ use super::error::{Problem, ReadError};
 use super::read::{FileContent, ReadSettings, read};
 use super::{FabricInfo, FabricInput, Inference, MeasuredResult, Origin, ResultValue};
 use crate::finding::{Finding, Place};
-use crate::quantity::{ArealDensity, Length};
+use crate::quantity::{ArealDensity, Length, Ratio};
 
 /// The fabrics of a batch, and what could not be read.
 #[derive(Clone, Debug, Default)]
@@ -156,9 +156,23 @@ pub fn read_fabrics(inputs: &[PathBuf], settings: &ReadSettings, progress: &(dyn
     Batch { fabrics, failures }
 }
 
+/// What keeps a measured result from being compared with anything.
+fn unusable(result: &MeasuredResult) -> Option<String> {
+    let MeasuredResult { quantity, value, .. } = result;
+    let wrong = match quantity.as_str() {
+        "drape_coefficient" => value.parse::<Ratio>().err().map(|e| e.to_string()),
+        "bending_length" => value.parse::<Length>().err().map(|e| e.to_string()),
+        "drape_nodes" => value.parse::<f64>().err().map(|_| format!("`{value}` is not a number")),
+        _ => Some(
+            "only drape_coefficient, drape_nodes and bending_length are compared with predictions".into(),
+        ),
+    };
+    wrong.map(|why| format!("the measured result `{quantity}` is left out: {why}"))
+}
+
 fn without_fabric_file(path: &Path) -> Finding {
-    Finding::new("R101", "there is no fabric.toml: origin, weave and areal density are not known")
-        .at(Place::file(path))
+    let message = "there is no fabric.toml: the data count as measured, and of weave, areal density and source is known what the files say";
+    Finding::new("R101", message).at(Place::file(path))
 }
 
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, ReadError> {
@@ -271,6 +285,9 @@ fn group(
             notes: file.notes,
             results: file.results,
         };
+        let place = || Place::file(folder.join("fabric.toml"));
+        findings
+            .extend(info.results.iter().filter_map(unusable).map(|m| Finding::new("R104", m).at(place())));
     } else {
         findings.push(without_fabric_file(folder));
     }

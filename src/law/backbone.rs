@@ -150,6 +150,16 @@ impl Backbone {
         Self::new(0.0, &knots, &tangents).unwrap_or_else(|_| self.with_offset(0.0))
     }
 
+    /// The same stresses at strains multiplied by a factor.
+    ///
+    /// # Errors
+    /// M020 for a factor that is not above zero and finite.
+    pub fn stretched(&self, factor: f64) -> Result<Self, LawError> {
+        let knots: Vec<f64> = self.knots().map(|k| k * factor).collect();
+        let tangents: Vec<f64> = self.tangents().map(|t| t / factor).collect();
+        Self::new(self.offset(), &knots, &tangents)
+    }
+
     /// The same curve with other stress at strain 0: without the set or zero error of a record, say.
     pub fn with_offset(&self, offset: f64) -> Self {
         let change = offset - self.offset();

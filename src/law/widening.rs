@@ -67,6 +67,15 @@ impl Widening {
         }
     }
 
+    /// The same at strains multiplied by a factor.
+    pub(super) fn stretched(&self, factor: f64) -> Result<Self, LawError> {
+        Ok(match self {
+            Self::Constant => Self::Constant,
+            Self::Quadratic { alpha, e_max } => Self::Quadratic { alpha: *alpha, e_max: e_max * factor },
+            Self::Loading(curve) => Self::Loading(curve.stretched(factor)?),
+        })
+    }
+
     /// Greatest derivative of `q`.
     pub(super) fn steepest(&self) -> f64 {
         match self {

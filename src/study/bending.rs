@@ -44,10 +44,11 @@ pub fn simulate_strips(
 ) -> Result<BendingResult, StudyError> {
     let width = spec.width.map(Length::si);
     let both = [Direction::Warp, Direction::Weft].into_iter();
-    let law = |direction| sheet.law(Test::Bending, Some(direction)).map(|law| &law.channel);
+    let law = |direction| sheet.mean_law(Test::Bending, Some(direction));
     match (spec.test, spec.length) {
         (BendingKind::Cantilever, _) => Ok(BendingResult::Cantilever(
-            both.map(|d| cantilever(section, d, law(d), width, spec.cells)).collect::<Result<_, _>>()?,
+            both.map(|d| cantilever(section, d, law(d).as_ref(), width, spec.cells))
+                .collect::<Result<_, _>>()?,
         )),
         (BendingKind::HeartLoop, Some(length)) => Ok(BendingResult::HeartLoop(
             both.map(|d| heart_loop(section, d, length.si(), width, spec.cells)).collect::<Result<_, _>>()?,

@@ -355,6 +355,8 @@ fn without_records(sheet: &FabricSheet) -> FabricSheet {
         values: sheet.values.clone(),
         moduli: sheet.moduli.clone(),
         laws: sheet.laws.clone(),
+        settings: sheet.settings.clone(),
+        run_to: sheet.run_to.clone(),
         ..FabricSheet::default()
     }
 }

@@ -1,10 +1,12 @@
 //! The whole cycle of an instrument, simulated with a shell that has friction.
 //!
-//! | test | drive | cycle | the moving clamp |
+//! | test | drive | cycle, where no record goes elsewhere | the moving clamp |
 //! |---|---|---|---|
 //! | bending | rotation | 0, +2.5, -2.5, 0 1/cm | rigid, free to follow the arc |
 //! | shear | displacement along the clamps | 0, +8, -8, 0 deg | rigid, free to approach |
 //! | tension | force | 0, 500 gf/cm, 0 | rigid, moves straight away |
+//!
+//! The conditions are those of the fabric's own records, and the parameters are read with the settings of its sheet.
 //!
 //! Shear and tension keep the sheet in its plane, as its own pretension does in the instrument;
 //! that pretension itself (10 gf/cm in shear, which adds W tan φ to the force) is left out.
@@ -21,8 +23,8 @@ use super::{StudyError, build};
 use crate::characterise::{FabricSheet, Settings as Evaluation, parameters};
 use crate::constitutive::{Constitutive, tension};
 use crate::element::Formulation;
-use crate::instrument::{Direction, Parameter, Test, standard_conditions};
-use crate::law::Channel;
+use crate::instrument::{Conditions, Direction, Parameter, Test};
+use crate::law::{Channel, Mode};
 use crate::mesh;
 use crate::model::{Dof, Load, Model, RigidBody, Support};
 use crate::quantity::Curve;
@@ -41,6 +43,8 @@ pub struct VirtualLoop {
     pub test: Test,
     /// Direction of the specimen.
     pub direction: Direction,
+    /// What the friction of the sheet did.
+    pub mode: Mode,
     /// The record, from the start to the end of the cycle.
     pub record: Curve,
     /// Its KES parameters, by the evaluation that instrument files go through (SI).
@@ -102,11 +106,18 @@ pub fn simulate_cycle(
         (law.channels[0], law.channels[1]) = (x, y);
     }
     let formulation = build::formulation(case)?;
-    simulate_loop(spec, formulation, direction, &made.section, &law, &Evaluation::default(), options)
+    let mut conditions = sheet.conditions(spec.test, Some(direction));
+    if let (Test::Bending, Some(curvature)) = (spec.test, spec.curvature) {
+        conditions.maximum = curvature.si();
+    }
+    let run = (&conditions, &sheet.settings);
+    simulate_loop(spec, formulation, direction, &made.section, &law, run, options)
 }
 
 /// Simulates the cycle of a specimen cut along `direction`; `None` for compression, which a shell does not
 /// have.
+///
+/// The cycle goes to the maximum of the conditions; the parameters are those of the evaluation.
 ///
 /// In tension the coupling of warp and weft is left out where `law` replaces both: the laws are those
 /// of specimens that were clamped as this one is. Across the pull nothing is clamped, so that the law there has
@@ -120,18 +131,15 @@ pub fn simulate_loop(
     direction: Direction,
     section: &ShellSection,
     law: &SheetLaw,
-    evaluation: &Evaluation,
+    (conditions, evaluation): (&Conditions, &Evaluation),
     options: &Options,
 ) -> Result<Option<VirtualLoop>, StudyError> {
     if spec.test == Test::Compression {
         return Ok(None);
     }
-    let mut conditions = standard_conditions(spec.test);
-    if let (Test::Bending, Some(curvature)) = (spec.test, spec.curvature) {
-        conditions.maximum = curvature.si();
-    }
     let (gauge, maximum) = (conditions.gauge, conditions.maximum);
     let (mut section, mut law) = (section.clone(), law.clone());
+    let mode = law.mode;
     if spec.test == Test::Tensile {
         if law.channels[0].is_some() && law.channels[1].is_some() {
             (section.d_m[(0, 1)], section.d_m[(1, 0)]) = (0.0, 0.0);
@@ -166,8 +174,15 @@ pub fn simulate_loop(
         ControlFlow::Continue(())
     })?;
     let record = Curve::from_points(record);
-    let values = parameters(spec.test, Some(direction), &conditions, &record, evaluation);
-    Ok(Some(VirtualLoop { test: spec.test, direction, record, values, iterations: solution.iterations }))
+    let values = parameters(spec.test, Some(direction), conditions, &record, evaluation);
+    Ok(Some(VirtualLoop {
+        test: spec.test,
+        direction,
+        mode,
+        record,
+        values,
+        iterations: solution.iterations,
+    }))
 }
 
 /// The specimen between its clamps; the lead of the moving one is the first node of the set `right`.

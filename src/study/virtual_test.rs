@@ -82,15 +82,29 @@ enum Law {
     /// Points from the origin; odd, straight between and beyond them.
     Points(Curve),
     /// P = P0 exp((T0 - T) / length), length = (T0 - Tm) / ln(Pm/P0).
-    Exponential {
-        t0: Estimate,
-        tm: Estimate,
-    },
+    Exponential(Compressed),
 }
 
-/// Pressures at which T0 and Tm are read (Pa): 0.5 and 50 gf/cm².
-const P0: f64 = 0.5 * 98.0665;
-const PM: f64 = 50.0 * 98.0665;
+/// Two thicknesses (m) and the pressures at which they are read (Pa).
+#[derive(Clone, Debug, PartialEq)]
+struct Compressed {
+    t0: Estimate,
+    tm: Estimate,
+    p0: f64,
+    pm: f64,
+}
+
+impl Compressed {
+    /// ln(Pm/P0).
+    fn folds(&self) -> f64 {
+        (self.pm / self.p0).ln()
+    }
+
+    /// The change of thickness over which the pressure rises e-fold (m).
+    fn decay(&self) -> f64 {
+        (self.t0.mean - self.tm.mean) / self.folds()
+    }
+}
 
 impl VirtualCurve {
     /// A straight line through the origin.
@@ -113,7 +127,7 @@ impl VirtualCurve {
         match &self.law {
             Law::Line(slope) => slope * x,
             Law::Points(curve) => interpolate(curve, x.abs()).copysign(x),
-            Law::Exponential { t0, tm } => P0 * ((t0.mean - x) / decay(t0, tm)).exp(),
+            Law::Exponential(c) => c.p0 * ((c.t0.mean - x) / c.decay()).exp(),
         }
     }
 
@@ -128,12 +142,12 @@ impl VirtualCurve {
             }
             // Large rotations are not linearised.
             Law::Points(_) => None,
-            Law::Exponential { t0, tm } => {
-                let (length, p, above) = (decay(t0, tm), self.at(x), t0.mean - x);
+            Law::Exponential(c) => {
+                let (length, p, above) = (c.decay(), self.at(x), c.t0.mean - x);
                 // ∂ln P/∂T0 = 1/length - above/length² ∂length/∂T0; Tm moves the length alone.
-                let by_length = above / (length * length * (PM / P0).ln());
-                let by_t0 = p * (1.0 / length - by_length) * t0.mean;
-                let terms = [(t0, by_t0), (tm, p * by_length * tm.mean)];
+                let by_length = above / (length * length * c.folds());
+                let by_t0 = p * (1.0 / length - by_length) * c.t0.mean;
+                let terms = [(&c.t0, by_t0), (&c.tm, p * by_length * c.tm.mean)];
                 Bands::propagated(&terms).ok().map(|b| b.mean_fabric)
             }
         }
@@ -144,7 +158,7 @@ impl VirtualCurve {
         match &self.law {
             Law::Line(_) => self.uncertainty.as_ref()?.repeats,
             Law::Points(_) => None,
-            Law::Exponential { t0, tm } => Some(t0.n.min(tm.n)),
+            Law::Exponential(c) => Some(c.t0.n.min(c.tm.n)),
         }
     }
 
@@ -382,13 +396,14 @@ pub fn simulate(
     PreparedTest::new(case, spec, &Options::default())?.simulate(direction, section)
 }
 
-/// The compression curve of a sheet: the exponential through its two thicknesses, T0 at
-/// 0.5 gf/cm² and Tm at 50 gf/cm². `None` without both.
+/// The compression curve of a sheet: the exponential through its two thicknesses, T0 at the pressure of its settings
+/// (0.5 gf/cm²) and Tm at the greatest of its records (50 gf/cm² without). `None` without both.
 ///
 /// A closed form with two measured numbers, not a prediction of the shell.
 pub fn compression(sheet: &FabricSheet) -> Option<VirtualCurve> {
     let (t0, tm) = (sheet.get(Parameter::T0, None)?.clone(), sheet.get(Parameter::Tm, None)?.clone());
-    (t0.mean > tm.mean).then_some(VirtualCurve {
+    let (p0, pm) = (sheet.settings.compression_start.si(), sheet.conditions(Test::Compression, None).maximum);
+    (t0.mean > tm.mean && pm > p0).then_some(VirtualCurve {
         test: Test::Compression,
         direction: None,
         apparent: 0.0,
@@ -397,13 +412,8 @@ pub fn compression(sheet: &FabricSheet) -> Option<VirtualCurve> {
         unstable_from: None,
         uncertainty: None,
         cycle: None,
-        law: Law::Exponential { t0, tm },
+        law: Law::Exponential(Compressed { t0, tm, p0, pm }),
     })
-}
-
-/// The change of thickness over which the pressure rises e-fold (m).
-fn decay(t0: &Estimate, tm: &Estimate) -> f64 {
-    (t0.mean - tm.mean) / (PM / P0).ln()
 }
 
 #[cfg(test)]

@@ -6,6 +6,9 @@ use serde::Serialize;
 
 use super::identify::Path;
 
+/// A loop of less than this part of the product of its spans is a line with noise.
+const NO_LOOP: f64 = 1e-4;
+
 /// A law beside the loop that it was identified from.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LoopFit {
@@ -28,8 +31,10 @@ pub struct CycleFit {
     pub nrmse: f64,
     /// Coefficient of determination.
     pub r_squared: f64,
-    /// Area of the loop, simulated over measured, less 1.
-    pub loop_energy: f64,
+    /// Area of the measured loop over the product of its spans; below zero where the test gives work.
+    pub work: f64,
+    /// Area of the loop, simulated over measured, less 1; `None` of a loop without an area.
+    pub loop_energy: Option<f64>,
     /// NRMSE of the straight line.
     pub line_nrmse: f64,
 }
@@ -66,11 +71,14 @@ impl CycleFit {
         let (of_law, of_mean) = (squares(&|i| law[i]), squares(&|_| mean));
         let of_line = squares(&|i| line[0] + line[1] * strain[i]);
         let span = span(measured);
+        let box_area = span * self::span(strain);
+        let work = area(strain, measured) / box_area;
         Self {
             cycle,
             nrmse: (of_law / n).sqrt() / span,
             r_squared: 1.0 - of_law / of_mean,
-            loop_energy: area(strain, law) / area(strain, measured) - 1.0,
+            work,
+            loop_energy: (work.abs() > NO_LOOP).then(|| area(strain, law) / box_area / work - 1.0),
             line_nrmse: (of_line / n).sqrt() / span,
         }
     }

@@ -12,6 +12,7 @@ mod bands;
 mod closed_form;
 mod identify;
 mod loop_fit;
+mod means;
 pub(crate) mod nnls;
 mod record;
 mod relaxation;
@@ -24,9 +25,9 @@ use rayon::prelude::*;
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use self::identify::Path;
-use super::{CycleChoice, FabricSheet, Key, Settings, SpecimenResult};
+use super::{Branch, CycleChoice, FabricSheet, Key, Settings, SpecimenResult};
 use crate::finding::{Finding, Place};
-use crate::instrument::{Direction, Parameter, Test};
+use crate::instrument::{Conditions, Direction, Parameter, Test};
 use crate::law::Channel;
 use crate::quantity::{Curve, Estimate};
 
@@ -62,6 +63,8 @@ pub struct FrictionLaw {
     /// Parameters re-extracted from the cycle of the instrument, simulated with this law (SI).
     #[serde(serialize_with = "by_symbol")]
     pub values: BTreeMap<Parameter, f64>,
+    /// What the backbone alone gives of B or G (SI): the rest is that of sliders. Bending and shear only.
+    pub backbone_stiffness: Option<f64>,
 }
 
 /// What a law rests on.
@@ -77,6 +80,16 @@ pub enum Basis {
 }
 
 impl FrictionLaw {
+    /// Finds the values of the law in a cycle under the conditions of a test.
+    fn evaluate(&mut self, conditions: &Conditions, settings: &Settings) {
+        self.values = extract(self, conditions, settings);
+        let stiffness = |law: &Self| {
+            let found = extract(law, conditions, settings);
+            [Parameter::B, Parameter::G].iter().find_map(|p| found.get(p).copied())
+        };
+        self.backbone_stiffness = self.elastic(stiffness);
+    }
+
     /// The strain of the law at an abscissa of the test.
     pub fn strain(&self, abscissa: f64) -> f64 {
         self.thickness.map_or(abscissa, |t| t - abscissa)
@@ -92,28 +105,6 @@ impl FrictionLaw {
         let strains = record.x.iter().map(|x| self.strain(*x));
         let stresses = self.channel.path(Default::default(), strains).map(|r| r.stress);
         Curve { x: record.x.clone(), y: stresses.collect() }
-    }
-}
-
-impl FabricSheet {
-    /// The law to calculate with: that of the specimen in the middle by B, G, WT or WC, or that from
-    /// summary values; that of the fabric where the direction has none.
-    pub fn law(&self, test: Test, direction: Option<Direction>) -> Option<&FrictionLaw> {
-        let leading = match test {
-            Test::Tensile => Parameter::Wt,
-            Test::Shear => Parameter::G,
-            Test::Bending => Parameter::B,
-            Test::Compression => Parameter::Wc,
-        };
-        let of = |direction| {
-            let mut found: Vec<&FrictionLaw> = (self.laws.iter())
-                .filter(|l| l.test == test && l.direction == direction && l.basis != Basis::Strip)
-                .collect();
-            let value = |l: &FrictionLaw| l.values.get(&leading).copied().unwrap_or(0.0);
-            found.sort_by(|a, b| value(a).total_cmp(&value(b)));
-            found.get(found.len().saturating_sub(1) / 2).copied()
-        };
-        of(direction).or_else(|| of(None))
     }
 }
 
@@ -214,7 +205,7 @@ impl FabricSheet {
 /// Adds the laws to a sheet.
 pub(super) fn add(sheet: &mut FabricSheet, settings: &Settings) {
     let found: Vec<Result<FrictionLaw, Finding>> =
-        sheet.specimens.par_iter().map(|s| of_specimen(s, settings).ok_or_else(|| none(s))).collect();
+        sheet.specimens.par_iter().map(|s| of_specimen(s, settings).map_err(|why| none(s, why))).collect();
     for law in found {
         match law {
             Ok(law) => sheet.laws.push(law),
@@ -242,8 +233,45 @@ fn stresses(channel: &Channel, relaxation: Option<&Relaxation>, path: &Path) -> 
 /// record is no loop.
 const WORST_FIT: f64 = 0.1;
 
-/// The law of a specimen; `None` if its loop is not one that the law can follow.
-fn of_specimen(specimen: &SpecimenResult, settings: &Settings) -> Option<FrictionLaw> {
+/// A way back is one that goes over this part of the way out at least.
+const BACK: f64 = 0.5;
+/// A loop that gives more work than this part of its spans' product is run through the wrong way.
+const GIVEN: f64 = 0.005;
+
+/// The law of a specimen, or why its record is none that a law can follow.
+fn of_specimen(specimen: &SpecimenResult, settings: &Settings) -> Result<FrictionLaw, &'static str> {
+    if !returns(specimen, settings.cycle) {
+        return Err("it has no way back, and so no loop");
+    }
+    let law = fitted(specimen, settings).ok_or("its loop has too few samples or is not one of cloth")?;
+    let gives = law.fit.as_ref().is_some_and(|fit| fit.fitted.work < -GIVEN);
+    if gives {
+        Err("its loop gives work instead of taking it: is the way back the way out?")
+    } else {
+        Ok(law)
+    }
+}
+
+/// Whether the drive comes back in the chosen cycle.
+fn returns(specimen: &SpecimenResult, choice: CycleChoice) -> bool {
+    let length = |b: &Branch| match (b.curve.x.first(), b.curve.x.last()) {
+        (Some(a), Some(z)) => (z - a).abs(),
+        _ => 0.0,
+    };
+    let cycles = specimen.branches.iter().map(|b| b.cycle);
+    let cycle = match choice {
+        CycleChoice::First => cycles.min(),
+        CycleChoice::Last => cycles.max(),
+    };
+    let longest = |outgoing: bool| {
+        let mine = specimen.branches.iter().filter(|b| Some(b.cycle) == cycle && b.outgoing == outgoing);
+        mine.map(length).fold(0.0, f64::max)
+    };
+    longest(false) > BACK * longest(true)
+}
+
+/// The law of the chosen cycle; `None` if its loop is not one that the law can follow.
+fn fitted(specimen: &SpecimenResult, settings: &Settings) -> Option<FrictionLaw> {
     let m = &specimen.measurement;
     let thickness = match m.test {
         Test::Compression => Some(match specimen.values.get(&Parameter::T0) {
@@ -271,20 +299,17 @@ fn of_specimen(specimen: &SpecimenResult, settings: &Settings) -> Option<Frictio
         fit: Some(fit),
         closed_form,
         values: BTreeMap::new(),
+        backbone_stiffness: None,
     };
-    law.values = extract(&law, &m.conditions, settings);
+    law.evaluate(&specimen.conditions(), settings);
     Some(law)
 }
 
 /// K041: a loop that was recorded, but has no law.
-fn none(specimen: &SpecimenResult) -> Finding {
+fn none(specimen: &SpecimenResult, why: &str) -> Finding {
     let m = &specimen.measurement;
     let direction = m.direction.map_or(String::new(), |d| format!(" {d}"));
-    let text = format!(
-        "{}{direction}, specimen {}: no friction law, its loop has too few samples or is not one of cloth",
-        m.test.name(),
-        m.specimen
-    );
+    let text = format!("{}{direction}, specimen {}: no friction law, {why}", m.test.name(), m.specimen);
     Finding::new("K041", text).at(Place::file(&m.source.path))
 }
 

@@ -26,6 +26,7 @@ pub(super) fn law(strip: &Strip) -> Option<FrictionLaw> {
         fit: Some(fit),
         closed_form: None,
         values: BTreeMap::new(),
+        backbone_stiffness: None,
     })
 }
 

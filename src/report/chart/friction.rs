@@ -98,9 +98,13 @@ fn mean_color(law: &FrictionLaw) -> plotters::prelude::RGBColor {
     lighter(palette::direction(law.direction, 1.0).color, 0.72)
 }
 
-/// Fitted dots have the colour of the direction, predicted ones the fifth colour.
+/// Fitted dots have the colour of the direction, predicted ones another that is darker than all of those, in print too.
 fn dot_color(law: &FrictionLaw, fitted: bool) -> plotters::prelude::RGBColor {
-    if fitted { lighter(palette::direction(law.direction, 1.0).color, 0.35) } else { palette::GROUPS[4] }
+    if fitted {
+        lighter(palette::direction(law.direction, 1.0).color, 0.35)
+    } else {
+        darker(palette::GROUPS[3], 0.3)
+    }
 }
 
 fn draw_loop(
@@ -193,7 +197,7 @@ fn legend(loops: &[Loop<'_>]) -> Vec<Row> {
     if let Some(band) = loops.iter().find_map(|l| l.band.as_ref()) {
         let mean = format!("95 %, mean (n = {})", band.n);
         rows.push(Row::Sample(Stroke::solid(mean_color(law), 22.0), mean));
-        rows.push(Row::Sample(NEXT, "95 %, next specimen".into()));
+        rows.push(Row::Sample(NEXT, "95 %, next one".into()));
     }
     if loops.iter().any(|l| l.traces.iter().any(|t| !t.fitted)) {
         rows.insert(1, Row::Sample(dots(false), "measured, not fitted".into()));
@@ -215,14 +219,15 @@ fn figures(sheet: &FabricSheet, one: &Loop<'_>) -> Vec<Row> {
         value("  straight line", percent(fit.fitted.line_nrmse)),
         value("  noise floor", percent(fit.noise)),
         value("R²", format!("{:.5}", fit.fitted.r_squared)),
-        value("loop energy", percent(fit.fitted.loop_energy)),
+        value("loop energy", fit.fitted.loop_energy.map_or("no loop".into(), percent)),
     ];
     if let Some(relaxation) = &law.relaxation {
         let all: f64 = relaxation.terms.iter().map(|t| t.weight).sum();
         rows.push(value("relaxing part", percent(all)));
     }
     for u in &fit.unseen {
-        let text = format!("{} (line {})", percent(u.nrmse), percent(u.line_nrmse));
+        let number = |v: f64| significant(100.0 * v, 2);
+        let text = format!("{} (line {}) %", number(u.nrmse), number(u.line_nrmse));
         rows.push(value(&format!("cycle {}", u.cycle + 1), text));
     }
     let mine = sheet.specimens.iter().find(|s| {

@@ -95,8 +95,9 @@ pub fn parity(points: &[ParityPoint], title: &str, subtitle: &str) -> Result<Vec
     }
     if usable.iter().any(|p| p.measured_half_width.or(p.simulated_half_width).is_some()) {
         rows.push(Row::Gap);
-        let text = "Bars: 95 % interval of the mean of the repeats, measured across, simulated upright.";
-        rows.push(Row::Remark(text.into(), GREY));
+        let upright = usable.iter().any(|p| p.simulated_half_width.is_some());
+        let which = if upright { ", measured across, simulated upright" } else { " that were measured" };
+        rows.push(Row::Remark(format!("Bars: 95 % interval of the mean of the repeats{which}."), GREY));
     }
     if usable.iter().any(|p| p.simulated_band.is_some()) {
         rows.push(Row::Gap);

@@ -180,6 +180,12 @@ impl Case {
                     "a [bending_test] shows the elastic strip and friction beside it: remove `law`",
                 );
             }
+            if self.virtual_test.as_ref().is_some_and(|t| t.pretension.is_some()) {
+                return refuse(
+                    "[virtual_test] pretension belongs to an elastic sheet: the cycle of one with friction is run without a tension \
+                     across; remove it, or write [assumptions] law = \"elastic\"",
+                );
+            }
             if !large {
                 return refuse(
                     "friction needs large rotations: write [analysis] kind = \"nonlinear\" or \"drape\" (or [virtual_test] \
