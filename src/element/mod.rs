@@ -34,9 +34,8 @@ pub struct Formulation {
     pub cells: Cells,
     /// Smoothing of the membrane.
     pub membrane: Membrane,
-    /// Stabilisation α of the transverse shear, `1/S_i + α h² / (3.5 B_i)` with `h` the longest
-    /// side: 0 as the seed paper has it, 0.05 by default. It removes the loss of digits of very
-    /// thin sheets.
+    /// Stabilisation α of the transverse shear, `1/S_i + α h_i² / (3.5 B_i)` with `h_i` the side along `i`: 0 as the seed
+    /// paper has it, 0.05 by default. It removes the loss of digits of very thin sheets.
     pub shear_stabilisation: f64,
     /// What resists the rotation θz about the normal.
     pub drilling: Drilling,

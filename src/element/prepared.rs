@@ -60,8 +60,12 @@ impl Prepared {
             return Err(MaterialAxisError);
         }
         let angle = a.y.atan2(a.x);
+        // From element to material axes, where the rigidities are those of warp and weft.
+        let (sin, cos) = angle.sin_cos();
+        let turn = Matrix2::new(cos, sin, -sin, cos);
+        let metric = turn * shear::metric(&frame.xy) * turn.transpose();
         let stabilised = ShellSection {
-            d_s: shear::stabilised(section, formulation.shear_stabilisation, frame.longest_side()),
+            d_s: shear::stabilised(section, formulation.shear_stabilisation, &metric),
             ..section.clone()
         };
         let ShellSection { d_m, d_b, d_s, .. } = stabilised.rotated(angle);

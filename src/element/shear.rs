@@ -1,25 +1,43 @@
 //! MITC4 transverse shear: strains tied at the mid-sides.
 
-use nalgebra::{Matrix2, SMatrix};
+use nalgebra::{Matrix2, SMatrix, Vector2};
 
 use super::quad4::GaussPoint;
 use crate::section::ShellSection;
 
-/// `D_s` with the thickness-free stabilisation, material axes: `1/S_i + α h² / (3.5 B_i)`.
+/// `D_s` with the thickness-free stabilisation, axes of `section`: `D_s⁻¹ + α/3.5 H^½ B⁻¹ H^½`, B = diag(B1, B2).
 ///
-/// For an isotropic plate with ν = 0.3 this is the form `t² / (t² + α h²)` of Lyly, Stenberg and
-/// Vihinen (1993), written without a thickness because a fabric has none that would mean it.
-pub(super) fn stabilised(section: &ShellSection, alpha: f64, h: f64) -> Matrix2<f64> {
+/// H is [`metric`] in the same axes: `h² I` for a square, `diag(a², b²)` for a rectangle of sides a and b. For an isotropic
+/// plate with ν = 0.3 a square has the form `t² / (t² + α h²)` of Lyly, Stenberg and Vihinen (1993), written without a
+/// thickness because a fabric has none that would mean it. They take the longest side for h in all directions; an
+/// elongated element is then too soft across its short side, where nothing locks: 1.7 % at a ratio of 4, 3.7 times at 40.
+pub(super) fn stabilised(section: &ShellSection, alpha: f64, metric: &Matrix2<f64>) -> Matrix2<f64> {
     if alpha == 0.0 {
         return section.d_s;
     }
-    let [[a, b], [_, d]] = [[section.d_s[(0, 0)], section.d_s[(0, 1)]], [0.0, section.d_s[(1, 1)]]];
-    let det = a * d - b * b;
-    let added = [section.d_b[(0, 0)], section.d_b[(1, 1)]].map(|rigidity| alpha * h * h / (3.5 * rigidity));
-    // Inverse, plus the added flexibility, inverted again; all 2 x 2.
-    let (f11, f22, f12) = (d / det + added[0], a / det + added[1], -b / det);
-    let det = f11 * f22 - f12 * f12;
-    Matrix2::new(f22 / det, -f12 / det, -f12 / det, f11 / det)
+    let root = square_root(metric);
+    let [b1, b2] = [section.d_b[(0, 0)], section.d_b[(1, 1)]];
+    let added = root * Matrix2::new(1.0 / b1, 0.0, 0.0, 1.0 / b2) * root * (alpha / 3.5);
+    inverse(&(inverse(&section.d_s) + added))
+}
+
+/// `Σ (2 ∂x/∂ξ_i)(2 ∂x/∂ξ_i)ᵀ` at the centre, element axes (m²): what the sides are in every direction.
+pub(super) fn metric(xy: &[[f64; 2]; 4]) -> Matrix2<f64> {
+    let middle = |a: usize, b: usize| Vector2::new(0.5 * (xy[a][0] + xy[b][0]), 0.5 * (xy[a][1] + xy[b][1]));
+    let (xi, eta) = (middle(1, 2) - middle(0, 3), middle(2, 3) - middle(0, 1));
+    xi * xi.transpose() + eta * eta.transpose()
+}
+
+/// Of a symmetric positive matrix.
+fn square_root(m: &Matrix2<f64>) -> Matrix2<f64> {
+    let s = m.determinant().max(0.0).sqrt();
+    (m + Matrix2::identity() * s) / (m.trace() + 2.0 * s).sqrt()
+}
+
+/// Of a symmetric matrix that has one.
+fn inverse(m: &Matrix2<f64>) -> Matrix2<f64> {
+    Matrix2::new(m[(1, 1)], -m[(0, 1)], -m[(0, 1)], m[(0, 0)])
+        / (m[(0, 0)] * m[(1, 1)] - m[(0, 1)] * m[(0, 1)])
 }
 
 /// `B̄_s` (2 x 12) at a point, dofs `(w, θx, θy)` node by node: Eqs. (14) to (16), corrected.
