@@ -276,6 +276,13 @@ pub fn parse_quantity(text: &str, example: &'static str) -> Result<(f64, Unit), 
     Ok((value, Unit::parse(unit)?))
 }
 
+/// Whether the unit of a text counts angles: `rad/s` is an angular frequency, 2π times that in `Hz`, and both
+/// have the dimension of one over a time.
+pub fn counts_angles(text: &str) -> bool {
+    let folded: String = text.nfkc().collect();
+    ["rad", "deg", "°"].iter().any(|angle| folded.contains(angle))
+}
+
 /// Deserialises a newtype from its text form, and answers a bare number with what to write.
 pub(super) fn deserialize_quantity<'de, D, Q>(d: D, example: &'static str) -> Result<Q, D::Error>
 where
@@ -320,6 +327,12 @@ mod tests {
         assert_relative_eq!(factor("cm⁻¹"), 100.0, max_relative = 1e-15);
         assert_relative_eq!(factor("ｇｆ/㎝"), 0.980665, max_relative = 1e-15);
         assert_relative_eq!(factor("µN·m"), 1e-6, max_relative = 1e-15);
+    }
+
+    #[test]
+    fn angles_are_told_from_turns() {
+        assert!(["6.28 rad/s", "360 deg/s", "360 °/s", "1 ㎭/s"].into_iter().all(counts_angles));
+        assert!(["1 Hz", "1 1/s", "60 1/min"].into_iter().all(|text| !counts_angles(text)));
     }
 
     #[test]

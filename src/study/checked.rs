@@ -1,10 +1,12 @@
 //! `[[checks]]` of a case against its result.
 
+use std::f64::consts::TAU;
+
 use super::StudyError;
 use super::case::{Analysis, Case, Check};
 use super::run::{CaseResult, CheckResult};
 use crate::fields::Resultants;
-use crate::quantity::{Unit, parse_quantity};
+use crate::quantity::{Unit, counts_angles, parse_quantity};
 
 /// The value of a quantity by name (SI), one of those that [`unit_of`] knows.
 pub(super) fn lookup(quantity: &str, results: &CaseResult) -> Option<f64> {
@@ -71,7 +73,9 @@ pub(super) fn expected(case: &Case, check: &Check) -> Result<(f64, &'static str)
             check.quantity, check.expected
         )));
     }
-    Ok((number * given.factor, unit))
+    // Frequencies are in Hz: one in rad/s is an angular frequency.
+    let turn = if unit == "1/s" && counts_angles(&check.expected) { TAU } else { 1.0 };
+    Ok((number * given.factor / turn, unit))
 }
 
 /// A check of the case with its outcome.
@@ -94,4 +98,30 @@ pub(super) fn check(case: &Case, check: &Check, results: &CaseResult) -> Result<
         passed: relative_error <= check.relative_tolerance,
         reference: check.reference.clone(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    #[test]
+    fn a_frequency_may_be_expected_as_an_angular_one() {
+        let case = |value: &str| {
+            let text = format!(
+                "title = \"t\"\nfabric = \"*\"\n[sheet]\nshape = \"rectangle\"\nwidth = \"1 m\"\nheight = \"1 m\"\n\
+                 cells = [4, 4]\n[[supports]]\nset = \"left\"\nkind = \"clamped\"\n[analysis]\nkind = \"modal\"\n\
+                 [[checks]]\nquantity = \"frequency_1\"\nexpected = \"{value}\"\nrelative_tolerance = 0.1\n\
+                 reference = {{ kind = \"own\", source = \"s\" }}\n"
+            );
+            Case::parse(Path::new("c.toml"), &text).unwrap()
+        };
+        let hertz = |value: &str| {
+            let case = case(value);
+            expected(&case, &case.checks[0]).unwrap().0
+        };
+        assert_eq!(hertz("3 Hz"), 3.0);
+        assert!((hertz("36 rad/s") - 36.0 / TAU).abs() < 1e-12);
+    }
 }

@@ -1,5 +1,6 @@
 //! Dynamics from a case: small displacements or large rotations.
 
+use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 use serde::Serialize;
@@ -13,7 +14,7 @@ use crate::element::Mass;
 use crate::fields::Locator;
 use crate::mesh::QuadMesh;
 use crate::model::Model;
-use crate::quantity::{Frequency, Time};
+use crate::quantity::{Frequency, Time, counts_angles};
 use crate::solve::newmark::{self, Energy, Instant, LoadHistory, Rayleigh};
 use crate::solve::nonlinear::dynamics::{Dynamics, integrate_with};
 use crate::solve::{self, Solution};
@@ -70,7 +71,7 @@ pub(super) fn rayleigh(
     };
     let factors = Rayleigh::from_ratios(ratios, [*first, *last]);
     if factors.alpha < 0.0 || factors.beta < 0.0 {
-        let [low, high] = [first, last].map(|w| crate::quantity::significant(w / std::f64::consts::TAU));
+        let [low, high] = [first, last].map(|w| crate::quantity::significant(w / TAU));
         return inconsistent(format!(
             "[analysis] damping = {ratios:?} at {low} Hz and {high} Hz needs a negative factor of the mass or the \
              stiffness, which feeds other modes: take ratios that differ less"
@@ -95,9 +96,11 @@ pub(super) fn load_history(case: &Case, text: &str) -> Result<LoadHistory, Study
         let end = until.parse::<Time>().map_err(|e| unknown(e.to_string()))?;
         return above_zero(end.si()).map(LoadHistory::Ramp);
     }
-    if let Some(frequency) = text.strip_prefix("sine ") {
-        let frequency = frequency.parse::<Frequency>().map_err(|e| unknown(e.to_string()))?;
-        return above_zero(frequency.si()).map(LoadHistory::Sine);
+    if let Some(text) = text.strip_prefix("sine ") {
+        let frequency = text.parse::<Frequency>().map_err(|e| unknown(e.to_string()))?.si();
+        // In rad/s it is an angular frequency.
+        let turn = if counts_angles(text) { TAU } else { 1.0 };
+        return above_zero(frequency / turn).map(LoadHistory::Sine);
     }
     Err(unknown("no such history".into()))
 }
@@ -156,4 +159,26 @@ pub(super) fn dynamics(
     let work = history.energy.iter().map(|e| e.work.abs()).fold(f64::MIN_POSITIVE, f64::max);
     history.imbalance = history.energy.iter().map(|e| e.imbalance().abs()).fold(0.0, f64::max) / work;
     Ok(Outcome { history: Some(history), state, ..Outcome::of(solution) })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    #[test]
+    fn an_angular_frequency_is_no_frequency_in_hertz() {
+        let text = "title = \"t\"\nfabric = \"*\"\n[virtual_test]\ntest = \"bending\"\n";
+        let case = Case::parse(Path::new("c.toml"), text).unwrap();
+        let sine = |text: &str| match load_history(&case, text) {
+            Ok(LoadHistory::Sine(hertz)) => hertz,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(sine("sine 5 Hz"), 5.0);
+        for one in ["sine 6.283185307179586 rad/s", "sine 360 deg/s", "sine 60 1/min"] {
+            assert!((sine(one) - 1.0).abs() < 1e-12, "{one}");
+        }
+        assert!(load_history(&case, "sine 0 rad/s").is_err());
+    }
 }
