@@ -126,11 +126,7 @@ impl ConstitutiveError {
             Self::NotPositive { .. } => "C005",
             Self::Poisson { .. } => "C006",
             Self::Law { .. } => "M020",
-            Self::Section { source, .. } => match source {
-                SectionError::NotFinite { .. } => "C001",
-                SectionError::NotSymmetric { .. } => "C002",
-                SectionError::NotPositiveDefinite { .. } => "C003",
-            },
+            Self::Section { source, .. } => source.code(),
         }
     }
 }

@@ -59,6 +59,18 @@ pub enum SectionError {
         /// The offending eigenvalue.
         eigenvalue: f64,
     },
+    /// C007: a thickness or a mass that no sheet has.
+    #[error("C007 the {quantity} is {value} {unit}: it must be {least}")]
+    NotPositive {
+        /// `thickness` or `areal density`.
+        quantity: &'static str,
+        /// What was given (SI).
+        value: f64,
+        /// SI unit.
+        unit: &'static str,
+        /// What is accepted.
+        least: &'static str,
+    },
 }
 
 impl SectionError {
@@ -68,6 +80,7 @@ impl SectionError {
             Self::NotFinite { .. } => "C001",
             Self::NotSymmetric { .. } => "C002",
             Self::NotPositiveDefinite { .. } => "C003",
+            Self::NotPositive { .. } => "C007",
         }
     }
 }
@@ -89,11 +102,14 @@ impl ShellSection {
         if smallest <= 0.0 {
             return Err(SectionError::NotPositiveDefinite { matrix: "D_s", eigenvalue: smallest });
         }
-        if !(self.areal_density.is_finite() && self.areal_density >= 0.0) {
-            return Err(SectionError::NotFinite { matrix: "areal density" });
+        let (mass, thickness) = (self.areal_density, self.thickness);
+        if !(mass.is_finite() && mass >= 0.0) {
+            let (unit, least) = ("kg/m²", "zero or above");
+            return Err(SectionError::NotPositive { quantity: "areal density", value: mass, unit, least });
         }
-        if !(self.thickness.is_finite() && self.thickness > 0.0) {
-            return Err(SectionError::NotFinite { matrix: "thickness" });
+        if !(thickness.is_finite() && thickness > 0.0) {
+            let (unit, least) = ("m", "above zero");
+            return Err(SectionError::NotPositive { quantity: "thickness", value: thickness, unit, least });
         }
         Ok(self)
     }
@@ -209,5 +225,11 @@ mod tests {
         let mut s = orthotropic();
         s.d_s[(0, 0)] = f64::NAN;
         assert!(matches!(s.checked(), Err(SectionError::NotFinite { matrix: "D_s" })));
+        let thick =
+            |thickness| ShellSection { thickness, ..orthotropic() }.checked().unwrap_err().to_string();
+        assert_eq!(thick(0.0), "C007 the thickness is 0 m: it must be above zero");
+        assert!(thick(f64::NAN).contains("above zero"));
+        let light = |areal_density| ShellSection { areal_density, ..orthotropic() }.checked();
+        assert!(light(0.0).is_ok() && light(-1.0).unwrap_err().to_string().contains("zero or above"));
     }
 }
