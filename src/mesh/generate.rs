@@ -188,10 +188,16 @@ pub fn disc(radius: f64, cells: usize) -> Result<QuadMesh, MeshError> {
 /// edge at that node (0..0.5 keeps every quad convex), by a seeded generator.
 ///
 /// # Errors
-/// M006 unless `0 <= amount <= 0.5`.
+/// M006 unless `0 <= amount <= 0.5`, and for a sheet that is not in a plane z = const, which the nodes would leave.
 pub fn distorted(mut mesh: QuadMesh, amount: f64, seed: u64) -> Result<QuadMesh, MeshError> {
     if !(0.0..=0.5).contains(&amount) {
         return Err(MeshError::Parameters { what: format!("distortion is {amount}: it must be 0 to 0.5") });
+    }
+    if amount > 0.0 && !mesh.is_level() {
+        let what = format!(
+            "distortion = {amount} moves nodes along x and y, off a sheet that is not in a plane z = const: leave it out"
+        );
+        return Err(MeshError::Parameters { what });
     }
     let mut shortest = vec![f64::INFINITY; mesh.nodes.len()];
     for quad in &mesh.quads {
@@ -273,5 +279,9 @@ mod tests {
         assert!(rectangle(1.0, 1.0, 0, 1).is_err());
         assert!(annulus(2.0, 1.0, 1, 8).is_err());
         assert!(distorted(rectangle(1.0, 1.0, 2, 2).unwrap(), 0.6, 0).is_err());
+        let mut roof = rectangle(1.0, 1.0, 2, 2).unwrap();
+        roof.nodes.iter_mut().for_each(|n| n.z = 0.1 * n.x);
+        assert_eq!(distorted(roof.clone(), 0.0, 0).unwrap(), roof);
+        assert!(distorted(roof, 0.1, 0).unwrap_err().to_string().contains("z = const"));
     }
 }

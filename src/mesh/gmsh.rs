@@ -25,6 +25,13 @@ pub fn parse_gmsh(path: &Path, text: &str, scale: f64) -> Result<QuadMesh, MeshE
             "$MeshFormat" => reader.format()?,
             "$PhysicalNames" => reader.physical_names(&mut file)?,
             "$Entities" => reader.entities(&mut file)?,
+            // Its elements belong to parts of surfaces and lines, whose groups would be lost.
+            "$PartitionedEntities" => {
+                return Err(reader.error(
+                    "the mesh is split into partitions: save it without them (Mesh > Unpartition in Gmsh)"
+                        .into(),
+                ));
+            }
             "$Nodes" => reader.nodes(&mut file, scale)?,
             "$Elements" => reader.elements(&mut file)?,
             _ => {}
@@ -361,6 +368,7 @@ $EndElements
         assert!(message("1 1 0\n2 1 0", "1 x 0\n2 1 0").contains("`1 x 0`"));
         let cut = &TWO[..TWO.find("3 2 5 6 3").unwrap()];
         assert!(parse(cut).unwrap_err().to_string().contains("cut short"));
+        assert!(message("$EndEntities", "$EndEntities\n$PartitionedEntities").contains("partitions"));
         assert!(parse("").is_err());
     }
 }

@@ -199,12 +199,28 @@ impl QuadMesh {
         Ok(self.boundary_edges().into_iter().filter(|&[a, b]| inside(a) && inside(b)).collect())
     }
 
+    /// The unit normal of a quad that has each of some edges; edges that no quad has give 0.
+    pub fn edge_normals(&self, edges: &[[u32; 2]]) -> Vec<Vector3<f64>> {
+        let key = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+        let mut normals: HashMap<[u32; 2], Vector3<f64>> =
+            edges.iter().map(|e| (key(*e), Vector3::zeros())).collect();
+        for (k, edge) in self.edges().enumerate() {
+            if let Some(of_edge) = normals.get_mut(&key(edge)) {
+                *of_edge = normal(&self.corners(k / 4));
+            }
+        }
+        edges.iter().map(|e| normals[&key(*e)]).collect()
+    }
+
+    /// Whether every node has the same z.
+    pub fn is_level(&self) -> bool {
+        self.nodes.windows(2).all(|w| w[0].z == w[1].z)
+    }
+
     /// Whether the sheet lies in a plane z = const with every quad counter-clockwise about +z, so
     /// that bending and membrane action do not couple.
     pub fn is_flat(&self) -> bool {
-        let Some(first) = self.nodes.first() else { return true };
-        self.nodes.iter().all(|n| n.z == first.z)
-            && (0..self.quads.len()).all(|q| normal(&self.corners(q)).z > 0.0)
+        self.is_level() && (0..self.quads.len()).all(|q| normal(&self.corners(q)).z > 0.0)
     }
 
     /// Finds whatever would make an element meaningless.
