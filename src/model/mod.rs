@@ -2,6 +2,7 @@
 
 mod dof;
 pub mod rigid;
+mod support;
 
 use std::sync::Arc;
 
@@ -10,6 +11,7 @@ use thiserror::Error;
 
 pub use dof::{Dof, DofGroup};
 pub use rigid::{Links, RigidBody, RigidBodyError};
+pub use support::Support;
 
 use crate::element::{Formulation, Frame, MaterialAxisError, Prepared, gravity_load, pressure_load};
 use crate::mesh::{MeshError, QuadMesh, is_translated};
@@ -32,68 +34,6 @@ pub struct Model {
     pub loads: Vec<Load>,
     /// Nodes that move as rigid bodies.
     pub bodies: Vec<RigidBody>,
-}
-
-/// Dofs held at a value on some nodes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Support {
-    /// The nodes.
-    pub nodes: Vec<u32>,
-    /// The dofs held, each with its value (m or rad).
-    pub held: Vec<(Dof, f64)>,
-}
-
-impl Support {
-    /// All six dofs held at zero.
-    pub fn clamped(nodes: &[u32]) -> Self {
-        Self::fix(nodes, &Dof::ALL)
-    }
-
-    /// Dofs held at zero.
-    pub fn fix(nodes: &[u32], dofs: &[Dof]) -> Self {
-        Self { nodes: nodes.to_vec(), held: dofs.iter().map(|d| (*d, 0.0)).collect() }
-    }
-
-    /// The plane x = const through the nodes is one of symmetry.
-    pub fn symmetry_x(nodes: &[u32]) -> Self {
-        Self::fix(nodes, &[Dof::U, Dof::ThetaY, Dof::ThetaZ])
-    }
-
-    /// The plane y = const through the nodes is one of symmetry.
-    pub fn symmetry_y(nodes: &[u32]) -> Self {
-        Self::fix(nodes, &[Dof::V, Dof::ThetaX, Dof::ThetaZ])
-    }
-
-    /// A simple support of a boundary set: no displacement, free rotation.
-    ///
-    /// `hard` also holds the rotation that would lift the edge line, `θ·n` with `n` the normal of each
-    /// edge in the plane of the sheet, as a thin plate on a support does; soft leaves it free.
-    ///
-    /// # Errors
-    /// M007 for an unknown set; M009 for a hard support on an edge oblique to x and y.
-    pub fn simple(mesh: &QuadMesh, set: &str, hard: bool) -> Result<Vec<Self>, ModelError> {
-        let mut supports = vec![Self::fix(mesh.set(set)?, &[Dof::U, Dof::V, Dof::W])];
-        if !hard {
-            return Ok(supports);
-        }
-        let (mut along_x, mut along_y) = (Vec::new(), Vec::new());
-        for [a, b] in mesh.set_edges(set)? {
-            let d = mesh.nodes[b as usize] - mesh.nodes[a as usize];
-            let along = |component: f64| component.abs() > (1.0 - 1e-9) * d.norm();
-            match (along(d.x), along(d.y)) {
-                (true, _) => along_x.extend([a, b]),
-                (_, true) => along_y.extend([a, b]),
-                _ => {
-                    let angle_deg = d.y.atan2(d.x).to_degrees();
-                    return Err(ModelError::SkewHardSupport { set: set.to_string(), angle_deg });
-                }
-            }
-        }
-        // On an edge along x, w = 0 means w,x = -θy = 0; along y it is w,y = θx.
-        supports.push(Self::fix(&along_x, &[Dof::ThetaY]));
-        supports.push(Self::fix(&along_y, &[Dof::ThetaX]));
-        Ok(supports)
-    }
 }
 
 /// A load.
@@ -135,16 +75,31 @@ pub enum ModelError {
     /// M008.
     #[error(transparent)]
     MaterialAxis(#[from] MaterialAxisError),
-    /// M009: a hard simple support on an edge that is not parallel to an axis.
+    /// M009: a hard simple support on an edge that is oblique to the axes.
     #[error(
-        "M009 set `{set}` has an edge at {angle_deg:.1} degrees: a hard simple support needs edges along x or y; \
-         use kind = \"simply_supported_soft\""
+        "M009 set `{set}` has an edge on which a hard simple support holds the rotation about ({:.3}, {:.3}, {:.3}), the \
+         direction in the sheet normal to the edge: that is a dof only along x, y or z; use kind = \"simply_supported_soft\"",
+        direction[0], direction[1], direction[2]
     )]
     SkewHardSupport {
         /// The node set.
         set: String,
-        /// Angle of the edge from x (degrees).
-        angle_deg: f64,
+        /// Direction of the rotation to be held, of length 1.
+        direction: [f64; 3],
+    },
+    /// M014: two values of one dof.
+    #[error(
+        "M014 {dof} of the node at ({}, {}, {}) m is prescribed twice, as {} and as {} {}: remove one of the two, or leave \
+         the node out of one of the sets",
+        at[0], at[1], at[2], values[0], values[1], if dof.starts_with("theta") { "rad" } else { "m" }
+    )]
+    TwoValues {
+        /// Name of the dof.
+        dof: &'static str,
+        /// Both values (m or rad), in the order given.
+        values: [f64; 2],
+        /// Place of the node (m).
+        at: [f64; 3],
     },
     /// M010.
     #[error(transparent)]
@@ -159,6 +114,7 @@ impl ModelError {
             Self::MaterialAxis(_) => "M008",
             Self::SkewHardSupport { .. } => "M009",
             Self::Body(_) => "M010",
+            Self::TwoValues { .. } => "M014",
         }
     }
 }
