@@ -87,8 +87,7 @@ pub fn formulation(case: &Case) -> Result<Formulation, StudyError> {
 pub fn model(case: &Case, sheet: &Sheet, section: ShellSection) -> Result<Model, StudyError> {
     let mut mesh = sheet_mesh(case, sheet)?;
     let bodies = rigid::bodies(case, &mut mesh)?;
-    let (sin, cos) = sheet.warp_angle_deg.to_radians().sin_cos();
-    let mut supports = Vec::new();
+    let (mut supports, mut prescribed) = (Vec::new(), Vec::new());
     for table in &case.supports {
         supports.extend(support(case, &mesh, table)?);
     }
@@ -101,13 +100,16 @@ pub fn model(case: &Case, sheet: &Sheet, section: ShellSection) -> Result<Model,
                     Dof::U | Dof::V | Dof::W => quantity::<Length>(case, value)?.si(),
                     _ => quantity::<Angle>(case, value)?.si(),
                 };
-                supports.push(Support { nodes: mesh.set(set)?.to_vec(), held: vec![(dof, value)] });
+                prescribed.push(Support { nodes: mesh.set(set)?.to_vec(), held: vec![(dof, value)] });
             }
             other => loads.push(load(case, &mesh, other)?),
         }
     }
+    // A value over a support is a support that moves; two values contradict each other.
+    Support::agree(&mesh, &prescribed)?;
+    supports.extend(prescribed);
     let formulation = formulation(case)?;
-    Ok(Model { mesh, section, warp: Vector3::new(cos, sin, 0.0), formulation, supports, loads, bodies })
+    Ok(Model { mesh, section, warp: sheet.warp_direction(), formulation, supports, loads, bodies })
 }
 
 fn sheet_mesh(case: &Case, sheet: &Sheet) -> Result<QuadMesh, StudyError> {
@@ -116,6 +118,13 @@ fn sheet_mesh(case: &Case, sheet: &Sheet) -> Result<QuadMesh, StudyError> {
         (None, Some(file)) => mesh_file(case, sheet, file)?,
         _ => return Err(case.inconsistent("[sheet] needs either `shape` or `file`, and not both".into())),
     };
+    if sheet.warp_angle_deg != 0.0 && !mesh.is_level() {
+        return Err(case.inconsistent(format!(
+            "[sheet] warp_angle_deg = {} is an angle from x in a plane z = const, and the sheet is in none: give the \
+             direction of the warp, such as warp = [1, 0, 0]",
+            sheet.warp_angle_deg
+        )));
+    }
     let mesh = mesh::distorted(mesh, sheet.distortion, sheet.seed)?;
     mesh.check()?;
     Ok(mesh)

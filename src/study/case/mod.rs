@@ -211,6 +211,9 @@ impl Case {
             ));
         }
         self.analysis.contradiction().map_or(Ok(()), refuse)?;
+        if let Some(problem) = self.sheet.as_ref().and_then(Sheet::contradiction) {
+            return refuse(&problem);
+        }
         let dynamic = matches!(self.analysis, Analysis::Newmark { .. });
         if dynamic && self.loads.iter().any(|l| matches!(l, LoadTable::Prescribed { .. })) {
             return refuse("a dynamic analysis has no prescribed values: remove them");

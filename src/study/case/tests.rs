@@ -40,6 +40,24 @@ fn mistakes_are_placed_and_say_what_was_expected() {
     assert_eq!(error("[sheet]", "[shet]").code(), "S002");
 }
 
+#[test]
+fn a_warp_direction_is_an_angle_or_a_vector() {
+    let with = |line: &str| {
+        let text = GOOD.replace("cells = [4, 4]", &format!("cells = [4, 4]\n{line}"));
+        Case::parse(Path::new("c.toml"), &text)
+    };
+    let refused = |line: &str| with(line).unwrap_err().to_string();
+    assert!(refused("warp_angle_deg = nan").contains("no angle"));
+    assert!(refused("warp_angle_deg = inf").contains("no angle"));
+    assert!(refused("warp_angle_deg = 30\nwarp = [0, 0, 1]").contains("remove one"));
+    assert!(refused("warp = [0, 0, 0]").contains("no direction"));
+    assert!(refused("warp = [nan, 0, 1]").contains("no direction"));
+    let direction = |line: &str| with(line).unwrap().sheet.unwrap().warp_direction();
+    assert_eq!(direction("warp = [0, 0, 2]").as_slice(), [0.0, 0.0, 2.0]);
+    assert!((direction("warp_angle_deg = 90").y - 1.0).abs() < 1e-15);
+    assert_eq!(direction("").as_slice(), [1.0, 0.0, 0.0]);
+}
+
 /// What has no meaning where it stands is refused, not ignored.
 #[test]
 fn keys_without_a_meaning_are_refused() {
