@@ -85,9 +85,9 @@ pub enum SolveError {
         /// Time reached (s).
         time: f64,
     },
-    /// N008: motion in time without mass.
+    /// N008: weight or motion in time without mass.
     #[error(
-        "N008 the sheet has no mass: frequencies and motion in time need an areal density above 0; give \
+        "N008 the sheet has no mass: weight, frequencies and motion in time need an areal density above 0; give \
          `areal_density` in [section], or the fabric its weight W"
     )]
     NoMass,

@@ -16,6 +16,7 @@ use crate::mesh::{self, MeshError, QuadMesh};
 use crate::model::{Dof, Load, Model, Support};
 use crate::quantity::{Angle, Force, Length, Moment, STANDARD_GRAVITY};
 use crate::section::ShellSection;
+use crate::solve::SolveError;
 
 /// The section of a `[section]` table (`geometric` rule: the given Poisson ratio is √(ν12 ν21)).
 ///
@@ -110,6 +111,18 @@ pub fn model(case: &Case, sheet: &Sheet, section: ShellSection) -> Result<Model,
     supports.extend(prescribed);
     let formulation = formulation(case)?;
     Ok(Model { mesh, section, warp: sheet.warp_direction(), formulation, supports, loads, bodies })
+}
+
+/// Refuses a weight of nothing: gravity would leave the sheet at rest, without a word.
+///
+/// # Errors
+/// N008.
+pub(super) fn weighed(model: &Model) -> Result<(), SolveError> {
+    let pulls = |load: &Load| matches!(load, Load::Gravity(g) if g.norm() > 0.0);
+    if model.section.areal_density <= 0.0 && model.loads.iter().any(pulls) {
+        return Err(SolveError::NoMass);
+    }
+    Ok(())
 }
 
 fn sheet_mesh(case: &Case, sheet: &Sheet) -> Result<QuadMesh, StudyError> {

@@ -11,7 +11,7 @@ use super::dynamics::{History, Large, dynamics, load_history, rayleigh};
 use super::limits::{Beyond, buckles, findings, is_compressed};
 use super::nonlinear::{LoadPath, equilibrium, largest_w};
 use super::uncertainty::{Uncertainty, linear_uncertainty, modal_uncertainty};
-use super::{PreparedCase, StudyError};
+use super::{PreparedCase, StudyError, build};
 use crate::constitutive::{Constitutive, Input};
 use crate::element::Mass;
 use crate::fields::{Locator, ProbeValue, Recovery, Resultants};
@@ -263,6 +263,7 @@ impl PreparedCase<'_> {
     ) -> Result<CaseResult, StudyError> {
         let case = self.case;
         let model = self.model(section);
+        build::weighed(&model)?;
         let Outcome { solution, frequencies, modes: shapes, history, path, state, kept, findings: own } =
             analyse(self, &model, law)?;
         let uncertainty = match kept {

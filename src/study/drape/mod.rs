@@ -130,6 +130,7 @@ pub fn drape(
     };
     let ring = Ring::of(case)?;
     let model = build::model(case, &ring.sheet, section.clone())?;
+    build::weighed(&model)?;
     let single = Options { threads: 1, ..solver::options(case, options)? };
     let shared = plan(&model, &single)?;
     let searches: Vec<Result<(Solution, DrapeState), (usize, NonlinearError)>> = folds
