@@ -66,7 +66,8 @@ pub enum Drilling {
     /// The same penalty with `γ = D_m33` (Hughes and Brezzi 1989).
     HughesBrezzi,
     /// The seed's spring: this factor (1e-3) of the largest diagonal term, on every θz. It strains
-    /// rigid rotations and stiffens curved shells; for flat sheets it is harmless.
+    /// rigid rotations and stiffens curved shells. In a flat sheet it ties θz to nothing: bending and
+    /// displacements in the plane are right, but moments and rotations about the normal are lost in it.
     Seed(f64),
 }
 

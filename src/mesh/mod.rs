@@ -2,6 +2,7 @@
 
 mod generate;
 mod gmsh;
+mod joined;
 mod orient;
 
 use std::collections::{BTreeMap, HashMap};
@@ -11,6 +12,7 @@ use thiserror::Error;
 
 pub use generate::{annulus, disc, distorted, graded_annulus, rectangle};
 pub use gmsh::parse_gmsh;
+pub use joined::Unjoined;
 
 use crate::finding::Place;
 

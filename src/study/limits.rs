@@ -3,11 +3,13 @@
 use nalgebra::Vector3;
 
 use super::StudyError;
-use super::case::{Analysis, Case};
+use super::case::{Analysis, Case, LoadTable};
 use super::run::CaseResult;
+use crate::element::{Cells, Drilling, Membrane};
 use crate::finding::{Finding, Place};
-use crate::mesh::{QuadMesh, normal};
-use crate::model::Model;
+use crate::mesh::{QuadMesh, Unjoined, normal};
+use crate::model::{Dof, Model};
+use crate::quantity::{Angle, significant};
 
 /// Above this ratio of deflection to bending thickness the sheet's own stretching carries part of
 /// the load: an immovable clamped square is 3 % off at 0.24 and 12 % off at 0.47 (von Karman
@@ -20,6 +22,9 @@ const DISPLACEMENT_LIMIT: f64 = 0.1;
 
 /// Compression below this part of the largest membrane force is that of rounding.
 const COMPRESSED: f64 = 1e-6;
+
+/// A motion in the plane of a flat sheet that is this part of the one across it is that of rounding.
+const ROUNDING: f64 = 1e-12;
 
 /// How a linear result is beyond its meaning.
 pub(super) enum Beyond {
@@ -36,17 +41,32 @@ pub(super) struct Extent {
     pub flat: bool,
     /// Diagonal of its box (m).
     pub size: f64,
+    /// Where quads touch without being joined; a generated mesh has no such place, and is not asked.
+    pub unjoined: Option<Unjoined>,
 }
 
 impl Extent {
-    pub fn of(mesh: &QuadMesh) -> Self {
+    /// Of a mesh, and whether that is from a file.
+    pub fn of(mesh: &QuadMesh, from_file: bool) -> Self {
         let [low, high] = mesh.bounds();
-        Self { flat: mesh.is_flat(), size: (high - low).norm() }
+        let unjoined = from_file.then(|| mesh.unjoined()).flatten();
+        Self { flat: mesh.is_flat(), size: (high - low).norm(), unjoined }
     }
 
     /// The largest displacement normal to the sheet (m), `w_max` of a flat one.
     pub fn deflection(&self, mesh: &QuadMesh, displacement: &[f64], w_max: f64) -> f64 {
         if self.flat { w_max.abs() } else { largest_deflection(mesh, displacement) }
+    }
+
+    /// Whether its membrane moves: always if it is not flat, and a flat one in its plane, beyond rounding.
+    pub fn moves_in_plane(&self, displacement: &[f64]) -> bool {
+        let (mut inside, mut across) = (0.0f64, 0.0f64);
+        for u in displacement.chunks_exact(6) {
+            inside = [u[0], u[1], self.size * u[5]].into_iter().fold(inside, |m, v| m.max(v.abs()));
+            across =
+                [u[2], self.size * u[3], self.size * u[4]].into_iter().fold(across, |m, v| m.max(v.abs()));
+        }
+        !self.flat || inside > ROUNDING * across
     }
 }
 
@@ -67,12 +87,64 @@ impl Beyond {
     }
 }
 
-/// What a reader of a result must know of its model.
-pub(super) fn findings(case: &Case, model: &Model, extent: &Extent, beyond: Option<&Beyond>) -> Vec<Finding> {
+/// What a reader of a result must know of its model; `in_plane` tells whether its membrane moves.
+pub(super) fn findings(
+    case: &Case,
+    model: &Model,
+    extent: &Extent,
+    beyond: Option<&Beyond>,
+    in_plane: bool,
+) -> Vec<Finding> {
     let mut findings = Vec::new();
-    let place = || Place::file(&case.path);
+    let mut add =
+        |code, message: String| findings.push(Finding::new(code, message).at(Place::file(&case.path)));
     if let Some(beyond) = beyond {
-        let cure = match case.analysis {
+        add("S101", beyond.message(&case.analysis));
+    }
+    if let Some(message) = too_few_cells(model) {
+        add("S102", message.into());
+    }
+    if in_plane && matches!(model.formulation.drilling, Drilling::Seed(_)) {
+        let what = if extent.flat {
+            "carries the moments about the normal of the sheet, and its rotations there, past the membrane"
+        } else {
+            "strains rigid rotations of a curved sheet"
+        };
+        add("S103", format!("the seed's drilling spring {what}: take drilling = \"scaled\""));
+    }
+    // With large rotations it is what a thin sheet asks for.
+    let small = matches!(
+        case.analysis,
+        Analysis::Linear {} | Analysis::Modal { .. } | Analysis::Newmark { large_rotations: false, .. }
+    );
+    if in_plane && small && model.formulation.membrane == Membrane::OneCell {
+        let message = "one smoothing cell of the membrane leaves it motions in the plane of the sheet that cost next to \
+                       nothing: take membrane = \"cells\"";
+        add("S107", message.into());
+    }
+    if let Some(Unjoined { nodes, first }) = extent.unjoined {
+        let [x, y, z] = [first.x, first.y, first.z].map(significant);
+        add(
+            "S108",
+            format!(
+                "the mesh is not joined: {nodes} nodes lie on an edge of a quad that they do not belong to, the first at \
+                 ({x}, {y}, {z}) m, and the sheet is cut there; merge the surfaces in Gmsh (Coherence;) and mesh again, unless \
+                 the cut is meant"
+            ),
+        );
+    }
+    if let Some(set) = extent.flat.then(|| turned_in_plane(case)).flatten() {
+        let message = format!(
+            "theta_z of set `{set}` turns its nodes, and hardly the sheet: prescribe an in-plane rotation through [[rigid]]"
+        );
+        add("S109", message);
+    }
+    findings
+}
+
+impl Beyond {
+    fn message(&self, analysis: &Analysis) -> String {
+        let cure = match analysis {
             Analysis::Newmark { .. } => {
                 "give [analysis] large_rotations = true for the true motion, or lower the load"
             }
@@ -81,32 +153,47 @@ pub(super) fn findings(case: &Case, model: &Model, extent: &Extent, beyond: Opti
                  stiffness, not as a shape"
             }
         };
-        let message = match beyond {
-            Beyond::Deflection(w, ratio) => format!(
+        match self {
+            Self::Deflection(w, ratio) => format!(
                 "the deflection of {w:.3e} m is {ratio:.2e} bending thicknesses: a linear solve is meaningful below {LINEAR_LIMIT} only; \
                  {cure}"
             ),
-            Beyond::Displacement(u, ratio) => format!(
+            Self::Displacement(u, ratio) => format!(
                 "the displacement of {u:.3e} m is {ratio:.2e} of the size of the sheet: a linear solve is meaningful for small \
                  ones, below {DISPLACEMENT_LIMIT}; {cure}"
             ),
-        };
-        findings.push(Finding::new("S101", message).at(place()));
+        }
     }
-    let nc = model.formulation.cells.count();
-    if nc == 1 {
-        let message = "one smoothing cell leaves spurious zero-energy modes: take subcells = 4";
-        findings.push(Finding::new("S102", message).at(place()));
+}
+
+/// The modes without energy that the smoothing cells leave to bending.
+fn too_few_cells(model: &Model) -> Option<&'static str> {
+    match model.formulation.cells {
+        Cells::Grid { along_xi: 1, along_eta: 1 } => {
+            Some("one smoothing cell leaves spurious zero-energy modes: take subcells = 4")
+        }
+        // The twist w = ξη has a mean curvature of 0 in each cell of a row but for its torsion.
+        Cells::Grid { along_xi: 1, .. } | Cells::Grid { along_eta: 1, .. }
+            if model.section.d_b[(2, 2)] == 0.0 =>
+        {
+            Some("smoothing cells in one row with H = 0 leave a spurious mode: take subcells = 4")
+        }
+        _ => None,
     }
-    if nc == 2 && model.section.d_b[(2, 2)] == 0.0 {
-        let message = "two smoothing cells with H = 0 leave a spurious mode: take subcells = 4";
-        findings.push(Finding::new("S102", message).at(place()));
-    }
-    if !extent.flat && matches!(model.formulation.drilling, crate::element::Drilling::Seed(_)) {
-        let message = "the seed's drilling spring strains rigid rotations of a curved sheet: take drilling = \"scaled\"";
-        findings.push(Finding::new("S103", message).at(place()));
-    }
-    findings
+}
+
+/// A set without a body whose rotation about z is prescribed: only the drilling stiffness takes it to the sheet.
+fn turned_in_plane(case: &Case) -> Option<&str> {
+    case.loads.iter().find_map(|load| match load {
+        LoadTable::Prescribed { set, dof, value }
+            if Dof::from_name(dof) == Some(Dof::ThetaZ)
+                && value.parse::<Angle>().is_ok_and(|angle| angle.si() != 0.0)
+                && case.rigid.iter().all(|body| body.name != *set) =>
+        {
+            Some(set.as_str())
+        }
+        _ => None,
+    })
 }
 
 /// Whether the sheet is pressed in its plane anywhere, beyond rounding.
@@ -154,3 +241,6 @@ fn largest_displacement(mesh: &QuadMesh, displacement: &[f64]) -> f64 {
 fn translation(displacement: &[f64], node: u32) -> Vector3<f64> {
     Vector3::from_column_slice(&displacement[6 * node as usize..][..3])
 }
+
+#[cfg(test)]
+mod tests;

@@ -85,7 +85,7 @@ impl<'a> PreparedCase<'a> {
         let probes = locators(case, &model.mesh)?;
         let [from, to] = middle_line(&model.mesh);
         let middle = Line::new(&model.mesh, &from, &to, STEPS);
-        let extent = Extent::of(&model.mesh);
+        let extent = Extent::of(&model.mesh, sheet.file.is_some());
         Ok(Self {
             case,
             options: *options,

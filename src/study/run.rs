@@ -289,7 +289,9 @@ impl PreparedCase<'_> {
         let ratio = [deflection, w_over_thickness];
         let beyond =
             is_linear.then(|| Beyond::of(&model, &self.extent, &solution.displacement, ratio)).flatten();
-        let mut findings = findings(case, &model, &self.extent, beyond.as_ref());
+        let in_plane = |u: &Vec<f64>| self.extent.moves_in_plane(u);
+        let in_plane = shapes.iter().any(in_plane) || in_plane(&solution.displacement);
+        let mut findings = findings(case, &model, &self.extent, beyond.as_ref(), in_plane);
         findings.extend(own);
         let status = match &path {
             Some(path) if !path.converged => Status::NotConverged,
