@@ -172,7 +172,8 @@ fn too_few_cells(model: &Model) -> Option<&'static str> {
         Cells::Grid { along_xi: 1, along_eta: 1 } => {
             Some("one smoothing cell leaves spurious zero-energy modes: take subcells = 4")
         }
-        // The twist w = ξη has a mean curvature of 0 in each cell of a row but for its torsion.
+        // In a row of cells along ξ, a rotation ξη bends by η, whose mean over each cell is 0: only the torsion
+        // resists it.
         Cells::Grid { along_xi: 1, .. } | Cells::Grid { along_eta: 1, .. }
             if model.section.d_b[(2, 2)] == 0.0 =>
         {

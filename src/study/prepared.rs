@@ -112,12 +112,11 @@ impl<'a> PreparedCase<'a> {
 /// # Errors
 /// See [`StudyError`].
 pub fn validate(case: &Case) -> Result<(), StudyError> {
-    if let Some(table) = &case.section {
-        build::section(table)?;
-    }
+    let section = case.section.as_ref().map(build::section).transpose()?;
     let Some(sheet) = &case.sheet else { return Ok(()) };
     solver::options(case, &Options::default())?;
-    let model = build::model(case, sheet, stand_in())?;
+    let model = build::model(case, sheet, section.unwrap_or_else(stand_in))?;
+    build::weighed(&model)?;
     match &case.analysis {
         Analysis::Nonlinear(table) => drop(way(case, table)?),
         Analysis::Newmark { load, .. } => drop(load_history(case, load)?),

@@ -32,7 +32,7 @@ pub enum Analysis {
         tolerance: Option<f64>,
         /// Damping ratios of the first and the third natural frequency; undamped when left out.
         damping: Option<[f64; 2]>,
-        /// `"step"`, `"ramp until 0.1 s"` or `"sine 5 Hz"`.
+        /// `"step"`, `"ramp until 0.1 s"` or `"sine 5 Hz"` (the same as `"sine 31.416 rad/s"`).
         #[serde(default = "default_load_history")]
         load: String,
         /// How the mass of an element goes to its nodes; row sums when left out.

@@ -20,7 +20,7 @@ pub struct ProbeTable {
 pub struct Check {
     /// `w_max`, `strain_energy`, or `<probe>.<u|v|w|theta_x|...|moment_x|membrane_x|shear_x ...>`.
     pub quantity: String,
-    /// Expected value with unit.
+    /// Expected value with unit; a frequency in `rad/s` is an angular one.
     pub expected: String,
     /// Accepted |value - expected| / |expected|.
     pub relative_tolerance: f64,

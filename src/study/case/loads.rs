@@ -22,7 +22,8 @@ pub struct SupportTable {
 pub enum SupportKind {
     /// All dofs held.
     Clamped,
-    /// Displacements held, and the rotation along the normal of the edge: a thin plate on a support.
+    /// Displacements held, and the rotation about the normal of the edge in the plane of the sheet, which has to be
+    /// along x, y or z: a thin plate on a support.
     SimplySupported,
     /// Displacements held only.
     SimplySupportedSoft,

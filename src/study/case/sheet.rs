@@ -37,7 +37,7 @@ pub struct Sheet {
     /// Direction of the warp, `[x, y, z]` of any length, projected on each element: for sheets that are not in a plane
     /// z = const.
     pub warp: Option<[f64; 3]>,
-    /// Seeded displacement of interior nodes, 0 to 0.5 of half an edge.
+    /// Seeded displacement of interior nodes along x and y, 0 to 0.5 of half an edge; of a sheet in a plane z = const.
     #[serde(default)]
     pub distortion: f64,
     /// Seed of the distortion.

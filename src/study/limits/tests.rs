@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::study::{Case, CaseResult, StudyError, build, solve_case};
+use crate::study::{Case, CaseResult, StudyError, build, solve_case, validate};
 
 /// A strip of 1 m x 0.1 m: t = 10 mm, E = 1 MPa, nu = 0.3; `SHEET` is its outline.
 const STRIP: &str = r#"
@@ -64,7 +64,6 @@ fn cells_in_one_row_need_a_torsional_rigidity() {
     assert_eq!(codes(&format!("{PRESSURE}[element]\nsubcells = [1, 1]\n")), ["S102"]);
 }
 
-/// A beam of depth b in its plane turns by M L / (E t b³ / 12); the seed's spring keeps the moment to itself.
 #[test]
 fn the_seeds_drilling_spring_is_told_where_a_flat_sheet_moves_in_its_plane() {
     let seed = "[element]\nprofile = \"seed\"\n";
@@ -113,6 +112,9 @@ fn contradictions_of_loads_are_refused() {
     let massless = STRIP.replace("1 kg/m²", "0 kg/m²");
     let gravity = "[[loads]]\nkind = \"gravity\"\n";
     assert_eq!(refused(&massless, gravity).code(), "N008");
+    let text = format!("{}{gravity}", massless.replace("SHEET", OUTLINE));
+    let case = Case::parse(Path::new("c.toml"), &text).unwrap();
+    assert_eq!(validate(&case).unwrap_err().code(), "N008");
     assert!(solved(&format!("{}{PRESSURE}", massless.replace("SHEET", OUTLINE))).is_ok());
 }
 
