@@ -135,3 +135,103 @@ fn the_adaptive_step_meets_its_tolerance_with_few_steps() {
     assert!(out.steps < 200, "{}", out.steps);
     assert!(out.worst < 0.02, "{}", out.worst);
 }
+
+/// A simply supported square of the first period 0.318 s under pressure, D = ρ = L = 1, t = 1 mm.
+fn pressed() -> Model {
+    let (nu, t) = (0.3, 1e-3);
+    let plane = Matrix3::new(1.0, nu, 0.0, nu, 1.0, 0.0, 0.0, 0.0, 0.5 * (1.0 - nu));
+    let mesh = rectangle(1.0, 1.0, 8, 8).unwrap();
+    Model {
+        section: ShellSection {
+            d_m: plane * (12.0 / (t * t)),
+            d_b: plane,
+            d_s: Matrix2::identity() * (3.5 / (t * t)),
+            areal_density: 1.0,
+            thickness: t,
+        },
+        warp: Vector3::x(),
+        formulation: Formulation::default(),
+        supports: Support::simple(&mesh, "boundary", true).unwrap(),
+        loads: vec![Load::Pressure(1e-6)],
+        bodies: Vec::new(),
+        mesh,
+    }
+}
+
+/// Times and one displacement at them.
+fn motion(model: &Model, settings: &Settings, dof: usize) -> Vec<(f64, f64)> {
+    let mut seen = Vec::new();
+    newmark(model, settings, &Options::default(), |at| {
+        seen.push((at.time, at.displacement[dof]));
+        ControlFlow::Continue(())
+    })
+    .unwrap();
+    seen
+}
+
+/// Largest difference from a fine motion at the instants of a coarse one, over the largest displacement.
+fn off(coarse: &[(f64, f64)], fine: &[(f64, f64)]) -> f64 {
+    let largest = fine.iter().fold(0.0f64, |m, (_, w)| m.max(w.abs()));
+    let at = |t: f64| {
+        let k = fine.partition_point(|(time, _)| *time < t).clamp(1, fine.len() - 1);
+        let ((t0, w0), (t1, w1)) = (fine[k - 1], fine[k]);
+        w0 + (w1 - w0) * (t - t0) / (t1 - t0)
+    };
+    coarse.iter().fold(0.0f64, |m, (t, w)| m.max((w - at(*t)).abs())) / largest
+}
+
+/// From rest under any history, damped or not: the estimate must neither be blind nor be ruled by modes that
+/// nobody sees.
+#[test]
+fn the_adaptive_step_follows_what_moves() {
+    let model = pressed();
+    let omega = modes(&model, 3, Mass::Lumped, &Options::default()).unwrap();
+    let damping = Rayleigh::from_ratios([0.05; 2], [omega[0].angular_frequency, omega[2].angular_frequency]);
+    let runs = [
+        ("step", LoadHistory::Step, Rayleigh::default()),
+        ("damped step", LoadHistory::Step, damping),
+        ("ramp", LoadHistory::Ramp(0.1), Rayleigh::default()),
+        ("sine", LoadHistory::Sine(1.0), Rayleigh::default()),
+        ("damped sine", LoadHistory::Sine(5.0), damping),
+    ];
+    for (name, load, damping) in runs {
+        let settings =
+            Settings { duration: 0.5, step: 5e-5, tolerance: None, damping, load, mass: Mass::Lumped };
+        let fine = motion(&model, &settings, 6 * 40 + 2);
+        for tolerance in [1e-2, 1e-3, 1e-4] {
+            let adaptive = Settings { step: 0.01, tolerance: Some(tolerance), ..settings };
+            let coarse = motion(&model, &adaptive, 6 * 40 + 2);
+            let (off, steps) = (off(&coarse, &fine), coarse.len() - 1);
+            println!("{name}, tolerance {tolerance:e}: {steps} steps, off {off:.1e}");
+            // The errors of the steps add up: of third order each, they are of second order at the end, and the
+            // step goes with the cube root of the tolerance.
+            assert!(off < 3.0 * tolerance.powf(2.0 / 3.0), "{name}: {off:e} at {tolerance:e}");
+            assert!(steps < 200, "{name}: {steps} steps at {tolerance:e}");
+        }
+    }
+}
+
+/// A sheet that nothing holds has no static displacement: under a load that stays it falls as the parabola of the
+/// books, which the method has exactly, and under a sine it is carried away with the mean velocity F/mω.
+#[test]
+fn the_adaptive_step_of_a_free_sheet() {
+    let mut model = pressed();
+    model.supports.clear();
+    let settings = |load| Settings {
+        duration: 1.0,
+        step: 1e-3,
+        tolerance: Some(1e-3),
+        damping: Rayleigh::default(),
+        load,
+        mass: Mass::Lumped,
+    };
+    let free = motion(&model, &settings(LoadHistory::Step), 6 * 40 + 2);
+    let (t, w) = free[free.len() - 1];
+    assert!((w / (0.5e-6 * t * t) - 1.0).abs() < 1e-6 && free.len() < 20, "{w:e} after {} steps", free.len());
+    let carried = motion(&model, &settings(LoadHistory::Sine(5.0)), 6 * 40 + 2);
+    let omega = 10.0 * std::f64::consts::PI;
+    let exact = |t: f64| 1e-6 / omega * (t - (omega * t).sin() / omega);
+    let worst = carried.iter().map(|(t, w)| (w - exact(*t)).abs()).fold(0.0, f64::max) / exact(1.0);
+    println!("{} steps, off {worst:.1e}", carried.len());
+    assert!(worst < 0.01 && carried.len() < 400, "{worst:e} after {} steps", carried.len());
+}

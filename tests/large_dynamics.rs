@@ -158,3 +158,44 @@ fn a_falling_strip_keeps_its_energy_and_damping_takes_it() {
     println!("damped {damped:?}");
     assert!(damped.1 > 0.2 && damped.0 < 0.05, "{damped:?}");
 }
+
+/// The step that adapts follows the constant one that is very short, from rest under loads that begin at 0 too.
+#[test]
+fn the_adaptive_step_follows_what_moves() {
+    let model = strip(10, 8e-6, &Dof::ALL, 0.1);
+    let end = 6 * model.mesh.set("right").unwrap()[0] as usize + 2;
+    let first = modes(&model, 1, Mass::Consistent, &Options::default()).unwrap()[0].frequency();
+    let run = |dynamics: Dynamics| {
+        let mut seen = Vec::new();
+        integrate(&model, &dynamics, &Options::default(), |at| {
+            seen.push((at.time, at.displacement[end]));
+            ControlFlow::Continue(())
+        })
+        .unwrap();
+        seen
+    };
+    let damping = Rayleigh { alpha: 0.5 * first, beta: 0.01 / first };
+    for (load, damping) in [
+        (LoadHistory::Step, damping),
+        (LoadHistory::Ramp(0.5 / first), Rayleigh::default()),
+        (LoadHistory::Sine(first / 3.0), Rayleigh::default()),
+    ] {
+        let constant = Dynamics { load, damping, ..settings(1.5 / first, 1e-3 / first) };
+        let fine = run(constant);
+        let largest = fine.iter().fold(0.0f64, |m, (_, w)| m.max(w.abs()));
+        for tolerance in [1e-2, 1e-3] {
+            let coarse = run(Dynamics { step: 0.01 / first, tolerance: Some(tolerance), ..constant });
+            let at = |t: f64| {
+                let k = fine.partition_point(|(time, _)| *time < t).clamp(1, fine.len() - 1);
+                let ((t0, w0), (t1, w1)) = (fine[k - 1], fine[k]);
+                w0 + (w1 - w0) * (t - t0) / (t1 - t0)
+            };
+            let off = coarse.iter().map(|(t, w)| (w - at(*t)).abs()).fold(0.0, f64::max) / largest;
+            let steps = coarse.len() - 1;
+            println!("{load:?}, tolerance {tolerance:e}: {steps} steps, off {off:.1e}");
+            // The errors of the steps add up, each of at most the tolerance.
+            assert!(off < steps as f64 * tolerance, "{load:?}: {off:e} at {tolerance:e} in {steps} steps");
+            assert!(steps < 400, "{load:?}: {steps} steps at {tolerance:e}");
+        }
+    }
+}

@@ -1,5 +1,7 @@
 //! Linear dynamics by Newmark's method, Eq. (25): `M ü + C u̇ + K u = f(t)`, from rest.
 
+pub(super) mod adaptive;
+
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -69,8 +71,8 @@ pub struct Settings {
     pub duration: f64,
     /// Time step (s); the first one when adaptive.
     pub step: f64,
-    /// Relative local error of the displacement at which the step is halved or doubled; `None`
-    /// keeps it constant.
+    /// Local error of the displacement at which the step is halved or doubled, relative to the larger of what has
+    /// been reached and what the greatest load can cause; the errors of the steps add up. `None` keeps it constant.
     pub tolerance: Option<f64>,
     /// Damping.
     pub damping: Rayleigh,
@@ -162,14 +164,25 @@ pub fn newmark_with(
     if show(0.0, &systems).is_break() {
         return Ok(());
     }
-    let (mut time, mut step) = (0.0, settings.step);
+    let tolerance = settings.tolerance;
+    let longest = tolerance.map_or(f64::INFINITY, |_| settings.load.longest_step());
+    let (mut time, mut step) = (0.0, settings.step.min(longest));
+    // The largest displacement so far; at the start, what the load can cause.
+    let mut largest = match tolerance {
+        Some(_) => systems.iter().map(|s| s.reach(settings)).sum::<Result<f64, _>>()?.sqrt(),
+        None => 0.0,
+    };
     // A remainder below a millionth of a step is rounding of the sum of steps.
     while settings.duration - time > 1e-6 * step {
         let dt = step.min(settings.duration - time);
         let factors = (settings.load.at(time), settings.load.at(time + dt));
         let trials = systems.iter_mut().map(|s| s.trial(dt, factors.1)).collect::<Result<Vec<_>, _>>()?;
-        let error = systems.iter().zip(&trials).map(|(s, t)| s.error(t, dt)).fold(0.0, f64::max);
-        if settings.tolerance.is_some_and(|tolerance| error > tolerance) {
+        let all = || systems.iter().zip(&trials);
+        let reached = tolerance.map(|_| all().map(|(s, t)| s.squared(&t.u)).sum::<f64>().sqrt().max(largest));
+        let error = tolerance.map(|_| all().map(|(s, t)| s.local_error(t, dt)).sum::<f64>().sqrt());
+        // Above a part of what is accepted; of neither where the step is constant.
+        let above = |part: f64| Some(error? > part * tolerance? * reached?);
+        if above(1.0) == Some(true) {
             step = 0.5 * dt;
             if step < 1e-9 * settings.duration {
                 return Err(SolveError::StepVanished { time });
@@ -180,9 +193,10 @@ pub fn newmark_with(
             s.commit(t, factors);
         }
         time += dt;
+        largest = reached.unwrap_or(0.0);
         // The error is of third order in the step: doubling it needs a margin of eight, and some.
-        if settings.tolerance.is_some_and(|tolerance| error < tolerance / 20.0) {
-            step *= 2.0;
+        if above(1.0 / 20.0) == Some(false) {
+            step = (2.0 * step).min(longest);
         }
         if show(time, &systems).is_break() {
             break;
@@ -206,7 +220,6 @@ struct System<'a> {
     u: Vec<f64>,
     v: Vec<f64>,
     a: Vec<f64>,
-    largest: f64,
     factor: Option<(f64, Factor)>,
     energy: Energy,
 }
@@ -249,7 +262,6 @@ impl<'a> System<'a> {
             u: vec![0.0; n],
             v: vec![0.0; n],
             a: vec![0.0; n],
-            largest: 0.0,
             factor: None,
             energy: Energy::default(),
         };
@@ -317,15 +329,6 @@ impl<'a> System<'a> {
         Ok(Trial { u, v, a })
     }
 
-    /// Local error of the displacement relative to the largest so far (Zienkiewicz and Xie 1991):
-    /// `(β - 1/6) Δt² |Δa|`.
-    fn error(&self, trial: &Trial, dt: f64) -> f64 {
-        let norm = |v: &mut dyn Iterator<Item = f64>| v.fold(0.0f64, |m, x| m.max(x.abs()));
-        let jump = norm(&mut trial.a.iter().zip(&self.a).map(|(new, old)| new - old));
-        let largest = norm(&mut trial.u.iter().copied()).max(self.largest);
-        if largest == 0.0 { 0.0 } else { (BETA - 1.0 / 6.0) * dt * dt * jump / largest }
-    }
-
     fn commit(&mut self, trial: Trial, (before, after): (f64, f64)) {
         let mean = 0.5 * (before + after);
         let n = self.u.len();
@@ -337,7 +340,6 @@ impl<'a> System<'a> {
             + beta * dot(&du, &product(&self.stiffness, &mean_v));
         self.energy.kinetic = 0.5 * dot(&trial.v, &product(&self.mass, &trial.v));
         self.energy.strain = 0.5 * dot(&trial.u, &product(&self.stiffness, &trial.u));
-        self.largest = trial.u.iter().fold(self.largest, |m, x| m.max(x.abs()));
         (self.u, self.v, self.a) = (trial.u, trial.v, trial.a);
     }
 }

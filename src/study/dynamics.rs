@@ -12,6 +12,7 @@ use super::nonlinear::largest_w;
 use super::run::Outcome;
 use crate::element::Mass;
 use crate::fields::Locator;
+use crate::finding::{Finding, Place};
 use crate::mesh::QuadMesh;
 use crate::model::Model;
 use crate::quantity::{Frequency, Time, counts_angles};
@@ -36,6 +37,9 @@ pub struct History {
 
 /// Spectral radius of large rotations when left out: a tenth of the highest frequencies goes in a step.
 const SPECTRAL_RADIUS: f64 = 0.9;
+
+/// Above this part of the largest work a balance of energies that does not close is worth a word.
+const IMBALANCE_LIMIT: f64 = 0.05;
 
 /// Large rotations: whether, and their spectral radius.
 #[derive(Clone, Copy)]
@@ -129,6 +133,16 @@ impl Record<'_> {
     }
 }
 
+/// The finding of energies that do not add up.
+fn unbalanced(case: &Case, imbalance: f64) -> Option<Finding> {
+    let message = format!(
+        "the energies miss the work of the loads by up to {:.0} %: take a shorter step (with a tolerance, a smaller one), \
+         and a load that ramps instead of a jump",
+        100.0 * imbalance
+    );
+    (imbalance > IMBALANCE_LIMIT).then(|| Finding::new("S110", message).at(Place::file(&case.path)))
+}
+
 /// Integrates in time and keeps the history.
 pub(super) fn dynamics(
     prepared: &PreparedCase<'_>,
@@ -158,7 +172,8 @@ pub(super) fn dynamics(
     let Record { mut history, solution, .. } = record;
     let work = history.energy.iter().map(|e| e.work.abs()).fold(f64::MIN_POSITIVE, f64::max);
     history.imbalance = history.energy.iter().map(|e| e.imbalance().abs()).fold(0.0, f64::max) / work;
-    Ok(Outcome { history: Some(history), state, ..Outcome::of(solution) })
+    let findings = unbalanced(case, history.imbalance).into_iter().collect();
+    Ok(Outcome { history: Some(history), state, findings, ..Outcome::of(solution) })
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@
 //! their forces of inertia act on it about its place. Newton's matrix leaves out how `ω × (ω × r)` changes, which is
 //! small of the order of the turn in a step.
 
+mod adaptive;
 mod inertia;
 
 use std::ops::ControlFlow;
@@ -28,6 +29,7 @@ use crate::element::Mass;
 use crate::model::Model;
 use crate::solve::SolveError;
 use crate::solve::assemble::unit_rows;
+use crate::solve::factor::Factor;
 use crate::solve::linear::Options;
 use crate::solve::newmark::{Energy, Instant, LoadHistory, Rayleigh};
 use crate::solve::plan::Plan;
@@ -40,8 +42,8 @@ pub struct Dynamics {
     pub duration: f64,
     /// Time step (s): the first one with a tolerance, and the longest one without.
     pub step: f64,
-    /// Relative local error of the displacement at which the step is halved or doubled; `None` shortens it
-    /// only where Newton's method fails.
+    /// Local error of the displacement at which the step is halved or doubled, relative to the larger of what has
+    /// been reached and what the greatest load can cause; `None` shortens it only where Newton's method fails.
     pub tolerance: Option<f64>,
     /// Spectral radius of the highest frequencies, 0 to 1.
     pub spectral_radius: f64,
@@ -90,7 +92,11 @@ pub fn integrate_with(
     let system = System::new(model, plan, &settings, options)?;
     let motion = Motion::new(&system, dynamics);
     let mut now = motion.start()?;
-    let (mut time, mut step) = (0.0, dynamics.step);
+    let tolerance = dynamics.tolerance;
+    let longest = tolerance.map_or(dynamics.step, |_| dynamics.load.longest_step());
+    let (mut time, mut step) = (0.0, dynamics.step.min(longest));
+    // The largest displacement so far; at the start, what the load can cause.
+    let mut largest = tolerance.map_or(Ok(0.0), |_| motion.reach(&now))?;
     let mut energy = Energy::default();
     let show = |time, now: &Now, energy, observe: &mut dyn FnMut(&Instant<'_>) -> ControlFlow<()>| {
         observe(&Instant { time, displacement: &now.state.displacement(&model.mesh), energy })
@@ -98,16 +104,18 @@ pub fn integrate_with(
     if show(0.0, &now, energy, &mut observe).is_break() {
         return Ok(now.state);
     }
-    let mut largest = 0.0f64;
     // A remainder below a millionth of a step is rounding of the sum of steps.
     while dynamics.duration - time > 1e-6 * step {
         let dt = step.min(dynamics.duration - time);
         let next = motion.advance(&now, time + dt, dt);
-        let error = next.as_ref().map(|next| motion.error(&now, next, dt, largest));
-        let kept = match (error, dynamics.tolerance) {
-            (Some(error), Some(tolerance)) => error <= tolerance,
-            (error, _) => error.is_some(),
+        let reached = match (&next, tolerance) {
+            (Some(next), Some(_)) => motion.moved(next).max(largest),
+            _ => largest,
         };
+        let error = next.as_ref().zip(tolerance).map(|(next, _)| motion.local_error(&now, next, dt));
+        // Above a part of what is accepted; of neither without a tolerance.
+        let above = |part: f64| Some(error? > part * tolerance? * reached);
+        let kept = above(1.0) != Some(true);
         let (Some(next), true) = (next, kept) else {
             step = 0.5 * dt;
             if step < 1e-9 * dynamics.duration {
@@ -118,13 +126,11 @@ pub fn integrate_with(
         motion.account(&now, &next, &mut energy);
         now = next;
         time += dt;
-        largest = now.state.displacement(&model.mesh).iter().fold(largest, |m, u| m.max(u.abs()));
-        step = match (error, dynamics.tolerance) {
-            // The error is of third order in the step: doubling it needs a margin of eight, and some.
-            (Some(error), Some(tolerance)) if error < tolerance / 20.0 => 2.0 * step,
-            (_, Some(_)) => step,
-            (_, None) => (2.0 * step).min(dynamics.step),
-        };
+        largest = reached;
+        // The error is of third order in the step: doubling it needs a margin of eight, and some.
+        if tolerance.is_none() || above(1.0 / 20.0) == Some(false) {
+            step = (2.0 * step).min(longest);
+        }
         if show(time, &now, energy, &mut observe).is_break() {
             break;
         }
@@ -146,6 +152,8 @@ struct Now {
     load: Vec<f64>,
     /// Displacements and rotations since the instant before.
     travelled: Vec<f64>,
+    /// Of Newton's last matrix, where a tolerance asks for the local error.
+    factor: Option<Factor>,
 }
 
 /// A model in motion.
@@ -188,6 +196,7 @@ impl<'a> Motion<'a> {
             damping: still.clone(),
             load: self.load(&state),
             travelled: still,
+            factor: None,
             state,
         })
     }
@@ -211,6 +220,7 @@ impl<'a> Motion<'a> {
         self.system.advance(&mut state, &travelled);
         // The straight prediction stretches a sheet that turns: its own forces say nothing.
         let mut predicted: Option<Vec<Forces>> = Some(now.balance.forces());
+        let mut factor = None;
         for _ in 0..ITERATIONS {
             let mean_acceleration: Vec<f64> = (0..n)
                 .map(|d| {
@@ -239,7 +249,7 @@ impl<'a> Motion<'a> {
             self.free(&mut force);
             let (size, scale) =
                 (self.system.norm(&force, false), balance.scale.max(self.system.norm(&inertia, false)));
-            let done = |state, balance| Now {
+            let done = |state, balance, factor: Option<Factor>| Now {
                 load: self.load(&state),
                 velocity: velocity.clone(),
                 acceleration: acceleration.clone(),
@@ -247,20 +257,23 @@ impl<'a> Motion<'a> {
                 balance,
                 damping: damping.clone(),
                 travelled: travelled.clone(),
+                factor: factor.filter(|_| self.dynamics.tolerance.is_some()),
                 state,
             };
             if !size.is_finite() {
                 return None;
             }
             if size <= RESIDUAL * scale {
-                return Some(done(state, balance));
+                return Some(done(state, balance, factor));
             }
             let elastic = predicted.take().unwrap_or_else(|| balance.forces());
             let geometric: Vec<Forces> = elastic.iter().zip(&viscous).map(|(e, v)| e.plus(v)).collect();
             let mut step = force;
-            self.tangent(&state, &balance, &nodal, &geometric, dt)?.solve(&mut step, 1);
+            let tangent = self.tangent(&state, &balance, &nodal, &geometric, dt)?;
+            tangent.solve(&mut step, 1);
+            factor = Some(tangent);
             if limit(&mut step) == 1.0 && is_rounding(&step, self.system.size) {
-                return Some(done(state, balance));
+                return Some(done(state, balance, factor));
             }
             predicted = Some(self.system.predict(&state, &balance, &step));
             self.system.advance(&mut state, &step);
@@ -280,15 +293,19 @@ impl<'a> Motion<'a> {
         nodal: &[f64],
         forces: &[Forces],
         dt: f64,
-    ) -> Option<crate::solve::factor::Factor> {
+    ) -> Option<Factor> {
         let by_velocity = self.gamma / (self.beta * dt);
-        let by_acceleration = (1.0 - self.alpha_m) / ((1.0 - self.alpha_f) * self.beta * dt * dt);
         let stiffening = 1.0 + self.dynamics.damping.beta * by_velocity;
         let (mut matrix, _) = self.system.tangent_of(state, balance, forces, 0.0, stiffening);
-        let factor = by_acceleration + self.dynamics.damping.alpha * by_velocity;
+        let factor = self.by_acceleration(dt) + self.dynamics.damping.alpha * by_velocity;
         self.inertia.add(self.system, state, factor, &mut matrix);
         self.system.add_body_terms(state, nodal, &mut matrix);
         self.system.factorise(&matrix).ok()
+    }
+
+    /// Change of the acceleration per displacement in a step (1/s²).
+    fn by_acceleration(&self, dt: f64) -> f64 {
+        (1.0 - self.alpha_m) / ((1.0 - self.alpha_f) * self.beta * dt * dt)
     }
 
     /// What a motion of the dofs costs besides the forces of the state.
@@ -314,14 +331,6 @@ impl<'a> Motion<'a> {
             damping: self.system.to_leads(state, &damping),
             viscous,
         }
-    }
-
-    /// Local error of the displacement relative to the largest so far (Zienkiewicz and Xie 1991).
-    fn error(&self, now: &Now, next: &Now, dt: f64, largest: f64) -> f64 {
-        let jumps = next.mean_acceleration.iter().zip(&now.mean_acceleration);
-        let jump = jumps.fold(0.0f64, |m, (new, old)| m.max((new - old).abs()));
-        let moved = next.travelled.iter().fold(largest, |m, u| m.max(u.abs()));
-        if moved == 0.0 { 0.0 } else { (self.beta - 1.0 / 6.0).abs() * dt * dt * jump / moved }
     }
 
     /// Adds what a step does to the energies; forces count with their means over the step.

@@ -28,7 +28,7 @@ pub enum Analysis {
         duration: Time,
         /// Time step; the first one when a tolerance is given.
         step: Time,
-        /// Relative local error at which the step adapts; constant step when left out.
+        /// Relative local error at which the step adapts, above 0 and below 1; constant step when left out.
         tolerance: Option<f64>,
         /// Damping ratios of the first and the third natural frequency; undamped when left out.
         damping: Option<[f64; 2]>,
@@ -73,6 +73,10 @@ impl Analysis {
             Self::Newmark { damping: Some(ratios), .. } if ratios.iter().any(|r| !(0.0..1.0).contains(r)) => {
                 Some("[analysis] damping ratios are parts of the critical damping: take 0 to below 1")
             }
+            Self::Newmark { tolerance: Some(t), .. } if !(*t > 0.0 && *t < 1.0) => Some(
+                "[analysis] tolerance is the local error of a step relative to the displacement: take one above 0 and \
+                 below 1, such as 1e-3",
+            ),
             _ => None,
         }
     }

@@ -69,6 +69,9 @@ fn keys_without_a_meaning_are_refused() {
     assert!(with("[analysis]\nkind = \"modal\"\nmodes = 0").contains("modes = 0"));
     let newmark = "[analysis]\nkind = \"newmark\"\nduration = \"1 s\"\nstep = \"0.1 s\"\n";
     assert!(with(&format!("{newmark}damping = [-0.1, 0.1]")).contains("critical"));
+    for tolerance in ["nan", "inf", "0.0", "-0.1", "1.0"] {
+        assert!(with(&format!("{newmark}tolerance = {tolerance}")).contains("tolerance"), "{tolerance}");
+    }
     let pushed = "[[loads]]\nkind = \"prescribed\"\nset = \"left\"\ndof = \"w\"\nvalue = \"1 mm\"\n";
     assert!(with(&format!("{pushed}{newmark}")).contains("prescribed"));
     let probe = "[[probes]]\nname = \"p\"\nat = [\"1 cm\", \"1 cm\"]\n";
