@@ -7,14 +7,18 @@ mod edge;
 mod element;
 mod extrapolation;
 mod probe;
+mod reactions;
 mod recovery;
 
 pub use edge::edge_moments;
 pub use extrapolation::Extrapolation;
-pub use probe::{Line, Locator, ProbeValue};
+pub use probe::{Line, Locator, ProbeValue, nearest};
+pub use reactions::reaction_resultants;
 
-use crate::element::Vector24;
-use crate::mesh::QuadMesh;
+use nalgebra::Vector3;
+
+use crate::element::{Cell, Vector24, membrane_and_plate};
+use crate::mesh::{QuadMesh, normal};
 use crate::model::{Model, ModelError};
 use crate::solve::nonlinear::State;
 use element::{for_each_element, material_axes, small, straining};
@@ -57,8 +61,8 @@ impl Resultants {
     }
 }
 
-/// Membrane forces and moments of every smoothing cell, element by element, in the order of the
-/// cells; transverse shear is not constant in a cell and is left at zero.
+/// Resultants of every smoothing cell, element by element, in the order of the cells: N and M are constant in a cell,
+/// Q is that of MITC4 at its middle.
 ///
 /// # Errors
 /// M008 if the warp direction is normal to an element.
@@ -66,13 +70,15 @@ pub fn cells(model: &Model, displacement: &[f64]) -> Result<Vec<Vec<Resultants>>
     let (flat, displacement) = (model.mesh.is_flat(), small(model, displacement));
     let of_element = |quad: usize| {
         let element = model.element(quad, flat)?;
-        let (stress, _) = material_axes(&element, &model.warp);
+        let (stress, vector) = material_axes(&element, &model.warp);
         let local = element.to_local() * displacement(quad);
-        let of_cell = |cell| {
+        let (_, plate) = membrane_and_plate(&local);
+        let of_cell = |cell: Cell| {
             let (strain, curvature) = element.strains(&cell, &local);
             let membrane = stress * element.d_m * strain;
             let moment = stress * element.d_b * curvature;
-            Resultants { membrane: membrane.into(), moment: moment.into(), shear: [0.0; 2] }
+            let shear = vector * element.d_s * element.shear_strain_matrix(cell.middle) * plate;
+            Resultants { membrane: membrane.into(), moment: moment.into(), shear: shear.into() }
         };
         Ok(element.cells().map(of_cell).collect())
     };
@@ -84,12 +90,31 @@ pub fn cells(model: &Model, displacement: &[f64]) -> Result<Vec<Vec<Resultants>>
 /// # Errors
 /// M008 if the warp direction is normal to an element.
 pub fn element_means(model: &Model, displacement: &[f64]) -> Result<Vec<Resultants>, ModelError> {
+    means_of(model, small(model, displacement))
+}
+
+/// The same after large rotations: in the axes of the elements as they have turned.
+///
+/// # Errors
+/// M008 if the warp direction is normal to an element.
+pub fn element_means_moved(model: &Model, state: &State) -> Result<Vec<Resultants>, ModelError> {
+    means_of(model, straining(model, state))
+}
+
+fn means_of(model: &Model, displacement: impl Fn(usize) -> Vector24) -> Result<Vec<Resultants>, ModelError> {
     let mut means = Vec::with_capacity(model.mesh.quads.len());
     let quads = 0..model.mesh.quads.len();
-    for_each_element(model, model.mesh.is_flat(), quads, small(model, displacement), |_, [.., mean]| {
-        means.push(mean)
-    })?;
+    for_each_element(model, model.mesh.is_flat(), quads, displacement, |_, [.., mean]| means.push(mean))?;
     Ok(means)
+}
+
+/// Unit vector along the warp in each element at rest, the x of its resultants.
+pub fn warp_directions(model: &Model) -> Vec<Vector3<f64>> {
+    let of_element = |quad| {
+        let normal = normal(&model.mesh.corners(quad));
+        (model.warp - normal * normal.dot(&model.warp)).normalize()
+    };
+    (0..model.mesh.quads.len()).map(of_element).collect()
 }
 
 /// Resultants at the nodes of a model: a [`Recovery`] used once.

@@ -74,6 +74,33 @@ impl Locator {
     }
 }
 
+/// The point of a mesh that is nearest to a point.
+pub fn nearest(mesh: &QuadMesh, point: &Point3<f64>) -> Point3<f64> {
+    let of_quad = |quad: usize| {
+        let corners = mesh.corners(quad);
+        let edges = (0..4).map(move |i| {
+            let (a, side) = (corners[i], corners[(i + 1) % 4] - corners[i]);
+            a + side * ((point - a).dot(&side) / side.norm_squared()).clamp(0.0, 1.0)
+        });
+        edges.chain(foot(&corners, point))
+    };
+    let distance = |p: &Point3<f64>| (p - point).norm_squared();
+    let all = (0..mesh.quads.len()).flat_map(of_quad);
+    all.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(*point)
+}
+
+/// The foot of the perpendicular from a point on a quad, if it lies in the quad.
+fn foot(corners: &[Point3<f64>; 4], point: &Point3<f64>) -> Option<Point3<f64>> {
+    let frame = Frame::of(corners);
+    let centre = corners.iter().fold(nalgebra::Vector3::zeros(), |s, c| s + c.coords) / 4.0;
+    let local = frame.rotation * (point.coords - centre);
+    let [xi, eta] = natural(&frame.xy, [local.x, local.y])?;
+    let inside = xi.abs() <= 1.0 && eta.abs() <= 1.0;
+    let weights = shape(xi, eta);
+    let place = corners.iter().zip(weights).map(|(c, w)| c.coords * w).sum::<nalgebra::Vector3<f64>>();
+    inside.then(|| place.into())
+}
+
 /// Natural coordinates of a plane point: the inverse of the bilinear map `a + b ξ + c η + d ξ η`, of which the root
 /// that lies nearer to the quad counts; `None` if the map does not reach the point.
 ///
