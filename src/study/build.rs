@@ -103,6 +103,7 @@ pub fn model(case: &Case, sheet: &Sheet, section: ShellSection) -> Result<Model,
                 };
                 prescribed.push(Support { nodes: mesh.set(set)?.to_vec(), held: vec![(dof, value)] });
             }
+            LoadTable::Point { .. } => loads.extend(point_load(case, &mesh, table)?),
             other => loads.push(load(case, &mesh, other)?),
         }
     }
@@ -234,18 +235,46 @@ fn support(case: &Case, mesh: &QuadMesh, table: &SupportTable) -> Result<Vec<Sup
     })
 }
 
-fn load(case: &Case, mesh: &QuadMesh, table: &LoadTable) -> Result<Load, StudyError> {
-    let unit = |direction: &[f64; 3]| {
-        let v = Vector3::from(*direction);
-        let length = v.norm();
-        if length > 0.0 && length.is_finite() {
-            Ok(v / length)
-        } else {
-            Err(case.inconsistent(format!(
-                "direction {direction:?} has no direction: give a vector such as [0, 0, -1]"
-            )))
-        }
+/// A direction of any length as a unit vector.
+fn unit(case: &Case, direction: &[f64; 3]) -> Result<Vector3<f64>, StudyError> {
+    let v = Vector3::from(*direction);
+    let length = v.norm();
+    if length > 0.0 && length.is_finite() {
+        Ok(v / length)
+    } else {
+        Err(case.inconsistent(format!(
+            "direction {direction:?} has no direction: give a vector such as [0, 0, -1]"
+        )))
+    }
+}
+
+/// The loads of a force or moment on a set, or on the corners of the element that holds a point.
+fn point_load(case: &Case, mesh: &QuadMesh, table: &LoadTable) -> Result<Vec<Load>, StudyError> {
+    let LoadTable::Point { set, at, value, direction } = table else { return Ok(Vec::new()) };
+    let along = unit(case, direction)?;
+    let (force, moment) = match (Force::from_str(value), Moment::from_str(value)) {
+        (Ok(force), _) => (along * force.si(), Vector3::zeros()),
+        (_, Ok(moment)) => (Vector3::zeros(), along * moment.si()),
+        (Err(e), _) => return Err(case.inconsistent(format!("point load: {e}"))),
     };
+    match (set, at) {
+        (Some(set), None) => Ok(vec![Load::Point { nodes: mesh.set(set)?.to_vec(), force, moment }]),
+        (None, Some(at)) => {
+            let place = at.locate(case, mesh, "the point load")?;
+            let shares = mesh.quads[place.quad].into_iter().zip(place.weights);
+            let of_node = |(node, share): (u32, f64)| Load::Point {
+                nodes: vec![node],
+                force: force * share,
+                moment: moment * share,
+            };
+            Ok(shares.map(of_node).collect())
+        }
+        _ => Err(case.inconsistent("a point load needs either `set` or `at`, and not both".into())),
+    }
+}
+
+fn load(case: &Case, mesh: &QuadMesh, table: &LoadTable) -> Result<Load, StudyError> {
+    let unit = |direction: &[f64; 3]| unit(case, direction);
     let edges = |set: &str| {
         let edges = mesh.set_edges(set)?;
         if edges.is_empty() {
@@ -262,25 +291,14 @@ fn load(case: &Case, mesh: &QuadMesh, table: &LoadTable) -> Result<Load, StudyEr
             let g = value.map_or(STANDARD_GRAVITY, |v| v.si());
             Load::Gravity(unit(&direction.unwrap_or([0.0, 0.0, -1.0]))? * g)
         }
-        LoadTable::Point { set, value, direction } => {
-            let nodes = mesh.set(set)?.to_vec();
-            let along = unit(direction)?;
-            match (Force::from_str(value), Moment::from_str(value)) {
-                (Ok(force), _) => Load::Point { nodes, force: along * force.si(), moment: Vector3::zeros() },
-                (_, Ok(moment)) => {
-                    Load::Point { nodes, force: Vector3::zeros(), moment: along * moment.si() }
-                }
-                (Err(e), _) => return Err(case.inconsistent(format!("point load: {e}"))),
-            }
-        }
         LoadTable::EdgeForce { set, value, direction } => {
             Load::Edge { edges: edges(set)?, force: unit(direction)? * value.si(), moment: Vector3::zeros() }
         }
         LoadTable::EdgeMoment { set, value, direction } => {
             Load::Edge { edges: edges(set)?, force: Vector3::zeros(), moment: unit(direction)? * value.si() }
         }
-        // Held dofs, not forces: the caller makes supports of them.
-        LoadTable::Prescribed { .. } => Load::Pressure(0.0),
+        // Held dofs and forces at points are the caller's.
+        LoadTable::Prescribed { .. } | LoadTable::Point { .. } => Load::Pressure(0.0),
     })
 }
 

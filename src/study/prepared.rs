@@ -145,13 +145,5 @@ fn middle_line(mesh: &QuadMesh) -> [Point3<f64>; 2] {
 }
 
 fn locators(case: &Case, mesh: &QuadMesh) -> Result<Vec<Locator>, StudyError> {
-    case.probes
-        .iter()
-        .map(|p| {
-            let [x, y] = p.at.map(|c| c.si());
-            Locator::find(mesh, &Point3::new(x, y, 0.0)).ok_or_else(|| {
-                case.inconsistent(format!("probe `{}` at ({x}, {y}) m lies outside the sheet", p.name))
-            })
-        })
-        .collect()
+    case.probes.iter().map(|p| p.at.locate(case, mesh, &format!("probe `{}`", p.name))).collect()
 }

@@ -5,9 +5,9 @@ use serde::Deserialize;
 
 use super::StudyError;
 use super::case::Case;
+use super::point::SheetPoint;
 use crate::mesh::QuadMesh;
 use crate::model::RigidBody;
-use crate::quantity::Length;
 
 /// `[[rigid]]`: a set whose nodes move as one rigid body: a stiff clamp, a bar sewn to an edge.
 ///
@@ -22,26 +22,7 @@ pub struct RigidTable {
     pub set: String,
     /// The point of reference: `[x, y]` in the plane z = 0, or `[x, y, z]`; the mean of the set's nodes
     /// when left out.
-    pub at: Option<Place>,
-}
-
-/// A point as written.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(untagged)]
-pub enum Place {
-    /// In the plane z = 0.
-    Plane([Length; 2]),
-    /// Anywhere.
-    Space([Length; 3]),
-}
-
-impl Place {
-    fn point(self) -> Point3<f64> {
-        match self {
-            Self::Plane([x, y]) => Point3::new(x.si(), y.si(), 0.0),
-            Self::Space(p) => p.map(Length::si).into(),
-        }
-    }
+    pub at: Option<SheetPoint>,
 }
 
 /// The rigid bodies of a case; their points of reference are added to the mesh as nodes and sets.
@@ -61,7 +42,7 @@ pub(super) fn bodies(case: &Case, mesh: &mut QuadMesh) -> Result<Vec<RigidBody>,
         let places = set.iter().map(|n| mesh.nodes[*n as usize].coords);
         let mean = || Point3::from(places.sum::<Vector3<f64>>() / set.len() as f64);
         let lead = mesh.nodes.len() as u32;
-        mesh.nodes.push(table.at.map_or_else(mean, Place::point));
+        mesh.nodes.push(table.at.map_or_else(mean, SheetPoint::point));
         mesh.node_sets.insert(table.name.clone(), vec![lead]);
         bodies.push(RigidBody { nodes: [&[lead], &set[..]].concat() });
     }

@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::case::{Analysis, Case, Reference};
@@ -14,7 +15,9 @@ use super::uncertainty::{Uncertainty, linear_uncertainty, modal_uncertainty};
 use super::{PreparedCase, StudyError, build};
 use crate::constitutive::{Constitutive, Input};
 use crate::element::Mass;
-use crate::fields::{Locator, ProbeValue, Recovery, Resultants};
+use crate::fields::{
+    Locator, ProbeValue, Recovery, Resultants, element_means, element_means_moved, reaction_resultants,
+};
 use crate::finding::{Finding, Place};
 use crate::model::{Model, ModelError};
 use crate::quantity::Curve;
@@ -42,8 +45,8 @@ pub enum Status {
 pub struct Probe {
     /// Name in the case file.
     pub name: String,
-    /// The point (m).
-    pub at: [f64; 2],
+    /// The point (m) with as many coordinates as the case gives, two or three.
+    pub at: Vec<f64>,
     /// Values there.
     pub value: ProbeValue,
 }
@@ -128,6 +131,24 @@ impl CaseResult {
     /// Whether this is a natural mode, which has a shape and no size.
     pub fn is_modal(&self) -> bool {
         self.modal
+    }
+
+    /// Sums of the forces (N) and moments about the origin (N·m) of the supports, at the places where the sheet has
+    /// come to; `None` where there are no reactions.
+    pub fn reactions(&self) -> Option<[Vector3<f64>; 2]> {
+        let places = self.state.as_ref().map_or(&self.model.mesh.nodes, |state| &state.position);
+        self.has_reactions().then(|| reaction_resultants(places, &self.solution.reaction))
+    }
+
+    /// Resultants of each element: the mean over its smoothing cells, shear at its centre.
+    ///
+    /// # Errors
+    /// M008 if the warp direction is normal to an element.
+    pub fn element_means(&self) -> Result<Vec<Resultants>, ModelError> {
+        match &self.state {
+            Some(state) => element_means_moved(&self.model, state),
+            None => element_means(&self.model, &self.solution.displacement),
+        }
     }
 
     /// Resultants at the nodes, found when first asked for.
@@ -428,6 +449,6 @@ fn probes(case: &Case, locators: &[Locator], result: &CaseResult) -> Result<Vec<
         .probes
         .iter()
         .zip(locators)
-        .map(|(p, at)| Probe { name: p.name.clone(), at: p.at.map(|c| c.si()), value: value(at) })
+        .map(|(p, at)| Probe { name: p.name.clone(), at: p.at.coordinates(), value: value(at) })
         .collect())
 }

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use crate::quantity::Length;
+use crate::study::point::SheetPoint;
 
 /// `[[probes]]`.
 #[derive(Clone, Debug, Deserialize)]
@@ -10,8 +10,8 @@ use crate::quantity::Length;
 pub struct ProbeTable {
     /// Name used in results and checks.
     pub name: String,
-    /// Point of the undeformed sheet.
-    pub at: [Length; 2],
+    /// Point of the undeformed sheet: `[x, y]` in the plane z = 0, or `[x, y, z]`.
+    pub at: SheetPoint,
 }
 
 /// `[[checks]]`.

@@ -3,6 +3,7 @@
 use serde::Deserialize;
 
 use crate::quantity::{Acceleration, LineForce, LineMoment, Pressure};
+use crate::study::point::SheetPoint;
 
 /// `[[supports]]`: a set with either a kind or a list of dofs.
 #[derive(Clone, Debug, Deserialize)]
@@ -55,10 +56,13 @@ pub enum LoadTable {
         /// Direction; `[0, 0, -1]` when left out.
         direction: Option<[f64; 3]>,
     },
-    /// A force (N) or moment (N·m) shared by the nodes of a set.
+    /// A force (N) or moment (N·m): the total of the nodes of a set, which share it equally, or at one point, whose
+    /// element passes it to its corners by the shape functions.
     Point {
         /// Node set.
-        set: String,
+        set: Option<String>,
+        /// Point of the undeformed sheet instead: `[x, y]` in the plane z = 0, or `[x, y, z]`.
+        at: Option<SheetPoint>,
         /// Force, such as `"0.1 N"`, or moment, such as `"1 N·mm"`.
         value: String,
         /// Direction of the force or axis of the moment.
