@@ -425,6 +425,12 @@ fn a_nonlinear_case_tells_how_it_came_there() {
     let solution = &document["solutions"][0];
     assert_eq!(solution["steps"][0]["factor"], 1.0);
     assert_eq!(solution["search"]["converged"], true);
+    assert!(solution["results"]["reaction_moments"].as_array().unwrap().iter().all(Value::is_number));
+    let vtu = fs::read_to_string(folder.path().join("out/cases/cloth.vtu")).unwrap();
+    assert!(vtu.contains("\"reaction_force\"") && vtu.contains("\"reaction_moment\""));
+    let cells = &vtu[vtu.find("<CellData").unwrap()..vtu.find("</CellData>").unwrap()];
+    let fields = ["warp_direction", "membrane_force", "moment", "shear_force"];
+    assert!(fields.iter().all(|name| cells.contains(&format!("\"{name}\""))));
     assert!(solution["search"]["linear_w_max"].as_f64().unwrap() < -0.5);
     let output = run(&["solve", &path("hard.toml"), "-o", &path("lost"), "--no-charts"]);
     assert_eq!(code(&output), 3, "{}", stderr(&output));

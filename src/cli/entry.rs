@@ -24,7 +24,8 @@ pub fn solution(task: &Task, result: &CaseResult, timings: bool) -> Value {
             (p.name.clone(), value)
         })
         .collect();
-    let sum = |dof: usize| s.reaction.iter().skip(dof).step_by(6).sum::<f64>();
+    // A motion in time and a mode have none.
+    let [forces, moments] = [0, 1].map(|k| result.reactions().map(|sums| <[f64; 3]>::from(sums[k])));
     let mesh = &result.model.mesh;
     let mut entry = json!({
         "case": result.case,
@@ -36,8 +37,8 @@ pub fn solution(task: &Task, result: &CaseResult, timings: bool) -> Value {
             "w_max": {"value": result.w_max, "unit": "m"},
             "w_over_bending_thickness": result.w_over_thickness,
             "probes": probes,
-            // A motion in time and a mode have none.
-            "reactions": result.has_reactions().then(|| [sum(0), sum(1), sum(2)]),
+            "reactions": forces,
+            "reaction_moments": moments,
             "strain_energy": (!result.is_modal()).then_some(s.strain_energy),
             "frequencies": result.frequencies,
             "convergence": result.convergence,

@@ -12,6 +12,7 @@ use super::section::used;
 use super::task::{Task, TaskArgs, Tested};
 use crate::characterise::FabricSheet;
 use crate::constitutive::Constitutive;
+use crate::fields::{Resultants, warp_directions};
 use crate::instrument::{Origin, Parameter, Test};
 use crate::law::Mode;
 use crate::quantity::Curve;
@@ -201,6 +202,25 @@ fn band(t: &Tested) -> Option<[Curve; 2]> {
     Some([edge(-1.0)?, edge(1.0)?])
 }
 
+/// Name, components and values of a field.
+type Field<'a> = (&'a str, usize, Vec<f64>);
+
+/// Resultants as fields of nodes or cells, in material axes.
+fn resultants(all: &[Resultants]) -> [Field<'static>; 3] {
+    [
+        ("membrane_force", 3, all.iter().flat_map(|n| n.membrane).collect()),
+        ("moment", 3, all.iter().flat_map(|n| n.moment).collect()),
+        ("shear_force", 2, all.iter().flat_map(|n| n.shear).collect()),
+    ]
+}
+
+fn mesh_fields<'a>(fields: &'a [Field<'a>]) -> Vec<MeshField<'a>> {
+    fields
+        .iter()
+        .map(|(name, components, values)| MeshField { name, components: *components, values })
+        .collect()
+}
+
 /// The mesh and the deflection of a result, as the files want them.
 struct Mesh {
     nodes: Vec<[f64; 3]>,
@@ -223,23 +243,21 @@ impl Mesh {
             values.chunks_exact(6).flat_map(|v| [v[from], v[from + 1], v[from + 2]]).collect()
         };
         let u = &result.solution.displacement;
-        let reactions = result.has_reactions().then(|| six(&result.solution.reaction, 0));
+        let reaction = &result.solution.reaction;
         let modes: Vec<(String, Vec<f64>)> =
             result.modes.iter().enumerate().map(|(k, m)| (format!("mode_{}", k + 1), six(m, 0))).collect();
         let nodal = result.nodal().map_err(StudyError::from)?;
         let mut fields = vec![("displacement", 3, six(u, 0)), ("rotation", 3, six(u, 3))];
-        fields.extend(reactions.map(|r| ("reaction_force", 3, r)));
-        fields.extend([
-            ("membrane_force", 3, nodal.iter().flat_map(|n| n.membrane).collect()),
-            ("moment", 3, nodal.iter().flat_map(|n| n.moment).collect()),
-            ("shear_force", 2, nodal.iter().flat_map(|n| n.shear).collect()),
-        ]);
+        if result.has_reactions() {
+            fields
+                .extend([("reaction_force", 3, six(reaction, 0)), ("reaction_moment", 3, six(reaction, 3))]);
+        }
+        fields.extend(resultants(nodal));
         fields.extend(modes.iter().map(|(name, shape)| (name.as_str(), 3, shape.clone())));
-        let fields: Vec<_> = fields
-            .iter()
-            .map(|(name, components, values)| MeshField { name, components: *components, values })
-            .collect();
-        Ok(vtu(&self.nodes, &self.quads, &fields, &[])?)
+        let warp = warp_directions(&result.model).iter().flat_map(|d| [d.x, d.y, d.z]).collect();
+        let mut cells = vec![("warp_direction", 3, warp)];
+        cells.extend(resultants(&result.element_means().map_err(StudyError::from)?));
+        Ok(vtu(&self.nodes, &self.quads, &mesh_fields(&fields), &mesh_fields(&cells))?)
     }
 
     fn plot(&self, task: &Task, result: &CaseResult) -> FieldPlot<'_> {
