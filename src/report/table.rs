@@ -258,8 +258,10 @@ pub fn history_rows(result: &CaseResult) -> Vec<HistoryRow> {
                 let (step, time) = (k as u64, Some(*time));
                 rows.push(HistoryRow { step, time, factor: None, quantity, value, unit: unit.into() });
             };
-            for (probe, w) in result.probes.iter().zip(&history.probes) {
-                row(format!("{}.w", probe.name), w[k], "m");
+            for (probe, moved) in result.probes.iter().zip(&history.probe_displacements) {
+                for (component, value) in ["u", "v", "w"].iter().zip(moved[k]) {
+                    row(format!("{}.{component}", probe.name), value, "m");
+                }
             }
             row("kinetic_energy".into(), energy.kinetic, "J");
             row("strain_energy".into(), energy.strain, "J");

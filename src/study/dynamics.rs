@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::PreparedCase;
 use super::StudyError;
 use super::case::Case;
+use super::limits::largest_displacement;
 use super::nonlinear::largest_w;
 use super::run::Outcome;
 use crate::element::Mass;
@@ -27,10 +28,14 @@ pub struct History {
     pub time: Vec<f64>,
     /// Deflection w of each probe at each instant (m), in the order of the case's probes.
     pub probes: Vec<Vec<f64>>,
+    /// Displacement (u, v, w) of each probe at each instant (m), in the same order.
+    pub probe_displacements: Vec<Vec<[f64; 3]>>,
     /// Energies at each instant (J).
     pub energy: Vec<Energy>,
     /// The largest |w| anywhere at any instant, with its sign (m).
     pub w_max: f64,
+    /// The largest displacement in any direction, anywhere at any instant (m).
+    pub displacement_max: f64,
     /// What the energy balance misses at most, over the largest work of the loads.
     pub imbalance: f64,
 }
@@ -122,11 +127,15 @@ impl Record<'_> {
         let history = &mut self.history;
         history.time.push(at.time);
         history.energy.push(at.energy);
-        for (locator, out) in self.locators.iter().zip(&mut history.probes) {
-            out.push(locator.interpolate(self.mesh, |n| at.displacement[6 * n + 2]));
+        for (k, locator) in self.locators.iter().enumerate() {
+            let u = [0, 1, 2].map(|d| locator.interpolate(self.mesh, |n| at.displacement[6 * n + d]));
+            history.probes[k].push(u[2]);
+            history.probe_displacements[k].push(u);
         }
         let w = largest_w(self.mesh, at.displacement);
         history.w_max = if w.abs() > history.w_max.abs() { w } else { history.w_max };
+        history.displacement_max =
+            history.displacement_max.max(largest_displacement(self.mesh, at.displacement));
         self.solution.displacement.copy_from_slice(at.displacement);
         self.solution.strain_energy = at.energy.strain;
         ControlFlow::Continue(())
@@ -157,7 +166,11 @@ pub(super) fn dynamics(
     let mut record = Record {
         mesh: &model.mesh,
         locators: &prepared.probes,
-        history: History { probes: vec![Vec::new(); prepared.probes.len()], ..History::default() },
+        history: History {
+            probes: vec![Vec::new(); prepared.probes.len()],
+            probe_displacements: vec![Vec::new(); prepared.probes.len()],
+            ..History::default()
+        },
         solution: Solution { dofs: prepared.plan.rows(model), ..Solution::at_rest(model) },
     };
     let state = if large.rotations {

@@ -234,7 +234,7 @@ fn largest_deflection(mesh: &QuadMesh, displacement: &[f64]) -> f64 {
 }
 
 /// The largest displacement of the sheet in any direction (m).
-fn largest_displacement(mesh: &QuadMesh, displacement: &[f64]) -> f64 {
+pub(super) fn largest_displacement(mesh: &QuadMesh, displacement: &[f64]) -> f64 {
     let squares = mesh.quads.iter().flatten().map(|n| translation(displacement, *n).norm_squared());
     squares.fold(0.0, f64::max).sqrt()
 }
