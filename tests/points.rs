@@ -146,6 +146,21 @@ fn the_shear_force_of_every_cell_is_that_on_the_edge() {
     }
 }
 
+/// A moment about the normal that jumps acts on rotations without mass: the finding says that energies are missing.
+#[test]
+fn energies_that_do_not_add_up_are_told() {
+    let of = |load: &str, direction: &str| {
+        let rest = format!(
+            "[[supports]]\nset = \"left\"\nkind = \"clamped\"\n[[loads]]\n{load}\ndirection = {direction}\n\
+             [analysis]\nkind = \"newmark\"\nduration = \"2 ms\"\nstep = \"0.02 ms\"\n"
+        );
+        solved(&case(0.3, [0.4, 0.1], [8, 2], &rest)).unwrap().findings
+    };
+    let findings = of("kind = \"edge_moment\"\nset = \"right\"\nvalue = \"1e-5 N\"", "[0, 0, 1]");
+    assert!(findings.iter().any(|f| f.code == "S110"), "{findings:?}");
+    assert!(of("kind = \"edge_force\"\nset = \"right\"\nvalue = \"1e-9 N/m\"", "[0, 0, 1]").is_empty());
+}
+
 /// A strip that is pulled in its plane moves along x, and its history says so.
 #[test]
 fn the_history_of_a_probe_has_all_its_displacements() {

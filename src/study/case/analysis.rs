@@ -28,7 +28,8 @@ pub enum Analysis {
         duration: Time,
         /// Time step; the first one when a tolerance is given.
         step: Time,
-        /// Relative local error at which the step adapts, above 0 and below 1; constant step when left out.
+        /// Relative local error at which the step adapts, above 0 and below 1; constant step when left out. The
+        /// errors of the steps add up, over a few periods to about its power 2/3.
         tolerance: Option<f64>,
         /// Damping ratios of the first and the third natural frequency; undamped when left out.
         damping: Option<[f64; 2]>,
