@@ -226,7 +226,7 @@ fn keys_that_a_method_does_not_have_are_refused() {
         assert_eq!(e.code(), "S003", "{analysis}: {e}");
     }
     let turned = "kind = \"prescribed\"\nset = \"right\"\ndof = \"theta_y\"\nvalue = \"90 deg\"";
-    assert!(refused(&format!("{NONLINEAR}\nperturbation = 0.1"), turned).to_string().contains("loads"));
+    assert!(refused(&format!("{NONLINEAR}\nperturbation = 0.1"), turned).to_string().contains("forces"));
     let newmark = "kind = \"newmark\"\nduration = \"0.2 s\"\nstep = \"4 ms\"";
     assert!(
         refused(&format!("{newmark}\nspectral_radius = 0.5"), WEIGHT).to_string().contains("large_rotations")

@@ -30,7 +30,7 @@ pub use friction::{
 };
 pub use graph::LineFit;
 pub use settings::{CycleChoice, Modulus, Settings};
-pub use sheet::{Branch, FabricSheet, Key, SpecimenResult, Window};
+pub use sheet::{Branch, FabricSheet, Key, RunTo, SpecimenResult, Window};
 pub use simulated::parameters;
 pub use spread::{MeanBranch, mean_branches};
 pub use strip::{Strip, StripCycle};
@@ -59,9 +59,11 @@ pub fn characterise(input: &FabricInput, settings: &Settings) -> FabricSheet {
         findings,
         ..Default::default()
     };
-    for specimen in sheet.specimens.iter().rev() {
-        let m = &specimen.measurement;
-        sheet.run_to.insert((m.test, m.direction), specimen.conditions());
+    for specimen in &sheet.specimens {
+        let (m, conditions) = (&specimen.measurement, specimen.conditions(settings.cycle));
+        let first = sheet.run_to.entry((m.test, m.direction));
+        let first = first.or_insert(RunTo { conditions: conditions.clone(), alike: true });
+        first.alike &= (conditions.maximum / first.conditions.maximum - 1.0).abs() <= 0.05;
     }
     statistics::pool(&mut sheet);
     let mut found = statistics::outliers(&sheet, settings);

@@ -412,6 +412,14 @@ fn tables_stand_beside_curves() {
     assert!(!sheet.moduli.contains_key(&("tangent_low".to_string(), Direction::Warp)));
 }
 
+/// A clean loop of 21 samples bends from one to the next as much as a noisy one.
+#[test]
+fn samples_far_apart_are_no_noise() {
+    let clean = cycle(250.0, 5, |k, s| 8e-6 * k + 3e-4 * s + 1e-3 * (k / 250.0).powi(3));
+    let sheet = evaluate(measurement(Test::Bending, 250.0, clean));
+    assert!(!codes(&sheet).contains(&"K009"), "{:?}", sheet.findings);
+}
+
 #[test]
 fn noise_and_few_samples_are_told() {
     let noisy = cycle(250.0, 60, |k, s| 8e-6 * k + 3e-4 * s);
@@ -468,4 +476,30 @@ fn what_is_no_loop_has_no_friction_law() {
     assert!(sheet.laws.is_empty() && codes(&sheet).contains(&"K041"), "{:?}", sheet.findings);
     let one_side = evaluate(measurement(Test::Bending, 250.0, [there, back].concat()));
     assert_eq!(one_side.laws.len(), 1, "{:?}", one_side.findings);
+}
+
+/// Tension and compression are driven by force: cloth that keeps half of its strain has come back all the same.
+#[test]
+fn a_strip_that_keeps_its_strain_has_come_back() {
+    let mut points = vec![(0.0, 0.0)];
+    points.extend(ramp(0.0, 0.1, 100).map(|e| (e, FM * (e / 0.1).powf(1.5))));
+    points.extend(ramp(0.1, 0.06, 100).map(|e| (e, FM * ((e - 0.06) / 0.04).powf(2.0))));
+    let sheet = evaluate(measurement(Test::Tensile, FM, points));
+    assert_eq!(sheet.laws.len(), 1, "{:?}", sheet.findings);
+}
+
+/// The conditions of a test are those of the cycle that is evaluated, not of a later one that goes further.
+#[test]
+fn the_maximum_is_that_of_the_chosen_cycle() {
+    let turns = [0.0f64, 100.0, -100.0, 0.0, 250.0, -250.0, 0.0];
+    let mut points = vec![(0.0, 0.0)];
+    for w in turns.windows(2) {
+        let sense = (w[1] - w[0]).signum();
+        points.extend(ramp(w[0], w[1], 100).map(|k| (k, 8e-6 * k + 3e-4 * sense)));
+    }
+    let m = measurement(Test::Bending, 250.0, points);
+    for (cycle, reached) in [(CycleChoice::First, 100.0), (CycleChoice::Last, 250.0)] {
+        let sheet = sheet_of(vec![m.clone()], &Settings { cycle, ..Settings::default() });
+        assert_eq!(sheet.conditions(Test::Bending, Some(Direction::Warp)).maximum, reached);
+    }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{FrictionLaw, LineFit, Settings, Strip};
+use super::{CycleChoice, FrictionLaw, LineFit, Settings, Strip};
 use crate::finding::Finding;
 use crate::instrument::fab::FabTest;
 use crate::instrument::{
@@ -87,21 +87,45 @@ pub struct FabricSheet {
     pub bend_tests: Vec<FabTest>,
     /// How the values were evaluated.
     pub settings: Settings,
-    /// What each test was run to, of the first specimen; see [`conditions`](Self::conditions).
-    pub run_to: BTreeMap<(Test, Option<Direction>), Conditions>,
+    /// What each test was run to; see [`conditions`](Self::conditions).
+    pub run_to: BTreeMap<(Test, Option<Direction>), RunTo>,
     /// Files behind the sheet.
     pub sources: Vec<Source>,
     /// What a reader of the sheet must know.
     pub findings: Vec<Finding>,
 }
 
+/// What the specimens of a test in a direction were run to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunTo {
+    /// The conditions of the first specimen, with the maximum that its chosen cycle reaches.
+    pub conditions: Conditions,
+    /// Whether the others reach the same maximum, to a twentieth.
+    pub alike: bool,
+}
+
 impl SpecimenResult {
-    /// The conditions of the test; the maximum is the set one, or what the record reaches if that is less.
-    pub fn conditions(&self) -> Conditions {
+    /// The number of the cycle that the parameters are taken from.
+    pub(super) fn cycle(&self, choice: CycleChoice) -> Option<usize> {
+        let cycles = self.branches.iter().map(|b| b.cycle);
+        match choice {
+            CycleChoice::First => cycles.min(),
+            CycleChoice::Last => cycles.max(),
+        }
+    }
+
+    /// The conditions of the test; the maximum is the set one, or what the chosen cycle reaches if that is less.
+    pub fn conditions(&self, choice: CycleChoice) -> Conditions {
         let m = &self.measurement;
+        let cycle = self.cycle(choice);
         let by_strain = matches!(m.test, Test::Shear | Test::Bending);
         let driven = |b: &Branch| if by_strain { b.curve.x.clone() } else { b.curve.y.clone() };
-        let reached = self.branches.iter().flat_map(driven).fold(0.0f64, |far, v| far.max(v.abs()));
+        let reached = self
+            .branches
+            .iter()
+            .filter(|b| Some(b.cycle) == cycle)
+            .flat_map(driven)
+            .fold(0.0f64, |far, v| far.max(v.abs()));
         let set = m.conditions.maximum;
         let maximum = if set.is_finite() && set > 0.0 { set.min(reached) } else { reached };
         Conditions { maximum, ..m.conditions.clone() }
@@ -119,7 +143,7 @@ impl FabricSheet {
     /// The conditions under which a test was run, and a simulated one is to be: those of the first specimen, whose
     /// maximum is what its record reaches; the customary ones where no record is known.
     pub fn conditions(&self, test: Test, direction: Option<Direction>) -> Conditions {
-        self.run_to.get(&(test, direction)).cloned().unwrap_or_else(|| {
+        self.run_to.get(&(test, direction)).map(|r| r.conditions.clone()).unwrap_or_else(|| {
             let standard = standard_conditions(test);
             let maximum = match test {
                 Test::Tensile => self.settings.table_maximum.si(),

@@ -151,7 +151,13 @@ fn finite(curve: &Curve, notes: &mut Notes<'_>) -> Curve {
 
 /// K009: the noise of the ordinate, from the median second difference, against its range.
 fn noise(curve: &Curve, settings: &Settings, notes: &mut Notes<'_>) {
-    let mut bends: Vec<f64> = curve.y.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).abs()).collect();
+    let mut bends: Vec<f64> = curve.y.windows(3).map(|w| w[0] - 2.0 * w[1] + w[2]).collect();
+    // Those of noise change their sign twice in three steps; those of a curve that is sampled far apart keep it.
+    let turns = bends.windows(2).filter(|w| w[0] * w[1] < 0.0).count();
+    if 3 * turns < bends.len() {
+        return;
+    }
+    bends.iter_mut().for_each(|b| *b = b.abs());
     bends.sort_by(f64::total_cmp);
     // SD of white noise s: second differences have SD s √6, their median absolute value is 0.6745 of it.
     let sd = bends[bends.len() / 2] / (0.6745 * 6f64.sqrt());

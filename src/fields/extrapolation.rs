@@ -6,7 +6,12 @@ use serde::Serialize;
 const FORMAL_ORDER: f64 = 2.0;
 /// Orders below this one say that the meshes are too coarse for any.
 const LOWEST_ORDER: f64 = 0.5;
-/// Safety factors on the estimated error, with an assumed and with an observed order.
+/// Orders above this one are those of values that turn about between the meshes.
+const HIGHEST_ORDER: f64 = 3.0;
+/// Orders at which the extrapolation is trusted: low ones, which ask for more than the element leaves, and that of the
+/// element itself.
+const TRUSTED: [std::ops::RangeInclusive<f64>; 2] = [LOWEST_ORDER..=1.5, 1.8..=2.2];
+/// Safety factors on the estimated error, with an order that is not trusted or assumed, and with a trusted one.
 const SAFETY: [f64; 2] = [3.0, 1.25];
 /// Safety factor on the range of values that show no order.
 const SCATTER: f64 = 3.0;
@@ -18,12 +23,13 @@ const ROUNDING: f64 = 1e-10;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Extrapolation {
     /// Order with which the values were seen to converge: `None` with two meshes, where that of the element, 2, is
-    /// taken, and where the values swing or hardly approach anything. A higher one than 2 is told, and 2 is taken.
+    /// taken, and where the values swing, turn about or hardly approach anything. One from 2 to 3 is told, and 2 is taken.
     pub order: Option<f64>,
     /// The value on elements of no size; that of the finest mesh where three show no order.
     pub value: f64,
     /// Half width of the band about the value on the finest mesh that the discretisation leaves: its error, times
-    /// 1.25 with an observed order and 3 with an assumed one; three times the largest change where three show no order.
+    /// 1.25 with an order that is that of the element or below 1.5, and 3 with another or an assumed one; three times the
+    /// largest change where three show no order.
     pub index: f64,
 }
 
@@ -46,8 +52,9 @@ impl Extrapolation {
                 let order = (before / step).log2();
                 if before.abs().max(step.abs()) <= ROUNDING * fine.abs() {
                     Self { order: None, value: fine, index: 0.0 }
-                } else if order >= LOWEST_ORDER && order.is_finite() {
-                    at(Some(order), SAFETY[1])
+                } else if (LOWEST_ORDER..=HIGHEST_ORDER).contains(&order) {
+                    let trusted = TRUSTED.iter().any(|range| range.contains(&order));
+                    at(Some(order), SAFETY[usize::from(trusted)])
                 } else {
                     Self { order: None, value: fine, index: SCATTER * before.abs().max(step.abs()) }
                 }
@@ -75,15 +82,18 @@ mod tests {
         assert_relative_eq!(three.index, 1.25 * 5.0 / 256.0, max_relative = 1e-12);
     }
 
-    /// First order is taken as seen, fourth as second, which asks for more.
+    /// First order is taken as seen, higher than second as second, and fourth, which is that of a turn, as none.
     #[test]
     fn the_observed_order_is_used_up_to_that_of_the_element() {
         let first = Extrapolation::of(&[4.0, 8.0, 16.0].map(|n| 3.0 + 5.0 / n)).unwrap();
         assert_relative_eq!(first.value, 3.0, max_relative = 1e-13);
-        let fourth = [4.0f64, 8.0, 16.0].map(|n| 3.0 + 5.0 / n.powi(4));
-        let found = Extrapolation::of(&fourth).unwrap();
-        assert_relative_eq!(found.order.unwrap(), 4.0, max_relative = 1e-9);
-        assert!((found.value - 3.0).abs() < found.index && found.index < 1e-3);
+        let higher = [4.0f64, 8.0, 16.0].map(|n| 3.0 + 5.0 / n.powf(2.5));
+        let found = Extrapolation::of(&higher).unwrap();
+        assert_relative_eq!(found.order.unwrap(), 2.5, max_relative = 1e-9);
+        assert_relative_eq!(found.index, (higher[2] - higher[1]).abs(), max_relative = 1e-12);
+        let turning = Extrapolation::of(&[1.0, 1.2, 1.2 + 1e-9]).unwrap();
+        assert_eq!((turning.order, turning.value), (None, 1.2 + 1e-9));
+        assert_relative_eq!(turning.index, 0.6, max_relative = 1e-12);
     }
 
     #[test]

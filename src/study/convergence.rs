@@ -82,10 +82,14 @@ impl Convergence {
         let open: Vec<String> = (self.quantities.iter().filter(open))
             .map(|q| format!("{} (± {:.1} %)", q.quantity, 100.0 * q.left()))
             .collect();
-        (!open.is_empty()).then(|| {
-            let message = format!("the mesh is coarse for {}: take more `cells`", open.join(", "));
-            Finding::new("S106", message).at(Place::file(&case.path))
-        })
+        let message = match (self.quantities.is_empty(), open.is_empty()) {
+            (true, _) => {
+                "the coarser meshes of [convergence] have none of the results: take more `cells`".into()
+            }
+            (_, false) => format!("the mesh is coarse for {}: take more `cells`", open.join(", ")),
+            _ => return None,
+        };
+        Some(Finding::new("S106", message).at(Place::file(&case.path)))
     }
 }
 
@@ -233,7 +237,8 @@ at = ["0 m", "0.5 m"]
         let absent = ["centre.theta_x", "centre.shear_y", "edge.w", "centre.membrane_x", "edge.moment_xy"];
         assert!(absent.iter().all(|q| found.get(q).is_none()));
         assert!(found.get("edge.moment_x").is_some() && found.get("strain_energy").is_some());
-        assert!(result.findings.iter().all(|f| f.code != "S106"));
+        let told = |q: &MeshSeries| result.findings.iter().any(|f| f.message.contains(&q.quantity));
+        assert!(found.quantities.iter().all(|q| told(q) == (q.left() > COARSE)), "{:?}", result.findings);
     }
 
     #[test]
@@ -245,6 +250,23 @@ at = ["0 m", "0.5 m"]
         assert!(found.quantities.len() < 12 && found.get("frequency_1").is_some());
         let coarse = result.findings.iter().find(|f| f.code == "S106").unwrap();
         assert!(coarse.message.contains("frequency_2 ("), "{}", coarse.message);
+    }
+
+    /// Checking a case finds what only its coarser meshes lack, and names them.
+    #[test]
+    fn what_a_coarser_mesh_lacks_is_told_with_that_mesh() {
+        let disc = SQUARE
+            .replace(
+                "shape = \"rectangle\"\nwidth = \"1 m\"\nheight = \"1 m\"",
+                "shape = \"disc\"\ndiameter = \"1 m\"",
+            )
+            .replace("CELLS", "8");
+        let rim = "[[loads]]\nkind = \"pressure\"\nvalue = \"0.001 Pa\"\n[[probes]]\nname = \"rim\"\nat = [\"0.4975 m\", \"0 m\"]\n";
+        let at_angle = rim.replace("[\"0.4975 m\", \"0 m\"]", "[\"0.455 m\", \"0.19 m\"]");
+        let case = |more: &str| Case::parse(Path::new("c.toml"), &format!("{disc}{at_angle}{more}")).unwrap();
+        crate::study::validate(&case("")).unwrap();
+        let e = crate::study::validate(&case("[convergence]\n")).unwrap_err();
+        assert!(e.to_string().contains("cells = [2, 2]") && e.to_string().contains("rim"), "{e}");
     }
 
     #[test]

@@ -146,7 +146,7 @@ impl Record<'_> {
 fn unbalanced(case: &Case, imbalance: f64) -> Option<Finding> {
     let message = format!(
         "the energies miss the work of the loads by up to {:.0} %: take a shorter step (with a tolerance, a smaller one), \
-         and a load that ramps instead of a jump",
+         a load that ramps instead of a jump, and forces for a moment about the normal, where the sheet has no mass",
         100.0 * imbalance
     );
     (imbalance > IMBALANCE_LIMIT).then(|| Finding::new("S110", message).at(Place::file(&case.path)))
@@ -185,7 +185,8 @@ pub(super) fn dynamics(
     let Record { mut history, solution, .. } = record;
     let work = history.energy.iter().map(|e| e.work.abs()).fold(f64::MIN_POSITIVE, f64::max);
     history.imbalance = history.energy.iter().map(|e| e.imbalance().abs()).fold(0.0, f64::max) / work;
-    let findings = unbalanced(case, history.imbalance).into_iter().collect();
+    let lost = history.energy.iter().map(|e| -e.dissipated / work).fold(0.0, f64::max);
+    let findings = unbalanced(case, history.imbalance.max(lost)).into_iter().collect();
     Ok(Outcome { history: Some(history), state, findings, ..Outcome::of(solution) })
 }
 

@@ -84,6 +84,7 @@ fn checked(case: &Case, table: &NonlinearTable) -> Result<(), StudyError> {
     only(table.largest_step.is_some(), "largest_step", &[Newton])?;
     only(table.smallest_step.is_some(), "smallest_step", &[Newton])?;
     only(table.steps.is_some(), "steps", &[Arc, Relax])?;
+    only(table.iterations.is_some(), "iterations", &[Newton, Arc])?;
     only(table.perturbation.is_some() || table.seed.is_some(), "perturbation", &[Newton, Relax])?;
     if method == Newton && table.seed.is_some() && table.perturbation.is_none() {
         return Err(
@@ -207,10 +208,11 @@ pub(super) fn equilibrium(
     let (settings, method) = way(case, table)?;
     let settings = Settings { law: law.cloned(), ..settings };
     let perturbs = matches!(method, Method::Newton(Some(_)));
-    if perturbs && model.load_vector().iter().all(|f| *f == 0.0) {
+    let pushes = |node: &[f64]| node[..3].iter().any(|f| *f != 0.0);
+    if perturbs && !model.load_vector().chunks_exact(6).any(pushes) {
         return Err(case.inconsistent(
-            "[analysis] perturbation is relative to the loads, and held values are the only ones here: \
-             add a small load across the sheet instead"
+            "[analysis] perturbation is relative to the forces, and there are none here, only held values or moments: \
+             add a small force across the sheet instead"
                 .into(),
         ));
     }
@@ -231,7 +233,9 @@ pub(super) fn equilibrium(
     };
     let found =
         nonlinear::search(model, &prepared.plan, &settings, &method, options, |step| record.see(step));
-    let findings = conclude(found, table, &mut record.path)?;
+    let mut findings = conclude(found, table, &mut record.path)?;
+    findings.extend(law.map(|_| elastic_resultants()));
+    findings.extend(turned_about_more(model, &record.state));
     let findings = findings.into_iter().map(|f| f.at(Place::file(&case.path))).collect();
     let mut solution = record.solution;
     solution.dofs = model.constraints().iter().filter(|c| c.is_none()).count();
@@ -268,6 +272,40 @@ fn conclude(
         Err(other) => return Err(other.into()),
     }
     Ok(findings)
+}
+
+/// S120: what is known of the resultants of a sheet with friction.
+fn elastic_resultants() -> Finding {
+    let message = "moments, membrane and shear forces of probes, checks and cells are those of the elastic section at the strains \
+                   that were found: what friction adds is in the reactions and the energies only";
+    Finding::new("S120", message)
+}
+
+/// Rotation (rad) about an axis that is held above which the free ones have brought it about.
+const TURNED: f64 = 0.01;
+
+/// S121: nodes with one rotation held that have turned about its axis all the same. Held is the rotation of each step
+/// about an axis that stays in space: with others free the sum depends on the way.
+fn turned_about_more(model: &Model, state: &State) -> Option<Finding> {
+    let off = model.supports.iter().flat_map(|support| {
+        support.nodes.iter().flat_map(move |n| {
+            support.held.iter().filter_map(move |(dof, value)| {
+                let axis = (*dof as usize).checked_sub(3)?;
+                let turn = state.rotation.get(*n as usize)?.scaled_axis()[axis];
+                // Beyond half a turn the rotation vector is another of the same rotation.
+                (value.abs() < 3.0).then_some((turn - state.factor * value).abs())
+            })
+        })
+    });
+    let largest = off.fold(0.0, f64::max);
+    (largest > TURNED).then(|| {
+        let message = format!(
+            "nodes whose rotation about an axis is held have turned about it by {largest:.2} rad, as the rotations about the other axes \
+             are free: the result depends on the steps by which it was reached; hold the others too, or compare with a smaller \
+             largest_step"
+        );
+        Finding::new("S121", message)
+    })
 }
 
 fn unstable(negative_pivots: usize) -> String {

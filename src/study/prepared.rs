@@ -56,9 +56,12 @@ impl<'a> PreparedCase<'a> {
             );
         };
         let options = &solver::options(case, options)?;
+        let own = Self::on(case, sheet, options)?;
         let coarser = Convergence::coarser(case);
-        let coarser = coarser.iter().map(|sheet| Self::on(case, sheet, options)).collect::<Result<_, _>>()?;
-        Ok(Self { coarser, ..Self::on(case, sheet, options)? })
+        let coarser = coarser
+            .iter()
+            .map(|sheet| Self::on(case, sheet, options).map_err(|e| too_coarse(case, sheet, &e)));
+        Ok(Self { coarser: coarser.collect::<Result<_, _>>()?, ..own })
     }
 
     /// The case on the mesh of a sheet.
@@ -123,7 +126,20 @@ pub fn validate(case: &Case) -> Result<(), StudyError> {
         _ => {}
     }
     locators(case, &model.mesh)?;
+    for sheet in Convergence::coarser(case) {
+        let on = build::model(case, &sheet, stand_in()).and_then(|model| locators(case, &model.mesh));
+        on.map_err(|e| too_coarse(case, &sheet, &e))?;
+    }
     case.checks.iter().try_for_each(|c| expected(case, c).map(drop))
+}
+
+/// An error on a coarser mesh of `[convergence]`, which its reader has not written.
+fn too_coarse(case: &Case, sheet: &Sheet, error: &StudyError) -> StudyError {
+    let cells = sheet.cells.unwrap_or_default();
+    case.inconsistent(format!(
+        "[convergence] needs the case on cells = {cells:?} too, and there: {error}; take more `cells` or meshes = 2, or \
+         move what lies beyond the corners of that mesh inside"
+    ))
 }
 
 /// Ones: which dofs the loads set in motion does not depend on the section, whose density is positive.

@@ -79,8 +79,14 @@ impl FabricSheet {
     /// The law to calculate with: [`law`](Self::law) with the means that the sheet has of its values.
     pub fn mean_law(&self, test: Test, direction: Option<Direction>) -> Option<Channel> {
         let law = self.law(test, direction)?;
-        let mean = |p: Parameter| self.get(p, direction).map(|e| e.mean);
+        // A law of the fabric as a whole has the values of the whole.
+        let mean = |p: Parameter| self.get(p, law.direction).map(|e| e.mean);
         let (leads, widens) = leading(test);
+        // Works up to different forces have no mean.
+        let by_force = matches!(test, Test::Tensile | Test::Compression);
+        if by_force && self.run_to.get(&(test, law.direction)).is_some_and(|r| !r.alike) {
+            return Some(law.channel.clone());
+        }
         Some(law.with_values(mean(leads), widens.and_then(mean)))
     }
 }
@@ -135,6 +141,22 @@ mod tests {
         let [b, width] = values(&sheet.laws[0], &channel);
         assert_relative_eq!(b, 10e-6, max_relative = 1e-9);
         assert_relative_eq!(width, 5e-4, max_relative = 1e-9);
+    }
+
+    /// Values of the fabric as a whole move the law of the fabric, whichever direction is asked for.
+    #[test]
+    fn a_law_without_a_direction_follows_values_without_one() {
+        let mut sheet = FabricSheet::default();
+        let whole =
+            FrictionLaw { direction: None, ..law(Test::Bending, 0, bending_law(5e-6, 2e-4).unwrap()) };
+        sheet.laws.push(whole);
+        let key = |parameter| Key { parameter, direction: None };
+        sheet.values.insert(key(Parameter::B), Estimate::single(5e-6));
+        sheet.values.insert(key(Parameter::Hb), Estimate::single(3e-4));
+        let channel = sheet.mean_law(Test::Bending, Some(Direction::Weft)).unwrap();
+        let [b, width] = values(&sheet.laws[0], &channel);
+        assert_relative_eq!(b, 5e-6, max_relative = 1e-9);
+        assert_relative_eq!(width, 3e-4, max_relative = 1e-9);
     }
 
     /// Friction that widens with the angle is part of G: the backbone makes up for what more of it adds.

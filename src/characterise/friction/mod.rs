@@ -252,17 +252,14 @@ fn of_specimen(specimen: &SpecimenResult, settings: &Settings) -> Result<Frictio
     }
 }
 
-/// Whether the drive comes back in the chosen cycle.
+/// Whether the drive comes back in the chosen cycle: the strain, or the force of a test that is driven by it.
 fn returns(specimen: &SpecimenResult, choice: CycleChoice) -> bool {
-    let length = |b: &Branch| match (b.curve.x.first(), b.curve.x.last()) {
-        (Some(a), Some(z)) => (z - a).abs(),
-        _ => 0.0,
+    let by_force = matches!(specimen.measurement.test, Test::Tensile | Test::Compression);
+    let length = |b: &Branch| {
+        let driven = if by_force { &b.curve.y } else { &b.curve.x };
+        driven.first().zip(driven.last()).map_or(0.0, |(a, z)| (z - a).abs())
     };
-    let cycles = specimen.branches.iter().map(|b| b.cycle);
-    let cycle = match choice {
-        CycleChoice::First => cycles.min(),
-        CycleChoice::Last => cycles.max(),
-    };
+    let cycle = specimen.cycle(choice);
     let longest = |outgoing: bool| {
         let mine = specimen.branches.iter().filter(|b| Some(b.cycle) == cycle && b.outgoing == outgoing);
         mine.map(length).fold(0.0, f64::max)
@@ -301,7 +298,7 @@ fn fitted(specimen: &SpecimenResult, settings: &Settings) -> Option<FrictionLaw>
         values: BTreeMap::new(),
         backbone_stiffness: None,
     };
-    law.evaluate(&specimen.conditions(), settings);
+    law.evaluate(&specimen.conditions(settings.cycle), settings);
     Some(law)
 }
 

@@ -12,7 +12,8 @@ use crate::quantity::{Angle, Curvature, LineForce, significant};
 /// Slip levels over the greatest strain of the test, each with a third of the friction: 0.03 to
 /// 0.1 1/cm of 2.5 1/cm in bending, where measured loops of cloth have them.
 const LEVELS: [f64; 3] = [0.012, 0.022, 0.04];
-/// Part of the way from the turn back to where 2HG5 is read in which all friction has turned.
+/// Part of the way from the turn back to where 2HG5 is read in which all friction has turned, and part of the way
+/// out up to which a width can be read.
 const TURNED: f64 = 0.9;
 /// Part of a summary value by which a law may miss it without a word.
 const MISSED: f64 = 0.05;
@@ -38,11 +39,16 @@ pub(super) fn add(sheet: &mut FabricSheet, settings: &Settings) {
     }
     for law in made {
         let direction = law.direction.map_or(String::new(), |d| format!(" {d}"));
+        let range = match law.test {
+            Test::Tensile => law.channel.backbone().knots().last().unwrap_or(f64::NAN),
+            test => conditions(test, settings).maximum,
+        };
+        let slips = || law.channel.sliders().map(|s| 100.0 * s.slip / range);
         let text = format!(
-            "{}{direction}: the friction law has the summary values and an assumed spectrum, slip levels of {} to {} % of the range: no loop was recorded",
+            "{}{direction}: the friction law has the summary values and an assumed spectrum, slip levels of {} to {} % of the range: there is no loop to take it from",
             law.test.name(),
-            significant(100.0 * LEVELS[0]),
-            significant(100.0 * LEVELS[2]),
+            significant(slips().fold(f64::INFINITY, f64::min)),
+            significant(slips().fold(0.0, f64::max)),
         );
         sheet.findings.push(Finding::new("K040", text));
         sheet.findings.extend(missed(sheet, &law));
@@ -60,7 +66,7 @@ fn none(test: Test, direction: Option<Direction>, why: &str) -> Finding {
 fn missed(sheet: &FabricSheet, law: &FrictionLaw) -> Option<Finding> {
     let off = |(p, ours): (&Parameter, &f64)| {
         let theirs = sheet.get(*p, law.direction)?.mean;
-        let missed = (ours - theirs).abs() > MISSED * theirs.abs();
+        let missed = theirs != 0.0 && (ours - theirs).abs() > MISSED * theirs.abs();
         missed.then(|| format!("{p} {:+.0} %", 100.0 * (ours / theirs - 1.0)))
     };
     let off: Vec<String> = law.values.iter().filter_map(off).collect();
@@ -111,7 +117,7 @@ fn channel(
     direction: Option<Direction>,
     settings: &Settings,
 ) -> Option<Result<Channel, String>> {
-    let value = |p| sheet.get(p, direction).map(|e| e.mean).filter(|v| v.is_finite());
+    let value = |p| sheet.get(p, direction).map(|e| e.mean).filter(|v| v.is_finite() && *v >= 0.0);
     let maximum = conditions(test, settings).maximum;
     let told = |made: Result<Channel, LawError>| made.map_err(|e| e.to_string());
     Some(match test {
@@ -165,8 +171,9 @@ fn shear(g: f64, widths: [f64; 2], settings: &Settings, e_max: f64) -> Result<Ch
     let parts = settings.shear_readings.map(|a| a.si() / e_max);
     let [near, far] = parts.map(|p| p * p);
     let alpha = (widths[1] - widths[0]) / (widths[0] * far - widths[1] * near);
-    let alpha = if alpha.is_finite() { alpha.max(0.0) } else { 0.0 };
-    let room = TURNED * (1.0 - parts[1]).max(0.0) / (2.0 * LEVELS[2] * (1.0 + alpha));
+    // A width that is read where the loop turns tells nothing.
+    let alpha = if alpha.is_finite() && parts[1] <= TURNED { alpha.max(0.0) } else { 0.0 };
+    let room = if alpha > 0.0 { TURNED * (1.0 - parts[1]) / (2.0 * LEVELS[2] * (1.0 + alpha)) } else { 1.0 };
     let stress = 0.5 * widths[0] / (1.0 + alpha * near);
     let [from, to] = settings.shear_slope.map(|a| a.si());
     let steeper = stress * alpha * (from + to) / (e_max * e_max);

@@ -23,7 +23,7 @@ use rayon::prelude::*;
 
 pub use rim::Folds;
 
-use super::case::{Analysis, Case, Shape, Sheet};
+use super::case::{Analysis, Case, LoadTable, Shape, Sheet};
 use super::{StudyError, Watch, build, solver};
 use crate::characterise::FabricSheet;
 use crate::finding::{Finding, Place};
@@ -221,6 +221,24 @@ impl Ring {
         };
         if !(case.probes.is_empty() && case.checks.is_empty()) {
             return Err(case.inconsistent("a drape has no [[probes]] and no [[checks]]: remove them".into()));
+        }
+        let on_disc = !case.supports.is_empty() && case.supports.iter().all(|s| s.set == "inner");
+        if !on_disc || !case.rigid.is_empty() {
+            return Err(case.inconsistent(
+                "a drape hangs from its disc alone: [[supports]] of set = \"inner\" only, and no [[rigid]]"
+                    .into(),
+            ));
+        }
+        let falls = |load: &LoadTable| match load {
+            LoadTable::Gravity { direction, .. } => {
+                direction.is_none_or(|[x, y, z]| x == 0.0 && y == 0.0 && z < 0.0)
+            }
+            _ => false,
+        };
+        if !case.loads.iter().all(falls) {
+            return Err(case.inconsistent(
+                "a drape hangs under its weight: [[loads]] of kind = \"gravity\" along -z only".into(),
+            ));
         }
         Ok(Self { sheet, cells, inner: 0.5 * inner, outer: 0.5 * outer })
     }
