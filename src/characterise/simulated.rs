@@ -9,7 +9,7 @@ use crate::quantity::Curve;
 /// The KES parameters (SI) of a record that an instrument might have made, by the evaluation that its
 /// files go through. Axes of `record` are those of the test.
 ///
-/// A simulated record has no slack and no zero error; what it cannot give is left out.
+/// A simulated record has no slack, no zero error and no tension across; what it cannot give is left out.
 pub fn parameters(
     test: Test,
     direction: Option<Direction>,
@@ -28,7 +28,7 @@ pub fn parameters(
         source: Source::default(),
         metadata: BTreeMap::new(),
     };
-    let settings = Settings { correct_zero: false, ..settings.clone() };
+    let settings = Settings { correct_zero: false, tension_correction: false, ..settings.clone() };
     // What there is to say about noise or windows is said of the measured record.
     specimen::evaluate(&measurement, &settings, &mut Vec::new()).map(|s| s.values).unwrap_or_default()
 }

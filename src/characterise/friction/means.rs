@@ -5,9 +5,10 @@
 //! the fabric for one pair of a and s, as both are linear in the weights. A test that is driven by force is stretched
 //! instead, so that it takes the work of the fabric up to the same force.
 
+use super::record::extract_backbone;
 use super::{Basis, FrictionLaw};
-use crate::characterise::FabricSheet;
-use crate::instrument::{Direction, Parameter, Test};
+use crate::characterise::{FabricSheet, Settings};
+use crate::instrument::{Conditions, Direction, Parameter, Test};
 use crate::law::Channel;
 
 /// The parameters that a law is brought to: stiffness and width of a loop.
@@ -53,11 +54,15 @@ impl FrictionLaw {
     }
 
     /// What the backbone gives of B or G (SI): the rest is that of sliders that still give way, or widen.
-    pub(super) fn elastic(&self, extract: impl Fn(&Self) -> Option<f64>) -> Option<f64> {
+    pub(super) fn elastic(&self, conditions: &Conditions, settings: &Settings) -> Option<f64> {
         let (leads, widens) = leading(self.test);
         widens?;
-        let twice = Self { channel: self.channel.scaled(2.0, 1.0).ok()?, ..self.clone() };
-        Some(extract(&twice)? - self.values.get(&leads)?)
+        let mut tangents = self.channel.backbone().tangents();
+        let first = tangents.next()?;
+        if tangents.all(|t| t == first) {
+            return Some(first);
+        }
+        extract_backbone(self, conditions, settings).get(&leads).copied()
     }
 }
 
@@ -94,9 +99,9 @@ impl FabricSheet {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::characterise::Key;
     use crate::characterise::friction::{bending_law, extract};
-    use crate::characterise::{Key, Settings};
-    use crate::instrument::{Conditions, standard_conditions};
+    use crate::instrument::standard_conditions;
     use crate::law::{Backbone, Family, Slider, Widening};
     use crate::quantity::Estimate;
     use approx::assert_relative_eq;

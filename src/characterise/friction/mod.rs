@@ -83,11 +83,7 @@ impl FrictionLaw {
     /// Finds the values of the law in a cycle under the conditions of a test.
     fn evaluate(&mut self, conditions: &Conditions, settings: &Settings) {
         self.values = extract(self, conditions, settings);
-        let stiffness = |law: &Self| {
-            let found = extract(law, conditions, settings);
-            [Parameter::B, Parameter::G].iter().find_map(|p| found.get(p).copied())
-        };
-        self.backbone_stiffness = self.elastic(stiffness);
+        self.backbone_stiffness = self.elastic(conditions, settings);
     }
 
     /// The strain of the law at an abscissa of the test.

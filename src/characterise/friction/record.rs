@@ -10,6 +10,8 @@ use crate::quantity::Curve;
 
 /// Samples of a branch.
 const SAMPLES: usize = 250;
+/// Samples of a branch without friction, which has no corners.
+const FEW: usize = 40;
 
 /// The record that an instrument would make of cloth with this law, uniformly strained, under given
 /// conditions: bending and shear 0, +maximum, -maximum, 0; tension and compression up to the
@@ -22,7 +24,7 @@ pub fn cycle(law: &FrictionLaw, conditions: &Conditions) -> Curve {
         return Curve::default();
     }
     let strained = match law.test {
-        Test::Bending | Test::Shear => to_both_sides(&law.channel, maximum),
+        Test::Bending | Test::Shear => to_both_sides(&law.channel, maximum, SAMPLES),
         Test::Tensile | Test::Compression => to_force(&law.channel, maximum),
     };
     Curve::from_points(strained.into_iter().map(|(e, s)| (law.abscissa(e), s)))
@@ -33,10 +35,21 @@ pub fn extract(law: &FrictionLaw, conditions: &Conditions, settings: &Settings) 
     parameters(law.test, law.direction, conditions, &cycle(law, conditions), settings)
 }
 
-fn to_both_sides(channel: &Channel, maximum: f64) -> Vec<(f64, f64)> {
+/// The KES parameters of the backbone of a bending or shear law, in the same cycle.
+pub(super) fn extract_backbone(
+    law: &FrictionLaw,
+    conditions: &Conditions,
+    settings: &Settings,
+) -> BTreeMap<Parameter, f64> {
+    let backbone = Channel::elastic(law.channel.backbone().clone());
+    let record = Curve::from_points(to_both_sides(&backbone, conditions.maximum, FEW));
+    parameters(law.test, law.direction, conditions, &record, settings)
+}
+
+fn to_both_sides(channel: &Channel, maximum: f64, samples: usize) -> Vec<(f64, f64)> {
     let run = |from: f64, to: f64, n: usize| (1..=n).map(move |i| from + (to - from) * i as f64 / n as f64);
-    let there = run(0.0, maximum, SAMPLES).chain(run(maximum, -maximum, 2 * SAMPLES));
-    let path = std::iter::once(0.0).chain(there).chain(run(-maximum, 0.0, SAMPLES));
+    let there = run(0.0, maximum, samples).chain(run(maximum, -maximum, 2 * samples));
+    let path = std::iter::once(0.0).chain(there).chain(run(-maximum, 0.0, samples));
     channel.path(State::default(), path).map(|r| (r.state.strain, r.stress)).collect()
 }
 
