@@ -14,21 +14,27 @@ use kesf::solve::newmark::{LoadHistory, Rayleigh, Settings, newmark};
 use kesf::solve::{Mode, Options, modes};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
+/// Isotropic, D = ρ = 1, ν = 0.3, of thickness t.
+fn section(t: f64) -> ShellSection {
+    let nu = 0.3;
+    let plane = Matrix3::new(1.0, nu, 0.0, nu, 1.0, 0.0, 0.0, 0.0, 0.5 * (1.0 - nu));
+    ShellSection {
+        d_m: plane * (12.0 / (t * t)),
+        d_b: plane,
+        d_s: Matrix2::identity() * (3.5 / (t * t)),
+        areal_density: 1.0,
+        thickness: t,
+    }
+}
+
 /// A clamped square of unit size, lumped mass, loaded by M φ1 as nodal forces and moments.
 fn model_in_first_mode() -> (Model, Mode) {
-    let (nu, t) = (0.3, 1e-2);
-    let plane = Matrix3::new(1.0, nu, 0.0, nu, 1.0, 0.0, 0.0, 0.0, 0.5 * (1.0 - nu));
+    let t = 1e-2;
     let mesh = rectangle(1.0, 1.0, 6, 6).unwrap();
     let supports = vec![Support::clamped(mesh.set("boundary").unwrap())];
     let mut model = Model {
         mesh,
-        section: ShellSection {
-            d_m: plane * (12.0 / (t * t)),
-            d_b: plane,
-            d_s: Matrix2::identity() * (3.5 / (t * t)),
-            areal_density: 1.0,
-            thickness: t,
-        },
+        section: section(t),
         warp: Vector3::x(),
         formulation: Formulation::default(),
         supports,
@@ -138,17 +144,9 @@ fn the_adaptive_step_meets_its_tolerance_with_few_steps() {
 
 /// A simply supported square of the first period 0.318 s under pressure, D = ρ = L = 1, t = 1 mm.
 fn pressed() -> Model {
-    let (nu, t) = (0.3, 1e-3);
-    let plane = Matrix3::new(1.0, nu, 0.0, nu, 1.0, 0.0, 0.0, 0.0, 0.5 * (1.0 - nu));
     let mesh = rectangle(1.0, 1.0, 8, 8).unwrap();
     Model {
-        section: ShellSection {
-            d_m: plane * (12.0 / (t * t)),
-            d_b: plane,
-            d_s: Matrix2::identity() * (3.5 / (t * t)),
-            areal_density: 1.0,
-            thickness: t,
-        },
+        section: section(1e-3),
         warp: Vector3::x(),
         formulation: Formulation::default(),
         supports: Support::simple(&mesh, "boundary", true).unwrap(),

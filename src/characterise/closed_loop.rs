@@ -9,7 +9,7 @@ use crate::quantity::Curve;
 
 /// Part of the abscissa where the drive turned up to which a width is read: nearer to the turn the yarns have not slid
 /// back yet, and at the turn itself every loop has no width.
-const TURNED: f64 = 0.9;
+pub(super) const TURNED: f64 = 0.9;
 
 /// What is read from the loop.
 struct Readings {

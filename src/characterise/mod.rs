@@ -8,6 +8,8 @@ mod branch;
 mod checks;
 mod closed_loop;
 mod compression;
+#[cfg(test)]
+mod doubtful;
 mod friction;
 mod graph;
 mod onset;

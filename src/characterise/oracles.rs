@@ -11,17 +11,17 @@ use crate::instrument::{Conditions, Direction, FabricInput, Measurement, Paramet
 use crate::quantity::{Angle, Curve, LineForce};
 use Parameter as P;
 
-const FM: f64 = 490.3325;
+pub(super) const FM: f64 = 490.3325;
 const PM: f64 = 4903.325;
 const P0: f64 = 49.03325;
-const DEG: f64 = std::f64::consts::PI / 180.0;
+pub(super) const DEG: f64 = std::f64::consts::PI / 180.0;
 
 /// `n` steps from `a` to `b`, the first point left out.
-fn ramp(a: f64, b: f64, n: usize) -> impl Iterator<Item = f64> {
+pub(super) fn ramp(a: f64, b: f64, n: usize) -> impl Iterator<Item = f64> {
     (1..=n).map(move |i| if i == n { b } else { a + (b - a) * i as f64 / n as f64 })
 }
 
-fn measurement(test: Test, maximum: f64, points: Vec<(f64, f64)>) -> Measurement {
+pub(super) fn measurement(test: Test, maximum: f64, points: Vec<(f64, f64)>) -> Measurement {
     Measurement {
         test,
         sample: None,
@@ -35,13 +35,13 @@ fn measurement(test: Test, maximum: f64, points: Vec<(f64, f64)>) -> Measurement
     }
 }
 
-fn sheet_of(measurements: Vec<Measurement>, settings: &Settings) -> FabricSheet {
+pub(super) fn sheet_of(measurements: Vec<Measurement>, settings: &Settings) -> FabricSheet {
     let mut input = FabricInput { name: "clean".into(), measurements, ..FabricInput::default() };
     input.info.areal_density = Some(0.15);
     characterise(&input, settings)
 }
 
-fn evaluate(m: Measurement) -> FabricSheet {
+pub(super) fn evaluate(m: Measurement) -> FabricSheet {
     sheet_of(vec![m], &Settings::default())
 }
 
@@ -102,7 +102,7 @@ fn tensile_line() {
 }
 
 /// A cycle 0, +top, -top, 0 with `n` steps per quarter of the law y(x, sense of the drive).
-fn cycle(top: f64, n: usize, law: impl Fn(f64, f64) -> f64) -> Vec<(f64, f64)> {
+pub(super) fn cycle(top: f64, n: usize, law: impl Fn(f64, f64) -> f64) -> Vec<(f64, f64)> {
     let mut points = vec![(0.0, law(0.0, 1.0))];
     points.extend(ramp(0.0, top, n).map(|x| (x, law(x, 1.0))));
     points.extend(ramp(top, 0.0, n).map(|x| (x, law(x, -1.0))));
@@ -206,7 +206,7 @@ fn cycles_are_kept_and_chosen() {
     assert_eq!(last.specimens[0].branches.len(), 8);
 }
 
-fn codes(sheet: &FabricSheet) -> Vec<&str> {
+pub(super) fn codes(sheet: &FabricSheet) -> Vec<&str> {
     sheet.findings.iter().map(|f| f.code).collect()
 }
 
@@ -439,67 +439,4 @@ fn noise_and_few_samples_are_told() {
     let mut gaps = cycle(250.0, 60, |k, s| 8e-6 * k + 3e-4 * s);
     gaps[30].1 = f64::NAN;
     assert_eq!(codes(&evaluate(measurement(Test::Bending, 250.0, gaps))), ["K022"]);
-}
-
-/// Where the drive turns a loop has no width, and just before it the yarns have not slid back.
-#[test]
-fn no_width_is_read_where_the_loop_turns() {
-    for (turn, read) in [(8.0, true), (5.6, true), (5.1, false), (5.0, false)] {
-        // Friction that has turned after 0.004 rad.
-        let force = |phi: f64, from: f64, sense: f64| {
-            let turned = (phi - from).abs().min(0.004) - if from == 0.0 { 0.0 } else { 0.002 };
-            60.0 * phi + 400.0 * sense * turned
-        };
-        let ends = [0.0, turn * DEG, -turn * DEG, 0.0];
-        let mut points = vec![(0.0, 0.0)];
-        for w in ends.windows(2) {
-            points.extend(ramp(w[0], w[1], 200).map(|phi| (phi, force(phi, w[0], (w[1] - w[0]).signum()))));
-        }
-        let sheet = evaluate(measurement(Test::Shear, turn * DEG, points));
-        let found = sheet.get(P::Hg5, Some(Direction::Warp)).is_some();
-        assert_eq!(found, read, "{turn}: {:?}", sheet.findings);
-        assert_eq!(codes(&sheet).contains(&"K002"), !read, "{turn}");
-    }
-}
-
-/// A record that never comes back has no loop, and one that runs the wrong way round is none of cloth.
-#[test]
-fn what_is_no_loop_has_no_friction_law() {
-    let there: Vec<(f64, f64)> = ramp(0.0, 250.0, 100).map(|k| (k, 8e-6 * k + 3e-4)).collect();
-    let back: Vec<(f64, f64)> = ramp(250.0, 0.0, 100).map(|k| (k, 8e-6 * k - 3e-4)).collect();
-    let sheet = evaluate(measurement(Test::Bending, 250.0, there.clone()));
-    assert!(sheet.laws.is_empty() && codes(&sheet).contains(&"K041"), "{:?}", sheet.findings);
-    let whole = cycle(250.0, 60, |k, s| 8e-6 * k + 3e-4 * s);
-    assert_eq!(evaluate(measurement(Test::Bending, 250.0, whole)).laws.len(), 1);
-    let clockwise = cycle(250.0, 60, |k, s| 8e-6 * k - 3e-4 * s);
-    let sheet = evaluate(measurement(Test::Bending, 250.0, clockwise));
-    assert!(sheet.laws.is_empty() && codes(&sheet).contains(&"K041"), "{:?}", sheet.findings);
-    let one_side = evaluate(measurement(Test::Bending, 250.0, [there, back].concat()));
-    assert_eq!(one_side.laws.len(), 1, "{:?}", one_side.findings);
-}
-
-/// Tension and compression are driven by force: cloth that keeps half of its strain has come back all the same.
-#[test]
-fn a_strip_that_keeps_its_strain_has_come_back() {
-    let mut points = vec![(0.0, 0.0)];
-    points.extend(ramp(0.0, 0.1, 100).map(|e| (e, FM * (e / 0.1).powf(1.5))));
-    points.extend(ramp(0.1, 0.06, 100).map(|e| (e, FM * ((e - 0.06) / 0.04).powf(2.0))));
-    let sheet = evaluate(measurement(Test::Tensile, FM, points));
-    assert_eq!(sheet.laws.len(), 1, "{:?}", sheet.findings);
-}
-
-/// The conditions of a test are those of the cycle that is evaluated, not of a later one that goes further.
-#[test]
-fn the_maximum_is_that_of_the_chosen_cycle() {
-    let turns = [0.0f64, 100.0, -100.0, 0.0, 250.0, -250.0, 0.0];
-    let mut points = vec![(0.0, 0.0)];
-    for w in turns.windows(2) {
-        let sense = (w[1] - w[0]).signum();
-        points.extend(ramp(w[0], w[1], 100).map(|k| (k, 8e-6 * k + 3e-4 * sense)));
-    }
-    let m = measurement(Test::Bending, 250.0, points);
-    for (cycle, reached) in [(CycleChoice::First, 100.0), (CycleChoice::Last, 250.0)] {
-        let sheet = sheet_of(vec![m.clone()], &Settings { cycle, ..Settings::default() });
-        assert_eq!(sheet.conditions(Test::Bending, Some(Direction::Warp)).maximum, reached);
-    }
 }

@@ -9,8 +9,9 @@ use crate::section::ShellSection;
 ///
 /// H is [`metric`] in the same axes: `h² I` for a square, `diag(a², b²)` for a rectangle of sides a and b. For an isotropic
 /// plate with ν = 0.3 a square has the form `t² / (t² + α h²)` of Lyly, Stenberg and Vihinen (1993), written without a
-/// thickness because a fabric has none that would mean it. They take the longest side for h in all directions; an
-/// elongated element is then too soft across its short side, where nothing locks: 1.7 % at a ratio of 4, 3.7 times at 40.
+/// thickness because a fabric has none that would mean it. With the longest side for h in all directions an elongated
+/// element is too soft across its short side, where nothing locks: by 1.7 % at a ratio of 4, 3.7 times at 40 (a clamped
+/// strip under pressure, α = 0.05).
 pub(super) fn stabilised(section: &ShellSection, alpha: f64, metric: &Matrix2<f64>) -> Matrix2<f64> {
     if alpha == 0.0 {
         return section.d_s;

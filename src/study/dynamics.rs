@@ -142,14 +142,19 @@ impl Record<'_> {
     }
 }
 
-/// The finding of energies that do not add up.
-fn unbalanced(case: &Case, imbalance: f64) -> Option<Finding> {
+/// The finding of energies that do not add up, or of a damping that gives; both are parts of the largest work.
+fn unbalanced(case: &Case, imbalance: f64, given: f64) -> Option<Finding> {
+    let what = if imbalance >= given {
+        format!("the energies miss the work of the loads by up to {:.0} %", 100.0 * imbalance)
+    } else {
+        format!("the damping gives {:.0} % of the work of the loads instead of taking it", 100.0 * given)
+    };
     let message = format!(
-        "the energies miss the work of the loads by up to {:.0} %: take a shorter step (with a tolerance, a smaller one), \
-         a load that ramps instead of a jump, and forces for a moment about the normal, where the sheet has no mass",
-        100.0 * imbalance
+        "{what}: take a shorter step (with a tolerance, a smaller one), a load that ramps instead of a jump, and forces for a \
+         moment about the normal, where the sheet has no mass"
     );
-    (imbalance > IMBALANCE_LIMIT).then(|| Finding::new("S110", message).at(Place::file(&case.path)))
+    (imbalance.max(given) > IMBALANCE_LIMIT)
+        .then(|| Finding::new("S110", message).at(Place::file(&case.path)))
 }
 
 /// Integrates in time and keeps the history.
@@ -185,8 +190,8 @@ pub(super) fn dynamics(
     let Record { mut history, solution, .. } = record;
     let work = history.energy.iter().map(|e| e.work.abs()).fold(f64::MIN_POSITIVE, f64::max);
     history.imbalance = history.energy.iter().map(|e| e.imbalance().abs()).fold(0.0, f64::max) / work;
-    let lost = history.energy.iter().map(|e| -e.dissipated / work).fold(0.0, f64::max);
-    let findings = unbalanced(case, history.imbalance.max(lost)).into_iter().collect();
+    let given = history.energy.iter().map(|e| -e.dissipated / work).fold(0.0, f64::max);
+    let findings = unbalanced(case, history.imbalance, given).into_iter().collect();
     Ok(Outcome { history: Some(history), state, findings, ..Outcome::of(solution) })
 }
 

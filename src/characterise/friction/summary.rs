@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Basis, FrictionLaw, extract};
+use crate::characterise::closed_loop::TURNED;
 use crate::characterise::{FabricSheet, Settings};
 use crate::finding::Finding;
 use crate::instrument::{Conditions, Direction, Parameter, Test};
@@ -12,9 +13,8 @@ use crate::quantity::{Angle, Curvature, LineForce, significant};
 /// Slip levels over the greatest strain of the test, each with a third of the friction: 0.03 to
 /// 0.1 1/cm of 2.5 1/cm in bending, where measured loops of cloth have them.
 const LEVELS: [f64; 3] = [0.012, 0.022, 0.04];
-/// Part of the way from the turn back to where 2HG5 is read in which all friction has turned, and part of the way
-/// out up to which a width can be read.
-const TURNED: f64 = 0.9;
+/// Part of the way from the turn back to where 2HG5 is read in which all friction has turned.
+const ROOM: f64 = 0.9;
 /// Part of a summary value by which a law may miss it without a word.
 const MISSED: f64 = 0.05;
 /// Knots of the backbone of a tensile law.
@@ -173,7 +173,7 @@ fn shear(g: f64, widths: [f64; 2], settings: &Settings, e_max: f64) -> Result<Ch
     let alpha = (widths[1] - widths[0]) / (widths[0] * far - widths[1] * near);
     // A width that is read where the loop turns tells nothing.
     let alpha = if alpha.is_finite() && parts[1] <= TURNED { alpha.max(0.0) } else { 0.0 };
-    let room = if alpha > 0.0 { TURNED * (1.0 - parts[1]) / (2.0 * LEVELS[2] * (1.0 + alpha)) } else { 1.0 };
+    let room = if alpha > 0.0 { ROOM * (1.0 - parts[1]) / (2.0 * LEVELS[2] * (1.0 + alpha)) } else { 1.0 };
     let stress = 0.5 * widths[0] / (1.0 + alpha * near);
     let [from, to] = settings.shear_slope.map(|a| a.si());
     let steeper = stress * alpha * (from + to) / (e_max * e_max);
