@@ -246,10 +246,7 @@ fn bending_test(cells: usize, law: SheetLaw, steps: f64) -> (Model, Settings, us
     let mut section = section();
     section.d_b = Matrix3::from_diagonal(&section.d_b.diagonal());
     let model = Model {
-        supports: vec![
-            Support::clamped(mesh.set("left").unwrap()),
-            Support { nodes: vec![right[0]], held: turn },
-        ],
+        supports: vec![Support::clamped(mesh.set("left").unwrap()), Support::at(vec![right[0]], turn)],
         loads: Vec::new(),
         bodies: vec![RigidBody { nodes: right.clone() }],
         mesh,

@@ -194,7 +194,7 @@ fn the_residual_of_a_fine_mesh_is_refined() {
 fn prescribed_displacements_are_kept() {
     let mut model = clamped(40, 1e-3, 1.0);
     let left = model.mesh.set("left").unwrap().to_vec();
-    model.supports.push(Support { nodes: left, held: vec![(Dof::W, 1e-3)] });
+    model.supports.push(Support::at(left, vec![(Dof::W, 1e-3)]));
     check(&model, false, "prescribed");
 }
 

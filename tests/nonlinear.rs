@@ -119,7 +119,7 @@ fn an_end_moment_rolls_up_a_circle_in_two_steps() {
 fn a_held_rotation_may_pass_half_a_turn() {
     let mut model = cantilever(16, 2e-3, |_| Vec::new());
     let nodes = model.mesh.set("right").unwrap().to_vec();
-    model.supports.push(Support { nodes: vec![nodes[0]], held: vec![(Dof::ThetaY, -TAU)] });
+    model.supports.push(Support::at(vec![nodes[0]], vec![(Dof::ThetaY, -TAU)]));
     // Followers of a body must not be held themselves.
     let everywhere = model.supports[0].nodes.clone();
     model.supports[0].nodes = everywhere.into_iter().filter(|n| *n != nodes[1]).collect();
@@ -157,10 +157,7 @@ fn bending_test(cells: usize, width: f64, b: f64, curvature: f64) -> (Model, Set
     let right = mesh.set("right").unwrap().to_vec();
     let turn = vec![(Dof::V, 0.0), (Dof::ThetaX, 0.0), (Dof::ThetaY, curvature * 0.01), (Dof::ThetaZ, 0.0)];
     let model = Model {
-        supports: vec![
-            Support::clamped(mesh.set("left").unwrap()),
-            Support { nodes: vec![right[0]], held: turn },
-        ],
+        supports: vec![Support::clamped(mesh.set("left").unwrap()), Support::at(vec![right[0]], turn)],
         loads: Vec::new(),
         bodies: vec![RigidBody { nodes: right.clone() }],
         mesh,
@@ -387,7 +384,7 @@ fn a_held_end_turns_more_than_once() {
     for method in [Method::Newton(None), arc(0.1), arc(1.0)] {
         let mut model = cantilever(40, 2e-3, |_| Vec::new());
         let end = model.mesh.set("right").unwrap().to_vec();
-        model.supports.push(Support { nodes: end, held: vec![(Dof::ThetaY, -turn)] });
+        model.supports.push(Support::at(end, vec![(Dof::ThetaY, -turn)]));
         let options = Options::default();
         let plan = plan(&model, &options).unwrap();
         let found = search(&model, &plan, &Settings::default(), &method, &options, go_on).unwrap();

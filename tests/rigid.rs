@@ -68,12 +68,12 @@ fn a_clamp_that_follows_bends_the_strip_to_a_circle() {
     assert!((u[at + 2] / (-kappa * (0.5 + 0.5)) - 1.0).abs() < 1e-9, "{}", u[at + 2]);
     // Turned through φ and free to follow.
     model.loads.clear();
-    model.supports.push(Support { nodes: vec![reference], held: vec![(Dof::ThetaY, 0.1)] });
+    model.supports.push(Support::at(vec![reference], vec![(Dof::ThetaY, 0.1)]));
     let solution = solve::solve(&model, &Options::default()).unwrap();
     assert!((solution.reaction[at + 4] / (0.1 * b) - 1.0).abs() < 1e-9);
     assert!((solution.strain_energy / (0.5 * 0.1 * 0.1 * b) - 1.0).abs() < 1e-9);
     // Forces in the plane and across it, all dofs of the body held: the reactions balance.
-    model.supports[1] = Support { nodes: vec![reference], held: Dof::ALL.map(|d| (d, 0.0)).to_vec() };
+    model.supports[1] = Support::at(vec![reference], Dof::ALL.map(|d| (d, 0.0)).to_vec());
     model.loads = vec![point(right[0], [3.0, -2.0, 1.0], [0.1, 0.2, 0.3])];
     let r = solve::solve(&model, &Options::default()).unwrap().reaction;
     let lever = model.mesh.nodes[right[0] as usize] - model.mesh.nodes[reference as usize];
@@ -113,7 +113,7 @@ fn bodies_are_eliminated_exactly() {
     let held = mesh.set("left").unwrap().to_vec();
     let (mut model, reference) = with_body(mesh, &[6, 12, 18, 23, 24], [0.7, -0.2, 0.4], 0.3, 0.05);
     model.supports.push(Support::clamped(&held));
-    model.supports.push(Support { nodes: vec![reference], held: vec![(Dof::V, 0.01)] });
+    model.supports.push(Support::at(vec![reference], vec![(Dof::V, 0.01)]));
     model.loads.push(Load::Pressure(2.0));
     model.loads.push(point(18, [1.0, 2.0, -1.0], [0.3, -0.1, 0.2]));
     let solution = solve::solve(&model, &Options::default()).unwrap();

@@ -1,6 +1,7 @@
 //! A mesh with section, supports and loads; constraints, load vector and assembly.
 
 mod dof;
+mod oblique;
 pub mod rigid;
 mod support;
 
@@ -10,6 +11,7 @@ use nalgebra::{Point3, Vector3};
 use thiserror::Error;
 
 pub use dof::{Dof, DofGroup};
+pub use oblique::OwnAxes;
 pub use rigid::{Links, RigidBody, RigidBodyError};
 pub use support::Support;
 
@@ -75,17 +77,19 @@ pub enum ModelError {
     /// M008.
     #[error(transparent)]
     MaterialAxis(#[from] MaterialAxisError),
-    /// M009: a hard simple support on an edge that is oblique to the axes.
+    /// M009: a hard simple support on an edge that is oblique to the axes, where something else turns the node.
     #[error(
-        "M009 set `{set}` has an edge on which a hard simple support holds the rotation about ({:.3}, {:.3}, {:.3}), the \
-         direction in the sheet normal to the edge: that is a dof only along x, y or z; use kind = \"simply_supported_soft\"",
-        direction[0], direction[1], direction[2]
+        "M009 the node at ({}, {}, {}) m is on a hard simple support that holds its rotation about ({:.3}, {:.3}, {:.3}), \
+         and {clash}: use kind = \"simply_supported_soft\" there",
+        at[0], at[1], at[2], about[0], about[1], about[2]
     )]
-    SkewHardSupport {
-        /// The node set.
-        set: String,
-        /// Direction of the rotation to be held, of length 1.
-        direction: [f64; 3],
+    Oblique {
+        /// Place of the node (m).
+        at: [f64; 3],
+        /// Direction of the rotation that is held, of length 1.
+        about: [f64; 3],
+        /// What it is besides.
+        clash: &'static str,
     },
     /// M014: two values of one dof.
     #[error(
@@ -112,7 +116,7 @@ impl ModelError {
         match self {
             Self::Mesh(e) => e.code(),
             Self::MaterialAxis(_) => "M008",
-            Self::SkewHardSupport { .. } => "M009",
+            Self::Oblique { .. } => "M009",
             Self::Body(_) => "M010",
             Self::TwoValues { .. } => "M014",
         }
@@ -120,25 +124,26 @@ impl ModelError {
 }
 
 impl Model {
-    /// What the rigid bodies tie together.
+    /// What ties nodes to the unknowns.
     ///
     /// # Errors
-    /// M010 if a node is in two bodies.
+    /// M009 if rotations about oblique directions cannot be held; M010 if a node is in two bodies.
     pub fn links(&self) -> Result<Arc<Links>, ModelError> {
-        Ok(Links::new(&self.mesh.nodes, &self.bodies)?)
+        Ok(Links::new(&self.mesh.nodes, &self.bodies, OwnAxes::of(self)?)?)
     }
 
-    /// Value of each held dof, followers of rigid bodies at zero; `None` where free. Six a node.
+    /// Value of each unknown that is held, followers of rigid bodies at zero; `None` where free. Six a node.
     ///
     /// # Errors
     /// M010 if a follower is held and its lead is not.
     pub fn held(&self, links: &Links) -> Result<Vec<Option<f64>>, ModelError> {
         let mut held = self.constraints();
-        links.hold_followers(&mut held)?;
+        links.hold(&mut held)?;
         Ok(held)
     }
 
-    /// Value of each dof that a support holds; `None` elsewhere. Six a node.
+    /// Value of each dof that a support holds; `None` elsewhere, and where one holds the rotation about a direction
+    /// that is no axis. Six a node.
     pub fn constraints(&self) -> Vec<Option<f64>> {
         let mut held = vec![None; 6 * self.mesh.nodes.len()];
         for support in &self.supports {

@@ -3,10 +3,10 @@
 
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, DMatrixViewMut, Matrix6, Point3, Vector3};
+use nalgebra::{DMatrix, DMatrixViewMut, DVector, Matrix3, Matrix6, Point3, Vector3};
 use thiserror::Error;
 
-use super::{Dof, DofGroup};
+use super::{Dof, DofGroup, OwnAxes};
 
 /// Nodes that move together as a rigid body.
 ///
@@ -43,22 +43,52 @@ pub enum RigidBodyError {
     },
 }
 
-/// The constraints of all rigid bodies of a model, for small displacements:
-/// `u = u_lead + θ_lead × r`, `θ = θ_lead`, with the lever r from the lead to the node.
+/// What ties the motion of nodes to the unknowns, for small displacements. A node of a rigid body follows its
+/// lead: `u = u_lead + θ_lead × r`, `θ = θ_lead`, with the lever r from the lead to the node. A node with
+/// [`OwnAxes`] turns about them: `θ = axes φ`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Links {
     /// The lead of each node; a node without a body leads itself.
     pub leads: Vec<u32>,
-    /// Node, lead and lever (m), by node.
-    followers: Vec<(u32, u32, Vector3<f64>)>,
+    /// By node.
+    ties: Vec<Tie>,
+    /// Which rotations about their own axes nodes are held at.
+    own_axes: Vec<OwnAxes>,
+}
+
+/// A node whose motion is that of its lead, or of its own unknowns, times a matrix.
+#[derive(Clone, Debug, PartialEq)]
+struct Tie {
+    node: u32,
+    lead: u32,
+    transform: Matrix6<f64>,
+}
+
+impl Tie {
+    fn follows(&self) -> bool {
+        self.lead != self.node
+    }
+
+    /// The part in a group of dofs: in a flat sheet levers lie in the plane and own axes keep z, and the groups do not
+    /// couple.
+    fn of_group(&self, group: DofGroup) -> DMatrix<f64> {
+        let dofs = group.dofs();
+        DMatrix::from_fn(dofs.len(), dofs.len(), |i, j| self.transform[(dofs[i] as usize, dofs[j] as usize)])
+    }
 }
 
 impl Links {
     /// The links between the nodes at these places.
     ///
+    /// `own_axes` are of nodes without a body, in their order.
+    ///
     /// # Errors
     /// M010 if a node is in two bodies.
-    pub fn new(places: &[Point3<f64>], bodies: &[RigidBody]) -> Result<Arc<Self>, RigidBodyError> {
+    pub fn new(
+        places: &[Point3<f64>],
+        bodies: &[RigidBody],
+        own_axes: Vec<OwnAxes>,
+    ) -> Result<Arc<Self>, RigidBodyError> {
         let mut leads: Vec<u32> = (0..places.len() as u32).collect();
         let mut taken = vec![false; places.len()];
         for body in bodies {
@@ -70,29 +100,43 @@ impl Links {
                 leads[node as usize] = lead;
             }
         }
-        let followers = (0..places.len() as u32)
-            .filter(|n| leads[*n as usize] != *n)
-            .map(|n| (n, leads[n as usize], lever(places, &leads, n as usize)))
-            .collect();
-        Ok(Arc::new(Self { leads, followers }))
+        let followers = (0..places.len() as u32).filter(|n| leads[*n as usize] != *n).map(|node| {
+            let lever = lever(places, &leads, node as usize);
+            Tie { node, lead: leads[node as usize], transform: carried(&lever) }
+        });
+        let turned =
+            own_axes.iter().map(|own| Tie { node: own.node, lead: own.node, transform: turned(&own.axes) });
+        let mut ties: Vec<Tie> = followers.chain(turned).collect();
+        ties.sort_by_key(|tie| tie.node);
+        Ok(Arc::new(Self { leads, ties, own_axes }))
     }
 
     /// The nodes that follow others.
     pub fn followers(&self) -> impl Iterator<Item = usize> {
-        self.followers.iter().map(|(node, ..)| *node as usize)
+        self.ties.iter().filter(|tie| tie.follows()).map(|tie| tie.node as usize)
     }
 
-    /// Holds every dof of followers, whose motion is the lead's, at zero (`held`: six a node).
+    /// The first node that turns about axes of its own.
+    pub fn first_own_axes(&self) -> Option<&OwnAxes> {
+        self.own_axes.first()
+    }
+
+    /// From dofs held (six a node) to unknowns held: the rotations of nodes with axes of their own are those about
+    /// these, and every dof of a follower, whose motion is its lead's, is held at zero.
     ///
     /// # Errors
     /// M010 if a follower is held itself, unless at zero where the lead's dofs that move it are held
     /// at zero as well.
-    pub fn hold_followers(&self, held: &mut [Option<f64>]) -> Result<(), RigidBodyError> {
-        for &(node, lead, lever) in &self.followers {
-            let t = transform(&lever);
+    pub fn hold(&self, held: &mut [Option<f64>]) -> Result<(), RigidBodyError> {
+        for own in &self.own_axes {
+            let rotations = own.held.map(|held| held.then_some(0.0));
+            held[6 * own.node as usize + 3..][..3].copy_from_slice(&rotations);
+        }
+        for &Tie { node, lead, transform } in self.ties.iter().filter(|tie| tie.follows()) {
             for dof in Dof::ALL {
-                let moves =
-                    |d: &usize| t[(dof as usize, *d)] != 0.0 && held[6 * lead as usize + d] != Some(0.0);
+                let moves = |d: &usize| {
+                    transform[(dof as usize, *d)] != 0.0 && held[6 * lead as usize + d] != Some(0.0)
+                };
                 let own = held[6 * node as usize + dof as usize];
                 if own.is_some_and(|value| value != 0.0 || (0..6).any(|d| moves(&d))) {
                     return Err(RigidBodyError::Held { node, dof: dof.name(), lead });
@@ -105,45 +149,65 @@ impl Links {
         Ok(())
     }
 
-    /// Gives followers the motion of their leads. `u` holds the dofs of the group, node by node.
+    /// From unknowns to the motion of nodes. `u` holds the dofs of the group, node by node.
     pub fn expand(&self, group: DofGroup, u: &mut [f64]) {
         let b = group.dofs().len();
-        for &(node, lead, lever) in &self.followers {
-            let t = of_group(&lever, group);
-            let (from, to) = (b * lead as usize, b * node as usize);
-            for i in 0..b {
-                u[to + i] = (0..b).map(|j| t[(i, j)] * u[from + j]).sum();
-            }
+        for tie in &self.ties {
+            let t = tie.of_group(group);
+            let lead = DVector::from_column_slice(&u[b * tie.lead as usize..][..b]);
+            u[b * tie.node as usize..][..b].copy_from_slice((t * lead).as_slice());
         }
     }
 
-    /// Moves the forces on followers to their leads. `f` holds the dofs of the group, node by node.
+    /// From forces on nodes to those on unknowns: those on followers go to their leads. `f` holds the dofs of the
+    /// group, node by node.
     pub fn reduce(&self, group: DofGroup, f: &mut [f64]) {
         let b = group.dofs().len();
-        for &(node, lead, lever) in &self.followers {
-            let t = of_group(&lever, group);
-            let (from, to) = (b * node as usize, b * lead as usize);
-            for i in 0..b {
-                let moved: f64 = (0..b).map(|j| t[(j, i)] * f[from + j]).sum();
-                f[to + i] += moved;
-            }
-            f[from..][..b].fill(0.0);
+        for tie in &self.ties {
+            let own = &mut f[b * tie.node as usize..][..b];
+            let moved = tie.of_group(group).tr_mul(&DVector::from_column_slice(own));
+            own.fill(0.0);
+            f[b * tie.lead as usize..][..b].iter_mut().zip(&moved).for_each(|(f, m)| *f += m);
         }
     }
 
-    /// Whether any of an element's nodes follows another.
+    /// From forces on unknowns to those on leads and nodes of their own: moments about own axes become moments about
+    /// x, y and z. `f` holds the dofs of the group, node by node.
+    pub fn turn_back(&self, group: DofGroup, f: &mut [f64]) {
+        self.turn(f, group, |tie, own| tie.of_group(group) * own);
+    }
+
+    /// The other way round, of forces or of motions.
+    pub fn turn_to_own(&self, group: DofGroup, f: &mut [f64]) {
+        self.turn(f, group, |tie, own| tie.of_group(group).tr_mul(&own));
+    }
+
+    fn turn(&self, f: &mut [f64], group: DofGroup, by: impl Fn(&Tie, DVector<f64>) -> DVector<f64>) {
+        let b = group.dofs().len();
+        for tie in self.ties.iter().filter(|tie| !tie.follows()) {
+            let own = &mut f[b * tie.node as usize..][..b];
+            let turned = by(tie, DVector::from_column_slice(own));
+            own.copy_from_slice(turned.as_slice());
+        }
+    }
+
+    /// Whether any of an element's nodes is tied.
     pub fn touch(&self, nodes: &[u32; 4]) -> bool {
-        !self.followers.is_empty() && nodes.iter().any(|n| self.leads[*n as usize] != *n)
+        !self.ties.is_empty() && nodes.iter().any(|n| self.tie(*n).is_some())
+    }
+
+    fn tie(&self, node: u32) -> Option<&Tie> {
+        Some(&self.ties[self.ties.binary_search_by_key(&node, |tie| tie.node).ok()?])
     }
 
     /// Turns a matrix of an element (column-major, the group's dofs of `nodes`) into one over the
-    /// motions of the leads: `Tᵀ K T`.
+    /// unknowns: `Tᵀ K T`.
     pub fn constrain(&self, group: DofGroup, nodes: &[u32; 4], matrix: &mut [f64]) {
         let b = group.dofs().len();
         let mut k = DMatrixViewMut::from_slice(matrix, 4 * b, 4 * b);
         for (i, node) in nodes.iter().enumerate() {
-            let Ok(at) = self.followers.binary_search_by_key(node, |f| f.0) else { continue };
-            let t = of_group(&self.followers[at].2, group);
+            let Some(tie) = self.tie(*node) else { continue };
+            let t = tie.of_group(group);
             let columns = k.columns(i * b, b) * &t;
             k.columns_mut(i * b, b).copy_from(&columns);
             let rows = t.tr_mul(&k.rows(i * b, b));
@@ -153,17 +217,17 @@ impl Links {
 }
 
 /// The motion of a node per motion of its lead.
-fn transform(lever: &Vector3<f64>) -> Matrix6<f64> {
+fn carried(lever: &Vector3<f64>) -> Matrix6<f64> {
     let mut t = Matrix6::identity();
     t.fixed_view_mut::<3, 3>(0, 3).copy_from(&-lever.cross_matrix());
     t
 }
 
-/// The part of it in a group of dofs: in a flat sheet the lever lies in the plane, and the groups do
-/// not couple.
-fn of_group(lever: &Vector3<f64>, group: DofGroup) -> DMatrix<f64> {
-    let (t, dofs) = (transform(lever), group.dofs());
-    DMatrix::from_fn(dofs.len(), dofs.len(), |i, j| t[(dofs[i] as usize, dofs[j] as usize)])
+/// The motion of a node per displacement and rotation about its own axes.
+fn turned(axes: &Matrix3<f64>) -> Matrix6<f64> {
+    let mut t = Matrix6::identity();
+    t.fixed_view_mut::<3, 3>(3, 3).copy_from(axes);
+    t
 }
 
 /// Where a node stands relative to its lead.
@@ -178,7 +242,7 @@ mod tests {
 
     fn body() -> Arc<Links> {
         let places = [[0.0, 0.0, 0.0], [1.0, 2.0, -1.0], [3.0, 0.0, 0.5]].map(Point3::from);
-        Links::new(&places, &[RigidBody { nodes: vec![1, 2] }]).unwrap()
+        Links::new(&places, &[RigidBody { nodes: vec![1, 2] }], Vec::new()).unwrap()
     }
 
     /// A rotation moves the follower as `θ × r`, and forces keep their work on every motion.
@@ -203,10 +267,10 @@ mod tests {
         let links = body();
         let mut held = vec![None; 18];
         held[6 * 2 + 4] = Some(0.0);
-        let refused = links.hold_followers(&mut held.clone()).unwrap_err();
+        let refused = links.hold(&mut held.clone()).unwrap_err();
         assert_eq!(refused, RigidBodyError::Held { node: 2, dof: "theta_y", lead: 1 });
         held[6 + 4] = Some(0.0);
-        links.hold_followers(&mut held).unwrap();
+        links.hold(&mut held).unwrap();
         assert!(held[12..].iter().all(|h| *h == Some(0.0)));
         assert_eq!(held[6..12].iter().flatten().count(), 1);
     }

@@ -184,12 +184,10 @@ impl<'a> Equations<'a> {
         let nodes = &self.model.mesh.nodes;
         let sum = nodes.iter().fold(nalgebra::Vector3::zeros(), |sum, p| sum + p.coords);
         let middle = sum / nodes.len().max(1) as f64;
-        let dofs = self.group.dofs();
+        let (group, dofs) = (self.group, self.group.dofs());
         let motion = |row: usize, motion: Dof| {
             let (dof, motion) = (dofs[row % dofs.len()] as usize, motion as usize);
-            if self.is_held[row] {
-                0.0
-            } else if dof == motion {
+            if dof == motion {
                 1.0
             } else if dof < 3 && motion >= 3 {
                 let axis = nalgebra::Vector3::ith(motion - 3, 1.0);
@@ -198,10 +196,15 @@ impl<'a> Equations<'a> {
                 0.0
             }
         };
-        (0..self.load.len())
-            .flat_map(|row| dofs.iter().map(move |d| (row, *d)))
-            .map(|(row, d)| motion(row, d))
-            .collect()
+        let mut rows = vec![0.0; self.load.len() * dofs.len()];
+        for (k, dof) in dofs.iter().enumerate() {
+            let mut column: Vec<f64> = (0..self.load.len()).map(|row| motion(row, *dof)).collect();
+            self.pattern.links.turn_to_own(group, &mut column);
+            for (row, value) in column.iter().enumerate().filter(|(row, _)| !self.is_held[*row]) {
+                rows[row * dofs.len() + k] = *value;
+            }
+        }
+        rows
     }
 
     /// Solves, refines, and adds displacements, reactions, energy and residual to the solution.
@@ -216,7 +219,8 @@ impl<'a> Equations<'a> {
             return Err(self.unsolved(&u, residual));
         }
         let forces = internal.iter().zip(&self.load).zip(&self.is_held);
-        let reaction: Vec<f64> = forces.map(|((f, l), held)| if *held { f - l } else { 0.0 }).collect();
+        let mut reaction: Vec<f64> = forces.map(|((f, l), held)| if *held { f - l } else { 0.0 }).collect();
+        self.pattern.links.turn_back(self.group, &mut reaction);
         solution.strain_energy += 0.5 * u.iter().zip(&internal).map(|(a, f)| a * f).sum::<f64>();
         solution.residual = solution.residual.max(residual);
         solution.dofs += u.len();

@@ -101,7 +101,7 @@ pub fn model(case: &Case, sheet: &Sheet, section: ShellSection) -> Result<Model,
                     Dof::U | Dof::V | Dof::W => quantity::<Length>(case, value)?.si(),
                     _ => quantity::<Angle>(case, value)?.si(),
                 };
-                prescribed.push(Support { nodes: mesh.set(set)?.to_vec(), held: vec![(dof, value)] });
+                prescribed.push(Support::at(mesh.set(set)?.to_vec(), vec![(dof, value)]));
             }
             LoadTable::Point { .. } => loads.extend(point_load(case, &mesh, table)?),
             other => loads.push(load(case, &mesh, other)?),

@@ -159,7 +159,7 @@ impl LargeTest {
         reading: &mut Reading,
         options: &Options,
     ) -> Result<(), StudyError> {
-        model.supports.push(Support { nodes: vec![self.clamp[0]], held });
+        model.supports.push(Support::at(vec![self.clamp[0]], held));
         let at = 6 * self.clamp[0] as usize + read as usize;
         let end = search(&model, &self.plan, &self.settings, &Method::Newton(None), options, |step| {
             reading.curve.x.push(step.state.factor * x);

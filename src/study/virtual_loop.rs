@@ -208,7 +208,7 @@ fn model(
         let free: Vec<u32> = all.filter(|n| !left.contains(n) && !right.contains(n)).collect();
         supports.push(Support::fix(&free, &[Dof::W, Dof::ThetaX, Dof::ThetaY]));
     }
-    supports.push(Support { nodes: vec![right[0]], held: [&held[..], &turns].concat() });
+    supports.push(Support::at(vec![right[0]], [&held[..], &turns].concat()));
     let force = Vector3::new(maximum * WIDTH, 0.0, 0.0);
     let bodies = vec![RigidBody { nodes: right.clone() }];
     let pull = Load::Point { nodes: right, force, moment: Vector3::zeros() };

@@ -239,7 +239,7 @@ impl PreparedTest {
             section: stand_in(),
             warp: Vector3::x(),
             formulation,
-            supports: vec![Support::clamped(&left), Support { nodes: right.clone(), held: moved }],
+            supports: vec![Support::clamped(&left), Support::at(right.clone(), moved)],
             loads: Vec::new(),
             bodies: Vec::new(),
         };

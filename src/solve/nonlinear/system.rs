@@ -73,6 +73,9 @@ impl<'a> System<'a> {
     ) -> Result<Self, NonlinearError> {
         let nodes = model.mesh.nodes.len();
         let links = Arc::clone(&plan.pattern.links);
+        if let Some(own) = links.first_own_axes() {
+            return Err(SolveError::from(own.in_large_rotations(model)).into());
+        }
         let held = model.held(&links).map_err(SolveError::from)?;
         let [low, high] = model.mesh.bounds();
         let mut system = Self {

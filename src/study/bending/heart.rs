@@ -69,10 +69,7 @@ pub fn heart_loop(
     let to = |load: f64, turn: f64, x: f64| Leg {
         load,
         // A spin about y is positive downwards; the strip must rise.
-        held: vec![Support {
-            nodes: strip.end.clone(),
-            held: vec![(Dof::U, x - half), (Dof::ThetaY, -turn)],
-        }],
+        held: vec![Support::at(strip.end.clone(), vec![(Dof::U, x - half), (Dof::ThetaY, -turn)])],
         steps: 1,
     };
     // The end of a strip that is bent to an arc of a circle, which needs no force to hold.

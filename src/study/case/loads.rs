@@ -23,8 +23,8 @@ pub struct SupportTable {
 pub enum SupportKind {
     /// All dofs held.
     Clamped,
-    /// Displacements held, and the rotation about the normal of the edge in the plane of the sheet, which has to be
-    /// along x, y or z: a thin plate on a support.
+    /// Displacements held, and the rotation about the normal of the edge in the plane of the sheet: a thin plate on a
+    /// support. In large rotations that normal has to be along x, y or z.
     SimplySupported,
     /// Displacements held only.
     SimplySupportedSoft,

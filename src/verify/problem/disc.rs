@@ -8,7 +8,7 @@ use super::{DrillingChoice, Law, Layout, Statics, default_alpha, formulation};
 use crate::mesh::disc;
 use crate::model::{Load, Model, Support};
 
-/// A clamped or simply supported (soft) disc of radius 1, rigidity 1, t = 1e-3, under unit pressure.
+/// A clamped or simply supported disc of radius 1, rigidity 1, t = 1e-3, under unit pressure.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Disc {
@@ -18,6 +18,9 @@ pub struct Disc {
     nu: f64,
     /// Whether the rim is clamped.
     clamped: bool,
+    /// Whether a rim that is not clamped is held hard: no rotation about its normal.
+    #[serde(default)]
+    hard: bool,
     /// Smoothing cells.
     #[serde(default)]
     cells: Layout,
@@ -33,7 +36,7 @@ impl Disc {
         let supports = if self.clamped {
             vec![Support::clamped(mesh.set("outer")?)]
         } else {
-            Support::simple(&mesh, "outer", false)?
+            Support::simple(&mesh, "outer", self.hard)?
         };
         let centre = mesh.set("centre")?[0] as usize;
         let model = Model {

@@ -48,6 +48,8 @@ pub enum Problem {
     Disc(disc::Disc),
     /// A rhombic plate.
     Skew(quad_plate::Skew),
+    /// A triangular plate.
+    Triangle(quad_plate::Triangle),
     /// Curved shells.
     Shell(shell::Shell),
     /// Plates and shells in large rotations.
@@ -79,6 +81,7 @@ impl Problem {
             Self::Distorted(p) => p.value(statics),
             Self::Disc(p) => p.value(statics),
             Self::Skew(p) => p.value(statics),
+            Self::Triangle(p) => p.value(statics),
             Self::Shell(p) => p.value(statics),
             Self::LargeShell(p) => p.value(),
             Self::Strip(p) => p.value(),

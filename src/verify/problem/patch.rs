@@ -210,7 +210,7 @@ impl Patch {
                     (false, _) => return None,
                 };
                 let values = dofs.iter().map(|d| (*d, fields[node][*d as usize])).collect();
-                Some(Support { nodes: vec![node as u32], held: values })
+                Some(Support::at(vec![node as u32], values))
             })
             .collect();
         let mut mesh = flat;

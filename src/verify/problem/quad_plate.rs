@@ -1,4 +1,7 @@
-//! Plates whose elements are not rectangles: a distorted quarter, rhombic plates.
+//! Plates whose elements are not rectangles: a distorted quarter, rhombic and triangular plates.
+
+use std::collections::HashMap;
+use std::f64::consts::TAU;
 
 use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
@@ -6,7 +9,7 @@ use serde::Deserialize;
 use super::super::VerifyError;
 use super::{DrillingChoice, Law, Layout, Statics, default_alpha, formulation, nearest};
 use crate::fields;
-use crate::mesh::rectangle;
+use crate::mesh::{QuadMesh, rectangle};
 use crate::model::{Dof, Load, Model, Support};
 
 /// A clamped square plate of side 10, t = 0.01, ν = 0.3: a quarter of it with 2 x 2 elements, whose middle
@@ -122,5 +125,64 @@ impl Skew {
             SkewMeasure::MomentX => fields::nodal(&model, &displacement)?[centre].moment[0],
             SkewMeasure::MomentY => fields::nodal(&model, &displacement)?[centre].moment[1],
         })
+    }
+}
+
+/// An equilateral triangle of height 1 under unit pressure, t = 1e-3, ν = 0.3, simply supported on edges none of
+/// which but one is along an axis; three quads of n x n elements meet at its centre.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Triangle {
+    /// Elements along half a side.
+    n: usize,
+    /// Whether the supports are hard: no rotation about the normals of the edges.
+    hard: bool,
+}
+
+impl Triangle {
+    /// `w D / (q a⁴)` at the centre, a the height.
+    pub fn value(&self, statics: &mut Statics) -> Result<f64, VerifyError> {
+        let mesh = self.mesh();
+        let centre = nearest(&mesh, Point3::origin());
+        let model = Model {
+            supports: Support::simple(&mesh, "boundary", self.hard)?,
+            mesh,
+            section: Law::Isotropic { nu: 0.3, thickness: 1e-3 }.section(),
+            warp: Vector3::x(),
+            formulation: formulation(Layout::default(), default_alpha(), DrillingChoice::Scaled),
+            loads: vec![Load::Pressure(1.0)],
+            bodies: Vec::new(),
+        };
+        Ok(statics.solve(&model)?.displacement[6 * centre + 2])
+    }
+
+    /// Height 1, centre at the origin.
+    fn mesh(&self) -> QuadMesh {
+        let corner = |k: usize| {
+            let (sin, cos) = (TAU * k as f64 / 3.0).sin_cos();
+            Vector3::new(cos, sin, 0.0) * (2.0 / 3.0)
+        };
+        let (n, mut mesh) = (self.n, QuadMesh::default());
+        let mut known: HashMap<[i64; 2], u32> = HashMap::new();
+        for k in 0..3 {
+            let (c, next, last) = (corner(k), corner(k + 1), corner(k + 2));
+            let sides = [0.5 * (c + next), 0.5 * (c + last)];
+            let mut node = |i: usize, j: usize| {
+                let (u, v) = (i as f64 / n as f64, j as f64 / n as f64);
+                let p = (c * (1.0 - u) + sides[0] * u) * (1.0 - v) + sides[1] * ((1.0 - u) * v);
+                *known.entry([p.x, p.y].map(|x| (x * 1e9).round() as i64)).or_insert_with(|| {
+                    mesh.nodes.push(p.into());
+                    mesh.nodes.len() as u32 - 1
+                })
+            };
+            for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+                mesh.quads.push([node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)]);
+            }
+        }
+        let mut rim: Vec<u32> = mesh.boundary_edges().concat();
+        rim.sort_unstable();
+        rim.dedup();
+        mesh.node_sets.insert("boundary".into(), rim);
+        mesh
     }
 }

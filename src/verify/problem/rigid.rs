@@ -45,7 +45,7 @@ impl Rigid {
         match *self {
             Self::Clamp { n } => {
                 let (mut model, reference) = strip(n, 0.0)?;
-                model.supports.push(Support { nodes: vec![reference], held: vec![(Dof::ThetaY, 0.1)] });
+                model.supports.push(Support::at(vec![reference], vec![(Dof::ThetaY, 0.1)]));
                 let solution = statics.solve(&model)?;
                 Ok(solution.reaction[6 * reference as usize + Dof::ThetaY as usize] / (0.1 * WIDTH))
             }

@@ -135,10 +135,7 @@ impl BendingTest {
             vec![(Dof::V, 0.0), (Dof::ThetaX, 0.0), (Dof::ThetaY, curvature * gap), (Dof::ThetaZ, 0.0)];
         let at = 6 * clamp[0] as usize + Dof::ThetaY as usize;
         let model = Model {
-            supports: vec![
-                Support::clamped(mesh.set("left")?),
-                Support { nodes: vec![clamp[0]], held: turn },
-            ],
+            supports: vec![Support::clamped(mesh.set("left")?), Support::at(vec![clamp[0]], turn)],
             loads: Vec::new(),
             bodies: vec![RigidBody { nodes: clamp }],
             mesh,

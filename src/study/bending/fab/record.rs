@@ -121,7 +121,7 @@ pub(super) fn simulate(record: &Record, strip: Mounted, settings: &FabSettings) 
     let (way, steps) = (record.way(), settings.steps.max(1));
     let leg = |d: f64, turn: f64, load: f64, steps: usize| {
         let held = vec![(Dof::U, 0.5 * (d - length)), (Dof::ThetaY, turn)];
-        Leg { load, held: vec![Support { nodes: strip.end.clone(), held }], steps }
+        Leg { load, held: vec![Support::at(strip.end.clone(), held)], steps }
     };
     // Clamps in line, and the weight gives the straight strip its bow; then both as they are in the test.
     let (at, turn) = (record.samples.x[0], way * inclination);
