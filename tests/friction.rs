@@ -15,6 +15,7 @@ use kesf::element::corotational::{Motion, Reference};
 use kesf::element::{
     Cellwise, Drilling, Formulation, Gradient, Matrix24, Prepared, Strains, Vector24, YarnStrain, Yarns,
 };
+use kesf::fields::{Recovery, element_means_moved};
 use kesf::law::{Backbone, Channel, Family, Mode, Slider, State, Widening};
 use kesf::mesh::rectangle;
 use kesf::model::{Dof, Load, Model, RigidBody, Support};
@@ -71,8 +72,10 @@ fn linear_laws_give_the_linear_element() {
         let linear = element.local_stiffness();
         let d = Vector24::from_fn(|i, _| 1e-3 * (1.0 + i as f64 * 0.618).fract());
         for replaced in [[true; 6], [false, false, true, true, true, true]] {
-            let cells = element.cellwise(&section, replaced);
             let tangent: Strains = std::array::from_fn(|i| if replaced[i] { diagonal[i] } else { 0.0 });
+            let of_laws =
+                [0, 3].map(|i| Matrix3::from_diagonal(&Vector3::from_column_slice(&tangent[i..i + 3])));
+            let cells = element.cellwise([section.d_m - of_laws[0], section.d_b - of_laws[1]]);
             let stress = |e: Strains| std::array::from_fn(|i| tangent[i] * e[i]);
             let (none, small) = (Vector3::zeros(), Gradient::zeros());
             let stresses: Vec<Strains> = cells.strains(&d, none).map(stress).collect();
@@ -139,7 +142,7 @@ fn force_and_tangent_are_derivatives_of_the_potential() {
     });
     let mut rest_of_law = section().d_m;
     rest_of_law.fill_diagonal(0.0);
-    let cells = element.cellwise(&section(), law.replaced());
+    let cells = element.cellwise(law.beside(&section()));
     let element = Element { cells, yarns: element.yarns(), rest: rest_of_law };
     let moved = |step: &Vector24| {
         let part = |i: usize| -> Vector3<f64> { step.fixed_rows::<3>(3 * i).into() };
@@ -306,6 +309,53 @@ fn the_bending_loop_is_that_of_the_law_and_its_work_is_stored_or_lost() {
     assert!((slope / b - 1.0).abs() < 1e-8, "{slope}");
     let width = at(100.0, 0) - at(100.0, 20);
     assert!((width / (2.0 * hb) - 1.0).abs() < 1e-8, "{width}");
+}
+
+/// Moments and membrane forces are those of the laws and of statics, not of the section, of which nothing is left where
+/// laws replace it: the moment of the clamp all along the loop, and the weight below each element of a strip that hangs.
+#[test]
+fn resultants_are_those_of_the_laws() {
+    let law = bending_only(channel(1e-5, &[(2.4e-5, 12.5), (1e-5, 40.0)]), Mode::Friction);
+    let (model, settings, lead) = bending_test(10, law.clone(), 10.0);
+    let settings = Settings { path: vec![1.0, -0.5, 0.3], ..settings };
+    let recovery = Recovery::new(&model.mesh);
+    solve(&model, &settings, &Options::default(), |step| {
+        let at_clamp = step.reaction[lead] / 0.2;
+        let nodal = recovery.nodal_moved(&model, step.state, Some(&law)).unwrap();
+        let means = element_means_moved(&model, step.state, Some(&law)).unwrap();
+        for found in nodal.iter().chain(&means) {
+            assert!((found.moment[0] - at_clamp).abs() < 1e-7 * 250.0 * 3e-5, "{found:?} {at_clamp}");
+        }
+        ControlFlow::Continue(())
+    })
+    .unwrap();
+
+    let law = friction();
+    let mesh = rectangle(0.2, 0.01, 20, 1).unwrap();
+    let model = Model {
+        supports: vec![
+            Support::fix(mesh.set("all").unwrap(), &[Dof::W, Dof::ThetaX, Dof::ThetaY]),
+            Support::fix(mesh.set("left").unwrap(), &[Dof::U, Dof::ThetaZ]),
+            Support::fix(&[0], &[Dof::V]),
+        ],
+        // Ten times its weight, along the warp.
+        loads: vec![Load::Gravity(Vector3::new(98.0665, 0.0, 0.0))],
+        mesh,
+        ..cantilever(0.1, 1, &section())
+    };
+    let solution = run(&model, Some(law.clone()));
+    let means = element_means_moved(&model, &solution.state, Some(&law)).unwrap();
+    for (quad, found) in means.iter().enumerate() {
+        let below = 0.15 * 98.0665 * 0.01 * (19.5 - quad as f64);
+        assert!((found.membrane[0] / below - 1.0).abs() < 2e-3, "{quad}: {found:?} {below}");
+        // The coupling D12 acts on the strains to first order.
+        assert!(
+            found.membrane[1].abs() < 1e-3 * means[0].membrane[0] && found.moment[0].abs() < 1e-12,
+            "{quad}: {found:?}"
+        );
+    }
+    let elastic = element_means_moved(&model, &solution.state, None).unwrap();
+    assert!(elastic[0].membrane[0] < 0.6 * means[0].membrane[0]);
 }
 
 /// The same equilibria whether steps are cut back on the way or not, and whatever the threads.

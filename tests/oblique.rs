@@ -85,8 +85,7 @@ fn a_turned_sheet_deflects_and_reacts_as_the_one_along_the_axes() {
         (in_space(), iterated),
     ] {
         let along =
-            solve(&plate(&Rotation3::identity()), &Options { method: Method::Direct, ..options })
-                .unwrap();
+            solve(&plate(&Rotation3::identity()), &Options { method: Method::Direct, ..options }).unwrap();
         let model = plate(&turn);
         let found = solve(&model, &options).unwrap();
         let (u, r) = (

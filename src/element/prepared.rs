@@ -149,18 +149,9 @@ impl Prepared {
         self.linked_stiffness(&self.links(&Matrix3::identity()))
     }
 
-    /// The element cell by cell: the `replaced` diagonal entries of `section`'s `d_m` and `d_b`, in the
-    /// order of [`Strains`](super::Strains), are left to laws; everything else stays linear.
-    pub fn cellwise(&self, section: &ShellSection, replaced: [bool; 6]) -> Cellwise {
-        let (mut d_m, mut d_b) = (section.d_m, section.d_b);
-        for i in 0..3 {
-            if replaced[i] {
-                d_m[(i, i)] = 0.0;
-            }
-            if replaced[3 + i] {
-                d_b[(i, i)] = 0.0;
-            }
-        }
+    /// The element cell by cell: what `d_m` and `d_b`, material axes, leave out of the section is left to laws; everything
+    /// else stays linear.
+    pub fn cellwise(&self, [d_m, d_b]: [Matrix3<f64>; 2]) -> Cellwise {
         let t = &self.to_material;
         let bare = |d_m, d_b| Self { d_m, d_b, stabilisation: 0.0, ..*self }.local_stiffness();
         let rest = [d_m, d_b].map(|d| t.transpose() * d * t);
@@ -172,6 +163,11 @@ impl Prepared {
             Self { d_m: rest[0], d_b: rest[1], ..*self }.local_stiffness()
         };
         Cellwise::new(self.cells(), t, one_cell, linear, self.warp_links())
+    }
+
+    /// Turns strains `(ε_x, ε_y, γ_xy)` or curvatures from element axes to material axes.
+    pub fn to_material(&self) -> &Matrix3<f64> {
+        &self.to_material
     }
 
     /// The mean displacement gradient along the material axes, for strains in the plane that are not small.

@@ -6,13 +6,30 @@ use nalgebra::{DMatrix, Matrix2, Matrix3, Point3, SMatrix, Vector3};
 use super::Resultants;
 use crate::element::corotational::{Motion, Reference};
 use crate::element::{Cells, Frame, Matrix24, Prepared, Vector24, membrane_and_plate, strain_matrices};
+use crate::law;
 use crate::mesh::is_translated;
 use crate::model::{Model, ModelError};
+use crate::section::SheetLaw;
 use crate::solve::nonlinear::State;
 
 /// Places of an element that have resultants: its four corners, then its mean.
 const PLACES: usize = 5;
 const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+
+/// Laws with a memory, and what they remember of each smoothing cell.
+#[derive(Clone, Copy)]
+pub struct Remembered<'a> {
+    law: &'a SheetLaw,
+    /// In the order of elements and cells; empty for new cloth.
+    cells: &'a [[law::State; 6]],
+}
+
+impl<'a> Remembered<'a> {
+    /// What a state remembers, if there is a law.
+    pub fn of(law: Option<&'a SheetLaw>, state: &'a State) -> Option<Self> {
+        law.map(|law| Self { law, cells: &state.memory.cells })
+    }
+}
 
 /// The resultants at all places, each with its rows, for local displacements: N for `(u, v, θz)`, M
 /// and Q for `(w, θx, θy)`, node by node.
@@ -23,24 +40,38 @@ struct Operator {
     membrane: SMatrix<f64, { 3 * PLACES }, 12>,
     moment: SMatrix<f64, { 3 * PLACES }, 12>,
     shear: SMatrix<f64, { 2 * PLACES }, 12>,
+    /// What the value of each cell counts at each place.
+    weights: Vec<[f64; PLACES]>,
 }
 
 impl Operator {
-    /// `weights` are those of [`extrapolation`].
-    fn new(model: &Model, quad: usize, flat: bool, weights: &DMatrix<f64>) -> Result<Self, ModelError> {
+    /// `weights` are those of [`extrapolation`]; `d` are the matrices of membrane and bending, material axes.
+    fn new(
+        model: &Model,
+        quad: usize,
+        flat: bool,
+        weights: &DMatrix<f64>,
+        [d_m, d_b]: [Matrix3<f64>; 2],
+    ) -> Result<Self, ModelError> {
         let element = model.element(quad, flat)?;
-        let (stress, vector) = material_axes(&element, &model.warp);
-        let (of_strain, of_curvature) = (stress * element.d_m, stress * element.d_b);
+        let vector = material_axes(&element, &model.warp);
+        let (of_strain, of_curvature) = (d_m * element.to_material(), d_b * element.to_material());
         let area: f64 = element.cells().map(|cell| cell.area).sum();
+        let weights: Vec<[f64; PLACES]> = element
+            .cells()
+            .enumerate()
+            .map(|(k, cell)| {
+                std::array::from_fn(|place| if place < 4 { weights[(place, k)] } else { cell.area / area })
+            })
+            .collect();
         let (mut membrane, mut moment) = (SMatrix::zeros(), SMatrix::zeros());
-        for (k, cell) in element.cells().enumerate() {
+        for (cell, weights) in element.cells().zip(&weights) {
             let (strain, curvature) = strain_matrices(&cell);
             let (n, m) = (of_strain * strain, of_curvature * curvature);
-            for place in 0..PLACES {
-                let weight = if place < 4 { weights[(place, k)] } else { cell.area / area };
+            for (place, weight) in weights.iter().enumerate() {
                 let add = |sum: &mut SMatrix<f64, { 3 * PLACES }, 12>, part: &SMatrix<f64, 3, 12>| {
                     let mut rows = sum.fixed_rows_mut::<3>(3 * place);
-                    rows += part * weight;
+                    rows += part * *weight;
                 };
                 add(&mut membrane, &n);
                 add(&mut moment, &m);
@@ -52,7 +83,19 @@ impl Operator {
             shear.fixed_rows_mut::<2>(2 * place).copy_from(&q);
         }
         let to_local = Some(element.to_local()).filter(|t| *t != Matrix24::identity());
-        Ok(Self { corners: model.mesh.corners(quad), to_local, membrane, moment, shear })
+        Ok(Self { corners: model.mesh.corners(quad), to_local, membrane, moment, shear, weights })
+    }
+
+    /// Adds the stresses that the cells of an element remember.
+    fn add_remembered(&self, remembered: &Remembered<'_>, quad: usize, all: &mut [Resultants; PLACES]) {
+        let count = self.weights.len();
+        let Some(cells) = remembered.cells.get(quad * count..(quad + 1) * count) else { return };
+        for (states, weights) in cells.iter().zip(&self.weights) {
+            let [nx, ny, nxy, mx, my, mxy] = remembered.law.stresses(states);
+            let stress =
+                Resultants { membrane: [nx, ny, nxy], moment: [mx, my, mxy], ..Resultants::default() };
+            all.iter_mut().zip(weights).for_each(|(at, weight)| at.add(&stress, *weight));
+        }
     }
 
     fn apply(&self, u: &Vector24) -> [Resultants; PLACES] {
@@ -66,17 +109,11 @@ impl Operator {
     }
 }
 
-/// Turns stresses and vectors from element axes to material axes: the warp seen in the element's plane.
-pub fn material_axes(element: &Prepared, warp: &Vector3<f64>) -> (Matrix3<f64>, Matrix2<f64>) {
+/// Turns vectors from element axes to material axes: the warp seen in the element's plane.
+pub fn material_axes(element: &Prepared, warp: &Vector3<f64>) -> Matrix2<f64> {
     let a = element.frame.rotation * warp;
     let (s, c) = a.y.atan2(a.x).sin_cos();
-    #[rustfmt::skip]
-    let stress = Matrix3::new(
-        c * c, s * s, 2.0 * c * s,
-        s * s, c * c, -2.0 * c * s,
-        -c * s, c * s, c * c - s * s,
-    );
-    (stress, Matrix2::new(c, s, -s, c))
+    Matrix2::new(c, s, -s, c)
 }
 
 /// Displacements of the nodes of an element.
@@ -108,19 +145,26 @@ pub fn straining<'a>(model: &'a Model, state: &'a State) -> impl Fn(usize) -> Ve
 pub fn for_each_element(
     model: &Model,
     flat: bool,
+    remembered: Option<Remembered<'_>>,
     quads: impl Iterator<Item = usize>,
     displacement: impl Fn(usize) -> Vector24,
     mut visit: impl FnMut(usize, [Resultants; PLACES]),
 ) -> Result<(), ModelError> {
     let weights = extrapolation(model.formulation.cells);
+    let section = &model.section;
+    let d = remembered.map_or([section.d_m, section.d_b], |r| r.law.beside(section));
     let mut last: Option<Operator> = None;
     for quad in quads {
         let corners = model.mesh.corners(quad);
         if !last.as_ref().is_some_and(|operator| is_translated(&operator.corners, &corners)) {
-            last = Some(Operator::new(model, quad, flat, &weights)?);
+            last = Some(Operator::new(model, quad, flat, &weights, d)?);
         }
         if let Some(operator) = &last {
-            visit(quad, operator.apply(&displacement(quad)));
+            let mut all = operator.apply(&displacement(quad));
+            if let Some(remembered) = &remembered {
+                operator.add_remembered(remembered, quad, &mut all);
+            }
+            visit(quad, all);
         }
     }
     Ok(())

@@ -20,8 +20,9 @@ use nalgebra::Vector3;
 use crate::element::{Cell, Vector24, membrane_and_plate};
 use crate::mesh::{QuadMesh, normal};
 use crate::model::{Model, ModelError};
+use crate::section::SheetLaw;
 use crate::solve::nonlinear::State;
-use element::{for_each_element, material_axes, small, straining};
+use element::{Remembered, for_each_element, material_axes, small, straining};
 use recovery::Patches;
 
 /// Stress resultants in material axes.
@@ -70,13 +71,13 @@ pub fn cells(model: &Model, displacement: &[f64]) -> Result<Vec<Vec<Resultants>>
     let (flat, displacement) = (model.mesh.is_flat(), small(model, displacement));
     let of_element = |quad: usize| {
         let element = model.element(quad, flat)?;
-        let (stress, vector) = material_axes(&element, &model.warp);
+        let (to_material, vector) = (element.to_material(), material_axes(&element, &model.warp));
         let local = element.to_local() * displacement(quad);
         let (_, plate) = membrane_and_plate(&local);
         let of_cell = |cell: Cell| {
             let (strain, curvature) = element.strains(&cell, &local);
-            let membrane = stress * element.d_m * strain;
-            let moment = stress * element.d_b * curvature;
+            let membrane = model.section.d_m * to_material * strain;
+            let moment = model.section.d_b * to_material * curvature;
             let shear = vector * element.d_s * element.shear_strain_matrix(cell.middle) * plate;
             Resultants { membrane: membrane.into(), moment: moment.into(), shear: shear.into() }
         };
@@ -90,21 +91,30 @@ pub fn cells(model: &Model, displacement: &[f64]) -> Result<Vec<Vec<Resultants>>
 /// # Errors
 /// M008 if the warp direction is normal to an element.
 pub fn element_means(model: &Model, displacement: &[f64]) -> Result<Vec<Resultants>, ModelError> {
-    means_of(model, small(model, displacement))
+    means_of(model, None, small(model, displacement))
 }
 
-/// The same after large rotations: in the axes of the elements as they have turned.
+/// The same after large rotations: in the axes of the elements as they have turned, with the stresses of a law where the
+/// sheet follows one.
 ///
 /// # Errors
 /// M008 if the warp direction is normal to an element.
-pub fn element_means_moved(model: &Model, state: &State) -> Result<Vec<Resultants>, ModelError> {
-    means_of(model, straining(model, state))
+pub fn element_means_moved(
+    model: &Model,
+    state: &State,
+    law: Option<&SheetLaw>,
+) -> Result<Vec<Resultants>, ModelError> {
+    means_of(model, Remembered::of(law, state), straining(model, state))
 }
 
-fn means_of(model: &Model, displacement: impl Fn(usize) -> Vector24) -> Result<Vec<Resultants>, ModelError> {
+fn means_of(
+    model: &Model,
+    remembered: Option<Remembered<'_>>,
+    displacement: impl Fn(usize) -> Vector24,
+) -> Result<Vec<Resultants>, ModelError> {
     let mut means = Vec::with_capacity(model.mesh.quads.len());
-    let quads = 0..model.mesh.quads.len();
-    for_each_element(model, model.mesh.is_flat(), quads, displacement, |_, [.., mean]| means.push(mean))?;
+    let (flat, quads) = (model.mesh.is_flat(), 0..model.mesh.quads.len());
+    for_each_element(model, flat, remembered, quads, displacement, |_, [.., mean]| means.push(mean))?;
     Ok(means)
 }
 
@@ -159,15 +169,20 @@ impl Recovery {
     /// # Errors
     /// M008 if the warp direction is normal to an element.
     pub fn nodal(&self, model: &Model, displacement: &[f64]) -> Result<Vec<Resultants>, ModelError> {
-        self.nodal_of(model, small(model, displacement))
+        self.nodal_of(model, None, small(model, displacement))
     }
 
-    /// The same after large rotations: in the axes of the elements as they have turned.
+    /// The same after large rotations: see [`element_means_moved`].
     ///
     /// # Errors
     /// M008 if the warp direction is normal to an element.
-    pub fn nodal_moved(&self, model: &Model, state: &State) -> Result<Vec<Resultants>, ModelError> {
-        self.nodal_of(model, straining(model, state))
+    pub fn nodal_moved(
+        &self,
+        model: &Model,
+        state: &State,
+        law: Option<&SheetLaw>,
+    ) -> Result<Vec<Resultants>, ModelError> {
+        self.nodal_of(model, Remembered::of(law, state), straining(model, state))
     }
 
     /// Resultants at one point, as [`nodal`](Self::nodal) and [`Locator::value`] give them, from the
@@ -191,6 +206,7 @@ impl Recovery {
         for_each_element(
             model,
             self.flat,
+            None,
             quads.iter().copied(),
             small(model, displacement),
             |quad, all| {
@@ -219,12 +235,13 @@ impl Recovery {
     fn nodal_of(
         &self,
         model: &Model,
+        remembered: Option<Remembered<'_>>,
         displacement: impl Fn(usize) -> Vector24,
     ) -> Result<Vec<Resultants>, ModelError> {
         let mut means = Vec::with_capacity(model.mesh.quads.len());
         let mut sums = vec![(Resultants::default(), 0.0); model.mesh.nodes.len()];
         let quads = 0..model.mesh.quads.len();
-        for_each_element(model, self.flat, quads, displacement, |quad, [corners @ .., mean]| {
+        for_each_element(model, self.flat, remembered, quads, displacement, |quad, [corners @ .., mean]| {
             means.push(mean);
             for (corner, node) in corners.iter().zip(model.mesh.quads[quad]) {
                 let (sum, count) = &mut sums[node as usize];

@@ -205,6 +205,19 @@ impl Channel {
         self.cut(Response { stress, tangent, state, dissipation: 0.0, energy })
     }
 
+    /// The stress of a state that was kept.
+    pub fn stress(&self, mode: Mode, state: &State) -> f64 {
+        let stress = match mode {
+            Mode::Elastic => self.backbone.at(state.strain).stress,
+            Mode::Virgin => self.virgin(state.strain).stress,
+            Mode::Friction => {
+                let springs = self.sliders().zip(&state.slip).map(|(s, t)| s.stiffness * t);
+                self.backbone.at(state.strain).stress + springs.sum::<f64>()
+            }
+        };
+        if self.one_sided { stress.max(0.0) } else { stress }
+    }
+
     /// The answer to a strain reached in one straight step from a state, which is not changed: keep
     /// [`Response::state`] when the step is accepted. `q` is that of the start of the step.
     pub fn trial(&self, from: &State, strain: f64) -> Response {

@@ -1,7 +1,9 @@
 //! Laws with friction beside the matrices of a section.
 
+use nalgebra::Matrix3;
+
 use super::{SectionError, ShellSection};
-use crate::law::{Channel, Mode};
+use crate::law::{Channel, Mode, State};
 
 /// The strains of a sheet that follow laws of their own in large-rotation statics, each alone; what
 /// couples them (`D12`) and every other stiffness is that of the [`ShellSection`].
@@ -32,9 +34,18 @@ impl SheetLaw {
         Ok(Self { mode: Mode::Friction, channels })
     }
 
-    /// Which of the diagonal entries the laws replace.
-    pub fn replaced(&self) -> [bool; 6] {
-        std::array::from_fn(|i| self.channels[i].is_some())
+    /// `d_m` and `d_b` of a section without the diagonal entries that the laws replace.
+    pub fn beside(&self, section: &ShellSection) -> [Matrix3<f64>; 2] {
+        let (mut d_m, mut d_b) = (section.d_m, section.d_b);
+        for i in (0..6).filter(|i| self.channels[*i].is_some()) {
+            if i < 3 { d_m[(i, i)] = 0.0 } else { d_b[(i - 3, i - 3)] = 0.0 }
+        }
+        [d_m, d_b]
+    }
+
+    /// The stresses `(N_x, N_y, N_xy, M_x, M_y, M_xy)` that the laws have in states that were kept; 0 where there is none.
+    pub fn stresses(&self, states: &[State; 6]) -> [f64; 6] {
+        std::array::from_fn(|i| self.channels[i].as_ref().map_or(0.0, |c| c.stress(self.mode, &states[i])))
     }
 
     /// The laws themselves if they stay stable beside the couplings of a section: `D12²` is at most

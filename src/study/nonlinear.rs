@@ -234,7 +234,6 @@ pub(super) fn equilibrium(
     let found =
         nonlinear::search(model, &prepared.plan, &settings, &method, options, |step| record.see(step));
     let mut findings = conclude(found, table, &mut record.path)?;
-    findings.extend(law.map(|_| elastic_resultants()));
     findings.extend(turned_about_more(model, &record.state));
     let findings = findings.into_iter().map(|f| f.at(Place::file(&case.path))).collect();
     let mut solution = record.solution;
@@ -272,13 +271,6 @@ fn conclude(
         Err(other) => return Err(other.into()),
     }
     Ok(findings)
-}
-
-/// S120: what is known of the resultants of a sheet with friction.
-fn elastic_resultants() -> Finding {
-    let message = "moments, membrane and shear forces of probes, checks and cells are those of the elastic section at the strains \
-                   that were found: what friction adds is in the reactions and the energies only";
-    Finding::new("S120", message)
 }
 
 /// Rotation (rad) about an axis that is held above which the free ones have brought it about.

@@ -111,6 +111,8 @@ pub struct CaseResult {
     pub path: Option<LoadPath>,
     /// Places and rotations of the nodes at the end; of analyses in large rotations only.
     pub state: Option<State>,
+    /// What the sheet followed beside its section; of an analysis with friction only.
+    pub law: Option<SheetLaw>,
     /// How certain the results are; of a linear or modal analysis with measured inputs only.
     pub uncertainty: Option<Uncertainty>,
     /// What the mesh leaves open in the results; of a case with `[convergence]` only.
@@ -146,7 +148,7 @@ impl CaseResult {
     /// M008 if the warp direction is normal to an element.
     pub fn element_means(&self) -> Result<Vec<Resultants>, ModelError> {
         match &self.state {
-            Some(state) => element_means_moved(&self.model, state),
+            Some(state) => element_means_moved(&self.model, state, self.law.as_ref()),
             None => element_means(&self.model, &self.solution.displacement),
         }
     }
@@ -161,7 +163,7 @@ impl CaseResult {
         }
         let recovery = self.recovery.get_or_init(|| Recovery::new(&self.model.mesh));
         let nodal = match &self.state {
-            Some(state) => recovery.nodal_moved(&self.model, state)?,
+            Some(state) => recovery.nodal_moved(&self.model, state, self.law.as_ref())?,
             None => recovery.nodal(&self.model, &self.solution.displacement)?,
         };
         Ok(self.nodal.get_or_init(|| nodal))
@@ -335,6 +337,7 @@ impl PreparedCase<'_> {
             history,
             path,
             state,
+            law: law.cloned(),
             uncertainty,
             convergence: None,
             findings,

@@ -57,12 +57,9 @@ impl Forces {
 impl<'a> Sheet<'a> {
     pub fn new(model: &Model, law: Option<&'a SheetLaw>) -> Self {
         let quads = model.mesh.quads.len();
-        let replaced = law.map_or([false; 6], SheetLaw::replaced);
-        let mut d_m = model.section.d_m;
-        (0..3).filter(|i| replaced[*i]).for_each(|i| d_m[(i, i)] = 0.0);
         Self {
             law,
-            d_m,
+            d_m: law.map_or(model.section.d_m, |law| law.beside(&model.section)[0]),
             references: Vec::with_capacity(quads),
             kinds: Vec::with_capacity(quads),
             yarns: Vec::new(),
@@ -79,7 +76,7 @@ impl<'a> Sheet<'a> {
             let mut rest = match self.law {
                 None => element.local_stiffness(),
                 Some(law) => {
-                    let cells = element.cellwise(&model.section, law.replaced());
+                    let cells = element.cellwise(law.beside(&model.section));
                     let linear = *cells.linear();
                     self.cellwise.push(cells);
                     linear
