@@ -21,7 +21,7 @@ use kesf::quantity::{Curve, Estimate, STANDARD_GRAVITY};
 use kesf::section::ShellSection;
 use kesf::study::Case;
 use kesf::study::bending::{
-    BendLoops, BendingResult, FabSettings, bend_loops, cantilever, heart_loop, simulate_records,
+    BendLoops, BendingResult, FabSettings, bend_loops, cantilever, heart_cells, heart_loop, simulate_records,
 };
 use nalgebra::{Matrix2, Matrix3};
 
@@ -73,6 +73,22 @@ fn a_strip_that_curls_across_hangs_a_little_shorter() {
 
 /// From 0.005 to 1 gf cm²/cm and 1 to 20 cm of width, 10 cm long; the facets of the limpest are a quarter
 /// of its bending length.
+/// Long loops of limp cloth with the elements that a case has when it says nothing: the height stands for the rigidity
+/// of the section (elastica, exact).
+#[test]
+fn long_heart_loops_have_the_elements_that_they_need() {
+    for length in [0.1, 0.2, 0.3, 0.5] {
+        for b in [3e-6, 1e-5] {
+            let section = cloth(b, b, 0.0);
+            let cells = heart_cells(&section, Direction::Warp, length);
+            let heart = heart_loop(&section, Direction::Warp, length, None, cells).unwrap();
+            let off = heart.rigidity.map(|found| found / b - 1.0);
+            println!("{length} m, B = {b}: gamma {:.0}, {cells} elements, B {off:?}", heart.gamma);
+            assert!(off.is_some_and(|off| off.abs() < 0.012), "{length} {b}: {off:?}");
+        }
+    }
+}
+
 #[test]
 fn the_heart_loop_does_not_fail() {
     for b in [0.005, 0.03, 0.2, 1.0] {

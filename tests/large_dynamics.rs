@@ -142,6 +142,7 @@ fn a_falling_strip_keeps_its_energy_and_damping_takes_it() {
         integrate(&model, &dynamics, &Options::default(), |at| {
             off = off.max(at.energy.imbalance().abs());
             work = work.max(at.energy.work);
+            assert!(at.energy.dissipated >= dissipated, "{} {dissipated}", at.energy.dissipated);
             dissipated = at.energy.dissipated;
             let w = at.displacement.iter().skip(2).step_by(6).copied();
             lowest = w.fold(lowest, f64::min);
@@ -156,7 +157,7 @@ fn a_falling_strip_keeps_its_energy_and_damping_takes_it() {
     assert!(free.0 < 0.05 && free.1 == 0.0, "{free:?}");
     let damped = run(2e-3, Rayleigh { alpha: 10.0, beta: 1e-3 });
     println!("damped {damped:?}");
-    assert!(damped.1 > 0.2 && damped.0 < 0.05, "{damped:?}");
+    assert!(damped.1 > 0.2 && damped.0 < 1e-3, "{damped:?}");
 }
 
 /// The step that adapts follows the constant one that is very short, from rest under loads that begin at 0 too.

@@ -18,7 +18,10 @@ mod strip;
 
 pub use cantilever::{CHORD_ANGLE_DEG, Cantilever, WithFriction, cantilever};
 pub use fab::{Agreement, BendLoop, BendLoops, Elastic, FabSettings, Friction, Simulated, bend_loops};
-pub use heart::{HeartLoop, heart_loop};
+pub use heart::{HeartLoop, heart_cells, heart_loop};
+
+/// Elements along a strip where a case says nothing.
+const CELLS: usize = 32;
 
 /// What a bending test gives, by direction.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,15 +46,19 @@ pub fn simulate_strips(
     section: &ShellSection,
 ) -> Result<BendingResult, StudyError> {
     let width = spec.width.map(Length::si);
+    let cells = spec.cells.unwrap_or(CELLS);
     let both = [Direction::Warp, Direction::Weft].into_iter();
     let law = |direction| sheet.mean_law(Test::Bending, Some(direction));
     match (spec.test, spec.length) {
         (BendingKind::Cantilever, _) => Ok(BendingResult::Cantilever(
-            both.map(|d| cantilever(section, d, law(d).as_ref(), width, spec.cells))
-                .collect::<Result<_, _>>()?,
+            both.map(|d| cantilever(section, d, law(d).as_ref(), width, cells)).collect::<Result<_, _>>()?,
         )),
         (BendingKind::HeartLoop, Some(length)) => Ok(BendingResult::HeartLoop(
-            both.map(|d| heart_loop(section, d, length.si(), width, spec.cells)).collect::<Result<_, _>>()?,
+            both.map(|d| {
+                let cells = spec.cells.unwrap_or_else(|| heart_cells(section, d, length.si()));
+                heart_loop(section, d, length.si(), width, cells)
+            })
+            .collect::<Result<_, _>>()?,
         )),
         _ => Err(case.inconsistent("the bending test needs a length, or records of a fabric".into())),
     }
@@ -70,7 +77,7 @@ pub fn simulate_records(
     let density = sheet.get(Parameter::W, None).ok_or_else(|| {
         case.inconsistent("a fab_bend_loop needs the areal density of the fabric (`M` of its file)".into())
     })?;
-    let settings = FabSettings { cells: spec.cells, ..FabSettings::default() };
+    let settings = FabSettings { cells: spec.cells.unwrap_or(CELLS), ..FabSettings::default() };
     let of = |d| bend_loops(&sheet.bend_tests, d, density.mean, &settings);
     let along: Vec<_> = Direction::ALL.into_par_iter().map(|d| (d, of(d))).collect();
     let (mut loops, mut failed) = (Vec::new(), Vec::new());

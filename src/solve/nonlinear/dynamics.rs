@@ -146,8 +146,10 @@ struct Now {
     /// The acceleration of the update formulas, a weighted mean in time of the true one.
     mean_acceleration: Vec<f64>,
     balance: Balance,
-    /// `α M v` and the forces of the elements' viscosity, by dof.
-    damping: Vec<f64>,
+    /// `α M v`, by dof.
+    drag: Vec<f64>,
+    /// Forces of the elements' viscosity in their frames.
+    viscous: Vec<Forces>,
     /// Loads at this instant.
     load: Vec<f64>,
     /// Displacements and rotations since the instant before.
@@ -193,7 +195,8 @@ impl<'a> Motion<'a> {
             mean_acceleration: acceleration.clone(),
             acceleration,
             balance,
-            damping: still.clone(),
+            drag: still.clone(),
+            viscous: vec![Forces::default(); self.system.model.mesh.quads.len()],
             load: self.load(&state),
             travelled: still,
             factor: None,
@@ -242,7 +245,7 @@ impl<'a> Motion<'a> {
                 })
                 .collect();
             let balance = self.system.balance(&state, None);
-            let Resistance { inertia, damping, nodal, viscous } =
+            let Resistance { inertia, drag, damping, nodal, viscous } =
                 self.resistance(&state, &balance, &velocity, &acceleration);
             let mut force: Vec<f64> =
                 (0..n).map(|d| -(inertia[d] + damping[d] + balance.unbalanced[d])).collect();
@@ -255,7 +258,8 @@ impl<'a> Motion<'a> {
                 acceleration: acceleration.clone(),
                 mean_acceleration: mean_acceleration.clone(),
                 balance,
-                damping: damping.clone(),
+                drag: drag.clone(),
+                viscous: viscous.clone(),
                 travelled: travelled.clone(),
                 factor: factor.filter(|_| self.dynamics.tolerance.is_some()),
                 state,
@@ -319,27 +323,34 @@ impl<'a> Motion<'a> {
         let Rayleigh { alpha, beta } = self.dynamics.damping;
         let velocities = self.system.node_velocities(state, velocity);
         let (mut damping, viscous) = self.system.viscous(balance, &velocities, beta);
+        let mut drag = vec![0.0; damping.len()];
         if alpha > 0.0 {
-            let drag = self.inertia.times(self.system, &velocities);
-            damping.iter_mut().zip(drag).for_each(|(f, p)| *f += alpha * p);
+            let momentum = self.inertia.times(self.system, &velocities);
+            drag.iter_mut().zip(momentum).for_each(|(f, p)| *f = alpha * p);
+            damping.iter_mut().zip(&drag).for_each(|(f, p)| *f += p);
         }
         let accelerations = self.system.node_accelerations(state, velocity, acceleration);
         let inertia = self.inertia.times(self.system, &accelerations);
         Resistance {
             nodal: inertia.iter().zip(&damping).map(|(i, d)| i + d).collect(),
             inertia: self.system.to_leads(state, &inertia),
+            drag: self.system.to_leads(state, &drag),
             damping: self.system.to_leads(state, &damping),
             viscous,
         }
     }
 
-    /// Adds what a step does to the energies; forces count with their means over the step.
+    /// Adds what a step does to the energies; forces count with their means over the step. Viscous ones do so in the
+    /// frames of the elements: in space they turn on the way, and their mean could seem to give work.
     fn account(&self, now: &Now, next: &Now, energy: &mut Energy) {
         let mean = |a: &[f64], b: &[f64]| -> f64 {
             next.travelled.iter().zip(a.iter().zip(b)).map(|(u, (a, b))| 0.5 * (a + b) * u).sum()
         };
         energy.work += mean(&now.load, &next.load);
-        energy.dissipated += mean(&now.damping, &next.damping);
+        energy.dissipated += mean(&now.drag, &next.drag);
+        let strained = now.balance.deformations().zip(next.balance.deformations()).map(|(a, b)| b - a);
+        let viscous = now.viscous.iter().zip(&next.viscous).map(|(a, b)| 0.5 * (a.local + b.local));
+        energy.dissipated += viscous.zip(strained).map(|(force, strained)| force.dot(&strained)).sum::<f64>();
         energy.strain = next.balance.energy;
         let velocities = self.system.node_velocities(&next.state, &next.velocity);
         let momentum = self.inertia.times(self.system, &velocities);
@@ -363,7 +374,9 @@ fn travel(from: &State, to: &State) -> Vec<f64> {
 struct Resistance {
     /// Of inertia, by dof.
     inertia: Vec<f64>,
-    /// Of damping, by dof.
+    /// `α M v`, by dof.
+    drag: Vec<f64>,
+    /// Of all damping, by dof.
     damping: Vec<f64>,
     /// Both, on every node.
     nodal: Vec<f64>,

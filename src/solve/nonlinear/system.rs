@@ -378,6 +378,11 @@ impl Balance {
     pub fn forces(&self) -> Vec<Forces> {
         self.answers.iter().map(|a| a.forces).collect()
     }
+
+    /// Deformations of the elements in their frames.
+    pub fn deformations(&self) -> impl Iterator<Item = &Vector24> {
+        self.answers.iter().map(|a| &a.motion.deformation)
+    }
 }
 
 /// Three entries as a vector.

@@ -50,6 +50,20 @@ pub struct HeartLoop {
 /// Steps in which the clamp turns: an eighth of a turn and a bit.
 const TURNS: usize = 8;
 
+/// Elements per bending length `(B/w)^⅓` that leave 1 % of B or less to the mesh.
+const PER_BENDING_LENGTH: f64 = 12.0;
+
+/// Elements on each half of a loop of `length` (m) that resolve its bends: the clamp and the lowest point of a long
+/// loop are as tight as its bending length, however long the straight parts between them are.
+pub fn heart_cells(section: &ShellSection, direction: Direction, length: f64) -> usize {
+    let weight = section.areal_density * STANDARD_GRAVITY;
+    let bends = 0.5 * length * (weight / rigidity(section, direction)).cbrt();
+    ((PER_BENDING_LENGTH * bends).ceil() as usize).clamp(super::CELLS, MOST)
+}
+
+/// Elements on each half that are not exceeded without being asked for.
+const MOST: usize = 400;
+
 /// Simulates the loop of a strip of `length` (m) with `cells` elements on each half.
 ///
 /// # Errors

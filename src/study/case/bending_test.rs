@@ -11,9 +11,9 @@ use crate::quantity::Length;
 pub struct BendingTest {
     /// Which test.
     pub test: BendingKind,
-    /// Elements along the strip of a cantilever, along half of a loop; 32.
-    #[serde(default = "default_cells")]
-    pub cells: usize,
+    /// Elements along the strip of a cantilever, along half of a loop; 32, and along a long heart loop as many as its
+    /// bends need.
+    pub cells: Option<usize>,
     /// Width of a cantilever or heart loop with free edges; left out, the strip bends to a cylinder.
     pub width: Option<Length>,
     /// Length of the strip of a heart loop.
@@ -32,15 +32,13 @@ pub enum BendingKind {
     FabBendLoop,
 }
 
-fn default_cells() -> usize {
-    32
-}
-
 impl BendingTest {
     /// What does not fit together, if anything does not.
     pub(super) fn contradiction(&self) -> Option<&'static str> {
         match self.test {
-            _ if self.cells < 4 => Some("a [bending_test] needs at least 4 `cells` along the strip"),
+            _ if self.cells.is_some_and(|c| c < 4) => {
+                Some("a [bending_test] needs at least 4 `cells` along the strip")
+            }
             BendingKind::HeartLoop if self.length.is_none() => {
                 Some("a heart_loop needs the `length` of its strip, such as \"15 cm\"")
             }
