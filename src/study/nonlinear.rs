@@ -14,7 +14,7 @@ use crate::mesh::QuadMesh;
 use crate::model::Model;
 use crate::section::SheetLaw;
 use crate::solve::nonlinear::{
-    self, ArcLength, Flow, Method, NonlinearError, Perturbation, Settings, Stability, State, Step,
+    self, ArcLength, Flow, Method, NonlinearError, Obstacle, Perturbation, Settings, Stability, State, Step,
 };
 use crate::solve::{self, Solution};
 
@@ -260,12 +260,10 @@ fn conclude(
                 findings.push(Finding::new("S112", unfinished(solution.state.factor, path.steps.len())));
             }
         }
-        Err(e @ NonlinearError::NotConverged { .. }) => {
+        Err(ref e @ NonlinearError::NotConverged { ref obstacle, .. }) => {
             path.converged = false;
-            let text = e.to_string();
-            let text = text.strip_prefix("N007 ").unwrap_or(&text);
-            let cure = cure(table);
-            let message = format!("{text}; {cure}; the results are the last state that was reached");
+            let (story, cure) = (e.story().unwrap_or_default(), cure(table, obstacle));
+            let message = format!("{story}; {cure}; the results are the last state that was reached");
             findings.push(Finding::new("N007", message));
         }
         Err(other) => return Err(other.into()),
@@ -315,12 +313,16 @@ fn unfinished(factor: f64, steps: usize) -> String {
 }
 
 /// What to change in the case.
-fn cure(table: &NonlinearTable) -> &'static str {
-    match table.method {
-        MethodChoice::Newton => {
+fn cure(table: &NonlinearTable, obstacle: &Obstacle) -> &'static str {
+    match (obstacle, table.method) {
+        (Obstacle::Folded, _) => "in [sheet] take more cells, so that a fold goes over several of them",
+        (Obstacle::Unstable, _) => {
+            "in [analysis] try method = \"flow\", which goes on to a stable equilibrium, or a smaller largest_step"
+        }
+        (_, MethodChoice::Newton) => {
             "in [analysis] try method = \"flow\" or \"arc_length\", or a smaller largest_step"
         }
-        MethodChoice::ArcLength => "in [analysis] try a smaller first_step, or method = \"flow\"",
-        MethodChoice::Flow => "in [analysis] try more steps or another seed, and in [sheet] more cells",
+        (_, MethodChoice::ArcLength) => "in [analysis] try a smaller first_step, or method = \"flow\"",
+        (_, MethodChoice::Flow) => "in [analysis] try more steps or another seed, and in [sheet] more cells",
     }
 }

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use super::newton::{Converged, Drag, Failure, is_rounding, limit, longest_travel, newton};
 use super::system::System;
-use super::{Method, NonlinearError, Progress, Settings, Solution, State, Step};
+use super::{Method, NonlinearError, Obstacle, Progress, Settings, Solution, State, Step};
 use crate::model::Model;
 use crate::solve::linear::Options;
 
@@ -116,9 +116,11 @@ fn advance(
     let mut balance = system.balance(&state, None);
     let mut forces = balance.forces();
     for iterations in 1..=settings.iterations {
-        let failure = |residual, cause| Failure { iterations, residual, cause };
+        let failure = |residual, obstacle| Failure { iterations, residual, obstacle };
         let (matrix, push) = system.tangent(&state, &balance, &forces, 0.0);
-        let tangent = system.factorise(&matrix).map_err(|e| failure(balance.relative_residual(), Some(e)))?;
+        let tangent = system
+            .factorise(&matrix)
+            .map_err(|e| failure(balance.relative_residual(), Obstacle::Factor(e)))?;
         // Two right-hand sides: what is out of balance, and the load.
         let load = system.reference_load(&state);
         let n = push.len();
@@ -142,7 +144,7 @@ fn advance(
             (length / dot(by_factor, by_factor).sqrt()).copysign(forward)
         } else {
             root(&travelled, rest, by_factor, length)
-                .ok_or_else(|| failure(balance.relative_residual(), None))?
+                .ok_or_else(|| failure(balance.relative_residual(), Obstacle::TooFar))?
         };
         let mut step: Vec<f64> = rest.iter().zip(&*by_factor).map(|(r, f)| r + change * f).collect();
         let part = limit(&mut step);
@@ -152,18 +154,19 @@ fn advance(
         travelled.iter_mut().zip(&step).for_each(|(t, s)| *t += s);
         balance = system.balance(&state, None);
         if !balance.residual.is_finite() {
-            return Err(failure(balance.residual, None));
+            return Err(failure(balance.residual, Obstacle::Diverged));
         }
         let at_rest = is_rounding(&step, system.size);
         if (state.factor - start.factor).abs() > 1.001 * longest_travel(system) {
-            return Err(failure(balance.relative_residual(), None));
+            return Err(failure(balance.relative_residual(), Obstacle::TooFar));
         }
         if part == 1.0 && (at_rest || balance.residual <= settings.tolerance * balance.scale) {
             system.remember(&balance, &mut state);
             return Ok((Converged { state, balance, iterations, at_rest }, travelled, length));
         }
     }
-    Err(Failure { iterations: settings.iterations, residual: balance.relative_residual(), cause: None })
+    let (iterations, residual) = (settings.iterations, balance.relative_residual());
+    Err(Failure { iterations, residual, obstacle: Obstacle::Residual })
 }
 
 /// The change of the factor that puts `travelled + rest + change by_factor` on the length, of the

@@ -7,7 +7,9 @@ use rand_pcg::Pcg64Mcg;
 
 use super::newton::{Converged, Drag, Failure, longest_travel, newton, newton_with};
 use super::system::System;
-use super::{Method, NonlinearError, Perturbation, Progress, Settings, Solution, State, Step, stability};
+use super::{
+    Method, NonlinearError, Obstacle, Perturbation, Progress, Settings, Solution, State, Step, stability,
+};
 use crate::model::Model;
 use crate::solve::linear::Options;
 use crate::solve::plan::Plan;
@@ -123,7 +125,7 @@ pub(super) fn relax_system(
             return progress.finish(system, step.state, &step.balance);
         }
         if progress.steps >= flow.steps {
-            return Err(Failure::unfinished(step).ends(progress.steps, settings, state));
+            return Err(Failure::of(&step, Obstacle::Moving).ends(progress.steps, settings, state));
         }
         state = step.state;
         if perturbed && (at_rest || (factor == 1.0 && residual <= SETTLING)) {
@@ -177,7 +179,7 @@ pub(super) fn settle(
         }
     }
     let residual = system.balance(&state, None).relative_residual();
-    Err(Failure { iterations, residual, cause: None })
+    Err(Failure { iterations, residual, obstacle: Obstacle::Moving })
 }
 
 /// How strongly the sheet is dragged.

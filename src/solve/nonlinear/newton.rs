@@ -1,7 +1,7 @@
 //! Newton's method with predicted element forces in the geometric stiffness.
 
 use super::system::{Balance, System};
-use super::{NonlinearError, Settings, State};
+use super::{NonlinearError, Obstacle, Settings, State};
 use crate::solve::SolveError;
 use crate::solve::factor::FactorError;
 
@@ -35,8 +35,8 @@ impl Converged {
         let (matrix, _) = system.tangent(&self.state, &self.balance, &self.balance.forces(), 0.0);
         match system.factorise(&matrix) {
             Ok(tangent) if tangent.negative_pivots() == 0 => Ok(self),
-            Ok(_) => Err(Failure::unfinished(self)),
-            Err(cause) => Err(Failure { cause: Some(cause), ..Failure::unfinished(self) }),
+            Ok(_) => Err(Failure::of(&self, Obstacle::Unstable)),
+            Err(cause) => Err(Failure::of(&self, Obstacle::Factor(cause))),
         }
     }
 }
@@ -45,22 +45,22 @@ impl Converged {
 pub(super) struct Failure {
     pub iterations: usize,
     pub residual: f64,
-    /// What the factorisation said, if that was the reason.
-    pub cause: Option<FactorError>,
+    pub obstacle: Obstacle,
 }
 
 impl Failure {
-    /// A step of a search that has no more steps.
-    pub fn unfinished(step: Converged) -> Self {
-        Self { iterations: step.iterations, residual: step.balance.relative_residual(), cause: None }
+    /// An equilibrium that is not good enough.
+    pub fn of(step: &Converged, obstacle: Obstacle) -> Self {
+        Self { iterations: step.iterations, residual: step.balance.relative_residual(), obstacle }
     }
 
     /// The error when no smaller step is left.
     pub fn ends(self, step: usize, settings: &Settings, last: State) -> NonlinearError {
-        match self.cause {
-            Some(cause @ FactorError::OutOfMemory { .. }) => SolveError::Factor(cause).into(),
-            _ => NonlinearError::NotConverged {
+        match self.obstacle {
+            Obstacle::Factor(cause @ FactorError::OutOfMemory { .. }) => SolveError::Factor(cause).into(),
+            obstacle => NonlinearError::NotConverged {
                 step,
+                obstacle,
                 iterations: self.iterations,
                 residual: self.residual,
                 tolerance: settings.tolerance,
@@ -108,7 +108,7 @@ pub(super) fn newton_with(
 ) -> Result<Converged, Failure> {
     let mut state = State { factor, ..start.clone() };
     if travel.abs() > 1.001 * longest_travel(system) {
-        return Err(Failure { iterations: 0, residual: f64::INFINITY, cause: None });
+        return Err(Failure { iterations: 0, residual: f64::INFINITY, obstacle: Obstacle::TooFar });
     }
     // Part of the held values that is still to come.
     let mut remaining = travel;
@@ -116,12 +116,13 @@ pub(super) fn newton_with(
     let mut balance = system.balance(&state, drag.extra);
     let mut forces = balance.forces();
     for iterations in 1..=settings.iterations {
-        let failure = |residual, cause| Failure { iterations, residual, cause };
+        let failure = |residual, obstacle| Failure { iterations, residual, obstacle };
         let (matrix, push) = system.tangent(&state, &balance, &forces, drag.rate);
-        let tangent = system.factorise(&matrix).map_err(|e| failure(balance.relative_residual(), Some(e)))?;
+        let tangent = system
+            .factorise(&matrix)
+            .map_err(|e| failure(balance.relative_residual(), Obstacle::Factor(e)))?;
         if iterations == 1 && drag.rate > 0.0 && tangent.negative_pivots() > 0 {
-            // The flow would go uphill.
-            return Err(failure(balance.relative_residual(), None));
+            return Err(failure(balance.relative_residual(), Obstacle::Uphill));
         }
         let mut step: Vec<f64> = (0..travelled.len())
             .map(|d| {
@@ -141,18 +142,19 @@ pub(super) fn newton_with(
         balance = system.balance(&state, drag.extra);
         let residual = dragged_residual(system, &balance, &travelled, drag.rate);
         if !residual.is_finite() {
-            return Err(failure(residual, None));
+            return Err(failure(residual, Obstacle::Diverged));
         }
         let at_rest = is_rounding(&step, system.size);
         if remaining == 0.0 && (at_rest || residual <= settings.tolerance * balance.scale) {
             if System::largest_rotation(&balance) > LARGEST_FOLD {
-                return Err(failure(balance.relative_residual(), None));
+                return Err(failure(balance.relative_residual(), Obstacle::Folded));
             }
             system.remember(&balance, &mut state);
             return Ok(Converged { state, balance, iterations, at_rest });
         }
     }
-    Err(Failure { iterations: settings.iterations, residual: balance.relative_residual(), cause: None })
+    let (iterations, residual) = (settings.iterations, balance.relative_residual());
+    Err(Failure { iterations, residual, obstacle: Obstacle::Residual })
 }
 
 /// The part of their way that the held values may go in one step.
