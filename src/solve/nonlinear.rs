@@ -29,6 +29,7 @@
 mod arc;
 mod drive;
 pub mod dynamics;
+mod error;
 mod flow;
 mod newton;
 mod sheet;
@@ -38,18 +39,16 @@ mod system;
 use std::ops::ControlFlow;
 
 use nalgebra::{Point3, UnitQuaternion};
-use thiserror::Error;
 
 pub use arc::{ArcLength, follow};
 pub use drive::{Leg, drive};
+pub use error::{NonlinearError, Obstacle};
 pub use flow::{Flow, relax, relax_from};
 pub use stability::{Stability, lost_directions};
 
 use self::flow::noise;
 use self::newton::{Converged, Drag, Failure, longest_travel, newton};
 use self::system::{Balance, System};
-use super::SolveError;
-use super::factor::FactorError;
 use super::linear::Options;
 use super::plan::Plan;
 use crate::law;
@@ -193,101 +192,6 @@ pub struct Solution {
     pub iterations: usize,
     /// Whether the equilibrium is stable.
     pub stability: Stability,
-}
-
-/// Why there is no equilibrium.
-#[derive(Clone, Debug, Error)]
-pub enum NonlinearError {
-    /// The model cannot be assembled or its tangent not be factorised.
-    #[error(transparent)]
-    Solve(#[from] SolveError),
-    /// N007: no equilibrium was found, and steps cannot be made smaller.
-    #[error("N007 {}; {}", self.story().unwrap_or_default(), obstacle.cure())]
-    NotConverged {
-        /// The step that failed, from 1.
-        step: usize,
-        /// What stopped its last attempt.
-        obstacle: Obstacle,
-        /// Iterations of its last attempt.
-        iterations: usize,
-        /// Unbalanced forces relative to loads or reactions at the end of it.
-        residual: f64,
-        /// What would have been accepted.
-        tolerance: f64,
-        /// The last equilibrium.
-        last: Box<State>,
-    },
-}
-
-/// What stops a step, and makes a shorter one worth trying.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Obstacle {
-    /// Forces were still out of balance after all iterations.
-    Residual,
-    /// Forces grew beyond all bounds.
-    Diverged,
-    /// The stiffness could not be factorised.
-    Factor(FactorError),
-    /// An equilibrium was found, and it is unstable.
-    Unstable,
-    /// An equilibrium was found in which an element bends by more than a right angle.
-    Folded,
-    /// Gradient flow would go uphill: an unstable state, and the drag is too weak for a step this long.
-    Uphill,
-    /// The path has no point at that distance, or the held values would go too far in one step.
-    TooFar,
-    /// All steps of a flow were taken, and the sheet still moves.
-    Moving,
-}
-
-impl Obstacle {
-    /// What helps, whatever asked for the search.
-    fn cure(&self) -> &'static str {
-        match self {
-            Self::Moving => "give the flow more steps",
-            Self::Folded => "take a finer mesh, so that a fold goes over several elements",
-            _ => "take smaller steps, a finer mesh or a smaller load",
-        }
-    }
-
-    fn text(&self, iterations: usize, residual: f64, tolerance: f64) -> String {
-        match self {
-            Self::Residual => format!(
-                "no convergence, after {iterations} iterations the residual is {residual:.1e} of the loads, above {tolerance:.0e}"
-            ),
-            Self::Moving => format!(
-                "the last one of the flow, and the sheet still moves, with a residual of {residual:.1e} of the loads, above \
-                 {tolerance:.0e}"
-            ),
-            Self::Diverged => {
-                format!("no convergence, forces grow beyond all bounds in {iterations} iterations")
-            }
-            Self::Factor(cause) => format!("the stiffness cannot be factorised ({cause})"),
-            Self::Unstable => "the equilibrium that was found is unstable".into(),
-            Self::Folded => "elements bend by more than 90 degrees, which the mesh cannot show".into(),
-            Self::Uphill => "the sheet is unstable there, and gradient flow does not leave that state".into(),
-            Self::TooFar => "the path cannot be followed so far in one step".into(),
-        }
-    }
-}
-
-impl NonlinearError {
-    /// Where a search ended and why, without code and cure; `None` of other errors.
-    pub fn story(&self) -> Option<String> {
-        let Self::NotConverged { step, obstacle, iterations, residual, tolerance, last } = self else {
-            return None;
-        };
-        let text = obstacle.text(*iterations, *residual, *tolerance);
-        Some(format!("step {step} from {:.4} of the load: {text}", last.factor))
-    }
-
-    /// The stable code.
-    pub fn code(&self) -> &'static str {
-        match self {
-            Self::Solve(e) => e.code(),
-            Self::NotConverged { .. } => "N007",
-        }
-    }
 }
 
 /// What a search has done so far.

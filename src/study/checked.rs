@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::StudyError;
 use super::case::{Analysis, Case, Check};
-use super::run::{CaseResult, CheckResult};
+use super::result::{CaseResult, CheckResult};
 use crate::fields::Resultants;
 use crate::quantity::{Unit, counts_angles, parse_quantity};
 

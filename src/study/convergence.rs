@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::StudyError;
 use super::case::{Analysis, Case, Sheet};
 use super::checked::{lookup, unit_of};
-use super::run::CaseResult;
+use super::result::CaseResult;
 use crate::fields::{Extrapolation, Resultants};
 use crate::finding::{Finding, Place};
 use crate::model::Dof;

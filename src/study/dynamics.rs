@@ -10,7 +10,7 @@ use super::StudyError;
 use super::case::Case;
 use super::limits::largest_displacement;
 use super::nonlinear::largest_w;
-use super::run::Outcome;
+use super::result::Outcome;
 use crate::element::Mass;
 use crate::fields::Locator;
 use crate::finding::{Finding, Place};

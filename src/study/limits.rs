@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::StudyError;
 use super::case::{Analysis, Case, LoadTable};
-use super::run::CaseResult;
+use super::result::CaseResult;
 use crate::element::{Cells, Drilling, Membrane};
 use crate::finding::{Finding, Place};
 use crate::mesh::{QuadMesh, Unjoined, normal};

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::PreparedCase;
 use super::StudyError;
 use super::case::{Case, MethodChoice, NonlinearTable};
-use super::run::Outcome;
+use super::result::Outcome;
 use crate::fields::Locator;
 use crate::finding::{Finding, Place};
 use crate::mesh::QuadMesh;

@@ -2,212 +2,24 @@
 
 use std::sync::{Arc, OnceLock};
 
-use nalgebra::Vector3;
-use serde::Serialize;
-
-use super::case::{Analysis, Case, Reference};
+use super::case::{Analysis, Case};
 use super::checked::check;
 use super::convergence::Convergence;
-use super::dynamics::{History, Large, dynamics, load_history, rayleigh};
+use super::dynamics::{Large, dynamics, load_history, rayleigh};
 use super::limits::{Beyond, buckles, findings, is_compressed};
-use super::nonlinear::{LoadPath, equilibrium, largest_w};
-use super::uncertainty::{Uncertainty, linear_uncertainty, modal_uncertainty};
+use super::nonlinear::{equilibrium, largest_w};
+use super::result::{CaseResult, Kept, Outcome, Probe, Status};
+use super::uncertainty::{linear_uncertainty, modal_uncertainty};
 use super::{PreparedCase, StudyError, build};
 use crate::constitutive::{Constitutive, Input};
 use crate::element::Mass;
-use crate::fields::{
-    Locator, ProbeValue, Recovery, Resultants, element_means, element_means_moved, reaction_resultants,
-};
+use crate::fields::{Locator, Recovery};
 use crate::finding::{Finding, Place};
-use crate::model::{Model, ModelError};
-use crate::quantity::Curve;
+use crate::model::Model;
 use crate::section::{SheetLaw, ShellSection};
 use crate::solve::newmark;
-use crate::solve::nonlinear::{State, lost_directions};
-use crate::solve::{self, Factors, Options, Solution};
-
-/// How a case ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Status {
-    /// Solved; every check holds.
-    Ok,
-    /// Solved, but the deflection is beyond what a linear solve can mean.
-    BeyondLinear,
-    /// Solved, but a check does not hold.
-    CheckFailed,
-    /// No equilibrium was found: the results are the last state that was reached.
-    NotConverged,
-}
-
-/// A named point and what was found there.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Probe {
-    /// Name in the case file.
-    pub name: String,
-    /// The point (m) with as many coordinates as the case gives, two or three.
-    pub at: Vec<f64>,
-    /// Values there.
-    pub value: ProbeValue,
-}
-
-/// A check with its outcome.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct CheckResult {
-    /// What was checked.
-    pub quantity: String,
-    /// The value found (SI).
-    pub value: f64,
-    /// The value expected (SI).
-    pub expected: f64,
-    /// SI unit of both.
-    pub unit: &'static str,
-    /// |value - expected| / |expected|.
-    pub relative_error: f64,
-    /// What is accepted.
-    pub relative_tolerance: f64,
-    /// Whether it holds.
-    pub passed: bool,
-    /// Where the expected value comes from.
-    pub reference: Reference,
-}
-
-impl PartialEq for Reference {
-    fn eq(&self, other: &Self) -> bool {
-        self.kind == other.kind && self.source == other.source
-    }
-}
-
-/// A solved case.
-#[derive(Clone, Debug)]
-pub struct CaseResult {
-    /// Name of the case.
-    pub case: String,
-    /// How it ended.
-    pub status: Status,
-    /// What was solved.
-    pub model: Model,
-    /// Displacements, reactions, energy, timings.
-    pub solution: Solution,
-    /// The largest |w| with its sign (m).
-    pub w_max: f64,
-    /// The largest displacement normal to the sheet, |w_max| of a flat one, over the bending thickness
-    /// t_b = √(12 B / D_m).
-    pub w_over_thickness: f64,
-    /// Probes of the case.
-    pub probes: Vec<Probe>,
-    /// Checks of the case.
-    pub checks: Vec<CheckResult>,
-    /// Deflection along the middle line, x = distance (m), y = w (m).
-    pub profile: Curve,
-    /// Natural frequencies (Hz), ascending; of a modal analysis only, whose displacements are the
-    /// first mode. It has no loads, reactions and energy.
-    pub frequencies: Vec<f64>,
-    /// The shape of each mode, six a node, with a largest displacement of 1 m; of a modal analysis only.
-    pub modes: Vec<Vec<f64>>,
-    /// What happened in time; of a dynamic analysis only, whose displacements are those at the end.
-    pub history: Option<History>,
-    /// How the equilibrium was found; of a nonlinear analysis only.
-    pub path: Option<LoadPath>,
-    /// Places and rotations of the nodes at the end; of analyses in large rotations only.
-    pub state: Option<State>,
-    /// What the sheet followed beside its section; of an analysis with friction only.
-    pub law: Option<SheetLaw>,
-    /// How certain the results are; of a linear or modal analysis with measured inputs only.
-    pub uncertainty: Option<Uncertainty>,
-    /// What the mesh leaves open in the results; of a case with `[convergence]` only.
-    pub convergence: Option<Convergence>,
-    /// What a reader of the result must know.
-    pub findings: Vec<Finding>,
-    pub(super) modal: bool,
-    pub(super) recovery: Arc<OnceLock<Recovery>>,
-    pub(super) nodal: OnceLock<Vec<Resultants>>,
-}
-
-impl CaseResult {
-    /// Whether there are reactions: a motion in time and a natural mode have none here.
-    pub fn has_reactions(&self) -> bool {
-        self.history.is_none() && !self.is_modal()
-    }
-
-    /// Whether this is a natural mode, which has a shape and no size.
-    pub fn is_modal(&self) -> bool {
-        self.modal
-    }
-
-    /// Sums of the forces (N) and moments about the origin (N·m) of the supports, at the places where the sheet has
-    /// come to; `None` where there are no reactions.
-    pub fn reactions(&self) -> Option<[Vector3<f64>; 2]> {
-        let places = self.state.as_ref().map_or(&self.model.mesh.nodes, |state| &state.position);
-        self.has_reactions().then(|| reaction_resultants(places, &self.solution.reaction))
-    }
-
-    /// Resultants of each element: the mean over its smoothing cells, shear at its centre.
-    ///
-    /// # Errors
-    /// M008 if the warp direction is normal to an element.
-    pub fn element_means(&self) -> Result<Vec<Resultants>, ModelError> {
-        match &self.state {
-            Some(state) => element_means_moved(&self.model, state, self.law.as_ref()),
-            None => element_means(&self.model, &self.solution.displacement),
-        }
-    }
-
-    /// Resultants at the nodes, found when first asked for.
-    ///
-    /// # Errors
-    /// M008 if the warp direction is normal to an element.
-    pub fn nodal(&self) -> Result<&[Resultants], ModelError> {
-        if let Some(nodal) = self.nodal.get() {
-            return Ok(nodal);
-        }
-        let recovery = self.recovery.get_or_init(|| Recovery::new(&self.model.mesh));
-        let nodal = match &self.state {
-            Some(state) => recovery.nodal_moved(&self.model, state, self.law.as_ref())?,
-            None => recovery.nodal(&self.model, &self.solution.displacement)?,
-        };
-        Ok(self.nodal.get_or_init(|| nodal))
-    }
-}
-
-/// What an analysis gives; most of it is that of one kind only.
-pub(super) struct Outcome {
-    pub solution: Solution,
-    pub frequencies: Vec<f64>,
-    pub modes: Vec<Vec<f64>>,
-    pub history: Option<History>,
-    pub path: Option<LoadPath>,
-    /// Of large rotations.
-    pub state: Option<State>,
-    /// What the uncertainty of the result is found from.
-    pub kept: Kept,
-    /// What the analysis itself has to say.
-    pub findings: Vec<Finding>,
-}
-
-/// What an analysis leaves that its result does not need, but the uncertainty of it does.
-pub(super) enum Kept {
-    /// Of an analysis that is not linear.
-    Nothing,
-    Factors(Factors),
-    Modes(Vec<solve::Mode>, Mass),
-}
-
-impl Outcome {
-    /// Displacements and nothing else.
-    pub fn of(solution: Solution) -> Self {
-        Self {
-            solution,
-            frequencies: Vec::new(),
-            modes: Vec::new(),
-            history: None,
-            path: None,
-            state: None,
-            kept: Kept::Nothing,
-            findings: Vec::new(),
-        }
-    }
-}
+use crate::solve::nonlinear::lost_directions;
+use crate::solve::{self, Options, Solution};
 
 /// Solves a case that has a `[sheet]`, for one section; many sections share a [`PreparedCase`].
 ///

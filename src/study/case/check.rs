@@ -29,7 +29,7 @@ pub struct Check {
 }
 
 /// The source of an expected value.
-#[derive(Clone, Debug, Deserialize, serde::Serialize)]
+#[derive(Clone, Debug, Deserialize, serde::Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Reference {
     /// What kind of reference.
