@@ -71,8 +71,6 @@ fn a_strip_that_curls_across_hangs_a_little_shorter() {
     assert!((5e-4..5e-3).contains(&shorter), "{shorter}");
 }
 
-/// From 0.005 to 1 gf cm²/cm and 1 to 20 cm of width, 10 cm long; the facets of the limpest are a quarter
-/// of its bending length.
 /// Long loops of limp cloth with the elements that a case has when it says nothing: the height stands for the rigidity
 /// of the section (elastica, exact).
 #[test]
@@ -89,6 +87,8 @@ fn long_heart_loops_have_the_elements_that_they_need() {
     }
 }
 
+/// From 0.005 to 1 gf cm²/cm and 1 to 20 cm of width, 10 cm long; the facets of the limpest are a quarter
+/// of its bending length.
 #[test]
 fn the_heart_loop_does_not_fail() {
     for b in [0.005, 0.03, 0.2, 1.0] {

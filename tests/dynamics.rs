@@ -149,7 +149,7 @@ fn pressed() -> Model {
         section: section(1e-3),
         warp: Vector3::x(),
         formulation: Formulation::default(),
-        supports: Support::simple(&mesh, "boundary", true).unwrap(),
+        supports: vec![Support::simple(&mesh, "boundary", true).unwrap()],
         loads: vec![Load::Pressure(1e-6)],
         bodies: Vec::new(),
         mesh,

@@ -84,7 +84,7 @@ fn plates_of_every_thinness_and_support() {
             check(&clamped(40, t, ratio), false, &format!("clamped, t = {t}, ratio {ratio}"));
         }
         let mesh = rectangle(1.0, 1.0, 33, 41).unwrap();
-        let supports = Support::simple(&mesh, "boundary", true).unwrap();
+        let supports = vec![Support::simple(&mesh, "boundary", true).unwrap()];
         check(&plate(mesh, section(t, 1.0), supports), false, &format!("simply supported, t = {t}"));
         let mesh = distorted(rectangle(1.0, 1.0, 40, 40).unwrap(), 0.4, 7).unwrap();
         let supports = vec![Support::clamped(mesh.set("boundary").unwrap())];

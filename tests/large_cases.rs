@@ -112,6 +112,14 @@ fn the_straight_column_is_told_to_be_unstable_and_the_cures_work() {
     assert!(straight.findings[0].message.contains("flow") && straight.w_max.abs() < 1e-12);
     let flow = solved(&strip("kind = \"nonlinear\"\nmethod = \"flow\"\nseed = 3", THRUST));
     assert_eq!(codes(&flow), [""; 0]);
+    // The steps that it took are enough, one less is not.
+    let taken = flow.path.as_ref().unwrap().steps.len();
+    for (steps, expected) in [(taken, vec![]), (taken - 1, vec!["N007"])] {
+        let analysis = format!("kind = \"nonlinear\"\nmethod = \"flow\"\nseed = 3\nsteps = {steps}");
+        let flow = solved(&strip(&analysis, THRUST));
+        assert_eq!(codes(&flow), expected, "{steps}");
+        assert!(flow.findings.iter().all(|f| f.message.contains("no rest at the end of the flow")));
+    }
     let pushed = solved(&strip(
         "kind = \"nonlinear\"\nfirst_step = 0.1\nlargest_step = 0.1\nperturbation = 1e-3",
         THRUST,

@@ -295,7 +295,7 @@ fn failures_keep_the_last_equilibrium() {
     match solve(&model, &settings, &Options::default(), go_on) {
         Err(e @ NonlinearError::NotConverged { .. }) => {
             assert_eq!(e.code(), "N007");
-            assert!(e.to_string().contains("no convergence, after 4 iterations"), "{e}");
+            assert!(e.to_string().contains("no convergence in 4 iterations"), "{e}");
             let NonlinearError::NotConverged { last, step, .. } = e else { unreachable!() };
             assert!(step >= 1 && last.factor < 1.0);
         }

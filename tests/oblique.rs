@@ -32,10 +32,8 @@ fn plate(turn: &Rotation3<f64>) -> Model {
         areal_density: 1.0,
         thickness: 1e-3,
     };
-    let supports = ["left", "bottom", "right", "top"]
-        .iter()
-        .flat_map(|set| Support::simple(&mesh, set, true).unwrap())
-        .collect();
+    let hard = |set: &&str| Support::simple(&mesh, set, true).unwrap();
+    let supports = ["left", "bottom", "right", "top"].iter().map(hard).collect();
     Model {
         section,
         warp: turn * Vector3::x(),
@@ -133,8 +131,7 @@ fn it_swings_as_the_one_along_the_axes() {
     }
 }
 
-/// A corner of a skew plate is held about both normals; a body, a prescribed rotation or a large one take a direction
-/// along that nothing can hold.
+/// A body, a prescribed rotation or a large one take a direction along that nothing can hold.
 #[test]
 fn what_turns_such_a_node_otherwise_is_refused() {
     let turn = about_z();

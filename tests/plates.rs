@@ -31,7 +31,7 @@ fn centre_deflection(n: usize, nc: u32, clamped: bool, section: ShellSection, al
     let supports = if clamped {
         vec![Support::clamped(mesh.set("boundary").unwrap())]
     } else {
-        Support::simple(&mesh, "boundary", true).unwrap()
+        vec![Support::simple(&mesh, "boundary", true).unwrap()]
     };
     let centre = (n / 2) * (n + 1) + n / 2;
     let model = Model {

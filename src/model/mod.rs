@@ -1,7 +1,7 @@
 //! A mesh with section, supports and loads; constraints, load vector and assembly.
 
 mod dof;
-mod oblique;
+mod hard;
 pub mod rigid;
 mod support;
 
@@ -11,7 +11,7 @@ use nalgebra::{Point3, Vector3};
 use thiserror::Error;
 
 pub use dof::{Dof, DofGroup};
-pub use oblique::OwnAxes;
+pub use hard::{HardEdge, OwnAxes};
 pub use rigid::{Links, RigidBody, RigidBodyError};
 pub use support::Support;
 
@@ -145,6 +145,14 @@ impl Model {
     /// Value of each dof that a support holds; `None` elsewhere, and where one holds the rotation about a direction
     /// that is no axis. Six a node.
     pub fn constraints(&self) -> Vec<Option<f64>> {
+        let mut held = self.held_by_name();
+        let (dofs, _) = hard::rotations(self, &held);
+        dofs.into_iter().for_each(|dof| held[dof] = Some(0.0));
+        held
+    }
+
+    /// The same without what hard edges hold.
+    fn held_by_name(&self) -> Vec<Option<f64>> {
         let mut held = vec![None; 6 * self.mesh.nodes.len()];
         for support in &self.supports {
             for node in &support.nodes {

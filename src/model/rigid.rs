@@ -52,7 +52,7 @@ pub struct Links {
     pub leads: Vec<u32>,
     /// By node.
     ties: Vec<Tie>,
-    /// Which rotations about their own axes nodes are held at.
+    /// Nodes that turn about axes of their own, and which of these rotations are held.
     own_axes: Vec<OwnAxes>,
 }
 
@@ -129,8 +129,10 @@ impl Links {
     /// at zero as well.
     pub fn hold(&self, held: &mut [Option<f64>]) -> Result<(), RigidBodyError> {
         for own in &self.own_axes {
-            let rotations = own.held.map(|held| held.then_some(0.0));
-            held[6 * own.node as usize + 3..][..3].copy_from_slice(&rotations);
+            // A rotation that a support holds by name keeps its axis and its value.
+            for k in (0..3).filter(|k| own.held[*k]) {
+                held[6 * own.node as usize + 3 + k].get_or_insert(0.0);
+            }
         }
         for &Tie { node, lead, transform } in self.ties.iter().filter(|tie| tie.follows()) {
             for dof in Dof::ALL {

@@ -1,10 +1,8 @@
 //! Where a sheet is held, and at which values.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::HashMap;
 
-use nalgebra::Vector3;
-
-use super::{Dof, ModelError};
+use super::{Dof, HardEdge, ModelError};
 use crate::mesh::{MeshError, QuadMesh};
 
 /// Dofs held at a value on some nodes.
@@ -14,14 +12,9 @@ pub struct Support {
     pub nodes: Vec<u32>,
     /// The dofs held, each with its value (m or rad).
     pub held: Vec<(Dof, f64)>,
-    /// Nodes that do not turn about a direction of length 1 which is no axis; linear analyses only.
-    pub about: Vec<(u32, Vector3<f64>)>,
+    /// Edges that do not turn about their normals; where these are no axes, in linear analyses only.
+    pub hard: Vec<HardEdge>,
 }
-
-/// Edges that meet at less than this (30°) are a line, straight or curved, and their common node is held about the mean
-/// of their normals; at a corner it is held about both. A curve of straight edges held as corners would be clamped
-/// (Babuška and Pitkäranta, *SIAM J. Math. Anal.* 21 (1990) 551).
-const CORNER: f64 = std::f64::consts::FRAC_PI_6;
 
 impl Support {
     /// All six dofs held at zero.
@@ -36,7 +29,7 @@ impl Support {
 
     /// Dofs held at values (m or rad).
     pub fn at(nodes: Vec<u32>, held: Vec<(Dof, f64)>) -> Self {
-        Self { nodes, held, about: Vec::new() }
+        Self { nodes, held, hard: Vec::new() }
     }
 
     /// The plane x = const through the nodes is one of symmetry.
@@ -57,40 +50,14 @@ impl Support {
     ///
     /// # Errors
     /// M007 for an unknown set.
-    pub fn simple(mesh: &QuadMesh, set: &str, hard: bool) -> Result<Vec<Self>, MeshError> {
-        let mut supports = vec![Self::fix(mesh.set(set)?, &[Dof::U, Dof::V, Dof::W])];
-        if !hard {
-            return Ok(supports);
-        }
-        let mut normals: BTreeMap<u32, Vec<Vector3<f64>>> = BTreeMap::new();
-        let mut edges = mesh.set_edges(set)?;
-        // Edges of a mesh file may run either way.
-        let counter_clockwise: HashSet<[u32; 2]> = mesh.boundary_edges().into_iter().collect();
-        edges.iter_mut().filter(|[a, b]| counter_clockwise.contains(&[*b, *a])).for_each(|e| e.reverse());
-        for ([a, b], up) in edges.iter().zip(mesh.edge_normals(&edges)) {
-            let along = mesh.nodes[*b as usize] - mesh.nodes[*a as usize];
+    pub fn simple(mesh: &QuadMesh, set: &str, hard: bool) -> Result<Self, MeshError> {
+        let edges = if hard { mesh.set_edges(set)? } else { Vec::new() };
+        let normals = mesh.edge_normals(&edges);
+        Ok(Self {
             // In a plane z = const: on an edge along x, w = 0 means w,x = -θy = 0; along y it is w,y = θx.
-            let normal = along.cross(&up).normalize();
-            for node in [a, b] {
-                let of_node = normals.entry(*node).or_default();
-                match of_node.iter_mut().find(|n| n.angle(&normal) < CORNER) {
-                    Some(line) => *line = (*line + normal).normalize(),
-                    None => of_node.push(normal),
-                }
-            }
-        }
-        let mut held: [Vec<u32>; 3] = Default::default();
-        let mut about = Vec::new();
-        for (node, normal) in normals.iter().flat_map(|(node, all)| all.iter().map(|n| (*node, *n))) {
-            match normal.iter().position(|c| c.abs() > 1.0 - 1e-9) {
-                Some(axis) => held[axis].push(node),
-                None => about.push((node, normal)),
-            }
-        }
-        let rotations = [Dof::ThetaX, Dof::ThetaY, Dof::ThetaZ];
-        supports.extend(rotations.iter().zip(&held).map(|(dof, nodes)| Self::fix(nodes, &[*dof])));
-        supports.push(Self { about, ..Self::default() });
-        Ok(supports)
+            hard: edges.into_iter().zip(normals).map(|(nodes, up)| HardEdge { nodes, up }).collect(),
+            ..Self::fix(mesh.set(set)?, &[Dof::U, Dof::V, Dof::W])
+        })
     }
 
     /// Refuses supports that hold one dof of one node at different values, of which only the last would count.
@@ -116,58 +83,10 @@ impl Support {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{Point3, Rotation3, Vector3};
+    use nalgebra::Point3;
 
     use super::*;
     use crate::mesh::rectangle;
-
-    /// Nodes of a unit square whose rotation is held, by dof, after it was turned: its edge along x is `bottom`.
-    fn held(turn: &Rotation3<f64>, set: &str) -> (Vec<Dof>, Vec<(u32, Vector3<f64>)>) {
-        let mut mesh = rectangle(1.0, 1.0, 2, 2).unwrap();
-        mesh.nodes.iter_mut().for_each(|p| *p = (turn * *p).map(|c: f64| (c * 1e15).round() / 1e15));
-        let supports = Support::simple(&mesh, set, true).unwrap();
-        assert_eq!(supports[0].held, [(Dof::U, 0.0), (Dof::V, 0.0), (Dof::W, 0.0)]);
-        let about = supports.iter().flat_map(|s| s.about.clone()).collect();
-        (supports[1..].iter().filter(|s| !s.nodes.is_empty()).map(|s| s.held[0].0).collect(), about)
-    }
-
-    /// On any sheet it is the rotation about the normal of the edge in the sheet, never that about the sheet's own.
-    #[test]
-    fn a_hard_support_holds_the_rotation_about_the_normal_of_the_edge() {
-        let right = std::f64::consts::FRAC_PI_2;
-        let flat = Rotation3::identity();
-        assert_eq!(held(&flat, "bottom"), (vec![Dof::ThetaY], vec![]));
-        assert_eq!(held(&flat, "left"), (vec![Dof::ThetaX], vec![]));
-        // In the plane x-z: the edge `left` goes up.
-        let upright = Rotation3::from_axis_angle(&Vector3::x_axis(), right);
-        assert_eq!(held(&upright, "bottom"), (vec![Dof::ThetaZ], vec![]));
-        assert_eq!(held(&upright, "left"), (vec![Dof::ThetaX], vec![]));
-        // In the plane y-z: the edge `bottom` goes down.
-        let aside = Rotation3::from_axis_angle(&Vector3::y_axis(), right);
-        assert_eq!(held(&aside, "bottom"), (vec![Dof::ThetaY], vec![]));
-        assert_eq!(held(&aside, "left"), (vec![Dof::ThetaZ], vec![]));
-        // A roof that rises across x: edges along x have an oblique normal, the others do not.
-        let roof = Rotation3::from_axis_angle(&Vector3::x_axis(), 0.5);
-        assert_eq!(held(&roof, "left"), (vec![Dof::ThetaX], vec![]));
-        let (axes, about) = held(&roof, "bottom");
-        assert!(axes.is_empty() && about.iter().map(|a| a.0).eq([0, 1, 2]), "{about:?}");
-        assert!(
-            about.iter().all(|a| (a.1 - Vector3::new(0.0, -0.5_f64.cos(), -0.5_f64.sin())).norm() < 1e-14)
-        );
-    }
-
-    /// The rim of a disc is one line that turns, not corners, which would clamp it.
-    #[test]
-    fn the_rim_of_a_disc_is_held_about_one_direction_a_node() {
-        let mesh = crate::mesh::disc(1.0, 4).unwrap();
-        let supports = Support::simple(&mesh, "outer", true).unwrap();
-        let about = &supports[4].about;
-        let on_axes: usize = supports[1..4].iter().map(|s| s.nodes.len()).sum();
-        assert_eq!((on_axes, about.len() + on_axes), (4, mesh.set("outer").unwrap().len()));
-        assert!(
-            about.iter().all(|(n, normal)| (mesh.nodes[*n as usize].coords.cross(normal)).norm() < 1e-12)
-        );
-    }
 
     #[test]
     fn two_values_of_one_dof_are_refused() {

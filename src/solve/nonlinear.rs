@@ -262,16 +262,16 @@ pub fn solve(
     search(model, &plan(model, options)?, settings, &Method::Newton(None), options, observe)
 }
 
-/// What depends on the mesh and the bodies only, shared by every model on them.
+/// What depends on the mesh, the bodies and the hard supports only, shared by every model on them.
 ///
 /// # Errors
-/// M010 for the bodies; N002 for memory.
+/// M009, M010 for supports and bodies; N002 for memory.
 pub fn plan(model: &Model, options: &Options) -> Result<Plan, NonlinearError> {
     Ok(Plan::new(model, &[DofGroup::Shell], options.path)?)
 }
 
 /// [`solve`], [`follow`] or [`relax`] with a plan that was made before by [`plan`], for a model with the
-/// same mesh and bodies.
+/// same mesh, bodies and hard supports.
 ///
 /// # Errors
 /// Those of the method.

@@ -1,4 +1,4 @@
-//! What depends on the mesh and its rigid bodies only, shared by every fabric on it.
+//! What depends on the mesh, its rigid bodies and its hard supports only, shared by every fabric on it.
 
 use std::time::Instant;
 
@@ -30,10 +30,10 @@ impl Plan {
         self.groups.iter().map(|(group, _)| group.dofs().len() * model.mesh.nodes.len()).sum()
     }
 
-    /// Analyses the mesh and the rigid bodies of a model for the dof groups that will be factorised.
+    /// Analyses the mesh, the rigid bodies and the hard supports of a model for the dof groups that will be factorised.
     ///
     /// # Errors
-    /// M010 for bodies that cannot be; N002 when the ordering or symbolic phase fails (out of memory).
+    /// M009 and M010 for hard supports and bodies that cannot be; N002 when the ordering or symbolic phase fails (out of memory).
     pub fn new(model: &Model, groups: &[DofGroup], path: Path) -> Result<Self, SolveError> {
         let options = Options { path, method: Method::Direct, ..Options::default() };
         Self::chosen(model, groups, &options)
@@ -42,7 +42,7 @@ impl Plan {
     /// Analyses a model for linear statics: [`groups`](Self::groups), each solved as `options` ask.
     ///
     /// # Errors
-    /// M010 and N002 as in [`new`](Self::new).
+    /// M009, M010 and N002 as in [`new`](Self::new).
     pub fn of(model: &Model, options: &Options) -> Result<Self, SolveError> {
         Self::chosen(model, &Self::groups(model, options), options)
     }

@@ -216,8 +216,8 @@ fn support(case: &Case, mesh: &QuadMesh, table: &SupportTable) -> Result<Vec<Sup
     Ok(match (table.kind, &table.fix) {
         (Some(kind), None) => match kind {
             SupportKind::Clamped => vec![Support::clamped(nodes)],
-            SupportKind::SimplySupported => Support::simple(mesh, &table.set, true)?,
-            SupportKind::SimplySupportedSoft => Support::simple(mesh, &table.set, false)?,
+            SupportKind::SimplySupported => vec![Support::simple(mesh, &table.set, true)?],
+            SupportKind::SimplySupportedSoft => vec![Support::simple(mesh, &table.set, false)?],
             SupportKind::SymmetryX => vec![Support::symmetry_x(nodes)],
             SupportKind::SymmetryY => vec![Support::symmetry_y(nodes)],
             SupportKind::Free => Vec::new(),

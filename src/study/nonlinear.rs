@@ -277,14 +277,14 @@ const TURNED: f64 = 0.01;
 /// S121: nodes with one rotation held that have turned about its axis all the same. Held is the rotation of each step
 /// about an axis that stays in space: with others free the sum depends on the way.
 fn turned_about_more(model: &Model, state: &State) -> Option<Finding> {
-    let off = model.supports.iter().flat_map(|support| {
-        support.nodes.iter().flat_map(move |n| {
-            support.held.iter().filter_map(move |(dof, value)| {
-                let axis = (*dof as usize).checked_sub(3)?;
-                let turn = state.rotation.get(*n as usize)?.scaled_axis()[axis];
-                // Beyond half a turn the rotation vector is another of the same rotation.
-                (value.abs() < 3.0).then_some((turn - state.factor * value).abs())
-            })
+    let held = model.constraints();
+    let nodes = held.chunks_exact(6).zip(&state.rotation);
+    let off = nodes.flat_map(|(held, rotation)| {
+        (0..3).filter_map(move |axis| {
+            let value = held[3 + axis]?;
+            let turn = rotation.scaled_axis()[axis];
+            // Beyond half a turn the rotation vector is another of the same rotation.
+            (value.abs() < 3.0).then_some((turn - state.factor * value).abs())
         })
     });
     let largest = off.fold(0.0, f64::max);
@@ -323,6 +323,7 @@ fn cure(table: &NonlinearTable, obstacle: &Obstacle) -> &'static str {
             "in [analysis] try method = \"flow\" or \"arc_length\", or a smaller largest_step"
         }
         (_, MethodChoice::ArcLength) => "in [analysis] try a smaller first_step, or method = \"flow\"",
-        (_, MethodChoice::Flow) => "in [analysis] try more steps or another seed, and in [sheet] more cells",
+        (Obstacle::Moving, MethodChoice::Flow) => "in [analysis] try more steps, and in [sheet] more cells",
+        (_, MethodChoice::Flow) => "in [analysis] try another seed, and in [sheet] more cells",
     }
 }

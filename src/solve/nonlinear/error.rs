@@ -64,19 +64,18 @@ impl Obstacle {
     fn text(&self, iterations: usize, residual: f64, tolerance: f64) -> String {
         match self {
             Self::Residual => format!(
-                "no convergence, after {iterations} iterations the residual is {residual:.1e} of the loads, above {tolerance:.0e}"
+                "no convergence in {iterations} iterations (residual {residual:.1e} of the loads, {tolerance:.0e} is accepted)"
             ),
             Self::Moving => format!(
-                "the last one of the flow, and the sheet still moves, with a residual of {residual:.1e} of the loads, above \
-                 {tolerance:.0e}"
+                "no rest at the end of the flow (residual {residual:.1e} of the loads, {tolerance:.0e} is accepted)"
             ),
             Self::Diverged => {
                 format!("no convergence, forces grow beyond all bounds in {iterations} iterations")
             }
-            Self::Factor(cause) => format!("the stiffness cannot be factorised ({cause})"),
+            Self::Factor(_) => "the stiffness is singular, some motion costs nothing".into(),
             Self::Unstable => "the equilibrium that was found is unstable".into(),
             Self::Folded => "elements bend by more than 90 degrees, which the mesh cannot show".into(),
-            Self::Uphill => "the sheet is unstable there, and gradient flow does not leave that state".into(),
+            Self::Uphill => "the sheet is unstable there, and no drag brings it away".into(),
             Self::TooFar => "the path cannot be followed so far in one step".into(),
         }
     }

@@ -124,16 +124,22 @@ pub(super) fn relax_system(
         if stop {
             return progress.finish(system, step.state, &step.balance);
         }
-        if progress.steps >= flow.steps {
+        let settled = !perturbed && at_rest;
+        let last = progress.steps >= flow.steps;
+        if last && !settled {
             return Err(Failure::of(&step, Obstacle::Moving).ends(progress.steps, settings, state));
         }
+        let unstable = Failure::of(&step, Obstacle::Unstable);
         state = step.state;
         if perturbed && (at_rest || (factor == 1.0 && residual <= SETTLING)) {
             perturbed = false;
-        } else if !perturbed && at_rest {
+        } else if settled {
             let (stability, shape) = stability::check(system, &state, &step.balance)?;
             if stability.is_stable() || kicks == KICKS {
                 return progress.finish(system, state, &step.balance);
+            }
+            if last {
+                return Err(unstable.ends(progress.steps, settings, state));
             }
             kicks += 1;
             system.advance(&mut state, &kick(system.size, &shape));
@@ -179,7 +185,7 @@ pub(super) fn settle(
         }
     }
     let residual = system.balance(&state, None).relative_residual();
-    Err(Failure { iterations, residual, obstacle: Obstacle::Moving })
+    Err(Failure { iterations, residual, obstacle: Obstacle::Residual })
 }
 
 /// How strongly the sheet is dragged.

@@ -32,8 +32,8 @@ pub(super) struct Strip {
 
 impl Strip {
     /// `cells` elements along a strip cut along `direction`. With a `width` its edges are free, and half of
-    /// it is meshed with elements that are about square; without, it is one square element wide and
-    /// bends to a cylinder.
+    /// it is meshed with elements that are about square, but no narrower than those of 32 along; without, it is one
+    /// square element wide and bends to a cylinder.
     ///
     /// # Errors
     /// M006 for a size that is not positive.
@@ -46,7 +46,10 @@ impl Strip {
     ) -> Result<Self, StudyError> {
         let side = length / cells.max(1) as f64;
         let (width, across) = match width {
-            Some(width) => (0.5 * width, (0.5 * width / side).round().max(1.0) as usize),
+            Some(width) => {
+                let across = side.max(length / super::CELLS as f64);
+                (0.5 * width, (0.5 * width / across).round().max(1.0) as usize)
+            }
             None => (side, 1),
         };
         let mesh = mesh::rectangle(length, width, cells, across)?;

@@ -33,8 +33,8 @@ impl Disc {
     /// `w D / (q R⁴)` at the centre.
     pub fn value(&self, statics: &mut Statics) -> Result<f64, VerifyError> {
         let mesh = disc(1.0, self.n)?;
-        let supports = if self.clamped {
-            vec![Support::clamped(mesh.set("outer")?)]
+        let support = if self.clamped {
+            Support::clamped(mesh.set("outer")?)
         } else {
             Support::simple(&mesh, "outer", self.hard)?
         };
@@ -44,7 +44,7 @@ impl Disc {
             section: Law::Isotropic { nu: self.nu, thickness: 1e-3 }.section(),
             warp: Vector3::x(),
             formulation: formulation(self.cells, self.alpha, DrillingChoice::Scaled),
-            supports,
+            supports: vec![support],
             loads: vec![Load::Pressure(1.0)],
             bodies: Vec::new(),
         };

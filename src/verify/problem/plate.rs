@@ -96,8 +96,8 @@ impl PlateProblem {
         for (set, letter) in ["left", "bottom", "right", "top"].into_iter().zip(self.edges.0) {
             match letter {
                 b'C' => supports.push(Support::clamped(mesh.set(set)?)),
-                b'S' => supports.extend(Support::simple(&mesh, set, true)?),
-                b's' => supports.extend(Support::simple(&mesh, set, false)?),
+                b'S' => supports.push(Support::simple(&mesh, set, true)?),
+                b's' => supports.push(Support::simple(&mesh, set, false)?),
                 _ => {}
             }
         }

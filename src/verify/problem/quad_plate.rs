@@ -104,7 +104,7 @@ impl Skew {
         let sets: &[&str] = if self.sides_free { &["bottom", "top"] } else { &["boundary"] };
         let mut supports = Vec::new();
         for set in sets {
-            supports.extend(Support::simple(&mesh, set, false)?);
+            supports.push(Support::simple(&mesh, set, false)?);
         }
         let centre = nearest(&mesh, Point3::new(0.5 * (1.0 + cos), 0.5 * sin, 0.0));
         if self.centre_held {
@@ -145,7 +145,7 @@ impl Triangle {
         let mesh = self.mesh();
         let centre = nearest(&mesh, Point3::origin());
         let model = Model {
-            supports: Support::simple(&mesh, "boundary", self.hard)?,
+            supports: vec![Support::simple(&mesh, "boundary", self.hard)?],
             mesh,
             section: Law::Isotropic { nu: 0.3, thickness: 1e-3 }.section(),
             warp: Vector3::x(),
