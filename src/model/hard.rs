@@ -29,11 +29,19 @@ pub struct OwnAxes {
     pub about: Vec<Vector3<f64>>,
 }
 
-/// Edges that meet at less than this (50°) are a line, straight or curved, and so are an edge and a rotation that another
-/// support holds: one direction is held where they meet. At a corner two are. A curve of straight edges held as
-/// corners would be clamped (Babuška and Pitkäranta, *SIAM J. Math. Anal.* 21 (1990) 551), and a corner held as a line
-/// loses nothing in a thin sheet, in which the shear strain along each edge holds the rotations of its ends.
-const CORNER: f64 = 50.0 * std::f64::consts::PI / 180.0;
+/// Edges that meet at less than this (50°) are a line, straight or curved, of which one direction is held where they
+/// meet; at a corner two are. A curve of straight edges held as corners would be clamped (Babuška and Pitkäranta,
+/// *SIAM J. Math. Anal.* 21 (1990) 551), and a corner held as a line loses nothing in a thin sheet, in which the shear
+/// strain along each edge holds the rotations of its ends.
+///
+/// A line that ends where another support holds the rotation about an axis this close to its normal goes on there,
+/// as across a line of symmetry.
+const CORNER: f64 = 50.0 * RADIAN;
+
+/// Directions closer than this (5°) are one where a line does not end: meshes of curves are no better.
+const CLOSE: f64 = 5.0 * RADIAN;
+
+const RADIAN: f64 = std::f64::consts::PI / 180.0;
 
 /// A direction with less than this beside an axis (1e-4 rad) is the axis: coordinates of files have few digits.
 const AXIS: f64 = 1e-4;
@@ -45,11 +53,11 @@ const SAME: f64 = 1e-9;
 /// rotations that supports hold otherwise (six dofs a node).
 pub(super) fn rotations(model: &Model, held: &[Option<f64>]) -> (Vec<usize>, Vec<OwnAxes>) {
     let (mut dofs, mut own) = (Vec::new(), Vec::new());
-    for (node, normals) in normals(model) {
+    for (node, (normals, close)) in normals(model) {
         let first = 6 * node as usize + 3;
         let axes = (0..3).filter(|k| held[first + k].is_some()).map(|k| Vector3::ith(k, 1.0));
         let axes: Vec<Vector3<f64>> = axes.collect();
-        let along_axis = |n: &Vector3<f64>| axes.iter().any(|axis| between(axis, n) < CORNER);
+        let along_axis = |n: &Vector3<f64>| axes.iter().any(|axis| between(axis, n) < close);
         let left: Vec<Vector3<f64>> = normals.into_iter().filter(|n| !along_axis(n)).map(snapped).collect();
         if axes.len() == 3 || left.iter().all(|n| axis_of(n).is_some()) {
             dofs.extend(left.iter().filter_map(axis_of).map(|axis| first + axis));
@@ -60,8 +68,9 @@ pub(super) fn rotations(model: &Model, held: &[Option<f64>]) -> (Vec<usize>, Vec
     (dofs, own)
 }
 
-/// The directions about which each node on hard edges does not turn, of length 1.
-fn normals(model: &Model) -> BTreeMap<u32, Vec<Vector3<f64>>> {
+/// The directions about which each node on hard edges does not turn, of length 1, and how close to them a held axis is
+/// the same (rad).
+fn normals(model: &Model) -> BTreeMap<u32, (Vec<Vector3<f64>>, f64)> {
     let mut around: BTreeMap<u32, Vec<(u32, Vector3<f64>)>> = BTreeMap::new();
     for HardEdge { nodes: [a, b], up } in model.supports.iter().flat_map(|s| &s.hard) {
         for (node, other) in [(a, b), (b, a)] {
@@ -91,7 +100,8 @@ fn normals(model: &Model) -> BTreeMap<u32, Vec<Vector3<f64>>> {
             vec![towards.normalize(), on.normalize()]
         }
     };
-    around.iter().map(|(node, edges)| (*node, of_node(*node, edges))).collect()
+    let close = |edges: &[_]| if edges.len() == 1 { CORNER } else { CLOSE };
+    around.iter().map(|(node, edges)| (*node, (of_node(*node, edges), close(edges)))).collect()
 }
 
 /// Angle between lines (rad).
@@ -263,6 +273,20 @@ mod tests {
         assert!(dof.is_none() && own.iter().map(|o| o.node).eq([0, 1, 2]), "{own:?}");
         let normal = Vector3::new(0.0, 0.5_f64.cos(), 0.5_f64.sin());
         assert!(own.iter().all(|o| between(&o.about[0], &normal) < 1e-7), "{own:?}");
+    }
+
+    /// An edge is hard beside a rotation that is held by name, however close that is to its normal.
+    #[test]
+    fn rotations_held_by_name_leave_an_edge_hard() {
+        let mut mesh = rectangle(1.0, 1.0, 4, 4).unwrap();
+        let wall = Rotation3::from_axis_angle(&Vector3::x_axis(), 70.0 * RADIAN);
+        mesh.nodes.iter_mut().for_each(|p| *p = wall * *p);
+        let mut model = hard(mesh, &["bottom"]);
+        let all = model.mesh.set("all").unwrap().to_vec();
+        model.supports.push(Support::fix(&all, &[Dof::ThetaZ]));
+        let own = OwnAxes::of(&model).unwrap();
+        assert!(own.iter().map(|o| o.node).eq([1, 2, 3]), "{own:?}");
+        assert!(own.iter().all(|o| o.held.iter().filter(|h| **h).count() == 2 && o.held[2]), "{own:?}");
     }
 
     /// The corners of a rhombus are held about both normals where it is acute; of its obtuse ones the mean will do.
