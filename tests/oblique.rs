@@ -4,7 +4,9 @@
 //! orthotropic rectangle 1 x 0.7, t = 1 mm, all edges hard, under pressure; turned in its plane and
 //! in space. Reference: the same sheet along the axes.
 
+use std::fs;
 use std::ops::ControlFlow;
+use std::path::Path;
 
 use kesf::element::{Formulation, Mass};
 use kesf::fields::edge_moments;
@@ -16,6 +18,7 @@ use kesf::solve::linear::Method;
 use kesf::solve::modal::modes;
 use kesf::solve::newmark::{LoadHistory, Rayleigh, Settings, newmark};
 use kesf::solve::{Options, solve};
+use kesf::study::{Case, validate};
 use nalgebra::{Matrix2, Matrix3, Rotation3, Vector3};
 
 fn plate(turn: &Rotation3<f64>) -> Model {
@@ -142,7 +145,7 @@ fn what_turns_such_a_node_otherwise_is_refused() {
     let mut model = plate(&turn);
     model.supports.push(Support::at(vec![0], vec![(Dof::ThetaX, 0.1)]));
     let refused = solve(&model, &Options::default()).unwrap_err().to_string();
-    assert!(refused.starts_with("M009 the node at (0, 0, 0) m"), "{refused}");
+    assert!(refused.starts_with("M009 the node at (0.0000, 0.0000, 0.0000) m"), "{refused}");
     let large = kesf::solve::nonlinear::solve(
         &plate(&turn),
         &kesf::solve::nonlinear::Settings::default(),
@@ -150,4 +153,29 @@ fn what_turns_such_a_node_otherwise_is_refused() {
         |_| ControlFlow::Continue(()),
     );
     assert!(large.unwrap_err().to_string().contains("large rotations turn that direction away"));
+}
+
+/// Checking a case finds it before anything is solved.
+#[test]
+fn a_check_refuses_an_oblique_rim_in_large_rotations() {
+    let text = fs::read_to_string(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/benchmark_clamped_isotropic.toml"),
+    );
+    let text = text.unwrap();
+    let head = text.split("[[probes]]").next().unwrap().replace("clamped\"", "simply_supported\"");
+    let (outline, disc) =
+        ("width = \"1 m\"\nheight = \"1 m\"\ncells = [40, 40]", "diameter = \"1 m\"\ncells = [8, 8]");
+    let head = head.replace("\"rectangle\"", "\"disc\"").replace(outline, disc).replace("boundary", "outer");
+    let check = |analysis: &str| {
+        validate(&Case::parse(Path::new("disc.toml"), &format!("{head}{analysis}")).unwrap())
+    };
+    check("").unwrap();
+    check("[analysis]\nkind = \"newmark\"\nduration = \"1 s\"\nstep = \"0.1 s\"").unwrap();
+    for analysis in [
+        "kind = \"nonlinear\"",
+        "kind = \"newmark\"\nduration = \"1 s\"\nstep = \"0.1 s\"\nlarge_rotations = true",
+    ] {
+        let refused = check(&format!("[analysis]\n{analysis}")).unwrap_err().to_string();
+        assert!(refused.contains("M009") && refused.contains("large rotations"), "{refused}");
+    }
 }

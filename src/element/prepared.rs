@@ -60,9 +60,8 @@ impl Prepared {
             return Err(MaterialAxisError);
         }
         let angle = a.y.atan2(a.x);
-        // From element to material axes, where the rigidities are those of warp and weft.
-        let (sin, cos) = angle.sin_cos();
-        let turn = Matrix2::new(cos, sin, -sin, cos);
+        // In material axes the rigidities are those of warp and weft.
+        let turn = vector_rotation(angle);
         let metric = turn * shear::metric(&frame.xy) * turn.transpose();
         let stabilised = ShellSection {
             d_s: shear::stabilised(section, formulation.shear_stabilisation, &metric),
@@ -170,6 +169,11 @@ impl Prepared {
         &self.to_material
     }
 
+    /// Turns vectors such as the shear forces from element axes to material axes.
+    pub fn vector_to_material(&self) -> Matrix2<f64> {
+        vector_rotation(self.angle)
+    }
+
     /// The mean displacement gradient along the material axes, for strains in the plane that are not small.
     pub fn yarns(&self) -> Yarns {
         Yarns::new(&Cell::whole(&self.frame.xy), self.angle, self.warp_links())
@@ -225,6 +229,11 @@ impl Prepared {
     pub fn shear_strain_matrix(&self, natural: [f64; 2]) -> SMatrix<f64, 2, 12> {
         shear::shear_matrix(&self.frame.xy, &gauss_point(&self.frame.xy, natural))
     }
+}
+
+fn vector_rotation(angle: f64) -> Matrix2<f64> {
+    let (sin, cos) = angle.sin_cos();
+    Matrix2::new(cos, sin, -sin, cos)
 }
 
 /// Membrane strain and curvature in a cell for local displacements `(u, v, θz)` and `(w, θx, θy)`.

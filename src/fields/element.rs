@@ -1,11 +1,11 @@
 //! Resultants of one element as linear functions of its displacements: found once for all elements
 //! that are equal up to a translation.
 
-use nalgebra::{DMatrix, Matrix2, Matrix3, Point3, SMatrix, Vector3};
+use nalgebra::{DMatrix, Matrix3, Point3, SMatrix};
 
 use super::Resultants;
 use crate::element::corotational::{Motion, Reference};
-use crate::element::{Cells, Frame, Matrix24, Prepared, Vector24, membrane_and_plate, strain_matrices};
+use crate::element::{Cells, Frame, Matrix24, Vector24, membrane_and_plate, strain_matrices};
 use crate::law;
 use crate::mesh::is_translated;
 use crate::model::{Model, ModelError};
@@ -54,7 +54,7 @@ impl Operator {
         [d_m, d_b]: [Matrix3<f64>; 2],
     ) -> Result<Self, ModelError> {
         let element = model.element(quad, flat)?;
-        let vector = material_axes(&element, &model.warp);
+        let vector = element.vector_to_material();
         let (of_strain, of_curvature) = (d_m * element.to_material(), d_b * element.to_material());
         let area: f64 = element.cells().map(|cell| cell.area).sum();
         let weights: Vec<[f64; PLACES]> = element
@@ -107,13 +107,6 @@ impl Operator {
             shear: [0, 1].map(|i| q[2 * p + i]),
         })
     }
-}
-
-/// Turns vectors from element axes to material axes: the warp seen in the element's plane.
-pub fn material_axes(element: &Prepared, warp: &Vector3<f64>) -> Matrix2<f64> {
-    let a = element.frame.rotation * warp;
-    let (s, c) = a.y.atan2(a.x).sin_cos();
-    Matrix2::new(c, s, -s, c)
 }
 
 /// Displacements of the nodes of an element.

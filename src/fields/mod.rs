@@ -22,7 +22,7 @@ use crate::mesh::{QuadMesh, normal};
 use crate::model::{Model, ModelError};
 use crate::section::SheetLaw;
 use crate::solve::nonlinear::State;
-use element::{Remembered, for_each_element, material_axes, small, straining};
+use element::{Remembered, for_each_element, small, straining};
 use recovery::Patches;
 
 /// Stress resultants in material axes.
@@ -71,7 +71,7 @@ pub fn cells(model: &Model, displacement: &[f64]) -> Result<Vec<Vec<Resultants>>
     let (flat, displacement) = (model.mesh.is_flat(), small(model, displacement));
     let of_element = |quad: usize| {
         let element = model.element(quad, flat)?;
-        let (to_material, vector) = (element.to_material(), material_axes(&element, &model.warp));
+        let (to_material, vector) = (element.to_material(), element.vector_to_material());
         let local = element.to_local() * displacement(quad);
         let (_, plate) = membrane_and_plate(&local);
         let of_cell = |cell: Cell| {

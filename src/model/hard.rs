@@ -31,7 +31,7 @@ pub struct OwnAxes {
 
 /// Edges that meet at less than this (50°) are a line, straight or curved, of which one direction is held where they
 /// meet; at a corner two are. A curve of straight edges held as corners would be clamped (Babuška and Pitkäranta,
-/// *SIAM J. Math. Anal.* 21 (1990) 551), and a corner held as a line loses nothing in a thin sheet, in which the shear
+/// *SIAM J. Math. Anal.* 21 (1990) 551), and a corner held as a line loses little in a thin sheet, in which the shear
 /// strain along each edge holds the rotations of its ends.
 ///
 /// A line that ends where another support holds the rotation about an axis this close to its normal goes on there,

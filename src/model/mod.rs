@@ -79,7 +79,7 @@ pub enum ModelError {
     MaterialAxis(#[from] MaterialAxisError),
     /// M009: a hard simple support on an edge that is oblique to the axes, where something else turns the node.
     #[error(
-        "M009 the node at ({}, {}, {}) m is on a hard simple support that holds its rotation about ({:.3}, {:.3}, {:.3}), \
+        "M009 the node at ({:.4}, {:.4}, {:.4}) m is on a hard simple support that holds its rotation about ({:.3}, {:.3}, {:.3}), \
          and {clash}: use kind = \"simply_supported_soft\" there",
         at[0], at[1], at[2], about[0], about[1], about[2]
     )]

@@ -77,7 +77,8 @@ pub fn simulate_records(
     let density = sheet.get(Parameter::W, None).ok_or_else(|| {
         case.inconsistent("a fab_bend_loop needs the areal density of the fabric (`M` of its file)".into())
     })?;
-    let settings = FabSettings { cells: spec.cells.unwrap_or(CELLS), ..FabSettings::default() };
+    let usual = FabSettings::default();
+    let settings = FabSettings { cells: spec.cells.unwrap_or(usual.cells), ..usual };
     let of = |d| bend_loops(&sheet.bend_tests, d, density.mean, &settings);
     let along: Vec<_> = Direction::ALL.into_par_iter().map(|d| (d, of(d))).collect();
     let (mut loops, mut failed) = (Vec::new(), Vec::new());

@@ -316,6 +316,9 @@ fn unfinished(factor: f64, steps: usize) -> String {
 fn cure(table: &NonlinearTable, obstacle: &Obstacle) -> &'static str {
     match (obstacle, table.method) {
         (Obstacle::Folded, _) => "in [sheet] take more cells, so that a fold goes over several of them",
+        (Obstacle::Moving | Obstacle::Unstable, MethodChoice::Flow) => {
+            "in [analysis] try more steps, and in [sheet] more cells"
+        }
         (Obstacle::Unstable, _) => {
             "in [analysis] try method = \"flow\", which goes on to a stable equilibrium, or a smaller largest_step"
         }
@@ -323,7 +326,6 @@ fn cure(table: &NonlinearTable, obstacle: &Obstacle) -> &'static str {
             "in [analysis] try method = \"flow\" or \"arc_length\", or a smaller largest_step"
         }
         (_, MethodChoice::ArcLength) => "in [analysis] try a smaller first_step, or method = \"flow\"",
-        (Obstacle::Moving, MethodChoice::Flow) => "in [analysis] try more steps, and in [sheet] more cells",
         (_, MethodChoice::Flow) => "in [analysis] try another seed, and in [sheet] more cells",
     }
 }

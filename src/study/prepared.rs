@@ -125,6 +125,15 @@ pub fn validate(case: &Case) -> Result<(), StudyError> {
         Analysis::Newmark { load, .. } => drop(load_history(case, load)?),
         _ => {}
     }
+    let links = model.links()?;
+    model.held(&links)?;
+    let large = matches!(
+        case.analysis,
+        Analysis::Nonlinear(_) | Analysis::Drape { .. } | Analysis::Newmark { large_rotations: true, .. }
+    );
+    if let Some(own) = links.first_own_axes().filter(|_| large) {
+        return Err(own.in_large_rotations(&model).into());
+    }
     locators(case, &model.mesh)?;
     for sheet in Convergence::coarser(case) {
         let on = build::model(case, &sheet, stand_in()).and_then(|model| locators(case, &model.mesh));

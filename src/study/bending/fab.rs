@@ -147,7 +147,7 @@ pub struct FabSettings {
 impl Default for FabSettings {
     /// 32 elements on half of the strip, one step from sample to sample.
     fn default() -> Self {
-        Self { cells: 32, steps: 1 }
+        Self { cells: super::CELLS, steps: 1 }
     }
 }
 
