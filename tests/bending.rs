@@ -131,7 +131,7 @@ fn record(kind: FabKind, b: f64, areal_density: f64, zero: f64) -> FabTest {
         }))
     };
     let branches = vec![branch(from, to), branch(to, from)];
-    FabTest { direction: Direction::Warp, kind, length, width, rate: None, branches }
+    FabTest { direction: Direction::Warp, kind, length, width, branches }
 }
 
 #[test]
@@ -250,7 +250,7 @@ fn inclined_clamps_are_found() {
         };
         let k = |i: i32| 3.0 + 0.6 * f64::from(i);
         let branches = vec![branch(&mut (0..=8).map(k)), branch(&mut (0..=8).rev().map(k))];
-        FabTest { direction: Direction::Warp, kind, length, width, rate: None, branches }
+        FabTest { direction: Direction::Warp, kind, length, width, branches }
     };
     let at = |kinds: &[FabKind], inclination: f64| {
         let tests: Vec<FabTest> = kinds.iter().map(|kind| record(*kind, inclination)).collect();

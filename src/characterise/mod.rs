@@ -27,7 +27,7 @@ mod tensile;
 
 pub(crate) use friction::nnls::nnls;
 pub use friction::{
-    Basis, ClosedForm, CycleFit, FrictionLaw, LawBand, LawTrace, LoopFit, ReExtracted, Relaxation,
+    Basis, ClosedForm, Conditioning, CycleFit, FrictionLaw, LawBand, LawTrace, LoopFit, ReExtracted,
     bending_law, cycle, extract,
 };
 pub use graph::LineFit;

@@ -21,8 +21,6 @@ pub struct Strip {
     pub kind: FabKind,
     /// Width (m).
     pub width: f64,
-    /// Samples in a second (1/s), if the file says so.
-    pub rate: Option<f64>,
     /// The cycles, in order.
     pub cycles: Vec<StripCycle>,
 }
@@ -104,7 +102,6 @@ fn stretch(test: &FabTest, settings: &Settings) -> Option<Strip> {
         direction: test.direction,
         kind: test.kind,
         width: test.width,
-        rate: test.rate,
         cycles,
     })
 }
@@ -340,7 +337,7 @@ mod tests {
     }
 
     fn test_of(kind: FabKind, branches: Vec<Curve>) -> FabTest {
-        FabTest { direction: Direction::Warp, kind, length: 0.02, width: 0.05, rate: None, branches }
+        FabTest { direction: Direction::Warp, kind, length: 0.02, width: 0.05, branches }
     }
 
     #[test]

@@ -64,8 +64,6 @@ pub struct FabTest {
     pub length: f64,
     /// Width of the strip (m).
     pub width: f64,
-    /// Samples in a second, `freq` (1/s); they follow each other without a pause from branch to branch.
-    pub rate: Option<f64>,
     /// Clamp distance (m) and force (N) of each branch, in recorded order: load, unload, load ...
     pub branches: Vec<Curve>,
 }
@@ -184,10 +182,6 @@ fn strip(
         kind,
         length: length_of("length")?,
         width: length_of("width")?,
-        rate: match test.get("freq").or_else(|| parent?.get("freq")) {
-            Some(value) => Some(number(value, path, &format!("{at}.freq"))?).filter(|rate| *rate > 0.0),
-            None => None,
-        },
         branches: branches(test, path, at)?,
     })
 }

@@ -139,11 +139,6 @@ impl Channel {
         self.one_sided
     }
 
-    /// The same law without the cut of stresses below zero.
-    pub fn to_both_sides(&self) -> Self {
-        Self { one_sided: false, ..self.clone() }
-    }
-
     /// The same law to both sides and through the origin: without the cut of stresses below zero and
     /// without the stress at strain 0 (set, zero error), as a structure wants it.
     pub fn centred(&self) -> Self {

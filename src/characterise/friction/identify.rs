@@ -5,7 +5,6 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 
 use super::nnls::{nnls, triangle};
-use super::relaxation::{Relaxation, TIMES, Term, faded};
 use crate::law::{Backbone, Channel, Family, LawError, Slider, Widening};
 
 /// Slip levels offered to the fit, as parts of the greatest strain: log-spaced. Larger ones make
@@ -32,8 +31,10 @@ const RIDGE_NOISE: f64 = 0.0025;
 const ROWS: usize = 1200;
 /// A slider with less than this part of the friction is left out.
 const NEGLIGIBLE: f64 = 1e-6;
-/// Samples of a loading branch below which its backbone has fewer knots.
-const SHORT: usize = 30;
+/// Knots of a loading curve lie further apart than this part of its strain ...
+const CLOSE: f64 = 0.025;
+/// ... and at least so many samples.
+const BETWEEN: usize = 2;
 
 /// A path from cloth that was never deformed, at strain 0, with the stress measured along it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -42,8 +43,6 @@ pub(super) struct Path {
     pub strain: Vec<f64>,
     /// Stresses, as many.
     pub stress: Vec<f64>,
-    /// Times (s), as many, or none: then nothing depends on time.
-    pub time: Vec<f64>,
     /// The samples that are fitted; the path up to there is the history.
     pub fitted: Range<usize>,
 }
@@ -66,7 +65,6 @@ impl Path {
             let path = Self {
                 strain: scaled(&self.strain, e),
                 stress: scaled(&self.stress, s),
-                time: self.time.clone(),
                 fitted: self.fitted.clone(),
             };
             (path, [e, s])
@@ -112,18 +110,13 @@ pub(super) fn two_sided(path: &Path) -> Option<Channel> {
     fit.channel(&problem.knots, &[widening(alpha)], size, false).ok()
 }
 
-/// The law of a test to one side: friction that is constant, and friction that grows with the load; and what dies away,
-/// where the path has times.
-pub(super) fn one_sided(path: &Path) -> Option<(Channel, Option<Relaxation>)> {
+/// The law of a test to one side: friction that is constant, and friction that grows with the load.
+pub(super) fn one_sided(path: &Path) -> Option<Channel> {
     let (path, size) = path.normalised()?;
     let curve = loading_curve(&path)?;
     let top = curve.at(1.0).stress;
     let knots: Vec<f64> = curve.knots().collect();
-    let mut problem = Problem::new(&path, knots, true)?;
-    if path.time.len() == path.strain.len() {
-        let load: Vec<f64> = path.strain.iter().map(|e| curve.at(*e).stress).collect();
-        problem.fading = TIMES.iter().map(|tau| faded(&load, &path.time, *tau)).collect();
-    }
+    let problem = Problem::new(&path, knots, true)?;
     // Levels may not widen faster than the strain grows.
     let steepest = curve.tangents().fold(0.0, f64::max) / top;
     let offered = levels();
@@ -135,9 +128,7 @@ pub(super) fn one_sided(path: &Path) -> Option<(Channel, Option<Relaxation>)> {
     };
     let all = fit([&offered, &gentle])?;
     let [a, b] = [0, 1].map(|i| lump(&all.sliders[i]));
-    let found = fit([&a, &b])?;
-    let relaxation = found.relaxation(&curve, size);
-    Some((found.channel(&problem.knots, &widenings, size, true).ok()?, relaxation))
+    fit([&a, &b])?.channel(&problem.knots, &widenings, size, true).ok()
 }
 
 /// A monotone curve through the outgoing branch of the fitted cycle of a normalised path, through
@@ -152,16 +143,18 @@ fn loading_curve(path: &Path) -> Option<Backbone> {
         let reached = |i: &usize| path.stress[*i] >= part * top;
         (start..=turn).find(reached).map_or(1.0, |i| path.strain[i])
     };
-    // A short record supports half as many.
-    let step = if turn - start < SHORT { 2 } else { 1 };
-    let strains = [0.25, 0.5, 0.75].into_iter().skip(step - 1).step_by(step);
-    let forces = [0.05, 0.15, 0.3, 0.5, 0.7, 0.85].into_iter().skip(step - 1).step_by(step);
+    let strains = [0.25, 0.5, 0.75].into_iter();
+    let forces = [0.05, 0.15, 0.3, 0.5, 0.7, 0.85].into_iter();
     let mut knots: Vec<f64> = strains.chain(forces.map(at_force).filter(|k| *k > 0.0)).collect();
     knots.sort_by(f64::total_cmp);
-    // The ends stay; between them a knot that nearly repeats the last one goes.
+    // The ends stay; between them only knots that samples lie between.
+    let apart = |a: f64, b: f64| {
+        let between = path.strain[start..=turn].iter().filter(|e| a < **e && **e <= b).count();
+        b - a > CLOSE && between >= BETWEEN
+    };
     let mut spaced = vec![0.0];
-    for k in knots.into_iter().filter(|k| *k < 0.96) {
-        if k - spaced[spaced.len() - 1] > 0.04 {
+    for k in knots {
+        if apart(spaced[spaced.len() - 1], k) && apart(k, 1.0) {
             spaced.push(k);
         }
     }
@@ -218,8 +211,6 @@ struct Problem<'a> {
     /// Stresses at the rows, and 0 for the ridge.
     target: DVector<f64>,
     noise: f64,
-    /// Columns of stresses that die away, along the whole path.
-    fading: Vec<Vec<f64>>,
 }
 
 /// The solution of a [`Problem`], in its normalised units.
@@ -228,8 +219,6 @@ struct Fit {
     tangents: Vec<f64>,
     /// Per family.
     sliders: Vec<Vec<Slider>>,
-    /// Of what dies away with each of the times.
-    fading: Vec<f64>,
     /// Root mean square of the residual.
     residual: f64,
 }
@@ -268,11 +257,11 @@ impl<'a> Problem<'a> {
                 backbone[(n + i, 1 + i + j)] = ridge * weight;
             }
         }
-        Some(Self { path, knots, rows, backbone, target, noise, fading: Vec::new() })
+        Some(Self { path, knots, rows, backbone, target, noise })
     }
 
     fn columns(&self, levels: &[&[f64]]) -> usize {
-        self.backbone.ncols() + levels.iter().map(|l| l.len()).sum::<usize>() + self.fading.len()
+        self.backbone.ncols() + levels.iter().map(|l| l.len()).sum::<usize>()
     }
 
     /// The best weights for sliders of given slip levels in families; `active` as in [`nnls`].
@@ -284,11 +273,6 @@ impl<'a> Problem<'a> {
         for (widening, levels) in families {
             self.slide(widening, levels, &mut a, column);
             column += levels.len();
-        }
-        let scale = 1.0 / (self.rows.len() as f64).sqrt();
-        for fading in &self.fading {
-            self.rows.iter().enumerate().for_each(|(row, &k)| a[(row, column)] = scale * fading[k]);
-            column += 1;
         }
         a.set_column(n, &self.target);
         // The triangle of (A b) has the same normal equations, and far fewer rows.
@@ -305,9 +289,7 @@ impl<'a> Problem<'a> {
                 levels.iter().zip(&mut weights).map(slider).collect()
             })
             .collect();
-        let fading = weights.copied().collect();
         Some(Fit {
-            fading,
             offset: x[0],
             tangents: x.iter().take(fixed).skip(1).copied().collect(),
             sliders,
@@ -338,18 +320,6 @@ impl<'a> Problem<'a> {
 }
 
 impl Fit {
-    /// What dies away, in the units of the record, beside the curve of loading in normalised ones.
-    fn relaxation(&self, curve: &Backbone, [e, s]: [f64; 2]) -> Option<Relaxation> {
-        let (knots, tangents): (Vec<f64>, Vec<f64>) =
-            curve.knots().zip(curve.tangents()).map(|(k, t)| (k * e, t * s / e)).unzip();
-        let terms: Vec<Term> = (TIMES.into_iter().zip(&self.fading))
-            .filter(|(_, weight)| **weight > 0.0)
-            .map(|(time, weight)| Term { time, weight: *weight })
-            .collect();
-        let loading = Backbone::new(0.0, &knots, &tangents).ok()?;
-        (!terms.is_empty()).then_some(Relaxation { loading, terms })
-    }
-
     /// The law in the units of the record: `size` are its greatest strain and its span of stress.
     fn channel(
         self,
@@ -386,7 +356,7 @@ impl Fit {
 
 /// The place of the least value of a function, to `tolerance`: golden sections about the best of
 /// some places in rising order, as there may be more minima than one.
-fn lowest(places: &[f64], tolerance: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+pub(super) fn lowest(places: &[f64], tolerance: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
     const PART: f64 = 0.618_033_988_749_894_9;
     let tried: Vec<f64> = places.iter().map(|&p| f(p)).collect();
     let best = (0..tried.len()).min_by(|&i, &j| tried[i].total_cmp(&tried[j])).unwrap_or(0);

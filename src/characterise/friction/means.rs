@@ -114,7 +114,7 @@ mod tests {
             basis: Basis::Loop,
             thickness: None,
             channel,
-            relaxation: None,
+            conditioning: None,
             fit: None,
             closed_form: None,
             values: Default::default(),

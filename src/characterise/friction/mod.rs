@@ -5,17 +5,17 @@
 //! per width, shear angle and force, strain and force, approach of the faces and pressure).
 //! Identification is linear in the weights: least squares with weights not below zero over 20
 //! slip levels, a search for the widening, then six sliders that carry equal parts of the friction
-//! in place of the levels found, and the weights again. FAB strips are drawn fast: what of their stress dies away
-//! with time is identified beside the law and stays out of it.
+//! in place of the levels found, and the weights again. FAB strips soften with every cycle that goes further: that is
+//! a [`Conditioning`] beside the law.
 
 mod bands;
 mod closed_form;
+mod conditioning;
 mod identify;
 mod loop_fit;
 mod means;
 pub(crate) mod nnls;
 mod record;
-mod relaxation;
 mod strip;
 mod summary;
 
@@ -33,9 +33,9 @@ use crate::quantity::{Curve, Estimate};
 
 pub use bands::LawBand;
 pub use closed_form::ClosedForm;
+pub use conditioning::Conditioning;
 pub use loop_fit::{CycleFit, LoopFit};
 pub use record::{cycle, extract};
-pub use relaxation::Relaxation;
 pub use summary::bending_law;
 
 /// A law of one test in one direction.
@@ -53,9 +53,8 @@ pub struct FrictionLaw {
     pub thickness: Option<f64>,
     /// The law (SI: 1/m and N; rad and N/m; 1 and N/m; m and Pa).
     pub channel: Channel,
-    /// What of the stress dies away with time; of a FAB strip whose file says how fast it was sampled. Slow tests, and
-    /// cloth that hangs, do not see it.
-    pub relaxation: Option<Relaxation>,
+    /// How a FAB strip softens as it is stretched further; the channel alone is the strip as its last cycle left it.
+    pub conditioning: Option<Conditioning>,
     /// Measured beside simulated; `None` without a loop.
     pub fit: Option<LoopFit>,
     /// B and 2HB by a closed form, as a check on the fit; bending loops only.
@@ -127,7 +126,7 @@ impl FrictionLaw {
         let Some(fit) = &self.fit else { return Vec::new() };
         let mut traces = Vec::new();
         for (cycle, path) in self.cycles(sheet) {
-            let law = stresses(&self.channel, self.relaxation.as_ref(), &path);
+            let law = stresses(&self.channel, self.conditioning.as_ref(), &path);
             let Path { strain, stress, fitted, .. } = path;
             let law = law[fitted.clone()].to_vec();
             let strain = &strain[fitted.clone()];
@@ -155,7 +154,8 @@ impl FrictionLaw {
                 .strips
                 .iter()
                 .find(|s| Some(s.direction) == self.direction && strip::number(s) == self.specimen);
-            strip.and_then(strip::history)
+            let lag = self.conditioning.map_or(0.0, |c| c.lag);
+            strip.and_then(|s| strip::history(s, lag))
         } else {
             let specimen = sheet.specimens.iter().find(mine);
             specimen.and_then(|s| path(s, self.thickness, one_sided, CycleChoice::First))
@@ -212,17 +212,11 @@ pub(super) fn add(sheet: &mut FabricSheet, settings: &Settings) {
     summary::add(sheet, settings);
 }
 
-/// The stresses of a law along a path from cloth never deformed, with what dies away with time.
-fn stresses(channel: &Channel, relaxation: Option<&Relaxation>, path: &Path) -> Vec<f64> {
-    let Some(relaxation) = relaxation else {
-        return channel.path(Default::default(), path.strain.iter().copied()).map(|r| r.stress).collect();
-    };
-    let both = channel.to_both_sides();
-    let slow = both.path(Default::default(), path.strain.iter().copied()).map(|r| r.stress);
-    let fading = relaxation.path(&path.strain, &path.time);
-    // A strip goes slack where the sum of both would be below zero.
-    let cut = |s: f64| if channel.is_one_sided() { s.max(0.0) } else { s };
-    slow.zip(fading).map(|(s, f)| cut(s + f)).collect()
+/// The stresses of a law along a path from cloth never deformed.
+fn stresses(channel: &Channel, conditioning: Option<&Conditioning>, path: &Path) -> Vec<f64> {
+    let factors = conditioning.map_or_else(|| vec![1.0; path.strain.len()], |c| c.factors(&path.strain));
+    let alike = path.strain.iter().zip(&factors).map(|(e, r)| e / r);
+    channel.path(Default::default(), alike).zip(&factors).map(|(reached, r)| reached.stress * r).collect()
 }
 
 /// A law that misses its own loop by more than this part of the span is none: the stress falls, or the
@@ -275,7 +269,7 @@ fn fitted(specimen: &SpecimenResult, settings: &Settings) -> Option<FrictionLaw>
     };
     let one_sided = matches!(m.test, Test::Tensile | Test::Compression);
     let (path, cycles) = path(specimen, thickness, one_sided, settings.cycle)?;
-    let channel = if one_sided { identify::one_sided(&path)?.0 } else { identify::two_sided(&path)? };
+    let channel = if one_sided { identify::one_sided(&path)? } else { identify::two_sided(&path)? };
     let fit = LoopFit::of(&stresses(&channel, None, &path), &path, &cycles);
     if fit.fitted.nrmse.is_nan() || fit.fitted.nrmse > WORST_FIT {
         return None;
@@ -288,7 +282,7 @@ fn fitted(specimen: &SpecimenResult, settings: &Settings) -> Option<FrictionLaw>
         basis: Basis::Loop,
         thickness,
         channel,
-        relaxation: None,
+        conditioning: None,
         fit: Some(fit),
         closed_form,
         values: BTreeMap::new(),

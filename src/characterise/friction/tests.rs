@@ -72,7 +72,7 @@ fn nrmse(channel: &Channel, strain: &[f64], stress: &[f64]) -> f64 {
 
 fn whole(strain: Vec<f64>, stress: Vec<f64>) -> Path {
     let fitted = 0..strain.len();
-    Path { strain, stress, fitted, ..Path::default() }
+    Path { strain, stress, fitted }
 }
 
 /// Ordinate of the run from turn to turn at `x`, linear between samples.
@@ -169,7 +169,7 @@ fn tension(turns: &[f64], n: usize) -> (Vec<f64>, Vec<f64>) {
 fn a_tensile_loop_is_fitted_and_inner_ones_predicted() {
     let (strain, truth) = tension(&[0.0, 0.06, 0.0], 150);
     let measured: Vec<f64> = noisy(&truth, 0.0023, 3).into_iter().map(|f| f.max(0.0)).collect();
-    let law = one_sided(&whole(strain.clone(), measured.clone())).unwrap().0;
+    let law = one_sided(&whole(strain.clone(), measured.clone())).unwrap();
     let fit = nrmse(&law, &strain, &measured);
     assert!(fit < 0.0035, "{fit}");
     for turns in [vec![0.0, 0.04, 0.0], vec![0.0, 0.045, 0.02, 0.045, 0.0]] {
@@ -194,7 +194,7 @@ fn a_compression_loop_is_fitted() {
     };
     let truth: Vec<f64> = strain.iter().map(pressure).collect();
     let measured = noisy(&truth, 0.0023, 9);
-    let law = one_sided(&whole(strain.clone(), measured.clone())).unwrap().0;
+    let law = one_sided(&whole(strain.clone(), measured.clone())).unwrap();
     let fit = nrmse(&law, &strain, &measured);
     assert!(fit < 0.0035, "{fit}");
 }
@@ -233,30 +233,33 @@ fn laws_of_summary_values_give_them_back() {
     }
 }
 
-/// Cupro weave (Browzwear FAB, U3M 1.1): last cycle fitted, the one before it predicted. The bounds
-/// are the figures reached, rounded up; those of the straight line stand beside them. Without relaxation the last
-/// cycle of the long bias strip is 1.14 % off, as its stress falls at the turn while the clamps still part, and five of
-/// the six predictions are worse. Two strips are beyond the 4 % that the others keep: every cycle that goes
-/// further than those before leaves them softer, and a last cycle does not tell by how much.
-#[test]
-fn strips_of_a_real_cupro_weave() {
-    use crate::instrument::{Direction, fab::FabKind};
+/// The sheet of the cupro weave (Browzwear FAB, U3M 1.1), where its file is there.
+fn cupro_weave() -> Option<crate::characterise::FabricSheet> {
     let file =
         std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/u3m/physics_example2.json");
     if !file.exists() {
         println!("skipped: no {}", file.display());
-        return;
+        return None;
     }
     let batch = crate::instrument::read_fabrics(&[file], &Default::default(), &|_| ());
-    let sheet = crate::characterise::characterise(&batch.fabrics[0], &Default::default());
+    Some(crate::characterise::characterise(&batch.fabrics[0], &Default::default()))
+}
+
+/// Last cycle fitted, the one before it predicted. The bounds are the figures reached, rounded up; those of the
+/// straight line stand beside them. With an exponent of 0 the short weft strip is predicted to 7 % and the long bias
+/// strip to 8 %.
+#[test]
+fn strips_of_a_real_cupro_weave() {
+    use crate::instrument::{Direction, fab::FabKind};
+    let Some(sheet) = cupro_weave() else { return };
     // Direction, strip, last cycle, the one before (NRMSE, %).
     let reached = [
-        (Direction::Warp, 1, 0.50, 2.7),
-        (Direction::Warp, 2, 0.35, 2.3),
-        (Direction::Weft, 1, 0.75, 6.0),
-        (Direction::Weft, 2, 0.30, 2.4),
-        (Direction::Bias, 1, 0.45, 2.0),
-        (Direction::Bias, 2, 0.90, 7.4),
+        (Direction::Warp, 1, 0.60, 3.4),
+        (Direction::Warp, 2, 0.35, 2.0),
+        (Direction::Weft, 1, 0.75, 3.9),
+        (Direction::Weft, 2, 0.60, 2.6),
+        (Direction::Bias, 1, 0.60, 1.9),
+        (Direction::Bias, 2, 0.90, 3.4),
     ];
     assert_eq!(sheet.strips.iter().filter(|s| s.kind == FabKind::S1).count(), 3);
     for (direction, strip, fitted, inner) in reached {
@@ -265,13 +268,41 @@ fn strips_of_a_real_cupro_weave() {
         let fit = law.fit.as_ref().unwrap();
         let [last, before] = [fit.fitted, *fit.unseen.last().unwrap()];
         println!(
-            "{direction} {strip}: last {:.2} % (line {:.1}), inner {:.2} % (line {:.1})",
+            "{direction} {strip}: lag {:.2}, last {:.2} % (line {:.1}), inner {:.2} % (line {:.1})",
+            law.conditioning.unwrap().lag,
             100.0 * last.nrmse,
             100.0 * last.line_nrmse,
             100.0 * before.nrmse,
             100.0 * before.line_nrmse
         );
         assert!(100.0 * last.nrmse < fitted && 100.0 * before.nrmse < inner);
-        assert!(last.line_nrmse > 5.0 * last.nrmse && before.line_nrmse > 1.5 * before.nrmse);
+        assert!(last.line_nrmse > 5.0 * last.nrmse && before.line_nrmse > 2.0 * before.nrmse);
+    }
+}
+
+/// No strip's own inner cycle chose the exponent that it is predicted with: for each strip, the exponent with which the
+/// worst of the other five is predicted best.
+#[test]
+fn exponents_that_other_strips_give() {
+    let Some(sheet) = cupro_weave() else { return };
+    let exponents: Vec<f64> = (20..=40).map(|i| 0.02 * f64::from(i)).collect();
+    let figures = |strip: &crate::characterise::Strip| -> Vec<[f64; 2]> {
+        let of = |p: &f64| {
+            let fit = super::strip::with_exponent(strip, *p).unwrap().fit.unwrap();
+            [fit.fitted.nrmse, fit.unseen.last().unwrap().nrmse].map(|v| 100.0 * v)
+        };
+        exponents.iter().map(of).collect()
+    };
+    let strips: Vec<Vec<[f64; 2]>> = sheet.strips.iter().map(figures).collect();
+    for (k, strip) in strips.iter().enumerate() {
+        let worst = |i: &usize| {
+            let others = strips.iter().enumerate().filter(|(o, _)| *o != k);
+            others.map(|(_, s)| s[*i][1]).fold(0.0, f64::max)
+        };
+        let best = (0..exponents.len()).min_by(|a, b| worst(a).total_cmp(&worst(b))).unwrap();
+        let [fitted, inner] = strip[best];
+        println!("strip {k}: p {:.2}: last {fitted:.2} %, inner {inner:.2} %", exponents[best]);
+        assert!((exponents[best] - super::conditioning::EXPONENT).abs() < 0.05);
+        assert!(fitted < 1.0 && inner < 4.0);
     }
 }

@@ -221,9 +221,9 @@ fn figures(sheet: &FabricSheet, one: &Loop<'_>) -> Vec<Row> {
         value("R²", format!("{:.5}", fit.fitted.r_squared)),
         value("loop energy", fit.fitted.loop_energy.map_or("no loop".into(), percent)),
     ];
-    if let Some(relaxation) = &law.relaxation {
-        let all: f64 = relaxation.terms.iter().map(|t| t.weight).sum();
-        rows.push(value("relaxing part", percent(all)));
+    if let Some(soft) = &law.conditioning {
+        rows.push(value("lag of the force", format!("{} samples", significant(soft.lag, 2))));
+        rows.push(value("conditioning, exponent", significant(soft.exponent, 2)));
     }
     for u in &fit.unseen {
         let number = |v: f64| significant(100.0 * v, 2);
