@@ -4,7 +4,10 @@ use std::num::NonZeroUsize;
 
 use clap::{Args, ColorChoice, Parser, Subcommand};
 
-use super::{characterise, check, compare, completions, explain, list, read, run, section, solve, verify};
+use super::{
+    characterise, check, compare, completions, explain, export, list, read, report, run, section, solve,
+    verify,
+};
 
 /// Kawabata (KES-F) measurements in; fabric parameters, shell sections, predictions and charts out.
 ///
@@ -57,6 +60,8 @@ pub enum Command {
     Section(section::Options),
     Solve(solve::Options),
     Compare(compare::Options),
+    Export(export::Options),
+    Report(report::Options),
     Verify(verify::Options),
     Check(check::Options),
     List(list::Options),

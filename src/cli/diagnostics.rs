@@ -11,6 +11,7 @@ use crate::constitutive::ConstitutiveError;
 use crate::finding::{Finding, Place};
 use crate::instrument::ReadError;
 use crate::report::OutputError;
+use crate::report::cards::CardError;
 use crate::report::chart::ChartError;
 use crate::report::table::{ProblemRow, TableError};
 use crate::report::vtu::VtuError;
@@ -188,7 +189,7 @@ macro_rules! coded_failures {
         }
     )*};
 }
-coded_failures!(ChartError, VtuError);
+coded_failures!(ChartError, VtuError, CardError);
 
 /// The voice of the program on standard error.
 #[derive(Debug)]

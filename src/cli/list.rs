@@ -9,8 +9,9 @@ use super::{Exit, Ui};
 use crate::finding::explanations;
 use crate::instrument::{DIALECT_FILES, dialects};
 use crate::quantity::UNITS;
+use crate::report::cards::Target;
 
-/// List the formats, dialects, units, analyses and codes that the program knows
+/// List the formats, dialects, units, analyses, exports and codes that the program knows
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: kesf list units\n`kesf list dialects -v` prints the dialect files themselves, as examples for one's own."
@@ -29,6 +30,8 @@ enum Topic {
     Dialects,
     /// What a case can compute
     Analyses,
+    /// Programs that a fabric can be handed to, for `kesf export --to`
+    Exports,
     /// Unit symbols with their SI values; products, quotients and powers of them are units too
     Units,
     /// Diagnostic codes
@@ -40,6 +43,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         Topic::Formats => fixed(&["endings", "format"], FORMATS),
         Topic::Dialects => dialect_rows(),
         Topic::Analyses => fixed(&["name", "in the case file", "meaning"], ANALYSES),
+        Topic::Exports => exports(),
         Topic::Units => units(),
         Topic::Codes => codes(),
     };
@@ -107,6 +111,12 @@ fn fixed(headings: &'static [&'static str], rows: &[&[&str]]) -> Rows {
 
 fn dialect_rows() -> Rows {
     (&["name", "title"], dialects().iter().map(|d| vec![json!(d.name), json!(d.title)]).collect())
+}
+
+fn exports() -> Rows {
+    let rows =
+        Target::ALL.map(|t| vec![json!(t.name()), json!(format!(".{}", t.ending())), json!(t.title())]);
+    (&["name", "ending", "what is written"], rows.into())
 }
 
 fn units() -> Rows {

@@ -16,12 +16,14 @@ mod effort;
 mod entry;
 mod exit;
 mod explain;
+mod export;
 mod friction;
 mod inputs;
 mod list;
 mod output;
 mod page;
 mod read;
+mod report;
 mod run;
 mod sampled;
 mod search;
@@ -171,6 +173,8 @@ fn dispatch(command: &Command, ui: &mut Ui) -> Result<Exit, Failure> {
         Command::Section(options) => section::run(options, ui),
         Command::Solve(options) => solve::run(options, ui),
         Command::Compare(options) => compare::run(options, ui),
+        Command::Export(options) => export::run(options, ui),
+        Command::Report(options) => report::run(options, ui),
         Command::Verify(options) => verify::run(options, ui),
         Command::Check(options) => check::run(options, ui),
         Command::List(options) => list::run(options, ui),

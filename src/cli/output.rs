@@ -75,6 +75,11 @@ pub fn to_stdout(bytes: &[u8]) -> Result<(), Failure> {
     }
 }
 
+/// Date and time in RFC 3339, for those who ask for a stamp.
+pub fn now() -> String {
+    chrono::Utc::now().to_rfc3339_opts(chrono::SecondsFormat::Secs, true)
+}
+
 /// Aligned columns for people: text to the left, numbers to the right, two blanks between.
 #[derive(Debug)]
 pub struct Columns {

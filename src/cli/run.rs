@@ -8,7 +8,7 @@ use serde_json::json;
 use super::diagnostics::Failure;
 use super::drape;
 use super::inputs::{Fabric, sha256, unread};
-use super::output::Columns;
+use super::output::{Columns, now};
 use super::page::page;
 use super::search::{is_unconverged, unconverged};
 use super::summary::{FabricReport, summary};
@@ -35,6 +35,9 @@ pub struct Options {
     /// Solve drape cases too: a minute or so for each fabric
     #[arg(long)]
     drape: bool,
+    /// Put the date into run.json; without it the same input gives the same bytes
+    #[arg(long)]
+    stamp: bool,
     #[command(flatten)]
     task: TaskArgs,
 }
@@ -122,7 +125,9 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let draped: Vec<_> = reports.iter().flat_map(|r| r.drape_parity.clone()).collect();
     drape::parity(&tree, &draped)?;
     tree.write("run.json", text(&about(options, &work))?.as_bytes())?;
-    tree.write("index.html", html(&page(&reports, &solved, &failures, tree.charts())).as_bytes())?;
+    let mut page = page(&reports, &solved, &failures);
+    page.keep_pictures(|name| tree.wrote(name));
+    tree.write("index.html", html(&page).as_bytes())?;
     let shown = summary(&reports, &work);
     let checks = super::solve::checks(solved.iter().map(|(_, r)| *r));
     tree.finish()?;
@@ -182,7 +187,7 @@ fn about(options: &Options, work: &Work) -> serde_json::Value {
     let sources: Vec<_> = work.fabrics.iter().flat_map(|f| &f.sheet.sources).collect();
     let stated = work.fabrics.iter().map(|f| f.path.join("fabric.toml")).filter(|p| p.is_file());
     let stated: Vec<_> = stated.map(|path| json!({"path": path, "sha256": sha256(&path)})).collect();
-    json!({
+    let mut about = json!({
         "schema": "kesf.run/1",
         "version": env!("CARGO_PKG_VERSION"),
         "options": {
@@ -193,7 +198,11 @@ fn about(options: &Options, work: &Work) -> serde_json::Value {
         "inputs": sources,
         "fabrics": stated,
         "cases": work.cases.iter().map(|c| json!({"name": c.name, "path": c.path, "sha256": sha256(&c.path)})).collect::<Vec<_>>(),
-    })
+    });
+    if options.stamp {
+        about["date"] = now().into();
+    }
+    about
 }
 
 /// The table of fabrics, the checks, the brackets of drapes, and where the rest is.

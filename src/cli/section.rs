@@ -34,10 +34,13 @@ pub struct Options {
     evaluate: EvaluateArgs,
 }
 
+/// A sheet and its section.
+type Sectioned = (FabricSheet, Constitutive);
+
 /// One option for each field of [`Assumptions`] that the section depends on.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Assumptions")]
-struct AssumptionArgs {
+pub struct AssumptionArgs {
     /// Slope of the tensile curve: tangent_low, secant, energy or "window(5 gf/cm, 20 gf/cm)"
     #[arg(long, allow_hyphen_values = true, value_name = "CHOICE", default_value_t = Assumptions::default().modulus)]
     modulus: Modulus,
@@ -73,22 +76,60 @@ struct AssumptionArgs {
     areal_density: Option<ArealDensity>,
 }
 
-impl From<&AssumptionArgs> for Assumptions {
-    fn from(a: &AssumptionArgs) -> Self {
-        Self {
-            modulus: a.modulus,
-            poisson: a.poisson,
-            poisson_rule: a.poisson_rule,
-            torsion: a.torsion,
-            bending_coupling: a.bending_coupling,
-            transverse_shear: a.transverse_shear,
-            tensile: a.tensile,
-            shear: a.shear,
-            shear_tension: a.shear_tension,
-            thickness: a.thickness,
-            areal_density: a.areal_density,
-            ..Self::default()
+impl AssumptionArgs {
+    fn assumptions(&self) -> Assumptions {
+        Assumptions {
+            modulus: self.modulus,
+            poisson: self.poisson,
+            poisson_rule: self.poisson_rule,
+            torsion: self.torsion,
+            bending_coupling: self.bending_coupling,
+            transverse_shear: self.transverse_shear,
+            tensile: self.tensile,
+            shear: self.shear,
+            shear_tension: self.shear_tension,
+            thickness: self.thickness,
+            areal_density: self.areal_density,
+            ..Assumptions::default()
         }
+    }
+
+    /// The section of every fabric that has one; what is found and what fails is told.
+    pub fn sections(
+        &self,
+        inputs: &[PathBuf],
+        evaluate: &EvaluateArgs,
+        ui: &mut Ui,
+    ) -> Result<(Vec<Sectioned>, Vec<Failure>), Failure> {
+        let assumptions = self.assumptions();
+        let (fabrics, mut failures) = evaluate.sheets(inputs, &[assumptions.modulus], Curves::Dropped, ui)?;
+        if fabrics.is_empty() && failures.is_empty() {
+            return Err(nothing_to_read());
+        }
+        let mut sections = Vec::new();
+        let named = names(&fabrics);
+        for fabric in &fabrics {
+            let place = Place::file(&fabric.path);
+            match section(&fabric.sheet, &assumptions) {
+                Ok(c) => {
+                    for finding in &c.findings {
+                        let mut finding = finding.clone();
+                        finding.place.get_or_insert(place.clone());
+                        ui.diagnostics.finding_of(named(fabric), &finding);
+                    }
+                    sections.push(Some(c));
+                }
+                Err(error) => {
+                    let failure = Failure::of_fabric(error, &fabric.sheet.name).at(place);
+                    ui.diagnostics.error(&failure);
+                    failures.push(failure);
+                    sections.push(None);
+                }
+            }
+        }
+        drop(named);
+        let sheets = fabrics.into_iter().map(|f| f.sheet);
+        Ok((sheets.zip(sections).filter_map(|(sheet, c)| Some((sheet, c?))).collect(), failures))
     }
 }
 
@@ -97,32 +138,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     if matches!(format, Format::Csv | Format::Parquet) {
         return Err(options.output.no_such_format(".txt or .json"));
     }
-    let assumptions = Assumptions::from(&options.assume);
-    let (fabrics, mut failures) =
-        options.evaluate.sheets(&options.inputs, &[assumptions.modulus], Curves::Dropped, ui)?;
-    let mut sections: Vec<(&FabricSheet, Constitutive)> = Vec::new();
-    let named = names(&fabrics);
-    for fabric in &fabrics {
-        let place = Place::file(&fabric.path);
-        match section(&fabric.sheet, &assumptions) {
-            Ok(c) => {
-                for finding in &c.findings {
-                    let mut finding = finding.clone();
-                    finding.place.get_or_insert(place.clone());
-                    ui.diagnostics.finding_of(named(fabric), &finding);
-                }
-                sections.push((&fabric.sheet, c));
-            }
-            Err(error) => {
-                let failure = Failure::of_fabric(error, &fabric.sheet.name).at(place);
-                ui.diagnostics.error(&failure);
-                failures.push(failure);
-            }
-        }
-    }
-    if fabrics.is_empty() && failures.is_empty() {
-        return Err(nothing_to_read());
-    }
+    let (sections, failures) = options.assume.sections(&options.inputs, &options.evaluate, ui)?;
     if sections.is_empty() && !ui.json {
         return Ok(Exit::of_batch(0, &failures));
     }

@@ -41,6 +41,11 @@ impl Tree {
         Ok(self.folder.write(name, bytes)?)
     }
 
+    /// Whether a file was written.
+    pub fn wrote(&self, name: &str) -> bool {
+        self.folder.wrote(name)
+    }
+
     /// Whether charts are wanted.
     pub fn charts(&self) -> bool {
         self.charts

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
 
 use crate::finding::{Finding, explain};
 
@@ -29,6 +29,20 @@ pub struct Section {
     pub heading: String,
     /// What it holds, in order.
     pub blocks: Vec<Block>,
+}
+
+impl Page {
+    /// Drops the pictures that are not there.
+    pub fn keep_pictures(&mut self, there: impl Fn(&str) -> bool) {
+        for section in &mut self.sections {
+            for block in &mut section.blocks {
+                if let Block::Figures(figures) = block {
+                    figures.retain(|f| there(&f.picture));
+                }
+            }
+            section.blocks.retain(|b| !matches!(b, Block::Figures(figures) if figures.is_empty()));
+        }
+    }
 }
 
 /// A piece of a section.
@@ -58,17 +72,8 @@ pub enum Block {
 pub struct Figure {
     /// What it shows, for readers who do not see it, and as caption.
     pub caption: String,
-    /// Where it comes from.
-    pub picture: Picture,
-}
-
-/// Where a picture comes from.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Picture {
-    /// A file: path relative to the page, with `/`.
-    File(String),
-    /// The bytes of a PNG file, which become part of the page.
-    Png(Vec<u8>),
+    /// The file: path relative to the page, with `/`.
+    pub picture: String,
 }
 
 /// The page as HTML (UTF-8), the same text for the same page.
@@ -102,6 +107,38 @@ pub fn html(page: &Page) -> String {
     }
     out.push_str("</body>\n</html>\n");
     out
+}
+
+/// A page of [`html`] that needs no folder: its pictures are part of it, and links to files of the folder are
+/// their names only. `picture` gives the bytes of a PNG file of the folder. `None` of a page that is not of [`html`].
+///
+/// # Errors
+/// That of `picture`.
+pub fn self_contained<E>(
+    page: &str,
+    mut picture: impl FnMut(&str) -> Result<Vec<u8>, E>,
+) -> Result<Option<String>, E> {
+    let mut parts = page.split("<a href=\"./");
+    let mut out = parts.next().unwrap_or_default().to_string();
+    // Markup has no raw `<` or `"` elsewhere: all text of a page is escaped.
+    for part in parts {
+        let link = part.split_once("\">").and_then(|(_, rest)| rest.split_once("</a>"));
+        let Some((inner, after)) = link else { return Ok(None) };
+        match inner.strip_prefix("<img src=\"./").and_then(|t| t.split_once('"')) {
+            Some((address, attributes)) => {
+                let png = STANDARD.encode(picture(&decoded(address))?);
+                out.push_str(&format!("<img src=\"data:image/png;base64,{png}\"{attributes}"));
+            }
+            None => out.push_str(inner),
+        }
+        out.push_str(after);
+    }
+    Ok(Some(out))
+}
+
+/// The path behind an [`address`] without its `./`.
+fn decoded(address: &str) -> String {
+    percent_decode_str(address).decode_utf8_lossy().into_owned()
 }
 
 fn block(out: &mut String, block: &Block) {
@@ -166,15 +203,9 @@ fn is_number(cell: &str) -> bool {
 
 fn figure(out: &mut String, figure: &Figure) {
     let caption = escape(&figure.caption);
-    let source = match &figure.picture {
-        Picture::File(path) => address(path),
-        Picture::Png(bytes) => format!("data:image/png;base64,{}", STANDARD.encode(bytes)),
-    };
-    let image = format!("<img src=\"{source}\" alt=\"{caption}\" loading=\"lazy\">");
-    let image = match &figure.picture {
-        Picture::File(path) => format!("<a href=\"{}\">{image}</a>", address(path)),
-        Picture::Png(_) => image,
-    };
+    let address = address(&figure.picture);
+    let image =
+        format!("<a href=\"{address}\"><img src=\"{address}\" alt=\"{caption}\" loading=\"lazy\"></a>");
     out.push_str(&format!("<figure>{image}<figcaption>{caption}</figcaption></figure>\n"));
 }
 
@@ -250,13 +281,10 @@ mod tests {
                 Section {
                     heading: "poplin".into(),
                     blocks: vec![
-                        Block::Figures(vec![
-                            Figure {
-                                caption: "bending".into(),
-                                picture: Picture::File("pop lin#1/経 b.png".into()),
-                            },
-                            Figure { caption: "inside".into(), picture: Picture::Png(b"\x89PNG".to_vec()) },
-                        ]),
+                        Block::Figures(vec![Figure {
+                            caption: "bending".into(),
+                            picture: "pop lin#1/経 b.png".into(),
+                        }]),
                         Block::Files(vec!["javascript:alert(1)".into(), "poplin/sheet.json".into()]),
                     ],
                 },
@@ -275,10 +303,26 @@ mod tests {
         assert!(text.contains("<code>a b.csv:3:1</code> an &lt;error&gt;"));
         assert!(text.contains("src=\"./pop%20lin%231/%E7%B5%8C%20b.png\""));
         assert!(text.contains("href=\"./javascript%3Aalert%281%29\""));
-        // RFC 4648: the bytes 89 50 4E 47 are "iVBORw==".
-        assert!(text.contains("src=\"data:image/png;base64,iVBORw==\""));
         assert!(!text.contains("http"), "no address outside the folder");
         assert!(!text.contains("<script"));
+    }
+
+    #[test]
+    fn a_self_contained_page_has_its_pictures_and_no_addresses() {
+        let mut asked = Vec::new();
+        let picture = |name: &str| -> Result<Vec<u8>, ()> {
+            asked.push(name.to_string());
+            Ok(b"\x89PNG".to_vec())
+        };
+        let text = self_contained(&html(&page()), picture).unwrap().unwrap();
+        assert_eq!(asked, ["pop lin#1/経 b.png"]);
+        // RFC 4648: the bytes 89 50 4E 47 are "iVBORw==".
+        assert!(text.contains("<figure><img src=\"data:image/png;base64,iVBORw==\" alt=\"bending\" loading=\"lazy\"><figcaption>"));
+        assert!(text.contains("<li>poplin/sheet.json</li>"));
+        assert!(!text.contains("\"./"));
+        assert!(text.contains("href=\"#s1\""), "links within the page stay");
+        assert_eq!(self_contained(&html(&page()), |_| Err(7)), Err(7));
+        assert_eq!(self_contained("<a href=\"./x", |_| Err(7)), Ok(None));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! The makers are pure: they return bytes, the same for the same data. [`mod@write`] is the only part that
 //! touches the disk.
 
+pub mod cards;
 pub mod html;
 pub mod json;
 pub mod table;

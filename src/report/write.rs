@@ -181,6 +181,11 @@ impl OutputFolder {
         Ok(())
     }
 
+    /// Whether this run wrote a file of that name.
+    pub fn wrote(&self, name: &str) -> bool {
+        self.written.lock().unwrap_or_else(PoisonError::into_inner).contains_key(name)
+    }
+
     /// Writes the manifest. Returns the names that earlier runs wrote, this one did not, and are still there:
     /// left-overs that a reader of the folder should know of.
     ///

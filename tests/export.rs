@@ -1,0 +1,105 @@
+//! Goal: `kesf export` and `kesf report` from outside: what is written, where, and what is refused.
+//! Data: the shipped fabrics. References: the command's contract; RFC 3339 for the stamp.
+
+#![cfg(feature = "cli")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn kesf(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_kesf"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+#[test]
+fn one_fabric_goes_into_a_file_the_same_every_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("poplin.u3m");
+    let export = |more: &[&str]| {
+        kesf(&[&["export", "kesf_data/poplin", "--to", "u3m", "-o", text(&file)], more].concat())
+    };
+    assert_eq!(code(&export(&[])), 0);
+    let first = fs::read(&file).unwrap();
+    assert_eq!((code(&export(&[])), fs::read(&file).unwrap()), (0, first.clone()));
+    // With a date the bytes differ, and the old file is in the way.
+    let refused = export(&["--stamp"]);
+    assert!(code(&refused) == 2 && stderr(&refused).contains("O002"), "{}", stderr(&refused));
+    assert_eq!(code(&export(&["--stamp", "--force"])), 0);
+    let [old, new] = [first, fs::read(&file).unwrap()].map(|b| serde_json::from_slice::<Value>(&b).unwrap());
+    let date = new["material"]["created"].as_str().unwrap();
+    assert!(date.len() == 20 && date.starts_with("20") && date.ends_with('Z'), "{date}");
+    assert_eq!(old["material"]["id"], new["material"]["id"]);
+    assert_eq!(old["custom"], new["custom"]);
+}
+
+#[test]
+fn many_fabrics_go_into_a_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let cards = format!("{}/cards/", folder.path().display());
+    let inputs = ["kesf_data/poplin", "kesf_data/twill"];
+    let together = kesf(&[&["-q", "export", "--to", "abaqus"], &inputs[..]].concat());
+    assert!(code(&together) == 2 && together.stdout.is_empty() && stderr(&together).contains("O058"));
+    let apart = kesf(&[&["-q", "export", "--to", "abaqus", "-o", &cards], &inputs[..]].concat());
+    assert_eq!((code(&apart), stderr(&apart)), (0, String::new()));
+    for fabric in ["poplin", "twill"] {
+        let card = fs::read_to_string(Path::new(&cards).join(format!("{fabric}.inp"))).unwrap();
+        assert!(card.contains(&format!("*SHELL GENERAL SECTION, ELSET=KESF_{}", fabric.to_uppercase())));
+    }
+    let document = kesf(&[&["--json", "export", "--to", "ansys"], &inputs[..]].concat());
+    let document: Value = serde_json::from_slice(&document.stdout).unwrap();
+    assert_eq!(document["schema"], "kesf.export/1");
+    assert_eq!(document["cards"].as_array().unwrap().len(), 2);
+}
+
+/// A fabric that the program cannot hold is told and costs the others nothing.
+#[test]
+fn what_a_program_cannot_hold_is_refused() {
+    let twistless = kesf(&["-q", "export", "kesf_data/poplin", "--to", "calculix", "--torsion", "neglect"]);
+    assert!(code(&twistless) == 2 && twistless.stdout.is_empty(), "{}", stderr(&twistless));
+    assert!(stderr(&twistless).contains("O040"));
+    let unknown = kesf(&["export", "kesf_data/poplin", "--to", "catia"]);
+    assert!(code(&unknown) == 2 && stderr(&unknown).contains("abaqus"));
+    let listed = String::from_utf8(kesf(&["list", "exports"]).stdout).unwrap();
+    assert!(["abaqus", "ansys", "calculix", "u3m"].iter().all(|t| listed.contains(t)));
+}
+
+#[test]
+fn a_report_is_one_page_with_its_pictures() {
+    let folder = tempfile::tempdir().unwrap();
+    let empty = kesf(&["report", text(folder.path())]);
+    assert!(code(&empty) == 2 && stderr(&empty).contains("O059"));
+    let results = folder.path().join("results");
+    let run = ["-q", "run", "kesf_data/poplin", "-o", text(&results)];
+    assert_eq!(code(&kesf(&run)), 0);
+    assert_eq!(code(&kesf(&["-q", "report", text(&results)])), 0);
+    let index = fs::read_to_string(results.join("index.html")).unwrap();
+    let page = fs::read_to_string(results.join("report.html")).unwrap();
+    let count = |text: &str, what: &str| text.matches(what).count();
+    assert!(count(&index, "<img") >= 4);
+    assert_eq!(count(&page, "src=\"data:image/png;base64,"), count(&index, "<img"));
+    assert_eq!(count(&page, "\"./"), 0);
+    // The folder is still one of ours: both commands can be repeated.
+    assert_eq!(code(&kesf(&run)), 0);
+    assert_eq!(code(&kesf(&["-q", "report", text(&results)])), 0);
+    fs::remove_file(results.join("poplin/bending.png")).unwrap();
+    let torn = kesf(&["report", text(&results)]);
+    assert!(code(&torn) == 2 && stderr(&torn).contains("bending.png"), "{}", stderr(&torn));
+}
