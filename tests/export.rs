@@ -60,13 +60,68 @@ fn many_fabrics_go_into_a_folder() {
     let apart = kesf(&[&["-q", "export", "--to", "abaqus", "-o", &cards], &inputs[..]].concat());
     assert_eq!((code(&apart), stderr(&apart)), (0, String::new()));
     for fabric in ["poplin", "twill"] {
-        let card = fs::read_to_string(Path::new(&cards).join(format!("{fabric}.inp"))).unwrap();
+        let card = fs::read_to_string(Path::new(&cards).join(format!("{fabric}.abaqus.inp"))).unwrap();
         assert!(card.contains(&format!("*SHELL GENERAL SECTION, ELSET=KESF_{}", fabric.to_uppercase())));
     }
     let document = kesf(&[&["--json", "export", "--to", "ansys"], &inputs[..]].concat());
     let document: Value = serde_json::from_slice(&document.stdout).unwrap();
     assert_eq!(document["schema"], "kesf.export/1");
     assert_eq!(document["cards"].as_array().unwrap().len(), 2);
+}
+
+/// A file in the way costs the others nothing, and is kept; under `--json` a document says what was written.
+#[test]
+fn a_file_in_the_way_is_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let theirs = folder.path().join("poplin.mac");
+    fs::write(&theirs, "theirs").unwrap();
+    let target = format!("{}/", folder.path().display());
+    let inputs = ["kesf_data/poplin", "kesf_data/twill"];
+    let output = kesf(&[&["--json", "export", "--to", "ansys", "-o", &target], &inputs[..]].concat());
+    assert_eq!(code(&output), 1);
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["files"].as_array().unwrap().len(), 1);
+    assert_eq!(document["failures"][0]["code"], "O002");
+    assert_eq!(fs::read_to_string(&theirs).unwrap(), "theirs");
+    assert!(folder.path().join("twill.mac").is_file());
+    let nothing = kesf(&["--json", "export", "nowhere", "--to", "ansys", "-o", "x.mac"]);
+    assert!(code(&nothing) == 2 && !stderr(&nothing).contains("O058"), "{}", stderr(&nothing));
+}
+
+/// A card is that of the fabric, whichever document of ours it comes from; a broken one costs the others nothing.
+#[test]
+fn sheets_and_sections_are_as_good_as_folders() {
+    let folder = tempfile::tempdir().unwrap();
+    let [sheet, section, broken] =
+        ["sheet.json", "section.json", "broken.json"].map(|name| folder.path().join(name));
+    let written = |command: &str, file: &Path| {
+        assert_eq!(code(&kesf(&["-q", command, "kesf_data/satin", "-o", text(file)])), 0);
+    };
+    written("characterise", &sheet);
+    written("section", &section);
+    let export = |input: &str| kesf(&["-q", "export", input, "--to", "abaqus"]);
+    // Citations and remarks are of the folder alone.
+    let matrices = |output: &Output| {
+        assert_eq!(code(output), 0, "{}", stderr(output));
+        let card = String::from_utf8(output.stdout.clone()).unwrap();
+        card.lines().filter(|l| !l.starts_with("**")).map(String::from).collect::<Vec<_>>()
+    };
+    let of_folder = matrices(&export("kesf_data/satin"));
+    assert_eq!(matrices(&export(text(&sheet))), of_folder);
+    assert_eq!(matrices(&export(text(&section))), of_folder);
+    let sections = |input: &str| {
+        let document = kesf(&["-q", "--json", "section", input]).stdout;
+        serde_json::from_slice::<Value>(&document).unwrap()["sections"][0].clone()
+    };
+    let [from, back] = ["kesf_data/satin", text(&sheet)].map(sections);
+    assert_eq!(from["d_m"], back["d_m"]);
+    assert_eq!(from["origin"], "synthetic");
+    assert_eq!(back["origin"], "synthetic");
+
+    fs::write(&broken, fs::read_to_string(&sheet).unwrap().replace("\"mean\"", "\"average\"")).unwrap();
+    let both = kesf(&["-q", "export", text(&broken), text(&sheet), "--to", "ansys"]);
+    assert_eq!(code(&both), 1);
+    assert!(stderr(&both).contains("O042") && both.stdout.starts_with(b"! "), "{}", stderr(&both));
 }
 
 /// A fabric that the program cannot hold is told and costs the others nothing.
@@ -99,7 +154,14 @@ fn a_report_is_one_page_with_its_pictures() {
     // The folder is still one of ours: both commands can be repeated.
     assert_eq!(code(&kesf(&run)), 0);
     assert_eq!(code(&kesf(&["-q", "report", text(&results)])), 0);
-    fs::remove_file(results.join("poplin/bending.png")).unwrap();
-    let torn = kesf(&["report", text(&results)]);
-    assert!(code(&torn) == 2 && stderr(&torn).contains("bending.png"), "{}", stderr(&torn));
+    // Nothing is sent that `kesf run` did not write.
+    fs::write(results.join("poplin/bending.png"), "secret").unwrap();
+    let torn = kesf(&["report", text(&results), "-o", "-"]);
+    assert!(
+        code(&torn) == 2 && torn.stdout.is_empty() && stderr(&torn).contains("bending.png"),
+        "{}",
+        stderr(&torn)
+    );
+    fs::write(results.join("index.html"), "<html></html>").unwrap();
+    assert_eq!(code(&kesf(&["report", text(&results)])), 2);
 }

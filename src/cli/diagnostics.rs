@@ -13,6 +13,7 @@ use crate::instrument::ReadError;
 use crate::report::OutputError;
 use crate::report::cards::CardError;
 use crate::report::chart::ChartError;
+use crate::report::read_back::DocumentError;
 use crate::report::table::{ProblemRow, TableError};
 use crate::report::vtu::VtuError;
 use crate::study::{CaseError, StudyError};
@@ -189,7 +190,7 @@ macro_rules! coded_failures {
         }
     )*};
 }
-coded_failures!(ChartError, VtuError, CardError);
+coded_failures!(ChartError, VtuError, CardError, DocumentError);
 
 /// The voice of the program on standard error.
 #[derive(Debug)]

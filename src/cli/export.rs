@@ -1,6 +1,7 @@
 //! `kesf export`: fabrics as material files of other programs.
 
-use std::path::{Path, PathBuf};
+use std::collections::BTreeSet;
+use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -8,9 +9,10 @@ use serde_json::json;
 
 use super::diagnostics::Failure;
 use super::inputs::{EvaluateArgs, is_stdin};
-use super::output::{now, to_stdout};
-use super::section::AssumptionArgs;
+use super::output::{is_folder, now};
+use super::section::{AssumptionArgs, Sectioned};
 use super::{Exit, Ui};
+use crate::finding::Place;
 use crate::report::OutputFolder;
 use crate::report::cards::{Material, Target, card};
 use crate::report::write::write_file;
@@ -21,7 +23,8 @@ use crate::report::write::write_file;
     after_help = "Example: kesf export kesf_data/poplin --to u3m -o poplin.u3m\n`kesf list exports` tells what each target is given."
 )]
 pub struct Options {
-    /// Fabric folders or measurement files; `-` is a file on standard input
+    /// Fabric folders, measurement files, sheets, or sections (`kesf section -o section.json`), which have their
+    /// assumptions; `-` is a file on standard input
     #[arg(value_name = "INPUT", required = true)]
     inputs: Vec<PathBuf>,
     /// The program
@@ -49,50 +52,68 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let (sections, mut failures) = options.assume.sections(&options.inputs, &options.evaluate, ui)?;
     let stamp = options.stamp.then(now);
     let mut cards: Vec<(&str, String)> = Vec::new();
-    for (sheet, made) in &sections {
+    for Sectioned { path, sheet, made } in &sections {
         match card(target, &Material { sheet, made, stamp: stamp.as_deref() }) {
             Ok(text) => cards.push((&sheet.name, text)),
             Err(error) => {
-                let failure = Failure::from(error).of(&sheet.name);
+                let failure = Failure::from(error).of(&sheet.name).at(Place::file(path));
                 ui.diagnostics.error(&failure);
                 failures.push(failure);
             }
         }
     }
-    if !cards.is_empty() || ui.json {
-        put(options, target, &cards, ui)?;
-    }
-    Ok(Exit::of_batch(cards.len(), &failures))
-}
-
-/// Standard output or a file for one card, a folder for any number.
-fn put(options: &Options, target: Target, cards: &[(&str, String)], ui: &mut Ui) -> Result<(), Failure> {
     let output = &options.output;
-    if is_stdin(output) && ui.json {
+    let files = if is_stdin(output) && ui.json {
         let cards: Vec<_> =
             cards.iter().map(|(fabric, text)| json!({"fabric": fabric, "text": text})).collect();
         ui.document(json!({"schema": "kesf.export/1", "target": target.name(), "cards": cards}))?;
-        return Ok(());
-    }
-    if is_folder(output) {
-        let folder = OutputFolder::open(output, options.force)?;
-        for (fabric, text) in cards {
-            folder.write(&format!("{fabric}.{}", target.ending()), text.as_bytes())?;
-        }
-        folder.finish()?;
-        return Ok(());
-    }
-    let [(_, text)] = cards else {
-        let text = format!("{} fabrics do not go into one file", cards.len());
-        return Err(Failure::new("O058", text).hint("give a folder, such as `-o cards/`"));
-    };
-    if is_stdin(output) {
-        to_stdout(text.as_bytes())
+        return Ok(Exit::of_batch(cards.len(), &failures));
+    } else if cards.is_empty() {
+        Vec::new()
+    } else if is_folder(output) {
+        into_folder(options, target, &cards, &mut failures, ui)?
     } else {
-        Ok(write_file(output, text.as_bytes(), options.force)?)
+        let [(_, text)] = &cards[..] else {
+            let text = format!("{} fabrics do not go into one file", cards.len());
+            return Err(Failure::new("O058", text).hint("give a folder, such as `-o cards/`"));
+        };
+        if is_stdin(output) {
+            ui.print(text)?;
+        } else {
+            write_file(output, text.as_bytes(), options.force)?;
+        }
+        vec![output.clone()]
+    };
+    if ui.json {
+        ui.document(json!({"schema": "kesf.export/1", "target": target.name(), "files": files}))?;
     }
+    Ok(Exit::of_batch(files.len(), &failures))
 }
 
-fn is_folder(path: &Path) -> bool {
-    path.is_dir() || path.to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR])
+/// A file for each card. One that cannot be written costs the others nothing.
+fn into_folder(
+    options: &Options,
+    target: Target,
+    cards: &[(&str, String)],
+    failures: &mut Vec<Failure>,
+    ui: &mut Ui,
+) -> Result<Vec<PathBuf>, Failure> {
+    let folder = OutputFolder::open(&options.output, options.force)?;
+    let (mut taken, mut files) = (BTreeSet::new(), Vec::new());
+    for (fabric, text) in cards {
+        // The same name may come from a folder and from a document.
+        let mut names = (1..).map(|n| if n == 1 { fabric.to_string() } else { format!("{fabric}-{n}") });
+        let Some(name) = names.find(|name| taken.insert(name.clone())) else { continue };
+        let name = format!("{name}.{}", target.ending());
+        match folder.write(&name, text.as_bytes()) {
+            Ok(()) => files.push(folder.root().join(name)),
+            Err(error) => {
+                let failure = Failure::from(error);
+                ui.diagnostics.error(&failure);
+                failures.push(failure);
+            }
+        }
+    }
+    folder.finish()?;
+    Ok(files)
 }

@@ -1,7 +1,7 @@
 //! The result: standard output or one file, complete or not at all; aligned columns for people.
 
 use std::io::{ErrorKind, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -73,6 +73,11 @@ pub fn to_stdout(bytes: &[u8]) -> Result<(), Failure> {
         }
         _ => Ok(()),
     }
+}
+
+/// Whether a place is a folder, or is meant to be one.
+pub fn is_folder(path: &Path) -> bool {
+    path.is_dir() || path.to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR])
 }
 
 /// Date and time in RFC 3339, for those who ask for a stamp.

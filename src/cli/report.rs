@@ -3,16 +3,17 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use indicatif::HumanBytes;
 use serde_json::json;
 
 use super::diagnostics::Failure;
 use super::inputs::is_stdin;
-use super::output::to_stdout;
+use super::output::is_folder;
 use super::{Exit, Ui};
 use crate::finding::Place;
 use crate::report::OutputFolder;
 use crate::report::html::self_contained;
-use crate::report::write::{MANIFEST, write_file};
+use crate::report::write::{left, write_file};
 
 /// Name of the page within the folder.
 const PAGE: &str = "report.html";
@@ -24,8 +25,8 @@ pub struct Options {
     /// Folder that `kesf run` wrote
     #[arg(value_name = "FOLDER")]
     folder: PathBuf,
-    /// Write to this file, `-` for standard output [default: report.html in the folder]
-    #[arg(short, long, value_name = "FILE")]
+    /// Write to this file, or into this folder; `-` for standard output [default: report.html in the folder]
+    #[arg(short, long, value_name = "PATH")]
     output: Option<PathBuf>,
     /// Overwrite a file that this tool did not write
     #[arg(long)]
@@ -34,27 +35,26 @@ pub struct Options {
 
 pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let folder = &options.folder;
-    let none = |what: String| {
-        Failure::new("O059", what)
-            .at(Place::file(folder))
-            .hint("name a folder that `kesf run -o` wrote, or run again")
+    // What is sent is what was made: no file that somebody else put or changed here.
+    let left = |name: &str| {
+        left(folder, name)?.ok_or_else(|| {
+            Failure::new("O059", format!("{name} is not there as `kesf run` left it"))
+                .at(Place::file(folder))
+                .hint("name a folder that `kesf run -o` wrote, or run again")
+        })
     };
-    let index =
-        std::fs::read_to_string(folder.join("index.html")).ok().filter(|_| folder.join(MANIFEST).is_file());
-    let index = index.ok_or_else(|| none("there is no page of `kesf run` in this folder".into()))?;
-    let picture = |name: &str| {
-        std::fs::read(folder.join(name)).map_err(|e| none(format!("the picture {name} cannot be read: {e}")))
-    };
-    let page = self_contained(&index, picture)?
-        .ok_or_else(|| none("index.html is not as `kesf run` left it".into()))?;
+    let index = String::from_utf8_lossy(&left("index.html")?).into_owned();
+    let page = self_contained(&index, left)?
+        .ok_or_else(|| Failure::new("O059", "index.html is none of `kesf run`").at(Place::file(folder)))?;
     let written = match &options.output {
-        Some(output) if is_stdin(output) => {
-            to_stdout(page.as_bytes())?;
-            return Ok(Exit::Done);
+        Some(output) if is_stdin(output) && ui.json => {
+            return ui.document(json!({"schema": "kesf.report/1", "page": page}));
         }
+        Some(output) if is_stdin(output) => return ui.print(&page),
         Some(output) => {
-            write_file(output, page.as_bytes(), options.force)?;
-            output.clone()
+            let output = if is_folder(output) { output.join(PAGE) } else { output.clone() };
+            write_file(&output, page.as_bytes(), options.force)?;
+            output
         }
         None => {
             let tree = OutputFolder::open(folder, options.force)?;
@@ -66,6 +66,6 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     if ui.json {
         return ui.document(json!({"schema": "kesf.report/1", "output": written}));
     }
-    ui.diagnostics.note(&format!("{}: {:.1} MB", written.display(), page.len() as f64 / 1e6));
+    ui.diagnostics.note(&format!("{}: {}", written.display(), HumanBytes(page.len() as u64)));
     Ok(Exit::Done)
 }

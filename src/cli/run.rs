@@ -130,7 +130,14 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     tree.write("index.html", html(&page).as_bytes())?;
     let shown = summary(&reports, &work);
     let checks = super::solve::checks(solved.iter().map(|(_, r)| *r));
-    tree.finish()?;
+    let left_over = tree.finish()?;
+    if let Some(first) = left_over.first() {
+        ui.diagnostics.note(&format!(
+            "{}: {} files of earlier runs are still there, {first} among them",
+            options.output.display(),
+            left_over.len()
+        ));
+    }
     let brackets = drape::bracket(&draped);
     tell(options, ui, &[Some(&shown), checks.as_ref(), brackets.as_ref()], &predictions)?;
     let unmet = reports.iter().any(|r| r.unmet) || solved.iter().any(|(_, r)| super::summary::unmet(r));

@@ -5,25 +5,25 @@ use std::path::PathBuf;
 
 use clap::Args;
 use nalgebra::Matrix3;
-use serde_json::{Value, json};
 
 use super::diagnostics::Failure;
-use super::inputs::{Curves, EvaluateArgs, names, nothing_to_read};
+use super::inputs::{Curves, EvaluateArgs, Fabric, names, nothing_to_read};
 use super::output::{Columns, Format, OutputArgs};
 use super::{Exit, Ui};
 use crate::characterise::{FabricSheet, Modulus};
 use crate::constitutive::{
-    Assumptions, BendingCoupling, Constitutive, PoissonRule, Torsion, TransverseShear, Used, entries, section,
+    Assumptions, BendingCoupling, Constitutive, PoissonRule, Torsion, TransverseShear, entries, section,
 };
 use crate::finding::Place;
 use crate::quantity::{ArealDensity, Bands, Length, LineForce, significant};
-use crate::report::json::{section_document, text};
+use crate::report::json::{assumptions, section_document, text};
+use crate::report::read_back::{self, Document};
 
 /// Compute the membrane, bending and shear stiffness of fabrics, with the assumptions used
 #[derive(Debug, Args)]
 #[command(after_help = "Example: kesf section kesf_data/poplin --poisson 0.3")]
 pub struct Options {
-    /// Fabric folders or measurement files; `-` is a file on standard input
+    /// Fabric folders, measurement files, or sheets (`kesf characterise -o sheet.json`); `-` is a file on standard input
     #[arg(value_name = "INPUT", required = true)]
     inputs: Vec<PathBuf>,
     #[command(flatten)]
@@ -34,8 +34,35 @@ pub struct Options {
     evaluate: EvaluateArgs,
 }
 
+/// A file, and the document of ours in it.
+type Own = (PathBuf, Document);
+
+/// The inputs that are documents of ours, and the others; what cannot be read is told.
+fn own_documents(inputs: &[PathBuf], ui: &mut Ui) -> (Vec<Own>, Vec<PathBuf>, Vec<Failure>) {
+    let (mut documents, mut others, mut failures) = (Vec::new(), Vec::new(), Vec::new());
+    for path in inputs {
+        let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
+        let bytes = if json { std::fs::read(path).ok() } else { None };
+        match bytes.map_or(Ok(None), |b| read_back::read(&b)) {
+            Ok(Some(document)) => documents.push((path.clone(), document)),
+            Ok(None) => others.push(path.clone()),
+            Err(error) => {
+                let failure = Failure::from(error).at(Place::file(path));
+                ui.diagnostics.error(&failure);
+                failures.push(failure);
+            }
+        }
+    }
+    (documents, others, failures)
+}
+
 /// A sheet and its section.
-type Sectioned = (FabricSheet, Constitutive);
+pub struct Sectioned {
+    /// The folder or file.
+    pub path: PathBuf,
+    pub sheet: FabricSheet,
+    pub made: Constitutive,
+}
 
 /// One option for each field of [`Assumptions`] that the section depends on.
 #[derive(Debug, Args)]
@@ -102,8 +129,29 @@ impl AssumptionArgs {
         ui: &mut Ui,
     ) -> Result<(Vec<Sectioned>, Vec<Failure>), Failure> {
         let assumptions = self.assumptions();
-        let (fabrics, mut failures) = evaluate.sheets(inputs, &[assumptions.modulus], Curves::Dropped, ui)?;
-        if fabrics.is_empty() && failures.is_empty() {
+        let (documents, measured, mut failures) = own_documents(inputs, ui);
+        let mut fabrics = Vec::new();
+        if !measured.is_empty() {
+            let (read, failed) = evaluate.sheets(&measured, &[assumptions.modulus], Curves::Dropped, ui)?;
+            fabrics = read;
+            failures.extend(failed);
+        }
+        let mut done = Vec::new();
+        for (path, document) in documents {
+            match document {
+                Document::Sheets(sheets) => {
+                    fabrics.extend(sheets.into_iter().map(|sheet| Fabric { path: path.clone(), sheet }));
+                }
+                Document::Sections(sections) => {
+                    done.extend(sections.into_iter().map(|(sheet, made)| Sectioned {
+                        path: path.clone(),
+                        sheet,
+                        made,
+                    }))
+                }
+            }
+        }
+        if fabrics.is_empty() && failures.is_empty() && done.is_empty() {
             return Err(nothing_to_read());
         }
         let mut sections = Vec::new();
@@ -128,8 +176,11 @@ impl AssumptionArgs {
             }
         }
         drop(named);
-        let sheets = fabrics.into_iter().map(|f| f.sheet);
-        Ok((sheets.zip(sections).filter_map(|(sheet, c)| Some((sheet, c?))).collect(), failures))
+        let made = fabrics
+            .into_iter()
+            .zip(sections)
+            .filter_map(|(Fabric { path, sheet }, made)| Some(Sectioned { path, sheet, made: made? }));
+        Ok((made.chain(done).collect(), failures))
     }
 }
 
@@ -142,19 +193,17 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     if sections.is_empty() && !ui.json {
         return Ok(Exit::of_batch(0, &failures));
     }
-    let documents =
-        || sections.iter().map(|(sheet, c)| (sheet.name.as_str(), &c.section, &c.inputs[..], used(&c.used)));
+    let documents = || {
+        sections.iter().map(|s| (&s.sheet, &s.made.section, &s.made.inputs[..], assumptions(&s.made.used)))
+    };
     let bytes = match format {
-        Format::Text => sections.iter().map(|(s, c)| page(s, c)).collect::<Vec<_>>().join("\n").into_bytes(),
+        Format::Text => {
+            sections.iter().map(|s| page(&s.sheet, &s.made)).collect::<Vec<_>>().join("\n").into_bytes()
+        }
         _ => text(&ui.complete(section_document(documents())))?.into_bytes(),
     };
     options.output.emit(&bytes)?;
     Ok(Exit::of_batch(sections.len(), &failures))
-}
-
-/// `{"tensile modulus": {"value": .., "source": ..}, ..}` in the order of use.
-pub fn used(used: &[Used]) -> Value {
-    used.iter().map(|u| (u.name.to_string(), json!({"value": u.value, "source": u.source}))).collect()
 }
 
 fn page(sheet: &FabricSheet, c: &Constitutive) -> String {
@@ -166,7 +215,7 @@ fn page(sheet: &FabricSheet, c: &Constitutive) -> String {
     let _ = writeln!(page, "\nD_s (N/m)\n  {}  {}\n", significant(x), significant(y));
     let mut columns = Columns::new(["input", "value", "source"]);
     for u in &c.used {
-        columns.row([u.name, &u.value, &u.source]);
+        columns.row([&u.name, &u.value as &str, &u.source]);
     }
     page += &columns.text();
     for table in [bands(c), repeats(sheet, c)].into_iter().filter(|t| !t.is_empty()) {

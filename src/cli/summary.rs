@@ -75,7 +75,7 @@ impl FabricReport {
         match section(sheet, &Assumptions::default()) {
             Ok(c) => {
                 report.findings.extend(c.findings.iter().cloned());
-                report.keep(tree.section(&sheet.name, &c));
+                report.keep(tree.section(sheet, &c));
                 report.cases(sheet, tasks, tree, progress);
             }
             Err(error) => {

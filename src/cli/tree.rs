@@ -8,7 +8,6 @@ use super::bending;
 use super::diagnostics::Failure;
 use super::entry::{comparison, solution};
 use super::sampled;
-use super::section::used;
 use super::task::{Task, TaskArgs, Tested};
 use crate::characterise::FabricSheet;
 use crate::constitutive::Constitutive;
@@ -18,7 +17,7 @@ use crate::law::Mode;
 use crate::quantity::Curve;
 use crate::report::OutputFolder;
 use crate::report::chart::{self, ChartError, FieldPlot, SimulatedCurve};
-use crate::report::json::{section_document, sheet_document, text};
+use crate::report::json::{assumptions, section_document, sheet_document, text};
 use crate::report::table::{csv, history_rows};
 use crate::report::vtu::{MeshField, vtu};
 use crate::study::bending::BendingResult;
@@ -52,9 +51,10 @@ impl Tree {
     }
 
     /// Notes which files are ours.
-    pub fn finish(self) -> Result<(), Failure> {
-        self.folder.finish()?;
-        Ok(())
+    ///
+    /// Returns the files of earlier runs that are still there.
+    pub fn finish(self) -> Result<Vec<String>, Failure> {
+        Ok(self.folder.finish()?)
     }
 
     /// `<fabric>/sheet.json`.
@@ -63,9 +63,9 @@ impl Tree {
     }
 
     /// `<fabric>/section.json`.
-    pub fn section(&self, fabric: &str, c: &Constitutive) -> Result<(), Failure> {
-        let document = section_document([(fabric, &c.section, &c.inputs[..], used(&c.used))]);
-        self.write(&format!("{fabric}/section.json"), text(&document)?.as_bytes())
+    pub fn section(&self, sheet: &FabricSheet, c: &Constitutive) -> Result<(), Failure> {
+        let document = section_document([(sheet, &c.section, &c.inputs[..], assumptions(&c.used))]);
+        self.write(&format!("{}/section.json", sheet.name), text(&document)?.as_bytes())
     }
 
     /// `<fabric>/<case>.json`, `.vtu` and `.png` of a solved case, and `.csv` of what it has of a history.

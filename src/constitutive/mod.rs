@@ -22,6 +22,8 @@ mod shear;
 use serde::Serialize;
 use thiserror::Error;
 
+use std::borrow::Cow;
+
 use crate::characterise::{FabricSheet, Key};
 use crate::finding::Finding;
 use crate::instrument::{Direction, Parameter};
@@ -54,7 +56,7 @@ pub struct Constitutive {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Used {
     /// What it is, e.g. `tensile modulus`.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// Its value with unit, e.g. `warp 5120 N/m, weft 3080 N/m`.
     pub value: String,
     /// `measured: ...` or `assumed: ...` and why.
@@ -205,7 +207,7 @@ fn areal_density(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, Co
     let Some(((estimate, standing), source)) = measured.or_else(stated).or_else(assumed) else {
         return Err(notes.missing(
             "areal density",
-            "weigh the specimen and write areal_density = \"150 g/m²\" in its fabric.toml, or areal_density in the [assumptions] of the case (`kesf section`: --areal-density)",
+            "weigh the specimen and write areal_density = \"150 g/m²\" in its fabric.toml, or areal_density in the [assumptions] of the case (`kesf section`, `kesf export`: --areal-density)",
         ));
     };
     let value = estimate.mean;
@@ -262,7 +264,7 @@ impl Notes<'_> {
     }
 
     fn used(&mut self, name: &'static str, value: impl Into<String>, source: impl Into<String>) {
-        self.used.push(Used { name, value: value.into(), source: source.into() });
+        self.used.push(Used { name: name.into(), value: value.into(), source: source.into() });
     }
 
     fn finding(&mut self, code: &'static str, text: String) {

@@ -51,7 +51,7 @@ fn a_measured_cloth_gives_the_closed_forms_without_a_finding() {
     assert_relative_eq!(s.d_s[(0, 0)], 52.0 * 5.0 / 6.0, max_relative = 1e-12);
     assert_eq!((s.areal_density, s.thickness), (0.15, 5e-4));
     assert_eq!(codes(&c), Vec::<&str>::new());
-    let names: Vec<_> = c.used.iter().map(|u| u.name).collect();
+    let names: Vec<_> = c.used.iter().map(|u| &*u.name).collect();
     assert_eq!(names.len(), 9, "{names:?}");
 }
 

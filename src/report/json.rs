@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use crate::characterise::{FabricSheet, FrictionLaw, LawBand, MeanBranch, Settings};
-use crate::constitutive::{Entry, Input, entries};
+use crate::constitutive::{Entry, Input, Used, entries};
 use crate::finding::Finding;
 use crate::instrument::Parameter;
 use crate::quantity::{Curve, Estimate};
@@ -100,6 +100,8 @@ pub struct SectionDocument {
 pub struct SectionEntry {
     /// The fabric, or the case that states the section.
     pub fabric: String,
+    /// `measured`, `published` or `synthetic`.
+    pub origin: &'static str,
     /// Membrane stiffness, rows (N/m).
     pub d_m: [[f64; 3]; 3],
     /// Bending stiffness, rows (N·m).
@@ -152,13 +154,14 @@ pub fn sheet_document<'a>(
     document
 }
 
-/// The document of some sections: name, section, measured inputs and assumptions of each.
+/// The document of some sections: the fabric, section, measured inputs and assumptions of each.
 pub fn section_document<'a>(
-    sections: impl IntoIterator<Item = (&'a str, &'a ShellSection, &'a [Input], Value)>,
+    sections: impl IntoIterator<Item = (&'a FabricSheet, &'a ShellSection, &'a [Input], Value)>,
 ) -> SectionDocument {
-    let entry =
-        |(fabric, section, inputs, assumptions): (&str, &ShellSection, &[Input], Value)| SectionEntry {
-            fabric: fabric.into(),
+    let entry = |(sheet, section, inputs, assumptions): (&FabricSheet, &ShellSection, &[Input], Value)| {
+        SectionEntry {
+            fabric: sheet.name.clone(),
+            origin: sheet.info.origin.name(),
             d_m: rows3(&section.d_m),
             d_b: rows3(&section.d_b),
             d_s: rows2(&section.d_s),
@@ -166,7 +169,8 @@ pub fn section_document<'a>(
             thickness: section.thickness,
             assumptions,
             uncertainty: entries(section, inputs),
-        };
+        }
+    };
     SectionDocument {
         schema: "kesf.section/1",
         version: env!("CARGO_PKG_VERSION"),
@@ -179,6 +183,11 @@ pub fn section_document<'a>(
         ]),
         sections: sections.into_iter().map(entry).collect(),
     }
+}
+
+/// `{"tensile modulus": {"value": .., "source": ..}, ..}` in the order of use.
+pub fn assumptions(used: &[Used]) -> Value {
+    used.iter().map(|u| (u.name.to_string(), json!({"value": u.value, "source": u.source}))).collect()
 }
 
 /// A document as text: two blanks of indentation and a final newline.
@@ -341,7 +350,12 @@ mod tests {
             areal_density: 0.2,
             thickness: 4e-4,
         };
-        let document = section_document([("poplin", &section, &[][..], json!({ "poisson": "geometric" }))]);
+        let document = section_document([(
+            &FabricSheet { name: "poplin".into(), ..Default::default() },
+            &section,
+            &[][..],
+            json!({ "poisson": "geometric" }),
+        )]);
         let v = serde_json::to_value(&document).unwrap();
         assert_eq!(v["schema"], "kesf.section/1");
         assert_eq!(v["sections"][0]["d_m"], json!([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 9.0]]));

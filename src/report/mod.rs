@@ -6,6 +6,7 @@
 pub mod cards;
 pub mod html;
 pub mod json;
+pub mod read_back;
 pub mod table;
 pub mod vtu;
 pub mod write;

@@ -88,6 +88,12 @@ pub fn write_file(path: &Path, bytes: &[u8], force: bool) -> Result<(), OutputEr
     }
 }
 
+/// Whether a name stays within its folder.
+fn inside(name: &str) -> bool {
+    let mut parts = Path::new(name).components().peekable();
+    parts.peek().is_some() && parts.all(|c| matches!(c, Component::Normal(_)))
+}
+
 fn existing(path: &Path) -> Result<Option<Vec<u8>>, OutputError> {
     match fs::read(path) {
         Ok(bytes) => Ok(Some(bytes)),
@@ -107,6 +113,18 @@ struct Manifest {
     schema: String,
     /// Name in the folder (with `/`) and SHA-256 of what was written.
     files: BTreeMap<String, String>,
+}
+
+/// The bytes of a file of a results folder, if they are as this program left them.
+///
+/// # Errors
+/// [`OutputError::Manifest`] if the list of our files is none, [`OutputError::Write`] if it cannot be read.
+pub fn left(root: &Path, name: &str) -> Result<Option<Vec<u8>>, OutputError> {
+    let path = root.join(MANIFEST);
+    let Some(bytes) = existing(&path)? else { return Ok(None) };
+    let files = read_manifest(&bytes).map_err(|problem| OutputError::Manifest { path, problem })?;
+    let Some(known) = files.get(name).filter(|_| inside(name)) else { return Ok(None) };
+    Ok(existing(&root.join(name))?.filter(|bytes| hash(bytes) == *known))
 }
 
 /// A folder of results. It may be written to from several threads.
@@ -155,9 +173,7 @@ impl OutputFolder {
     /// # Errors
     /// [`OutputError::Name`], [`OutputError::NotOurs`] or [`OutputError::Write`]; nothing is changed then.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
-        let mut parts = Path::new(name).components().peekable();
-        let inside = parts.peek().is_some() && parts.all(|c| matches!(c, Component::Normal(_)));
-        if !inside || name == MANIFEST || name.contains('\\') {
+        if !inside(name) || name == MANIFEST || name.contains('\\') {
             return Err(OutputError::Name { name: name.to_string() });
         }
         let path = self.root.join(name);

@@ -33,8 +33,10 @@ const ROWS: usize = 1200;
 const NEGLIGIBLE: f64 = 1e-6;
 /// Knots of a loading curve lie further apart than this part of its strain ...
 const CLOSE: f64 = 0.025;
-/// ... and at least so many samples.
+/// ... and have at least so many samples between them.
 const BETWEEN: usize = 2;
+/// Samples nearer than this part of the strain are one.
+const SAME: f64 = 1e-3;
 
 /// A path from cloth that was never deformed, at strain 0, with the stress measured along it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -149,7 +151,13 @@ fn loading_curve(path: &Path) -> Option<Backbone> {
     knots.sort_by(f64::total_cmp);
     // The ends stay; between them only knots that samples lie between.
     let apart = |a: f64, b: f64| {
-        let between = path.strain[start..=turn].iter().filter(|e| a < **e && **e <= b).count();
+        let (mut last, mut between) = (a, 0);
+        for e in path.strain[start..=turn].iter().filter(|e| **e <= b) {
+            // Clamps that stand add samples, but no knowledge.
+            if *e > last + SAME {
+                (last, between) = (*e, between + 1);
+            }
+        }
         b - a > CLOSE && between >= BETWEEN
     };
     let mut spaced = vec![0.0];

@@ -114,6 +114,7 @@ mod tests {
             basis: Basis::Loop,
             thickness: None,
             channel,
+            strip: None,
             conditioning: None,
             fit: None,
             closed_form: None,

@@ -47,6 +47,9 @@ pub struct FrictionLaw {
     pub direction: Option<Direction>,
     /// Specimen number; 0 for a law of the fabric from summary values.
     pub specimen: usize,
+    /// The strip of a law that rests on one: its place in [`FabricSheet::strips`].
+    #[serde(skip)]
+    pub strip: Option<usize>,
     /// What the law rests on.
     pub basis: Basis,
     /// Thickness at which the approach of the faces counts from (m); compression only.
@@ -149,13 +152,9 @@ impl FrictionLaw {
             (m.test, m.direction, m.specimen) == (self.test, self.direction, self.specimen)
         };
         let one_sided = self.channel.is_one_sided();
-        let found = if self.basis == Basis::Strip {
-            let strip = sheet
-                .strips
-                .iter()
-                .find(|s| Some(s.direction) == self.direction && strip::number(s) == self.specimen);
+        let found = if let Some(index) = self.strip {
             let lag = self.conditioning.map_or(0.0, |c| c.lag);
-            strip.and_then(|s| strip::history(s, lag))
+            sheet.strips.get(index).and_then(|s| strip::history(s, lag))
         } else {
             let specimen = sheet.specimens.iter().find(mine);
             specimen.and_then(|s| path(s, self.thickness, one_sided, CycleChoice::First))
@@ -208,7 +207,16 @@ pub(super) fn add(sheet: &mut FabricSheet, settings: &Settings) {
             Err(finding) => sheet.findings.push(finding),
         }
     }
-    sheet.laws.extend(sheet.strips.iter().filter_map(strip::law));
+    for (i, strip) in sheet.strips.iter().enumerate() {
+        match strip::law(i, strip) {
+            Ok(law) => sheet.laws.push(law),
+            Err(why) => {
+                let text =
+                    format!("strip S{} {}: no friction law, {why}", strip::number(strip), strip.direction);
+                sheet.findings.push(Finding::new("K041", text));
+            }
+        }
+    }
     summary::add(sheet, settings);
 }
 
@@ -279,6 +287,7 @@ fn fitted(specimen: &SpecimenResult, settings: &Settings) -> Option<FrictionLaw>
         test: m.test,
         direction: m.direction,
         specimen: m.specimen,
+        strip: None,
         basis: Basis::Loop,
         thickness,
         channel,

@@ -5,25 +5,49 @@ use std::ops::Range;
 
 use super::conditioning::{Conditioning, EXPONENT};
 use super::identify::{Path, lowest, one_sided};
-use super::{Basis, FrictionLaw, LoopFit, stresses};
-use crate::characterise::Strip;
+use super::{BACK, Basis, CycleFit, FrictionLaw, GIVEN, LoopFit, WORST_FIT, stresses};
+use crate::characterise::{Branch, Strip};
 use crate::instrument::Test;
 use crate::instrument::fab::FabKind;
 use crate::law::Channel;
 
-/// Lags that are tried first (samples): both readings of a sample are taken within its interval.
+/// Lags that are tried first (samples): both readings of a sample are taken within its interval. The lag that fits best
+/// takes up what it can of another cause too, above all of stress that relaxes while the clamps stop and turn.
 const LAGS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 /// The lag is known to this (samples).
 const LAG_KNOWN: f64 = 0.02;
 
 /// The law of the last cycle, after the ones before it: the strip remembers them. Strains of all cycles count from
 /// the onset of load of the last, so that what the strip has grown by since is part of what is predicted.
-pub(super) fn law(strip: &Strip) -> Option<FrictionLaw> {
-    with_exponent(strip, EXPONENT)
+///
+/// # Errors
+/// Why the strip has none.
+pub(super) fn law(index: usize, strip: &Strip) -> Result<FrictionLaw, &'static str> {
+    let law = with_exponent(index, strip, EXPONENT).ok_or("its last cycle has too few samples")?;
+    let fit = law.fit.as_ref().map_or(CycleFit::default(), |fit| fit.fitted);
+    if !returns(strip) {
+        Err("its last cycle has no way back, and so no loop")
+    } else if fit.nrmse.is_nan() || fit.nrmse > WORST_FIT {
+        Err("its last cycle is not one that a law can follow")
+    } else if fit.work < -GIVEN {
+        Err("its loop gives work instead of taking it: is the way back the way out?")
+    } else {
+        Ok(law)
+    }
+}
+
+/// Whether the clamps come back in the last cycle.
+fn returns(strip: &Strip) -> bool {
+    let way = |outgoing: bool| {
+        let last = strip.cycles.last().into_iter().flat_map(|c| &c.branches);
+        let length = |b: &Branch| b.curve.x.first().zip(b.curve.x.last()).map_or(0.0, |(a, z)| (z - a).abs());
+        last.filter(|b| b.outgoing == outgoing).map(length).fold(0.0, f64::max)
+    };
+    way(false) > BACK * way(true)
 }
 
 /// The same with another exponent of conditioning.
-pub(super) fn with_exponent(strip: &Strip, exponent: f64) -> Option<FrictionLaw> {
+pub(super) fn with_exponent(index: usize, strip: &Strip, exponent: f64) -> Option<FrictionLaw> {
     let missed =
         |lag: f64| fitted(strip, exponent, lag).map_or(f64::INFINITY, |(_, _, fit)| fit.fitted.nrmse);
     let lag = lowest(&LAGS, LAG_KNOWN, missed);
@@ -32,6 +56,7 @@ pub(super) fn with_exponent(strip: &Strip, exponent: f64) -> Option<FrictionLaw>
         test: Test::Tensile,
         direction: Some(strip.direction),
         specimen: number(strip),
+        strip: Some(index),
         basis: Basis::Strip,
         thickness: None,
         channel,
@@ -45,7 +70,7 @@ pub(super) fn with_exponent(strip: &Strip, exponent: f64) -> Option<FrictionLaw>
 
 fn fitted(strip: &Strip, exponent: f64, lag: f64) -> Option<(Channel, Conditioning, LoopFit)> {
     let (path, cycles) = history(strip, lag)?;
-    let greatest = path.strain[path.fitted.clone()].iter().copied().fold(0.0, f64::max);
+    let greatest = path.strain[..path.fitted.end].iter().copied().fold(0.0, f64::max);
     let conditioning = Conditioning { exponent, greatest, lag };
     let factors = conditioning.factors(&path.strain);
     let alike = |v: &[f64]| v.iter().zip(&factors).map(|(v, r)| v / r).collect();

@@ -26,7 +26,11 @@ pub(super) fn add(sheet: &mut FabricSheet, settings: &Settings) {
     let mut made = Vec::new();
     for direction in directions {
         for test in [Test::Tensile, Test::Shear, Test::Bending] {
-            let known = |l: &FrictionLaw| l.test == test && (l.direction == direction || direction.is_none());
+            // Strips have laws of their own, which nothing is calculated with.
+            let known = |l: &FrictionLaw| {
+                let here = l.direction == direction || direction.is_none();
+                l.test == test && l.basis != Basis::Strip && here
+            };
             if sheet.laws.iter().any(known) {
                 continue;
             }
@@ -86,6 +90,7 @@ fn law(test: Test, direction: Option<Direction>, channel: Channel, settings: &Se
         test,
         direction,
         specimen: 0,
+        strip: None,
         basis: Basis::AssumedSpectrum,
         thickness: None,
         channel,
@@ -206,6 +211,7 @@ fn tension([lt, rt, emt]: [f64; 3], settings: &Settings) -> Result<Channel, LawE
             test: Test::Tensile,
             direction: None,
             specimen: 0,
+            strip: None,
             basis: Basis::AssumedSpectrum,
             thickness: None,
             channel: with(share)?,

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use nalgebra::Matrix3;
 
-use super::laminate::laminate;
+use super::laminate::{NO_STIFFNESS, laminate};
 use super::{CardError, Material, label, number, preamble};
 use crate::section::ShellSection;
 
@@ -12,7 +12,7 @@ use crate::section::ShellSection;
 /// numbers a line, of `[N11, N22, N12, M11, M22, M12]` over `[ε11, ε22, γ12, κ11, κ22, κ12]` with the engineering
 /// twist `κ12`; DENSITY is mass per area. `*TRANSVERSE SHEAR STIFFNESS`: K11, K22, K12.
 pub fn abaqus(material: &Material<'_>, section: &ShellSection) -> String {
-    let name = label(&material.sheet.name);
+    let name = set(material);
     let mut text = preamble(
         material,
         "**",
@@ -42,30 +42,32 @@ pub fn abaqus(material: &Material<'_>, section: &ShellSection) -> String {
 }
 
 /// Ansys, Mechanical APDL Command Reference: the symmetric lower parts of A, D and E by columns; the density of a
-/// preintegrated section is that of unit thickness, mass per area.
-pub fn ansys(material: &Material<'_>, section: &ShellSection) -> String {
+/// preintegrated section is that of unit thickness, mass per area. The stiffness must be positive definite.
+pub fn ansys(material: &Material<'_>, section: &ShellSection) -> Result<String, CardError> {
+    if section.d_b.cholesky().is_none() {
+        return Err(CardError::Stiffness { program: "Ansys", reason: NO_STIFFNESS });
+    }
     let mut text = preamble(
         material,
         "!",
-        &[
-            "Elements SHELL181 or SHELL281 with element axes (ESYS) along the warp; change the section number 1 if it is taken.",
-        ],
+        &["Elements SHELL181 or SHELL281 with element axes (ESYS) along the warp; the section takes the \
+           next free number."],
     );
     let lower = |d: &Matrix3<f64>| {
         [(0, 0), (1, 0), (2, 0), (1, 1), (2, 1), (2, 2)].map(|place| number(d[place])).join(",")
     };
     let shear = [(0, 0), (1, 0), (1, 1)].map(|place| number(section.d_s[place])).join(",");
-    let name: String = label(&material.sheet.name).chars().take(8).collect();
-    let _ = writeln!(text, "SECTYPE,1,GENS,,{name}");
+    let name = label(&material.sheet.name, 8);
+    let _ = writeln!(text, "SECTYPE,,GENS,,{name}");
     let _ = writeln!(text, "SSPA,{}\nSSPD,{}", lower(&section.d_m), lower(&section.d_b));
     let _ = writeln!(text, "SSPE,{shear}\nSSPM,{}", number(section.areal_density));
-    text
+    Ok(text)
 }
 
 /// CalculiX has no general section: a [`super::Laminate`], which S8R elements take.
 pub fn calculix(material: &Material<'_>, section: &ShellSection) -> Result<String, CardError> {
     let layers = laminate(section)?;
-    let name = label(&material.sheet.name);
+    let name = set(material);
     let mut text = preamble(
         material,
         "**",
@@ -91,6 +93,11 @@ pub fn calculix(material: &Material<'_>, section: &ShellSection) -> Result<Strin
         let _ = writeln!(text, "{thickness}, , {name}_{part}");
     }
     Ok(text)
+}
+
+/// The name of the set of elements.
+fn set(material: &Material<'_>) -> String {
+    format!("KESF_{}", label(&material.sheet.name, 50))
 }
 
 /// `E1, E2, E3, ν12, ν13, ν23, G12, G13, G23` of a layer in plane stress. Nothing couples to the thickness, and its

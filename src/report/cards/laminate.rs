@@ -29,23 +29,26 @@ pub struct Laminate {
     pub inner: Matrix3<f64>,
 }
 
+/// Why H = 0 is refused.
+pub const NO_STIFFNESS: &str = "D_b has a direction without stiffness";
+
 /// How far within its limits each thickness lies, squared.
 const WITHIN: f64 = 2.0;
 
 /// The laminate with the D_m and D_b of a section.
 ///
 /// # Errors
-/// [`CardError::NoLaminate`] if some way of bending has no stiffness (H = 0).
+/// [`CardError::Stiffness`] if some way of bending has no stiffness (H = 0).
 pub fn laminate(section: &ShellSection) -> Result<Laminate, CardError> {
     let (a, d) = (section.d_m, 12.0 * section.d_b);
-    let none = |reason| CardError::NoLaminate { reason };
+    let none = |reason| CardError::Stiffness { program: "CalculiX", reason };
     let root = a.cholesky().ok_or(none("D_m is not positive definite"))?.l();
     let inverse = root.try_inverse().ok_or(none("D_m is singular"))?;
     // Symmetric, with the eigenvalues of a⁻¹ d.
     let squares = SymmetricEigen::new(inverse * d * inverse.transpose()).eigenvalues;
     let (least, most) = (squares.min(), squares.max());
     if least <= 1e-9 * most {
-        return Err(none("D_b has a direction without stiffness"));
+        return Err(none(NO_STIFFNESS));
     }
     let core = (least / WITHIN).sqrt();
     // t² + t c + c² = WITHIN × most.

@@ -16,6 +16,7 @@ pub use laminate::{Laminate, laminate};
 
 use crate::characterise::FabricSheet;
 use crate::constitutive::Constitutive;
+use crate::report::write::hash;
 use crate::section::SectionError;
 
 /// Programs that a fabric can be handed to.
@@ -53,7 +54,8 @@ impl Target {
     /// Ending of the files that the program expects.
     pub fn ending(self) -> &'static str {
         match self {
-            Self::Abaqus | Self::Calculix => "inp",
+            Self::Abaqus => "abaqus.inp",
+            Self::Calculix => "calculix.inp",
             Self::Ansys => "mac",
             Self::U3m => "u3m",
         }
@@ -81,10 +83,12 @@ impl Target {
 pub enum CardError {
     /// O040: the program cannot hold this stiffness.
     #[error(
-        "O040 no layers have this stiffness: {reason}; a section with torsional rigidity has them \
+        "O040 {program} cannot hold this stiffness: {reason}; export a section with torsional rigidity \
          (--torsion huber)"
     )]
-    NoLaminate {
+    Stiffness {
+        /// The program.
+        program: &'static str,
         /// What is wrong.
         reason: &'static str,
     },
@@ -115,7 +119,7 @@ pub fn card(target: Target, material: &Material<'_>) -> Result<String, CardError
     let section = material.made.section.clone().checked()?;
     match target {
         Target::Abaqus => Ok(finite_element::abaqus(material, &section)),
-        Target::Ansys => Ok(finite_element::ansys(material, &section)),
+        Target::Ansys => finite_element::ansys(material, &section),
         Target::Calculix => finite_element::calculix(material, &section),
         Target::U3m => u3m::document(material),
     }
@@ -176,10 +180,18 @@ fn wrapped(text: &str) -> Vec<String> {
     lines
 }
 
-/// The name of the set of elements and of the section: letters, digits and `_`, beginning with a letter.
-fn label(name: &str) -> String {
-    let safe: String = ascii(name).chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-    format!("KESF_{}", safe.to_ascii_uppercase()).chars().take(60).collect()
+/// A name of at most so many characters for a set of elements or a section: capitals, digits and `_`. What had to
+/// change of the fabric's name stands in a tail of digits of its hash, so that two fabrics never share a label.
+fn label(name: &str, longest: usize) -> String {
+    const TAIL: usize = 6;
+    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    if name.chars().all(plain) && name.len() <= longest {
+        return name.to_ascii_uppercase();
+    }
+    let safe = ascii(name).to_ascii_uppercase();
+    let safe = safe.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' });
+    let kept: String = safe.take(longest - TAIL).collect();
+    format!("{kept}{}", &hash(name.as_bytes())[..TAIL].to_ascii_uppercase())
 }
 
 /// A number as every input file reads it.

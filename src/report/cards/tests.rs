@@ -89,8 +89,10 @@ fn layers_have_the_stiffness_of_the_sheet() {
     }
     assert!(0.0 < c && c < t);
     let twistless = ShellSection { d_b: Matrix3::from_diagonal(&[8e-6, 4e-6, 0.0].into()), ..section };
-    let refused = written(Target::Calculix, twistless).unwrap_err();
-    assert!(refused.to_string().starts_with("O040"), "{refused}");
+    for target in [Target::Calculix, Target::Ansys] {
+        let refused = written(target, twistless.clone()).unwrap_err();
+        assert!(refused.to_string().starts_with("O040"), "{refused}");
+    }
 }
 
 /// What `u3m_schema.json` requires: the keys of each object, no others, and units of millimetres and g/m².
@@ -121,6 +123,17 @@ fn u3m_has_the_keys_of_its_schema() {
     assert!(id.len() == 36 && &id[14..15] == "4" && "89ab".contains(&id[19..20]), "{id}");
     assert_eq!(document["custom"]["kesf"]["section"]["sections"][0]["d_m"][0][0], 6000.0);
     assert_eq!(written(Target::U3m, section()).unwrap(), text);
+}
+
+#[test]
+fn labels_are_short_and_never_shared() {
+    assert_eq!(label("poplin_2", 50), "POPLIN_2");
+    let names = ["a b", "a-b", "A_B", "経糸", "緯糸", "petrak_m1", "petrak_m2", "a_b"];
+    let labels: std::collections::BTreeSet<String> = names.iter().map(|n| label(n, 8)).collect();
+    assert_eq!(labels.len(), names.len(), "{labels:?}");
+    assert!(labels.iter().all(
+        |l| l.len() <= 8 && l.bytes().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == b'_')
+    ));
 }
 
 #[test]

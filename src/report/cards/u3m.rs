@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use uuid::Builder;
 
 use super::{CardError, Material};
-use crate::report::json::{section_document, sheet_document, text};
+use crate::report::json::{assumptions, section_document, sheet_document, text};
 use crate::report::write::hash;
 
 /// Fibres that the format has a word for, beside ours for them.
@@ -43,13 +43,21 @@ const FIBRES: &[(&str, &str)] = &[
     ("wool", "Wool"),
 ];
 
-/// Weaves that the format has a word for.
-const WEAVES: &[(&str, &str)] = &[
-    ("plain", "Plain weave"),
-    ("poplin", "Poplin"),
-    ("satin", "Satin"),
-    ("twill", "Twill"),
-    ("canvas", "Canvas"),
+/// Weaves and knits that the format has a word for, beside ours for them.
+const CONSTRUCTIONS: &[(&str, &str, &str)] = &[
+    ("canvas", "Woven", "Canvas"),
+    ("jacquard", "Woven", "Jacquard"),
+    ("oxford", "Woven", "Oxford"),
+    ("plain", "Woven", "Plain weave"),
+    ("poplin", "Woven", "Poplin"),
+    ("ripstop", "Woven", "Ripstop"),
+    ("satin", "Woven", "Satin"),
+    ("twill", "Woven", "Twill"),
+    ("interlock", "Knit", "Interlock"),
+    ("jersey", "Knit", "Single jersey"),
+    ("pique", "Knit", "Pique"),
+    ("raschel", "Knit", "Raschel"),
+    ("tricot", "Knit", "Tricot"),
 ];
 
 /// A date for the fields that must have one, where none was asked for: the same fabric gives the same bytes.
@@ -59,17 +67,15 @@ const NO_DATE: &str = "1970-01-01T00:00:00Z";
 pub fn document(material: &Material<'_>) -> Result<String, CardError> {
     let wrong = |e: serde_json::Error| CardError::Json(e.to_string());
     let Material { sheet, made, stamp } = *material;
-    let used: Value = made
-        .used
-        .iter()
-        .map(|u| (u.name.to_string(), json!({"value": u.value, "source": u.source})))
-        .collect();
-    let section = section_document([(sheet.name.as_str(), &made.section, &made.inputs[..], used)]);
-    let sheet_text = text(&sheet_document([sheet], None)).map_err(wrong)?;
-    let parameters: Value = serde_json::from_str(&sheet_text).map_err(wrong)?;
+    let section = section_document([(sheet, &made.section, &made.inputs[..], assumptions(&made.used))]);
+    let parameters = serde_json::to_value(sheet_document([sheet], None)).map_err(wrong)?;
     let mut ours = Map::new();
     ours.insert("sheet".into(), without_loops(parameters));
     ours.insert("section".into(), serde_json::to_value(section).map_err(wrong)?);
+    let [kind, construction] = made_as(sheet.info.weave.as_deref().unwrap_or_default());
+    let assumed = |name: &str| made.used.iter().any(|u| u.name == name && u.source.starts_with("assumed"));
+    // A stand-in is no property of the material.
+    let known = |name: &str, value: f64| if assumed(name) { Value::Null } else { value.into() };
     let name = if sheet.info.title.is_empty() { &sheet.name } else { &sheet.info.title };
     let date = stamp.unwrap_or(NO_DATE);
     let origin = sheet.info.origin.name();
@@ -77,7 +83,7 @@ pub fn document(material: &Material<'_>) -> Result<String, CardError> {
         "schema": "1.1",
         "material": {
             "name": name,
-            "id": identifier(&sheet_text),
+            "id": identifier(&text(&ours).map_err(wrong)?),
             "created": date,
             "modified": date,
             "description": format!(
@@ -87,12 +93,12 @@ pub fn document(material: &Material<'_>) -> Result<String, CardError> {
             "back": null,
             "side": null,
             "physics": {
-                "thickness": 1e3 * made.section.thickness,
-                "weight": 1e3 * made.section.areal_density,
+                "thickness": known("thickness", 1e3 * made.section.thickness),
+                "weight": known("areal density", 1e3 * made.section.areal_density),
                 "devices": {"fab": "null"},
                 "composition": sheet.info.composition.as_deref().and_then(composition),
-                "material_type": sheet.info.weave.as_ref().map(|_| json!({"type": "Woven", "name": null})),
-                "construction": sheet.info.weave.as_deref().map(construction),
+                "material_type": kind,
+                "construction": construction,
             },
             "metadata": null,
         },
@@ -101,12 +107,21 @@ pub fn document(material: &Material<'_>) -> Result<String, CardError> {
     text(&document).map_err(wrong)
 }
 
-/// A sheet without the samples of its friction laws, which are in `sheet.json`.
+/// A sheet without the samples of its friction laws, which are in `sheet.json`, and without the paths of its files:
+/// the same fabric is the same material wherever its files lie.
 fn without_loops(mut sheet: Value) -> Value {
     for fabric in sheet["fabrics"].as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut) {
         for key in ["friction", "friction_bands", "re_extracted"] {
-            fabric.remove(key);
+            fabric.shift_remove(key);
         }
+    }
+    for input in sheet["inputs"].as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut) {
+        if let Some(Value::String(path)) = input.get_mut("path") {
+            *path = path.rsplit('/').next().unwrap_or_default().to_string();
+        }
+    }
+    if let Some(document) = sheet.as_object_mut() {
+        document.shift_remove("findings");
     }
     sheet
 }
@@ -132,7 +147,8 @@ fn composition(text: &str) -> Option<Value> {
         let fibre = fibre.split('(').next()?.trim().to_lowercase();
         let known = FIBRES.iter().find(|(ours, _)| *ours == fibre);
         let (kind, name) = known.map_or(("other", Some(fibre.as_str())), |(_, theirs)| (*theirs, None));
-        Some((share, json!({"ratio": share, "type": kind, "name": name})))
+        let real = share > 0.0 && !fibre.is_empty();
+        real.then(|| (share, json!({"ratio": share, "type": kind, "name": name})))
     };
     let parts: Vec<(f64, Value)> = text.split([',', ';', '/']).map(part).collect::<Option<_>>()?;
     let whole: f64 = parts.iter().map(|p| p.0).sum();
@@ -140,10 +156,34 @@ fn composition(text: &str) -> Option<Value> {
     ((whole - 1.0).abs() < 1e-3).then(|| json!({"parts": parts}))
 }
 
-fn construction(weave: &str) -> Value {
-    let word = weave.split_whitespace().next().unwrap_or(weave).to_lowercase();
-    match WEAVES.iter().find(|(ours, _)| *ours == word) {
-        Some((_, theirs)) => json!({"type": theirs, "name": null}),
-        None => json!({"type": "other", "name": weave}),
+/// Kind and construction of a fabric by the first word of its weave that the format knows.
+fn made_as(weave: &str) -> [Value; 2] {
+    let entry = |word: &str| json!({"type": word, "name": null});
+    let weave = weave.trim();
+    let known = |word: &str| CONSTRUCTIONS.iter().find(|(ours, ..)| ours.eq_ignore_ascii_case(word));
+    match weave.split([' ', ',', '-', '_']).find_map(known) {
+        Some((_, kind, construction)) => [entry(kind), entry(construction)],
+        None if weave.is_empty() => [Value::Null, Value::Null],
+        None => [Value::Null, json!({"type": "other", "name": weave})],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_said_that_is_not_known() {
+        for none in ["", "-20% cotton, 120% wool", "60 % cotton", "cotton, wool", "cotton/?"] {
+            assert_eq!(composition(none), None, "{none}");
+        }
+        let parts = composition("60 % cotton, 40 % milk fibre").unwrap();
+        assert_eq!(parts["parts"][1], json!({"ratio": 0.4, "type": "other", "name": "milk fibre"}));
+        let kinds = |weave: &str| made_as(weave).map(|v| v["type"].as_str().map(str::to_string));
+        let some = |a: &str, b: &str| [Some(a.to_string()), Some(b.to_string())];
+        assert_eq!(kinds("3/1 twill"), some("Woven", "Twill"));
+        assert_eq!(kinds("single jersey"), some("Knit", "Single jersey"));
+        assert_eq!(kinds("nonwoven"), [None, Some("other".to_string())]);
+        assert_eq!(kinds(" "), [None, None]);
     }
 }

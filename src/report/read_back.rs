@@ -1,0 +1,273 @@
+//! `kesf.sheet/1` and `kesf.section/1` read back: what other people keep of a fabric is enough to go on with.
+//!
+//! Friction laws, curves and findings are not read: they come from measurements.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use nalgebra::{Matrix2, Matrix3};
+use serde::Deserialize;
+use thiserror::Error;
+
+use crate::characterise::{FabricSheet, Key};
+use crate::constitutive::{Constitutive, Used};
+use crate::instrument::{Direction, FabricInfo, Origin, Parameter};
+use crate::quantity::Estimate;
+use crate::section::{SectionError, ShellSection};
+
+/// Why a document is not read.
+#[derive(Debug, Error)]
+pub enum DocumentError {
+    /// O042: not as this program writes it.
+    #[error(
+        "O042 the document is not as kesf writes it: {0}; write it again with `kesf characterise` or `kesf section`"
+    )]
+    Shape(#[from] serde_json::Error),
+    /// O042: a name that is none of ours, or another unit.
+    #[error("O042 {fabric} has {what}; write the document again with this version of kesf")]
+    Content {
+        /// Name of the fabric.
+        fabric: String,
+        /// What is wrong.
+        what: String,
+    },
+    /// The section is none.
+    #[error(transparent)]
+    Section(#[from] SectionError),
+}
+
+/// A document of ours.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Document {
+    /// Parameters of fabrics.
+    Sheets(Vec<FabricSheet>),
+    /// Sections with their assumptions; of each sheet only the name and the origin are known.
+    Sections(Vec<(FabricSheet, Constitutive)>),
+}
+
+/// The document, or `None` if it is not one of ours.
+///
+/// # Errors
+/// See [`DocumentError`].
+pub fn read(bytes: &[u8]) -> Result<Option<Document>, DocumentError> {
+    #[derive(Deserialize)]
+    struct Schema {
+        schema: String,
+    }
+    let Ok(Schema { schema }) = serde_json::from_slice(bytes) else { return Ok(None) };
+    match schema.as_str() {
+        "kesf.sheet/1" => {
+            let document: Sheets = serde_json::from_slice(bytes)?;
+            Ok(Some(Document::Sheets(
+                document.fabrics.into_iter().map(Sheet::read).collect::<Result<_, _>>()?,
+            )))
+        }
+        "kesf.section/1" => {
+            let document: Sections = serde_json::from_slice(bytes)?;
+            let read = document.sections.into_iter().map(Section::read).collect::<Result<_, _>>()?;
+            Ok(Some(Document::Sections(read)))
+        }
+        _ => Ok(None),
+    }
+}
+
+#[derive(Deserialize)]
+struct Sheets {
+    fabrics: Vec<Sheet>,
+}
+
+#[derive(Deserialize)]
+struct Sheet {
+    name: String,
+    title: String,
+    origin: Origin,
+    parameters: BTreeMap<String, Measured>,
+    moduli: BTreeMap<String, BTreeMap<Direction, Mean>>,
+}
+
+/// A parameter of the fabric as a whole, or by direction.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Measured {
+    Whole(Mean),
+    Directions(BTreeMap<String, Mean>),
+}
+
+#[derive(Deserialize)]
+struct Mean {
+    mean: f64,
+    sd: Option<f64>,
+    n: usize,
+    unit: String,
+}
+
+impl Mean {
+    fn read(self, unit: &str, fabric: &str, of: &str) -> Result<Estimate, DocumentError> {
+        if self.unit == unit {
+            return Ok(Estimate { mean: self.mean, sd: self.sd, n: self.n, values: Vec::new() });
+        }
+        let what = format!("{of} in {} where {unit} was expected", self.unit);
+        Err(DocumentError::Content { fabric: fabric.into(), what })
+    }
+}
+
+impl Sheet {
+    fn read(self) -> Result<FabricSheet, DocumentError> {
+        let name = self.name;
+        let unknown = |what: String| DocumentError::Content { fabric: name.clone(), what };
+        let mut sheet =
+            FabricSheet { name: name.clone(), info: info(self.title, self.origin), ..Default::default() };
+        for (symbol, measured) in self.parameters {
+            let parameter = Parameter::from_symbol(&symbol)
+                .ok_or_else(|| unknown(format!("`{symbol}`, which is not a parameter")))?;
+            let means = match measured {
+                Measured::Whole(mean) => vec![("fabric".to_string(), mean)],
+                Measured::Directions(means) => means.into_iter().collect(),
+            };
+            for (of, mean) in means {
+                let direction =
+                    match of.as_str() {
+                        "fabric" => None,
+                        _ => Some(Direction::ALL.into_iter().find(|d| d.name() == of).ok_or_else(|| {
+                            unknown(format!("{symbol} of `{of}`, which is not a direction"))
+                        })?),
+                    };
+                let estimate = mean.read(parameter.si_unit(), &name, &symbol)?;
+                sheet.values.insert(Key { parameter, direction }, estimate);
+            }
+        }
+        for (modulus, means) in self.moduli {
+            for (direction, mean) in means {
+                let estimate = mean.read("N/m", &name, &modulus)?;
+                sheet.moduli.insert((modulus.clone(), direction), estimate);
+            }
+        }
+        Ok(sheet)
+    }
+}
+
+#[derive(Deserialize)]
+struct Sections {
+    sections: Vec<Section>,
+}
+
+#[derive(Deserialize)]
+struct Section {
+    fabric: String,
+    origin: Origin,
+    d_m: [[f64; 3]; 3],
+    d_b: [[f64; 3]; 3],
+    d_s: [[f64; 2]; 2],
+    areal_density: f64,
+    thickness: f64,
+    /// A map keeps the order of the document.
+    assumptions: serde_json::Map<String, serde_json::Value>,
+}
+
+#[derive(Deserialize)]
+struct Assumption {
+    value: String,
+    source: String,
+}
+
+impl Section {
+    fn read(self) -> Result<(FabricSheet, Constitutive), DocumentError> {
+        let used = |(name, assumption): (String, serde_json::Value)| {
+            let Assumption { value, source } = serde_json::from_value(assumption)?;
+            Ok(Used { name: Cow::Owned(name), value, source })
+        };
+        let section = ShellSection {
+            d_m: Matrix3::from_fn(|r, c| self.d_m[r][c]),
+            d_b: Matrix3::from_fn(|r, c| self.d_b[r][c]),
+            d_s: Matrix2::from_fn(|r, c| self.d_s[r][c]),
+            areal_density: self.areal_density,
+            thickness: self.thickness,
+        };
+        let made = Constitutive {
+            section: section.checked()?,
+            law: None,
+            used: self.assumptions.into_iter().map(used).collect::<Result<_, serde_json::Error>>()?,
+            inputs: Vec::new(),
+            findings: Vec::new(),
+        };
+        let sheet = FabricSheet {
+            info: info(self.fabric.clone(), self.origin),
+            name: self.fabric,
+            ..Default::default()
+        };
+        Ok((sheet, made))
+    }
+}
+
+fn info(title: String, origin: Origin) -> FabricInfo {
+    FabricInfo { title, origin, ..Default::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::constitutive::{Assumptions, section};
+    use crate::report::json::{assumptions, section_document, sheet_document, text};
+
+    fn sheet() -> FabricSheet {
+        let mut sheet = FabricSheet {
+            name: "köper".into(),
+            info: info("Köper".into(), Origin::Published),
+            ..Default::default()
+        };
+        let values = [
+            (Parameter::B, Some(Direction::Warp), 8e-6),
+            (Parameter::B, Some(Direction::Weft), 4e-6),
+            (Parameter::G, None, 60.0),
+            (Parameter::T0, None, 4e-4),
+            (Parameter::W, None, 0.15),
+        ];
+        for (parameter, direction, mean) in values {
+            let estimate = Estimate { mean, sd: Some(0.1 * mean), n: 3, values: Vec::new() };
+            sheet.values.insert(Key { parameter, direction }, estimate);
+        }
+        for direction in [Direction::Warp, Direction::Weft] {
+            sheet.moduli.insert(("tangent_low".into(), direction), Estimate::single(5000.0));
+        }
+        sheet
+    }
+
+    #[test]
+    fn a_sheet_gives_the_section_of_the_fabric() {
+        let written = text(&sheet_document([&sheet()], None)).unwrap();
+        let Some(Document::Sheets(read)) = super::read(written.as_bytes()).unwrap() else {
+            panic!("no sheets")
+        };
+        assert_eq!((read[0].values.clone(), read[0].info.origin), (sheet().values, Origin::Published));
+        let [from, back] = [&sheet(), &read[0]].map(|s| section(s, &Assumptions::default()).unwrap());
+        assert_eq!((from.section, from.used), (back.section, back.used));
+    }
+
+    #[test]
+    fn a_section_comes_back_to_the_last_digit() {
+        let made = section(&sheet(), &Assumptions::default()).unwrap();
+        let document =
+            section_document([(&sheet(), &made.section, &made.inputs[..], assumptions(&made.used))]);
+        let Some(Document::Sections(read)) = super::read(text(&document).unwrap().as_bytes()).unwrap() else {
+            panic!("no sections")
+        };
+        assert_eq!((&read[0].1.section, &read[0].1.used), (&made.section, &made.used));
+        assert_eq!((read[0].0.name.as_str(), read[0].0.info.origin), ("köper", Origin::Published));
+    }
+
+    #[test]
+    fn what_is_not_ours_is_none_and_what_is_broken_an_error() {
+        assert_eq!(super::read(b"{\"raw_data\": {}}").unwrap(), None);
+        assert_eq!(super::read(b"no json").unwrap(), None);
+        let written = text(&sheet_document([&sheet()], None)).unwrap();
+        for (from, to, what) in [
+            ("N·m", "gf·cm²/cm", "where N·m was expected"),
+            ("\"B\"", "\"bend\"", "not a parameter"),
+            ("\"warp\"", "\"up\"", "up"),
+            ("\"mean\"", "\"average\"", "O042"),
+        ] {
+            let error = super::read(written.replace(from, to).as_bytes()).unwrap_err().to_string();
+            assert!(error.starts_with("O042") && error.contains(what), "{error}");
+        }
+    }
+}
