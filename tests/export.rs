@@ -84,6 +84,8 @@ fn a_file_in_the_way_is_kept() {
     assert_eq!(document["failures"][0]["code"], "O002");
     assert_eq!(fs::read_to_string(&theirs).unwrap(), "theirs");
     assert!(folder.path().join("twill.mac").is_file());
+    let stamped = kesf(&["-q", "export", "kesf_data/poplin", "--to", "ansys", "--stamp"]);
+    assert!(String::from_utf8_lossy(&stamped.stdout).contains("! date: 20"));
     let nothing = kesf(&["--json", "export", "nowhere", "--to", "ansys", "-o", "x.mac"]);
     assert!(code(&nothing) == 2 && !stderr(&nothing).contains("O058"), "{}", stderr(&nothing));
 }

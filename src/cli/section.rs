@@ -143,6 +143,7 @@ impl AssumptionArgs {
                     fabrics.extend(sheets.into_iter().map(|sheet| Fabric { path: path.clone(), sheet }));
                 }
                 Document::Sections(sections) => {
+                    ui.diagnostics.note(&format!("{}: a section; its own assumptions stand", path.display()));
                     done.extend(sections.into_iter().map(|(sheet, made)| Sectioned {
                         path: path.clone(),
                         sheet,

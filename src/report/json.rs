@@ -51,6 +51,10 @@ pub struct SheetEntry {
     pub title: String,
     /// `measured`, `published` or `synthetic`.
     pub origin: &'static str,
+    /// What people state of the fabric where an instrument may have measured too: `areal_density` (kg/m²) and
+    /// `thickness` (m), as numbers.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub stated: BTreeMap<&'static str, f64>,
     /// By symbol: `{"mean","sd","n","unit"}`, or one such object each for `warp`, `weft`, `bias` and
     /// `fabric` (a directional parameter known for the fabric as a whole only).
     pub parameters: Map<String, Value>,
@@ -141,6 +145,10 @@ pub fn sheet_document<'a>(
             name: sheet.name.clone(),
             title: sheet.info.title.clone(),
             origin: sheet.info.origin.name(),
+            stated: [("areal_density", sheet.info.areal_density), ("thickness", sheet.info.thickness)]
+                .into_iter()
+                .filter_map(|(name, value)| Some((name, value?)))
+                .collect(),
             parameters: parameters(sheet),
             moduli: moduli(sheet),
             friction: sheet.laws.clone(),

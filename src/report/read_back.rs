@@ -81,8 +81,17 @@ struct Sheet {
     name: String,
     title: String,
     origin: Origin,
+    #[serde(default)]
+    stated: Stated,
     parameters: BTreeMap<String, Measured>,
     moduli: BTreeMap<String, BTreeMap<Direction, Mean>>,
+}
+
+/// What people state (SI).
+#[derive(Default, Deserialize)]
+struct Stated {
+    areal_density: Option<f64>,
+    thickness: Option<f64>,
 }
 
 /// A parameter of the fabric as a whole, or by direction.
@@ -115,8 +124,9 @@ impl Sheet {
     fn read(self) -> Result<FabricSheet, DocumentError> {
         let name = self.name;
         let unknown = |what: String| DocumentError::Content { fabric: name.clone(), what };
-        let mut sheet =
-            FabricSheet { name: name.clone(), info: info(self.title, self.origin), ..Default::default() };
+        let Stated { areal_density, thickness } = self.stated;
+        let info = FabricInfo { areal_density, thickness, ..info(self.title, self.origin) };
+        let mut sheet = FabricSheet { name: name.clone(), info, ..Default::default() };
         for (symbol, measured) in self.parameters {
             let parameter = Parameter::from_symbol(&symbol)
                 .ok_or_else(|| unknown(format!("`{symbol}`, which is not a parameter")))?;
@@ -215,11 +225,11 @@ mod tests {
             info: info("Köper".into(), Origin::Published),
             ..Default::default()
         };
+        sheet.info.thickness = Some(4e-4);
         let values = [
             (Parameter::B, Some(Direction::Warp), 8e-6),
             (Parameter::B, Some(Direction::Weft), 4e-6),
             (Parameter::G, None, 60.0),
-            (Parameter::T0, None, 4e-4),
             (Parameter::W, None, 0.15),
         ];
         for (parameter, direction, mean) in values {

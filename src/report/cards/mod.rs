@@ -107,7 +107,7 @@ pub struct Material<'a> {
     pub sheet: &'a FabricSheet,
     /// Its section, with the assumptions.
     pub made: &'a Constitutive,
-    /// Date and time (RFC 3339) for a format that asks for them; a fixed one if there is none.
+    /// Date and time (RFC 3339), if they are wanted; a format that must have a date gets a fixed one without.
     pub stamp: Option<&'a str>,
 }
 
@@ -138,6 +138,7 @@ fn preamble(material: &Material<'_>, comment: &str, notes: &[&str]) -> String {
         "SI: m, kg, s, N. Local axis 1 is the warp, 2 the weft. Linear and elastic: no friction, no time."
             .into(),
     ];
+    lines.extend(material.stamp.map(|date| format!("date: {date}")));
     lines.extend(info.source.iter().map(|s| format!("source: {s}")));
     lines.extend(material.made.used.iter().map(|u| format!("{}: {} ({})", u.name, u.value, u.source)));
     lines.extend(notes.iter().map(ToString::to_string));
