@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use clap::Args;
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde_json::json;
 
 use super::diagnostics::Failure;
@@ -28,8 +28,8 @@ pub struct Options {
     #[arg(value_name = "INPUT", required = true)]
     inputs: Vec<PathBuf>,
     /// The program
-    #[arg(long, value_name = "TARGET", required = true, value_parser = PossibleValuesParser::new(Target::ALL.map(Target::name)))]
-    to: String,
+    #[arg(long, value_name = "TARGET", required = true, value_parser = target())]
+    to: Target,
     /// Write to this file, or to this folder if it is one or ends in `/` [default: standard output]
     #[arg(short, long, value_name = "PATH", default_value = "-", hide_default_value = true)]
     output: PathBuf,
@@ -45,10 +45,13 @@ pub struct Options {
     evaluate: EvaluateArgs,
 }
 
+fn target() -> impl TypedValueParser<Value = Target> {
+    let names = PossibleValuesParser::new(Target::ALL.map(Target::name));
+    names.try_map(|name| Target::named(&name).ok_or("no target of that name"))
+}
+
 pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
-    let Some(target) = Target::named(&options.to) else {
-        return Err(Failure::new("O050", format!("`{}` is not a target", options.to)));
-    };
+    let target = options.to;
     let (sections, mut failures) = options.assume.sections(&options.inputs, &options.evaluate, ui)?;
     let stamp = options.stamp.then(now);
     let mut cards: Vec<(&str, String)> = Vec::new();

@@ -36,8 +36,9 @@ pub struct Options {
 pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let folder = &options.folder;
     // What is sent is what was made: no file that somebody else put or changed here.
+    let left = left(folder)?;
     let left = |name: &str| {
-        left(folder, name)?.ok_or_else(|| {
+        left(name)?.ok_or_else(|| {
             Failure::new("O059", format!("{name} is not there as `kesf run` left it"))
                 .at(Place::file(folder))
                 .hint("name a folder that `kesf run -o` wrote, or run again")

@@ -115,16 +115,23 @@ struct Manifest {
     files: BTreeMap<String, String>,
 }
 
-/// The bytes of a file of a results folder, if they are as this program left them.
+/// Bytes of a file, if it is there as it should be.
+pub type Bytes = Result<Option<Vec<u8>>, OutputError>;
+
+/// A reader of the files of a results folder: the bytes of a name, if they are as this program left them.
 ///
 /// # Errors
-/// [`OutputError::Manifest`] if the list of our files is none, [`OutputError::Write`] if it cannot be read.
-pub fn left(root: &Path, name: &str) -> Result<Option<Vec<u8>>, OutputError> {
+/// [`OutputError::Manifest`] if the list of our files is none, [`OutputError::Write`] if a file cannot be read.
+pub fn left(root: &Path) -> Result<impl Fn(&str) -> Bytes, OutputError> {
     let path = root.join(MANIFEST);
-    let Some(bytes) = existing(&path)? else { return Ok(None) };
-    let files = read_manifest(&bytes).map_err(|problem| OutputError::Manifest { path, problem })?;
-    let Some(known) = files.get(name).filter(|_| inside(name)) else { return Ok(None) };
-    Ok(existing(&root.join(name))?.filter(|bytes| hash(bytes) == *known))
+    let files = match existing(&path)? {
+        None => BTreeMap::new(),
+        Some(bytes) => read_manifest(&bytes).map_err(|problem| OutputError::Manifest { path, problem })?,
+    };
+    Ok(move |name: &str| match files.get(name).filter(|_| inside(name)) {
+        Some(known) => Ok(existing(&root.join(name))?.filter(|bytes| hash(bytes) == *known)),
+        None => Ok(None),
+    })
 }
 
 /// A folder of results. It may be written to from several threads.

@@ -280,13 +280,13 @@ fn strips_of_a_real_cupro_weave() {
     }
 }
 
-/// No strip's own inner cycle chooses the exponent that it is predicted with here: for each strip, the exponent with which
-/// the worst of the other five is predicted best. (By the least sum of squares it is 0.5, and the short weft strip is
-/// predicted to 4.1 %, the long bias strip to 4.2 %.)
+/// How far the inner cycle is predicted where it had no part in the exponent: for each strip, the exponent that is best
+/// for the other five, for the worst of them or by the sum of squares. Over the span of the last cycle all are below
+/// 4 %; over its own span two are not by squares (short weft 4.1 %, long bias 4.4 %).
 #[test]
 fn exponents_that_other_strips_give() {
     let Some(sheet) = cupro_weave() else { return };
-    let exponents: Vec<f64> = (20..=40).map(|i| 0.02 * f64::from(i)).collect();
+    let exponents: Vec<f64> = (0..=50).map(|i| 0.02 * f64::from(i)).collect();
     let figures = |strip: &crate::characterise::Strip| -> Vec<[f64; 2]> {
         let of = |p: &f64| {
             let fit = super::strip::with_exponent(0, strip, *p).unwrap().fit.unwrap();
@@ -295,16 +295,34 @@ fn exponents_that_other_strips_give() {
         exponents.iter().map(of).collect()
     };
     let strips: Vec<Vec<[f64; 2]>> = sheet.strips.iter().map(figures).collect();
+    let best =
+        |f: &dyn Fn(usize) -> f64| (0..exponents.len()).min_by(|a, b| f(*a).total_cmp(&f(*b))).unwrap();
     for (k, strip) in strips.iter().enumerate() {
-        let worst = |i: &usize| {
+        let others = |i: usize| {
             let others = strips.iter().enumerate().filter(|(o, _)| *o != k);
-            others.map(|(_, s)| s[*i][1]).fold(0.0, f64::max)
+            others.map(|(_, s)| s[i][1]).collect::<Vec<f64>>()
         };
-        let best = (0..exponents.len()).min_by(|a, b| worst(a).total_cmp(&worst(b))).unwrap();
-        let [fitted, inner] = strip[best];
-        println!("strip {k}: p {:.2}: last {fitted:.2} %, inner {inner:.2} %", exponents[best]);
-        assert!((exponents[best] - super::conditioning::EXPONENT).abs() < 0.05);
-        assert!(fitted < 1.0 && inner < 4.0);
+        let worst = best(&|i| others(i).into_iter().fold(0.0, f64::max));
+        let squares = best(&|i| others(i).iter().map(|v| v * v).sum());
+        let alone = best(&|i| strip[i][1]);
+        // Greatest force of the cycle before over that of the last.
+        let tops = sheet.strips[k]
+            .cycles
+            .iter()
+            .map(|c| c.branches.iter().flat_map(|b| &b.curve.y).copied().fold(0.0, f64::max));
+        let tops: Vec<f64> = tops.collect();
+        let share = tops[tops.len() - 2] / tops[tops.len() - 1];
+        for (what, i) in [("worst", worst), ("squares", squares), ("alone", alone)] {
+            let [fitted, inner] = strip[i];
+            let outer = share * inner;
+            println!(
+                "strip {k}, {what}: p {:.2}: last {fitted:.2} %, inner {inner:.2} % of its span, {outer:.2} % of the last",
+                exponents[i]
+            );
+            assert!(what == "alone" || (fitted < 1.0 && outer < 4.0));
+        }
+        assert!((exponents[worst] - super::conditioning::EXPONENT).abs() < 0.05);
+        assert!(strip[worst][1] < 4.0 && strip[squares][1] < 4.4);
     }
 }
 

@@ -4,11 +4,11 @@
 //! as a file of one device only (FAB), so that of KES stands under `custom`, which programs pass over.
 
 use serde_json::{Map, Value, json};
+use sha2::{Digest, Sha256};
 use uuid::Builder;
 
 use super::{CardError, Material};
 use crate::report::json::{assumptions, section_document, sheet_document, text};
-use crate::report::write::hash;
 
 /// Fibres that the format has a word for, beside ours for them.
 const FIBRES: &[(&str, &str)] = &[
@@ -128,11 +128,9 @@ fn without_loops(mut sheet: Value) -> Value {
 
 /// A version 4 identifier that the content decides.
 fn identifier(content: &str) -> String {
-    let digest = hash(content.as_bytes());
+    let digest = Sha256::digest(content.as_bytes());
     let mut bytes = [0; 16];
-    for (byte, pair) in bytes.iter_mut().zip(digest.as_bytes().chunks(2)) {
-        *byte = std::str::from_utf8(pair).ok().and_then(|p| u8::from_str_radix(p, 16).ok()).unwrap_or(0);
-    }
+    bytes.copy_from_slice(&digest[..16]);
     Builder::from_random_bytes(bytes).into_uuid().to_string()
 }
 
