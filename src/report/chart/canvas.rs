@@ -3,27 +3,19 @@
 //! Averaging is what makes lines and letters smooth, and it lets a line be drawn piece by piece:
 //! the outline that plotters makes of a whole thick path folds over itself where data are noisy.
 
-use std::sync::OnceLock;
+use plotters::prelude::{BitMapBackend, DrawingBackend, RGBColor, ShapeStyle};
+use plotters::style::Color;
 
-use plotters::prelude::{
-    BitMapBackend, DrawingBackend, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle,
-};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, IntoTextStyle, register_font};
-
-use super::ChartError;
+use super::{ChartError, letters};
 
 /// Page size in pixels: 6 in x 4.5 in at 300 dpi.
 pub(super) const WIDTH: usize = 1800;
 /// See [`WIDTH`].
 pub(super) const HEIGHT: usize = 1350;
 /// Drawn pixels per page pixel, in each direction.
-const OVERSAMPLING: usize = 3;
+pub(super) const OVERSAMPLING: usize = 3;
 /// 300 dpi in pixels per metre.
 const PIXELS_PER_METRE: u32 = 11_811;
-const FONT: &str = "kesf DejaVu Sans";
-/// Plotters measures a font by ascent + descent, in this many ems for DejaVu Sans.
-const LINE_PER_EM: f64 = 1.164;
 
 /// A point on the page, in pixels from the upper left corner.
 pub(super) type Point = (f64, f64);
@@ -43,68 +35,22 @@ impl Stroke {
     }
 }
 
-/// Which end of a text its position is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Align {
-    Left,
-    Centre,
-    Right,
-}
-
-/// How a text is drawn.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Type {
-    /// Size of the em in page pixels.
-    pub size: f64,
-    pub bold: bool,
-    pub color: RGBColor,
-    pub align: Align,
-}
-
-impl Type {
-    pub(super) fn new(size: f64, color: RGBColor) -> Self {
-        Self { size, bold: false, color, align: Align::Left }
-    }
-
-    pub(super) fn bold(self) -> Self {
-        Self { bold: true, ..self }
-    }
-
-    pub(super) fn align(self, align: Align) -> Self {
-        Self { align, ..self }
-    }
-
-    fn font(&self) -> FontDesc<'static> {
-        let style = if self.bold { FontStyle::Bold } else { FontStyle::Normal };
-        FontDesc::new(FontFamily::Name(FONT), self.size * LINE_PER_EM * OVERSAMPLING as f64, style)
-    }
-}
-
 /// A white page that is drawn on and then encoded.
 pub(super) struct Canvas {
     pixels: Vec<u8>,
 }
 
-fn device(value: f64) -> i32 {
+pub(super) fn device(value: f64) -> i32 {
     (value * OVERSAMPLING as f64).round() as i32
-}
-
-fn fonts() -> Result<(), ChartError> {
-    static REGISTERED: OnceLock<bool> = OnceLock::new();
-    let ok = *REGISTERED.get_or_init(|| {
-        register_font(FONT, FontStyle::Normal, dejavu::sans::regular()).is_ok()
-            && register_font(FONT, FontStyle::Bold, dejavu::sans::bold()).is_ok()
-    });
-    if ok { Ok(()) } else { Err(ChartError::Drawing("the built-in font is not readable".into())) }
 }
 
 impl Canvas {
     pub(super) fn new() -> Result<Self, ChartError> {
-        fonts()?;
+        letters::register()?;
         Ok(Self { pixels: vec![255; WIDTH * HEIGHT * 3 * OVERSAMPLING * OVERSAMPLING] })
     }
 
-    fn backend(&mut self) -> BitMapBackend<'_> {
+    pub(super) fn backend(&mut self) -> BitMapBackend<'_> {
         let size = ((WIDTH * OVERSAMPLING) as u32, (HEIGHT * OVERSAMPLING) as u32);
         BitMapBackend::with_buffer(&mut self.pixels, size)
     }
@@ -230,48 +176,15 @@ impl Canvas {
         Ok(())
     }
 
-    /// A text; `at` is on its baseline.
-    pub(super) fn text(&mut self, at: Point, text: &str, kind: Type) -> Result<(), ChartError> {
-        self.letters(at, text, kind, false)
-    }
-
-    /// A text that reads upwards; `at` is on its baseline, which is vertical.
-    pub(super) fn text_upwards(&mut self, at: Point, text: &str, kind: Type) -> Result<(), ChartError> {
-        self.letters(at, text, kind, true)
-    }
-
-    fn letters(&mut self, at: Point, text: &str, kind: Type, upwards: bool) -> Result<(), ChartError> {
-        let h = match kind.align {
-            Align::Left => HPos::Left,
-            Align::Centre => HPos::Center,
-            Align::Right => HPos::Right,
-        };
-        let turn = if upwards { FontTransform::Rotate270 } else { FontTransform::None };
-        let style = kind
-            .font()
-            .transform(turn)
-            .into_text_style(&(1, 1))
-            .color(&kind.color)
-            .pos(Pos::new(h, VPos::Top));
-        // Plotters puts the baseline half a line below the top.
-        let rise = 0.5 * kind.size * LINE_PER_EM;
-        let (x, y) = if upwards { (at.0 - rise, at.1) } else { (at.0, at.1 - rise) };
-        self.backend().draw_text(text, &style, (device(x), device(y))).map_err(drawing)
-    }
-
-    /// Width of a text on the page in pixels.
-    pub(super) fn text_width(&self, text: &str, kind: Type) -> Result<f64, ChartError> {
-        let (w, _) = kind.font().box_size(text).map_err(|e| ChartError::Drawing(e.to_string()))?;
-        Ok(f64::from(w) / OVERSAMPLING as f64)
-    }
-
     /// The page as a PNG file with its resolution (pHYs, 300 dpi) and no date.
     pub(super) fn png(&self, title: &str) -> Result<Vec<u8>, ChartError> {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, WIDTH as u32, HEIGHT as u32);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_filter(png::FilterType::Up);
+        // Flat colours repeat along and across rows: unfiltered they pack to half of what any filter leaves.
+        encoder.set_filter(png::Filter::NoFilter);
+        encoder.set_compression(png::Compression::Balanced);
         encoder.set_pixel_dims(Some(png::PixelDimensions {
             xppu: PIXELS_PER_METRE,
             yppu: PIXELS_PER_METRE,
@@ -306,9 +219,18 @@ impl Canvas {
         }
         page
     }
+
+    /// How many pixels of the page are not white, and where.
+    #[cfg(test)]
+    pub(super) fn ink(&self) -> (usize, Vec<(usize, usize)>) {
+        let page = self.averaged();
+        let dark = page.chunks_exact(3).enumerate().filter(|(_, p)| p.iter().any(|&v| v < 255));
+        let places: Vec<_> = dark.map(|(i, _)| (i % WIDTH, i / WIDTH)).collect();
+        (places.len(), places)
+    }
 }
 
-fn drawing(error: impl std::fmt::Display) -> ChartError {
+pub(super) fn drawing(error: impl std::fmt::Display) -> ChartError {
     ChartError::Drawing(error.to_string())
 }
 
@@ -367,7 +289,7 @@ mod tests {
         let mut canvas = Canvas::new().unwrap();
         canvas.line(&[(10.0, 10.0), (500.0, 300.0)], Stroke::solid(RGBColor(0, 0, 0), 4.0)).unwrap();
         let bytes = canvas.png("縦 test").unwrap();
-        let reader = png::Decoder::new(bytes.as_slice()).read_info().unwrap();
+        let reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
         let info = reader.info();
         assert_eq!((info.width, info.height), (1800, 1350));
         let dims = info.pixel_dims.unwrap();

@@ -4,7 +4,8 @@ use plotters::prelude::RGBColor;
 
 use super::ChartError;
 use super::axes::{Frame, Range};
-use super::canvas::{Align, Canvas, Point, Stroke, Type};
+use super::canvas::{Canvas, Point, Stroke};
+use super::letters::{Align, Type};
 use super::palette::{INK, diverging, lighter, sequential};
 
 /// Contour levels at round values, with the colour of each band between them.

@@ -4,8 +4,9 @@ use crate::quantity::Curve;
 use crate::report::number::{prefixed, significant};
 
 use super::axes::{Frame, Label, Range};
-use super::canvas::{Canvas, HEIGHT, Point, Stroke, Type, WIDTH};
+use super::canvas::{Canvas, HEIGHT, Point, Stroke, WIDTH};
 use super::contour::{self, Levels};
+use super::letters::Type;
 use super::palette::{BLUE, INK, VERMILLION, WARNING};
 use super::{ChartError, Head, panel};
 

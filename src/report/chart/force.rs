@@ -8,7 +8,8 @@ use crate::report::number::{fixed, significant};
 use crate::study::bending::{Agreement, BendLoop, BendLoops, Simulated};
 
 use super::axes::{Frame, Label, Range};
-use super::canvas::{Canvas, Point, Stroke, Type, WIDTH};
+use super::canvas::{Canvas, Point, Stroke, WIDTH};
+use super::letters::Type;
 use super::palette::{BLUE, GREY, INK, VERMILLION, lighter};
 use super::panel::{self, Row};
 use super::{ChartError, Head};

@@ -5,8 +5,9 @@ use crate::instrument::{Direction, Parameter, Test};
 use crate::report::number::{plain_exponent, power_of_ten, significant, unit_text};
 
 use super::axes::{Frame, Label, Range};
-use super::canvas::{Align, Canvas, HEIGHT, Point, Stroke, Type, WIDTH};
+use super::canvas::{Canvas, HEIGHT, Point, Stroke, WIDTH};
 use super::fabric::symbol;
+use super::letters::{Align, Type};
 use super::loops::TestAxes;
 use super::palette::{self, GREY, INK, darker, lighter};
 use super::panel::{self, Row};

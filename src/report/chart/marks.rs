@@ -5,8 +5,9 @@ use crate::instrument::{Parameter, Test};
 
 use super::ChartError;
 use super::axes::Frame;
-use super::canvas::{Align, Canvas, Point, Stroke, Type};
+use super::canvas::{Canvas, Point, Stroke};
 use super::fabric::symbol;
+use super::letters::{Align, Type};
 use super::loops::{TestAxes, Trace};
 use super::palette::{self, GREY, INK, darker, lighter};
 

@@ -14,6 +14,7 @@ mod fabric;
 mod field;
 mod force;
 mod friction;
+mod letters;
 mod loops;
 mod marks;
 mod palette;
@@ -71,7 +72,8 @@ struct Head<'a> {
 
 impl Head<'_> {
     fn draw(&self, canvas: &mut canvas::Canvas) -> Result<(), ChartError> {
-        use canvas::{Align, Type, WIDTH};
+        use canvas::WIDTH;
+        use letters::{Align, Type};
         let right = WIDTH as f64 - 40.0;
         let mark = Type::new(26.0, palette::INK).bold().align(Align::Right);
         let mut room = right - 40.0;

@@ -3,7 +3,8 @@
 use plotters::prelude::RGBColor;
 
 use super::ChartError;
-use super::canvas::{Align, Canvas, Point, Stroke, Type};
+use super::canvas::{Canvas, Point, Stroke};
+use super::letters::{Align, Type};
 use super::palette::{GREY, GROUPS, INK};
 
 /// One line of the column.

@@ -3,7 +3,8 @@
 use crate::report::number::{fixed, prefixed, significant};
 
 use super::axes::{Frame, Label, Range};
-use super::canvas::{Canvas, Point, Stroke, Type, WIDTH};
+use super::canvas::{Canvas, Point, Stroke, WIDTH};
+use super::letters::Type;
 use super::palette::{GREY, INK, lighter};
 use super::panel::{self, Row, marker};
 use super::{ChartError, Head};
