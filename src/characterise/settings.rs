@@ -59,7 +59,13 @@ impl FromStr for Modulus {
                     found: other.to_string(),
                     example: "tangent_low, secant, energy or window(5 gf/cm, 20 gf/cm)",
                 })
-                .and_then(|(a, b)| Ok(Self::Window(a.parse()?, b.parse()?))),
+                .and_then(|(a, b)| {
+                    let (a, b): (LineForce, LineForce) = (a.parse()?, b.parse()?);
+                    let rises = a.si() >= 0.0 && a.si() < b.si();
+                    rises
+                        .then_some(Self::Window(a, b))
+                        .ok_or_else(|| QuantityError::Order { found: other.into() })
+                }),
         }
     }
 }
@@ -172,6 +178,43 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// What no evaluation can be made with, if anything: a window that does not rise, or a threshold that is not
+    /// positive. The message quotes the key.
+    pub fn contradiction(&self) -> Option<String> {
+        let window = |key, [a, b]: [f64; 2]| (key, a >= 0.0 && a < b, "a window has to rise from 0 or more");
+        let above = |key, values: &[f64]| (key, values.iter().all(|v| *v > 0.0), "it has to be above 0");
+        let part = |key, r: Ratio| (key, (0.0..1.0).contains(&r.si()), "a part is 0 to 100 %");
+        let windows = [
+            window("shear_slope", self.shear_slope.map(Angle::si)),
+            window("bending_slope", self.bending_slope.map(Curvature::si)),
+            window("tangent_low", self.tangent_low.map(LineForce::si)),
+        ];
+        let strips = self.strip_windows.iter().map(|w| window("strip_windows", w.map(LineForce::si)));
+        let readings = [
+            above("shear_readings", &self.shear_readings.map(Angle::si)),
+            above("bending_readings", &self.bending_readings.map(Curvature::si)),
+            above("table_maximum", &[self.table_maximum.si()]),
+            above("compression_start", &[self.compression_start.si()]),
+            above("strip_onset", &[self.strip_onset.si()]),
+            above("strip_secant", &[self.strip_secant.si()]),
+            above("strip_shear", &[self.strip_shear.si()]),
+            above("strip_low_load", &[self.strip_low_load.si()]),
+            above("reversal", &[self.reversal.si()]),
+        ];
+        let parts = [
+            part("reversal", self.reversal),
+            part("large_correction", self.large_correction),
+            part("slope_difference", self.slope_difference),
+            part("maximum_difference", self.maximum_difference),
+            part("noise", self.noise),
+            part("shear_difference", self.shear_difference),
+            part("outlier_floor", self.outlier_floor),
+        ];
+        let (key, _, why) =
+            windows.into_iter().chain(strips).chain(readings).chain(parts).find(|(_, fits, _)| !fits)?;
+        Some(format!("`{key}` cannot be used: {why}"))
+    }
+
     /// Name and value of each setting that enters a parameter, in KES units, for printing beside a result.
     pub fn describe(&self) -> Vec<(&'static str, String)> {
         let degrees = |a: Angle| format!("{} deg", round(a.si() / DEGREE));
@@ -233,6 +276,25 @@ mod tests {
         assert_eq!(s.bending_slope, Settings::default().bending_slope);
         assert!(toml::from_str::<Settings>("shear_window = 3").is_err());
         assert!(toml::from_str::<Settings>("noise = 0.1").is_err(), "a bare number is refused");
+    }
+
+    #[test]
+    fn values_that_no_evaluation_can_use_are_refused_by_name() {
+        let wrong =
+            |line: &str| toml::from_str::<Settings>(line).unwrap().contradiction().unwrap_or_default();
+        for (line, key) in [
+            ("reversal = \"-1 %\"", "`reversal`"),
+            ("reversal = \"0 %\"", "`reversal`"),
+            ("table_maximum = \"0 gf/cm\"", "`table_maximum`"),
+            ("shear_slope = [\"1 deg\", \"1 deg\"]", "`shear_slope`"),
+            ("tangent_low = [\"20 gf/cm\", \"5 gf/cm\"]", "`tangent_low`"),
+            ("compression_start = \"-1 gf/cm²\"", "`compression_start`"),
+            ("strip_windows = [[\"5 gf/cm\", \"2 gf/cm\"]]", "`strip_windows`"),
+        ] {
+            assert!(wrong(line).contains(key), "{line}: {}", wrong(line));
+        }
+        assert_eq!(Settings::default().contradiction(), None);
+        assert!(matches!("window(100 gf/cm, 20 gf/cm)".parse::<Modulus>(), Err(QuantityError::Order { .. })));
     }
 
     #[test]

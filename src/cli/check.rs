@@ -8,8 +8,8 @@ use serde_json::json;
 use super::diagnostics::Failure;
 use super::inputs::{self, ReadArgs, Worked};
 use super::output::Columns;
+use super::task;
 use super::{Exit, Ui};
-use crate::finding::Place;
 use crate::instrument::{FabricInput, Inference};
 use crate::study::{Case, validate};
 
@@ -36,8 +36,11 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let cases: Vec<Case> = cases.into_iter().map(|(_, case)| case).collect();
     failures.extend(bad.into_iter().filter_map(|(result, case)| {
         let failure = Failure::from(result.err()?);
-        Some(if failure.place.is_some() { failure } else { failure.at(Place::file(&case.path)) })
+        let place = case.place_of(&failure.message);
+        Some(if failure.place.is_some() { failure } else { failure.at(place) })
     }));
+    let named = |c: &&Case| task::named_fabric(c).is_some_and(|path| !path.exists());
+    failures.extend(cases.iter().filter(named).map(task::no_such_fabric));
     for failure in &failures {
         ui.diagnostics.error(failure);
     }
@@ -96,14 +99,14 @@ fn document(
 ) -> serde_json::Value {
     let fabric = |f: &FabricInput| {
         json!({
-            "name": f.name, "path": f.path, "files": f.sources, "curves": f.measurements.len(),
+            "name": f.name, "path": f.path.to_string_lossy(), "files": f.sources, "curves": f.measurements.len(),
             "values": f.results.len(), "findings": f.findings,
         })
     };
     json!({
         "schema": "kesf.check/1",
         "fabrics": fabrics.iter().map(fabric).collect::<Vec<_>>(),
-        "cases": cases.iter().map(|c| json!({"name": c.name, "path": c.path, "title": c.title})).collect::<Vec<_>>(),
+        "cases": cases.iter().map(|c| json!({"name": c.name, "path": c.path.to_string_lossy(), "title": c.title})).collect::<Vec<_>>(),
         "errors": failures,
         "inference": inference,
     })

@@ -37,6 +37,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     work.cases.retain(|c| c.virtual_test.is_some() || c.bending_test.is_some());
     let (tasks, homeless) = work.tasks();
     work.cases.iter().filter_map(|c| work.without_law(c)).for_each(|f| ui.diagnostics.finding(&f));
+    work.idle(&tasks).iter().for_each(|text| ui.diagnostics.note(text));
     if tasks.is_empty() && homeless.is_empty() && work.failures.is_empty() {
         return Err(Failure::new(
             "O055",

@@ -156,10 +156,14 @@ impl From<OutputError> for Failure {
             OutputError::Manifest { path, problem } => {
                 ("O004", Some(path), format!("the list of our own files cannot be read: {problem}"))
             }
+            OutputError::Busy { path } => {
+                ("O005", Some(path), "another kesf is writing into this folder".into())
+            }
             other @ OutputError::Name { .. } => return Self::coded("O003", &other.to_string()),
         };
         let hint = match code {
             "O001" => "make the folder, free the place or its permissions, or write elsewhere with -o",
+            "O005" => "wait for it, or write elsewhere with -o",
             _ => "write elsewhere with -o, or overwrite it with --force",
         };
         let failure = Self::new(code, message).hint(hint);

@@ -1,14 +1,14 @@
 //! `kesf export`: fabrics as material files of other programs.
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde_json::json;
 
 use super::diagnostics::Failure;
-use super::inputs::{EvaluateArgs, is_stdin};
+use super::inputs::{EvaluateArgs, is_stdin, lossy};
 use super::output::{is_folder, now};
 use super::section::{AssumptionArgs, Sectioned};
 use super::{Exit, Ui};
@@ -73,7 +73,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         return Ok(Exit::of_batch(cards.len(), &failures));
     } else if cards.is_empty() {
         Vec::new()
-    } else if is_folder(output) {
+    } else if is_folder(output) || (cards.len() > 1 && !is_stdin(output) && is_new_folder(output)) {
         into_folder(options, target, &cards, &mut failures, ui)?
     } else {
         let [(_, text)] = &cards[..] else {
@@ -88,9 +88,14 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         vec![output.clone()]
     };
     if ui.json {
-        ui.document(json!({"schema": "kesf.export/1", "target": target.name(), "files": files}))?;
+        ui.document(json!({"schema": "kesf.export/1", "target": target.name(), "files": lossy(&files)}))?;
     }
     Ok(Exit::of_batch(files.len(), &failures))
+}
+
+/// Whether a name is free and looks like that of a folder: without an ending.
+fn is_new_folder(path: &Path) -> bool {
+    !path.exists() && path.extension().is_none()
 }
 
 /// A file for each card. One that cannot be written costs the others nothing.

@@ -1,8 +1,10 @@
 //! What the arguments name: fabrics (folders, files, `-`) and cases (`.toml`).
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use clap::{Args, ValueEnum};
 use serde_json::json;
@@ -10,7 +12,7 @@ use serde_json::json;
 use super::Ui;
 use super::diagnostics::Failure;
 use crate::characterise::{FabricSheet, Modulus, Settings, characterise};
-use crate::finding::{Finding, Place};
+use crate::finding::{Finding, Place, Words, position};
 use crate::instrument::{
     FabricInput, Inference, Library, ReadError, ReadSettings, ResultValue, parse, read_dialect,
 };
@@ -95,7 +97,7 @@ impl ReadArgs {
         let mut failures = Vec::new();
         if !stdin.is_empty() {
             match stdin_bytes() {
-                Ok(bytes) => match from_stdin(&bytes, &settings) {
+                Ok(bytes) => match from_stdin(bytes, &settings) {
                     Ok((fabric, left_out)) => {
                         done.push(work(fabric));
                         errors.extend(left_out);
@@ -186,7 +188,7 @@ impl EvaluateArgs {
 
     /// The options as they were given, with the hashes of the files that they name.
     pub fn told(&self) -> serde_json::Value {
-        let file = |path: &PathBuf| json!({"path": path, "sha256": sha256(path)});
+        let file = |path: &PathBuf| json!({"path": path.to_string_lossy(), "sha256": sha256(path)});
         let ReadArgs { dialect, delimiter, decimal, assume_kes_units } = &self.reading;
         json!({
             "settings": self.settings.as_ref().map(file), "dialect": dialect.as_ref().map(file),
@@ -197,43 +199,79 @@ impl EvaluateArgs {
     /// The settings of the evaluation.
     pub fn settings(&self) -> Result<Settings, Failure> {
         let Some(path) = &self.settings else { return Ok(Settings::default()) };
-        let wrong = |reason: String| {
-            Failure::new("O050", format!("the settings cannot be used: {reason}")).at(Place::file(path))
+        let wrong = |place: Place, reason: &str| {
+            Failure::new("O050", format!("the settings cannot be used: {reason}")).at(place)
         };
-        let text = std::fs::read_to_string(path).map_err(|e| wrong(e.to_string()))?;
-        toml::from_str(&text).map_err(|e| wrong(e.message().to_string()))
+        let text = std::fs::read_to_string(path).map_err(|e| wrong(Place::file(path), &e.to_string()))?;
+        let settings: Settings = toml::from_str(&text).map_err(|e| {
+            let (line, column) = position(&text, e.span().map_or(0, |s| s.start));
+            wrong(Place::at(path, line, column), e.message())
+        })?;
+        match settings.contradiction() {
+            Some(reason) => Err(wrong(Words::of(&text).place(path, &reason), &reason)),
+            None => Ok(settings),
+        }
     }
 }
 
-/// A name that a folder can have: nothing of it leads into another.
+/// A name that a folder can have, here and under Windows: nothing of it leads into another, and no file or device
+/// is called so.
 fn folder_name(name: &str) -> String {
     let flat = name.replace(['/', '\\'], "-");
     let bare = flat.trim_matches('.').trim();
-    if bare.is_empty() { "fabric".into() } else { bare.into() }
+    if bare.is_empty() {
+        return "fabric".into();
+    }
+    let lower = bare.to_lowercase();
+    let stem = lower.split('.').next().unwrap_or_default();
+    let port =
+        |kind| stem.strip_prefix(kind).is_some_and(|n| n.len() == 1 && n.as_bytes()[0].is_ascii_digit());
+    let device = ["con", "prn", "aux", "nul"].contains(&stem) || port("com") || port("lpt");
+    if device || OF_RUN.contains(&lower.as_str()) { format!("fabric-{bare}") } else { bare.into() }
 }
+
+/// What `run` puts beside the folders of the fabrics.
+const OF_RUN: [&str; 12] = [
+    "cases",
+    "drape_parity.png",
+    "fabrics.csv",
+    "fabrics.parquet",
+    "friction_energy.png",
+    "friction_stiffness.png",
+    "index.html",
+    "parity.png",
+    "predictions.csv",
+    "predictions.parquet",
+    "problems.csv",
+    "run.json",
+];
 
 /// Whether a fabric has files of its own of that name.
 fn is_reserved(name: &str) -> bool {
-    ["sheet", "section", "tensile", "shear", "bending", "compression"].contains(&name)
+    let name = name.to_lowercase();
+    ["sheet", "section", "tensile", "shear", "bending", "compression"].contains(&name.as_str())
         || name.starts_with("friction_")
 }
 
 /// Numbers cases that share a name, so that the files of none take the place of another's.
 pub fn distinguish_cases(cases: &mut [Case]) -> Vec<Finding> {
-    let own: BTreeSet<String> = cases.iter().map(|c| c.name.clone()).collect();
+    let own: BTreeSet<String> = cases.iter().map(|c| c.name.to_lowercase()).collect();
     let (mut seen, mut findings) = (BTreeSet::new(), Vec::new());
     for case in cases {
         let reserved = case.fabric.is_some() && is_reserved(&case.name);
-        if !reserved && seen.insert(case.name.clone()) {
+        if !reserved && seen.insert(case.name.to_lowercase()) {
             continue;
         }
         let numbered = |n: usize| format!("{}-{n}", case.name);
-        let free = |name: &String| !own.contains(name) && !seen.contains(name);
+        let free = |name: &String| {
+            let name = name.to_lowercase();
+            !own.contains(&name) && !seen.contains(&name)
+        };
         let Some(name) = (2..).map(numbered).find(free) else { continue };
         let why = if reserved { "a file of every fabric" } else { "another case" };
         let text = format!("{why} is named {} too; this case is called {name}", case.name);
         findings.push(Finding::new("O056", text).at(Place::file(&case.path)));
-        seen.insert(name.clone());
+        seen.insert(name.to_lowercase());
         case.name = name;
     }
     findings
@@ -250,14 +288,15 @@ fn distinguish(fabrics: &mut [Fabric]) {
             sheet.name = name;
         }
     }
-    let own: BTreeSet<String> = fabrics.iter().map(|f| f.sheet.name.clone()).collect();
+    // Names that differ in case only are one folder under Windows and macOS.
+    let own: BTreeSet<String> = fabrics.iter().map(|f| f.sheet.name.to_lowercase()).collect();
     let mut seen: BTreeMap<String, usize> = BTreeMap::new();
     for Fabric { path, sheet } in fabrics {
-        let count = seen.entry(sheet.name.clone()).or_default();
+        let count = seen.entry(sheet.name.to_lowercase()).or_default();
         *count += 1;
         if *count > 1 {
             let mut name = format!("{}-{count}", sheet.name);
-            while own.contains(&name) {
+            while own.contains(&name.to_lowercase()) {
                 *count += 1;
                 name = format!("{}-{count}", sheet.name);
             }
@@ -319,6 +358,11 @@ impl From<Units> for UnitSystem {
     }
 }
 
+/// Paths as people read them: a name from an old share may be no UTF-8, which JSON could not hold.
+pub fn lossy(paths: &[PathBuf]) -> Vec<Cow<'_, str>> {
+    paths.iter().map(|p| p.to_string_lossy()).collect()
+}
+
 /// Whether an argument means standard input or output.
 pub fn is_stdin(path: &Path) -> bool {
     path.as_os_str() == "-"
@@ -327,15 +371,28 @@ pub fn is_stdin(path: &Path) -> bool {
 /// Standard input stands for a file of this name.
 const STDIN: &str = "<stdin>";
 
-fn stdin_bytes() -> Result<Vec<u8>, Failure> {
-    let mut bytes = Vec::new();
-    match std::io::stdin().read_to_end(&mut bytes) {
-        Ok(_) => Ok(bytes),
-        Err(e) => {
-            let text = format!("standard input cannot be read: {e}");
-            Err(Failure::new("O052", text).at(Place::file(STDIN)))
-        }
-    }
+/// The bytes of standard input, which is read once: whether they are a case, a sheet or measurements is seen by those
+/// that ask.
+///
+/// # Errors
+/// O052.
+pub fn stdin_bytes() -> Result<&'static [u8], Failure> {
+    static BYTES: OnceLock<Result<Vec<u8>, String>> = OnceLock::new();
+    let read = || {
+        let mut bytes = Vec::new();
+        std::io::stdin().read_to_end(&mut bytes).map_err(|e| e.to_string())?;
+        Ok(bytes)
+    };
+    BYTES.get_or_init(read).as_deref().map_err(|e| {
+        Failure::new("O052", format!("standard input cannot be read: {e}")).at(Place::file(STDIN))
+    })
+}
+
+/// The text of standard input, if it is that of a case.
+fn case_on_stdin() -> Option<&'static str> {
+    let text = std::str::from_utf8(stdin_bytes().ok()?).ok()?;
+    let table: toml::Table = toml::from_str(text).ok()?;
+    ["sheet", "virtual_test", "bending_test"].iter().any(|key| table.contains_key(*key)).then_some(text)
 }
 
 /// The fabric, and the errors of those that a table on standard input could not give.
@@ -366,11 +423,17 @@ pub fn cases(inputs: &[PathBuf]) -> (Vec<Case>, Vec<Failure>) {
     for input in inputs {
         if input.is_dir() && !input.join("fabric.toml").exists() {
             below(input, &mut files);
-        } else if is_case(input) {
+        } else if !is_stdin(input) && is_case(input) {
             files.push(input.clone());
         }
     }
     let (mut cases, mut failures, mut seen) = (Vec::new(), Vec::new(), BTreeSet::new());
+    if let Some(text) = inputs.iter().any(|p| is_stdin(p)).then(case_on_stdin).flatten() {
+        match Case::parse(Path::new(STDIN), text) {
+            Ok(case) => cases.push(Case { name: "stdin".into(), ..case }),
+            Err(error) => failures.push(error.into()),
+        }
+    }
     files.retain(|file| file.canonicalize().map_or(true, |real| seen.insert(real)));
     for file in files {
         match Case::read(&file) {
@@ -381,8 +444,11 @@ pub fn cases(inputs: &[PathBuf]) -> (Vec<Case>, Vec<Failure>) {
     (cases, failures)
 }
 
-/// Whether a path is named like a case file.
+/// Whether a path is named like a case file, or stands for one on standard input.
 pub fn is_case(path: &Path) -> bool {
+    if is_stdin(path) {
+        return case_on_stdin().is_some();
+    }
     let name = path.file_name().and_then(|n| n.to_str()).unwrap_or_default();
     name.ends_with(".toml") && !name.starts_with('.') && !["fabric.toml", "dialect.toml"].contains(&name)
 }

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::diagnostics::Failure;
 use super::drape;
-use super::inputs::{Fabric, sha256, unread};
+use super::inputs::{Fabric, lossy, sha256, unread};
 use super::output::{Columns, now};
 use super::page::page;
 use super::search::{is_unconverged, unconverged};
@@ -193,18 +193,19 @@ fn table<R: Row>(tree: &Tree, name: &str, rows: &[R]) -> Result<(), Failure> {
 fn about(options: &Options, work: &Work) -> serde_json::Value {
     let sources: Vec<_> = work.fabrics.iter().flat_map(|f| &f.sheet.sources).collect();
     let stated = work.fabrics.iter().map(|f| f.path.join("fabric.toml")).filter(|p| p.is_file());
-    let stated: Vec<_> = stated.map(|path| json!({"path": path, "sha256": sha256(&path)})).collect();
+    let stated: Vec<_> =
+        stated.map(|path| json!({"path": path.to_string_lossy(), "sha256": sha256(&path)})).collect();
     let mut about = json!({
         "schema": "kesf.run/1",
         "version": env!("CARGO_PKG_VERSION"),
         "options": {
-            "inputs": options.inputs, "charts": !options.task.no_charts, "drape": options.drape,
+            "inputs": lossy(&options.inputs), "charts": !options.task.no_charts, "drape": options.drape,
             "strict": options.task.strict, "solver": options.task.solver.map(|s| format!("{s:?}").to_lowercase()),
             "evaluation": options.task.evaluate.told(),
         },
         "inputs": sources,
         "fabrics": stated,
-        "cases": work.cases.iter().map(|c| json!({"name": c.name, "path": c.path, "sha256": sha256(&c.path)})).collect::<Vec<_>>(),
+        "cases": work.cases.iter().map(|c| json!({"name": c.name, "path": c.path.to_string_lossy(), "sha256": sha256(&c.path)})).collect::<Vec<_>>(),
     });
     if options.stamp {
         about["date"] = now().into();
@@ -222,7 +223,7 @@ fn tell(
     if ui.json {
         return ui
             .document(
-                json!({"schema": "kesf.results/1", "output": options.output, "predictions": predictions}),
+                json!({"schema": "kesf.results/1", "output": options.output.to_string_lossy(), "predictions": predictions}),
             )
             .map(drop);
     }

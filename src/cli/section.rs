@@ -1,5 +1,6 @@
 //! `kesf section`: sheets to the matrices of a shell, with every assumption.
 
+use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -7,7 +8,7 @@ use clap::Args;
 use nalgebra::Matrix3;
 
 use super::diagnostics::Failure;
-use super::inputs::{Curves, EvaluateArgs, Fabric, names, nothing_to_read};
+use super::inputs::{Curves, EvaluateArgs, Fabric, is_stdin, names, nothing_to_read, stdin_bytes};
 use super::output::{Columns, Format, OutputArgs};
 use super::{Exit, Ui};
 use crate::characterise::{FabricSheet, Modulus};
@@ -42,7 +43,13 @@ fn own_documents(inputs: &[PathBuf], ui: &mut Ui) -> (Vec<Own>, Vec<PathBuf>, Ve
     let (mut documents, mut others, mut failures) = (Vec::new(), Vec::new(), Vec::new());
     for path in inputs {
         let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
-        let bytes = if json { std::fs::read(path).ok() } else { None };
+        let bytes = if is_stdin(path) {
+            stdin_bytes().ok().map(Cow::Borrowed)
+        } else if json {
+            std::fs::read(path).ok().map(Cow::Owned)
+        } else {
+            None
+        };
         match bytes.map_or(Ok(None), |b| read_back::read(&b)) {
             Ok(Some(document)) => documents.push((path.clone(), document)),
             Ok(None) => others.push(path.clone()),

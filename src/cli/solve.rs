@@ -38,6 +38,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     work.cases.retain(|c| c.sheet.is_some());
     let (tasks, homeless) = work.tasks();
     work.cases.iter().filter_map(|c| work.without_law(c)).for_each(|f| ui.diagnostics.finding(&f));
+    work.idle(&tasks).iter().for_each(|text| ui.diagnostics.note(text));
     if tasks.is_empty() && homeless.is_empty() && work.failures.is_empty() {
         return Err(Failure::new("O055", "there is no case with a [sheet] in the inputs")
             .hint("name a case file; a [virtual_test] belongs to `kesf compare`"));

@@ -84,6 +84,9 @@ impl FabricReport {
                 report.charts(sheet, &[], tree);
             }
         }
+        for finding in &mut report.findings {
+            finding.place.get_or_insert_with(|| Place::file(&fabric.path));
+        }
         report.problems = problems(&report.findings, &sheet.name);
         report.problems.iter_mut().for_each(|p| p.fabric = Some(sheet.name.clone()));
         if let Some(failure) = report.failures.first() {

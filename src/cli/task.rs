@@ -80,6 +80,8 @@ pub struct Work {
 pub struct Task<'a> {
     pub case: &'a Case,
     pub fabric: Option<&'a FabricSheet>,
+    /// Folder or file of its fabric.
+    path: Option<&'a Path>,
     shared: Arc<Shared<'a>>,
     /// Its bands, once they are sampled.
     sampling: Arc<OnceLock<Option<Sampling>>>,
@@ -125,7 +127,17 @@ impl TaskArgs {
         failures.iter().for_each(|f| ui.diagnostics.error(f));
         let mut folders: Vec<PathBuf> =
             inputs.iter().filter(|p| p.is_dir() || !inputs::is_case(p)).cloned().collect();
-        for named in cases.iter().filter_map(named_fabric) {
+        for case in &cases {
+            let Some(named) = named_fabric(case) else { continue };
+            if !named.exists() {
+                let failure = no_such_fabric(case);
+                ui.diagnostics.error(&failure);
+                failures.push(failure);
+                continue;
+            }
+            if let Some(finding) = two_fabrics(case, &named) {
+                ui.diagnostics.finding(&finding);
+            }
             let known = folders.iter().any(|f| is_within(&named, f));
             if !known {
                 folders.push(named);
@@ -144,10 +156,38 @@ fn watch<'a>(stage: &'a (dyn Fn() + Sync)) -> Watch<'a> {
 }
 
 /// The folder that a case names: as it stands, else beside the case file.
-fn named_fabric(case: &Case) -> Option<PathBuf> {
+pub fn named_fabric(case: &Case) -> Option<PathBuf> {
     let path = PathBuf::from(case.fabric.as_deref().filter(|f| *f != "*")?);
-    let beside = case.path.parent().map(|p| p.join(&path)).filter(|p| p.exists());
+    let beside = beside_case(case, &path);
     Some(if path.exists() { path } else { beside.unwrap_or(path) })
+}
+
+/// A path beside the case file, if it is there.
+fn beside_case(case: &Case, path: &Path) -> Option<PathBuf> {
+    case.path.parent().map(|p| p.join(path)).filter(|p| p.exists())
+}
+
+/// O055: a case whose fabric is nowhere.
+pub fn no_such_fabric(case: &Case) -> Failure {
+    let name = case.fabric.as_deref().unwrap_or_default();
+    let text = format!("there is no fabric `{name}`, neither from here nor beside the case");
+    let place = case.place_of(&text);
+    Failure::new("O055", text)
+        .at(place)
+        .hint("correct the name in the case, or write fabric = \"*\" and name a fabric beside it")
+}
+
+/// O060: a case whose fabric is there twice, and which one was taken.
+fn two_fabrics(case: &Case, taken: &Path) -> Option<Finding> {
+    let name = case.fabric.as_deref()?;
+    let other = beside_case(case, Path::new(name)).filter(|p| !is_within(p, taken))?;
+    let text = format!(
+        "`{name}` is here and beside the case; this one is taken: {}, not {}",
+        std::path::absolute(taken).unwrap_or_else(|_| taken.to_path_buf()).display(),
+        std::path::absolute(&other).unwrap_or(other).display(),
+    );
+    let place = case.place_of(&text);
+    Some(Finding::new("O060", text).at(place))
 }
 
 fn is_within(path: &Path, folder: &Path) -> bool {
@@ -168,16 +208,20 @@ impl Work {
             let options = SolveOptions { threads, ..SolveOptions::default() };
             let shared = Arc::new(Shared { options, ..Shared::default() });
             if case.section.is_some() {
-                tasks.push(Task { case, fabric: None, shared, sampling: Arc::default() });
+                tasks.push(Task { case, fabric: None, path: None, shared, sampling: Arc::default() });
                 continue;
             }
             let named = named_fabric(case);
+            if named.as_ref().is_some_and(|path| !path.exists()) {
+                continue; // told already
+            }
             let is_for = |f: &&'w Fabric| named.as_ref().is_none_or(|n| is_within(&f.path, n));
             let before = tasks.len();
             let homeless = |text: String| Failure::new("O055", text).at(Place::file(&case.path));
             let task = |f: &'w Fabric| Task {
                 case,
                 fabric: Some(&f.sheet),
+                path: Some(&f.path),
                 shared: Arc::clone(&shared),
                 sampling: Arc::default(),
             };
@@ -219,6 +263,23 @@ impl Work {
     }
 }
 
+impl Work {
+    /// What to say of fabrics that no task is for because every case brings or names its own.
+    pub fn idle(&self, tasks: &[Task]) -> Option<String> {
+        let own = |c: &Case| c.section.is_some() || named_fabric(c).is_some();
+        if !self.cases.iter().all(own) {
+            return None;
+        }
+        let used =
+            |f: &&Fabric| tasks.iter().any(|t| t.fabric.is_some_and(|s| std::ptr::eq(s, &raw const f.sheet)));
+        let idle: Vec<&str> =
+            self.fabrics.iter().filter(|f| !used(f)).map(|f| f.sheet.name.as_str()).collect();
+        (!idle.is_empty()).then(|| {
+            format!("not used, as every case names its own fabric or has a [section]: {}", idle.join(", "))
+        })
+    }
+}
+
 /// What is known of the fabrics of tasks, and of the sections that were made of them, each thing once.
 pub fn findings<'a>(tasks: impl Iterator<Item = &'a Task<'a>>) -> Vec<(String, Finding)> {
     let mut told = BTreeSet::new();
@@ -229,8 +290,10 @@ pub fn findings<'a>(tasks: impl Iterator<Item = &'a Task<'a>>) -> Vec<(String, F
             && task.case.virtual_test.as_ref().is_none_or(|t| t.test != Test::Compression);
         let made = if uses_section { task.section().ok().and_then(|(_, made)| made) } else { None };
         for finding in sheet.findings.iter().chain(made.iter().flat_map(|c| &c.findings)) {
+            let mut finding = finding.clone();
+            finding.place = finding.place.or_else(|| task.path.map(Place::file));
             if told.insert((sheet.name.clone(), finding.clone())) {
-                all.push((sheet.name.clone(), finding.clone()));
+                all.push((sheet.name.clone(), finding));
             }
         }
     }
@@ -241,7 +304,11 @@ impl Task<'_> {
     /// A failure of this task: with its name, at its case file unless it has a place of its own.
     fn told(&self, failure: Failure) -> Failure {
         let failure = failure.of(&self.name());
-        if failure.place.is_some() { failure } else { failure.at(Place::file(&self.case.path)) }
+        if failure.place.is_some() {
+            return failure;
+        }
+        let place = self.case.place_of(&failure.message);
+        failure.at(place)
     }
 
     /// Names the task in messages: `case`, or `case of fabric`.

@@ -7,6 +7,7 @@ use serde_json::json;
 use super::bending;
 use super::diagnostics::Failure;
 use super::entry::{comparison, solution};
+use super::inputs::is_stdin;
 use super::sampled;
 use super::task::{Task, TaskArgs, Tested};
 use crate::characterise::FabricSheet;
@@ -32,6 +33,10 @@ pub struct Tree {
 impl Tree {
     /// Opens the folder before the long work.
     pub fn open(root: &Path, options: &TaskArgs) -> Result<Self, Failure> {
+        if is_stdin(root) {
+            return Err(Failure::new("O050", "several files do not go to standard output")
+                .hint("name a folder, such as `-o out`; `--json` prints one document"));
+        }
         Ok(Self { folder: OutputFolder::open(root, options.force)?, charts: !options.no_charts })
     }
 

@@ -8,22 +8,35 @@
 //! sections, `M` meshes, elements and models, `N` numerics, `S` studies (cases and
 //! comparisons), `O` output files and usage.
 
+mod words;
+
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
+
+pub(crate) use words::{Words, position};
 
 /// Where in an input something was found. Lines and columns count from 1; a column counts
 /// characters of the decoded line. 0 means "not applicable".
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Place {
     /// The file, as it was named to us.
+    #[serde(serialize_with = "path_as_text")]
     pub path: PathBuf,
     /// Line, from 1; 0 when the whole file is meant.
     pub line: usize,
     /// Column, from 1; 0 when the whole line is meant.
     pub column: usize,
+}
+
+/// Writes a path as people read it: a name from an old share may be no UTF-8.
+///
+/// # Errors
+/// Those of the serializer.
+pub fn path_as_text<S: Serializer>(path: impl AsRef<Path>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&path.as_ref().display())
 }
 
 impl Place {

@@ -86,6 +86,7 @@ impl Origin {
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Source {
     /// Path as it was named to us.
+    #[serde(serialize_with = "crate::finding::path_as_text")]
     pub path: PathBuf,
     /// SHA-256 of the bytes, lower-case hexadecimal.
     pub sha256: String,
@@ -207,6 +208,7 @@ pub struct FabricInput {
     /// Identifier: the folder's name, or the file's stem.
     pub name: String,
     /// The folder or file.
+    #[serde(serialize_with = "crate::finding::path_as_text")]
     pub path: PathBuf,
     /// What `fabric.toml` says.
     pub info: FabricInfo,
@@ -229,6 +231,7 @@ pub struct FabricInput {
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Inference {
     /// Path as it was named to us.
+    #[serde(serialize_with = "crate::finding::path_as_text")]
     pub path: PathBuf,
     /// One decision each, in the order in which they were taken.
     pub decisions: Vec<String>,

@@ -214,6 +214,18 @@ impl QuadMesh {
         edges.iter().map(|e| normals[&key(*e)]).collect()
     }
 
+    /// The nodes within a distance (m) of the middle of the bounds, in their order.
+    pub fn nodes_about_the_middle(&self, radius: f64) -> Vec<u32> {
+        let [low, high] = self.bounds();
+        let middle = nalgebra::center(&low, &high);
+        // A node on the circle itself belongs to it, whatever the rounding.
+        let reach = radius * (1.0 + 1e-9);
+        let near = |(i, node): (usize, &Point3<f64>)| {
+            (nalgebra::distance(node, &middle) <= reach).then_some(i as u32)
+        };
+        self.nodes.iter().enumerate().filter_map(near).collect()
+    }
+
     /// Whether every node has the same z.
     pub fn is_level(&self) -> bool {
         self.nodes.windows(2).all(|w| w[0].z == w[1].z)

@@ -1,8 +1,11 @@
 //! Unit symbols: products, quotients and powers of a short table of atoms.
 
+use std::fmt;
+use std::marker::PhantomData;
 use std::str::FromStr;
 
-use serde::{Deserialize, Deserializer, de};
+use serde::Deserializer;
+use serde::de::{self, Visitor};
 use thiserror::Error;
 use unicode_normalization::UnicodeNormalization;
 
@@ -56,6 +59,12 @@ pub enum QuantityError {
     /// `a/b·c` can be read in two ways.
     #[error("`{found}` can be read in two ways: write a/(b·c) or (a·c)/b with the parentheses")]
     Ambiguous {
+        /// The text.
+        found: String,
+    },
+    /// A range that begins above its end.
+    #[error("`{found}` begins above its end: give the lower value first")]
+    Order {
         /// The text.
         found: String,
     },
@@ -266,7 +275,8 @@ pub fn parse_quantity(text: &str, example: &'static str) -> Result<(f64, Unit), 
         })
         .map_or(text.len(), |(i, _)| i);
     let value: f64 = text[..end].parse().map_err(|_| no_number())?;
-    if text[end..].starts_with(',') {
+    // `1e999` is read as infinite.
+    if !value.is_finite() || text[end..].starts_with(',') {
         return Err(no_number());
     }
     let unit = text[end..].trim();
@@ -289,19 +299,40 @@ where
     D: Deserializer<'de>,
     Q: FromStr<Err = QuantityError>,
 {
-    #[derive(Deserialize)]
-    #[serde(untagged)]
-    enum TextOrNumber {
-        Text(String),
-        Number(f64),
+    // Not an untagged enum: that would hide which key is missing.
+    struct Text<Q> {
+        example: &'static str,
+        quantity: PhantomData<Q>,
     }
-    match TextOrNumber::deserialize(d) {
-        Ok(TextOrNumber::Text(text)) => text.parse().map_err(de::Error::custom),
-        Ok(TextOrNumber::Number(number)) => {
-            Err(de::Error::custom(QuantityError::NoUnit { found: number.to_string(), example }))
+    impl<Q: FromStr<Err = QuantityError>> Text<Q> {
+        fn without_unit<E: de::Error>(self, number: impl fmt::Display) -> Result<Q, E> {
+            Err(E::custom(QuantityError::NoUnit { found: number.to_string(), example: self.example }))
         }
-        Err(_) => Err(de::Error::custom(format!("expected a quantity in quotes, such as \"{example}\""))),
     }
+    impl<Q: FromStr<Err = QuantityError>> Visitor<'_> for Text<Q> {
+        type Value = Q;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            write!(f, "a quantity in quotes, such as \"{}\"", self.example)
+        }
+
+        fn visit_str<E: de::Error>(self, text: &str) -> Result<Q, E> {
+            text.parse().map_err(E::custom)
+        }
+
+        fn visit_i64<E: de::Error>(self, number: i64) -> Result<Q, E> {
+            self.without_unit(number)
+        }
+
+        fn visit_u64<E: de::Error>(self, number: u64) -> Result<Q, E> {
+            self.without_unit(number)
+        }
+
+        fn visit_f64<E: de::Error>(self, number: f64) -> Result<Q, E> {
+            self.without_unit(number)
+        }
+    }
+    d.deserialize_any(Text { example, quantity: PhantomData })
 }
 
 #[cfg(test)]
@@ -368,5 +399,9 @@ mod tests {
         }
         let error = toml::from_str::<Sheet>("width = 20").unwrap_err().to_string();
         assert!(error.contains("\"20 cm\""), "{error}");
+        let error = toml::from_str::<Sheet>("width = true").unwrap_err().to_string();
+        assert!(error.contains("expected a quantity in quotes, such as \"20 cm\""), "{error}");
+        let error = toml::from_str::<Sheet>("").unwrap_err().to_string();
+        assert!(error.contains("missing field `width`"), "{error}");
     }
 }

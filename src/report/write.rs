@@ -1,10 +1,10 @@
 //! Putting files in place: whole or not at all, and never over somebody else's work.
 
 use std::collections::BTreeMap;
-use std::fs;
-use std::io::{self, Write as _};
+use std::fs::{self, File, TryLockError};
+use std::io::{self, Read as _, Write as _};
 use std::path::{Component, Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -12,6 +12,9 @@ use thiserror::Error;
 
 /// The list of files that this program wrote into a folder, with their hashes.
 pub const MANIFEST: &str = ".kesf-manifest.json";
+/// What a run is writing, until its manifest is there: a line for each file, ahead of it, so that a run that was
+/// killed can be repeated.
+const JOURNAL: &str = ".kesf-journal";
 const SCHEMA: &str = "kesf.manifest/1";
 
 /// Why a file was not written.
@@ -55,6 +58,12 @@ pub enum OutputError {
         path: PathBuf,
         /// What is wrong with it.
         problem: String,
+    },
+    /// O005: another run is writing into the folder.
+    #[error("{}: O005 another kesf is writing into this folder; wait for it, or write elsewhere with -o", path.display())]
+    Busy {
+        /// The folder.
+        path: PathBuf,
     },
 }
 
@@ -136,16 +145,26 @@ pub fn left(root: &Path) -> Result<impl Fn(&str) -> Bytes, OutputError> {
 
 /// A folder of results. It may be written to from several threads.
 ///
-/// A file is overwritten only if it is as this program left it (the manifest knows its hash) or holds the
-/// same bytes already; so a run that was interrupted before [`finish`](Self::finish) can be repeated.
+/// A file is overwritten only if it is as this program left it (the manifest or the journal of a run that was killed
+/// knows its hash) or holds the same bytes already. What was written is noted in the manifest by
+/// [`finish`](Self::finish), or when the folder is dropped.
 #[derive(Debug)]
 pub struct OutputFolder {
     root: PathBuf,
     force: bool,
-    /// What earlier runs wrote.
-    earlier: BTreeMap<String, String>,
-    /// What this run wrote.
-    written: Mutex<BTreeMap<String, String>>,
+    /// What earlier runs wrote; several hashes where one of them was killed.
+    earlier: BTreeMap<String, Vec<String>>,
+    written: Mutex<Written>,
+    finished: bool,
+}
+
+/// What this run wrote.
+#[derive(Debug)]
+struct Written {
+    /// Name and hash.
+    files: BTreeMap<String, String>,
+    /// Locked as long as this run lasts.
+    journal: File,
 }
 
 impl OutputFolder {
@@ -153,13 +172,13 @@ impl OutputFolder {
     ///
     /// # Errors
     /// [`OutputError::Write`] if it cannot be made or is read-only, [`OutputError::Manifest`] if its manifest
-    /// is not one (unless `force`).
+    /// is not one (unless `force`), [`OutputError::Busy`] if another run is writing into it.
     pub fn open(root: &Path, force: bool) -> Result<Self, OutputError> {
         let failed = |source: io::Error| OutputError::Write { path: root.to_path_buf(), source };
         fs::create_dir_all(root).map_err(failed)?;
         tempfile::Builder::new().prefix(".kesf-").tempfile_in(root).map_err(failed)?;
         let path = root.join(MANIFEST);
-        let earlier = match existing(&path)? {
+        let files = match existing(&path)? {
             None => BTreeMap::new(),
             Some(bytes) => match read_manifest(&bytes) {
                 Ok(files) => files,
@@ -167,7 +186,17 @@ impl OutputFolder {
                 Err(problem) => return Err(OutputError::Manifest { path, problem }),
             },
         };
-        Ok(Self { root: root.to_path_buf(), force, earlier, written: Mutex::default() })
+        let mut earlier: BTreeMap<String, Vec<String>> =
+            files.into_iter().map(|(name, hash)| (name, vec![hash])).collect();
+        let (journal, lines) = open_journal(root)?;
+        // The last line may have been cut short.
+        for (name, hash) in
+            lines.lines().filter_map(|line| serde_json::from_str::<(String, String)>(line).ok())
+        {
+            earlier.entry(name).or_default().push(hash);
+        }
+        let written = Mutex::new(Written { files: BTreeMap::new(), journal });
+        Ok(Self { root: root.to_path_buf(), force, earlier, written, finished: false })
     }
 
     /// The folder.
@@ -180,7 +209,7 @@ impl OutputFolder {
     /// # Errors
     /// [`OutputError::Name`], [`OutputError::NotOurs`] or [`OutputError::Write`]; nothing is changed then.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
-        if !inside(name) || name == MANIFEST || name.contains('\\') {
+        if !inside(name) || [MANIFEST, JOURNAL].contains(&name) || name.contains('\\') {
             return Err(OutputError::Name { name: name.to_string() });
         }
         let path = self.root.join(name);
@@ -188,25 +217,40 @@ impl OutputFolder {
         let old = existing(&path)?;
         if old.as_deref() != Some(bytes) {
             let old = old.as_deref().map(hash);
-            // Ours: as an earlier run left it, or written by this one.
-            let written = self.written.lock().unwrap_or_else(PoisonError::into_inner).get(name).cloned();
-            let known = [self.earlier.get(name), written.as_ref()];
-            if old.is_some() && !self.force && !known.contains(&old.as_ref()) {
-                return Err(OutputError::NotOurs { path });
+            if let Some(old) = old.filter(|_| !self.force) {
+                // Ours: as an earlier run left it, or written by this one.
+                let earlier = self.earlier.get(name).is_some_and(|hashes| hashes.contains(&old));
+                if !earlier && self.written().files.get(name) != Some(&old) {
+                    return Err(OutputError::NotOurs { path });
+                }
             }
+            self.announce(name, &new)?;
             if let Some(folder) = path.parent() {
                 fs::create_dir_all(folder)
                     .map_err(|source| OutputError::Write { path: folder.to_path_buf(), source })?;
             }
             write_atomic(&path, bytes)?;
         }
-        self.written.lock().unwrap_or_else(PoisonError::into_inner).insert(name.to_string(), new);
+        self.written().files.insert(name.to_string(), new);
         Ok(())
+    }
+
+    fn written(&self) -> MutexGuard<'_, Written> {
+        self.written.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Notes in the journal what will be written.
+    fn announce(&self, name: &str, hash: &str) -> Result<(), OutputError> {
+        let line = format!("{}\n", serde_json::json!([name, hash]));
+        self.written()
+            .journal
+            .write_all(line.as_bytes())
+            .map_err(|source| OutputError::Write { path: self.root.join(JOURNAL), source })
     }
 
     /// Whether this run wrote a file of that name.
     pub fn wrote(&self, name: &str) -> bool {
-        self.written.lock().unwrap_or_else(PoisonError::into_inner).contains_key(name)
+        self.written().files.contains_key(name)
     }
 
     /// Writes the manifest. Returns the names that earlier runs wrote, this one did not, and are still there:
@@ -214,13 +258,28 @@ impl OutputFolder {
     ///
     /// # Errors
     /// [`OutputError::Write`].
-    pub fn finish(self) -> Result<Vec<String>, OutputError> {
-        let mut files = self.written.into_inner().unwrap_or_else(PoisonError::into_inner);
+    pub fn finish(mut self) -> Result<Vec<String>, OutputError> {
+        self.settle()
+    }
+
+    /// Writes the manifest and takes the journal away.
+    fn settle(&mut self) -> Result<Vec<String>, OutputError> {
+        self.finished = true;
+        let mut files = std::mem::take(&mut self.written().files);
         let mut left_over = Vec::new();
-        for (name, hash) in self.earlier {
-            if !files.contains_key(&name) && self.root.join(&name).exists() {
+        for (name, hashes) in std::mem::take(&mut self.earlier) {
+            if files.contains_key(&name) {
+                continue;
+            }
+            // Of a run that was killed, the file may be as it was before or after.
+            let now = || existing(&self.root.join(&name)).ok().flatten().map(|bytes| hash(&bytes));
+            let left = match &hashes[..] {
+                [only] => self.root.join(&name).exists().then(|| only.clone()),
+                several => now().filter(|now| several.contains(now)),
+            };
+            if let Some(left) = left {
                 left_over.push(name.clone());
-                files.insert(name, hash);
+                files.insert(name, left);
             }
         }
         let path = self.root.join(MANIFEST);
@@ -229,8 +288,33 @@ impl OutputFolder {
             .map_err(|e| OutputError::Manifest { path: path.clone(), problem: e.to_string() })?;
         text.push('\n');
         write_atomic(&path, text.as_bytes())?;
+        // What is left of it does no harm: the manifest knows the same.
+        let _ = fs::remove_file(self.root.join(JOURNAL));
         Ok(left_over)
     }
+}
+
+impl Drop for OutputFolder {
+    /// A run that ends early has left files as well.
+    fn drop(&mut self) {
+        if !self.finished {
+            let _ = self.settle();
+        }
+    }
+}
+
+/// The journal, locked for this run, and what is in it.
+fn open_journal(root: &Path) -> Result<(File, String), OutputError> {
+    let path = root.join(JOURNAL);
+    let failed = |source: io::Error| OutputError::Write { path: path.clone(), source };
+    let mut journal = File::options().create(true).read(true).append(true).open(&path).map_err(failed)?;
+    // Some network folders know no locks: two runs at once are then not noticed.
+    if let Err(TryLockError::WouldBlock) = journal.try_lock() {
+        return Err(OutputError::Busy { path: root.to_path_buf() });
+    }
+    let mut lines = Vec::new();
+    journal.read_to_end(&mut lines).map_err(failed)?;
+    Ok((journal, String::from_utf8_lossy(&lines).into_owned()))
 }
 
 fn read_manifest(bytes: &[u8]) -> Result<BTreeMap<String, String>, String> {
@@ -279,14 +363,41 @@ mod tests {
     }
 
     #[test]
-    fn an_interrupted_run_can_be_repeated_without_a_manifest() {
+    fn a_run_that_ends_early_can_be_repeated_with_other_inputs() {
         let folder = tempfile::tempdir().unwrap();
         let out = OutputFolder::open(folder.path(), false).unwrap();
         out.write("a.csv", b"1").unwrap();
         drop(out);
         let out = OutputFolder::open(folder.path(), false).unwrap();
-        out.write("a.csv", b"1").unwrap();
+        out.write("a.csv", b"2").unwrap();
         out.finish().unwrap();
+        assert_eq!(names(folder.path()), [MANIFEST, "a.csv"]);
+    }
+
+    #[test]
+    fn a_run_that_was_killed_can_be_repeated_with_other_inputs() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text) in [("a.csv", "1"), ("b.csv", "1"), ("mine.csv", "mine")] {
+            fs::write(folder.path().join(name), text).unwrap();
+        }
+        // Before `a.csv` there was another; `b.csv` was announced and not written; the last line is cut short.
+        let lines = format!("{:?}\n{:?}\n[\"c.c", ["a.csv", &hash(b"1")], ["b.csv", &hash(b"2")]);
+        fs::write(folder.path().join(JOURNAL), lines).unwrap();
+        let out = OutputFolder::open(folder.path(), false).unwrap();
+        out.write("a.csv", b"3").unwrap();
+        assert!(matches!(out.write("b.csv", b"3"), Err(OutputError::NotOurs { .. })));
+        assert!(matches!(out.write("mine.csv", b"3"), Err(OutputError::NotOurs { .. })));
+        out.finish().unwrap();
+        assert_eq!(names(folder.path()), [MANIFEST, "a.csv", "b.csv", "mine.csv"]);
+    }
+
+    #[test]
+    fn two_runs_at_once_are_kept_apart() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = OutputFolder::open(folder.path(), false).unwrap();
+        assert!(matches!(OutputFolder::open(folder.path(), true), Err(OutputError::Busy { .. })));
+        first.finish().unwrap();
+        assert!(OutputFolder::open(folder.path(), false).is_ok());
     }
 
     #[test]

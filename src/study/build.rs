@@ -139,8 +139,18 @@ fn sheet_mesh(case: &Case, sheet: &Sheet) -> Result<QuadMesh, StudyError> {
             sheet.warp_angle_deg
         )));
     }
-    let mesh = mesh::distorted(mesh, sheet.distortion, sheet.seed)?;
+    let mut mesh = mesh::distorted(mesh, sheet.distortion, sheet.seed)?;
     mesh.check()?;
+    if let Some(radius) = sheet.inside_radius {
+        let nodes = mesh.nodes_about_the_middle(radius.si());
+        if nodes.is_empty() {
+            return Err(case.inconsistent(format!(
+                "[sheet] `inside_radius` of {} m has no node of the mesh in it: give a larger one, or more `cells`",
+                radius.si()
+            )));
+        }
+        mesh.node_sets.insert("inside_radius".into(), nodes);
+    }
     Ok(mesh)
 }
 

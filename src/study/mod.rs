@@ -137,6 +137,6 @@ impl StudyError {
 
 impl Case {
     fn inconsistent(&self, message: String) -> StudyError {
-        StudyError::Case(CaseError::Inconsistent { place: Place::file(&self.path), message })
+        self.refused(message).into()
     }
 }

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::case::Reference;
+use super::case::{Case, Reference};
 use super::convergence::Convergence;
 use super::dynamics::History;
 use super::nonlinear::LoadPath;
@@ -16,7 +16,7 @@ use crate::fields::{
 };
 use crate::finding::Finding;
 use crate::model::{Model, ModelError};
-use crate::quantity::Curve;
+use crate::quantity::{Curve, significant};
 use crate::section::SheetLaw;
 use crate::solve::nonlinear::State;
 use crate::solve::{self, Factors, Solution};
@@ -65,6 +65,24 @@ pub struct CheckResult {
     pub passed: bool,
     /// Where the expected value comes from.
     pub reference: Reference,
+}
+
+impl CheckResult {
+    /// S122: that the check does not hold.
+    pub(super) fn finding(&self, case: &Case) -> Finding {
+        let percent = |v: f64| significant(100.0 * v);
+        let message = format!(
+            "`{}` is {} {unit}, and {} {unit} was expected: {} % off, {} % allowed",
+            self.quantity,
+            significant(self.value),
+            significant(self.expected),
+            percent(self.relative_error),
+            percent(self.relative_tolerance),
+            unit = self.unit,
+        );
+        let place = case.place_of(&message);
+        Finding::new("S122", message).at(place)
+    }
 }
 
 /// A solved case.

@@ -83,6 +83,8 @@ impl PreparedCase<'_> {
             result.convergence = Some(convergence);
         }
         result.checks = case.checks.iter().map(|c| check(case, c, &result)).collect::<Result<_, _>>()?;
+        let failed = result.checks.iter().filter(|c| !c.passed).map(|c| c.finding(case));
+        result.findings.extend(failed);
         if result.status != Status::NotConverged && result.checks.iter().any(|c| !c.passed) {
             result.status = Status::CheckFailed;
         }

@@ -48,6 +48,12 @@ impl BendingTest {
             BendingKind::FabBendLoop if self.length.or(self.width).is_some() => {
                 Some("the records of a fab_bend_loop say the size of the strip: remove `length` and `width`")
             }
+            _ if self.length.is_some_and(|l| l.si() <= 0.0) => {
+                Some("[bending_test] `length` must be positive, such as \"15 cm\"")
+            }
+            _ if self.width.is_some_and(|w| w.si() <= 0.0) => {
+                Some("[bending_test] `width` must be positive, such as \"2.5 cm\"")
+            }
             _ => None,
         }
     }

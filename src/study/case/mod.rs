@@ -22,7 +22,7 @@ use super::rigid::RigidTable;
 use super::solver::SolverTable;
 use crate::characterise::FabricSheet;
 use crate::constitutive::Assumptions;
-use crate::finding::Place;
+use crate::finding::{Place, Words, position};
 use crate::instrument::{Direction, Test};
 use crate::law::Mode;
 use crate::quantity::parse_quantity;
@@ -49,6 +49,9 @@ pub struct Case {
     /// The file.
     #[serde(skip)]
     pub path: PathBuf,
+    /// Where the words of the file stand.
+    #[serde(skip)]
+    pub(crate) words: Words,
     /// For people.
     pub title: String,
     /// Where the problem comes from.
@@ -113,14 +116,27 @@ impl Case {
     /// S002 and S003 with the position in the file.
     pub fn parse(path: &Path, text: &str) -> Result<Self, CaseError> {
         let mut case: Self = toml::from_str(text).map_err(|e| {
-            let (line, column) = position(text, e.span().map_or(0, |s| s.start));
-            CaseError::Malformed { place: Place::at(path, line, column), message: one_line(e.message()) }
+            let (offset, message) = (e.span().map_or(0, |s| s.start), one_line(e.message()));
+            let closer = Words::of(text).position_after(offset, text, &message);
+            let (line, column) = closer.unwrap_or_else(|| position(text, offset));
+            CaseError::Malformed { place: Place::at(path, line, column), message }
         })?;
+        case.words = Words::of(text);
         case.path = path.to_path_buf();
         case.name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
         let keys: toml::Table = toml::from_str(text).unwrap_or_default();
         case.consistent(&|key| keys.contains_key(key))?;
         Ok(case)
+    }
+
+    /// The place that a message about this case speaks of: the first word of the file that it quotes.
+    pub fn place_of(&self, message: &str) -> Place {
+        self.words.place(&self.path, message)
+    }
+
+    /// S003, where the message points at.
+    pub(super) fn refused(&self, message: String) -> CaseError {
+        CaseError::Inconsistent { place: self.place_of(&message), message }
     }
 
     /// Whether the case compares with FAB bend records, which few fabrics have.
@@ -143,9 +159,7 @@ impl Case {
 
     /// `has` tells whether a top-level key is in the file, as one that has no meaning there is not just ignored.
     fn consistent(&self, has: &dyn Fn(&str) -> bool) -> Result<(), CaseError> {
-        let refuse = |message: &str| {
-            Err(CaseError::Inconsistent { place: Place::file(&self.path), message: message.into() })
-        };
+        let refuse = |message: &str| Err(self.refused(message.to_string()));
         match (&self.fabric, &self.section) {
             (None, None) => {
                 return refuse("the case names neither `fabric` nor a [section]: give one of them");
@@ -155,10 +169,16 @@ impl Case {
             }
             _ => {}
         }
+        if let Some(problem) = self.section.as_ref().and_then(SectionTable::contradiction) {
+            return refuse(&problem);
+        }
         if self.assumptions.residual_curvature.is_some() && self.assumptions.law == Mode::Elastic {
             return refuse(
                 "residual_curvature belongs to friction: add [assumptions] law = \"friction\", or remove it",
             );
+        }
+        if self.assumptions.residual_curvature.is_some_and(|k| k.si() <= 0.0) {
+            return refuse("`residual_curvature` is the width of a loop: give a positive curvature");
         }
         if let Some(table) = &self.uncertainty {
             let problem = table.contradiction().or_else(|| self.against_sampling());
@@ -208,6 +228,13 @@ impl Case {
                 "the check of {} expects 0, from which no value has a relative error: check the quantity where it \
                  is not 0",
                 check.quantity
+            ));
+        }
+        let loose = |c: &&Check| !(c.relative_tolerance.is_finite() && c.relative_tolerance > 0.0);
+        if let Some(check) = self.checks.iter().find(loose) {
+            return refuse(&format!(
+                "the check of `{}` has relative_tolerance = {}: give a positive number, such as 0.02",
+                check.quantity, check.relative_tolerance
             ));
         }
         self.analysis.contradiction().map_or(Ok(()), refuse)?;
@@ -280,14 +307,6 @@ impl Case {
             _ => Ok(()),
         }
     }
-}
-
-/// Line and column (from 1, in characters) of a byte offset.
-fn position(text: &str, offset: usize) -> (usize, usize) {
-    let before = text.get(..offset).unwrap_or(text);
-    let line = before.matches('\n').count() + 1;
-    let column = before.rsplit('\n').next().map_or(0, |l| l.chars().count()) + 1;
-    (line, column)
 }
 
 fn one_line(message: &str) -> String {

@@ -25,6 +25,8 @@ pub struct Sheet {
     pub diameter: Option<Length>,
     /// Inner one of an `annulus`.
     pub inner_diameter: Option<Length>,
+    /// The nodes within this distance of the middle of the sheet are the set `inside_radius`.
+    pub inside_radius: Option<Length>,
     /// Cells along x and y; across the core of a disc (one number twice); along the radius and
     /// around an annulus.
     pub cells: Option<[usize; 2]>,

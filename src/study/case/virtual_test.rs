@@ -40,6 +40,12 @@ impl VirtualTest {
             _ if self.pretension.is_some() && self.test != Test::Shear => {
                 Some("[virtual_test] pretension belongs to test = \"shear\": remove it")
             }
+            _ if self.curvature.is_some_and(|k| k.si() <= 0.0) => Some(
+                "[virtual_test] `curvature` is the largest of the test: give a positive one, such as \"2.5 1/cm\"",
+            ),
+            _ if self.pretension.is_some_and(|w| w.si() < 0.0) => {
+                Some("[virtual_test] `pretension` pulls: give a positive one, or \"0 gf/cm\"")
+            }
             _ => None,
         }
     }
