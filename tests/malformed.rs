@@ -70,6 +70,11 @@ const CASES: &[(&str, &str, &str)] = &[
     ("K040", "k021-thickness", "k021-thickness"),
     ("K041", "k041-falling-loop.csv", "k041-falling-loop.csv"),
     ("K042", "k042-widths", "k042-widths"),
+    ("K043", "k043-two-cycles.csv", "k043-two-cycles.csv:108"),
+    ("K044", "k044-clipped.csv", "k044-clipped.csv:24"),
+    ("K045", "k045-row-of-zeros.csv", "k045-row-of-zeros.csv:26"),
+    ("K046", "k046-lost-rows.csv", "k046-lost-rows.csv:36"),
+    ("K047", "k047-copy.csv", "k047-copy.csv:113"),
 ];
 
 /// Codes that no file can trigger, because reading refuses it or sets it right before; programs

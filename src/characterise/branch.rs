@@ -36,6 +36,20 @@ pub(super) fn turning_points(x: &[f64], threshold: f64) -> Option<Vec<usize>> {
     Some(turns)
 }
 
+/// The step that the drive makes from one sample to the next: a third of the way is made in shorter ones. Samples at
+/// rest do not count, since they make no way, and gaps may be as long as a branch.
+pub(super) fn usual_step(x: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = x.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
+    steps.sort_by(f64::total_cmp);
+    let third = steps.iter().sum::<f64>() / 3.0;
+    let mut way = 0.0;
+    let reaches = |step: &f64| {
+        way += step;
+        way >= third
+    };
+    steps.into_iter().find(reaches).unwrap_or(0.0)
+}
+
 /// Range of the abscissa times `part`.
 fn threshold(x: &[f64], part: f64) -> f64 {
     let low = x.iter().copied().fold(f64::INFINITY, f64::min);
@@ -116,6 +130,18 @@ mod tests {
         let x = cycle(10);
         assert_eq!(turning_points(&x, 0.1), Some(vec![0, 10, 30, 40]));
         assert_eq!(turning_points(&[1.0, 1.001, 0.999], 0.1), None);
+    }
+
+    #[test]
+    fn the_usual_step_is_that_of_the_drive() {
+        let x = cycle(10);
+        assert!((usual_step(&x) - 0.1).abs() < 1e-12);
+        // At rest for ten times as long, and three quarters of a branch lost.
+        let rest = (0..400).map(|i| 1e-4 * f64::from(i % 2));
+        let gappy: Vec<f64> =
+            rest.chain(x.iter().enumerate().filter(|(i, _)| !(2..9).contains(i)).map(|x| *x.1)).collect();
+        assert!((usual_step(&gappy) - 0.1).abs() < 1e-3);
+        assert_eq!(usual_step(&[1.0]), 0.0);
     }
 
     #[test]

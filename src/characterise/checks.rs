@@ -61,6 +61,37 @@ pub(super) fn shear_directions(sheet: &FabricSheet, settings: &Settings) -> Opti
     })
 }
 
+/// Whether two records are of one test and direction and equal number by number. Noise alone makes sure that no two
+/// specimens are: one is a copy of the other.
+fn is_copy(a: &Measurement, b: &Measurement) -> bool {
+    // Ordinates first: the abscissae of repeats may be those of one drive.
+    (a.test, a.direction) == (b.test, b.direction)
+        && !a.curve.is_empty()
+        && a.curve.y == b.curve.y
+        && a.curve.x == b.curve.x
+}
+
+/// K047: the records without the copies of others, which are no repeats, and a finding for each copy.
+pub(super) fn originals(input: &FabricInput) -> (Vec<&Measurement>, Vec<Finding>) {
+    let (mut originals, mut findings) = (Vec::<&Measurement>::new(), Vec::new());
+    for m in &input.measurements {
+        let Some(original) = originals.iter().find(|o| is_copy(o, m)) else {
+            originals.push(m);
+            continue;
+        };
+        let direction = m.direction.map_or(String::new(), |d| format!(" {d}"));
+        let text = format!(
+            "{}{direction}: specimen {} is left out: its samples are those of specimen {} ({}), number by number, so that it is a copy and no repeat",
+            m.test.name(),
+            m.specimen,
+            original.specimen,
+            original.place()
+        );
+        findings.push(Finding::new("K047", text).at(m.place()));
+    }
+    (originals, findings)
+}
+
 /// K006, K007, K015, K019: what the set of records says about itself.
 pub(super) fn records(input: &FabricInput) -> Vec<Finding> {
     let mut findings = Vec::new();
@@ -75,7 +106,10 @@ pub(super) fn records(input: &FabricInput) -> Vec<Finding> {
                 );
                 findings.push(Finding::new("K015", text).at(m.place()));
             }
-            if set[..i].iter().any(|o| o.direction == m.direction && o.specimen == m.specimen) {
+            if set[..i]
+                .iter()
+                .any(|o| o.direction == m.direction && o.specimen == m.specimen && !is_copy(o, m))
+            {
                 let direction = m.direction.map_or(String::new(), |d| format!(" {d}"));
                 let text = format!(
                     "{}{direction}: specimen {} occurs twice; both are used",

@@ -2,7 +2,7 @@
 
 use super::graph::Graph;
 use super::onset::onset;
-use super::specimen::{Evaluation, Notes, in_unit};
+use super::specimen::{Evaluation, Notes, Regained, in_unit};
 use super::tensile::{cycle, shift};
 use super::{Branch, Settings, Window, branch};
 use crate::instrument::Parameter;
@@ -44,21 +44,21 @@ pub(super) fn evaluate(
     let work = load.area(tm, t0).ok_or("the loading branch has no area")?;
     e.values.insert(Parameter::Wc, work);
     e.values.insert(Parameter::Lc, work / (0.5 * pm * (t0 - tm)));
-    match recovered(back, tm, t0) {
-        Some(regained) => {
-            e.values.insert(Parameter::Rc, regained / work);
-        }
-        None => notes.missing("RC", "there is no unloading branch"),
+    if let Some(regained) = notes.regained("RC", recovered(back, tm, t0), work) {
+        e.values.insert(Parameter::Rc, regained / work);
     }
     Ok(e)
 }
 
 /// Work on the unloading branch between the thicknesses of the loading one; where the foot has
 /// left the cloth the pressure is zero.
-fn recovered(mut back: Graph, tm: f64, t0: f64) -> Option<f64> {
+fn recovered(mut back: Graph, tm: f64, t0: f64) -> Option<Regained> {
     let gone = back.y.iter().position(|y| *y <= 0.0).unwrap_or(back.y.len());
     back.y[gone..].fill(0.0);
-    back.area(tm.max(*back.x.first()?), t0.min(*back.x.last()?))
+    let (end, left) = (*back.x.last()?, *back.y.last()?);
+    let work = back.area(tm.max(*back.x.first()?), t0.min(end))?;
+    // The branch falls ever more slowly, so that it runs below the straight line to where it was touched first.
+    Some(Regained { work, missing: 0.5 * left * (t0 - end).max(0.0) })
 }
 
 /// The same samples along -x.
@@ -71,7 +71,7 @@ fn correct(branches: &mut [Branch], settings: &Settings, notes: &mut Notes<'_>) 
     let first = &branches[0].curve;
     let along: Vec<f64> = first.x.iter().map(|x| -x).collect();
     let onset = onset(&along, &first.y);
-    if !settings.correct_zero || onset.index < BASELINE {
+    if !settings.correct_zero || onset.before < BASELINE {
         return [0.0; 2];
     }
     let peak = first.y.iter().copied().fold(0.0, f64::max);

@@ -15,6 +15,7 @@ mod graph;
 mod onset;
 #[cfg(test)]
 mod oracles;
+mod recording;
 mod settings;
 mod sheet;
 mod simulated;
@@ -38,7 +39,7 @@ pub use spread::{MeanBranch, mean_branches};
 pub use strip::{Strip, StripCycle};
 
 use crate::finding::Place;
-use crate::instrument::FabricInput;
+use crate::instrument::{FabricInput, Measurement};
 
 /// The parameter sheet of a fabric.
 ///
@@ -48,10 +49,14 @@ use crate::instrument::FabricInput;
 pub fn characterise(input: &FabricInput, settings: &Settings) -> FabricSheet {
     let mut findings = input.findings.clone();
     findings.extend(checks::records(input));
-    let mut measurements: Vec<_> = input.measurements.iter().collect();
+    let (mut measurements, copies) = checks::originals(input);
+    findings.extend(copies);
     measurements.sort_by_key(|m| (m.test, m.direction, m.specimen));
-    let specimens =
-        measurements.into_iter().filter_map(|m| specimen::evaluate(m, settings, &mut findings)).collect();
+    let evaluated = |m: &Measurement| {
+        recording::check(settings, &mut specimen::Notes { measurement: m, findings: &mut findings });
+        specimen::evaluate(m, settings, &mut findings)
+    };
+    let specimens = measurements.into_iter().filter_map(evaluated).collect();
     let mut sheet = FabricSheet {
         name: input.name.clone(),
         info: input.info.clone(),

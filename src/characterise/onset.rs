@@ -1,14 +1,21 @@
 //! Where load begins: zero offset and slack of a one-sided test.
 
+use super::branch::usual_step;
+
 /// The sample from which the load rises, and the mean ordinate up to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Onset {
     /// Index of the last sample of the baseline; 0 if the record begins under load.
     pub index: usize,
-    /// Mean of the ordinates 0..=index.
+    /// Mean of the ordinates up to it, those of a long rest at the start left out.
     pub baseline: f64,
+    /// Samples before `index` that the baseline rests on.
+    pub before: usize,
 }
 
+/// Samples at rest before the drive moves that are looked at. How long the recorder ran before the motor is no
+/// property of the cloth, and must not decide what counts as the toe or whether there is a baseline.
+const AT_REST: usize = 3;
 /// Samples of the toe that the search looks at; more are thinned out.
 const TOE: usize = 48;
 /// Candidates of one round of the search, which then narrows down around the best.
@@ -22,12 +29,26 @@ const EXPONENTS: [f64; 6] = [0.8, 1.2, 1.6, 2.1, 3.0, 4.5];
 /// before; the sample x0 with the least squares is the onset. A threshold on the load would be
 /// late by the strain that the threshold takes, several per cent of EMT for a J curve.
 pub(super) fn onset(x: &[f64], y: &[f64]) -> Onset {
+    let skipped = (rest(x) + 1).saturating_sub(AT_REST);
+    let (before, baseline) = search(&x[skipped..], &y[skipped..]);
+    Onset { index: skipped + before, baseline, before }
+}
+
+/// The last sample before the drive moves: it stays within half a step of the first until one is a whole step away.
+fn rest(x: &[f64]) -> usize {
+    let (Some(&start), step) = (x.first(), usual_step(x)) else { return 0 };
+    let moved = x.iter().position(|v| (v - start).abs() > step).unwrap_or(0);
+    x[..moved].iter().rposition(|v| (v - start).abs() <= 0.5 * step).unwrap_or(0)
+}
+
+/// Index of the onset and mean of the ordinates up to it.
+fn search(x: &[f64], y: &[f64]) -> (usize, f64) {
     let first = y.first().copied().unwrap_or(0.0);
     let peak = y.iter().copied().fold(first, f64::max);
     let end = y.iter().rposition(|v| *v < first + 0.05 * (peak - first)).map_or(0, |i| i + 1);
     // Fewer samples cannot tell slack from a soft start: the record is taken as it is.
     if end < 6 || peak <= first {
-        return Onset { index: 0, baseline: first };
+        return (0, first);
     }
     let stride = end.div_ceil(TOE);
     let toe: Vec<(f64, f64)> = (0..=end.min(y.len() - 1)).step_by(stride).map(|i| (x[i], y[i])).collect();
@@ -60,7 +81,7 @@ pub(super) fn onset(x: &[f64], y: &[f64]) -> Onset {
         }
     }
     let index = best.1;
-    Onset { index, baseline: y[..=index].iter().sum::<f64>() / (index + 1) as f64 }
+    (index, y[..=index].iter().sum::<f64>() / (index + 1) as f64)
 }
 
 /// Golden-section search for the exponent around a guess: least misfit and its exponent.
@@ -118,7 +139,7 @@ mod tests {
     fn without_slack_the_first_sample_is_the_onset() {
         for p in [1.0, 1.3, 1.5, 2.0, 2.7] {
             let (x, y) = record(0.0, p, 0.0);
-            assert_eq!(onset(&x, &y), Onset { index: 0, baseline: 2.0 }, "p = {p}");
+            assert_eq!(onset(&x, &y), Onset { index: 0, baseline: 2.0, before: 0 }, "p = {p}");
         }
     }
 
@@ -140,6 +161,22 @@ mod tests {
         let found = onset(&x, &y);
         assert!((x[found.index] - 0.06).abs() < 0.015, "{}", x[found.index]);
         assert!((found.baseline - 2.0).abs() < 0.2);
+    }
+
+    /// A recorder that was started long before the motor: the onset, the baseline and the samples after the start
+    /// are those of a record that begins three samples before the motion.
+    #[test]
+    fn a_rest_before_the_motion_does_not_hide_it() {
+        let (mut x, mut y) = record(0.06, 1.5, 0.4);
+        let jitter = |i: i32| 1e-4 * f64::from(i * 7 % 5);
+        for (from, to) in [(0, 4), (4, 10), (10, 400)] {
+            x.splice(0..0, (from..to).map(jitter));
+            y.splice(0..0, (from..to).map(|i| 2.0 + 0.3 * jitter(i)));
+            let found = onset(&x, &y);
+            assert!((x[found.index] - 0.06).abs() < 0.015, "{to}: {}", x[found.index]);
+            assert!((found.baseline - 2.0).abs() < 0.1);
+            assert_eq!(found.before, found.index - (to as usize - 2));
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::graph::Graph;
 use super::onset::onset;
-use super::specimen::{Evaluation, Notes, in_unit};
+use super::specimen::{Evaluation, Notes, Regained, in_unit};
 use super::{Branch, CycleChoice, Modulus, Settings, Window, branch};
 use crate::instrument::Parameter;
 use crate::quantity::Curve;
@@ -32,11 +32,8 @@ pub(super) fn evaluate(
     e.values.insert(Parameter::Emt, strain);
     e.values.insert(Parameter::Wt, work);
     e.values.insert(Parameter::Lt, work / (0.5 * fm * strain));
-    match recovered(&back, strain) {
-        Some(regained) => {
-            e.values.insert(Parameter::Rt, regained / work);
-        }
-        None => notes.missing("RT", "there is no unloading branch"),
+    if let Some(regained) = notes.regained("RT", recovered(&back, start, strain), work) {
+        e.values.insert(Parameter::Rt, regained / work);
     }
     e.windows.push(Window { parameter: Parameter::Emt, from: strain, to: strain, ordinates: [0.0, fm] });
     for &modulus in &settings.moduli {
@@ -113,15 +110,17 @@ pub(super) fn cycle(branches: &[Branch], choice: CycleChoice) -> (Graph, Graph) 
     (graph(true), graph(false))
 }
 
-/// Work on the unloading branch from strain `top` down to where the force is gone.
-fn recovered(back: &Graph, top: f64) -> Option<f64> {
+/// Work on the unloading branch from strain `top` down to where the force is gone; loading began at strain `start`.
+fn recovered(back: &Graph, start: f64, top: f64) -> Option<Regained> {
     let below = back.x.partition_point(|x| *x <= top);
-    let end = match back.y[..below].iter().rposition(|y| *y <= 0.0) {
+    let (end, left) = match back.y[..below].iter().rposition(|y| *y <= 0.0) {
         Some(i) if i + 1 < back.x.len() => {
             let part = -back.y[i] / (back.y[i + 1] - back.y[i]);
-            back.x[i] + part * (back.x[i + 1] - back.x[i])
+            (back.x[i] + part * (back.x[i + 1] - back.x[i]), 0.0)
         }
-        _ => *back.x.first()?,
+        _ => (*back.x.first()?, back.y.first()?.max(0.0)),
     };
-    back.area(end, top.min(*back.x.last()?))
+    let work = back.area(end, top.min(*back.x.last()?))?;
+    // The branch falls ever more slowly, so that it runs below the straight line to where loading began.
+    Some(Regained { work, missing: 0.5 * left * (end - start).max(0.0) })
 }

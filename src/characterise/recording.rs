@@ -1,0 +1,302 @@
+//! What the samples say about how a record was made: samples that dropped out or were lost, an
+//! amplifier at the end of its range, several cycles. The record itself is left as it is.
+
+use std::ops::Range;
+
+use super::branch::{self, usual_step};
+use super::specimen::{Notes, in_unit};
+use super::{CycleChoice, Settings};
+use crate::instrument::{Measurement, Test};
+use crate::quantity::Curve;
+
+/// A step is a jump if it is more than this many times the usual step and the longest of its neighbours. Jitter of
+/// the drive makes twice the usual step, and adaptive sampling grows by less than this from one step to the next.
+const JUMP: f64 = 5.0;
+/// Steps on each side that a jump is compared with.
+const NEIGHBOURS: usize = 3;
+/// That many samples in a row that jump and come back are a dropout; more are another state of the instrument.
+const DROPOUT: usize = 3;
+/// Jumps of the ordinate begin at a hundredth of its range: less does not stand out of noise and friction.
+const SMALL: f64 = 0.01;
+/// Jumps of the ordinate are at least so many of its smallest steps, which may be those of a coarse converter.
+const QUANTA: f64 = 4.0;
+/// Samples on each side of a jump of the ordinate over which the drive must run on: where it turns or rests, yarns
+/// slide back and relax, and the ordinate may fall at once.
+const RUN: usize = 6;
+/// Samples at the extreme ordinate that make a plateau.
+const PLATEAU: usize = 5;
+/// A plateau is so many times as long as the longest run of equal ordinates next to it. Quantised, the flat top of a
+/// parabola has a run of 2/(√3 - 1) = 2.7 times the one below it, a straight branch one of about the same length.
+const FLAT: usize = 4;
+/// A cycle counts if it goes over this part of the longest way at least; less is the drive that settles at the end.
+const WHOLE: f64 = 0.2;
+/// Samples that a message names.
+const NAMED: usize = 3;
+
+/// K043 to K046: what the record of one specimen says about how it was made.
+pub(super) fn check(settings: &Settings, notes: &mut Notes<'_>) {
+    let m = notes.measurement;
+    let finite = |i: &usize| m.curve.x[*i].is_finite() && m.curve.y[*i].is_finite();
+    let mut kept: Vec<usize> = (0..m.curve.len()).filter(finite).collect();
+    // Shorter ones are not evaluated.
+    if kept.len() < 8 {
+        return;
+    }
+    drop_outs(&mut kept, notes);
+    // What follows would take each dropout for two jumps and another cycle.
+    let curve = samples(m, &kept);
+    let usual = usual_step(&curve.x);
+    lost(&curve, usual, &kept, notes);
+    clipped(&curve, usual, &kept, notes);
+    cycles(&curve, &kept, settings, notes);
+}
+
+fn samples(m: &Measurement, kept: &[usize]) -> Curve {
+    Curve::from_points(kept.iter().map(|&i| (m.curve.x[i], m.curve.y[i])))
+}
+
+/// K045: takes the dropouts out of the samples that are looked at further, not out of the record.
+fn drop_outs(kept: &mut Vec<usize>, notes: &mut Notes<'_>) {
+    let m = notes.measurement;
+    let curve = samples(m, kept);
+    // Dropouts may be so many that they make most of the way: the median of the steps does not see them.
+    let mut steps: Vec<f64> = curve.x.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|s| *s > 0.0).collect();
+    steps.sort_by(f64::total_cmp);
+    let median = steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY);
+    let mut found = take(kept, &away_and_back(&curve.x, median));
+    let curve = samples(m, kept);
+    let usual = usual_step(&curve.x);
+    let mut spikes = away_and_back(&curve.y, smallest_jump(&curve.y) / JUMP);
+    spikes.retain(|run| runs_on(&curve.x, run.start - 1, run.end, usual));
+    found.extend(take(kept, &spikes));
+    found.sort_unstable();
+    let Some(&first) = found.first() else { return };
+    let [abscissa, ordinate] = units(m.test);
+    let what = if found.len() == 1 { "a sample jumps" } else { "samples jump" };
+    let text = format!(
+        "{what} away and back in {}, first to {} and {}: a dropout? Nothing is taken out, and what is read there is wrong",
+        named(m, &found),
+        in_unit(m.curve.x[first], abscissa),
+        in_unit(m.curve.y[first], ordinate)
+    );
+    notes.add_at("K045", first, text);
+}
+
+/// Takes runs of samples out of the list, and returns them.
+fn take(kept: &mut Vec<usize>, runs: &[Range<usize>]) -> Vec<usize> {
+    let taken: Vec<usize> = runs.iter().flat_map(|r| kept[r.clone()].iter().copied()).collect();
+    kept.retain(|i| taken.binary_search(i).is_err());
+    taken
+}
+
+/// Runs of up to [`DROPOUT`] samples that jump away from the others and come back.
+fn away_and_back(v: &[f64], usual: f64) -> Vec<Range<usize>> {
+    let mut runs = Vec::new();
+    let mut i = 1;
+    while i + 1 < v.len() {
+        let back = (1..=DROPOUT).find(|n| comes_back(v, i, *n, usual));
+        if let Some(n) = back {
+            runs.push(i..i + n);
+        }
+        i += back.unwrap_or(0) + 1;
+    }
+    runs
+}
+
+/// Whether the `n` samples from `i` on are away from the one before, and the next one is not.
+fn comes_back(v: &[f64], i: usize, n: usize, usual: f64) -> bool {
+    let (before, jump) = (v[i - 1], (v[i] - v[i - 1]).abs());
+    if jump <= JUMP * usual || i + n >= v.len() {
+        return false;
+    }
+    let away = |w: &f64| (w - before).abs() > 0.5 * jump;
+    let around =
+        longest(v, (i - 1).saturating_sub(NEIGHBOURS)..i - 1).max(longest(v, i + n..i + n + NEIGHBOURS));
+    jump > JUMP * around && v[i..i + n].iter().all(away) && !away(&v[i + n])
+}
+
+/// The longest of the steps that begin at the samples of a range; it may reach beyond the record.
+fn longest(v: &[f64], from: Range<usize>) -> f64 {
+    let end = (from.end + 1).min(v.len());
+    let steps = v.get(from.start..end).unwrap_or_default().windows(2);
+    steps.map(|w| (w[1] - w[0]).abs()).fold(0.0, f64::max)
+}
+
+/// The smallest step of the ordinate that may be called a jump.
+fn smallest_jump(y: &[f64]) -> f64 {
+    let [low, high] = ends(y);
+    let steps = y.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|s| *s > 0.0);
+    let quantum = steps.fold(f64::INFINITY, f64::min);
+    (SMALL * (high - low)).max(QUANTA * quantum)
+}
+
+fn ends(v: &[f64]) -> [f64; 2] {
+    v.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(*v), high.max(*v)])
+}
+
+/// Whether the drive runs on in one sense before one sample and after another.
+fn runs_on(x: &[f64], before: usize, after: usize, usual: f64) -> bool {
+    let came = x[before] - x[before.saturating_sub(RUN)];
+    let goes = x[(after + RUN).min(x.len() - 1)] - x[after];
+    came * goes > 0.0 && came.abs().min(goes.abs()) >= usual
+}
+
+/// K046: the abscissa or the ordinate goes on elsewhere.
+fn lost(curve: &Curve, usual: f64, kept: &[usize], notes: &mut Notes<'_>) {
+    let m = notes.measurement;
+    let [abscissa, ordinate] = units(m.test);
+    let gaps = jumps(&curve.x, usual);
+    if let Some(&first) = gaps.first() {
+        let step = (curve.x[first] - curve.x[first - 1]).abs();
+        let text = format!(
+            "the abscissa steps by {} in {}, {:.0} times the usual step: are samples lost there? The values rest on a straight line across",
+            in_unit(step, abscissa),
+            named(m, &gaps.iter().map(|&i| kept[i]).collect::<Vec<_>>()),
+            step / usual
+        );
+        notes.add_at("K046", kept[first], text);
+    }
+    let mut steps = jumps(&curve.y, smallest_jump(&curve.y) / JUMP);
+    // Where the abscissa steps, the ordinate does too.
+    steps.retain(|i| !gaps.contains(i) && runs_on(&curve.x, i - 1, *i, usual));
+    if let Some(&first) = steps.first() {
+        let text = format!(
+            "the ordinate steps by {} in {}, while the drive runs on: did the specimen slip or tear, or was the range switched?",
+            in_unit((curve.y[first] - curve.y[first - 1]).abs(), ordinate),
+            named(m, &steps.iter().map(|&i| kept[i]).collect::<Vec<_>>()),
+        );
+        notes.add_at("K046", kept[first], text);
+    }
+}
+
+/// Samples before which the values jump and do not come back. The first and the last steps are left out: a record
+/// may begin with the zero reading.
+fn jumps(v: &[f64], usual: f64) -> Vec<usize> {
+    let jump = |i: &usize| {
+        let step = (v[i + 1] - v[*i]).abs();
+        let around = || longest(v, i - NEIGHBOURS..*i).max(longest(v, i + 1..i + 1 + NEIGHBOURS));
+        step > JUMP * usual && step > JUMP * around()
+    };
+    (NEIGHBOURS..v.len().saturating_sub(NEIGHBOURS + 1)).filter(jump).map(|i| i + 1).collect()
+}
+
+/// K044: samples in a row that sit at the extreme ordinate while the drive moves on.
+fn clipped(curve: &Curve, usual: f64, kept: &[usize], notes: &mut Notes<'_>) {
+    let m = notes.measurement;
+    let [low, high] = ends(&curve.y);
+    let two_sided = matches!(m.test, Test::Shear | Test::Bending);
+    // The low end of the other tests is the zero before contact and after it.
+    let extremes = [(high, "greatest"), (low, "least")];
+    let runs = level_runs(curve, usual);
+    for (extreme, name) in extremes.into_iter().take(if two_sided { 2 } else { 1 }) {
+        let (at, near): (Vec<_>, Vec<_>) = (runs.iter())
+            .filter(|r| (curve.y[r.0.start] - extreme).abs() <= 0.5 * (high - low))
+            .partition(|r| curve.y[r.0.start] == extreme);
+        let Some(longest) = near.iter().map(|r| r.1).max() else { continue };
+        let Some((run, n)) = at.into_iter().max_by_key(|r| r.1) else { continue };
+        if *n < PLATEAU.max(FLAT * longest) {
+            continue;
+        }
+        let [abscissa, ordinate] = units(m.test);
+        let [from, to] = ends(&curve.x[run.clone()]);
+        let text = format!(
+            "{} samples in a row from {} on sit at exactly {}, the {name} of the record, between {} and {}: the range of the amplifier? What is read there is not the cloth's",
+            run.len(),
+            named(m, &[kept[run.start]]),
+            in_unit(extreme, ordinate),
+            in_unit(from, abscissa),
+            in_unit(to, abscissa)
+        );
+        notes.add_at("K044", kept[run.start], text);
+    }
+}
+
+/// Runs of equal ordinates, each with the number of samples that the drive makes in it: one where it rests with
+/// jitter, or where cloth creeps under the load that the instrument holds.
+fn level_runs(curve: &Curve, usual: f64) -> Vec<(Range<usize>, usize)> {
+    let mut start = 0;
+    let run = |level: &[f64]| {
+        let run = start..start + level.len();
+        start = run.end;
+        (run.clone(), 1 + steps_made(&curve.x[run], usual))
+    };
+    curve.y.chunk_by(|a, b| a == b).map(run).collect()
+}
+
+/// Steps that the drive makes to where it turns and back.
+fn steps_made(x: &[f64], usual: f64) -> usize {
+    let far =
+        x.iter().copied().fold(x[0], |far, v| if (v - x[0]).abs() > (far - x[0]).abs() { v } else { far });
+    let (out, back) = ((far - x[0]).abs(), (x[x.len() - 1] - far).abs());
+    let steps: Vec<f64> = x.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
+    // Jitter goes a long way and gets nowhere.
+    if out + back < 0.5 * steps.iter().sum::<f64>() {
+        return 0;
+    }
+    let moves = steps.iter().filter(|s| **s >= 0.5 * usual).count();
+    // One more than whole steps, as they are rounded.
+    moves.min((out.max(back) / usual) as usize + 1)
+}
+
+/// K043: cycles, all but one of which are not evaluated.
+fn cycles(curve: &Curve, kept: &[usize], settings: &Settings, notes: &mut Notes<'_>) {
+    let m = notes.measurement;
+    let reversal = settings.reversal.si();
+    let branches = match m.test {
+        Test::Tensile => branch::one_sided(curve, 1.0, reversal),
+        Test::Compression => branch::one_sided(curve, -1.0, reversal),
+        Test::Shear | Test::Bending => branch::two_sided(curve, reversal),
+    };
+    let branches = branches.unwrap_or_default();
+    let way = |x: &[f64]| (x[x.len() - 1] - x[0]).abs();
+    let far = branches.iter().filter(|b| b.outgoing).map(|b| way(&b.curve.x)).fold(0.0, f64::max);
+    let (mut starts, mut last, mut at) = (Vec::new(), None, 0);
+    for branch in &branches {
+        let counts = starts.is_empty() || way(&branch.curve.x) > WHOLE * far;
+        if branch.outgoing && last != Some(branch.cycle) && counts {
+            starts.push(kept[leaves(&curve.x, at, m.test)]);
+            last = Some(branch.cycle);
+        }
+        // Branches share the sample at which they meet.
+        at += branch.curve.len() - 1;
+    }
+    let [_, second, ..] = starts[..] else { return };
+    let evaluated = if settings.cycle == CycleChoice::First { "first" } else { "last" };
+    let text = format!(
+        "the record has {} cycles, the second from about {} on; the values are those of the {evaluated} (setting cycle). Are they several specimens? Then each needs a heading or a file of its own",
+        starts.len(),
+        named(m, &[second])
+    );
+    notes.add_at("K043", second, text);
+}
+
+/// The sample from which the drive goes out: where it passes zero, the branches meet at the sample before.
+fn leaves(x: &[f64], mut at: usize, test: Test) -> usize {
+    let two_sided = matches!(test, Test::Shear | Test::Bending);
+    let waits = |a: f64, b: f64| a == b || two_sided && b.abs() <= a.abs();
+    while at + 1 < x.len() && waits(x[at], x[at + 1]) {
+        at += 1;
+    }
+    at
+}
+
+/// Units of abscissa and ordinate in messages.
+fn units(test: Test) -> [&'static str; 2] {
+    match test {
+        Test::Tensile => ["%", "gf/cm"],
+        Test::Shear => ["deg", "gf/cm"],
+        Test::Bending => ["1/cm", "gf·cm/cm"],
+        Test::Compression => ["mm", "gf/cm²"],
+    }
+}
+
+/// `line 57`, or `lines 57, 91, 92 ...`; samples, from 1, where the lines are not known.
+fn named(m: &Measurement, samples: &[usize]) -> String {
+    let known = m.lines.len() == m.curve.len();
+    let number = |i: &usize| if known { m.lines[*i] } else { i + 1 }.to_string();
+    let list: Vec<String> = samples.iter().take(NAMED).map(number).collect();
+    let noun = if known { "line" } else { "sample" };
+    let (plural, more) =
+        (if samples.len() > 1 { "s" } else { "" }, if samples.len() > NAMED { " ..." } else { "" });
+    format!("{noun}{plural} {}{more}", list.join(", "))
+}
