@@ -291,3 +291,221 @@ fn a_workbook_is_read_like_text() {
     assert_eq!(content.results.len(), 5);
     assert_eq!(content.results[0].1.place.to_string(), "twill.xlsx[results]:3:2");
 }
+
+/// Numbers of repeats, and messages of a code.
+fn repeats(content: &FileContent) -> Vec<(Option<&str>, usize)> {
+    content.results.iter().map(|(fabric, r)| (fabric.as_deref(), r.n)).collect()
+}
+
+fn messages<'c>(content: &'c FileContent, code: &str) -> Vec<&'c str> {
+    content.findings.iter().filter(|f| f.code == code).map(|f| f.message.as_str()).collect()
+}
+
+/// Rows of means and deviations below specimens or fabrics are none; alone they are the values.
+#[test]
+fn rows_that_sum_up_others_are_no_specimens() {
+    let table = read(
+        "t.csv",
+        "Specimen No.,B warp (gf·cm²/cm),B weft (gf·cm²/cm)\n1,0.10,0.05\n2,0.12,0.06\n3,0.11,0.04\nMean,0.11,0.05\nSD,0.01,0.01\n",
+    );
+    assert_eq!(repeats(&table), [(None, 3), (None, 3)]);
+    assert_relative_eq!(table.results[0].1.mean, 0.11 * 9.80665e-5, max_relative = 1e-12);
+    assert_relative_eq!(table.results[0].1.sd.unwrap(), 0.01 * 9.80665e-5, max_relative = 1e-12);
+    assert_eq!(
+        messages(&table, "R110"),
+        ["rows that sum up others are left out: \"Mean\" (line 5), \"SD\" (line 6)"]
+    );
+    // Numbers of samples are fabrics.
+    let fabrics = read(
+        "t.csv",
+        "試料番号\tB(gf·cm²/cm)\t2HB(gf·cm/cm)\n1\t0.1\t0.05\n2\t0.2\t0.06\n平均\t0.15\t0.055\n標準偏差\t0.07\t0.007\n変動係数\t47\t13\n",
+    );
+    assert_eq!(repeats(&fabrics), [(Some("1"), 1), (Some("1"), 1), (Some("2"), 1), (Some("2"), 1)]);
+    assert!(
+        messages(&fabrics, "R110")[0]
+            .ends_with("\"平均\" (line 4), \"標準偏差\" (line 5), \"変動係数\" (line 6)")
+    );
+    // A row for each parameter.
+    let long = read(
+        "t.csv",
+        "fabric,specimen,parameter,value,unit\nx,1,B,0.1,gf·cm²/cm\nx,2,B,0.3,gf·cm²/cm\nx,média,B,0.2,gf·cm²/cm\n",
+    );
+    assert_eq!(repeats(&long), [(Some("x"), 2)]);
+    // Published: no specimens, but a mean and its deviation.
+    let published = read(
+        "t.csv",
+        "fabric,specimen,B (gf·cm²/cm),G (N/m)\nx,Mean,0.1,30\nx,SD,0.01,2\ny,Mean,0.2,40\ny,SD,0.02,3\n",
+    );
+    let means: Vec<f64> = published.results.iter().map(|(_, r)| r.mean / 9.80665e-5).collect();
+    assert_relative_eq!(means[0], 0.1, max_relative = 1e-12);
+    assert_eq!(repeats(&published).iter().map(|(_, n)| *n).collect::<Vec<_>>(), [1, 1, 1, 1]);
+    // A fabric is called like an extreme, and none is left out.
+    let max = read("t.csv", "fabric,B (gf·cm²/cm),G (N/m)\nAnna,0.1,30\nMax,0.2,40\n");
+    assert_eq!((repeats(&max).len(), messages(&max, "R110").len()), (4, 0));
+}
+
+/// A column of deviations is no parameter: LT and its CV are both without unit.
+#[test]
+fn columns_that_sum_up_others_are_no_values() {
+    let table = read("t.csv", "fabric,specimen,LT,LT CV (%),LT max\nx,1,0.8,3,0.9\nx,2,0.6,3,0.9\n");
+    assert_eq!(repeats(&table), [(Some("x"), 2)]);
+    assert_relative_eq!(table.results[0].1.mean, 0.7, max_relative = 1e-12);
+    assert_eq!(messages(&table, "R104"), ["no KES parameters, and left out: LT CV (%), LT max"]);
+    let long = read("t.csv", "parameter,unit,warp,warp SD,weft,weft SD\nB,gf·cm²/cm,0.1,0.01,0.05,0.01\n");
+    assert_eq!(repeats(&long), [(None, 1), (None, 1)]);
+    assert_eq!(messages(&long, "R104"), ["no KES parameters, and left out: warp SD, weft SD"]);
+}
+
+#[test]
+fn curves_that_sum_up_others_are_no_specimens() {
+    let rows = "0,0,0,0\n1,0.1,0.2,0.15\n2,0.2,0.4,0.3\n";
+    let shared = read(
+        "a.csv",
+        &format!(
+            "direction,warp\nK (1/cm),moment 1 (gf·cm/cm),moment 2 (gf·cm/cm),mean moment (gf·cm/cm)\n{rows}"
+        ),
+    );
+    assert_eq!(shared.measurements.len(), 2);
+    assert_eq!(
+        messages(&shared, "R110"),
+        ["curves that sum up others are left out: \"mean moment\" (line 2)"]
+    );
+    // The label stands over the columns.
+    let labelled = read(
+        "a.txt",
+        "経-1\t\t経-2\t\t平均\t\nK (1/cm)\tM (gf·cm/cm)\tK (1/cm)\tM (gf·cm/cm)\tK (1/cm)\tM (gf·cm/cm)\n0\t0\t0\t0\t0\t0\n1\t0.1\t1\t0.2\t1\t0.15\n2\t0.2\t2\t0.4\t2\t0.3\n",
+    );
+    let found: Vec<_> = labelled.measurements.iter().map(|m| (m.direction, m.specimen)).collect();
+    assert_eq!(found, [(Some(Direction::Warp), 1), (Some(Direction::Warp), 2)]);
+    assert_eq!(messages(&labelled, "R110").len(), 1);
+    // Column pairs, and a mean without an abscissa.
+    let pairs = read(
+        "a.csv",
+        "direction,warp\nK (1/cm),M (gf·cm/cm),K (1/cm),M (gf·cm/cm),average moment (gf·cm/cm)\n0,0,0,0,0\n1,0.1,1,0.2,0.15\n2,0.2,2,0.4,0.3\n",
+    );
+    assert_eq!((pairs.measurements.len(), messages(&pairs, "R110").len()), (2, 1));
+    // A curve that is published as a mean is a curve.
+    let mean = read(
+        "a.csv",
+        "direction,warp\nK (1/cm),mean moment (gf·cm/cm),moment SD (gf·cm/cm)\n0,0,0\n1,0.1,0.01\n2,0.2,0.02\n",
+    );
+    assert_eq!((mean.measurements.len(), messages(&mean, "R110").len()), (1, 1));
+    assert_relative_eq!(mean.measurements[0].curve.y[2], 0.2 * 9.80665e-3, max_relative = 1e-14);
+}
+
+/// A header line may begin with a word of statistics.
+#[test]
+fn a_set_maximum_is_no_label() {
+    let text = "direction,warp\nmaximum,2.5 1/cm\n\nK (1/cm),M (gf·cm/cm)\n0,0\n1,1\n2,2\n";
+    let m = &read("a.csv", text).measurements[0];
+    assert_relative_eq!(m.conditions.maximum, 250.0);
+}
+
+/// Units that have the dimension of a raw force or moment and are those of B, G or 2HB.
+#[test]
+fn units_of_rigidities_are_refused_for_forces_and_moments() {
+    let bending = |unit: &str| format!("direction;warp\nK (1/cm);moment ({unit})\n0;0\n1;1\n2;2\n");
+    for unit in [
+        "gf·cm²/cm",
+        "gf cm2/cm",
+        "gf·cm·cm/cm",
+        "(gf·cm^2)/cm",
+        "gf·cm²·cm-1",
+        "uN·m²/m",
+        "gf·cm/cm·deg",
+        "gf·cm/deg",
+    ] {
+        let text = bending(unit);
+        let error = read_as("a.csv", &text, &ReadSettings::default()).unwrap_err().to_string();
+        assert!(error.contains("R010") || error.contains("R009"), "{unit}: {error}");
+    }
+    let error = read_as("a.csv", &bending("gf·cm²/cm"), &ReadSettings::default()).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "a.csv:2:10: R010 \"gf·cm2/cm\" is not a unit of moment (which needs one like gf·cm/cm or gf·cm)"
+    );
+    // 2 of each over 20 cm of width, in N.
+    for (unit, expected) in [
+        ("gf·cm", 9.80665e-5),
+        ("N·m", 1.0),
+        ("mN·m", 1e-3),
+        ("mN*cm", 1e-5),
+        ("kg·m²/s²", 1.0),
+        ("g mm2/s2", 1e-9),
+    ] {
+        let content = read("a.csv", &bending(unit));
+        assert_relative_eq!(content.measurements[0].curve.y[2], 2.0 * expected / 0.2, max_relative = 1e-12);
+    }
+    assert_eq!(code(&bending("V").replace("warp\n", "warp\nsens;20 gf·cm²/cm\n")), "R010");
+    let force =
+        |abscissa: &str, unit: &str| format!("direction;warp\n{abscissa};force ({unit})\n0;0\n1;1\n2;2\n");
+    for unit in ["gf/(cm·deg)", "gf/cm·deg", "N/(m·rad)", "gf/(cm·°)", "gf·cm/cm"] {
+        assert_eq!(code(&force("angle (deg)", unit)), "R010", "{unit}");
+    }
+    assert_eq!(code(&force("strain (%)", "gf·cm/cm")), "R010");
+    assert_eq!(code(&force("thickness (mm)", "gf·cm/cm").replace("force", "pressure")), "R010");
+    assert_eq!(read("a.csv", &force("angle (deg)", "gf/cm")).measurements.len(), 1);
+}
+
+/// A dimension of the specimen that the standard set gave is told once; one that is stated is not.
+#[test]
+fn standard_dimensions_are_told() {
+    let text = "direction,warp\nextension (mm),load 1 (gf),load 2 (gf)\n0,0,0\n0.5,100,110\n1,500,510\n";
+    let width = "no width is stated: force or moment was divided by the standard 20 cm; state `width` in the header or in [conditions] of fabric.toml";
+    let gauge = "no gauge is stated: travel was divided by the standard 5 cm; state `gauge` in the header or in [conditions.tensile] of fabric.toml";
+    let content = read("a.csv", text);
+    assert_eq!((content.measurements.len(), messages(&content, "R109")), (2, vec![gauge, width]));
+    // Both are the standard values: stated, they need no remark.
+    let stated = format!("width,20 cm\ngauge,5 cm\n{text}");
+    assert_eq!(messages(&read("a.csv", &stated), "R109"), [""; 0]);
+    let by_dialect = with_dialect(
+        "name = \"lab\"\n[conditions]\nwidth = \"20 cm\"\n[conditions.tensile]\ngauge = \"5 cm\"\n",
+    );
+    assert_eq!(messages(&read_as("a.csv", text, &by_dialect).unwrap(), "R109"), [""; 0]);
+    let foot = "thickness (mm),force (gf)\n0.5,1\n0.4,50\n0.3,100\n";
+    let content = read("a.csv", &format!("test,compression\n{foot}"));
+    assert_eq!(
+        messages(&content, "R109"),
+        ["no foot area is stated: force was divided by the standard 2 cm²; state `area` in the header"]
+    );
+    assert_eq!(messages(&read("a.csv", &format!("test,compression\narea,2 cm²\n{foot}")), "R109"), [""; 0]);
+    // Per width nothing was divided.
+    assert_eq!(
+        messages(&read("a.csv", "direction,warp\nK (1/cm),M (gf·cm/cm)\n0,0\n1,1\n2,2\n"), "R109"),
+        [""; 0]
+    );
+}
+
+/// Remarks stand before headings and among numbers, in curves and in tables; errors of spreadsheets are none.
+#[test]
+fn remarks_among_numbers_are_passed_over() {
+    let text = "# made by hand\ndirection,warp\nK (1/cm),M (gf·cm/cm)\n0,0\n# pause\n1,0.1\n# note: 5 min, again\n\n#1.5,0.15\n2,0.2\n# end\n";
+    let m = &read("a.csv", text).measurements[0];
+    assert_eq!((m.lines.clone(), m.curve.len()), (vec![4, 6, 10], 3));
+    // Stacked blocks: what stands before the next header belongs to it.
+    let second = "# date: tomorrow\nspecimen,2\nK (1/cm),M (gf·cm/cm)\n0,0\n1,1\n2,2\n";
+    let stacked = read("a.csv", &format!("{text}{second}"));
+    assert_eq!(stacked.measurements.len(), 2);
+    assert_eq!(stacked.measurements[1].metadata.get("date").map(String::as_str), Some("tomorrow"));
+    assert_eq!(code("direction,warp\nK (1/cm),M (gf·cm/cm)\n0,0\n#REF!,0.1\n2,0.2\n3,0.3\n"), "R004");
+    assert_eq!(code("direction,warp\nK (1/cm),M (gf·cm/cm)\n0,0\n#N/A,0.1\n2,0.2\n3,0.3\n"), "R017");
+    let table = read("t.csv", "fabric,B (gf·cm²/cm),G (N/m)\n# two of ours\n#1,0.1,30\n#2,0.2,40\n");
+    assert_eq!(repeats(&table), [(Some("#1"), 1), (Some("#1"), 1), (Some("#2"), 1), (Some("#2"), 1)]);
+}
+
+/// Reports of fixed width: gaps of two blanks in headings, of one in rows of numbers.
+#[test]
+fn blanks_may_separate_columns() {
+    let text = "direction   warp\nwidth: 20 cm\n\n   curvature (1/cm)   moment (gf·cm)\n   0.0 0.0\n   1.0 -2.0\n   2.0 4.0\n";
+    let content = read("a.prn", text);
+    let m = &content.measurements[0];
+    assert_relative_eq!(m.curve.y[2], 0.2 * 9.80665e-3, max_relative = 1e-14);
+    assert!(content.inference.iter().any(|line| line.starts_with("columns that blanks separate")));
+    // A broken number is found at its column.
+    let broken = text.replace("1.0 -2.0", "1.0 -2.0.0");
+    let error = read_as("a.prn", &broken, &ReadSettings::default()).unwrap_err();
+    assert_eq!(error.to_string(), "a.prn:6:8: R004 \"-2.0.0\" is not a number (decimal mark is '.')");
+    // A hole would shift the cells behind it.
+    let holes = "direction   warp\nK (1/cm)  M (gf·cm/cm)  K (1/cm)  M (gf·cm/cm)\n0 0 0 0\n1 1 1 1\n2 2 2 2\n    3 3\n";
+    assert_eq!(code(holes), "R002");
+}

@@ -43,6 +43,8 @@ const CASES: &[(&str, &str, &str)] = &[
     ("R106", "r106_weft_FB2_1.csv", "r106_weft_FB2_1.csv:6"),
     ("R107", "r107-fast.csv", "r107-fast.csv:2:11"),
     ("R108", "r108-warning.json", "r108-warning.json"),
+    ("R109", "r109-no-width.csv", "r109-no-width.csv:4"),
+    ("R110", "r110-means.csv", "r110-means.csv:5"),
     ("K001", "k001-five-samples.csv", "k001-five-samples.csv:6"),
     ("K002", "k002-two-degrees.csv", "k002-two-degrees.csv:6"),
     ("K003", "k003-kink.csv", "k003-kink.csv:6"),

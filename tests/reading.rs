@@ -109,3 +109,110 @@ fn the_real_fab_record_is_read() {
     assert_relative_eq!(s1.gap(), 1.9452528953552248e-2, max_relative = 1e-12);
     assert_relative_eq!(s1.branches[0].y[0], -2.430284023284912 * 9.80665e-3, max_relative = 1e-12);
 }
+
+const CURVE: &str = "direction,warp\nK (1/cm),M (gf·cm/cm)\n0,0\n1,0.1\n2,0.2\n";
+
+/// Files below a folder, by their paths.
+fn write(root: &Path, files: &[(&str, &str)]) {
+    for (name, text) in files {
+        let path = root.join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+}
+
+fn names(inputs: &[PathBuf]) -> Vec<(String, usize)> {
+    let batch = read_fabrics(inputs, &ReadSettings::default(), &|_: &Path| ());
+    batch.fabrics.into_iter().map(|f| (f.name, f.measurements.len())).collect()
+}
+
+/// Results of this program lie among the data: they are passed by, and read where they are named.
+#[test]
+fn folders_of_results_are_no_fabrics() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = folder.path();
+    let table = "direction,B (gf·cm²/cm),G (N/m)\nwarp,0.1,30\n";
+    write(
+        root,
+        &[
+            ("poplin/a_warp_FB2_1.csv", CURVE),
+            ("results/fabrics.csv", table),
+            ("results/.kesf-manifest.json", "{}"),
+            ("results/poplin/b_warp_FB2_1.csv", CURVE),
+            ("twill/fabric.toml", ""),
+            ("twill/a_warp_FB2_1.csv", CURVE),
+            ("twill/out/b_warp_FB2_1.csv", CURVE),
+            ("twill/out/.kesf-manifest.json", "{}"),
+        ],
+    );
+    assert_eq!(names(&[root.to_path_buf()]), [("poplin".into(), 1), ("twill".into(), 1)]);
+    assert_eq!(names(&[root.join("results")]), [("results".into(), 0), ("poplin".into(), 1)]);
+}
+
+/// A fabric that is lost by its fabric.toml or dialect.toml is called like its folder.
+#[test]
+fn a_bad_fabric_file_names_its_fabric() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = folder.path();
+    write(
+        root,
+        &[
+            ("a/fabric.toml", "name = 1"),
+            ("a/a_warp_FB2_1.csv", CURVE),
+            ("b/dialect.toml", "x"),
+            ("b/b_warp_FB2_1.csv", CURVE),
+        ],
+    );
+    let of = |inputs: &[PathBuf]| -> Vec<_> {
+        let batch = read_fabrics(inputs, &ReadSettings::default(), &|_: &Path| ());
+        assert!(batch.fabrics.is_empty());
+        batch.failures.iter().map(|e| (e.code(), e.about.fabric.clone().unwrap_or_default())).collect()
+    };
+    assert_eq!(of(&[root.to_path_buf()]), [("R019", "a".to_string()), ("R020", "b".to_string())]);
+    // Named directly, and told once.
+    let file = root.join("a/a_warp_FB2_1.csv");
+    assert_eq!(of(&[file.clone(), file]), [("R019", "a".to_string())]);
+}
+
+/// Files that are named belong to the fabric of their folder, and those of one folder are one fabric.
+#[test]
+fn files_that_are_named_know_their_fabric() {
+    let root = Path::new("kesf_data/poplin");
+    let file = |name: &str| root.join(name);
+    let inputs = [file("poplin_weft_FB2_1.csv"), "kesf_data/petrak_m1".into(), file("poplin_warp_FB2_1.csv")];
+    let batch = read_fabrics(&inputs, &ReadSettings::default(), &|_: &Path| ());
+    let found: Vec<_> =
+        batch.fabrics.iter().map(|f| (f.name.as_str(), f.measurements.len(), f.path.clone())).collect();
+    assert_eq!(found, [("poplin", 2, root.into()), ("petrak_m1", 0, "kesf_data/petrak_m1".into())]);
+    let poplin = &batch.fabrics[0];
+    assert_eq!((poplin.info.origin.name(), poplin.info.title.as_str()), ("synthetic", "Poplin (synthetic)"));
+    assert_eq!(poplin.findings, []);
+    // One file is its own path.
+    let one = read_fabrics(&inputs[..1], &ReadSettings::default(), &|_: &Path| ());
+    assert_eq!((one.fabrics[0].name.as_str(), &one.fabrics[0].path), ("poplin", &inputs[0]));
+    // A file that cannot be read gives no fabric.
+    let none = read_fabrics(&[file("no.csv")], &ReadSettings::default(), &|_: &Path| ());
+    assert_eq!((none.fabrics.len(), none.failures.len()), (0, 1));
+
+    let folder = tempfile::tempdir().unwrap();
+    let dialect = "name = \"lab\"\n[columns]\ncurvature = [\"foo\"]\n";
+    write(
+        folder.path(),
+        &[
+            ("a/fabric.toml", ""),
+            ("a/dialect.toml", dialect),
+            ("a/raw/x_1.csv", &CURVE.replace('K', "foo")),
+            ("a/raw/x_2.csv", &CURVE.replace('K', "foo")),
+            ("b/x_1.csv", CURVE),
+            ("b/x_2.csv", CURVE),
+        ],
+    );
+    let file = |name: &str| folder.path().join(name);
+    assert_eq!(
+        names(&[file("a/raw/x_1.csv"), file("a/raw/x_2.csv"), file("a/raw/x_1.csv")]),
+        [("a".into(), 2)]
+    );
+    // Without a fabric.toml each is its own; what stands before a `..` is not above it.
+    assert_eq!(names(&[file("b/x_1.csv"), file("b/x_2.csv")]), [("x".into(), 1), ("x".into(), 1)]);
+    assert_eq!(names(&[file("a/raw/../../b/x_1.csv")]), [("x".into(), 1)]);
+}

@@ -6,9 +6,11 @@ use super::dialect::Key;
 use super::error::{Problem, ReadError};
 use super::layout::{Column, Context, Entry, Header};
 use super::sniff::folded;
+use super::told::plain;
 use super::words::{is_volt, known_unit};
 use super::{Conditions, Test};
-use crate::quantity::{Dimension, Unit, parse_quantity};
+use crate::finding::{Finding, Place};
+use crate::quantity::{Dimension, Unit, divides_by_length, parse_quantity};
 
 /// How a number of a column becomes SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +38,14 @@ impl Scale {
     }
 }
 
+/// A column's scale, and the dimension of the specimen that it takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Axis {
+    pub scale: Scale,
+    /// Width, gauge or foot area, by which raw force, moment or travel is divided.
+    pub by: Option<Key>,
+}
+
 const RATIO: Dimension = Dimension { kg: 0, m: 0, s: 0 };
 const LENGTH: Dimension = Dimension { kg: 0, m: 1, s: 0 };
 const AREA: Dimension = Dimension { kg: 0, m: 2, s: 0 };
@@ -58,7 +68,7 @@ impl Axes<'_> {
     ///
     /// # Errors
     /// `R008`, `R009`, `R010`, `R013`, `R015`.
-    pub fn scale(&self, column: &Column, abscissa: bool) -> Result<Scale, ReadError> {
+    pub fn of(&self, column: &Column, abscissa: bool) -> Result<Axis, ReadError> {
         let error = |problem| self.context.error(column.line, column.column, problem);
         let Some(text) = column.unit.clone().or_else(|| self.context.default_unit(column.role)) else {
             let expected = column.role.kes_unit();
@@ -80,37 +90,64 @@ impl Axes<'_> {
         };
         let (value, unit) = full_scale(entry, self.context)?;
         let at_entry = |expected| self.context.error(entry.line, entry.column, wrong(&entry.text, expected));
-        let scale = self.axis(abscissa, unit, &entry.text)?.map_err(at_entry)?;
+        let number = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',' | 'e' | 'E' | ' ');
+        let full = folded(&entry.text);
+        let Axis { scale, by } =
+            self.axis(abscissa, unit, full.trim_start_matches(number))?.map_err(at_entry)?;
         let volts = if text == "mV" { 1e-3 } else { 1.0 };
-        Ok(scale.times(value * volts / 10.0))
+        Ok(Axis { scale: scale.times(value * volts / 10.0), by })
     }
 
     /// The axis from a unit: directly, or from raw force, moment or travel and the geometry. The
     /// inner error is a unit that would do.
-    fn axis(&self, abscissa: bool, unit: Unit, text: &str) -> Result<Result<Scale, &'static str>, ReadError> {
+    fn axis(&self, abscissa: bool, unit: Unit, text: &str) -> Result<Result<Axis, &'static str>, ReadError> {
         let is_angle = ["deg", "°", "度", "rad"].iter().any(|a| text.contains(a));
         let (f, Conditions { width, gauge, .. }) = (unit.factor, self.conditions);
+        let plain = Axis { scale: Scale::Linear(f), by: None };
+        let over = |by, size: f64| Axis { scale: Scale::Linear(f / size), by: Some(by) };
+        // A raw force or moment has no length below: gf·cm²/cm has the dimension of a moment and is the unit of B.
+        let raw = !divides_by_length(text);
         Ok(Ok(match (self.test, abscissa, unit.dimension) {
-            (Test::Tensile, true, RATIO) if !is_angle => Scale::Linear(f),
-            (Test::Tensile, true, LENGTH) => Scale::Linear(f / gauge),
-            (Test::Tensile, true, _) => return Ok(Err("% or mm")),
-            (Test::Shear, true, RATIO) if is_angle => Scale::Linear(f),
-            (Test::Shear, true, LENGTH) => Scale::Atan(f / gauge),
-            (Test::Shear, true, _) => return Ok(Err("deg, rad or mm")),
-            (Test::Bending, true, PER_LENGTH) => Scale::Linear(f),
-            (Test::Bending, true, _) => return Ok(Err("1/cm")),
-            (Test::Compression, true, LENGTH) => Scale::Linear(f),
-            (Test::Compression, true, _) => return Ok(Err("mm")),
-            (Test::Tensile | Test::Shear, false, LINE_FORCE) => Scale::Linear(f),
-            (Test::Tensile | Test::Shear, false, FORCE) => Scale::Linear(f / width),
-            (Test::Tensile | Test::Shear, false, _) => return Ok(Err("gf/cm or gf")),
-            (Test::Bending, false, FORCE) => Scale::Linear(f),
-            (Test::Bending, false, MOMENT) => Scale::Linear(f / width),
-            (Test::Bending, false, _) => return Ok(Err("gf·cm/cm or gf·cm")),
-            (Test::Compression, false, PRESSURE) => Scale::Linear(f),
-            (Test::Compression, false, FORCE) => Scale::Linear(f / self.foot_area()?),
-            (Test::Compression, false, _) => return Ok(Err("gf/cm² or gf")),
+            // No force and no moment is per angle: gf/(cm·deg) has the dimension of gf/cm and is the unit of G.
+            (_, false, _) if is_angle => return Ok(Err(expected(self.test, abscissa))),
+            (Test::Tensile, true, RATIO) if !is_angle => plain,
+            (Test::Tensile, true, LENGTH) => over(Key::Gauge, *gauge),
+            (Test::Shear, true, RATIO) if is_angle => plain,
+            (Test::Shear, true, LENGTH) => Axis { scale: Scale::Atan(f / gauge), by: Some(Key::Gauge) },
+            (Test::Bending, true, PER_LENGTH) | (Test::Compression, true, LENGTH) => plain,
+            (Test::Tensile | Test::Shear, false, LINE_FORCE) => plain,
+            (Test::Tensile | Test::Shear, false, FORCE) if raw => over(Key::Width, *width),
+            (Test::Bending, false, FORCE) => plain,
+            (Test::Bending, false, MOMENT) if raw => over(Key::Width, *width),
+            (Test::Compression, false, PRESSURE) => plain,
+            (Test::Compression, false, FORCE) if raw => over(Key::Area, self.foot_area()?),
+            _ => return Ok(Err(expected(self.test, abscissa))),
         }))
+    }
+
+    /// What is said of a column that was divided by a dimension which nobody stated.
+    pub fn assumed(&self, column: &Column, axis: Axis) -> Option<Finding> {
+        let by = axis.by.filter(|key| {
+            !self.header.known.contains_key(key) && !self.context.conditions.states(self.test, *key)
+        })?;
+        // The same words for all columns of a kind: one finding a file.
+        let cm = |metres: f64| plain(metres * 1e2);
+        let message = match by {
+            Key::Area => format!(
+                "no foot area is stated: force was divided by the standard {} cm²; state `area` in the header",
+                plain(FOOT_AREA * 1e4)
+            ),
+            Key::Gauge => format!(
+                "no gauge is stated: travel was divided by the standard {} cm; state `gauge` in the header or in [conditions.{}] of fabric.toml",
+                cm(self.conditions.gauge),
+                self.test.name()
+            ),
+            _ => format!(
+                "no width is stated: force or moment was divided by the standard {} cm; state `width` in the header or in [conditions] of fabric.toml",
+                cm(self.conditions.width)
+            ),
+        };
+        Some(Finding::new("R109", message).at(Place::at(self.context.path, column.line, 0)))
     }
 
     /// Area of the compression foot: the header, else 2 cm².
@@ -123,6 +160,19 @@ impl Axes<'_> {
             return Err(self.context.error(entry.line, entry.column, problem));
         }
         positive(value * unit.factor, Key::Area, self.header, self.context)
+    }
+}
+
+/// Units that would do.
+fn expected(test: Test, abscissa: bool) -> &'static str {
+    match (test, abscissa) {
+        (Test::Tensile, true) => "% or mm",
+        (Test::Shear, true) => "deg, rad or mm",
+        (Test::Bending, true) => "1/cm",
+        (Test::Compression, true) => "mm",
+        (Test::Tensile | Test::Shear, false) => "gf/cm or gf",
+        (Test::Bending, false) => "gf·cm/cm or gf·cm",
+        (Test::Compression, false) => "gf/cm² or gf",
     }
 }
 

@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 
+use super::dialect::Key;
 use super::{Conditions, Test};
 use crate::quantity::{Angle, Curvature, Length, LineForce, Pressure};
 
@@ -107,6 +108,21 @@ impl StatedConditions {
                 maximum: a.bending.maximum.or(b.bending.maximum),
             },
             compression: CompressionConditions { maximum: a.compression.maximum.or(b.compression.maximum) },
+        }
+    }
+
+    /// Whether the width or the gauge of a test is stated; otherwise it is that of the standard set.
+    pub(super) fn states(&self, test: Test, key: Key) -> bool {
+        let (width, gauge) = match test {
+            Test::Tensile => (self.tensile.width, self.tensile.gauge),
+            Test::Shear => (self.shear.width, self.shear.gauge),
+            Test::Bending => (self.bending.width, self.bending.gauge),
+            Test::Compression => (None, None),
+        };
+        match key {
+            Key::Width => width.or(self.width).is_some(),
+            Key::Gauge => gauge.is_some(),
+            _ => false,
         }
     }
 

@@ -28,7 +28,8 @@ pub(super) fn measurement(
     let header = &pair.header;
     let conditions = conditions(test, header, context, log)?;
     let axes = Axes { test, conditions: &conditions, header, context };
-    let (x, y) = (axes.scale(&pair.x, true)?, axes.scale(&pair.y, false)?);
+    let (x_axis, y_axis) = (axes.of(&pair.x, true)?, axes.of(&pair.y, false)?);
+    let (x, y) = (x_axis.scale, y_axis.scale);
     log.push(format!(
         "{}: {}, {}",
         test.name(),
@@ -48,6 +49,8 @@ pub(super) fn measurement(
         _ => Some(direction(pair, context)?),
     };
     let mut findings = points.findings;
+    findings
+        .extend([(&pair.x, x_axis), (&pair.y, y_axis)].into_iter().filter_map(|(c, a)| axes.assumed(c, a)));
     if let (Some(stated), Some(named)) = (direction, context.label.direction)
         && stated != named
     {

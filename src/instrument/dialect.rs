@@ -114,6 +114,18 @@ pub enum TableColumn {
     Status,
 }
 
+/// How a row or a column sums up others; it is no specimen itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Statistic {
+    /// The mean.
+    Mean,
+    /// Standard deviation, coefficient of variation and the like.
+    Spread,
+    /// Extremes, median, number.
+    Other,
+}
+
 /// The words and marks of one kind of file. A laboratory with a layout of its own writes one.
 ///
 /// Words are compared after NFKC in lower case, without accents, blanks and punctuation.
@@ -158,6 +170,9 @@ pub struct Dialect {
     /// Heading words of result tables.
     #[serde(deserialize_with = "words")]
     pub table: BTreeMap<TableColumn, Vec<String>>,
+    /// Words of rows and columns that sum up others.
+    #[serde(deserialize_with = "words")]
+    pub statistics: BTreeMap<Statistic, Vec<String>>,
     /// Other names of parameters, by symbol.
     #[serde(deserialize_with = "words")]
     pub symbols: BTreeMap<String, Vec<String>>,

@@ -21,7 +21,8 @@ pub struct ReadError {
 /// What is known of an error besides its place.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct About {
-    /// The fabric of a table that is left out for it; none if it concerns the whole file.
+    /// The fabric that is lost by it: one of a table, or that of a folder whose fabric.toml or dialect.toml is bad;
+    /// none if it costs one file only.
     pub fabric: Option<String>,
     /// What had been decided about the file until then, for people (`kesf check -v`).
     pub inference: Vec<String>,
@@ -144,7 +145,7 @@ problems! {
         /// A unit of the right dimension.
         expected: &'static str,
     } = "{found:?} is not a unit of {of} (which needs one like {expected})",
-        "correct the unit: force is gf (a gram-force), g is a mass";
+        "correct the unit: force is gf (a gram-force), g is a mass; gf·cm²/cm is the unit of B and gf/(cm·deg) that of G";
     /// Which test it is cannot be told, or is told in two ways.
     "R011" TestUnclear {
         /// Why.

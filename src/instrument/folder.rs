@@ -1,18 +1,15 @@
-//! Folders to fabrics: `fabric.toml`, the files beside it, and batches that no bad file stops.
+//! Folders and files to fabrics, and batches that no bad file stops.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
-use serde::Deserialize;
 
-use super::conditions::StatedConditions;
-use super::dialect::Dialect;
 use super::error::{Problem, ReadError};
+use super::fabric_file::{read_dialect, read_fabric_file};
 use super::read::{FileContent, ReadSettings, read};
-use super::{FabricInfo, FabricInput, Inference, MeasuredResult, Origin, ResultValue};
+use super::{FabricInfo, FabricInput, Inference, ResultValue};
 use crate::finding::{Finding, Place};
-use crate::quantity::{ArealDensity, Length, Ratio};
 
 /// The fabrics of a batch, and what could not be read.
 #[derive(Clone, Debug, Default)]
@@ -23,24 +20,6 @@ pub struct Batch {
     pub failures: Vec<ReadError>,
 }
 
-/// `fabric.toml`: what people know of a fabric and no instrument writes.
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-struct FabricFile {
-    #[serde(alias = "title")]
-    name: Option<String>,
-    weave: Option<String>,
-    composition: Option<String>,
-    origin: Origin,
-    source: Option<String>,
-    climate: Option<String>,
-    areal_density: Option<ArealDensity>,
-    thickness: Option<Length>,
-    notes: Vec<String>,
-    conditions: StatedConditions,
-    results: Vec<MeasuredResult>,
-}
-
 /// File names that hold measurements; a folder's other files are none of ours.
 const EXTENSIONS: &[&str] = &[
     "csv", "tsv", "txt", "dat", "asc", "prn", "kes", "fb1", "fb2", "fb3", "xlsx", "xlsm", "xls", "ods",
@@ -48,6 +27,11 @@ const EXTENSIONS: &[&str] = &[
 ];
 /// Files that are read by one thread: starting more takes longer.
 const FEW: usize = 16;
+
+/// The list of files that this program wrote into a folder: results, and no measurements.
+pub const MANIFEST: &str = ".kesf-manifest.json";
+/// What stands for it as long as a run is writing, or where one was killed.
+pub const JOURNAL: &str = ".kesf-journal";
 
 /// Text files that are about the data.
 const ABOUT: &[&str] = &["readme", "license", "licence", "notes", "changelog", "citation", "copying"];
@@ -58,6 +42,8 @@ struct Group {
     /// A folder's name; `None` for a single file, which names itself.
     name: Option<String>,
     files: Vec<PathBuf>,
+    /// Whether the files were named one by one.
+    named: bool,
     info: FabricInfo,
     settings: ReadSettings,
     findings: Vec<Finding>,
@@ -66,8 +52,10 @@ struct Group {
 /// The files of a batch, found and not yet read.
 ///
 /// A folder with `fabric.toml` is a fabric; a folder without, that holds measurement files itself,
-/// is one named after it, with a finding; other folders are searched, in name order. A single file
-/// is a fabric named by its sample or its stem. A result table of several fabrics makes several.
+/// is one named after it, with a finding; other folders are searched, in name order, but not those of
+/// results of this program. A single file belongs to the fabric of its folder or of one above it, if
+/// there is a fabric.toml, and is read as that fabric with the others that are named; else it is a
+/// fabric named by its sample or its stem. A result table of several fabrics makes several.
 /// `dialect.toml` in a folder is tried first for its files.
 pub struct Library {
     groups: Vec<Group>,
@@ -80,14 +68,18 @@ impl Library {
     /// Finds the measurement files among the inputs and below them.
     pub fn find(inputs: &[PathBuf], settings: &ReadSettings) -> Self {
         let mut library = Self { groups: Vec::new(), failures: Vec::new(), above: Vec::new() };
+        let mut known = BTreeMap::new();
         for input in inputs {
             if input.is_dir() {
                 walk(input, settings, &mut library);
+            } else if let Some(folder) = fabric_folder(input) {
+                library.add_to(folder, input, settings, &mut known);
             } else {
                 library.groups.push(Group {
                     path: input.clone(),
                     name: None,
                     files: vec![input.clone()],
+                    named: true,
                     info: FabricInfo::default(),
                     settings: settings.clone(),
                     findings: vec![without_fabric_file(input)],
@@ -95,6 +87,36 @@ impl Library {
             }
         }
         library
+    }
+
+    /// Adds a file that was named to those of its folder that were; `known` are the folders met so far, with
+    /// their groups. The error of a folder is told once.
+    fn add_to(
+        &mut self,
+        folder: &Path,
+        file: &Path,
+        settings: &ReadSettings,
+        known: &mut BTreeMap<PathBuf, Option<usize>>,
+    ) {
+        match known.get(folder) {
+            Some(Some(at)) => {
+                let group = &mut self.groups[*at];
+                if let Err(place) = group.files.binary_search_by(|f| f.as_path().cmp(file)) {
+                    group.files.insert(place, file.to_path_buf());
+                    // Now it is the fabric of more than a file.
+                    folder_path(folder).clone_into(&mut group.path);
+                }
+            }
+            Some(None) => {}
+            None => {
+                let group = group(folder, vec![file.to_path_buf()], true, settings);
+                known.insert(folder.to_path_buf(), group.is_ok().then_some(self.groups.len()));
+                match group {
+                    Ok(group) => self.groups.push(Group { path: file.to_path_buf(), named: true, ..group }),
+                    Err(error) => self.failures.push(error),
+                }
+            }
+        }
     }
 
     /// Number of files that are to be read.
@@ -156,18 +178,19 @@ pub fn read_fabrics(inputs: &[PathBuf], settings: &ReadSettings, progress: &(dyn
     Batch { fabrics, failures }
 }
 
-/// What keeps a measured result from being compared with anything.
-fn unusable(result: &MeasuredResult) -> Option<String> {
-    let MeasuredResult { quantity, value, .. } = result;
-    let wrong = match quantity.as_str() {
-        "drape_coefficient" => value.parse::<Ratio>().err().map(|e| e.to_string()),
-        "bending_length" => value.parse::<Length>().err().map(|e| e.to_string()),
-        "drape_nodes" => value.parse::<f64>().err().map(|_| format!("`{value}` is not a number")),
-        _ => Some(
-            "only drape_coefficient, drape_nodes and bending_length are compared with predictions".into(),
-        ),
-    };
-    wrong.map(|why| format!("the measured result `{quantity}` is left out: {why}"))
+/// The folder in which a file lies, or one above it, that has a fabric.toml; on the path as it is given.
+fn fabric_folder(file: &Path) -> Option<&Path> {
+    let mut folder = file.parent()?;
+    while !folder.join("fabric.toml").is_file() {
+        // What stands before a `..` is not above it.
+        folder = folder.parent().filter(|_| !folder.ends_with(".."))?;
+    }
+    Some(folder)
+}
+
+/// The working directory is above every relative path, and has no text there.
+fn folder_path(folder: &Path) -> &Path {
+    if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
 }
 
 fn without_fabric_file(path: &Path) -> Finding {
@@ -204,6 +227,12 @@ fn is_data(path: &Path) -> bool {
             || std::fs::read(path).is_ok_and(|b| b.windows(10).any(|w| w == b"\"raw_data\"")))
 }
 
+/// Whether a folder holds results of this program: charts and tables of fabrics, which are none themselves. One that
+/// the user names is read all the same.
+fn is_results(folder: &Path) -> bool {
+    [MANIFEST, JOURNAL].iter().any(|name| folder.join(name).is_file())
+}
+
 fn walk(folder: &Path, settings: &ReadSettings, library: &mut Library) {
     // A link to a folder above would be followed without end.
     let Ok(real) = std::fs::canonicalize(folder).map(|real| (!library.above.contains(&real)).then_some(real))
@@ -227,7 +256,8 @@ fn search(folder: &Path, settings: &ReadSettings, library: &mut Library) {
     let has_fabric_file = stated.is_file();
     if has_fabric_file {
         // Everything below belongs to this fabric.
-        let mut folders: Vec<PathBuf> = visible().filter(|p| p.is_dir()).cloned().collect();
+        let is_inner = |p: &PathBuf| !is_hidden(p) && p.is_dir() && !is_results(p);
+        let mut folders: Vec<PathBuf> = paths.iter().filter(|p| is_inner(p)).cloned().collect();
         let mut seen = BTreeSet::from_iter(std::fs::canonicalize(folder));
         while let Some(folder) = folders.pop() {
             if std::fs::canonicalize(&folder).is_ok_and(|real| !seen.insert(real)) {
@@ -236,7 +266,7 @@ fn search(folder: &Path, settings: &ReadSettings, library: &mut Library) {
             match entries(&folder) {
                 Ok(inner) => {
                     files.extend(inner.iter().filter(|p| !is_hidden(p) && is_data(p)).cloned());
-                    folders.extend(inner.into_iter().filter(|p| !is_hidden(p) && p.is_dir()));
+                    folders.extend(inner.into_iter().filter(is_inner));
                 }
                 Err(error) => library.failures.push(error),
             }
@@ -250,79 +280,60 @@ fn search(folder: &Path, settings: &ReadSettings, library: &mut Library) {
         }
     }
     if !has_fabric_file {
-        for inner in visible().filter(|p| p.is_dir()) {
+        for inner in visible().filter(|p| p.is_dir() && !is_results(p)) {
             walk(inner, settings, library);
         }
     }
 }
 
+/// The fabric of a folder; the error of its fabric.toml or dialect.toml names it.
 fn group(
     folder: &Path,
     files: Vec<PathBuf>,
     has_fabric_file: bool,
     settings: &ReadSettings,
 ) -> Result<Group, ReadError> {
-    let mut settings = settings.clone();
+    // "." and ".." have a name only on disk.
+    let real = std::fs::canonicalize(folder_path(folder)).unwrap_or_else(|_| folder.to_path_buf());
+    let name = real.file_name().map_or_else(|| "fabric".into(), |n| n.to_string_lossy().into_owned());
+    let mut group = Group {
+        path: folder_path(folder).to_path_buf(),
+        name: Some(name.clone()),
+        files,
+        named: false,
+        info: FabricInfo::default(),
+        settings: settings.clone(),
+        findings: Vec::new(),
+    };
+    match about(&mut group, folder, has_fabric_file) {
+        Ok(()) => Ok(group),
+        Err(mut error) => {
+            error.about.fabric = Some(name);
+            Err(error)
+        }
+    }
+}
+
+/// Reads what the folder says of its data.
+fn about(group: &mut Group, folder: &Path, has_fabric_file: bool) -> Result<(), ReadError> {
     let dialect = folder.join("dialect.toml");
     if dialect.is_file() {
-        settings.dialects.insert(0, read_dialect(&dialect)?);
+        group.settings.dialects.insert(0, read_dialect(&dialect)?);
     }
-    let mut findings = Vec::new();
-    let mut info = FabricInfo::default();
     if has_fabric_file {
-        let file: FabricFile =
-            from_toml(&folder.join("fabric.toml"), |reason| Problem::BadFabricFile { reason })?;
-        settings.conditions = file.conditions.or(&settings.conditions);
-        info = FabricInfo {
-            title: file.name.unwrap_or_default(),
-            weave: file.weave,
-            composition: file.composition,
-            origin: file.origin,
-            source: file.source,
-            climate: file.climate,
-            areal_density: file.areal_density.map(ArealDensity::si),
-            thickness: file.thickness.map(Length::si),
-            notes: file.notes,
-            results: file.results,
-        };
-        let place = || Place::file(folder.join("fabric.toml"));
-        findings
-            .extend(info.results.iter().filter_map(unusable).map(|m| Finding::new("R104", m).at(place())));
+        let (info, conditions, findings) = read_fabric_file(folder)?;
+        group.settings.conditions = conditions.or(&group.settings.conditions);
+        (group.info, group.findings) = (info, findings);
     } else {
-        findings.push(without_fabric_file(folder));
+        group.findings.push(without_fabric_file(folder));
     }
-    // "." and ".." have a name only on disk.
-    let real = std::fs::canonicalize(folder).unwrap_or_else(|_| folder.to_path_buf());
-    let name = real.file_name().map_or_else(|| "fabric".into(), |n| n.to_string_lossy().into_owned());
-    Ok(Group { path: folder.to_path_buf(), name: Some(name), files, info, settings, findings })
-}
-
-/// Reads a dialect file.
-///
-/// # Errors
-/// `R001` and `R020`, with the position.
-pub fn read_dialect(path: &Path) -> Result<Dialect, ReadError> {
-    from_toml(path, |reason| Problem::BadDialect { reason })
-}
-
-fn from_toml<T: serde::de::DeserializeOwned>(
-    path: &Path,
-    problem: impl Fn(String) -> Problem,
-) -> Result<T, ReadError> {
-    let text = std::fs::read_to_string(path)
-        .map_err(|e| ReadError::new(Place::file(path), Problem::Unreadable { reason: e.to_string() }))?;
-    toml::from_str(&text).map_err(|e: toml::de::Error| {
-        let before = &text[..e.span().map_or(0, |s| s.start.min(text.len()))];
-        let line = before.matches('\n').count() + 1;
-        let column = before.rsplit('\n').next().map_or(0, |l| l.chars().count()) + 1;
-        ReadError::new(Place::at(path, line, column), problem(e.message().replace('\n', "; ")))
-    })
+    Ok(())
 }
 
 /// The fabrics of a group: one, or as many as its result tables name.
 fn fabrics(group: Group, contents: Vec<FileContent>) -> Vec<FabricInput> {
-    if contents.is_empty() && group.name.is_none() {
-        return Vec::new(); // the single file failed, and the failure says so
+    if contents.is_empty() && group.named {
+        return Vec::new(); // the files failed, and the failures say so
     }
     let names: BTreeSet<&String> =
         contents.iter().flat_map(|c| c.results.iter().filter_map(|(name, _)| name.as_ref())).collect();

@@ -1,6 +1,6 @@
 //! Headings of result tables: symbols with direction, unit and marks in one cell.
 
-use super::dialect::TableColumn;
+use super::dialect::{Statistic, TableColumn};
 use super::fast::{self, FastValue};
 use super::raw::Row;
 use super::sniff::folded;
@@ -66,7 +66,16 @@ pub(super) fn column(cell: &str, vocabulary: Vocabulary<'_>) -> Option<Column> {
     if let Some((value, direction, unit)) = fast::heading(cell) {
         return Some(Column::Fast(value, direction, unit));
     }
+    if sums_up(cell, vocabulary) {
+        return None;
+    }
     vocabulary.direction(&name).filter(|_| name.chars().count() < 12).map(Column::Of)
+}
+
+/// Whether a heading is that of deviations or extremes: `warp SD`, `LT CV (%)`.
+pub(super) fn sums_up(cell: &str, vocabulary: Vocabulary<'_>) -> bool {
+    let statistic = vocabulary.statistic_within(&split_unit(cell).0);
+    matches!(statistic, Some(Statistic::Spread | Statistic::Other))
 }
 
 /// In a table with FAST columns, `-1` and `-2` behind a symbol are warp and weft.
@@ -106,7 +115,17 @@ pub(super) fn parameter_column(cell: &str, vocabulary: Vocabulary<'_>) -> Option
             }
         }
     }
-    if !unit_parts.is_empty() {
+    let rest = unit_parts.join(" ");
+    // One letter is a unit: `s` in `B_s` is a second.
+    if rest.chars().count() > 1 {
+        match vocabulary.statistic(&rest) {
+            _ if vocabulary.table_column(&rest) == Some(TableColumn::Sd) => found.sd = true,
+            Some(Statistic::Mean) => {}
+            // `LT CV (%)` is no LT.
+            Some(Statistic::Spread | Statistic::Other) => return None,
+            None => unit = unit.or_else(|| Some(spelt_out(&unit_parts))),
+        }
+    } else if !unit_parts.is_empty() {
         unit = unit.or_else(|| Some(spelt_out(&unit_parts)));
     }
     found.parameter = parameter?;
@@ -160,6 +179,13 @@ mod tests {
         assert_eq!(parameter("2HG5 sd"), (Hg5, None, None, true, false));
         assert_eq!(parameter("T_mm"), (T0, None, unit("mm"), false, false));
         assert_eq!(parameter("G_gf_per_cm_deg").2, unit("gf/(cm·deg)"));
-        assert_eq!(parameter_column("drape_nodes", Vocabulary::new(&[])), None);
+        assert_eq!(parameter("2HB desvio padrão (gf·cm/cm)"), (Hb, None, unit("gf·cm/cm"), true, false));
+        assert!(parameter("B standard deviation").3);
+        assert_eq!(parameter("B Mittelwert (gf·cm²/cm)").2, unit("gf·cm2/cm"));
+        for none in ["drape_nodes", "LT CV (%)", "EMT warp max (%)", "CV of LT (%)"] {
+            assert_eq!(parameter_column(none, Vocabulary::new(&[])), None, "{none}");
+            assert_eq!(column(none, Vocabulary::new(&[])), None, "{none}");
+        }
+        assert_eq!(column("warp SD", Vocabulary::new(&[])), None);
     }
 }

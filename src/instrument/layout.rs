@@ -10,11 +10,12 @@ use super::conditions::StatedConditions;
 use super::dialect::{Dialect, Key, Role};
 use super::error::{Problem, ReadError};
 use super::heading;
+use super::pairs;
 use super::raw::Row;
 use super::sniff::{Number, folded, number};
 use super::suggest;
 use super::words::{Label, Vocabulary, is_volt, split_unit, unit};
-use crate::finding::Place;
+use crate::finding::{Finding, Place};
 
 /// What is known of a file before its rows are read.
 pub(super) struct Context<'a> {
@@ -82,12 +83,16 @@ pub(super) enum Block<'t> {
     Table { header: Header, heading: &'t Row<'t>, rows: Vec<&'t Row<'t>> },
 }
 
-/// Splits rows into blocks.
+/// Splits rows into blocks, with what was noticed on the way.
 ///
 /// # Errors
 /// `R002`, `R005`, `R006`, `R007` and `R013`.
-pub(super) fn blocks<'t>(rows: &'t [Row<'t>], context: &Context<'_>) -> Result<Vec<Block<'t>>, ReadError> {
-    let mut scanner = Scanner { rows, context, at: 0, header: Header::default(), lists: Vec::new() };
+pub(super) fn blocks<'t>(
+    rows: &'t [Row<'t>],
+    context: &Context<'_>,
+) -> Result<(Vec<Block<'t>>, Vec<Finding>), ReadError> {
+    let (header, lists, findings) = (Header::default(), Vec::new(), Vec::new());
+    let mut scanner = Scanner { rows, context, at: 0, header, lists, findings };
     let mut blocks = Vec::new();
     let mut words: Vec<String> = Vec::new();
     while let Some(row) = rows.get(scanner.at) {
@@ -107,20 +112,25 @@ pub(super) fn blocks<'t>(rows: &'t [Row<'t>], context: &Context<'_>) -> Result<V
             scanner.at += 1;
         }
     }
-    if blocks.is_empty() { Err(context.error(0, 0, Problem::Empty)) } else { Ok(blocks) }
+    if blocks.is_empty() {
+        return Err(context.error(0, 0, Problem::Empty));
+    }
+    Ok((blocks, scanner.findings))
 }
 
 fn is_numeric(row: &Row<'_>, decimal: char) -> bool {
     row.filled().count() > 1 && row.filled().all(|(_, c)| number(&c.text, decimal) != Number::Text)
 }
 
-struct Scanner<'t, 'a> {
+pub(super) struct Scanner<'t, 'a> {
     rows: &'t [Row<'t>],
-    context: &'a Context<'a>,
+    pub(super) context: &'a Context<'a>,
     at: usize,
-    header: Header,
+    pub(super) header: Header,
     /// Header lines with several values, one for each column pair of the next headings.
-    lists: Vec<(Key, Vec<Entry>)>,
+    pub(super) lists: Vec<(Key, Vec<Entry>)>,
+    /// Curves that were left out.
+    pub(super) findings: Vec<Finding>,
 }
 
 impl<'t> Scanner<'t, '_> {
@@ -181,6 +191,7 @@ impl<'t> Scanner<'t, '_> {
         self.check_width(heading, &rows)?;
         let mut pairs = self.pairs(columns)?;
         self.distribute(&mut pairs)?;
+        self.leave_out_statistics(&mut pairs);
         Ok(Block::Curves { pairs, rows })
     }
 
@@ -203,13 +214,22 @@ impl<'t> Scanner<'t, '_> {
         }
     }
 
-    /// Rows up to the next header line, heading or text.
+    /// Rows up to the next header line, heading or text. Remarks among the numbers are none of them.
     fn data_rows(&mut self, columns: &[Column]) -> Vec<&'t Row<'t>> {
         let mut out = Vec::new();
         let mut after_blank = false;
         while let Some(row) = self.rows.get(self.at) {
             if row.is_blank() {
                 after_blank = true;
+            } else if self.is_remark(row, columns) {
+                // Remarks before other header lines or at the end belong to those.
+                let other = |r: &Row<'_>| !r.is_blank() && !self.is_remark(r, columns);
+                let next = self.rows[self.at..].iter().position(other).map(|n| self.at + n);
+                match next.filter(|n| !self.ends_data(&self.rows[*n], columns, false)) {
+                    Some(next) => self.at = next,
+                    None => break,
+                }
+                continue;
             } else if self.ends_data(row, columns, after_blank) {
                 break;
             } else {
@@ -219,6 +239,22 @@ impl<'t> Scanner<'t, '_> {
             self.at += 1;
         }
         out
+    }
+
+    /// A line that begins with `#`, states nothing that is known here, and holds no value. `#REF!` is the error
+    /// of a spreadsheet.
+    fn is_remark(&self, row: &Row<'_>, columns: &[Column]) -> bool {
+        let Some(text) = row.filled().next().and_then(|(_, c)| c.text.strip_prefix('#')) else {
+            return false;
+        };
+        let key =
+            self.context.vocabulary.key(&split_unit(text.split([':', '=']).next().unwrap_or_default()).0);
+        let used = |i: usize| columns.iter().any(|c| c.index == i && c.role != Role::Ignored);
+        let is_word = |t: &str| !t.starts_with('#') && number(t, self.context.decimal) == Number::Text;
+        let is_error = text.starts_with(char::is_alphabetic)
+            && (text.ends_with(['!', '?'])
+                || !row.filled().skip(1).filter(|(i, _)| used(*i)).all(|(_, c)| is_word(&c.text)));
+        !is_error && key.is_none_or(|k| k == Key::Remark)
     }
 
     fn ends_data(&self, row: &Row<'_>, columns: &[Column], after_blank: bool) -> bool {
@@ -252,53 +288,6 @@ impl<'t> Scanner<'t, '_> {
         Err(self.context.error(row.line, row.column(named), problem))
     }
 
-    /// Abscissa and ordinate of each curve: a new pair begins where a kind of column comes again.
-    /// A single abscissa serves all ordinates.
-    fn pairs(&self, columns: Vec<Column>) -> Result<Vec<Pair>, ReadError> {
-        let mut halves: Vec<(Option<Column>, Option<Column>)> = vec![(None, None)];
-        let shared = columns.iter().filter(|c| c.role.is_abscissa()).count() == 1;
-        for column in columns.into_iter().filter(|c| c.role != Role::Ignored) {
-            let abscissa = column.role.is_abscissa();
-            let full = halves.last().is_none_or(|(x, y)| if abscissa { x.is_some() } else { y.is_some() });
-            if full {
-                halves.push((None, None));
-            }
-            if let Some((x, y)) = halves.last_mut() {
-                *if abscissa { x } else { y } = Some(column);
-            }
-        }
-        let first = halves.iter().find_map(|(x, _)| x.clone()).filter(|_| shared);
-        let pair = |(x, y): (Option<Column>, Option<Column>)| match (x.or(first.clone()), y) {
-            (Some(x), Some(y)) => Ok(Pair { x, y, header: self.header.clone() }),
-            (Some(c), None) => Err(self.lacks(&c, "an ordinate (force, moment or pressure)")),
-            (None, Some(c)) => Err(self.lacks(&c, "an abscissa (strain, angle, curvature or thickness)")),
-            (None, None) => Err(self.context.error(0, 0, Problem::Empty)),
-        };
-        halves.into_iter().map(pair).collect()
-    }
-
-    fn lacks(&self, column: &Column, other: &str) -> ReadError {
-        let found = format!("column {:?} has no partner: {other} is missing", column.name);
-        self.context.error(column.line, column.column, Problem::IncompletePair { found })
-    }
-
-    /// Gives every pair its own of the header values that were listed for all of them.
-    fn distribute(&mut self, pairs: &mut [Pair]) -> Result<(), ReadError> {
-        for (key, entries) in std::mem::take(&mut self.lists) {
-            if entries.len() != pairs.len() {
-                let (n, m) = (entries.len(), pairs.len());
-                let reason = format!("{n} values stand over {m} curves");
-                let (line, column) = entries.first().map_or((0, 0), |e| (e.line, e.column));
-                let key = format!("{key:?}").to_lowercase();
-                return Err(self.context.error(line, column, Problem::BadValue { key, reason }));
-            }
-            for (pair, entry) in pairs.iter_mut().zip(entries) {
-                pair.header.known.insert(key, entry);
-            }
-        }
-        Ok(())
-    }
-
     fn table(&mut self) -> Block<'t> {
         let heading = &self.rows[self.at];
         self.at += 1;
@@ -306,7 +295,10 @@ impl<'t> Scanner<'t, '_> {
         while self.rows.get(self.at).is_some_and(|r| !r.is_blank()) {
             self.at += 1;
         }
-        let rows = self.rows[start..self.at].iter().collect();
+        // A fabric may be called #12: a remark stands alone in its row.
+        let is_remark =
+            |r: &&Row<'_>| r.get(0).is_some_and(|t| t.starts_with('#')) && r.filled().count() == 1;
+        let rows = self.rows[start..self.at].iter().filter(|r| !is_remark(r)).collect();
         Block::Table { header: self.header.clone(), heading, rows }
     }
 
@@ -319,16 +311,26 @@ impl<'t> Scanner<'t, '_> {
                 (Label::parse(&c.text, self.context.vocabulary), entry)
             })
             .collect();
-        let complete = labels.iter().all(|(l, _)| l.specimen.is_some() && l.sample.is_none());
+        let vocabulary = self.context.vocabulary;
+        let is_mean = |e: &Entry| pairs::of_label(&e.text, vocabulary).is_some();
+        let is_number = |l: &Label| l.specimen.is_some() && l.sample.is_none();
+        // Specimens come first: `maximum,2.5 1/cm` is a header line.
+        let complete = labels.first().is_some_and(|(l, _)| is_number(l))
+            && labels.iter().all(|(l, e)| is_number(l) || is_mean(e));
         let above = self.rows[self.at + 1..].iter().find(|r| !r.is_blank());
         if labels.len() < 2 || !complete || above.is_none_or(|r| self.headings(r).is_none()) {
             return false;
         }
         let with = |text: String, e: &Entry| Entry { text, ..e.clone() };
-        let numbers = labels.iter().filter_map(|(l, e)| l.specimen.map(|n| with(n.to_string(), e))).collect();
-        self.lists.push((Key::Specimen, numbers));
-        let directions: Vec<Entry> =
-            labels.iter().filter_map(|(l, e)| l.direction.map(|d| with(d.to_string(), e))).collect();
+        let number =
+            |(l, e): &(Label, Entry)| l.specimen.map_or_else(|| e.clone(), |n| with(n.to_string(), e));
+        self.lists.push((Key::Specimen, labels.iter().map(number).collect()));
+        // A mean is left out, whatever its direction.
+        let any = labels.iter().find_map(|(l, _)| l.direction);
+        let direction = |(l, e): &(Label, Entry)| {
+            l.direction.or(any.filter(|_| is_mean(e))).map(|d| with(d.to_string(), e))
+        };
+        let directions: Vec<Entry> = labels.iter().filter_map(direction).collect();
         if directions.len() == labels.len() {
             self.lists.push((Key::Direction, directions));
         }

@@ -5,22 +5,26 @@
 //! parameter, and raw data are never altered beyond their units.
 
 mod axis;
+mod blanks;
 mod conditions;
 mod curves;
 mod dialect;
 mod error;
 pub mod fab;
+mod fabric_file;
 mod fast;
 mod folder;
 mod heading;
 mod layout;
 mod limits;
 mod measurement;
+mod pairs;
 mod parameter;
 mod raw;
 mod read;
 mod result_table;
 mod sniff;
+mod statistic;
 mod suggest;
 mod told;
 mod words;
@@ -30,9 +34,10 @@ pub use conditions::{
     BendingConditions, CompressionConditions, ShearConditions, StatedConditions, TensileConditions,
     standard_conditions,
 };
-pub use dialect::{DIALECT_FILES, Dialect, Key, Role, TableColumn, dialects};
+pub use dialect::{DIALECT_FILES, Dialect, Key, Role, Statistic, TableColumn, dialects};
 pub use error::{About, Problem, ReadError};
-pub use folder::{Batch, Library, read_dialect, read_fabrics};
+pub use fabric_file::read_dialect;
+pub use folder::{Batch, JOURNAL, Library, MANIFEST, read_fabrics};
 pub use measurement::{
     Conditions, FabricInfo, FabricInput, Inference, MeasuredResult, Measurement, Origin, ResultValue, Source,
     Test,

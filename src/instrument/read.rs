@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
+use super::blanks;
 use super::conditions::StatedConditions;
 use super::curves;
 use super::dialect::{Dialect, Key};
@@ -13,7 +14,7 @@ use super::fab::{self, FabFile};
 use super::layout::{self, Block, Context, Header};
 use super::raw::{self, Row};
 use super::result_table::{self, Values};
-use super::sniff::sniff;
+use super::sniff::{Sniffed, sniff};
 use super::words::{Label, Vocabulary};
 use super::workbook;
 use super::{Measurement, Parameter, ResultValue, Source};
@@ -101,7 +102,7 @@ fn text(
     if let Some(label) = dialect.and_then(|d| d.encoding.as_deref()) {
         decoded = raw::decode(bytes, Some(label));
     }
-    let raw::Text { text, encoding, why } = decoded.map_err(error)?;
+    let raw::Text { mut text, encoding, why } = decoded.map_err(error)?;
     content.source.encoding = encoding.to_string();
     content.inference.push(format!("encoding {encoding}: {why}"));
     if text.trim().is_empty() {
@@ -117,7 +118,15 @@ fn text(
     }
     let delimiter = settings.delimiter.or(dialect.and_then(|d| d.delimiter));
     let decimal = settings.decimal.or(dialect.and_then(|d| d.decimal));
-    let (format, why) = sniff(&text, delimiter, decimal).map_err(|p| error((0, 0, p)))?;
+    let mut sniffed = sniff(&text, delimiter, decimal);
+    // Blanks stand in headings too: they are tried where no other mark separates any number.
+    let nothing = sniffed.as_ref().is_ok_and(|s| s.numbers <= 0) && delimiter.is_none();
+    if let Some(tabbed) = nothing.then(|| blanks::tabbed(&text)).flatten() {
+        content.inference.push("columns that blanks separate: gaps are read as tabs".to_string());
+        text = tabbed;
+        sniffed = sniff(&text, Some('\t'), decimal);
+    }
+    let Sniffed { format, why, .. } = sniffed.map_err(|p| error((0, 0, p)))?;
     content
         .inference
         .push(format!("delimiter {:?}, decimal mark {:?}: {why}", format.delimiter, format.decimal));
@@ -187,7 +196,8 @@ fn table(
     complete: bool,
     content: &mut FileContent,
 ) -> Result<(), ReadError> {
-    let blocks = layout::blocks(rows, context)?;
+    let (blocks, findings) = layout::blocks(rows, context)?;
+    content.findings.extend(findings);
     content.source.dialect = dialect_name(rows, context, &mut content.inference);
     let count = blocks.len();
     for (i, block) in blocks.into_iter().enumerate() {
@@ -199,7 +209,13 @@ fn table(
                     let read = curves::measurement(pair, &rows, ends_file, context, &mut content.inference)?;
                     if let Some((measurement, findings)) = read {
                         content.measurements.push(measurement);
-                        content.findings.extend(findings);
+                        // What was assumed for one column was assumed for all: that is said once.
+                        let said = |f: &Finding| {
+                            content.findings.iter().any(|k| (k.code, &k.message) == (f.code, &f.message))
+                        };
+                        let new: Vec<_> =
+                            findings.into_iter().filter(|f| f.code != "R109" || !said(f)).collect();
+                        content.findings.extend(new);
                     }
                     weight(&pair.header, context, content)?;
                 }

@@ -6,13 +6,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::curves::finite;
-use super::dialect::TableColumn;
+use super::dialect::{Statistic, TableColumn};
 use super::error::{Problem, ReadError};
 use super::fast::{self, FastValue};
-use super::heading::{Column, ParameterColumn, columns, parameter_column};
+use super::heading::{self, Column, ParameterColumn, columns, parameter_column};
 use super::layout::{Context, Header};
 use super::raw::Row;
 use super::sniff::{Number, folded, number};
+use super::statistic::{self, RowLabel, summing_up};
 use super::words::{known_unit, normalised, unit};
 use super::{Direction, Parameter, ResultValue};
 use crate::finding::{Finding, Place};
@@ -58,6 +59,7 @@ pub(super) fn read(
     let long = table.meta(TableColumn::Parameter).is_some();
     log.push(table.told(long));
     let rows = if long { rows } else { table.unit_row(rows) };
+    let rows = &table.specimens(rows, long)[..];
     let names: BTreeSet<Option<String>> = rows.iter().map(|row| table.fabric(row)).collect();
     table.several = names.len() > 1;
     for row in rows {
@@ -67,9 +69,10 @@ pub(super) fn read(
             |e| if e.place.line == row.line { table.leave_out(table.fabric(row), e) } else { Err(e) },
         )?;
     }
-    if !long {
-        table.ignored = table.unused(rows);
-    }
+    let unused = table.unused(rows);
+    // In a table with a row for each parameter other numbers are expected, but not those of a direction.
+    let of_direction = |heading: &String| !long || heading::sums_up(heading, context.vocabulary);
+    table.ignored.extend(unused.into_iter().filter(of_direction));
     table.derive_from_fast();
     table.finish()
 }
@@ -167,6 +170,22 @@ impl Table<'_, '_> {
         rest
     }
 
+    /// The rows without those of means, deviations and extremes of others, which are told.
+    fn specimens<'r>(&mut self, rows: &[&'r Row<'r>], long: bool) -> Vec<&'r Row<'r>> {
+        let label = |row: &&'r Row<'r>| RowLabel {
+            fabric: [self.text(row, TableColumn::Id), self.text(row, TableColumn::Fabric)],
+            specimen: self.text(row, TableColumn::Specimen),
+            parameter: self.text(row, TableColumn::Parameter).filter(|_| long),
+        };
+        let labels: Vec<RowLabel<'_>> = rows.iter().map(label).collect();
+        let words = summing_up(&labels, self.context.vocabulary);
+        let left_out: Vec<(usize, &str)> =
+            rows.iter().zip(&words).filter_map(|(row, word)| Some((row.line, (*word)?))).collect();
+        let finding = statistic::finding("rows", &left_out, self.context.path);
+        self.findings.extend(finding);
+        rows.iter().zip(words).filter(|(_, word)| word.is_none()).map(|(row, _)| *row).collect()
+    }
+
     fn fabric(&self, row: &Row<'_>) -> Option<String> {
         let of_row = self.text(row, TableColumn::Id).or_else(|| self.text(row, TableColumn::Fabric));
         let of_header = self.header.known.get(&super::dialect::Key::Sample).map(|e| e.text.as_str());
@@ -175,7 +194,8 @@ impl Table<'_, '_> {
 
     fn direction(&self, row: &Row<'_>) -> Result<Option<Direction>, ReadError> {
         let Some(text) = self.text(row, TableColumn::Direction) else { return Ok(None) };
-        if matches!(normalised(text).as_str(), "" | "mean" | "average" | "平均" | "all" | "none") {
+        let of_both = self.context.vocabulary.statistic(text) == Some(Statistic::Mean);
+        if of_both || matches!(normalised(text).as_str(), "" | "all" | "none") {
             return Ok(None);
         }
         self.context.vocabulary.direction(text).map(Some).ok_or_else(|| {

@@ -14,6 +14,16 @@ pub(super) struct Format {
     pub decimal: char,
 }
 
+/// What was decided, and how well it fits.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Sniffed {
+    pub format: Format,
+    /// What decided it, for people.
+    pub why: String,
+    /// Numbers won minus numbers broken.
+    pub numbers: i64,
+}
+
 /// What a cell is, seen as a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Number {
@@ -80,15 +90,11 @@ fn is_date(text: &str) -> bool {
     text.as_bytes().windows(2).any(|w| w[0].is_ascii_digit() && w[1] == b'-')
 }
 
-/// Decides the format of a text, within what is already `delimiter`/`decimal` known, and says why.
+/// Decides the format of a text, within what is already `delimiter`/`decimal` known.
 ///
 /// # Errors
 /// `R005` where two readings are equally good.
-pub(super) fn sniff(
-    text: &str,
-    delimiter: Option<char>,
-    decimal: Option<char>,
-) -> Result<(Format, String), Problem> {
+pub(super) fn sniff(text: &str, delimiter: Option<char>, decimal: Option<char>) -> Result<Sniffed, Problem> {
     let mut best: Vec<(i64, Format)> = Vec::new();
     // Marks that do not occur cannot win, and need not be tried unless they are stated.
     let occurs = |c: char| text.contains(c);
@@ -128,7 +134,7 @@ pub(super) fn sniff(
             if *score < 0 { "cells break that begin like numbers".to_string() } else { score.to_string() }
         ),
     };
-    Ok((format, why))
+    Ok(Sniffed { format, why, numbers: top })
 }
 
 /// Numbers won minus numbers broken, counted over the cells of rows that have several.
@@ -195,7 +201,7 @@ mod tests {
 
     #[test]
     fn delimiter_and_decimal_mark_are_found_together() {
-        let f = |text| sniff(text, None, None).map(|(f, _)| (f.delimiter, f.decimal));
+        let f = |text| sniff(text, None, None).map(|s| (s.format.delimiter, s.format.decimal));
         assert_eq!(f("a,b\n0.5,1.5\n"), Ok((',', '.')));
         assert_eq!(f("a;b\n0,5;1,5\n"), Ok((';', ',')));
         assert_eq!(f("a\tb\n0,5\t1,5\n"), Ok(('\t', ',')));
@@ -207,7 +213,7 @@ mod tests {
     fn what_can_be_read_in_two_ways_is_refused_until_it_is_settled() {
         let text = "a;b\n1,234;2,345\n3,456;4,567\n";
         assert!(matches!(sniff(text, None, None), Err(Problem::Ambiguous { .. })));
-        let settled = sniff(text, None, Some(',')).map(|(format, _)| format);
+        let settled = sniff(text, None, Some(',')).map(|s| s.format);
         assert_eq!(settled, Ok(Format { delimiter: ';', decimal: ',' }));
     }
 }

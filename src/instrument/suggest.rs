@@ -2,7 +2,7 @@
 
 use super::dialect::Role;
 use super::words::{split_unit, unit};
-use crate::quantity::Dimension;
+use crate::quantity::{Dimension, divides_by_length};
 
 /// What every dialect knows of a heading row, and the lines of a dialect file that would name the
 /// rest: the unit of a column often tells what it holds.
@@ -47,14 +47,17 @@ fn role(text: &str) -> Option<&'static str> {
     let is = |role: Role| unit(role.kes_unit()).is_ok_and(|u| u.dimension == of.dimension);
     const MOMENT: Dimension = Dimension { kg: 1, m: 2, s: -2 };
     match () {
-        () if is_angle => Some("angle"),
+        () if is_angle && is(Role::Angle) => Some("angle"),
+        () if is_angle => None,
         () if is(Role::Strain) => Some("strain"),
         () if is(Role::Curvature) => Some("curvature"),
         () if is(Role::Displacement) => Some("displacement"),
         () if is(Role::Force) => Some("force"),
         () if is(Role::Pressure) => Some("pressure"),
-        // gf·cm/cm is a force by its dimension; plain gf is one that was not divided by the width.
-        () if is(Role::Moment) && text.contains('/') || of.dimension == MOMENT => Some("moment"),
+        // gf·cm/cm is a force by its dimension; plain gf is one that was not divided by the width. gf·cm²/cm is
+        // a moment by its dimension, and the unit of B.
+        () if is(Role::Moment) && divides_by_length(text) => Some("moment"),
+        () if of.dimension == MOMENT && !divides_by_length(text) => Some("moment"),
         () if is(Role::Moment) => Some("force"),
         () => None,
     }
@@ -81,5 +84,6 @@ mod tests {
         }
         assert_eq!(entry("foo"), None);
         assert_eq!(entry("foo (kg)"), None);
+        assert_eq!(entry("foo (gf·cm²/cm)"), None);
     }
 }

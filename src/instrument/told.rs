@@ -20,7 +20,7 @@ pub(super) fn scaled(column: &Column, scale: Scale, si: &str) -> String {
 }
 
 /// A number without the last-bit noise of a conversion.
-fn plain(value: f64) -> String {
+pub(super) fn plain(value: f64) -> String {
     format!("{value:.8e}").parse::<f64>().unwrap_or(value).to_string()
 }
 

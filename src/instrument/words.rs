@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use unicode_normalization::UnicodeNormalization;
 use unicode_normalization::char::is_combining_mark;
 
-use super::dialect::{Dialect, Key, Role, TableColumn, dialects};
+use super::dialect::{Dialect, Key, Role, Statistic, TableColumn, dialects};
 use super::error::Problem;
 use super::sniff::folded;
 use super::{Direction, Parameter, Test};
@@ -86,6 +86,31 @@ impl<'a> Vocabulary<'a> {
 
     pub fn table_column(self, name: &str) -> Option<TableColumn> {
         self.find(name, false, |d| &d.table)
+    }
+
+    /// How a label says that a row or column sums up others: the whole label, and no word within it.
+    pub fn statistic(self, label: &str) -> Option<Statistic> {
+        // Most labels are numbers.
+        if label.trim_start().starts_with(|c: char| c.is_ascii_digit()) {
+            return None;
+        }
+        self.find(label, false, |d| &d.statistics)
+    }
+
+    /// The same for a heading, in which the word stands among others: `mean moment`, `曲げモーメント平均`.
+    pub fn statistic_within(self, heading: &str) -> Option<Statistic> {
+        let text = folded(heading).into_owned();
+        let parts: Vec<&str> = text.split(|c: char| !c.is_alphanumeric()).filter(|p| !p.is_empty()).collect();
+        // `standard deviation` and `coefficient of variation`; one letter is a unit or a number.
+        let windows = (1..=3).flat_map(|n| parts.windows(n)).map(|w| w.join(" "));
+        let mut named = windows.filter(|w| w.chars().count() > 1).filter_map(|w| self.statistic(&w));
+        named.next().or_else(|| {
+            // Japanese has no blanks between words.
+            let word = normalised(&text);
+            let within = |w: &String| !w.is_ascii() && w.chars().count() > 1 && word.contains(w.as_str());
+            let all = self.dialects().flat_map(|d| &d.statistics);
+            all.filter(|(_, words)| words.iter().any(within)).map(|(statistic, _)| *statistic).next()
+        })
     }
 
     pub fn parameter(self, name: &str) -> Option<Parameter> {
@@ -273,6 +298,38 @@ mod tests {
         assert_eq!(WORDS.direction("経方向"), Some(Direction::Warp));
         assert_eq!(WORDS.parameter("2hb"), Some(Parameter::Hb));
         assert_eq!(WORDS.parameter("目付"), Some(Parameter::W));
+    }
+
+    #[test]
+    fn labels_and_headings_of_statistics() {
+        use Statistic::{Mean, Other, Spread};
+        for (label, expected) in [
+            ("Mean:", Some(Mean)),
+            ("ＡＶＧ．", Some(Mean)),
+            ("média", Some(Mean)),
+            ("Std. Dev.", Some(Spread)),
+            ("CV %", Some(Spread)),
+            ("écart-type", Some(Spread)),
+            ("最大値", Some(Other)),
+            ("n", Some(Other)),
+            ("Mean of Anna", None),
+            ("12", None),
+            ("", None),
+        ] {
+            assert_eq!(WORDS.statistic(label), expected, "{label}");
+        }
+        for (heading, expected) in [
+            ("mean moment", Some(Mean)),
+            ("moment_avg", Some(Mean)),
+            ("standard deviation of the moment", Some(Spread)),
+            ("曲げモーメント平均", Some(Mean)),
+            ("moment 1", None),
+            ("momentum", None),
+            ("force n", None),
+            ("maxwell force", None),
+        ] {
+            assert_eq!(WORDS.statistic_within(heading), expected, "{heading}");
+        }
     }
 
     #[test]

@@ -16,7 +16,7 @@ pub use estimate::Estimate;
 pub use propagation::{Band, Bands, NoSpread};
 pub use sobol::{Population, Sampled, sampled, sobol_points};
 pub use text::significant;
-pub use unit::{Dimension, QuantityError, UNITS, Unit, counts_angles, parse_quantity};
+pub use unit::{Dimension, QuantityError, UNITS, Unit, counts_angles, divides_by_length, parse_quantity};
 
 /// Standard gravity in m/s², the value that defines the gram-force (exact).
 pub const STANDARD_GRAVITY: f64 = 9.80665;

@@ -129,24 +129,7 @@ impl Unit {
     /// # Errors
     /// An unknown symbol, or `a/b·c`, which is read in two ways by different people.
     pub fn parse(text: &str) -> Result<Self, QuantityError> {
-        // NFKC folds ㎝, ｇｆ, ², ⁻ and the two micro signs into one spelling each.
-        let folded: String = text
-            .nfkc()
-            .map(|c| match c {
-                'μ' => 'u',
-                '−' | '‐' | '–' => '-',
-                '×' | '⋅' | '・' | '*' | '.' => '·',
-                '[' => '(',
-                ']' => ')',
-                c => c,
-            })
-            .collect();
-        let mut parser = Parser { chars: folded.trim().chars().collect(), at: 0, whole: text };
-        let unit = parser.quotient()?;
-        if parser.at < parser.chars.len() {
-            return Err(parser.unknown(parser.chars[parser.at..].iter().collect()));
-        }
-        Ok(unit)
+        Parser::read(text).map(|(unit, _)| unit)
     }
 
     fn times(self, other: Self, power: i8) -> Self {
@@ -168,9 +151,34 @@ struct Parser<'a> {
     chars: Vec<char>,
     at: usize,
     whole: &'a str,
+    /// The power of each length that was met: below a fraction bar it is negative.
+    lengths: Vec<i8>,
 }
 
-impl Parser<'_> {
+impl<'a> Parser<'a> {
+    /// The unit of a text, and the powers of the lengths in it.
+    fn read(text: &'a str) -> Result<(Unit, Vec<i8>), QuantityError> {
+        // NFKC folds ㎝, ｇｆ, ², ⁻ and the two micro signs into one spelling each.
+        let folded: String = text
+            .nfkc()
+            .map(|c| match c {
+                'μ' => 'u',
+                '−' | '‐' | '–' => '-',
+                '×' | '⋅' | '・' | '*' | '.' => '·',
+                '[' => '(',
+                ']' => ')',
+                c => c,
+            })
+            .collect();
+        let mut parser =
+            Parser { chars: folded.trim().chars().collect(), at: 0, whole: text, lengths: Vec::new() };
+        let unit = parser.quotient()?;
+        if parser.at < parser.chars.len() {
+            return Err(parser.unknown(parser.chars[parser.at..].iter().collect()));
+        }
+        Ok((unit, parser.lengths))
+    }
+
     fn peek(&self) -> Option<char> {
         self.chars.get(self.at).copied()
     }
@@ -183,10 +191,12 @@ impl Parser<'_> {
         let (mut unit, _) = self.product()?;
         while self.peek() == Some('/') {
             self.at += 1;
+            let below = self.lengths.len();
             let (divisor, factors) = self.product()?;
             if factors > 1 {
                 return Err(QuantityError::Ambiguous { found: self.whole.trim().to_string() });
             }
+            self.lengths[below..].iter_mut().for_each(|power| *power = -*power);
             unit = unit.times(divisor, -1);
         }
         Ok(unit)
@@ -232,7 +242,11 @@ impl Parser<'_> {
             let shown = if symbol.is_empty() { self.chars[start..].iter().collect() } else { symbol };
             return Err(self.unknown(shown));
         };
-        Ok(ONE.times(Unit { factor, dimension: Dimension { kg, m, s } }, self.power()?))
+        let power = self.power()?;
+        if [kg, m, s] == [0, 1, 0] {
+            self.lengths.push(power);
+        }
+        Ok(ONE.times(Unit { factor, dimension: Dimension { kg, m, s } }, power))
     }
 
     fn power(&mut self) -> Result<i8, QuantityError> {
@@ -291,6 +305,12 @@ pub fn parse_quantity(text: &str, example: &'static str) -> Result<(f64, Unit), 
 pub fn counts_angles(text: &str) -> bool {
     let folded: String = text.nfkc().collect();
     ["rad", "deg", "°"].iter().any(|angle| folded.contains(angle))
+}
+
+/// Whether a unit divides by a length: `gf·cm²/cm`, the unit of bending rigidity, does, and `gf·cm`, a moment of the
+/// same dimension, does not. A text that is no unit divides by nothing.
+pub fn divides_by_length(text: &str) -> bool {
+    Parser::read(text).is_ok_and(|(_, lengths)| lengths.iter().any(|power| *power < 0))
 }
 
 /// Deserialises a newtype from its text form, and answers a bare number with what to write.
@@ -364,6 +384,28 @@ mod tests {
     fn angles_are_told_from_turns() {
         assert!(["6.28 rad/s", "360 deg/s", "360 °/s", "1 ㎭/s"].into_iter().all(counts_angles));
         assert!(["1 Hz", "1 1/s", "60 1/min"].into_iter().all(|text| !counts_angles(text)));
+    }
+
+    /// Rigidities and moments per width divide by a length, in every spelling; moments do not.
+    #[test]
+    fn what_divides_by_a_length_is_told_from_what_does_not() {
+        for text in [
+            "gf·cm²/cm",
+            "gf cm2/cm",
+            "gf.cm.cm/cm",
+            "(gf·cm^2)/cm",
+            "gf·cm²·cm⁻¹",
+            "gf·cm2/(cm)",
+            "uN m2/m",
+            "ｇｆ・㎝²/㎝",
+            "gf/(cm·deg)",
+            "N/(1/m)/m2",
+        ] {
+            assert!(divides_by_length(text), "{text}");
+        }
+        for text in ["gf·cm", "N·m", "mN·m", "kg·m²/s²", "g mm2/s2", "N/(1/m)", "J", "furlong/cm"] {
+            assert!(!divides_by_length(text), "{text}");
+        }
     }
 
     #[test]

@@ -10,11 +10,11 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use thiserror::Error;
 
-/// The list of files that this program wrote into a folder, with their hashes.
-pub const MANIFEST: &str = ".kesf-manifest.json";
+/// The list of files that this program wrote into a folder, with their hashes; readers of measurements pass by.
+pub const MANIFEST: &str = crate::instrument::MANIFEST;
 /// What a run is writing, until its manifest is there: a line for each file, ahead of it, so that a run that was
 /// killed can be repeated.
-const JOURNAL: &str = ".kesf-journal";
+const JOURNAL: &str = crate::instrument::JOURNAL;
 const SCHEMA: &str = "kesf.manifest/1";
 
 /// Why a file was not written.

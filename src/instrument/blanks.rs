@@ -1,0 +1,67 @@
+//! Columns that only blanks separate, as reports of fixed width print them.
+//!
+//! Headings have blanks within (`moment (gf·cm/cm)`), so that a row of words is split only where two blanks or more
+//! stand, and a row of numbers at every blank. A hole in such a row would shift the cells behind it to the left: a
+//! text whose rows of numbers change their length is left alone.
+
+use super::sniff::{Number, number};
+
+/// The fewest rows of numbers that make a table.
+const ROWS: usize = 3;
+
+/// The text with a tab at the end of each gap between two cells, so that every character keeps its column; `None` if
+/// the text is no table of that kind.
+pub(super) fn tabbed(text: &str) -> Option<String> {
+    let mut out = String::with_capacity(text.len());
+    let (mut rows, mut before) = (0, None);
+    for line in text.split_inclusive('\n') {
+        let cells: Vec<&str> = line.split_whitespace().collect();
+        let numbers = cells.len() > 1 && cells.iter().all(|c| number(c, '.') != Number::Text);
+        if numbers && before.is_some_and(|n| n != cells.len()) {
+            return None;
+        }
+        if !cells.is_empty() {
+            before = numbers.then_some(cells.len());
+        }
+        rows += usize::from(numbers);
+        split_gaps(line, if numbers { 1 } else { 2 }, &mut out);
+    }
+    (rows >= ROWS).then_some(out)
+}
+
+/// Copies a line, with a tab in place of the last blank of each gap of at least so many blanks.
+fn split_gaps(line: &str, blanks: usize, out: &mut String) {
+    let end = line.trim_end().len();
+    let start = end - line[..end].trim_start_matches(' ').len();
+    out.push_str(&line[..start]);
+    let mut gap = 0;
+    for c in line[start..end].chars() {
+        if c != ' ' && gap >= blanks {
+            out.pop();
+            out.push('\t');
+        }
+        gap = if c == ' ' { gap + 1 } else { 0 };
+        out.push(c);
+    }
+    out.push_str(&line[end..]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gaps_become_tabs_and_columns_stay() {
+        let text = "direction   warp\n\n   curvature (1/cm)   moment (gf·cm/cm)\r\n  0.0 -0.01\n  0.5    0.05  \n  1.0    0.10";
+        let expected = "direction  \twarp\n\n   curvature (1/cm)  \tmoment (gf·cm/cm)\r\n  0.0\t-0.01\n  0.5   \t0.05  \n  1.0   \t0.10";
+        assert_eq!(tabbed(text).as_deref(), Some(expected));
+        assert_eq!(expected.chars().count(), text.chars().count());
+    }
+
+    #[test]
+    fn what_is_no_table_or_has_holes_is_left_alone() {
+        assert_eq!(tabbed("two words\nand  more\n1 2\n"), None);
+        // The first curve is shorter: its cells would be taken by the second.
+        assert_eq!(tabbed("K  M  K  M\n0 1 2 3\n0 1 2 3\n    2 3\n"), None);
+    }
+}

@@ -1,0 +1,92 @@
+//! The files about a folder's data: `fabric.toml` and `dialect.toml`.
+
+use std::path::Path;
+
+use serde::Deserialize;
+
+use super::conditions::StatedConditions;
+use super::dialect::Dialect;
+use super::error::{Problem, ReadError};
+use super::{FabricInfo, MeasuredResult, Origin};
+use crate::finding::{Finding, Place};
+use crate::quantity::{ArealDensity, Length, Ratio};
+
+/// `fabric.toml`: what people know of a fabric and no instrument writes.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct FabricFile {
+    #[serde(alias = "title")]
+    name: Option<String>,
+    weave: Option<String>,
+    composition: Option<String>,
+    origin: Origin,
+    source: Option<String>,
+    climate: Option<String>,
+    areal_density: Option<ArealDensity>,
+    thickness: Option<Length>,
+    notes: Vec<String>,
+    conditions: StatedConditions,
+    results: Vec<MeasuredResult>,
+}
+
+/// What `fabric.toml` in a folder says: of the fabric, of the conditions of its tests, and what nothing can use.
+///
+/// # Errors
+/// `R001` and `R019`, with the position.
+pub(super) fn read_fabric_file(
+    folder: &Path,
+) -> Result<(FabricInfo, StatedConditions, Vec<Finding>), ReadError> {
+    let path = folder.join("fabric.toml");
+    let file: FabricFile = from_toml(&path, |reason| Problem::BadFabricFile { reason })?;
+    let info = FabricInfo {
+        title: file.name.unwrap_or_default(),
+        weave: file.weave,
+        composition: file.composition,
+        origin: file.origin,
+        source: file.source,
+        climate: file.climate,
+        areal_density: file.areal_density.map(ArealDensity::si),
+        thickness: file.thickness.map(Length::si),
+        notes: file.notes,
+        results: file.results,
+    };
+    let finding = |message| Finding::new("R104", message).at(Place::file(&path));
+    let findings = info.results.iter().filter_map(unusable).map(finding).collect();
+    Ok((info, file.conditions, findings))
+}
+
+/// What keeps a measured result from being compared with anything.
+fn unusable(result: &MeasuredResult) -> Option<String> {
+    let MeasuredResult { quantity, value, .. } = result;
+    let wrong = match quantity.as_str() {
+        "drape_coefficient" => value.parse::<Ratio>().err().map(|e| e.to_string()),
+        "bending_length" => value.parse::<Length>().err().map(|e| e.to_string()),
+        "drape_nodes" => value.parse::<f64>().err().map(|_| format!("`{value}` is not a number")),
+        _ => Some(
+            "only drape_coefficient, drape_nodes and bending_length are compared with predictions".into(),
+        ),
+    };
+    wrong.map(|why| format!("the measured result `{quantity}` is left out: {why}"))
+}
+
+/// Reads a dialect file.
+///
+/// # Errors
+/// `R001` and `R020`, with the position.
+pub fn read_dialect(path: &Path) -> Result<Dialect, ReadError> {
+    from_toml(path, |reason| Problem::BadDialect { reason })
+}
+
+fn from_toml<T: serde::de::DeserializeOwned>(
+    path: &Path,
+    problem: impl Fn(String) -> Problem,
+) -> Result<T, ReadError> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|e| ReadError::new(Place::file(path), Problem::Unreadable { reason: e.to_string() }))?;
+    toml::from_str(&text).map_err(|e: toml::de::Error| {
+        let before = &text[..e.span().map_or(0, |s| s.start.min(text.len()))];
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().map_or(0, |l| l.chars().count()) + 1;
+        ReadError::new(Place::at(path, line, column), problem(e.message().replace('\n', "; ")))
+    })
+}

@@ -1,0 +1,113 @@
+//! Columns to pairs: the two columns of each curve, what the header says of each, and which are no specimens.
+
+use std::collections::BTreeMap;
+
+use super::dialect::{Key, Role, Statistic};
+use super::error::{Problem, ReadError};
+use super::layout::{Column, Pair, Scanner};
+use super::statistic::{self, Kinds};
+use super::words::Vocabulary;
+
+/// Abscissa and ordinate, as far as they were met.
+type Halves = (Option<Column>, Option<Column>);
+
+impl Pair {
+    /// How the curve sums up others, and the text that says so: its heading, or the label in place of its number.
+    fn statistic(&self, vocabulary: Vocabulary<'_>) -> Option<(Statistic, &str)> {
+        let name = self.y.name.as_str();
+        let label = || self.header.known.get(&Key::Specimen).map(|e| e.text.as_str());
+        let of_name = vocabulary.statistic_within(name).map(|s| (s, name));
+        of_name.or_else(|| label().and_then(|l| Some((of_label(l, vocabulary)?, l))))
+    }
+}
+
+/// How a label over a curve sums up others: `Mean`, `経 平均`; with a number it is a specimen's.
+pub(super) fn of_label(label: &str, vocabulary: Vocabulary<'_>) -> Option<Statistic> {
+    vocabulary.statistic_within(label).filter(|_| !label.contains(|c: char| c.is_ascii_digit()))
+}
+
+impl Scanner<'_, '_> {
+    /// Abscissa and ordinate of each curve: a new pair begins where a kind of column comes again.
+    /// A single abscissa serves all ordinates.
+    pub(super) fn pairs(&mut self, columns: Vec<Column>) -> Result<Vec<Pair>, ReadError> {
+        let mut halves: Vec<Halves> = vec![(None, None)];
+        let shared = columns.iter().filter(|c| c.role.is_abscissa()).count() == 1;
+        for column in columns.into_iter().filter(|c| c.role != Role::Ignored) {
+            let abscissa = column.role.is_abscissa();
+            let full = halves.last().is_none_or(|(x, y)| if abscissa { x.is_some() } else { y.is_some() });
+            if full {
+                halves.push((None, None));
+            }
+            if let Some((x, y)) = halves.last_mut() {
+                *if abscissa { x } else { y } = Some(column);
+            }
+        }
+        let first = halves.iter().find_map(|(x, _)| x.clone()).filter(|_| shared);
+        if first.is_none() {
+            self.leave_out_halves(&mut halves);
+        }
+        let pair = |(x, y): Halves| match (x.or(first.clone()), y) {
+            (Some(x), Some(y)) => Ok(Pair { x, y, header: self.header.clone() }),
+            (Some(c), None) => Err(self.lacks(&c, "an ordinate (force, moment or pressure)")),
+            (None, Some(c)) => Err(self.lacks(&c, "an abscissa (strain, angle, curvature or thickness)")),
+            (None, None) => Err(self.context.error(0, 0, Problem::Empty)),
+        };
+        halves.into_iter().map(pair).collect()
+    }
+
+    /// Leaves out a mean beside whole pairs that has no abscissa, or no ordinate, of its own.
+    fn leave_out_halves(&mut self, halves: &mut Vec<Halves>) {
+        let whole = halves.iter().any(|(x, y)| x.is_some() && y.is_some());
+        let vocabulary = self.context.vocabulary;
+        let alone = |half: &Halves| match half {
+            (Some(c), None) | (None, Some(c)) if whole => {
+                vocabulary.statistic_within(&c.name).map(|_| (c.line, c.name.clone()))
+            }
+            _ => None,
+        };
+        let left_out: Vec<(usize, String)> = halves.iter().filter_map(alone).collect();
+        self.findings.extend(statistic::finding("columns", &left_out, self.context.path));
+        halves.retain(|half| alone(half).is_none());
+    }
+
+    fn lacks(&self, column: &Column, other: &str) -> ReadError {
+        let found = format!("column {:?} has no partner: {other} is missing", column.name);
+        self.context.error(column.line, column.column, Problem::IncompletePair { found })
+    }
+
+    /// Gives every pair its own of the header values that were listed for all of them.
+    pub(super) fn distribute(&mut self, pairs: &mut [Pair]) -> Result<(), ReadError> {
+        for (key, entries) in std::mem::take(&mut self.lists) {
+            if entries.len() != pairs.len() {
+                let (n, m) = (entries.len(), pairs.len());
+                let reason = format!("{n} values stand over {m} curves");
+                let (line, column) = entries.first().map_or((0, 0), |e| (e.line, e.column));
+                let key = format!("{key:?}").to_lowercase();
+                return Err(self.context.error(line, column, Problem::BadValue { key, reason }));
+            }
+            for (pair, entry) in pairs.iter_mut().zip(entries) {
+                pair.header.known.insert(key, entry);
+            }
+        }
+        Ok(())
+    }
+
+    /// Leaves out curves that sum up others: `moment 1, moment 2, mean moment` are two.
+    pub(super) fn leave_out_statistics(&mut self, pairs: &mut Vec<Pair>) {
+        let vocabulary = self.context.vocabulary;
+        let mut kinds: BTreeMap<Role, Kinds> = BTreeMap::new();
+        for pair in pairs.iter() {
+            kinds.entry(pair.y.role).or_default().add(pair.statistic(vocabulary).map(|(s, _)| s));
+        }
+        let word = |p: &Pair| {
+            let (statistic, word) = p.statistic(vocabulary)?;
+            kinds
+                .get(&p.y.role)
+                .filter(|k| k.leave_out(Some(statistic)))
+                .map(|_| (p.y.line, word.to_string()))
+        };
+        let left_out: Vec<(usize, String)> = pairs.iter().filter_map(word).collect();
+        self.findings.extend(statistic::finding("curves", &left_out, self.context.path));
+        pairs.retain(|p| word(p).is_none());
+    }
+}
