@@ -187,8 +187,8 @@ fn dropouts_and_lost_samples_are_told_with_their_lines() {
 fn clean_records_are_not_accused() {
     use rand::{RngExt, SeedableRng};
     let mut rng = rand_pcg::Pcg64::seed_from_u64(3);
-    let laws: [(Test, f64, Vec<Vec<(f64, f64)>>); 3] = [
-        (Test::Bending, 250.0, [5, 20, 100].map(|n| bent(8e-6, n)).into()),
+    let laws = [
+        (Test::Bending, 250.0, [5, 20, 100].map(|n| bent(8e-6, n)).to_vec()),
         (Test::Tensile, FM, vec![stretched(0.0), stretched(0.0).into_iter().step_by(50).collect()]),
         (Test::Compression, 4903.325, vec![pressed(0.0), held(pressed(0.0))]),
     ];

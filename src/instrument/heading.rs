@@ -66,10 +66,8 @@ pub(super) fn column(cell: &str, vocabulary: Vocabulary<'_>) -> Option<Column> {
     if let Some((value, direction, unit)) = fast::heading(cell) {
         return Some(Column::Fast(value, direction, unit));
     }
-    if sums_up(cell, vocabulary) {
-        return None;
-    }
-    vocabulary.direction(&name).filter(|_| name.chars().count() < 12).map(Column::Of)
+    let direction = vocabulary.direction(&name).filter(|_| name.chars().count() < 12)?;
+    (!sums_up(cell, vocabulary)).then_some(Column::Of(direction))
 }
 
 /// Whether a heading is that of deviations or extremes: `warp SD`, `LT CV (%)`.

@@ -23,7 +23,7 @@ impl Pair {
 
 /// How a label over a curve sums up others: `Mean`, `経 平均`; with a number it is a specimen's.
 pub(super) fn of_label(label: &str, vocabulary: Vocabulary<'_>) -> Option<Statistic> {
-    vocabulary.statistic_within(label).filter(|_| !label.contains(|c: char| c.is_ascii_digit()))
+    if label.contains(|c: char| c.is_ascii_digit()) { None } else { vocabulary.statistic_within(label) }
 }
 
 impl Scanner<'_, '_> {
@@ -94,6 +94,10 @@ impl Scanner<'_, '_> {
 
     /// Leaves out curves that sum up others: `moment 1, moment 2, mean moment` are two.
     pub(super) fn leave_out_statistics(&mut self, pairs: &mut Vec<Pair>) {
+        // One curve is all that there is, whatever it is called; most files are of one.
+        if pairs.len() < 2 {
+            return;
+        }
         let vocabulary = self.context.vocabulary;
         let mut kinds: BTreeMap<Role, Kinds> = BTreeMap::new();
         for pair in pairs.iter() {

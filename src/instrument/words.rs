@@ -104,13 +104,17 @@ impl<'a> Vocabulary<'a> {
         // `standard deviation` and `coefficient of variation`; one letter is a unit or a number.
         let windows = (1..=3).flat_map(|n| parts.windows(n)).map(|w| w.join(" "));
         let mut named = windows.filter(|w| w.chars().count() > 1).filter_map(|w| self.statistic(&w));
-        named.next().or_else(|| {
-            // Japanese has no blanks between words.
-            let word = normalised(&text);
-            let within = |w: &String| !w.is_ascii() && w.chars().count() > 1 && word.contains(w.as_str());
-            let all = self.dialects().flat_map(|d| &d.statistics);
-            all.filter(|(_, words)| words.iter().any(within)).map(|(statistic, _)| *statistic).next()
-        })
+        if let Some(statistic) = named.next() {
+            return Some(statistic);
+        }
+        if text.is_ascii() {
+            return None;
+        }
+        // Japanese has no blanks between words.
+        let word = normalised(&text);
+        let within = |w: &String| !w.is_ascii() && w.chars().count() > 1 && word.contains(w.as_str());
+        let mut all = self.dialects().flat_map(|d| &d.statistics);
+        all.find(|(_, words)| words.iter().any(within)).map(|(statistic, _)| *statistic)
     }
 
     pub fn parameter(self, name: &str) -> Option<Parameter> {
