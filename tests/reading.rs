@@ -137,15 +137,27 @@ fn folders_of_results_are_no_fabrics() {
         &[
             ("poplin/a_warp_FB2_1.csv", CURVE),
             ("results/fabrics.csv", table),
-            ("results/.kesf-manifest.json", "{}"),
+            (
+                "results/.kesf-manifest.json",
+                r#"{"files": {"fabrics.csv": "", "poplin/b_warp_FB2_1.csv": ""}}"#,
+            ),
             ("results/poplin/b_warp_FB2_1.csv", CURVE),
             ("twill/fabric.toml", ""),
             ("twill/a_warp_FB2_1.csv", CURVE),
             ("twill/out/b_warp_FB2_1.csv", CURVE),
-            ("twill/out/.kesf-manifest.json", "{}"),
+            // As a run that was killed leaves it.
+            ("twill/out/.kesf-journal", "[\"b_warp_FB2_1.csv\",\"\"]\n[\"c.c"),
+            // Cards were exported into the folders of two fabrics, and beside their folders.
+            ("lab/cotton/c_warp_FB2_1.csv", CURVE),
+            ("lab/cotton/.kesf-manifest.json", r#"{"files": {"cotton.inp": ""}}"#),
+            ("lab/wool/fabric.toml", ""),
+            ("lab/wool/d_warp_FB2_1.csv", CURVE),
+            ("lab/wool/.kesf-manifest.json", r#"{"files": {"wool.inp": ""}}"#),
+            ("lab/.kesf-manifest.json", r#"{"files": {"cotton.inp": ""}}"#),
         ],
     );
-    assert_eq!(names(&[root.to_path_buf()]), [("poplin".into(), 1), ("twill".into(), 1)]);
+    let fabrics = ["cotton", "wool", "poplin", "twill"].map(|name| (name.to_string(), 1));
+    assert_eq!(names(&[root.to_path_buf()]), fabrics);
     assert_eq!(names(&[root.join("results")]), [("results".into(), 0), ("poplin".into(), 1)]);
 }
 

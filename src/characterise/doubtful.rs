@@ -138,7 +138,7 @@ fn a_way_back_that_was_cut_off_gives_no_recovery() {
     }
 }
 
-/// The shear force of the reviewer's example: an amplifier that ends at 5 gf/cm.
+/// An amplifier that ends at 5 gf/cm.
 #[test]
 fn an_amplifier_at_its_end_is_told() {
     let limit = 4.9033;

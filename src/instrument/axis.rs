@@ -106,7 +106,7 @@ impl Axes<'_> {
         let plain = Axis { scale: Scale::Linear(f), by: None };
         let over = |by, size: f64| Axis { scale: Scale::Linear(f / size), by: Some(by) };
         // A raw force or moment has no length below: gf·cm²/cm has the dimension of a moment and is the unit of B.
-        let raw = !divides_by_length(text);
+        let raw = || !divides_by_length(text);
         Ok(Ok(match (self.test, abscissa, unit.dimension) {
             // No force and no moment is per angle: gf/(cm·deg) has the dimension of gf/cm and is the unit of G.
             (_, false, _) if is_angle => return Ok(Err(expected(self.test, abscissa))),
@@ -116,11 +116,11 @@ impl Axes<'_> {
             (Test::Shear, true, LENGTH) => Axis { scale: Scale::Atan(f / gauge), by: Some(Key::Gauge) },
             (Test::Bending, true, PER_LENGTH) | (Test::Compression, true, LENGTH) => plain,
             (Test::Tensile | Test::Shear, false, LINE_FORCE) => plain,
-            (Test::Tensile | Test::Shear, false, FORCE) if raw => over(Key::Width, *width),
+            (Test::Tensile | Test::Shear, false, FORCE) if raw() => over(Key::Width, *width),
             (Test::Bending, false, FORCE) => plain,
-            (Test::Bending, false, MOMENT) if raw => over(Key::Width, *width),
+            (Test::Bending, false, MOMENT) if raw() => over(Key::Width, *width),
             (Test::Compression, false, PRESSURE) => plain,
-            (Test::Compression, false, FORCE) if raw => over(Key::Area, self.foot_area()?),
+            (Test::Compression, false, FORCE) if raw() => over(Key::Area, self.foot_area()?),
             _ => return Ok(Err(expected(self.test, abscissa))),
         }))
     }

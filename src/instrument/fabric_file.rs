@@ -8,7 +8,7 @@ use super::conditions::StatedConditions;
 use super::dialect::Dialect;
 use super::error::{Problem, ReadError};
 use super::{FabricInfo, MeasuredResult, Origin};
-use crate::finding::{Finding, Place};
+use crate::finding::{Finding, Place, position};
 use crate::quantity::{ArealDensity, Length, Ratio};
 
 /// `fabric.toml`: what people know of a fabric and no instrument writes.
@@ -84,9 +84,7 @@ fn from_toml<T: serde::de::DeserializeOwned>(
     let text = std::fs::read_to_string(path)
         .map_err(|e| ReadError::new(Place::file(path), Problem::Unreadable { reason: e.to_string() }))?;
     toml::from_str(&text).map_err(|e: toml::de::Error| {
-        let before = &text[..e.span().map_or(0, |s| s.start.min(text.len()))];
-        let line = before.matches('\n').count() + 1;
-        let column = before.rsplit('\n').next().map_or(0, |l| l.chars().count()) + 1;
+        let (line, column) = position(&text, e.span().map_or(0, |s| s.start));
         ReadError::new(Place::at(path, line, column), problem(e.message().replace('\n', "; ")))
     })
 }

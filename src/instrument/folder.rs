@@ -227,10 +227,24 @@ fn is_data(path: &Path) -> bool {
             || std::fs::read(path).is_ok_and(|b| b.windows(10).any(|w| w == b"\"raw_data\"")))
 }
 
-/// Whether a folder holds results of this program: charts and tables of fabrics, which are none themselves. One that
-/// the user names is read all the same.
+/// Whether a folder holds results of this program and nothing else to read: charts and tables of fabrics are none
+/// themselves. One that the user names is read all the same, and one into which results were put beside measurements.
 fn is_results(folder: &Path) -> bool {
-    [MANIFEST, JOURNAL].iter().any(|name| folder.join(name).is_file())
+    let read = |name: &&str| std::fs::read_to_string(folder.join(name)).ok();
+    let ours: String = [MANIFEST, JOURNAL].iter().filter_map(read).collect();
+    if ours.is_empty() || folder.join("fabric.toml").is_file() {
+        return false;
+    }
+    // Both lists hold names as JSON texts, those in a folder of results with it: `"poplin/sheet.json"`.
+    let is_ours = |path: &PathBuf| {
+        let name = path.file_name().map(|n| n.to_string_lossy()).and_then(|n| serde_json::to_string(&n).ok());
+        name.is_some_and(|n| match path.is_dir() {
+            true => ours.contains(&format!("{}/", n.strip_suffix('"').unwrap_or(&n))),
+            false => ours.contains(&n),
+        })
+    };
+    let to_read = |p: &PathBuf| !is_hidden(p) && (p.is_dir() || is_data(p));
+    entries(folder).is_ok_and(|all| all.iter().filter(|p| to_read(p)).all(is_ours))
 }
 
 fn walk(folder: &Path, settings: &ReadSettings, library: &mut Library) {
