@@ -26,6 +26,11 @@ fn formulation(nc: u32, drilling: Drilling) -> Formulation {
     Formulation { cells: Cells::from_count(nc).unwrap(), drilling, ..Formulation::default() }
 }
 
+/// The same with one bending cell and the residual flexibility.
+fn fourth_order(drilling: Drilling) -> Formulation {
+    Formulation { drilling, ..Formulation::fourth_order() }
+}
+
 fn stiffness(corners: &[Point3<f64>; 4], warp: &Vector3<f64>, formulation: Formulation) -> Matrix24 {
     Prepared::from_corners(corners, &section(), formulation, warp).unwrap().stiffness()
 }
@@ -78,10 +83,10 @@ proptest! {
     /// One cell and 2 x 2 cells do not depend on the first node; halves and three cells do.
     #[test]
     fn renumbering(corners in quad(), warp in warp(), drilling in drilling(), first in 1..4usize) {
-        for nc in [1, 4] {
+        for f in [formulation(1, drilling), formulation(4, drilling), fourth_order(drilling)] {
             let order: [usize; 4] = std::array::from_fn(|i| (i + first) % 4);
-            let turned = stiffness(&order.map(|i| corners[i]), &warp, formulation(nc, drilling));
-            let plain = stiffness(&corners, &warp, formulation(nc, drilling));
+            let turned = stiffness(&order.map(|i| corners[i]), &warp, f);
+            let plain = stiffness(&corners, &warp, f);
             assert_equal(&turned, &renumbered(&plain, order))?;
         }
     }
@@ -93,9 +98,10 @@ proptest! {
     ) {
         let turn = Rotation3::from_euler_angles(angles[0], angles[1], angles[2]);
         let there = corners.map(|c| turn * c + Vector3::from(shift));
-        for nc in [1, 2, 3, 4, 9] {
-            let plain = stiffness(&corners, &warp, formulation(nc, drilling));
-            let moved = stiffness(&there, &(turn * warp), formulation(nc, drilling));
+        let cells = [1, 2, 3, 4, 9].map(|nc| formulation(nc, drilling));
+        for f in cells.into_iter().chain([fourth_order(drilling)]) {
+            let plain = stiffness(&corners, &warp, f);
+            let moved = stiffness(&there, &(turn * warp), f);
             let t = blocks(*turn.matrix(), *turn.matrix());
             assert_equal(&moved, &(t * plain * t.transpose()))?;
         }
@@ -108,9 +114,10 @@ proptest! {
         // Counter-clockwise again: from the first node backwards.
         let order = [0, 3, 2, 1];
         let seen = order.map(|i| Point3::from(mirror * corners[i].coords));
-        for nc in [1, 4, 9] {
-            let plain = stiffness(&corners, &warp, formulation(nc, drilling));
-            let mirrored = stiffness(&seen, &(mirror * warp), formulation(nc, drilling));
+        let cells = [1, 4, 9].map(|nc| formulation(nc, drilling));
+        for f in cells.into_iter().chain([fourth_order(drilling)]) {
+            let plain = stiffness(&corners, &warp, f);
+            let mirrored = stiffness(&seen, &(mirror * warp), f);
             let t = blocks(mirror, -mirror);
             assert_equal(&mirrored, &renumbered(&(t * plain * t), order))?;
         }
@@ -118,8 +125,9 @@ proptest! {
 
     #[test]
     fn symmetric_and_without_negative_energy(corners in quad(), warp in warp(), values in prop::array::uniform24(-1.0..1.0f64)) {
-        for nc in [1, 2, 3, 4] {
-            let k = stiffness(&corners, &warp, formulation(nc, Drilling::Scaled));
+        let cells = [1, 2, 3, 4].map(|nc| formulation(nc, Drilling::Scaled));
+        for f in cells.into_iter().chain([fourth_order(Drilling::Scaled)]) {
+            let k = stiffness(&corners, &warp, f);
             assert_equal(&k, &k.transpose())?;
             let q = Vector24::from(values);
             prop_assert!(q.dot(&(k * q)) > -ROUNDING * k.abs().max() * q.norm_squared());
@@ -134,9 +142,10 @@ proptest! {
         let scaled = ShellSection {
             d_m: base.d_m * c, d_b: base.d_b * (c * s * s), d_s: base.d_s * c, ..base.clone()
         };
-        let f = formulation(4, Drilling::Scaled);
-        let k = Prepared::from_corners(&small, &scaled, f, &warp).unwrap().stiffness();
-        let t = blocks(Matrix3::identity(), Matrix3::identity() / s);
-        assert_equal(&(t * k * t / c), &stiffness(&corners, &warp, f))?;
+        for f in [formulation(4, Drilling::Scaled), fourth_order(Drilling::Scaled)] {
+            let k = Prepared::from_corners(&small, &scaled, f, &warp).unwrap().stiffness();
+            let t = blocks(Matrix3::identity(), Matrix3::identity() / s);
+            assert_equal(&(t * k * t / c), &stiffness(&corners, &warp, f))?;
+        }
     }
 }

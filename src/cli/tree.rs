@@ -272,7 +272,10 @@ impl Mesh {
 
     fn plot(&self, task: &Task, result: &CaseResult) -> FieldPlot<'_> {
         let fabric = task.fabric_name().unwrap_or("section of the case");
-        let cells = result.model.formulation.cells.count();
+        let cells = match result.model.formulation.bending_cells() {
+            1 => "one bending cell".into(),
+            many => format!("{many} smoothing cells"),
+        };
         let origin = task.fabric.map_or("", |f| match f.info.origin {
             Origin::Measured => "measured data",
             Origin::Published => "published data",
@@ -280,7 +283,7 @@ impl Mesh {
         });
         FieldPlot {
             title: task.case.title.clone(),
-            subtitle: format!("{fabric}; {} elements, {cells} smoothing cells each", self.quads.len()),
+            subtitle: format!("{fabric}; {} elements, {cells} each", self.quads.len()),
             origin: origin.into(),
             quantity: "Deflection w".into(),
             unit: "m".into(),

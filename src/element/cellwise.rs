@@ -39,12 +39,12 @@ pub struct Cellwise {
 }
 
 impl Cellwise {
-    /// From the cells, the map of strains to the material axes, whether the membrane is smoothed over all
+    /// From the cells, the map of strains to the material axes, whether membrane and bending are smoothed over all
     /// cells as one, the stiffness of the part that stays linear, and the rigid links of a warped element.
     pub(super) fn new(
         cells: impl Iterator<Item = Cell>,
         to_material: &Matrix3<f64>,
-        one_membrane_cell: bool,
+        [one_membrane_cell, one_bending_cell]: [bool; 2],
         linear: Matrix24,
         links: Option<Matrix24>,
     ) -> Self {
@@ -64,10 +64,15 @@ impl Cellwise {
             CellGradient { area: cell.area, membrane: to_material * membrane, bending: to_material * bending }
         };
         let mut cells: Vec<CellGradient> = cells.map(gradient).collect();
-        if one_membrane_cell {
-            let area: f64 = cells.iter().map(|c| c.area).sum();
-            let mean = cells.iter().fold(Gradient::zeros(), |g, c| g + c.membrane * (c.area / area));
-            cells.iter_mut().for_each(|c| c.membrane = mean);
+        let area: f64 = cells.iter().map(|c| c.area).sum();
+        let mean = |of: fn(&CellGradient) -> &Gradient| {
+            cells.iter().fold(Gradient::zeros(), |g, c| g + of(c) * (c.area / area))
+        };
+        let membrane = one_membrane_cell.then(|| mean(|c| &c.membrane));
+        let bending = one_bending_cell.then(|| mean(|c| &c.bending));
+        for cell in &mut cells {
+            cell.membrane = membrane.unwrap_or(cell.membrane);
+            cell.bending = bending.unwrap_or(cell.bending);
         }
         Self { cells, linear, links }
     }

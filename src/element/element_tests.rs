@@ -2,7 +2,7 @@
 //! design document's independent implementation.
 
 use super::*;
-use crate::element::{Cells, Membrane};
+use crate::element::{Cells, Gradient, Membrane};
 use nalgebra::{DMatrix, Rotation3};
 
 fn isotropic(twist: f64) -> ShellSection {
@@ -117,5 +117,40 @@ fn one_membrane_cell_is_stabilised_and_exact_for_uniform_strain() {
             bent.dot(&(k * bent))
         });
         assert!(one < 1e-4 * four, "{one:e} of {four:e}");
+    }
+}
+
+/// One bending cell bends a uniform state as four cells do, and cells that follow a law of their own add up to the
+/// same matrix when the law is that of the section.
+#[test]
+fn one_bending_cell_is_exact_for_uniform_curvature_and_cell_by_cell() {
+    for corners in shapes() {
+        let prepared = |formulation| {
+            let warp = Vector3::new(0.8, 0.6, 0.0);
+            Prepared::from_corners(&corners, &isotropic(0.5), formulation, &warp).unwrap()
+        };
+        let (one, four) = (prepared(Formulation::fourth_order()), prepared(Formulation::default()));
+        // Slopes 2x + y and y - x/2 along x and y, no deflection: bending alone.
+        let field = SVector::<f64, 8>::from_fn(|k, _| {
+            let [x, y] = one.frame.xy[k / 2];
+            [0.5 * x - y, 2.0 * x + y][k % 2]
+        });
+        let bending = |e: &Prepared| {
+            let k = Prepared { d_s: Matrix2::zeros(), ..*e }.plate_stiffness();
+            let dof = |i: usize| 3 * (i / 2) + 1 + i % 2;
+            SMatrix::<f64, 8, 8>::from_fn(|i, j| k[(dof(i), dof(j))])
+        };
+        let [a, b] = [&one, &four].map(|e| bending(e) * field);
+        assert!((a - b).norm() < 1e-12 * b.norm());
+        // Half of the section is left to laws.
+        let section = isotropic(0.5);
+        let diagonal = |d: &Matrix3<f64>| Matrix3::from_diagonal(&(d.diagonal() * 0.5));
+        let laws = [diagonal(&section.d_m), diagonal(&section.d_b)];
+        let rest = one.cellwise([section.d_m - laws[0], section.d_b - laws[1]]);
+        let tangent = [laws[0], laws[1]].map(|d| d.diagonal());
+        let tangents: Vec<_> = rest.areas().map(|_| std::array::from_fn(|i| tangent[i / 3][i % 3])).collect();
+        let added = rest.linear() + rest.stiffness(&tangents, &Gradient::zeros());
+        let all = one.local_stiffness();
+        assert!((added - all).norm() < 1e-12 * all.norm());
     }
 }

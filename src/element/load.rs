@@ -28,6 +28,32 @@ pub fn gravity_load(frame: &Frame, areal_density: f64, acceleration: &Vector3<f6
     nodal_areas(frame).map(|a| acceleration * (a * areal_density))
 }
 
+/// Global moments (N·m) on the four nodes of a pressure (Pa) along the element normal +e3 on deflections that are
+/// parabolas along the sides with the rotations at their ends, as [`Bending::OneCell`](super::Bending) has
+/// them: `± q h² / 12` per length, which cancel between equal elements and stay at edges that are free to turn.
+pub fn pressure_moments(frame: &Frame, pressure: f64) -> [Vector3<f64>; 4] {
+    let mut moments = [Vector3::zeros(); 4];
+    for (side, [i, j]) in [[0, 1], [1, 2], [2, 3], [3, 0]].into_iter().enumerate() {
+        let along = [0, 1].map(|axis| frame.xy[j][axis] - frame.xy[i][axis]);
+        // Over the side's own coordinate 1 - s², fading linearly to the opposite side. The product is of third degree
+        // with the linear Jacobian: 2 x 2 points are exact.
+        let volume: f64 = GAUSS_2X2
+            .into_iter()
+            .map(|point| {
+                let [xi, eta] = point;
+                let (s, fade) = [(xi, -eta), (eta, xi), (xi, eta), (eta, -xi)][side];
+                (1.0 - s * s) * 0.5 * (1.0 + fade) * gauss_point(&frame.xy, point).det
+            })
+            .sum();
+        // w = (1 - s²) (β_j - β_i)·along / 8 with β = (θy, -θx).
+        let moment =
+            frame.rotation.tr_mul(&Vector3::new(-along[1], along[0], 0.0)) * (pressure * volume / 8.0);
+        moments[j] += moment;
+        moments[i] -= moment;
+    }
+    moments
+}
+
 /// Weights and tangents of the bilinear surface through the corners at a Gauss point: N, ∂N/∂ξ, ∂N/∂η,
 /// ∂x/∂ξ, ∂x/∂η.
 type SurfacePoint = ([f64; 4], [f64; 4], [f64; 4], Vector3<f64>, Vector3<f64>);
@@ -72,6 +98,19 @@ pub fn follower_pressure_tangent(corners: &[Point3<f64>; 4], pressure: f64) -> M
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A rectangle of 3 x 2 under 6 Pa: q a² / 12 per length of its short edges, q b² / 12 of its long ones.
+    #[test]
+    fn moments_are_those_of_clamped_strips() {
+        let corners = [[0.0, 0.0], [3.0, 0.0], [3.0, 2.0], [0.0, 2.0]].map(|[x, y]| Point3::new(x, y, 0.0));
+        let moments = pressure_moments(&Frame::global(&corners), 6.0);
+        let about_y = 6.0 * 9.0 / 12.0 * (2.0 / 2.0);
+        let about_x = 6.0 * 4.0 / 12.0 * (3.0 / 2.0);
+        // Pressure along +z lifts the middle: w,x > 0 at x = 0 is θy < 0, and w,y > 0 at y = 0 is θx > 0.
+        for (moment, [x, y]) in moments.iter().zip([[1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]]) {
+            assert!((moment - Vector3::new(x * about_x, y * about_y, 0.0)).norm() < 1e-12, "{moment}");
+        }
+    }
 
     /// A twisted quad: nothing plane, nothing square.
     fn corners() -> [Point3<f64>; 4] {

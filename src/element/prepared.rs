@@ -6,7 +6,7 @@ use thiserror::Error;
 use super::cellwise::Cellwise;
 use super::quad4::{Frame, GAUSS_2X2, gauss_point};
 use super::yarns::Yarns;
-use super::{Cell, Cells, Drilling, Formulation, Membrane, drilling, shear};
+use super::{Bending, Cell, Cells, Drilling, Formulation, Membrane, drilling, hourglass, shear};
 use crate::section::{ShellSection, strain_rotation};
 
 /// 12 x 12, three dofs a node.
@@ -41,6 +41,8 @@ pub struct Prepared {
     spring: f64,
     /// Part of the stiffness of several membrane cells that one cell is given.
     stabilisation: f64,
+    /// Stiffness of the rotations that one bending cell does not see (N·m·m²).
+    hourglass: Matrix2<f64>,
     formulation: Formulation,
 }
 
@@ -62,18 +64,32 @@ impl Prepared {
         let angle = a.y.atan2(a.x);
         // In material axes the rigidities are those of warp and weft.
         let turn = vector_rotation(angle);
-        let metric = turn * shear::metric(&frame.xy) * turn.transpose();
-        let stabilised = ShellSection {
-            d_s: shear::stabilised(section, formulation.shear_stabilisation, &metric),
-            ..section.clone()
-        };
+        let sides = shear::sides(&frame.xy);
+        let metric = turn * shear::metric(&sides) * turn.transpose();
+        let added = shear::added_compliance(section, formulation.shear_stabilisation, &metric);
+        let stabilised = ShellSection { d_s: shear::stabilised(section, &added), ..section.clone() };
         let ShellSection { d_m, d_b, d_s, .. } = stabilised.rotated(angle);
         let gamma = drilling::penalty(formulation.drilling, section, frame.area());
         let to_material = strain_rotation(angle);
         let thickness_squared = section.bending_thickness_squared();
         let stabilisation = thickness_squared / (thickness_squared + frame.area());
-        let mut element =
-            Self { frame, d_m, d_b, d_s, angle, to_material, gamma, spring: 0.0, stabilisation, formulation };
+        let hourglass = match formulation.bending {
+            Bending::Cells => Matrix2::zeros(),
+            Bending::OneCell => hourglass::stiffness(&sides, &d_b, &(turn.transpose() * added * turn)),
+        };
+        let mut element = Self {
+            frame,
+            d_m,
+            d_b,
+            d_s,
+            angle,
+            to_material,
+            gamma,
+            spring: 0.0,
+            stabilisation,
+            hourglass,
+            formulation,
+        };
         if let Drilling::Seed(factor) = formulation.drilling {
             let largest = |k: Matrix12| k.diagonal().max();
             let (membrane, plate) = (element.membrane_stiffness(), element.plate_stiffness());
@@ -102,17 +118,35 @@ impl Prepared {
 
     /// Stiffness of bending and transverse shear in element axes, dofs `(w, θx, θy)` node by node.
     pub fn plate_stiffness(&self) -> Matrix12 {
-        let mut k = Matrix12::zeros();
-        for cell in self.cells() {
-            let b = bending_matrix(&cell);
-            k += b.transpose() * (self.d_b * cell.area) * b;
-        }
+        let mut k = match self.formulation.bending {
+            Bending::Cells => self.bending_stiffness(self.formulation.cells),
+            Bending::OneCell => self.bending_stiffness(Cells::grid(1, 1)) + self.hourglass_stiffness(),
+        };
         for point in GAUSS_2X2 {
             let at = gauss_point(&self.frame.xy, point);
             let b = shear::shear_matrix(&self.frame.xy, &at);
             k += b.transpose() * (self.d_s * at.det) * b;
         }
         k
+    }
+
+    fn bending_stiffness(&self, cells: Cells) -> Matrix12 {
+        cells.over(&self.frame.xy).fold(Matrix12::zeros(), |k, cell| {
+            let b = bending_matrix(&cell);
+            k + b.transpose() * (self.d_b * cell.area) * b
+        })
+    }
+
+    fn hourglass_stiffness(&self) -> Matrix12 {
+        let whole = Cell::whole(&self.frame.xy);
+        let vector = hourglass::vector(&self.frame.xy, &whole);
+        let mut b = SMatrix::<f64, 2, 12>::zeros();
+        for (i, g) in vector.iter().enumerate() {
+            // (β_x, β_y) = (θy, -θx).
+            b[(0, 3 * i + 2)] = *g;
+            b[(1, 3 * i + 1)] = -g;
+        }
+        b.transpose() * (self.hourglass * whole.area) * b
     }
 
     /// Stiffness of membrane and drilling penalty in element axes, dofs `(u, v, θz)` node by node.
@@ -152,11 +186,15 @@ impl Prepared {
     /// else stays linear.
     pub fn cellwise(&self, [d_m, d_b]: [Matrix3<f64>; 2]) -> Cellwise {
         let t = &self.to_material;
-        let bare = |d_m, d_b| Self { d_m, d_b, stabilisation: 0.0, ..*self }.local_stiffness();
+        let bare = |d_m, d_b| {
+            let hourglass = Matrix2::zeros();
+            Self { d_m, d_b, stabilisation: 0.0, hourglass, ..*self }.local_stiffness()
+        };
         let rest = [d_m, d_b].map(|d| t.transpose() * d * t);
-        let one_cell = self.formulation.membrane == Membrane::OneCell;
-        let linear = if one_cell {
-            // The stabilisation stays linear, whatever follows a law.
+        let one_cell =
+            [self.formulation.membrane == Membrane::OneCell, self.formulation.bending == Bending::OneCell];
+        let linear = if one_cell.contains(&true) {
+            // What stabilises a single cell stays linear, whatever follows a law.
             bare(rest[0], rest[1]) + (self.local_stiffness() - bare(self.d_m, self.d_b))
         } else {
             Self { d_m: rest[0], d_b: rest[1], ..*self }.local_stiffness()

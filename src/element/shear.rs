@@ -1,32 +1,47 @@
 //! MITC4 transverse shear: strains tied at the mid-sides.
 
-use nalgebra::{Matrix2, SMatrix, Vector2};
+use nalgebra::{Matrix2, SMatrix};
 
 use super::quad4::GaussPoint;
 use crate::section::ShellSection;
 
-/// `D_s` with the thickness-free stabilisation, axes of `section`: `D_s⁻¹ + α/3.5 H^½ B⁻¹ H^½`, B = diag(B1, B2).
+/// `D_s` with the thickness-free stabilisation, axes of `section`: `D_s⁻¹ + α/3.5 H^½ B⁻¹ H^½`, B = diag(B1, B2),
+/// the second part from [`added_compliance`].
 ///
 /// H is [`metric`] in the same axes: `h² I` for a square, `diag(a², b²)` for a rectangle of sides a and b. For an isotropic
 /// plate with ν = 0.3 a square has the form `t² / (t² + α h²)` of Lyly, Stenberg and Vihinen (1993), written without a
 /// thickness because a fabric has none that would mean it. With the longest side for h in all directions an elongated
 /// element is too soft across its short side, where nothing locks: by 1.7 % at a ratio of 4, 3.7 times at 40 (a clamped
 /// strip under pressure, α = 0.05).
-pub(super) fn stabilised(section: &ShellSection, alpha: f64, metric: &Matrix2<f64>) -> Matrix2<f64> {
-    if alpha == 0.0 {
+pub(super) fn stabilised(section: &ShellSection, added: &Matrix2<f64>) -> Matrix2<f64> {
+    if *added == Matrix2::zeros() {
         return section.d_s;
     }
-    let root = square_root(metric);
-    let [b1, b2] = [section.d_b[(0, 0)], section.d_b[(1, 1)]];
-    let added = root * Matrix2::new(1.0 / b1, 0.0, 0.0, 1.0 / b2) * root * (alpha / 3.5);
     inverse(&(inverse(&section.d_s) + added))
 }
 
-/// `Σ (2 ∂x/∂ξ_i)(2 ∂x/∂ξ_i)ᵀ` at the centre, element axes (m²): what the sides are in every direction.
-pub(super) fn metric(xy: &[[f64; 2]; 4]) -> Matrix2<f64> {
-    let middle = |a: usize, b: usize| Vector2::new(0.5 * (xy[a][0] + xy[b][0]), 0.5 * (xy[a][1] + xy[b][1]));
-    let (xi, eta) = (middle(1, 2) - middle(0, 3), middle(2, 3) - middle(0, 1));
-    xi * xi.transpose() + eta * eta.transpose()
+/// What the stabilisation α adds to the compliance of the transverse shear (m/N).
+pub(super) fn added_compliance(section: &ShellSection, alpha: f64, metric: &Matrix2<f64>) -> Matrix2<f64> {
+    if alpha == 0.0 {
+        return Matrix2::zeros();
+    }
+    let root = square_root(metric);
+    let [b1, b2] = [section.d_b[(0, 0)], section.d_b[(1, 1)]];
+    root * Matrix2::new(1.0 / b1, 0.0, 0.0, 1.0 / b2) * root * (alpha / 3.5)
+}
+
+/// The mean side vectors of a quad, rows: along ξ and along η (m).
+pub(super) fn sides(xy: &[[f64; 2]; 4]) -> Matrix2<f64> {
+    let middle = |a: usize, b: usize, axis: usize| 0.5 * (xy[a][axis] + xy[b][axis]);
+    Matrix2::from_fn(|side, axis| {
+        let ([a, b], [c, d]) = [([1, 2], [0, 3]), ([2, 3], [0, 1])][side];
+        middle(a, b, axis) - middle(c, d, axis)
+    })
+}
+
+/// `Σ s sᵀ` of the [`sides`], element axes (m²): what they are in every direction.
+pub(super) fn metric(sides: &Matrix2<f64>) -> Matrix2<f64> {
+    sides.transpose() * sides
 }
 
 /// Of a symmetric positive matrix.

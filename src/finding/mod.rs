@@ -117,6 +117,7 @@ pub struct Explanation {
 }
 
 #[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct CodeFile {
     code: Vec<Explanation>,
 }

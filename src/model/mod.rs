@@ -15,7 +15,9 @@ pub use hard::{HardEdge, OwnAxes};
 pub use rigid::{Links, RigidBody, RigidBodyError};
 pub use support::Support;
 
-use crate::element::{Formulation, Frame, MaterialAxisError, Prepared, gravity_load, pressure_load};
+use crate::element::{
+    Bending, Formulation, Frame, MaterialAxisError, Prepared, gravity_load, pressure_load, pressure_moments,
+};
 use crate::mesh::{MeshError, QuadMesh, is_translated};
 use crate::section::ShellSection;
 
@@ -166,10 +168,15 @@ impl Model {
 
     /// Nodal forces and moments of all loads (N, N·m). Six a node.
     pub fn load_vector(&self) -> Vec<f64> {
-        self.nodal_loads(|_| true)
+        let mut f = self.nodal_loads(|_| true);
+        if self.formulation.bending == Bending::OneCell {
+            self.add_moments(&mut f);
+        }
+        f
     }
 
-    /// The same without the follower pressures, which depend on where the sheet is.
+    /// The same without the follower pressures, which depend on where the sheet is, and without moments of
+    /// distributed loads, which would not turn with it.
     pub fn dead_load_vector(&self) -> Vec<f64> {
         self.nodal_loads(|load| !matches!(load, Load::FollowerPressure(_)))
     }
@@ -218,7 +225,27 @@ impl Model {
         f
     }
 
-    /// Calls `add` with each node of each element and its force; equal elements in a row are computed once.
+    /// Adds the moments of pressures and of the weight across the sheet.
+    fn add_moments(&self, f: &mut [f64]) {
+        let across = |frame: &Frame| -> f64 {
+            let pressure = |load: &Load| match load {
+                Load::Pressure(pressure) | Load::FollowerPressure(pressure) => *pressure,
+                Load::Gravity(g) => self.section.areal_density * (frame.rotation * g).z,
+                Load::Point { .. } | Load::Edge { .. } => 0.0,
+            };
+            self.loads.iter().map(pressure).sum()
+        };
+        self.for_each_nodal_force(
+            |frame| pressure_moments(frame, across(frame)),
+            |node, moment| {
+                for k in 0..3 {
+                    f[6 * node as usize + 3 + k] += moment[k];
+                }
+            },
+        );
+    }
+
+    /// Calls `add` with each node of each element and its force or moment; equal elements in a row are computed once.
     fn for_each_nodal_force(
         &self,
         forces: impl Fn(&Frame) -> [Vector3<f64>; 4],

@@ -6,8 +6,8 @@ use std::str::FromStr;
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
 use super::case::{
-    Analysis, Case, DrillingChoice, LoadTable, MembraneChoice, Profile, SectionTable, Shape, Sheet, Subcells,
-    SupportKind, SupportTable,
+    Analysis, Case, DrillingChoice, LoadTable, Profile, SectionTable, Shape, Sheet, Subcells, SupportKind,
+    SupportTable,
 };
 use super::{StudyError, rigid};
 use crate::element::{Cells, Drilling, Formulation, Membrane};
@@ -45,6 +45,7 @@ pub fn section(table: &SectionTable) -> Result<ShellSection, StudyError> {
 pub fn formulation(case: &Case) -> Result<Formulation, StudyError> {
     let mut formulation = match case.element.profile {
         Some(Profile::Seed) => Formulation::seed(),
+        Some(Profile::FourthOrder) => Formulation::fourth_order(),
         None => Formulation::default(),
     };
     match case.element.subcells {
@@ -67,11 +68,9 @@ pub fn formulation(case: &Case) -> Result<Formulation, StudyError> {
         Some(DrillingChoice::HughesBrezzi) => formulation.drilling = Drilling::HughesBrezzi,
         Some(DrillingChoice::Seed) => formulation.drilling = Drilling::Seed(1e-3),
     }
-    let of_drape = matches!(case.analysis, Analysis::Drape { .. }).then_some(MembraneChoice::OneCell);
-    formulation.membrane = match case.element.membrane.or(of_drape) {
-        None | Some(MembraneChoice::Cells) => Membrane::Cells,
-        Some(MembraneChoice::OneCell) => Membrane::OneCell,
-    };
+    let of_drape = matches!(case.analysis, Analysis::Drape { .. }).then_some(Membrane::OneCell);
+    formulation.membrane = case.element.membrane.or(of_drape).unwrap_or(formulation.membrane);
+    formulation.bending = case.element.bending.unwrap_or(formulation.bending);
     if let Some(alpha) = case.element.shear_stabilisation {
         if !(0.0..=1.0).contains(&alpha) {
             return Err(case.inconsistent(format!("shear_stabilisation = {alpha}: it must be 0 to 1")));

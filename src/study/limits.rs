@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::StudyError;
 use super::case::{Analysis, Case, LoadTable};
 use super::result::CaseResult;
-use crate::element::{Cells, Drilling, Membrane};
+use crate::element::{Bending, Cells, Drilling, Membrane};
 use crate::finding::{Finding, Place};
 use crate::mesh::{QuadMesh, Unjoined, normal};
 use crate::model::{Dof, Model};
@@ -25,6 +25,9 @@ const COMPRESSED: f64 = 1e-6;
 
 /// A motion in the plane of a flat sheet that is this part of the one across it is that of rounding.
 const ROUNDING: f64 = 1e-12;
+
+/// Cosine of an angle that is a right one, and what two rigidities that are equal may differ by, relatively.
+const RIGHT: f64 = 0.02;
 
 /// How a linear result is beyond its meaning.
 pub(super) enum Beyond {
@@ -104,6 +107,14 @@ pub(super) fn findings(
     if let Some(message) = too_few_cells(model) {
         add("S102", message.into());
     }
+    if let Some(oblique) = oblique_elements(model) {
+        let message = format!(
+            "one bending cell is of fourth order on rectangles along warp and weft, and {oblique} of {} elements are none: there \
+             its order is 2, and cells may be closer (profile and bending left out)",
+            model.mesh.quads.len()
+        );
+        add("S123", message);
+    }
     if in_plane && matches!(model.formulation.drilling, Drilling::Seed(_)) {
         let what = if extent.flat {
             "carries the moments about the normal of the sheet, and its rotations there, past the membrane"
@@ -175,12 +186,33 @@ fn too_few_cells(model: &Model) -> Option<&'static str> {
         // In a row of cells along ξ, a rotation ξη bends by η, whose mean over each cell is 0: only the torsion
         // resists it.
         Cells::Grid { along_xi: 1, .. } | Cells::Grid { along_eta: 1, .. }
-            if model.section.d_b[(2, 2)] == 0.0 =>
+            if model.section.d_b[(2, 2)] == 0.0 && model.formulation.bending == Bending::Cells =>
         {
             Some("smoothing cells in one row with H = 0 leave a spurious mode: take subcells = 4")
         }
         _ => None,
     }
+}
+
+/// How many elements are no rectangles along the yarns, any rectangles in an isotropic sheet, where one bending cell
+/// asks for them; `None` if all are.
+fn oblique_elements(model: &Model) -> Option<usize> {
+    if model.formulation.bending == Bending::Cells {
+        return None;
+    }
+    let d = &model.section.d_b;
+    let isotropic = (d[(0, 0)] - d[(1, 1)]).abs() < RIGHT * d[(0, 0)]
+        && (d[(0, 0)] - d[(0, 1)] - 2.0 * d[(2, 2)]).abs() < RIGHT * d[(0, 0)];
+    let oblique = |quad: &usize| {
+        let corners = model.mesh.corners(*quad);
+        let sides: [Vector3<f64>; 4] =
+            std::array::from_fn(|i| (corners[(i + 1) % 4] - corners[i]).normalize());
+        let rectangle = (0..4).all(|i| sides[i].dot(&sides[(i + 1) % 4]).abs() < RIGHT);
+        let [along, across] = [0, 1].map(|i| sides[i].dot(&model.warp) / model.warp.norm());
+        !(rectangle && (isotropic || along.abs() < RIGHT || across.abs() < RIGHT))
+    };
+    let count = (0..model.mesh.quads.len()).filter(oblique).count();
+    (count > 0).then_some(count)
 }
 
 /// A set without a body whose rotation about z is prescribed: only the drilling stiffness takes it to the sheet.

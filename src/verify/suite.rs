@@ -5,7 +5,7 @@ use toml::{Table, Value};
 
 use super::{Kind, Line, Problem, Reference, Tolerance};
 
-const FILES: [&str; 10] = [
+const FILES: [&str; 11] = [
     include_str!("suite/element.toml"),
     include_str!("suite/patch.toml"),
     include_str!("suite/plates.toml"),
@@ -15,6 +15,7 @@ const FILES: [&str; 10] = [
     include_str!("suite/skew.toml"),
     include_str!("suite/shells.toml"),
     include_str!("suite/dynamics.toml"),
+    include_str!("suite/fourth_order.toml"),
     include_str!("suite/large.toml"),
 ];
 

@@ -2,6 +2,8 @@
 
 use serde::Deserialize;
 
+use crate::element::{Bending, Membrane};
+
 /// `[element]`; what is left out is as in the profile, and that is the default one when left out.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -12,8 +14,10 @@ pub struct ElementTable {
     pub subcells: Option<Subcells>,
     /// Smoothing cells of the membrane: `cells` (as bending) or `one_cell`; `cells`, in a drape
     /// `one_cell`.
-    pub membrane: Option<MembraneChoice>,
-    /// α of the transverse shear; 0.05, seed 0.
+    pub membrane: Option<Membrane>,
+    /// Smoothing cells of bending: `cells` or `one_cell`; `cells`, fourth_order `one_cell`.
+    pub bending: Option<Bending>,
+    /// α of the transverse shear; 0.05, seed 0, fourth_order 3.5/12.
     pub shear_stabilisation: Option<f64>,
     /// What holds the drilling rotation; `scaled`, seed `seed`.
     pub drilling: Option<DrillingChoice>,
@@ -25,6 +29,9 @@ pub struct ElementTable {
 pub enum Profile {
     /// The paper's: nc = 4, no shear stabilisation, drilling spring 1e-3.
     Seed,
+    /// One bending cell and the residual bending flexibility: frequencies and deflections of fourth order on meshes
+    /// along the yarns.
+    FourthOrder,
 }
 
 /// Smoothing cells as written.
@@ -47,14 +54,4 @@ pub enum DrillingChoice {
     HughesBrezzi,
     /// The paper's spring, 1e-3 of the largest diagonal term.
     Seed,
-}
-
-/// Smoothing of the membrane as written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum MembraneChoice {
-    /// The cells of bending.
-    Cells,
-    /// One cell and a stabilisation: for thin sheets that bend far.
-    OneCell,
 }

@@ -31,7 +31,7 @@ pub use analysis::{Analysis, MethodChoice, NonlinearTable};
 pub use bending_test::{BendingKind, BendingTest};
 pub use check::{Check, ProbeTable, Reference, ReferenceKind};
 pub use convergence::ConvergenceTable;
-pub use element::{DrillingChoice, ElementTable, MembraneChoice, Profile, Subcells};
+pub use element::{DrillingChoice, ElementTable, Profile, Subcells};
 pub use error::CaseError;
 pub use loads::{LoadTable, SupportKind, SupportTable};
 pub use section::SectionTable;

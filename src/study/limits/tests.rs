@@ -65,6 +65,28 @@ fn cells_in_one_row_need_a_torsional_rigidity() {
 }
 
 #[test]
+fn one_bending_cell_asks_for_rectangles_along_the_yarns() {
+    let with = |warp: &str, section: &str| {
+        let sheet = format!("{OUTLINE}\n{warp}");
+        let text = section.replace("SHEET", &sheet);
+        let result =
+            solved(&format!("{text}{PRESSURE}[element]\nprofile = \"fourth_order\"\nsubcells = 2\n"))
+                .unwrap();
+        result.findings.iter().map(|f| f.code).collect::<Vec<_>>()
+    };
+    assert_eq!(with("", STRIP), [""; 0]);
+    assert_eq!(with("warp_angle_deg = 90", STRIP), [""; 0]);
+    assert_eq!(with("warp_angle_deg = 20", STRIP), [""; 0], "an isotropic sheet has no direction");
+    let limp = STRIP.replace("0.032051", "0");
+    assert_eq!(
+        with("", &limp),
+        [""; 0],
+        "no motion is without energy, though cells in one row would leave one"
+    );
+    assert_eq!(with("warp_angle_deg = 20", &limp), ["S123"]);
+}
+
+#[test]
 fn the_seeds_drilling_spring_is_told_where_a_flat_sheet_moves_in_its_plane() {
     let seed = "[element]\nprofile = \"seed\"\n";
     assert_eq!(codes(&format!("{MOMENT}{seed}")), ["S103"]);

@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::super::VerifyError;
 use super::{DrillingChoice, Layout, default_alpha, formulation, isotropic};
-use crate::element::{Prepared, Vector24};
+use crate::element::{Bending, Formulation, Prepared, Vector24};
 use crate::section::ShellSection;
 
 /// Motions of one element that cost no energy.
@@ -14,6 +14,9 @@ use crate::section::ShellSection;
 pub struct ZeroModes {
     /// Smoothing cells.
     cells: Layout,
+    /// Smoothing of the curvature.
+    #[serde(default)]
+    bending: Bending,
     /// Shape of the element.
     shape: Shape,
     /// Which of its matrices.
@@ -67,7 +70,10 @@ impl ZeroModes {
         if let Matrix::TwistlessPlate = self.matrix {
             section.d_b = Matrix3::from_diagonal(&[section.d_b[(0, 0)], section.d_b[(1, 1)], 0.0].into());
         }
-        let formulation = formulation(self.cells, 0.0, DrillingChoice::HughesBrezzi);
+        let formulation = Formulation {
+            bending: self.bending,
+            ..formulation(self.cells, 0.0, DrillingChoice::HughesBrezzi)
+        };
         let element = Prepared::from_corners(&self.shape.corners(), &section, formulation, &Vector3::x())?;
         Ok(match self.matrix {
             Matrix::Membrane => zeros(&strain_energy(&element, [0, 1])),

@@ -7,6 +7,7 @@ use serde::Deserialize;
 
 use super::super::VerifyError;
 use super::{DrillingChoice, Layout, Statics, default_alpha, formulation, isotropic};
+use crate::element::{Bending, Formulation};
 use crate::fields::{Resultants, element_means};
 use crate::mesh::{QuadMesh, distorted, rectangle};
 use crate::model::{Dof, Model, Support};
@@ -24,6 +25,9 @@ pub struct Patch {
     law: PatchLaw,
     /// Smoothing cells; the worst counts.
     cells: Vec<Layout>,
+    /// Smoothing of the curvature.
+    #[serde(default)]
+    bending: Bending,
     /// Whether the sheet is turned in space.
     turned: bool,
     /// Shear stabilisation.
@@ -219,7 +223,10 @@ impl Patch {
             mesh,
             section: self.law.section(),
             warp: turn * Vector3::new(angle.cos(), angle.sin(), 0.0),
-            formulation: formulation(cells, self.alpha, DrillingChoice::Scaled),
+            formulation: Formulation {
+                bending: self.bending,
+                ..formulation(cells, self.alpha, DrillingChoice::Scaled)
+            },
             supports,
             loads: Vec::new(),
             bodies: Vec::new(),

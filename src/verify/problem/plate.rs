@@ -4,11 +4,11 @@ use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
 use super::super::{Function, VerifyError};
-use super::{Law, Layout, Statics, default_alpha, formulation, nearest, unit};
+use super::{Law, Layout, Statics, nearest, unit};
 use crate::analytical::levy::Edge;
 use crate::analytical::mindlin::MindlinPlate;
 use crate::analytical::{Plate, PlateState};
-use crate::element::Mass;
+use crate::element::{Bending, Formulation, Mass};
 use crate::fields;
 use crate::mesh::{distorted, rectangle};
 use crate::model::{Dof, DofGroup, Load, Model, Support};
@@ -33,9 +33,11 @@ pub struct PlateProblem {
     /// Smoothing cells.
     #[serde(default)]
     cells: Layout,
-    /// Shear stabilisation.
-    #[serde(default = "default_alpha")]
-    alpha: f64,
+    /// Smoothing of the curvature.
+    #[serde(default)]
+    bending: Bending,
+    /// Shear stabilisation; 0.05, with one bending cell the residual flexibility.
+    alpha: Option<f64>,
     /// Random distortion of the mesh, 0 to 0.5.
     #[serde(default)]
     distortion: f64,
@@ -105,11 +107,20 @@ impl PlateProblem {
             mesh,
             section: self.law.section(),
             warp: Vector3::x(),
-            formulation: formulation(self.cells, self.alpha, super::DrillingChoice::Scaled),
+            formulation: self.formulation(),
             supports,
             loads: vec![Load::Pressure(1.0)],
             bodies: Vec::new(),
         })
+    }
+
+    fn formulation(&self) -> Formulation {
+        let start = match self.bending {
+            Bending::Cells => Formulation::default(),
+            Bending::OneCell => Formulation::fourth_order(),
+        };
+        let shear_stabilisation = self.alpha.unwrap_or(start.shear_stabilisation);
+        Formulation { cells: self.cells.0, shear_stabilisation, ..start }
     }
 
     /// The same on elements half as large.

@@ -8,6 +8,7 @@ use serde::Deserialize;
 
 use super::super::VerifyError;
 use super::{DrillingChoice, Law, Layout, Statics, default_alpha, formulation, nearest};
+use crate::element::{Bending, Formulation};
 use crate::fields;
 use crate::mesh::{QuadMesh, rectangle};
 use crate::model::{Dof, Load, Model, Support};
@@ -77,6 +78,9 @@ pub struct Skew {
     /// Smoothing cells.
     #[serde(default)]
     cells: Layout,
+    /// Smoothing of the curvature.
+    #[serde(default)]
+    bending: Bending,
     /// Shear stabilisation.
     #[serde(default = "default_alpha")]
     alpha: f64,
@@ -114,7 +118,10 @@ impl Skew {
             mesh,
             section: Law::Isotropic { nu: self.nu, thickness: self.thickness }.section(),
             warp: Vector3::x(),
-            formulation: formulation(self.cells, self.alpha, DrillingChoice::Scaled),
+            formulation: Formulation {
+                bending: self.bending,
+                ..formulation(self.cells, self.alpha, DrillingChoice::Scaled)
+            },
             supports,
             loads: vec![Load::Pressure(1.0)],
             bodies: Vec::new(),
