@@ -4,7 +4,7 @@ use nalgebra::{Matrix2, Matrix3, SVector, SymmetricEigen};
 
 use super::Cell;
 
-/// Stiffness of the two hourglass modes of the rotations, on `(β_x, β_y) = (θy, -θx)` in element axes (N·m·m²).
+/// Stiffness of the two hourglass modes of the rotations, on `(β_x, β_y) = (θy, -θx)` in element axes (N/m): energy `½ area S (∂²β/∂1∂2)²` in the unit square.
 ///
 /// `sides` are the mean side vectors of the element (rows), `d_b` its bending stiffness and `compliance` what the
 /// stabilisation adds to that of the transverse shear, element axes. The theory has the derivation.
@@ -40,7 +40,7 @@ pub(super) fn stiffness(sides: &Matrix2<f64>, d_b: &Matrix3<f64>, compliance: &M
     };
     let mixed = (d16 + d26) / 3.0 + 0.5 * taken(3);
     let wanted = Matrix2::new(d11 / 4.0 + h / 6.0 + taken(2), mixed, mixed, d22 / 4.0 + h / 6.0 + taken(4));
-    // Four cells: the least that is taken, should a negative Poisson's ratio ask for less.
+    // Four cells: the least that is taken, should a negative D12 ask for less.
     let least = Matrix2::new(d11 + d66, d16 + d26, d16 + d26, d22 + d66) / 16.0;
     let more = SymmetricEigen::new(wanted - least);
     let more = more.eigenvectors

@@ -21,8 +21,8 @@ use crate::section::ShellSection;
 /// has the symmetry of a square is a multiple of k², while what the stiffness does depends on the direction.
 /// Deflections that are quadratic between the nodes and linked to their rotations, as MITC4's shear implies,
 /// have δ = 0 like row sums: the first six frequencies of a clamped square of 32 x 32 elements are -0.21 to +0.35 %
-/// off with either, and those of a simply supported one -0.30 to +0.08 %. The stiffness of one bending cell
-/// ([`Bending::OneCell`](super::Bending)) does not depend on the direction, and row sums go with it: below 0.01 %.
+/// off with either, and those of a simply supported one -0.30 to +0.08 %. The error of one bending cell
+/// with the residual flexibility ([`Bending::OneCell`](super::Bending)) does not depend on the direction, and row sums go with it: below 0.01 %.
 ///
 /// In the plane of the sheet straight lines are what the element has: consistent +k²h²/24, row sums -k²h²/24,
 /// and the mean is of fourth order along the mesh.

@@ -74,11 +74,16 @@ pub enum Bending {
     #[default]
     Cells,
     /// Over the whole element, with a stiffness of the two hourglass modes of the rotations by which the error of a
-    /// bending wave has no part that mixes its directions (see the theory). With the shear stabilisation
-    /// [`Formulation::RESIDUAL_FLEXIBILITY`] and row sums of mass no part of second order is left: frequencies and deflections are of
-    /// fourth order on rectangles whose sides run along warp and weft (on any rectangles if the sheet is isotropic)
-    /// between supported and clamped edges. On other meshes, at free edges, and in a thick sheet the order is two as with cells, and
-    /// on oblique meshes cells are closer.
+    /// bending wave has no part that mixes its directions (see the theory).
+    ///
+    /// With the shear stabilisation [`Formulation::RESIDUAL_FLEXIBILITY`] and row sums of mass the error of a wave is of fourth
+    /// order on equal rectangles whose sides run along warp and weft (on any equal rectangles if the sheet is isotropic), for
+    /// every ratio of the rigidities without negative D12. So are frequencies and deflections between hard simply supported edges. Clamped
+    /// edges, which hold a rotation `h² H w,nnt / (12 D22)`, keep a second order with a small factor (0.006 % at 32 x 32). For small rotations only.
+    ///
+    /// What it is not for: on other meshes the order is 2 as with cells, and on oblique ones cells are closer; at free
+    /// and soft edges the residual flexibility widens the edge layer of the shear, an error of first order, where the
+    /// sheet resists twisting. Moments are of second order, and further off than those of cells (0.3 % at 32 x 32).
     OneCell,
 }
 

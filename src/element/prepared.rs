@@ -41,7 +41,7 @@ pub struct Prepared {
     spring: f64,
     /// Part of the stiffness of several membrane cells that one cell is given.
     stabilisation: f64,
-    /// Stiffness of the rotations that one bending cell does not see (N·m·m²).
+    /// Stiffness of the rotations that one bending cell does not see (N/m).
     hourglass: Matrix2<f64>,
     formulation: Formulation,
 }

@@ -70,7 +70,6 @@ pub fn formulation(case: &Case) -> Result<Formulation, StudyError> {
     }
     let of_drape = matches!(case.analysis, Analysis::Drape { .. }).then_some(Membrane::OneCell);
     formulation.membrane = case.element.membrane.or(of_drape).unwrap_or(formulation.membrane);
-    formulation.bending = case.element.bending.unwrap_or(formulation.bending);
     if let Some(alpha) = case.element.shear_stabilisation {
         if !(0.0..=1.0).contains(&alpha) {
             return Err(case.inconsistent(format!("shear_stabilisation = {alpha}: it must be 0 to 1")));

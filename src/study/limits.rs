@@ -1,5 +1,7 @@
 //! Where a linear result loses its meaning, and what else a reader of a result must know.
 
+use std::collections::HashSet;
+
 use nalgebra::Vector3;
 
 use super::StudyError;
@@ -26,8 +28,11 @@ const COMPRESSED: f64 = 1e-6;
 /// A motion in the plane of a flat sheet that is this part of the one across it is that of rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Cosine of an angle that is a right one, and what two rigidities that are equal may differ by, relatively.
+/// Cosine of an angle that is a right one.
 const RIGHT: f64 = 0.02;
+
+/// Sizes and rigidities that are equal differ by less than this part.
+const EQUAL: f64 = 0.02;
 
 /// How a linear result is beyond its meaning.
 pub(super) enum Beyond {
@@ -107,13 +112,14 @@ pub(super) fn findings(
     if let Some(message) = too_few_cells(model) {
         add("S102", message.into());
     }
-    if let Some(oblique) = oblique_elements(model) {
-        let message = format!(
-            "one bending cell is of fourth order on rectangles along warp and weft, and {oblique} of {} elements are none: there \
-             its order is 2, and cells may be closer (profile and bending left out)",
-            model.mesh.quads.len()
+    if let Some(reasons) = against_one_cell(model, extent) {
+        add(
+            "S123",
+            format!(
+                "profile = \"fourth_order\" is for flat sheets of equal rectangles along warp and weft between clamped and hard \
+                 supported edges, and here {reasons}: the default may be closer"
+            ),
         );
-        add("S123", message);
     }
     if in_plane && matches!(model.formulation.drilling, Drilling::Seed(_)) {
         let what = if extent.flat {
@@ -194,25 +200,70 @@ fn too_few_cells(model: &Model) -> Option<&'static str> {
     }
 }
 
-/// How many elements are no rectangles along the yarns, any rectangles in an isotropic sheet, where one bending cell
-/// asks for them; `None` if all are.
-fn oblique_elements(model: &Model) -> Option<usize> {
+/// Why one bending cell is not of fourth order in a model that has it; `None` where nothing speaks against it.
+fn against_one_cell(model: &Model, extent: &Extent) -> Option<String> {
     if model.formulation.bending == Bending::Cells {
         return None;
     }
+    let mut reasons = Vec::new();
+    if !extent.flat {
+        reasons.push("the sheet is not in a plane z = const".into());
+    }
+    let total = model.mesh.quads.len();
+    let shapes: Vec<Option<[f64; 2]>> = (0..total).map(|quad| along_the_yarns(model, quad)).collect();
+    let oblique = shapes.iter().filter(|shape| shape.is_none()).count();
+    if oblique > 0 {
+        reasons.push(format!("{oblique} of {total} elements are no rectangles along warp and weft"));
+    }
+    let mut sizes = shapes.iter().flatten();
+    if let Some(first) = sizes.next() {
+        let differs = |size: &[f64; 2]| (0..2).any(|i| (size[i] / first[i] - 1.0).abs() > EQUAL);
+        if sizes.any(differs) {
+            reasons.push("the elements are not of one size".into());
+        }
+    }
+    // Where a sheet that resists twisting is free to turn along its edge, the shear has an edge layer, which the residual
+    // flexibility widens: an error of first order.
+    if model.section.d_b[(2, 2)] > 0.0 {
+        let held = model.constraints();
+        let bodies = model.bodies.iter().flat_map(|b| &b.nodes);
+        let hard = model.supports.iter().flat_map(|s| &s.hard).flat_map(|edge| &edge.nodes);
+        let bound: HashSet<u32> = bodies.chain(hard).copied().collect();
+        let loose = |n: &u32| {
+            let at = 6 * *n as usize;
+            !bound.contains(n) && held[at + 3].is_none() && held[at + 4].is_none()
+        };
+        let edges = model.mesh.boundary_edges();
+        let free = edges.iter().filter(|edge| edge.iter().any(loose)).count();
+        if free > 0 {
+            reasons.push(format!(
+                "{free} of {} element sides at the boundary are free or softly supported",
+                edges.len()
+            ));
+        }
+    }
+    (!reasons.is_empty()).then(|| reasons.join(", "))
+}
+
+/// The sides (m) of an element, the shorter one first, if it is a rectangle along them, or any rectangle in an isotropic sheet;
+/// `None` otherwise.
+fn along_the_yarns(model: &Model, quad: usize) -> Option<[f64; 2]> {
+    let corners = model.mesh.corners(quad);
+    let sides: [Vector3<f64>; 4] = std::array::from_fn(|i| corners[(i + 1) % 4] - corners[i]);
+    let cosine = |a: &Vector3<f64>, b: &Vector3<f64>| (a.dot(b) / (a.norm() * b.norm())).abs();
+    let rectangle = (0..4).all(|i| cosine(&sides[i], &sides[(i + 1) % 4]) < RIGHT);
+    // The warp where it lies in the element.
+    let normal = sides[0].cross(&sides[1]).normalize();
+    let warp = model.warp - normal * normal.dot(&model.warp);
     let d = &model.section.d_b;
-    let isotropic = (d[(0, 0)] - d[(1, 1)]).abs() < RIGHT * d[(0, 0)]
-        && (d[(0, 0)] - d[(0, 1)] - 2.0 * d[(2, 2)]).abs() < RIGHT * d[(0, 0)];
-    let oblique = |quad: &usize| {
-        let corners = model.mesh.corners(*quad);
-        let sides: [Vector3<f64>; 4] =
-            std::array::from_fn(|i| (corners[(i + 1) % 4] - corners[i]).normalize());
-        let rectangle = (0..4).all(|i| sides[i].dot(&sides[(i + 1) % 4]).abs() < RIGHT);
-        let [along, across] = [0, 1].map(|i| sides[i].dot(&model.warp) / model.warp.norm());
-        !(rectangle && (isotropic || along.abs() < RIGHT || across.abs() < RIGHT))
-    };
-    let count = (0..model.mesh.quads.len()).filter(oblique).count();
-    (count > 0).then_some(count)
+    let isotropic = (d[(0, 0)] - d[(1, 1)]).abs() < EQUAL * d[(0, 0)]
+        && (d[(0, 0)] - d[(0, 1)] - 2.0 * d[(2, 2)]).abs() < EQUAL * d[(0, 0)];
+    let [first, second] = [0, 1].map(|i| cosine(&sides[i], &warp));
+    if !(rectangle && (isotropic || first.min(second) < RIGHT)) {
+        return None;
+    }
+    let [a, b] = [0, 1].map(|i| sides[i].norm());
+    Some([a.min(b), a.max(b)])
 }
 
 /// A set without a body whose rotation about z is prescribed: only the drilling stiffness takes it to the sheet.

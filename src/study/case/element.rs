@@ -2,7 +2,8 @@
 
 use serde::Deserialize;
 
-use crate::element::{Bending, Membrane};
+use super::Analysis;
+use crate::element::{Mass, Membrane};
 
 /// `[element]`; what is left out is as in the profile, and that is the default one when left out.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -15,9 +16,7 @@ pub struct ElementTable {
     /// Smoothing cells of the membrane: `cells` (as bending) or `one_cell`; `cells`, in a drape
     /// `one_cell`.
     pub membrane: Option<Membrane>,
-    /// Smoothing cells of bending: `cells` or `one_cell`; `cells`, fourth_order `one_cell`.
-    pub bending: Option<Bending>,
-    /// α of the transverse shear; 0.05, seed 0, fourth_order 3.5/12.
+    /// α of the transverse shear; 0.05, seed 0; fourth_order has its own.
     pub shear_stabilisation: Option<f64>,
     /// What holds the drilling rotation; `scaled`, seed `seed`.
     pub drilling: Option<DrillingChoice>,
@@ -29,9 +28,34 @@ pub struct ElementTable {
 pub enum Profile {
     /// The paper's: nc = 4, no shear stabilisation, drilling spring 1e-3.
     Seed,
-    /// One bending cell and the residual bending flexibility: frequencies and deflections of fourth order on meshes
-    /// along the yarns.
+    /// One bending cell and the residual bending flexibility: bending waves of fourth order on equal rectangles along
+    /// the yarns, so frequencies and deflections of flat sheets between clamped and hard supported edges. Moments keep the
+    /// second order, `[convergence]` takes that for granted, and S123 tells of sheets for which this profile is not.
     FourthOrder,
+}
+
+impl ElementTable {
+    /// What does not fit together in the table, and with the analysis; `large` says that rotations are.
+    pub(super) fn contradiction(&self, analysis: &Analysis, large: bool) -> Option<&'static str> {
+        if self.profile != Some(Profile::FourthOrder) {
+            return None;
+        }
+        let other_mass = match analysis {
+            Analysis::Modal { mass, lumped, .. } | Analysis::Newmark { mass, lumped, .. } => {
+                mass.is_some_and(|m| m != Mass::Lumped) || *lumped == Some(false)
+            }
+            _ => false,
+        };
+        if large {
+            Some("profile = \"fourth_order\" is derived for small rotations: remove it")
+        } else if self.shear_stabilisation.is_some() {
+            Some("profile = \"fourth_order\" has a shear_stabilisation of its own: remove one of them")
+        } else if other_mass {
+            Some("profile = \"fourth_order\" goes with mass = \"lumped\", the default: remove one of them")
+        } else {
+            None
+        }
+    }
 }
 
 /// Smoothing cells as written.

@@ -187,11 +187,15 @@ impl Case {
         if let Some(problem) = self.convergence.and_then(|table| table.contradiction(self)) {
             return refuse(&problem);
         }
+        let large = match &self.virtual_test {
+            Some(test) => test.formulation == TestFormulation::Nonlinear,
+            None => matches!(self.analysis, Analysis::Nonlinear(_) | Analysis::Drape { .. }),
+        };
+        let moving = matches!(self.analysis, Analysis::Newmark { large_rotations: true, .. });
+        if let Some(problem) = self.element.contradiction(&self.analysis, large || moving) {
+            return refuse(problem);
+        }
         if self.assumptions.law != Mode::Elastic {
-            let large = match &self.virtual_test {
-                Some(test) => test.formulation == TestFormulation::Nonlinear,
-                None => matches!(self.analysis, Analysis::Nonlinear(_) | Analysis::Drape { .. }),
-            };
             if self.section.is_some() {
                 return refuse("a [section] has no law of friction: remove `law`, or name a `fabric`");
             }

@@ -65,25 +65,49 @@ fn cells_in_one_row_need_a_torsional_rigidity() {
 }
 
 #[test]
-fn one_bending_cell_asks_for_rectangles_along_the_yarns() {
-    let with = |warp: &str, section: &str| {
-        let sheet = format!("{OUTLINE}\n{warp}");
-        let text = section.replace("SHEET", &sheet);
-        let result =
-            solved(&format!("{text}{PRESSURE}[element]\nprofile = \"fourth_order\"\nsubcells = 2\n"))
-                .unwrap();
-        result.findings.iter().map(|f| f.code).collect::<Vec<_>>()
+fn the_profile_of_fourth_order_tells_of_sheets_that_it_is_not_for() {
+    let strip = STRIP.replace("\"left\"", "\"boundary\"");
+    let told = |sheet: &str, text: &str| {
+        let text = text.replace("SHEET", sheet);
+        let element = "[element]\nprofile = \"fourth_order\"\nsubcells = 2\n";
+        let mut findings = solved(&format!("{text}{PRESSURE}{element}")).unwrap().findings;
+        findings.retain(|f| f.code != "S101");
+        findings.into_iter().map(|f| f.to_string()).collect::<Vec<_>>().join("\n")
     };
-    assert_eq!(with("", STRIP), [""; 0]);
-    assert_eq!(with("warp_angle_deg = 90", STRIP), [""; 0]);
-    assert_eq!(with("warp_angle_deg = 20", STRIP), [""; 0], "an isotropic sheet has no direction");
-    let limp = STRIP.replace("0.032051", "0");
+    let turned = |angle: u8| format!("{OUTLINE}\nwarp_angle_deg = {angle}");
+    let limp = strip.replace("0.032051", "0");
+    assert_eq!(told(OUTLINE, &strip), "");
+    assert_eq!(told(&turned(90), &strip), "");
+    assert_eq!(told(&turned(20), &strip), "", "an isotropic sheet has no direction");
     assert_eq!(
-        with("", &limp),
-        [""; 0],
+        told(&turned(90), &limp),
+        "",
         "no motion is without energy, though cells in one row would leave one"
     );
-    assert_eq!(with("warp_angle_deg = 20", &limp), ["S123"]);
+    assert!(told(&turned(20), &limp).contains("16 of 16 elements are no rectangles along warp and weft"));
+    assert!(told(&format!("{OUTLINE}\ndistortion = 0.2"), &strip).contains("no rectangles"));
+    let simple = |kind: &str| strip.replace("kind = \"clamped\"", kind);
+    assert_eq!(told(OUTLINE, &simple("kind = \"simply_supported\"")), "");
+    let soft = told(OUTLINE, &simple("kind = \"simply_supported_soft\""));
+    assert!(soft.contains("20 of 20 element sides at the boundary are free or softly supported"), "{soft}");
+    assert!(told(OUTLINE, STRIP).contains("18 of 20 element sides"), "{}", told(OUTLINE, STRIP));
+    let limp_free = STRIP.replace("0.032051", "0");
+    assert_eq!(told(OUTLINE, &limp_free), "", "without torsional rigidity an edge has no layer");
+}
+
+#[test]
+fn the_profile_of_fourth_order_refuses_what_goes_against_it() {
+    let refused = |more: &str| {
+        let text = format!("{}{more}", STRIP.replace("SHEET", OUTLINE));
+        solved(&format!("{text}\n[element]\nprofile = \"fourth_order\"\n")).unwrap_err().to_string()
+    };
+    let modal = "[analysis]\nkind = \"modal\"\nmodes = 1\n";
+    assert!(refused(&format!("{modal}mass = \"consistent\"")).contains("goes with mass = \"lumped\""));
+    assert!(refused(&format!("{PRESSURE}[analysis]\nkind = \"nonlinear\"")).contains("small rotations"));
+    let text =
+        format!("{}{PRESSURE}[element]\nprofile = \"fourth_order\"\n", STRIP.replace("SHEET", OUTLINE));
+    let own = solved(&format!("{text}shear_stabilisation = 0.05\n")).unwrap_err().to_string();
+    assert!(own.contains("of its own"), "{own}");
 }
 
 #[test]
