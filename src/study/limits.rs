@@ -245,8 +245,8 @@ fn against_one_cell(model: &Model, extent: &Extent) -> Option<String> {
     (!reasons.is_empty()).then(|| reasons.join(", "))
 }
 
-/// The sides (m) of an element, the shorter one first, if it is a rectangle along them, or any rectangle in an isotropic sheet;
-/// `None` otherwise.
+/// The sides (m) of an element, the shorter one first, if it is a rectangle along warp and weft, or any rectangle in an
+/// isotropic sheet; `None` otherwise.
 fn along_the_yarns(model: &Model, quad: usize) -> Option<[f64; 2]> {
     let corners = model.mesh.corners(quad);
     let sides: [Vector3<f64>; 4] = std::array::from_fn(|i| corners[(i + 1) % 4] - corners[i]);

@@ -30,7 +30,7 @@ pub enum Profile {
     Seed,
     /// One bending cell and the residual bending flexibility: bending waves of fourth order on equal rectangles along
     /// the yarns, so frequencies and deflections of flat sheets between clamped and hard supported edges. Moments keep the
-    /// second order, `[convergence]` takes that for granted, and S123 tells of sheets for which this profile is not.
+    /// second order, `[convergence]` takes second order for everything, and S123 tells of sheets for which this profile is not.
     FourthOrder,
 }
 
