@@ -267,7 +267,7 @@ impl Work {
     /// What to say of fabrics that no task is for because every case brings or names its own.
     pub fn idle(&self, tasks: &[Task]) -> Option<String> {
         let own = |c: &Case| c.section.is_some() || named_fabric(c).is_some();
-        if !self.cases.iter().all(own) {
+        if self.cases.is_empty() || !self.cases.iter().all(own) {
             return None;
         }
         let used =

@@ -4,7 +4,8 @@ use nalgebra::{Matrix2, Matrix3, SVector, SymmetricEigen};
 
 use super::Cell;
 
-/// Stiffness of the two hourglass modes of the rotations, on `(β_x, β_y) = (θy, -θx)` in element axes (N/m): energy `½ area S (∂²β/∂1∂2)²` in the unit square.
+/// Stiffness of the two hourglass modes of the rotations, on `(β_x, β_y) = (θy, -θx)` in element axes (N/m): energy
+/// `½ area S (∂²β/∂1∂2)²` in the unit square.
 ///
 /// `sides` are the mean side vectors of the element (rows), `d_b` its bending stiffness and `compliance` what the
 /// stabilisation adds to that of the transverse shear, element axes. The theory has the derivation.

@@ -22,7 +22,8 @@ use crate::section::ShellSection;
 /// Deflections that are quadratic between the nodes and linked to their rotations, as MITC4's shear implies,
 /// have δ = 0 like row sums: the first six frequencies of a clamped square of 32 x 32 elements are -0.21 to +0.35 %
 /// off with either, and those of a simply supported one -0.30 to +0.08 %. The error of one bending cell
-/// with the residual flexibility ([`Bending::OneCell`](super::Bending)) does not depend on the direction, and row sums go with it: below 0.01 %.
+/// with the residual flexibility ([`Bending::OneCell`](super::Bending)) does not depend on the direction to this order,
+/// and row sums go with it: below 0.01 %.
 ///
 /// In the plane of the sheet straight lines are what the element has: consistent +k²h²/24, row sums -k²h²/24,
 /// and the mean is of fourth order along the mesh.

@@ -76,10 +76,11 @@ pub enum Bending {
     /// Over the whole element, with a stiffness of the two hourglass modes of the rotations by which the error of a
     /// bending wave has no part that mixes its directions (see the theory).
     ///
-    /// With the shear stabilisation [`Formulation::RESIDUAL_FLEXIBILITY`] and row sums of mass the error of a wave is of fourth
-    /// order on equal rectangles whose sides run along warp and weft (on any equal rectangles if the sheet is isotropic), for
-    /// every ratio of the rigidities without negative D12. So are frequencies and deflections between hard simply supported edges. Clamped
-    /// edges, which hold a rotation `h² H w,nnt / (12 D22)`, keep a second order with a small factor (0.006 % at 32 x 32). For small rotations only.
+    /// With the shear stabilisation [`Formulation::RESIDUAL_FLEXIBILITY`] and row sums of mass the error of a wave is of
+    /// fourth order on equal rectangles whose sides run along warp and weft (on any equal rectangles if the sheet is
+    /// isotropic), for every ratio of the rigidities without negative D12. So are frequencies and deflections between
+    /// hard simply supported edges. Clamped edges, which hold a rotation `h² H w,nnt / (12 D22)`, keep a second order
+    /// with a small factor (0.006 % at 32 x 32). For small rotations only.
     ///
     /// What it is not for: on other meshes the order is 2 as with cells, and on oblique ones cells are closer; at free
     /// and soft edges the residual flexibility widens the edge layer of the shear, an error of first order, where the
@@ -115,12 +116,11 @@ impl Default for Formulation {
 }
 
 impl Formulation {
-    /// The shear stabilisation α that gives a strip of elements the deflections of a beam at its nodes, `h²/(12 B)`: the residual
-    /// bending flexibility of MacNeal (*Comput. Struct.* 8 (1978) 175).
+    /// The shear stabilisation α that gives a strip of elements the deflections of a beam at its nodes, `h²/(12 B)`: the
+    /// residual bending flexibility of MacNeal (*Comput. Struct.* 8 (1978) 175).
     pub const RESIDUAL_FLEXIBILITY: f64 = 3.5 / 12.0;
 
-    /// One bending cell and the residual bending flexibility: of fourth order on meshes along the yarns, see
-    /// [`Bending::OneCell`].
+    /// One bending cell and the residual bending flexibility; [`Bending::OneCell`] says what for.
     pub fn fourth_order() -> Self {
         Self { bending: Bending::OneCell, shear_stabilisation: Self::RESIDUAL_FLEXIBILITY, ..Self::default() }
     }

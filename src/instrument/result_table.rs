@@ -3,12 +3,16 @@
 //! `fabric,direction,B (gf·cm²/cm),2HB (gf·cm/cm)`, `id,B_warp_uN_m,EMT_weft_percent_inferred`,
 //! `parameter,unit,warp,weft` and `fabric,parameter,direction,mean,sd,n,unit` are all read.
 
+mod fast_cells;
+
 use std::collections::{BTreeMap, BTreeSet};
+
+use fast_cells::FastCell;
 
 use super::curves::finite;
 use super::dialect::{Statistic, TableColumn};
 use super::error::{Problem, ReadError};
-use super::fast::{self, FastValue};
+use super::fast;
 use super::heading::{self, Column, ParameterColumn, columns, parameter_column};
 use super::layout::{Context, Header};
 use super::raw::Row;
@@ -75,16 +79,6 @@ pub(super) fn read(
     table.ignored.extend(unused.into_iter().filter(of_direction));
     table.derive_from_fast();
     table.finish()
-}
-
-/// A FAST value (SI) that is not a KES parameter itself.
-struct FastCell {
-    fabric: Option<String>,
-    value: FastValue,
-    direction: Option<Direction>,
-    si: f64,
-    line: usize,
-    column: usize,
 }
 
 struct Table<'t, 'a> {
@@ -303,30 +297,6 @@ impl Table<'_, '_> {
         Ok(())
     }
 
-    /// A FAST value in a row of its own.
-    fn long_fast(
-        &mut self,
-        row: &Row<'_>,
-        (value, named, own_unit): (FastValue, Option<Direction>, Option<String>),
-    ) -> Result<(), ReadError> {
-        let (fabric, direction) = (self.fabric(row), named.or(self.direction(row)?));
-        let at = self.meta(TableColumn::Unit).or(self.meta(TableColumn::Parameter)).unwrap_or(0);
-        let text = self.text(row, TableColumn::Unit).or(own_unit.as_deref());
-        let factor = self.fast_unit(value, text, (row.line, row.column(at)))?.factor;
-        for (i, column) in self.columns.clone().iter().enumerate() {
-            let of = match column {
-                Some(Column::Meta(TableColumn::Value)) => direction,
-                Some(Column::Of(d)) => Some(*d),
-                _ => continue,
-            };
-            let Some(cell) = row.get(i).filter(|c| !is_gap(c)) else { continue };
-            let si = finite(row, i, cell, self.context)? * factor;
-            let (fabric, line, column) = (fabric.clone(), row.line, row.column(i));
-            self.fast.push(FastCell { fabric, value, direction: of, si, line, column });
-        }
-        Ok(())
-    }
-
     /// The unit of a value; dimensionless parameters need none.
     fn unit(
         &self,
@@ -352,24 +322,6 @@ impl Table<'_, '_> {
         if unit.dimension != expected.dimension || per_angle {
             let of = p.symbol().to_string();
             let expected = p.kes_unit();
-            return Err(error(Problem::UnitWrong { found: text.to_string(), of, expected }));
-        }
-        Ok(unit)
-    }
-
-    fn fast_unit(
-        &self,
-        value: FastValue,
-        text: Option<&str>,
-        (line, column): (usize, usize),
-    ) -> Result<Unit, ReadError> {
-        let error = |problem| self.context.error(line, column, problem);
-        let (of, expected) = (value.symbol().to_string(), value.unit());
-        let Some(text) = text else {
-            return Err(error(Problem::UnitMissing { found: of, expected }));
-        };
-        let unit = known_unit(text).map_err(error)?;
-        if unit.dimension != known_unit(value.unit()).map_err(error)?.dimension {
             return Err(error(Problem::UnitWrong { found: text.to_string(), of, expected }));
         }
         Ok(unit)
@@ -412,42 +364,6 @@ impl Table<'_, '_> {
         };
         if let Some((_, value)) = self.values.iter_mut().rev().find(same) {
             value.sd = Some(sd);
-        }
-    }
-
-    /// B from the bending length and G from EB5, where the table does not state them.
-    fn derive_from_fast(&mut self) {
-        for cell in std::mem::take(&mut self.fast) {
-            if self.is_left_out(&cell.fabric) {
-                continue;
-            }
-            let parameter = cell.value.parameter();
-            let of_fabric = |v: &&(Option<String>, ResultValue)| v.0 == cell.fabric;
-            let has = |p: Parameter| self.values.iter().filter(of_fabric).find(|(_, v)| v.parameter == p);
-            let areal_density = has(Parameter::W).map(|(_, v)| v.mean);
-            let stated = has(parameter).is_some_and(|(_, v)| !v.inferred);
-            let derived = cell.value.derive(cell.si, areal_density).filter(|_| !stated);
-            let Some(mean) = derived else {
-                self.ignored.push(cell.value.symbol().to_string());
-                continue;
-            };
-            // EB5 is one bias test: its G holds for both directions.
-            let direction = if cell.value == FastValue::Eb5 { None } else { cell.direction };
-            let place = Place::at(self.context.path, cell.line, cell.column);
-            let value = ResultValue {
-                parameter,
-                direction,
-                mean,
-                sd: None,
-                n: 1,
-                values: Vec::new(),
-                lines: Vec::new(),
-                inferred: true,
-                place: place.clone(),
-            };
-            let message = format!("{parameter} was calculated from the FAST value {}", cell.value.symbol());
-            self.derived.push((cell.fabric.clone(), Finding::new("R107", message).at(place)));
-            self.values.push((cell.fabric, value));
         }
     }
 

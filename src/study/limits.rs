@@ -31,6 +31,9 @@ const ROUNDING: f64 = 1e-12;
 /// Cosine of an angle that is a right one.
 const RIGHT: f64 = 0.02;
 
+/// Sine of the angle between elements that lie in one plane.
+const PARALLEL: f64 = 1e-6;
+
 /// Sizes and rigidities that are equal differ by less than this part.
 const EQUAL: f64 = 0.02;
 
@@ -112,7 +115,7 @@ pub(super) fn findings(
     if let Some(message) = too_few_cells(model) {
         add("S102", message.into());
     }
-    if let Some(reasons) = against_one_cell(model, extent) {
+    if let Some(reasons) = against_one_cell(model) {
         add(
             "S123",
             format!(
@@ -201,15 +204,16 @@ fn too_few_cells(model: &Model) -> Option<&'static str> {
 }
 
 /// Why one bending cell is not of fourth order in a model that has it; `None` where nothing speaks against it.
-fn against_one_cell(model: &Model, extent: &Extent) -> Option<String> {
+fn against_one_cell(model: &Model) -> Option<String> {
     if model.formulation.bending == Bending::Cells {
         return None;
     }
     let mut reasons = Vec::new();
-    if !extent.flat {
-        reasons.push("the sheet is not in a plane z = const".into());
-    }
     let total = model.mesh.quads.len();
+    let normals: Vec<Vector3<f64>> = (0..total).map(|quad| normal(&model.mesh.corners(quad))).collect();
+    if normals.windows(2).any(|pair| pair[0].cross(&pair[1]).norm() > PARALLEL) {
+        reasons.push("the sheet is curved".into());
+    }
     let shapes: Vec<Option<[f64; 2]>> = (0..total).map(|quad| along_the_yarns(model, quad)).collect();
     let oblique = shapes.iter().filter(|shape| shape.is_none()).count();
     if oblique > 0 {
@@ -229,9 +233,10 @@ fn against_one_cell(model: &Model, extent: &Extent) -> Option<String> {
         let bodies = model.bodies.iter().flat_map(|b| &b.nodes);
         let hard = model.supports.iter().flat_map(|s| &s.hard).flat_map(|edge| &edge.nodes);
         let bound: HashSet<u32> = bodies.chain(hard).copied().collect();
+        // In a sheet along x and y a rotation about z is none of its edge.
+        let rotations = if model.mesh.is_flat() { 3..5 } else { 3..6 };
         let loose = |n: &u32| {
-            let at = 6 * *n as usize;
-            !bound.contains(n) && held[at + 3].is_none() && held[at + 4].is_none()
+            !bound.contains(n) && rotations.clone().all(|dof| held[6 * *n as usize + dof].is_none())
         };
         let edges = model.mesh.boundary_edges();
         let free = edges.iter().filter(|edge| edge.iter().any(loose)).count();
@@ -253,7 +258,7 @@ fn along_the_yarns(model: &Model, quad: usize) -> Option<[f64; 2]> {
     let cosine = |a: &Vector3<f64>, b: &Vector3<f64>| (a.dot(b) / (a.norm() * b.norm())).abs();
     let rectangle = (0..4).all(|i| cosine(&sides[i], &sides[(i + 1) % 4]) < RIGHT);
     // The warp where it lies in the element.
-    let normal = sides[0].cross(&sides[1]).normalize();
+    let normal = normal(&corners);
     let warp = model.warp - normal * normal.dot(&model.warp);
     let d = &model.section.d_b;
     let isotropic = (d[(0, 0)] - d[(1, 1)]).abs() < EQUAL * d[(0, 0)]

@@ -47,11 +47,15 @@ impl ElementTable {
             _ => false,
         };
         if large {
-            Some("profile = \"fourth_order\" is derived for small rotations: remove it")
+            Some("the [element] profile `fourth_order` is derived for small rotations: remove it")
         } else if self.shear_stabilisation.is_some() {
-            Some("profile = \"fourth_order\" has a shear_stabilisation of its own: remove one of them")
+            Some(
+                "`shear_stabilisation` is given by the [element] profile \"fourth_order\": remove one of them",
+            )
         } else if other_mass {
-            Some("profile = \"fourth_order\" goes with mass = \"lumped\", the default: remove one of them")
+            Some(
+                "the [element] profile `fourth_order` goes with mass = \"lumped\", the default: remove it, or the other mass",
+            )
         } else {
             None
         }

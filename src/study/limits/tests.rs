@@ -107,7 +107,7 @@ fn the_profile_of_fourth_order_refuses_what_goes_against_it() {
     let text =
         format!("{}{PRESSURE}[element]\nprofile = \"fourth_order\"\n", STRIP.replace("SHEET", OUTLINE));
     let own = solved(&format!("{text}shear_stabilisation = 0.05\n")).unwrap_err().to_string();
-    assert!(own.contains("of its own"), "{own}");
+    assert!(own.contains(":28:1: S003 `shear_stabilisation` is given by"), "{own}");
 }
 
 #[test]
