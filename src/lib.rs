@@ -9,8 +9,11 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
-pub mod finding;
 pub mod quantity;
+
+pub mod kes;
+
+pub mod finding;
 
 pub mod law;
 

@@ -11,11 +11,16 @@ use kesf::finding::explanations;
 
 /// Module, modules that it may use, heavy crates that it may name; in the order of `lib.rs`.
 const LAYERS: &[(&str, &[&str], &[&str])] = &[
-    ("finding", &[], &["toml"]),
     ("quantity", &[], &[]),
+    ("kes", &["quantity"], &[]),
+    ("finding", &["quantity", "kes"], &["toml"]),
     ("law", &[], &[]),
-    ("instrument", &["finding", "quantity"], &["csv", "calamine", "cfb", "encoding_rs", "toml", "zip"]),
-    ("characterise", &["finding", "quantity", "law", "instrument"], &["faer"]),
+    (
+        "instrument",
+        &["quantity", "kes", "finding"],
+        &["csv", "calamine", "cfb", "encoding_rs", "toml", "zip"],
+    ),
+    ("characterise", &["quantity", "kes", "finding", "law", "instrument"], &["faer"]),
     ("section", &["finding", "quantity", "law"], &[]),
     ("analytical", &["section"], &[]),
     ("mesh", &["finding", "quantity"], &[]),
@@ -34,9 +39,10 @@ const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("cli", &ABOVE_CLI, &["clap", "clap_complete", "indicatif", "ctrlc", "toml"]),
 ];
 
-const ABOVE_STUDY: [&str; 13] = [
-    "finding",
+const ABOVE_STUDY: [&str; 14] = [
     "quantity",
+    "kes",
+    "finding",
     "law",
     "instrument",
     "characterise",
@@ -50,9 +56,10 @@ const ABOVE_STUDY: [&str; 13] = [
     "constitutive",
 ];
 
-const ABOVE_REPORT: [&str; 10] = [
-    "finding",
+const ABOVE_REPORT: [&str; 11] = [
     "quantity",
+    "kes",
+    "finding",
     "law",
     "instrument",
     "characterise",
@@ -63,9 +70,10 @@ const ABOVE_REPORT: [&str; 10] = [
     "study",
 ];
 
-const ABOVE_CLI: [&str; 12] = [
-    "finding",
+const ABOVE_CLI: [&str; 13] = [
     "quantity",
+    "kes",
+    "finding",
     "law",
     "instrument",
     "characterise",

@@ -70,7 +70,7 @@ fn a_modal_case_gives_frequencies_and_the_first_shape() {
     let all = parsed("kind = \"modal\"\nmodes = 10000", "");
     let result =
         solve_case(&all, section(all.section.as_ref().unwrap()).unwrap(), &Options::default()).unwrap();
-    assert_eq!(result.findings[0].code, "S104");
+    assert_eq!(result.findings[0].code(), "S104");
 }
 
 /// A clamp that moves takes the sheet with it: no strain, and no force to compare a residual with.

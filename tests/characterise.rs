@@ -104,7 +104,7 @@ fn published_tables_pass_through() {
                 "{name} {symbol}: {} {expected}",
                 found.mean
             );
-            let told = sheet.findings.iter().any(|f| f.code == "K014" && f.message.starts_with(symbol));
+            let told = sheet.findings.iter().any(|f| f.code() == "K014" && f.message().starts_with(symbol));
             assert_eq!(told, status == "inferred", "{name} {symbol}");
             cells += 1;
         }
@@ -170,6 +170,6 @@ fn a_real_fab_record() {
         println!("{f}");
     }
     for code in ["K030", "K031", "K032", "K033", "K034"] {
-        assert!(sheet.findings.iter().any(|f| f.code == code), "{code}");
+        assert!(sheet.findings.iter().any(|f| f.code() == code), "{code}");
     }
 }

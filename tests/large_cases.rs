@@ -63,7 +63,7 @@ fn solved(case: &Case) -> CaseResult {
 }
 
 fn codes(result: &CaseResult) -> Vec<&str> {
-    result.findings.iter().map(|f| f.code).collect()
+    result.findings.iter().map(|f| f.code()).collect()
 }
 
 #[test]
@@ -109,7 +109,7 @@ fn a_prepared_case_gives_the_same_for_every_fabric() {
 fn the_straight_column_is_told_to_be_unstable_and_the_cures_work() {
     let straight = solved(&strip("kind = \"nonlinear\"\nfirst_step = 0.1\nlargest_step = 0.1", THRUST));
     assert_eq!(codes(&straight), ["S111"]);
-    assert!(straight.findings[0].message.contains("flow") && straight.w_max.abs() < 1e-12);
+    assert!(straight.findings[0].message().contains("flow") && straight.w_max.abs() < 1e-12);
     let flow = solved(&strip("kind = \"nonlinear\"\nmethod = \"flow\"\nseed = 3", THRUST));
     assert_eq!(codes(&flow), [""; 0]);
     // The steps that it took are enough, one less is not.
@@ -118,7 +118,7 @@ fn the_straight_column_is_told_to_be_unstable_and_the_cures_work() {
         let analysis = format!("kind = \"nonlinear\"\nmethod = \"flow\"\nseed = 3\nsteps = {steps}");
         let flow = solved(&strip(&analysis, THRUST));
         assert_eq!(codes(&flow), expected, "{steps}");
-        assert!(flow.findings.iter().all(|f| f.message.contains("no rest at the end of the flow")));
+        assert!(flow.findings.iter().all(|f| f.message().contains("no rest at the end of the flow")));
     }
     let pushed = solved(&strip(
         "kind = \"nonlinear\"\nfirst_step = 0.1\nlargest_step = 0.1\nperturbation = 1e-3",
@@ -154,7 +154,7 @@ fn what_does_not_converge_keeps_its_last_state_and_says_what_to_try() {
         strip("kind = \"nonlinear\"\niterations = 4\nfirst_step = 0.02\nsmallest_step = 0.015", WEIGHT);
     let result = solved(&case);
     assert_eq!((result.status, codes(&result)), (Status::NotConverged, vec!["N007"]));
-    assert!(result.findings[0].message.contains("method = \"flow\""), "{}", result.findings[0].message);
+    assert!(result.findings[0].message().contains("method = \"flow\""), "{}", result.findings[0].message());
     let path = result.path.as_ref().unwrap();
     assert!(!path.converged && path.stability.is_none());
     let last = path.steps.last().map_or(0.0, |s| s.factor);
@@ -211,9 +211,9 @@ fn a_strip_falls_and_the_linear_finding_names_the_cure() {
     assert!((lowest / history.w_max - 1.0).abs() < 1e-6, "{lowest} {}", history.w_max);
     let small = solved(&strip(motion, WEIGHT));
     assert_eq!(codes(&small), ["S101"]);
-    assert!(small.findings[0].message.contains("large_rotations = true"));
+    assert!(small.findings[0].message().contains("large_rotations = true"));
     let still = solved(&strip("kind = \"linear\"", WEIGHT));
-    assert!(still.findings[0].message.contains("kind = \"nonlinear\""));
+    assert!(still.findings[0].message().contains("kind = \"nonlinear\""));
 }
 
 #[test]

@@ -210,7 +210,7 @@ fn fast_values_give_bending_and_shear_rigidity() {
     );
     assert_relative_eq!(of(Parameter::G, None).mean, 41.0, max_relative = 1e-12);
     assert!(of(Parameter::G, None).inferred);
-    assert!(content.findings.iter().any(|f| f.code == "R104" && f.message.contains("E100-1")));
+    assert!(content.findings.iter().any(|f| f.code() == "R104" && f.message().contains("E100-1")));
 }
 
 /// Numbers that no unit and no width may make infinite.
@@ -297,8 +297,8 @@ fn repeats(content: &FileContent) -> Vec<(Option<&str>, usize)> {
     content.results.iter().map(|(fabric, r)| (fabric.as_deref(), r.n)).collect()
 }
 
-fn messages<'c>(content: &'c FileContent, code: &str) -> Vec<&'c str> {
-    content.findings.iter().filter(|f| f.code == code).map(|f| f.message.as_str()).collect()
+fn messages(content: &FileContent, code: &str) -> Vec<String> {
+    content.findings.iter().filter(|f| f.code() == code).map(|f| f.message()).collect()
 }
 
 /// Rows of means and deviations below specimens or fabrics are none; alone they are the values.
@@ -454,7 +454,10 @@ fn standard_dimensions_are_told() {
     let width = "no width is stated: force or moment was divided by the standard 20 cm; state `width` in the header or in [conditions] of fabric.toml";
     let gauge = "no gauge is stated: travel was divided by the standard 5 cm; state `gauge` in the header or in [conditions.tensile] of fabric.toml";
     let content = read("a.csv", text);
-    assert_eq!((content.measurements.len(), messages(&content, "R109")), (2, vec![gauge, width]));
+    assert_eq!(
+        (content.measurements.len(), messages(&content, "R109")),
+        (2, vec![gauge.to_string(), width.to_string()])
+    );
     // Both are the standard values: stated, they need no remark.
     let stated = format!("width,20 cm\ngauge,5 cm\n{text}");
     assert_eq!(messages(&read("a.csv", &stated), "R109"), [""; 0]);

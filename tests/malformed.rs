@@ -100,7 +100,7 @@ fn every_code_is_given_at_its_place() {
         let sheets = batch.fabrics.iter().map(|f| characterise(f, &Settings::default()));
         let findings: Vec<Finding> = sheets.flat_map(|s| s.findings).collect();
         let place_of = |f: &Finding| f.place.as_ref().map(ToString::to_string).unwrap_or_default();
-        let findings = findings.iter().map(|f| (f.code, place_of(f), f.to_string()));
+        let findings = findings.iter().map(|f| (f.code(), place_of(f), f.to_string()));
         let all: Vec<_> = failures.chain(findings).collect();
         let expected = root().join(place).display().to_string();
         let found = all.iter().find(|(c, p, _)| c == code && *p == expected);

@@ -157,7 +157,7 @@ fn energies_that_do_not_add_up_are_told() {
         solved(&case(0.3, [0.4, 0.1], [8, 2], &rest)).unwrap().findings
     };
     let findings = of("kind = \"edge_moment\"\nset = \"right\"\nvalue = \"1e-5 N\"", "[0, 0, 1]");
-    assert!(findings.iter().any(|f| f.code == "S110"), "{findings:?}");
+    assert!(findings.iter().any(|f| f.code() == "S110"), "{findings:?}");
     assert!(of("kind = \"edge_force\"\nset = \"right\"\nvalue = \"1e-9 N/m\"", "[0, 0, 1]").is_empty());
 }
 

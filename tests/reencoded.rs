@@ -191,7 +191,7 @@ fn essence(sheet: &FabricSheet) -> impl PartialEq + std::fmt::Debug + use<> {
             (s.measurement.specimen, s.values.clone(), s.moduli.clone(), s.correction, s.branches.clone())
         })
         .collect();
-    let findings: Vec<_> = sheet.findings.iter().map(|f| (f.code, f.message.clone())).collect();
+    let findings: Vec<_> = sheet.findings.iter().map(|f| (f.code(), f.message())).collect();
     (sheet.values.clone(), sheet.moduli.clone(), specimens, findings)
 }
 

@@ -1,8 +1,7 @@
 //! Findings about the fabric as a whole.
 
-use super::statistics::name;
 use super::{FabricSheet, Settings};
-use crate::finding::Finding;
+use crate::finding::{EvaluationFact, Finding};
 use crate::instrument::{Direction, FabricInput, Measurement, Parameter, Test};
 
 /// Plausible means of woven apparel fabrics in KES units; a value outside is a question, not an error.
@@ -26,22 +25,19 @@ pub(super) fn plausibility(sheet: &FabricSheet, input: &FabricInput) -> Vec<Find
     let mut findings = Vec::new();
     for (key, estimate) in &sheet.values {
         let value = estimate.mean / key.parameter.kes_factor();
-        let unit = key.parameter.kes_unit();
         let cell = (input.results.iter())
             .find(|r| (r.parameter, r.direction, r.mean) == (key.parameter, key.direction, estimate.mean));
-        let place = || cell.map(|c| c.place.clone());
+        let implausible = |range| Finding {
+            place: cell.map(|c| c.place.clone()),
+            fact: EvaluationFact::Implausible { key: *key, value: estimate.mean, range }.into(),
+        };
         if let Some((_, low, high)) = PLAUSIBLE.iter().find(|p| p.0 == key.parameter)
             && !(*low..=*high).contains(&value)
         {
-            let text = format!(
-                "{} = {value:.4} {unit} is outside {low} to {high}, the range of woven apparel fabrics: check unit, specimen width and conditions",
-                name(*key)
-            );
-            findings.push(Finding { place: place(), ..Finding::new("K011", text) });
+            findings.push(implausible(Some([*low, *high])));
         }
         if WIDTHS.contains(&key.parameter) && value < 0.0 {
-            let text = format!("{} = {value:.4} {unit} is negative: the loop runs backwards", name(*key));
-            findings.push(Finding { place: place(), ..Finding::new("K011", text) });
+            findings.push(implausible(None));
         }
     }
     findings
@@ -52,13 +48,8 @@ pub(super) fn shear_directions(sheet: &FabricSheet, settings: &Settings) -> Opti
     let [warp, weft] = [Direction::Warp, Direction::Weft].map(|d| sheet.get(Parameter::G, Some(d)));
     let (warp, weft) = (warp?.mean, weft?.mean);
     let difference = (warp - weft).abs() / (0.5 * (warp + weft)).abs();
-    (difference > settings.shear_difference.si()).then(|| {
-        let text = format!(
-            "G differs by {:.0} % between warp and weft, although both tests measure one constant",
-            100.0 * difference
-        );
-        Finding::new("K012", text)
-    })
+    (difference > settings.shear_difference.si())
+        .then(|| Finding::new(EvaluationFact::ShearDiffers { difference }))
 }
 
 /// Whether two records are of one test and direction and equal number by number. Noise alone makes sure that no two
@@ -79,15 +70,9 @@ pub(super) fn originals(input: &FabricInput) -> (Vec<&Measurement>, Vec<Finding>
             originals.push(m);
             continue;
         };
-        let direction = m.direction.map_or(String::new(), |d| format!(" {d}"));
-        let text = format!(
-            "{}{direction}: specimen {} is left out: its samples are those of specimen {} ({}), number by number, so that it is a copy and no repeat",
-            m.test.name(),
-            m.specimen,
-            original.specimen,
-            original.place()
-        );
-        findings.push(Finding::new("K047", text).at(m.place()));
+        let (original, place) = (original.specimen, original.place());
+        let fact = EvaluationFact::Copy { record: m.record_name(), original, place };
+        findings.push(Finding::new(fact).at(m.place()));
     }
     (originals, findings)
 }
@@ -99,24 +84,15 @@ pub(super) fn records(input: &FabricInput) -> Vec<Finding> {
         let set: Vec<&Measurement> = input.measurements.iter().filter(|m| m.test == test).collect();
         for (i, m) in set.iter().enumerate() {
             if m.direction.is_none() && test != Test::Compression {
-                let text = format!(
-                    "{} specimen {}: no yarn direction is stated; its values stand for the fabric as a whole",
-                    test.name(),
-                    m.specimen
-                );
-                findings.push(Finding::new("K015", text).at(m.place()));
+                let fact = EvaluationFact::NoDirection { record: m.record_name() };
+                findings.push(Finding::new(fact).at(m.place()));
             }
             if set[..i]
                 .iter()
                 .any(|o| o.direction == m.direction && o.specimen == m.specimen && !is_copy(o, m))
             {
-                let direction = m.direction.map_or(String::new(), |d| format!(" {d}"));
-                let text = format!(
-                    "{}{direction}: specimen {} occurs twice; both are used",
-                    test.name(),
-                    m.specimen
-                );
-                findings.push(Finding::new("K019", text).at(m.place()));
+                let fact = EvaluationFact::NumberTwice { record: m.record_name() };
+                findings.push(Finding::new(fact).at(m.place()));
             }
         }
         let Some(first) = set.first() else { continue };
@@ -125,12 +101,8 @@ pub(super) fn records(input: &FabricInput) -> Vec<Finding> {
         let other =
             set.iter().find(|m| differs(m.conditions.maximum, a) || differs(m.conditions.pretension, b));
         if let Some(other) = other {
-            let text = format!(
-                "the {} records were not taken under the same conditions (maximum or tension differ from those of {})",
-                test.name(),
-                first.source.path.display()
-            );
-            findings.push(Finding::new("K007", text).at(other.place()));
+            let first = first.source.path.display().to_string();
+            findings.push(Finding::new(EvaluationFact::ConditionsDiffer { test, first }).at(other.place()));
         }
     }
     findings

@@ -1,11 +1,12 @@
 //! FB1 shear and FB2 bending: slopes and loop widths of a cycle to both sides of zero.
 
 use super::graph::Graph;
-use super::specimen::{Evaluation, Notes, in_unit};
+use super::specimen::{Evaluation, Notes};
 use super::tensile::shift;
 use super::{Branch, CycleChoice, Settings, Window, branch};
+use crate::finding::{EvaluationFact, RecordAxis};
 use crate::instrument::Parameter;
-use crate::quantity::Curve;
+use crate::quantity::{Curve, in_unit};
 
 /// Part of the abscissa where the drive turned up to which a width is read: nearer to the turn the yarns have not slid
 /// back yet, and at the turn itself every loop has no width.
@@ -21,8 +22,6 @@ struct Readings {
     slope: [f64; 2],
     /// Loop widths and the abscissae (absolute) at which they are read.
     widths: [(Parameter, f64); 2],
-    /// Units of abscissa and ordinate in messages.
-    units: [&'static str; 2],
 }
 
 /// Parameters of a shear record (x = rad, y = N/m): G, 2HG, 2HG5.
@@ -33,7 +32,6 @@ pub(super) fn shear(curve: &Curve, settings: &Settings, notes: &mut Notes<'_>) -
         sides: [(Parameter::G, "G+"), (Parameter::G, "G-")],
         slope: settings.shear_slope.map(|a| a.si()),
         widths: [(Parameter::Hg, near), (Parameter::Hg5, far)],
-        units: ["deg", "gf/cm"],
     };
     if settings.tension_correction {
         // Part of the constant tension W along the sheared specimen: W tan φ.
@@ -56,7 +54,6 @@ pub(super) fn bending(
         sides: [(Parameter::Bf, "Bf"), (Parameter::Bb, "Bb")],
         slope: settings.bending_slope.map(|k| k.si()),
         widths: [(Parameter::Hb, at_one), (Parameter::Hb05, at_half)],
-        units: ["1/cm", "gf·cm/cm"],
     };
     evaluate(curve, &readings, settings, notes)
 }
@@ -76,7 +73,7 @@ fn evaluate(
 ) -> Result<Evaluation, String> {
     let mut branches =
         branch::two_sided(curve, settings.reversal.si()).ok_or("the drive does not move".to_string())?;
-    let correction = correct(&mut branches, readings, settings, notes);
+    let correction = correct(&mut branches, settings, notes);
     let sides = [1.0, -1.0].map(|sign| side(&branches, sign, settings.cycle));
     let mut e = Evaluation { branches, correction, ..Default::default() };
     if sides.iter().flatten().count() == 0 {
@@ -84,22 +81,17 @@ fn evaluate(
     }
     slopes(&mut e, &sides, readings, settings, notes);
     for &(parameter, at) in &readings.widths {
-        width(&mut e, &sides, (parameter, at), readings.units[0], notes);
+        width(&mut e, &sides, (parameter, at), notes);
     }
     for side in sides.iter().flatten() {
         let observed = side.out.x.iter().copied().map(f64::abs).fold(0.0, f64::max);
-        notes.maximum(observed, readings.units[0], settings);
+        notes.maximum(observed, settings);
     }
     Ok(e)
 }
 
 /// Takes off the ordinate offset: the loop's two passages of zero are symmetric about the true zero.
-fn correct(
-    branches: &mut [Branch],
-    readings: &Readings,
-    settings: &Settings,
-    notes: &mut Notes<'_>,
-) -> [f64; 2] {
+fn correct(branches: &mut [Branch], settings: &Settings, notes: &mut Notes<'_>) -> [f64; 2] {
     let top = branches.iter().flat_map(|b| &b.curve.x).copied().map(f64::abs).fold(0.0, f64::max);
     // The first branch starts in virgin cloth, inside the loop. Falling and rising passage of zero:
     let passage = |rising: bool| {
@@ -115,7 +107,13 @@ fn correct(
     let offset = 0.5 * (fall + rise);
     let high = branches.iter().flat_map(|b| &b.curve.y).map(|y| (y - offset).abs()).fold(0.0, f64::max);
     if offset.abs() > settings.large_correction.si() * high {
-        notes.add("K008", format!("a zero offset of {} was taken off", in_unit(offset, readings.units[1])));
+        let (record, limit) = (notes.record(), settings.large_correction.si());
+        notes.add(EvaluationFact::LargeCorrection {
+            record,
+            axis: RecordAxis::Ordinate,
+            taken_off: offset,
+            limit,
+        });
     }
     shift(branches, [0.0, -offset]);
     [0.0, 0.0 - offset]
@@ -172,10 +170,10 @@ fn width(
     e: &mut Evaluation,
     sides: &[Option<Side>; 2],
     (parameter, at): (Parameter, f64),
-    unit: &str,
     notes: &mut Notes<'_>,
 ) {
     let mut found = Vec::new();
+    let [unit, _] = notes.measurement.test.kes_axes();
     for side in sides.iter().flatten() {
         let x = side.sign * at;
         let place = if side.sign > 0.0 { "positive" } else { "negative" };
@@ -203,6 +201,6 @@ fn width(
 
 fn one_side_only(sides: usize, parameter: Parameter, notes: &mut Notes<'_>) {
     if sides == 1 {
-        notes.add("K018", format!("{parameter} comes from one side only, not from the mean of both"));
+        notes.add(EvaluationFact::OneSide { record: notes.record(), parameter });
     }
 }

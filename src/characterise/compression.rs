@@ -2,11 +2,12 @@
 
 use super::graph::Graph;
 use super::onset::onset;
-use super::specimen::{Evaluation, Notes, Regained, in_unit};
+use super::specimen::{Evaluation, Notes, Regained};
 use super::tensile::{cycle, shift};
 use super::{Branch, Settings, Window, branch};
+use crate::finding::{EvaluationFact, RecordAxis};
 use crate::instrument::Parameter;
-use crate::quantity::Curve;
+use crate::quantity::{Curve, in_unit};
 
 /// Samples before contact that make a baseline from which the pressure's zero can be told.
 const BASELINE: usize = 5;
@@ -25,7 +26,7 @@ pub(super) fn evaluate(
     // The pressure rises with the approach of the foot: seen along -T.
     let approach = reversed(&load);
     let peak = load.y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let pm = notes.maximum(peak, "gf/cm²", settings);
+    let pm = notes.maximum(peak, settings);
     let p0 = settings.compression_start.si();
     let at = |p: f64| approach.first_rise_to(p).map(|t| 0.0 - t);
     let tm = at(pm).ok_or("the pressure is at its maximum from the start")?;
@@ -76,8 +77,9 @@ fn correct(branches: &mut [Branch], settings: &Settings, notes: &mut Notes<'_>) 
     }
     let peak = first.y.iter().copied().fold(0.0, f64::max);
     if onset.baseline.abs() > settings.large_correction.si() * peak {
-        let shown = in_unit(onset.baseline, "gf/cm²");
-        notes.add("K008", format!("a zero offset of {shown} was taken off the pressure"));
+        let (record, limit) = (notes.record(), settings.large_correction.si());
+        let (axis, taken_off) = (RecordAxis::Ordinate, onset.baseline);
+        notes.add(EvaluationFact::LargeCorrection { record, axis, taken_off, limit });
     }
     shift(branches, [0.0, -onset.baseline]);
     [0.0, 0.0 - onset.baseline]

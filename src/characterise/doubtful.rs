@@ -70,8 +70,8 @@ fn the_maximum_is_that_of_the_chosen_cycle() {
 }
 
 /// The messages of a code.
-fn told<'a>(sheet: &'a FabricSheet, code: &str) -> Vec<&'a str> {
-    sheet.findings.iter().filter(|f| f.code == code).map(|f| f.message.as_str()).collect()
+fn messages(sheet: &FabricSheet, code: &str) -> Vec<String> {
+    sheet.findings.iter().filter(|f| f.code() == code).map(|f| f.message()).collect()
 }
 
 /// A bending loop, with `n` samples on a quarter.
@@ -99,18 +99,19 @@ fn several_cycles_are_told() {
     let stacked = [bent(8e-6, 60), bent(1.6e-5, 60)].concat();
     let m = measurement(Test::Bending, 250.0, stacked);
     let sheet = evaluate(m.clone());
-    let [text] = told(&sheet, "K043")[..] else { panic!("{:?}", sheet.findings) };
+    let found = messages(&sheet, "K043");
+    let [text] = &found[..] else { panic!("{:?}", sheet.findings) };
     assert!(text.contains("2 cycles") && text.contains("those of the first"), "{text}");
     // Of 241 samples each.
     assert!(text.contains("from about line 242 on"), "{text}");
     let last = sheet_of(vec![m], &Settings { cycle: CycleChoice::Last, ..Settings::default() });
-    assert!(told(&last, "K043")[0].contains("those of the last"));
+    assert!(messages(&last, "K043")[0].contains("those of the last"));
     let three = [stretched(0.0), stretched(0.0), stretched(0.0)].concat();
     let sheet = evaluate(measurement(Test::Tensile, FM, three));
-    assert!(told(&sheet, "K043")[0].contains("3 cycles"), "{:?}", sheet.findings);
+    assert!(messages(&sheet, "K043")[0].contains("3 cycles"), "{:?}", sheet.findings);
     // The drive that comes to rest a little beyond zero begins no cycle.
     let beyond = [bent(8e-6, 60), ramp(0.0, 30.0, 8).map(|k| (k, 8e-6 * k + 3e-4)).collect()].concat();
-    assert!(told(&evaluate(measurement(Test::Bending, 250.0, beyond)), "K043").is_empty());
+    assert!(messages(&evaluate(measurement(Test::Bending, 250.0, beyond)), "K043").is_empty());
 }
 
 /// Of the unloading work c^3.5 is missing where it is cut off at c of the strain: 0.7 % at 0.24, which is kept, and
@@ -144,10 +145,10 @@ fn an_amplifier_at_its_end_is_told() {
     let limit = 4.9033;
     let law = |x: f64, s: f64| (60.0 * x + s * (0.6 + 45.0 * x * x)).clamp(-limit, limit);
     let sheet = evaluate(measurement(Test::Shear, 8.0 * DEG, cycle(8.0 * DEG, 60, law)));
-    let found = told(&sheet, "K044");
+    let found = messages(&sheet, "K044");
     assert!(found.len() == 2 && found[0].contains("greatest") && found[1].contains("least"), "{found:?}");
     let clipped = stretched(0.0).into_iter().map(|(e, f)| (e, f.min(400.0))).collect();
-    assert_eq!(told(&evaluate(measurement(Test::Tensile, FM, clipped)), "K044").len(), 1);
+    assert_eq!(messages(&evaluate(measurement(Test::Tensile, FM, clipped)), "K044").len(), 1);
 }
 
 #[test]
@@ -159,9 +160,10 @@ fn dropouts_and_lost_samples_are_told_with_their_lines() {
             *p = spike.map_or((0.0, 0.0), |up| (p.0, p.1 + up));
         }
         let sheet = evaluate(measurement(Test::Bending, 250.0, points));
-        let [text] = told(&sheet, "K045")[..] else { panic!("{from}: {:?}", sheet.findings) };
+        let found = messages(&sheet, "K045");
+        let [text] = &found[..] else { panic!("{from}: {:?}", sheet.findings) };
         assert!(text.contains(&format!(" {}", from + 1)), "{text}");
-        let place = sheet.findings.iter().find(|f| f.code == "K045").and_then(|f| f.place.clone());
+        let place = sheet.findings.iter().find(|f| f.code() == "K045").and_then(|f| f.place.clone());
         assert_eq!(place.unwrap().line, from + 1);
         assert!(!codes(&sheet).iter().any(|c| ["K043", "K044", "K046"].contains(c)), "{:?}", sheet.findings);
     }
@@ -169,16 +171,16 @@ fn dropouts_and_lost_samples_are_told_with_their_lines() {
     let mut points = pressed(0.0);
     points.drain(200..360);
     let sheet = evaluate(measurement(Test::Compression, 4903.325, points));
-    assert!(told(&sheet, "K046")[0].contains("line 201, 161 times"), "{:?}", sheet.findings);
+    assert!(messages(&sheet, "K046")[0].contains("line 201, 161 times"), "{:?}", sheet.findings);
     let mut points = stretched(0.0);
     points[400..].iter_mut().for_each(|p| p.1 -= 0.1 * FM);
     let sheet = evaluate(measurement(Test::Tensile, FM, points));
-    assert!(told(&sheet, "K046")[0].contains("the ordinate steps by") && codes(&sheet).contains(&"K046"));
+    assert!(messages(&sheet, "K046")[0].contains("the ordinate steps by") && codes(&sheet).contains(&"K046"));
     // Without lines, samples are counted.
     let mut points = bent(8e-6, 60);
     points[40] = (0.0, 0.0);
     let unknown = Measurement { lines: Vec::new(), ..measurement(Test::Bending, 250.0, points) };
-    assert!(told(&evaluate(unknown), "K045")[0].contains("sample 41"));
+    assert!(messages(&evaluate(unknown), "K045")[0].contains("sample 41"));
 }
 
 /// Clean records of all kinds: dense and coarse, with noise and jitter, repeated and quantised samples, steps that
@@ -262,7 +264,8 @@ fn a_copy_is_no_repeat() {
     let (warp, weft) = (Direction::Warp, Direction::Weft);
     let set = vec![of(8e-6, warp, 1), of(8.2e-6, warp, 2), of(8e-6, warp, 3), of(8e-6, weft, 1)];
     let sheet = sheet_of(set, &Settings::default());
-    let [text] = told(&sheet, "K047")[..] else { panic!("{:?}", sheet.findings) };
+    let found = messages(&sheet, "K047");
+    let [text] = &found[..] else { panic!("{:?}", sheet.findings) };
     assert!(text.contains("warp: specimen 3") && text.contains("specimen 1 (clean.csv:1)"), "{text}");
     let n = |direction| sheet.get(P::B, Some(direction)).unwrap().n;
     assert_eq!((n(warp), n(weft), sheet.specimens.len()), (2, 1, 3));

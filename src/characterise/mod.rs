@@ -26,6 +26,7 @@ mod strip;
 mod tables;
 mod tensile;
 
+pub use crate::kes::Key;
 pub(crate) use friction::nnls::nnls;
 pub use friction::{
     Basis, ClosedForm, Conditioning, CycleFit, FrictionLaw, LawBand, LawTrace, LoopFit, ReExtracted,
@@ -33,7 +34,7 @@ pub use friction::{
 };
 pub use graph::LineFit;
 pub use settings::{CycleChoice, Modulus, Settings};
-pub use sheet::{Branch, FabricSheet, Key, RunTo, SpecimenResult, Window};
+pub use sheet::{Branch, FabricSheet, RunTo, SpecimenResult, Window};
 pub use simulated::parameters;
 pub use spread::{MeanBranch, mean_branches};
 pub use strip::{Strip, StripCycle};
@@ -88,8 +89,8 @@ pub fn characterise(input: &FabricInput, settings: &Settings) -> FabricSheet {
     for finding in sheet.findings.iter_mut().filter(|f| f.place.is_none() && *input.path != *"") {
         finding.place = Some(Place::file(&input.path));
     }
-    // Several ways may lead to the same remark.
-    let mut told = std::collections::BTreeSet::new();
-    sheet.findings.retain(|f| told.insert(f.clone()));
+    // Several checks may lead to the same remark.
+    let mut seen = std::collections::BTreeSet::new();
+    sheet.findings.retain(|f| seen.insert(f.to_string()));
     sheet
 }

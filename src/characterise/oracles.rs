@@ -207,7 +207,7 @@ fn cycles_are_kept_and_chosen() {
 }
 
 pub(super) fn codes(sheet: &FabricSheet) -> Vec<&str> {
-    sheet.findings.iter().map(|f| f.code).collect()
+    sheet.findings.iter().map(|f| f.code()).collect()
 }
 
 #[test]
@@ -353,7 +353,7 @@ fn what_the_set_of_records_says_about_itself() {
     let sheet = sheet_of(set, &Settings::default());
     assert_eq!(codes(&sheet), ["K019", "K010", "K010", "K010", "K013"], "{:#?}", sheet.findings);
     let swapped = sheet.findings.last().unwrap();
-    assert!(swapped.message.contains("warp specimen 3"), "{swapped}");
+    assert!(swapped.message().contains("warp specimen 3"), "{swapped}");
 
     // No direction, another maximum.
     let mut odd = bent(8e-6, Warp, 1);

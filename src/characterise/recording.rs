@@ -4,8 +4,9 @@
 use std::ops::Range;
 
 use super::branch::{self, usual_step};
-use super::specimen::{Notes, in_unit};
+use super::specimen::Notes;
 use super::{CycleChoice, Settings};
+use crate::finding::{EvaluationFact, RecordAxis, Samples};
 use crate::instrument::{Measurement, Test};
 use crate::quantity::Curve;
 
@@ -30,8 +31,6 @@ const PLATEAU: usize = 5;
 const FLAT: usize = 4;
 /// A cycle counts if it goes over this part of the longest way at least; less is the drive that settles at the end.
 const WHOLE: f64 = 0.2;
-/// Samples that a message names.
-const NAMED: usize = 3;
 
 /// K043 to K046: what the record of one specimen says about how it was made.
 pub(super) fn check(settings: &Settings, notes: &mut Notes<'_>) {
@@ -71,15 +70,13 @@ fn drop_outs(kept: &mut Vec<usize>, notes: &mut Notes<'_>) {
     found.extend(take(kept, &spikes));
     found.sort_unstable();
     let Some(&first) = found.first() else { return };
-    let [abscissa, ordinate] = units(m.test);
-    let what = if found.len() == 1 { "a sample jumps" } else { "samples jump" };
-    let text = format!(
-        "{what} away and back in {}, first to {} and {}: a dropout? Nothing is taken out, and what is read there is wrong",
-        named(m, &found),
-        in_unit(m.curve.x[first], abscissa),
-        in_unit(m.curve.y[first], ordinate)
-    );
-    notes.add_at("K045", first, text);
+    let fact = EvaluationFact::Dropout {
+        record: notes.record(),
+        samples: named(m, &found),
+        abscissa: m.curve.x[first],
+        ordinate: m.curve.y[first],
+    };
+    notes.add_at(first, fact);
 }
 
 /// Takes runs of samples out of the list, and returns them.
@@ -144,28 +141,30 @@ fn runs_on(x: &[f64], before: usize, after: usize, usual: f64) -> bool {
 /// K046: the abscissa or the ordinate goes on elsewhere.
 fn lost(curve: &Curve, usual: f64, kept: &[usize], notes: &mut Notes<'_>) {
     let m = notes.measurement;
-    let [abscissa, ordinate] = units(m.test);
     let gaps = jumps(&curve.x, usual);
     if let Some(&first) = gaps.first() {
         let step = (curve.x[first] - curve.x[first - 1]).abs();
-        let text = format!(
-            "the abscissa steps by {} in {}, {:.0} times the usual step: are samples lost there? The values rest on a straight line across",
-            in_unit(step, abscissa),
-            named(m, &gaps.iter().map(|&i| kept[i]).collect::<Vec<_>>()),
-            step / usual
-        );
-        notes.add_at("K046", kept[first], text);
+        let fact = EvaluationFact::Jump {
+            record: notes.record(),
+            axis: RecordAxis::Abscissa,
+            step,
+            times: Some(step / usual),
+            samples: named(m, &gaps.iter().map(|&i| kept[i]).collect::<Vec<_>>()),
+        };
+        notes.add_at(kept[first], fact);
     }
     let mut steps = jumps(&curve.y, smallest_jump(&curve.y) / JUMP);
     // Where the abscissa steps, the ordinate does too.
     steps.retain(|i| !gaps.contains(i) && runs_on(&curve.x, i - 1, *i, usual));
     if let Some(&first) = steps.first() {
-        let text = format!(
-            "the ordinate steps by {} in {}, while the drive runs on: did the specimen slip or tear, or was the range switched?",
-            in_unit((curve.y[first] - curve.y[first - 1]).abs(), ordinate),
-            named(m, &steps.iter().map(|&i| kept[i]).collect::<Vec<_>>()),
-        );
-        notes.add_at("K046", kept[first], text);
+        let fact = EvaluationFact::Jump {
+            record: notes.record(),
+            axis: RecordAxis::Ordinate,
+            step: (curve.y[first] - curve.y[first - 1]).abs(),
+            times: None,
+            samples: named(m, &steps.iter().map(|&i| kept[i]).collect::<Vec<_>>()),
+        };
+        notes.add_at(kept[first], fact);
     }
 }
 
@@ -197,17 +196,15 @@ fn clipped(curve: &Curve, usual: f64, kept: &[usize], notes: &mut Notes<'_>) {
         if *n < PLATEAU.max(FLAT * longest) {
             continue;
         }
-        let [abscissa, ordinate] = units(m.test);
-        let [from, to] = ends(&curve.x[run.clone()]);
-        let text = format!(
-            "{} samples in a row from {} on sit at exactly {}, the {name} of the record, between {} and {}: the range of the amplifier? What is read there is not the cloth's",
-            run.len(),
-            named(m, &[kept[run.start]]),
-            in_unit(extreme, ordinate),
-            in_unit(from, abscissa),
-            in_unit(to, abscissa)
-        );
-        notes.add_at("K044", kept[run.start], text);
+        let fact = EvaluationFact::Clipped {
+            record: notes.record(),
+            count: run.len(),
+            first: named(m, &[kept[run.start]]),
+            ordinate: extreme,
+            extreme: name.to_string(),
+            between: ends(&curve.x[run.clone()]),
+        };
+        notes.add_at(kept[run.start], fact);
     }
 }
 
@@ -262,12 +259,13 @@ fn cycles(curve: &Curve, kept: &[usize], settings: &Settings, notes: &mut Notes<
     }
     let [_, second, ..] = starts[..] else { return };
     let evaluated = if settings.cycle == CycleChoice::First { "first" } else { "last" };
-    let text = format!(
-        "the record has {} cycles, the second from about {} on; the values are those of the {evaluated} (setting cycle). Are they several specimens? Then each needs a heading or a file of its own",
-        starts.len(),
-        named(m, &[second])
-    );
-    notes.add_at("K043", second, text);
+    let fact = EvaluationFact::SeveralCycles {
+        record: notes.record(),
+        cycles: starts.len(),
+        second: named(m, &[second]),
+        evaluated: evaluated.to_string(),
+    };
+    notes.add_at(second, fact);
 }
 
 /// The sample from which the drive goes out: where it passes zero, the branches meet at the sample before.
@@ -280,23 +278,9 @@ fn leaves(x: &[f64], mut at: usize, test: Test) -> usize {
     at
 }
 
-/// Units of abscissa and ordinate in messages.
-fn units(test: Test) -> [&'static str; 2] {
-    match test {
-        Test::Tensile => ["%", "gf/cm"],
-        Test::Shear => ["deg", "gf/cm"],
-        Test::Bending => ["1/cm", "gf·cm/cm"],
-        Test::Compression => ["mm", "gf/cm²"],
-    }
-}
-
-/// `line 57`, or `lines 57, 91, 92 ...`; samples, from 1, where the lines are not known.
-fn named(m: &Measurement, samples: &[usize]) -> String {
-    let known = m.lines.len() == m.curve.len();
-    let number = |i: &usize| if known { m.lines[*i] } else { i + 1 }.to_string();
-    let list: Vec<String> = samples.iter().take(NAMED).map(number).collect();
-    let noun = if known { "line" } else { "sample" };
-    let (plural, more) =
-        (if samples.len() > 1 { "s" } else { "" }, if samples.len() > NAMED { " ..." } else { "" });
-    format!("{noun}{plural} {}{more}", list.join(", "))
+/// Samples as they are named to people: by their lines, or by their numbers (from 1) where the lines are not known.
+fn named(m: &Measurement, samples: &[usize]) -> Samples {
+    let lines = m.lines.len() == m.curve.len();
+    let number = |i: &usize| if lines { m.lines[*i] } else { i + 1 };
+    Samples { numbers: samples.iter().map(number).collect(), lines }
 }

@@ -4,22 +4,13 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{CycleChoice, FrictionLaw, LineFit, Settings, Strip};
+use super::{CycleChoice, FrictionLaw, Key, LineFit, Settings, Strip};
 use crate::finding::Finding;
 use crate::instrument::fab::FabTest;
 use crate::instrument::{
     Conditions, Direction, FabricInfo, Measurement, Parameter, Source, Test, standard_conditions,
 };
 use crate::quantity::{Curve, Estimate};
-
-/// A parameter in a direction (`None`: the fabric as a whole).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Key {
-    /// Which parameter.
-    pub parameter: Parameter,
-    /// Which direction.
-    pub direction: Option<Direction>,
-}
 
 /// One monotonic run of the drive, corrected (zero, slack, offset), SI, in recorded order.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

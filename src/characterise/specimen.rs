@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use super::graph::LineFit;
 use super::{Branch, Settings, SpecimenResult, Window, closed_loop, compression, tensile};
-use crate::finding::{Finding, Place};
+use crate::finding::{EvaluationFact, Finding, Place, Subject};
 use crate::instrument::{Measurement, Parameter, Test};
-use crate::quantity::{Curve, Unit, significant};
+use crate::kes::RecordName;
+use crate::quantity::Curve;
 
 /// What a test's evaluation yields.
 #[derive(Debug, Default)]
@@ -39,26 +40,25 @@ pub(super) struct Notes<'a> {
 }
 
 impl Notes<'_> {
-    pub fn add(&mut self, code: &'static str, message: impl AsRef<str>) {
-        self.tell(code, self.measurement.place(), message.as_ref());
+    pub fn add(&mut self, fact: EvaluationFact) {
+        self.findings.push(Finding::new(fact).at(self.measurement.place()));
     }
 
     /// The same, about one sample.
-    pub fn add_at(&mut self, code: &'static str, sample: usize, message: impl AsRef<str>) {
+    pub fn add_at(&mut self, sample: usize, fact: EvaluationFact) {
         let line = self.measurement.lines.get(sample).copied().unwrap_or(0);
-        self.tell(code, Place::at(&self.measurement.source.path, line, 0), message.as_ref());
+        self.findings.push(Finding::new(fact).at(Place::at(&self.measurement.source.path, line, 0)));
     }
 
-    fn tell(&mut self, code: &'static str, place: Place, message: &str) {
-        let m = self.measurement;
-        let direction = m.direction.map_or(String::new(), |d| format!(" {d}"));
-        let text = format!("{}{direction}, specimen {}: {}", m.test.name(), m.specimen, message);
-        self.findings.push(Finding::new(code, text).at(place));
+    /// The record that is spoken of.
+    pub fn record(&self) -> RecordName {
+        self.measurement.record_name()
     }
 
     /// K002: something of the record that a parameter needs is not there.
     pub fn missing(&mut self, what: &str, why: &str) {
-        self.add("K002", format!("{what} is left out: {why}"));
+        let (record, what, reason) = (self.record(), what.to_string(), why.to_string());
+        self.add(EvaluationFact::Missing { record, what, reason });
     }
 
     /// The work regained on the way back, if it was recorded to its end; `loading` is the work of loading.
@@ -77,56 +77,33 @@ impl Notes<'_> {
 
     /// Checks the observed maximum against the set one and returns what the parameters are to be read at:
     /// the set maximum, or the observed one where the record ends short of it.
-    pub fn maximum(&mut self, observed: f64, unit: &str, settings: &Settings) -> f64 {
+    pub fn maximum(&mut self, observed: f64, settings: &Settings) -> f64 {
         let set = self.measurement.conditions.maximum;
         let allowed = settings.maximum_difference.si();
-        let show = |v: f64| in_unit(v, unit);
+        let (record, reached, maximum) = (self.record(), observed, set);
         if !(set.is_finite() && set > 0.0) {
             return observed;
         }
         if observed < (1.0 - allowed) * set {
-            self.add(
-                "K005",
-                format!(
-                    "the record ends at {}, short of the set maximum of {}; the values are not comparable with those at the full maximum",
-                    show(observed),
-                    show(set)
-                ),
-            );
+            self.add(EvaluationFact::ShortOfMaximum { record, reached, maximum });
         } else if observed > (1.0 + 5.0 * allowed) * set {
-            self.add(
-                "K006",
-                format!("the record goes to {}, beyond the set maximum of {}: check the stated conditions and units", show(observed), show(set)),
-            );
+            self.add(EvaluationFact::BeyondMaximum { record, reached, maximum });
         }
         set.min(observed)
     }
 
     /// K003, K004: how far a fitted slope can be trusted.
     pub fn judge(&mut self, fit: &LineFit, settings: &Settings) {
+        let (record, slope, samples) = (self.record(), fit.name.clone(), fit.n);
         if fit.n < 5 {
-            self.add("K004", format!("{} rests on {} samples only", fit.name, fit.n));
+            self.add(EvaluationFact::FewSamples { record, slope: slope.clone(), samples });
         }
         let difference = (fit.two_point - fit.slope).abs() / fit.slope.abs();
         if difference > settings.slope_difference.si() {
-            self.add(
-                "K003",
-                format!(
-                    "{}: the two-point slope differs by {:.0} % from the fitted one (R² = {:.3}, n = {}); the curve bends or is noisy in this window",
-                    fit.name,
-                    100.0 * difference,
-                    fit.r_squared,
-                    fit.n
-                ),
-            );
+            let r_squared = fit.r_squared;
+            self.add(EvaluationFact::SlopesDiffer { record, slope, difference, r_squared, samples });
         }
     }
-}
-
-/// `value` (SI) in a unit, for messages.
-pub(super) fn in_unit(value: f64, unit: &str) -> String {
-    let factor = Unit::parse(unit).map_or(f64::NAN, |u| u.factor);
-    format!("{} {unit}", significant(value / factor))
 }
 
 /// The evaluated specimen; `None`, with a finding, if nothing can be evaluated.
@@ -168,7 +145,8 @@ pub(super) fn evaluate(
             })
         }
         Err(reason) => {
-            notes.add("K001", format!("the specimen is left out: {reason}"));
+            let subject = Subject::Record(notes.record());
+            notes.add(EvaluationFact::NotEvaluated { subject, reason });
             None
         }
     }
@@ -178,10 +156,8 @@ pub(super) fn evaluate(
 fn finite(curve: &Curve, notes: &mut Notes<'_>) -> Curve {
     let clean = Curve::from_points(curve.points().filter(|(x, y)| x.is_finite() && y.is_finite()));
     if clean.len() < curve.len() {
-        notes.add(
-            "K022",
-            format!("{} samples that are not numbers are passed over", curve.len() - clean.len()),
-        );
+        let (record, samples) = (notes.record(), curve.len() - clean.len());
+        notes.add(EvaluationFact::NotNumbers { record, samples });
     }
     clean
 }
@@ -202,6 +178,6 @@ fn noise(curve: &Curve, settings: &Settings, notes: &mut Notes<'_>) {
     let high = curve.y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let part = sd / (high - low);
     if part > settings.noise.si() {
-        notes.add("K009", format!("the noise is {:.1} % of the range of the record", 100.0 * part));
+        notes.add(EvaluationFact::Noise { record: notes.record(), part });
     }
 }

@@ -3,7 +3,7 @@
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::{FabricSheet, Key, Settings, SpecimenResult};
-use crate::finding::Finding;
+use crate::finding::{EvaluationFact, Finding};
 use crate::instrument::{Direction, Measurement, Parameter};
 use crate::quantity::Estimate;
 
@@ -46,13 +46,14 @@ pub(super) fn outliers(sheet: &FabricSheet, settings: &Settings) -> Vec<Finding>
     for (key, estimate) in &sheet.values {
         let Some((i, test)) = outlier(&estimate.values, settings.outlier_floor.si()) else { continue };
         let Some(measurement) = repeat(sheet, *key, i) else { continue };
-        let text = format!(
-            "{}: specimen {} stands apart from the other {} ({test}); it is kept in the mean",
-            name(*key),
-            measurement.specimen,
-            estimate.n - 1
-        );
-        findings.push(Finding::new("K010", text).at(measurement.place()));
+        let fact = EvaluationFact::StandsApart {
+            key: *key,
+            repeat: measurement.specimen,
+            in_table: false,
+            others: estimate.n - 1,
+            criterion: test.to_string(),
+        };
+        findings.push(Finding::new(fact).at(measurement.place()));
     }
     findings
 }
@@ -63,11 +64,6 @@ fn repeat(sheet: &FabricSheet, key: Key, i: usize) -> Option<&Measurement> {
         s.measurement.direction == key.direction && s.values.contains_key(&key.parameter)
     };
     sheet.specimens.iter().filter(of_key).nth(i).map(|s| &s.measurement)
-}
-
-/// `B warp`, or `T0` for the fabric as a whole.
-pub(super) fn name(key: Key) -> String {
-    key.direction.map_or_else(|| key.parameter.to_string(), |d| format!("{} {d}", key.parameter))
 }
 
 /// The repeat that is furthest from the others, if a test calls it an outlier.
@@ -115,11 +111,9 @@ pub(super) fn swapped(sheet: &FabricSheet) -> Vec<Finding> {
             for i in misplaced(of(own), of(other)) {
                 let key = Key { parameter, direction: Some(own) };
                 let Some(measurement) = repeat(sheet, key, i) else { continue };
-                let text = format!(
-                    "{parameter}: {own} specimen {} fits the {other} specimens and not its own: is its direction labelled correctly?",
-                    measurement.specimen
-                );
-                findings.push(Finding::new("K013", text).at(measurement.place()));
+                let specimen = measurement.specimen;
+                let fact = EvaluationFact::OtherDirection { parameter, own, other, specimen };
+                findings.push(Finding::new(fact).at(measurement.place()));
             }
         }
     }

@@ -7,10 +7,10 @@ use serde::Serialize;
 
 use super::graph::{Graph, LineFit};
 use super::{Branch, FabricSheet, Key, Modulus, Settings};
-use crate::finding::{Finding, Place};
+use crate::finding::{EvaluationFact, Finding, Place, StripLength, Subject};
 use crate::instrument::fab::{FabFile, FabKind, FabTest};
 use crate::instrument::{Direction, Parameter};
-use crate::quantity::{Curve, Estimate, STANDARD_GRAVITY, significant};
+use crate::quantity::{Curve, Estimate};
 
 /// A stretch test of a strip after processing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -54,12 +54,9 @@ pub(super) fn add(sheet: &mut FabricSheet, files: &[FabFile], settings: &Setting
         .filter_map(|t| {
             let strip = stretch(t, settings);
             if strip.is_none() {
-                let text = format!(
-                    "{} {}: the strip is left out, it never carries load",
-                    t.direction,
-                    t.kind.name()
-                );
-                sheet.findings.push(Finding::new("K001", text).at(place.clone()));
+                let subject = Subject::Strip { strip: t.kind.name().into(), direction: t.direction };
+                let fact = EvaluationFact::NotEvaluated { subject, reason: "it never carries load".into() };
+                sheet.findings.push(Finding::new(fact).at(place.clone()));
             }
             strip
         })
@@ -78,12 +75,8 @@ pub(super) fn add(sheet: &mut FabricSheet, files: &[FabFile], settings: &Setting
     }
     let contacts: Vec<f64> = files.iter().flat_map(|f| &f.thickness).copied().collect();
     if let (Some(t), false) = (Estimate::of(&contacts), sheet.values.contains_key(&whole(Parameter::T0))) {
-        let text = format!(
-            "T0 is the thickness of the FAB instrument, {} mm over {} contacts, whose pressure is not that of FB3",
-            significant(1e3 * t.mean),
-            t.n
-        );
-        sheet.findings.push(Finding::new("K032", text).at(place));
+        let fact = EvaluationFact::FabThickness { thickness: t.mean, contacts: t.n };
+        sheet.findings.push(Finding::new(fact).at(place));
         sheet.values.insert(whole(Parameter::T0), t);
     }
 }
@@ -147,7 +140,7 @@ fn cycle(
 
 /// Moduli of the long strips (short ones where there is no other), last cycle.
 fn stiffness(sheet: &mut FabricSheet, files: &[FabFile], settings: &Settings, place: &Place) {
-    let mut lengths = Vec::new();
+    let mut lengths: Vec<StripLength> = Vec::new();
     for direction in Direction::ALL {
         if sheet.moduli.keys().any(|(_, d)| *d == direction) {
             continue;
@@ -158,8 +151,7 @@ fn stiffness(sheet: &mut FabricSheet, files: &[FabFile], settings: &Settings, pl
         let strips = Some(of(FabKind::S2)).filter(|s| !s.is_empty()).unwrap_or_else(|| of(FabKind::S1));
         let last: Vec<&StripCycle> = strips.iter().filter_map(|s| s.cycles.last()).collect();
         let Some(shown) = last.first() else { continue };
-        let (length, cycle) = (significant(100.0 * shown.onset), strips[0].cycles.len());
-        lengths.push(format!("{direction} {length} cm in cycle {cycle}"));
+        lengths.push(StripLength { direction, length: shown.onset, cycle: strips[0].cycles.len() });
         let mut names: Vec<&String> = last.iter().flat_map(|c| c.moduli.keys()).collect();
         names.sort();
         names.dedup();
@@ -174,18 +166,10 @@ fn stiffness(sheet: &mut FabricSheet, files: &[FabFile], settings: &Settings, pl
     if lengths.is_empty() {
         return;
     }
-    let warnings: Vec<&str> = files.iter().flat_map(|f| &f.warnings).map(String::as_str).collect();
-    let text = format!(
-        "moduli are those of strips, from the onset of load at {}; the secant is at {} gf/cm; the instrument's program gave {}",
-        lengths.join(", "),
-        significant(settings.strip_secant.si() / Parameter::Hg.kes_factor()),
-        if warnings.is_empty() {
-            "no warning".to_string()
-        } else {
-            format!("warnings: {}", warnings.join(", "))
-        }
-    );
-    sheet.findings.push(Finding::new("K030", text).at(place.clone()));
+    let warnings = files.iter().flat_map(|f| &f.warnings).cloned().collect();
+    let secant = settings.strip_secant.si();
+    let fact = EvaluationFact::ModuliOfStrips { strips: lengths, secant, warnings };
+    sheet.findings.push(Finding::new(fact).at(place.clone()));
 }
 
 /// G from the long bias strip, last cycle: the strip shears by twice its strain under half its force
@@ -206,15 +190,10 @@ fn shear(sheet: &mut FabricSheet, settings: &Settings, place: &Place) {
         .collect();
     let last: Vec<f64> = ends.iter().map(|e| e[1]).collect();
     let (Some(estimate), [[first, _], ..], false) = (Estimate::of(&last), &ends[..], known) else { return };
-    let slender = strips[0].cycles[0].onset / strips[0].width;
-    let text = format!(
-        "G is estimated from the bias strip at {} gf/cm as FAST does: {} N/m in the last cycle, {} in the first; the strip is {} times as long as wide, so its clamps stiffen it",
-        significant(settings.strip_shear.si() / Parameter::Hg.kes_factor()),
-        significant(estimate.mean),
-        significant(*first),
-        significant(slender)
-    );
-    sheet.findings.push(Finding::new("K033", text).at(place.clone()));
+    let slenderness = strips[0].cycles[0].onset / strips[0].width;
+    let (force, last) = (settings.strip_shear.si(), estimate.mean);
+    let fact = EvaluationFact::BiasStrip { force, last, first: *first, slenderness };
+    sheet.findings.push(Finding::new(fact).at(place.clone()));
     sheet.values.insert(key, estimate);
 }
 
@@ -238,20 +217,12 @@ fn bending(
     let Some(estimate) = Estimate::of(&values) else { return };
     for (test, span) in tests.iter().filter_map(|t| Some((t, load_span(t)?))) {
         if span < settings.strip_low_load.si() * test.width {
-            let text = format!(
-                "{direction} {}: the load changes by {} gf only, so that noise and resolution of the cell are in B",
-                test.kind.name(),
-                significant(span / (1e-3 * STANDARD_GRAVITY))
-            );
-            sheet.findings.push(Finding::new("K034", text).at(place.clone()));
+            let fact = EvaluationFact::LowLoad { direction, strip: test.kind.name().into(), range: span };
+            sheet.findings.push(Finding::new(fact).at(place.clone()));
         }
     }
-    let each: Vec<String> = values.iter().map(|b| significant(1e6 * b)).collect();
-    let text = format!(
-        "B {direction} is an estimate from buckled strips ({} µN·m down and up): friction and an unknown load zero are in it, expect it up to twice too high",
-        each.join(", ")
-    );
-    sheet.findings.push(Finding::new("K031", text).at(place.clone()));
+    let fact = EvaluationFact::BuckledStrips { direction, values };
+    sheet.findings.push(Finding::new(fact).at(place.clone()));
     sheet.values.insert(key, estimate);
 }
 
@@ -378,7 +349,7 @@ mod tests {
         assert_relative_eq!(g, 30.0 * (1.0 + 0.980665 / 120.0), max_relative = 1e-9);
         let eb5 = 100.0 * 5.0 * 0.980665 / 120.0;
         assert_relative_eq!(123.0 / eb5, 30.0, max_relative = 5e-3);
-        assert!(sheet.findings.iter().any(|f| f.code == "K033"));
+        assert!(sheet.findings.iter().any(|f| f.code() == "K033"));
     }
 
     #[test]

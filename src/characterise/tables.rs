@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::statistics::{name, outlier};
+use super::statistics::outlier;
 use super::{FabricSheet, Key, Modulus, Settings};
-use crate::finding::{Finding, Place};
+use crate::finding::{EvaluationFact, Finding, Place};
 use crate::instrument::{Direction, FabricInput, Parameter, ResultValue};
 use crate::quantity::Estimate;
 
@@ -20,42 +20,33 @@ pub(super) fn merge(sheet: &mut FabricSheet, input: &FabricInput, settings: &Set
     }
     for (key, values) in cells {
         for value in values.iter().filter(|v| v.inferred) {
-            let text = format!("{} is inferred by its source, not measured", name(key));
-            sheet.findings.push(Finding::new("K014", text).at(value.place.clone()));
+            let fact = EvaluationFact::Inferred { key };
+            sheet.findings.push(Finding::new(fact).at(value.place.clone()));
         }
         let Some(estimate) = together(&values) else { continue };
         if let Some((i, test)) = outlier(&estimate.values, settings.outlier_floor.si()) {
-            let text = format!(
-                "{}: repeat {} of the table stands apart from the other {} ({test}); it is kept in the mean",
-                name(key),
-                i + 1,
-                estimate.n - 1
-            );
+            let fact = EvaluationFact::StandsApart {
+                key,
+                repeat: i + 1,
+                in_table: true,
+                others: estimate.n - 1,
+                criterion: test.to_string(),
+            };
             let cell = values[if values.len() > 1 { i } else { 0 }];
             let line = cell.lines.get(i).copied().unwrap_or(cell.place.line);
-            sheet.findings.push(Finding::new("K010", text).at(Place { line, ..cell.place.clone() }));
+            sheet.findings.push(Finding::new(fact).at(Place { line, ..cell.place.clone() }));
         }
         match sheet.values.get(&key) {
             None => {
                 sheet.values.insert(key, estimate);
             }
             Some(own) if (own.mean - estimate.mean).abs() > DISAGREEMENT * own.mean.abs() => {
-                let text = format!(
-                    "{}: the table gives {}, the curves give {} {}; the curves are used",
-                    name(key),
-                    kes(key.parameter, estimate.mean),
-                    kes(key.parameter, own.mean),
-                    key.parameter.kes_unit()
-                );
-                sheet.findings.push(Finding::new("K016", text).at(values[0].place.clone()));
+                let fact = EvaluationFact::TableDiffers { key, table: estimate.mean, curves: own.mean };
+                sheet.findings.push(Finding::new(fact).at(values[0].place.clone()));
             }
             Some(_) => {}
         }
     }
-}
-
-fn kes(parameter: Parameter, value: f64) -> String {
-    format!("{:.4}", value / parameter.kes_factor())
 }
 
 /// One cell as it stands; several cells of one key are repeats.
@@ -72,15 +63,10 @@ pub(super) fn metadata(sheet: &mut FabricSheet, input: &FabricInput) {
     if let Some(w) = input.info.areal_density {
         sheet.values.entry(key(Parameter::W)).or_insert_with(|| Estimate::single(w));
     } else if !sheet.values.contains_key(&key(Parameter::W)) {
-        sheet.findings.push(Finding::new(
-            "K017",
-            "no areal density: FB3 does not measure it; state areal_density in fabric.toml (mass of a 20 x 20 cm specimen)",
-        ));
+        sheet.findings.push(Finding::new(EvaluationFact::NoArealDensity {}));
     }
     if let (Some(t), false) = (input.info.thickness, sheet.values.contains_key(&key(Parameter::T0))) {
-        sheet
-            .findings
-            .push(Finding::new("K021", "T0 is the thickness of fabric.toml, whose pressure is not known"));
+        sheet.findings.push(Finding::new(EvaluationFact::StatedThickness {}));
         sheet.values.insert(key(Parameter::T0), Estimate::single(t));
     }
 }
@@ -104,10 +90,6 @@ pub(super) fn moduli(sheet: &mut FabricSheet, settings: &Settings) {
         }
     }
     if used {
-        let text = format!(
-            "tensile moduli come from the table's EMT, taken at {:.4} gf/cm; the low-load tangent cannot be told from a table",
-            maximum / Parameter::Hg.kes_factor()
-        );
-        sheet.findings.push(Finding::new("K020", text));
+        sheet.findings.push(Finding::new(EvaluationFact::ModuliOfTable { maximum }));
     }
 }

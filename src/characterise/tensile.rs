@@ -2,8 +2,9 @@
 
 use super::graph::Graph;
 use super::onset::onset;
-use super::specimen::{Evaluation, Notes, Regained, in_unit};
+use super::specimen::{Evaluation, Notes, Regained};
 use super::{Branch, CycleChoice, Modulus, Settings, Window, branch};
+use crate::finding::{EvaluationFact, RecordAxis};
 use crate::instrument::Parameter;
 use crate::quantity::Curve;
 
@@ -22,7 +23,7 @@ pub(super) fn evaluate(
     if peak <= 0.0 {
         return Err("no force above zero on the loading branch".into());
     }
-    let fm = notes.maximum(peak, "gf/cm", settings);
+    let fm = notes.maximum(peak, settings);
     let strain = load.first_rise_to(fm).filter(|e| *e > 0.0);
     let strain = strain.ok_or("the force is at its maximum from the start")?;
     let start = load.x[0].max(0.0);
@@ -72,17 +73,12 @@ fn correct(branches: &mut [Branch], settings: &Settings, notes: &mut Notes<'_>) 
     let top = first.points().fold((0.0f64, 0.0f64), |t, (x, y)| (t.0.max(x), t.1.max(y)));
     let large = settings.large_correction.si();
     if slack.abs() > large * (top.0 - slack) {
-        notes.add(
-            "K008",
-            format!(
-                "slack of {} was taken off, more than {:.0} % of the strain at the maximum",
-                in_unit(slack, "%"),
-                100.0 * large
-            ),
-        );
+        let (record, axis, taken_off) = (notes.record(), RecordAxis::Abscissa, slack);
+        notes.add(EvaluationFact::LargeCorrection { record, axis, taken_off, limit: large });
     }
     if offset.abs() > large * (top.1 - offset) {
-        notes.add("K008", format!("a zero offset of {} was taken off the force", in_unit(offset, "gf/cm")));
+        let (record, axis, taken_off) = (notes.record(), RecordAxis::Ordinate, offset);
+        notes.add(EvaluationFact::LargeCorrection { record, axis, taken_off, limit: large });
     }
     shift(branches, [-slack, -offset]);
     // 0 - x, so that no correction reads as 0 and not as -0.

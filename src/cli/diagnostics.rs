@@ -279,16 +279,16 @@ impl Diagnostics {
         let path = place.map(|p| p.path.to_string_lossy());
         let line = place.map(|p| p.line).filter(|line| *line > 0);
         let entry = json!({
-            "fabric": fabric, "code": finding.code, "message": finding.message, "path": path, "line": line,
+            "fabric": fabric, "code": finding.code(), "message": finding.message(), "fields": finding.fields(), "path": path, "line": line,
         });
         self.said[0].push(entry);
         if self.quiet || self.json {
             return;
         }
         let place = finding.place.as_ref().map_or_else(|| "kesf".to_string(), ToString::to_string);
-        let code = self.paint("33", finding.code);
+        let code = self.paint("33", finding.code());
         let fabric = fabric.map(|name| format!("{name}: ")).unwrap_or_default();
-        self.line(&format!("{place}: {code} {fabric}{}", finding.message));
+        self.line(&format!("{place}: {code} {fabric}{}", finding.fact));
     }
 
     /// The findings of a batch: counted, and shown one by one only with `-v`.

@@ -248,7 +248,7 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
         sheet_radius: d.sheet_radius,
         outline: &d.outline,
         values,
-        remarks: d.findings.iter().map(|f| f.message.clone()).collect(),
+        remarks: d.findings.iter().map(|f| f.message()).collect(),
     }
 }
 

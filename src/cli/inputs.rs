@@ -12,7 +12,7 @@ use serde_json::json;
 use super::Ui;
 use super::diagnostics::Failure;
 use crate::characterise::{FabricSheet, Modulus, Settings, characterise};
-use crate::finding::{Finding, Place, Words, position};
+use crate::finding::{Finding, Place, Renaming, UsageFact, Words, position};
 use crate::instrument::{
     FabricInput, Inference, Library, ReadError, ReadSettings, ResultValue, parse, read_dialect,
 };
@@ -268,9 +268,9 @@ pub fn distinguish_cases(cases: &mut [Case]) -> Vec<Finding> {
             !own.contains(&name) && !seen.contains(&name)
         };
         let Some(name) = (2..).map(numbered).find(free) else { continue };
-        let why = if reserved { "a file of every fabric" } else { "another case" };
-        let text = format!("{why} is named {} too; this case is called {name}", case.name);
-        findings.push(Finding::new("O056", text).at(Place::file(&case.path)));
+        let because = if reserved { Renaming::CaseReserved } else { Renaming::CaseTwice };
+        let fact = UsageFact::Renamed { name: case.name.clone(), renamed: name.clone(), because };
+        findings.push(Finding::new(fact).at(Place::file(&case.path)));
         seen.insert(name.to_lowercase());
         case.name = name;
     }
@@ -282,9 +282,9 @@ fn distinguish(fabrics: &mut [Fabric]) {
     for Fabric { path, sheet } in fabrics.iter_mut() {
         let name = folder_name(&sheet.name);
         if name != sheet.name {
-            let text =
-                format!("{:?} cannot be the name of a folder; this fabric is called {name}", sheet.name);
-            sheet.findings.push(Finding::new("O056", text).at(Place::file(path)));
+            let because = Renaming::FabricFolder;
+            let fact = UsageFact::Renamed { name: sheet.name.clone(), renamed: name.clone(), because };
+            sheet.findings.push(Finding::new(fact).at(Place::file(path)));
             sheet.name = name;
         }
     }
@@ -300,8 +300,9 @@ fn distinguish(fabrics: &mut [Fabric]) {
                 *count += 1;
                 name = format!("{}-{count}", sheet.name);
             }
-            let text = format!("another fabric is named {} too; this one is called {name}", sheet.name);
-            sheet.findings.push(Finding::new("O056", text).at(Place::file(path)));
+            let because = Renaming::FabricTwice;
+            let fact = UsageFact::Renamed { name: sheet.name.clone(), renamed: name.clone(), because };
+            sheet.findings.push(Finding::new(fact).at(Place::file(path)));
             sheet.name = name;
         }
     }

@@ -6,19 +6,19 @@ use super::diagnostics::Failure;
 use super::exit::Exit;
 use super::output::Columns;
 use super::task::Task;
-use crate::finding::Finding;
+use crate::finding::{Fact, Finding, StudyFact};
 use crate::quantity::significant;
 use crate::study::{CaseResult, LoadPath, MethodChoice};
 
 /// Whether a finding says that a search found no equilibrium, or none at the whole load.
 pub fn is_unconverged(finding: &Finding) -> bool {
-    matches!(finding.code, "N007" | "S112")
+    matches!(finding.fact, Fact::Study(StudyFact::NotConverged { .. } | StudyFact::Unfinished { .. }))
 }
 
 /// The failure of a result that is only the last state of a search.
 pub fn unconverged(task: &Task, result: &CaseResult) -> Option<Failure> {
     let finding = result.findings.iter().find(|f| is_unconverged(f))?;
-    let mut failure = Failure::new(finding.code, finding.message.clone()).of(&task.name());
+    let mut failure = Failure::new(finding.code(), finding.message()).of(&task.name());
     failure.place.clone_from(&finding.place);
     Some(Failure { exit: Exit::Numerics, ..failure })
 }

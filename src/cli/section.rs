@@ -11,11 +11,12 @@ use super::diagnostics::Failure;
 use super::inputs::{Curves, EvaluateArgs, Fabric, is_stdin, names, nothing_to_read, stdin_bytes};
 use super::output::{Columns, Format, OutputArgs};
 use super::{Exit, Ui};
-use crate::characterise::{FabricSheet, Modulus};
+use crate::characterise::{FabricSheet, Key, Modulus};
 use crate::constitutive::{
-    Assumptions, BendingCoupling, Constitutive, PoissonRule, Torsion, TransverseShear, entries, section,
+    Assumptions, BendingCoupling, Constitutive, PoissonRule, Standing, Torsion, TransverseShear, entries,
+    section,
 };
-use crate::finding::Place;
+use crate::finding::{EvaluationFact, Fact, Place};
 use crate::quantity::{ArealDensity, Bands, Length, LineForce, significant};
 use crate::report::json::{assumptions, section_document, text};
 use crate::report::read_back::{self, Document};
@@ -259,18 +260,33 @@ fn repeats(sheet: &FabricSheet, c: &Constitutive) -> Columns {
     let mut columns = Columns::new(["measured", "mean", "SD", "n", "outlier"]);
     for input in &c.inputs {
         let e = &input.estimate;
-        let named = format!("{}: ", input.name);
-        let outlier = sheet.findings.iter().find(|f| f.code == "K010" && f.message.starts_with(&named));
-        let outlier = outlier.and_then(|f| f.message.strip_prefix(&named)?.split(" stands").next());
+        let outlier = match input.standing {
+            Standing::Value(key) => sheet.findings.iter().find_map(|f| outlier(key, &f.fact)),
+            _ => None,
+        };
         columns.row([
             input.name.clone(),
             significant(e.mean),
             e.sd.map_or("-".into(), significant),
             e.n.to_string(),
-            outlier.unwrap_or_default().into(),
+            outlier.unwrap_or_default(),
         ]);
     }
     columns
+}
+
+/// The repeat of a value that stands apart, if a finding says so.
+fn outlier(value: Key, fact: &Fact) -> Option<String> {
+    match fact {
+        Fact::Evaluation(EvaluationFact::StandsApart { key, repeat, in_table, .. }) if *key == value => {
+            Some(if *in_table {
+                format!("repeat {repeat} of the table")
+            } else {
+                format!("specimen {repeat}")
+            })
+        }
+        _ => None,
+    }
 }
 
 fn matrix(d: &Matrix3<f64>) -> String {

@@ -11,7 +11,7 @@ use super::diagnostics::Failure;
 use super::inputs::{self, Curves, EvaluateArgs, Fabric};
 use crate::characterise::FabricSheet;
 use crate::constitutive::{self, Constitutive};
-use crate::finding::{Finding, Place};
+use crate::finding::{Finding, Place, StudyFact, UsageFact};
 use crate::instrument::{Direction, Parameter, Test};
 use crate::quantity::{Curve, Estimate};
 use crate::section::ShellSection;
@@ -181,13 +181,13 @@ pub fn no_such_fabric(case: &Case) -> Failure {
 fn two_fabrics(case: &Case, taken: &Path) -> Option<Finding> {
     let name = case.fabric.as_deref()?;
     let other = beside_case(case, Path::new(name)).filter(|p| !is_within(p, taken))?;
-    let text = format!(
-        "`{name}` is here and beside the case; this one is taken: {}, not {}",
-        std::path::absolute(taken).unwrap_or_else(|_| taken.to_path_buf()).display(),
-        std::path::absolute(&other).unwrap_or(other).display(),
-    );
-    let place = case.place_of(&text);
-    Some(Finding::new("O060", text).at(place))
+    let fact = UsageFact::FabricTwice {
+        fabric: name.to_string(),
+        taken: std::path::absolute(taken).unwrap_or_else(|_| taken.to_path_buf()).display().to_string(),
+        other: std::path::absolute(&other).unwrap_or(other).display().to_string(),
+    };
+    let place = case.place_of(&fact.to_string());
+    Some(Finding::new(fact).at(place))
 }
 
 fn is_within(path: &Path, folder: &Path) -> bool {
@@ -253,13 +253,10 @@ impl Work {
         let named = named_fabric(case);
         let is_for = |f: &&Fabric| named.as_ref().is_none_or(|n| is_within(&f.path, n));
         let lacks = |f: &&Fabric| case.lacks_law(&f.sheet);
-        let names: Vec<&str> =
-            self.fabrics.iter().filter(is_for).filter(lacks).map(|f| f.sheet.name.as_str()).collect();
-        let text = format!(
-            "no friction law of bending (no FB2 loop, no 2HB beside B): left out for {}",
-            names.join(", ")
-        );
-        (!names.is_empty()).then(|| Finding::new("S118", text).at(Place::file(&case.path)))
+        let lawless = self.fabrics.iter().filter(is_for).filter(lacks);
+        let fabrics: Vec<String> = lawless.map(|f| f.sheet.name.clone()).collect();
+        (!fabrics.is_empty())
+            .then(|| Finding::new(StudyFact::WithoutLaw { fabrics }).at(Place::file(&case.path)))
     }
 }
 
@@ -282,7 +279,7 @@ impl Work {
 
 /// What is known of the fabrics of tasks, and of the sections that were made of them, each thing once.
 pub fn findings<'a>(tasks: impl Iterator<Item = &'a Task<'a>>) -> Vec<(String, Finding)> {
-    let mut told = BTreeSet::new();
+    let mut seen = BTreeSet::new();
     let mut all = Vec::new();
     for task in tasks {
         let Some(sheet) = task.fabric else { continue };
@@ -292,7 +289,7 @@ pub fn findings<'a>(tasks: impl Iterator<Item = &'a Task<'a>>) -> Vec<(String, F
         for finding in sheet.findings.iter().chain(made.iter().flat_map(|c| &c.findings)) {
             let mut finding = finding.clone();
             finding.place = finding.place.or_else(|| task.path.map(Place::file));
-            if told.insert((sheet.name.clone(), finding.clone())) {
+            if seen.insert((sheet.name.clone(), finding.to_string())) {
                 all.push((sheet.name.clone(), finding));
             }
         }

@@ -294,7 +294,7 @@ impl Mesh {
             profile: result.profile.clone(),
             notes: (sampled::values(task, "w_max", "mm", 1e-3).into_iter())
                 .map(|(band, value)| format!("{band}: largest |w| {value}"))
-                .chain(result.findings.iter().map(|f| f.message.clone()))
+                .chain(result.findings.iter().map(|f| f.message()))
                 .collect(),
             ..FieldPlot::default()
         }

@@ -13,6 +13,7 @@
 use nalgebra::Matrix3;
 
 use super::{Assumptions, BendingCoupling, Constant, ConstitutiveError, Notes, Torsion};
+use crate::finding::SectionFact;
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::significant;
 
@@ -75,13 +76,8 @@ fn torsion(
         Torsion::Shear => (g * thickness.powi(2) / 12.0, "assumed: G t²/12".to_string()),
         Torsion::Value(h) => (h.si(), "assumed: stated".to_string()),
         Torsion::Neglect => {
-            notes.finding(
-                "C016",
-                "torsion is neglected (H = 0): twisting costs nothing, and bending on the bias is \
-                 underestimated about twofold for woven cloth"
-                    .into(),
-            );
-            return Ok((0.0, "assumed: neglected, as the seed allows".to_string()));
+            notes.finding(SectionFact::NoTorsion { fabric: notes.fabric() });
+            return Ok((0.0, "assumed: neglected, as Nguyen-Trong et al. allow".to_string()));
         }
     };
     notes.positive(

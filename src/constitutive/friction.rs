@@ -15,6 +15,7 @@
 
 use super::{Assumptions, ConstitutiveError, Notes};
 use crate::characterise::{Basis, FabricSheet, FrictionLaw, bending_law};
+use crate::finding::SectionFact;
 use crate::instrument::{Direction, Parameter, Test};
 use crate::law::{Backbone, Channel, Family, LawError, Mode, Slider};
 use crate::quantity::significant;
@@ -99,12 +100,7 @@ fn stand_in(
              residual_curvature",
         ));
     };
-    notes.finding(
-        "C017",
-        format!(
-            "no hysteresis of bending is known; a residual curvature 2HB/(2B) of {residual} stands in for it"
-        ),
-    );
+    notes.finding(SectionFact::NoHysteresis { fabric: notes.fabric(), residual: residual.si() });
     let along = |b: f64| bending_law(b, 2.0 * b * residual.si());
     let fabric = notes.sheet.name.clone();
     match [along(section.d_b[(0, 0)]), along(section.d_b[(1, 1)])] {

@@ -11,6 +11,7 @@ use nalgebra::Matrix3;
 
 use super::{Assumptions, Constant, ConstitutiveError, Notes, PoissonRule, Standing};
 use crate::characterise::Modulus;
+use crate::finding::SectionFact;
 use crate::instrument::Direction;
 use crate::quantity::{Estimate, significant};
 
@@ -62,23 +63,14 @@ fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], Cons
     }
     for other in [Modulus::Secant, Modulus::Energy].into_iter().filter(|m| *m != chosen) {
         if let Some(e) = known(other, notes) {
-            notes.finding(
-                "C011",
-                format!("there is no {chosen} modulus; the {other} modulus is used instead"),
-            );
+            let (chosen_name, used) = (chosen.to_string(), other.to_string());
+            notes.finding(SectionFact::OtherModulus { fabric: notes.fabric(), chosen: chosen_name, used });
             let source = format!("measured: {other}, because there is no {chosen} modulus");
             return Ok(record(e, Some(other), source, notes));
         }
     }
     let e = assumptions.tensile;
-    notes.finding(
-        "C012",
-        format!(
-            "no tensile modulus is known; {} N/m stands in for both (linear bending of a flat sheet \
-             does not depend on it, membrane results and the limit of linear theory do)",
-            significant(e.si())
-        ),
-    );
+    notes.finding(SectionFact::NoTensileModulus { fabric: notes.fabric(), assumed: e.si() });
     let stand_in = Estimate::single(e.si());
     Ok(record([&stand_in; 2], None, "assumed: not measured".into(), notes))
 }

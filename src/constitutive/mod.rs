@@ -25,7 +25,7 @@ use thiserror::Error;
 use std::borrow::Cow;
 
 use crate::characterise::{FabricSheet, Key};
-use crate::finding::Finding;
+use crate::finding::{Finding, SectionFact};
 use crate::instrument::{Direction, Parameter};
 use crate::law::LawError;
 use crate::quantity::{Estimate, significant};
@@ -156,7 +156,7 @@ impl ConstitutiveError {
 /// // B is D11 itself: 0.118 · 9.80665e-5 N·m.
 /// assert!((broad.section.d_b[(0, 0)] - 1.1571847e-5).abs() < 1e-12);
 /// // That the tensile stiffness is a stand-in is said.
-/// assert!(broad.findings.iter().any(|f| f.code == "C012"));
+/// assert!(broad.findings.iter().any(|f| f.code() == "C012"));
 /// ```
 pub fn section(sheet: &FabricSheet, assumptions: &Assumptions) -> Result<Constitutive, ConstitutiveError> {
     let mut notes = Notes { sheet, used: Vec::new(), origins: Vec::new(), findings: Vec::new() };
@@ -184,10 +184,7 @@ fn thickness(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, Consti
     let stated = || sheet.info.thickness.map(|t| (single(t), "measured: fabric.toml".to_string()));
     let ((estimate, standing), source) = measured.or_else(stated).unwrap_or_else(|| {
         let t = assumptions.thickness;
-        notes.finding(
-            "C014",
-            format!("no thickness is known; {t} stands in for it (statics do not depend on it)"),
-        );
+        notes.finding(SectionFact::NoThickness { fabric: sheet.name.clone(), assumed: t.si() });
         (single(t.si()), "assumed: not measured".to_string())
     });
     let value = estimate.mean;
@@ -267,8 +264,13 @@ impl Notes<'_> {
         self.used.push(Used { name: name.into(), value: value.into(), source: source.into() });
     }
 
-    fn finding(&mut self, code: &'static str, text: String) {
-        let finding = Finding::new(code, format!("{}: {text}", self.sheet.name));
+    /// Name of the fabric.
+    fn fabric(&self) -> String {
+        self.sheet.name.clone()
+    }
+
+    fn finding(&mut self, fact: SectionFact) {
+        let finding = Finding::new(fact);
         // A value that is looked at twice is reported once.
         if !self.findings.contains(&finding) {
             self.findings.push(finding);
@@ -305,15 +307,12 @@ impl Notes<'_> {
                 self.origin_value(parameter, Some(Direction::Weft), &constants[1..]);
                 return Some([warp.mean, weft.mean]);
             }
-            (_, _, Some(mean)) => (mean, None, "one value for the fabric"),
-            (Some(warp), None, None) => (warp, Some(Direction::Warp), "the warp value only"),
-            (None, Some(weft), None) => (weft, Some(Direction::Weft), "the weft value only"),
+            (_, _, Some(mean)) => (mean, None),
+            (Some(warp), None, None) => (warp, Some(Direction::Warp)),
+            (None, Some(weft), None) => (weft, Some(Direction::Weft)),
             (None, None, None) => return None,
         };
-        self.finding(
-            "C010",
-            format!("{parameter} is known as {}; it stands for warp and weft alike", known.2),
-        );
+        self.finding(SectionFact::OneRigidity { fabric: self.fabric(), known: known.1 });
         self.origin_value(parameter, known.1, &constants);
         Some([known.0.mean; 2])
     }

@@ -13,6 +13,7 @@
 use nalgebra::Matrix2;
 
 use super::{Assumptions, Constant, ConstitutiveError, Notes, Standing, TransverseShear};
+use crate::finding::SectionFact;
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::{Estimate, significant};
 
@@ -42,14 +43,7 @@ pub(super) fn in_plane(assumptions: &Assumptions, notes: &mut Notes) -> Result<f
             }
             None => {
                 let g = assumptions.shear;
-                notes.finding(
-                    "C013",
-                    format!(
-                        "no shear test is known; {} N/m stands in for G (linear bending hardly depends on it, \
-                         in-plane results do)",
-                        significant(g.si())
-                    ),
-                );
+                notes.finding(SectionFact::NoShearTest { fabric: notes.fabric(), assumed: g.si() });
                 notes.origin("G", (&Estimate::single(g.si()), Standing::Shear), &[(Constant::Shear, 1.0)]);
                 (g.si(), "assumed: no shear test".to_string())
             }

@@ -34,7 +34,7 @@ fn cloth() -> FabricSheet {
 }
 
 fn codes(c: &Constitutive) -> Vec<&'static str> {
-    c.findings.iter().map(|f| f.code).collect()
+    c.findings.iter().map(|f| f.code()).collect()
 }
 
 #[test]

@@ -8,19 +8,25 @@
 //! sections, `M` meshes, elements and models, `N` numerics, `S` studies (cases and
 //! comparisons), `O` output files and usage.
 
+mod facts;
 mod words;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use serde::ser::SerializeStruct;
 use serde::{Deserialize, Serialize, Serializer};
 
+pub use facts::{
+    CoarseQuantity, Divisor, EvaluationFact, Excess, Fact, Fields, LeftOutLine, Missed, ReadFact, RecordAxis,
+    Renaming, Samples, SectionFact, StripLength, StudyFact, Subject, UsageFact,
+};
 pub(crate) use words::{Words, position};
 
 /// Where in an input something was found. Lines and columns count from 1; a column counts
 /// characters of the decoded line. 0 means "not applicable".
-#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Place {
     /// The file, as it was named to us.
     #[serde(serialize_with = "path_as_text")]
@@ -65,21 +71,23 @@ impl fmt::Display for Place {
     }
 }
 
-/// A non-fatal observation returned beside a result.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+/// A non-fatal observation returned beside a result: what was found, and where.
+///
+/// As JSON it has `code`, `message`, `fields` (an object) and `place`; from JSON it is made of all but the message,
+/// which is written anew from the fields.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(from = "Written")]
 pub struct Finding {
-    /// Stable code, e.g. `K003`; see [`explain`].
-    pub code: &'static str,
-    /// One sentence: what was found, what was expected, what to do.
-    pub message: String,
+    /// What was found.
+    pub fact: Fact,
     /// The file and position it speaks of, where there is one.
     pub place: Option<Place>,
 }
 
 impl Finding {
     /// A finding without a place.
-    pub fn new(code: &'static str, message: impl Into<String>) -> Self {
-        Self { code, message: message.into(), place: None }
+    pub fn new(fact: impl Into<Fact>) -> Self {
+        Self { fact: fact.into(), place: None }
     }
 
     /// The same finding, at a place.
@@ -87,14 +95,54 @@ impl Finding {
         self.place = Some(place);
         self
     }
+
+    /// The stable code, e.g. `K003`; see [`explain`].
+    pub fn code(&self) -> &'static str {
+        self.fact.code()
+    }
+
+    /// One sentence: what was found, what was expected, what to do.
+    pub fn message(&self) -> String {
+        self.fact.to_string()
+    }
+
+    /// The data of the finding by their names, as they are in JSON.
+    pub fn fields(&self) -> Fields {
+        self.fact.fields()
+    }
 }
 
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.place {
-            Some(place) => write!(f, "{place}: {} {}", self.code, self.message),
-            None => write!(f, "{} {}", self.code, self.message),
+            Some(place) => write!(f, "{place}: {} {}", self.code(), self.fact),
+            None => write!(f, "{} {}", self.code(), self.fact),
         }
+    }
+}
+
+impl Serialize for Finding {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut document = serializer.serialize_struct("Finding", 4)?;
+        document.serialize_field("code", self.code())?;
+        document.serialize_field("message", &self.message())?;
+        document.serialize_field("fields", &self.fields())?;
+        document.serialize_field("place", &self.place)?;
+        document.end()
+    }
+}
+
+/// A finding as it is written.
+#[derive(Deserialize)]
+struct Written {
+    #[serde(flatten)]
+    fact: Fact,
+    place: Option<Place>,
+}
+
+impl From<Written> for Finding {
+    fn from(Written { fact, place }: Written) -> Self {
+        Self { fact, place }
     }
 }
 
@@ -154,6 +202,7 @@ pub fn explain(code: &str) -> Option<&'static Explanation> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kes::{Direction, Key, Parameter, RecordName, Test};
 
     #[test]
     fn the_tables_parse_and_no_code_is_given_twice() {
@@ -166,6 +215,50 @@ mod tests {
             assert!(e.kind == "error" || e.kind == "finding", "{}: kind {}", e.code, e.kind);
             for text in [&e.title, &e.cause, &e.example, &e.cure] {
                 assert!(!text.trim().is_empty(), "{}: empty text", e.code);
+            }
+        }
+    }
+
+    #[test]
+    fn a_finding_is_its_fields_and_its_sentence_follows_from_them() {
+        let record = RecordName { test: Test::Bending, direction: Some(Direction::Warp), specimen: 3 };
+        let samples = Samples { numbers: vec![57, 91, 92, 93], lines: true };
+        let dropout = EvaluationFact::Dropout { record, samples, abscissa: 250.0, ordinate: 0.0 };
+        let finding = Finding::new(dropout).at(Place::at("a.csv", 57, 0));
+        assert_eq!(
+            finding.to_string(),
+            "a.csv:57: K045 bending warp, specimen 3: samples jump away and back in lines 57, 91, 92 ..., first to \
+             2.500 1/cm and 0 gf·cm/cm: a dropout? Nothing is taken out, and what is read there is wrong"
+        );
+        assert_eq!(
+            serde_json::to_value(&finding).unwrap()["fields"],
+            serde_json::json!({
+                "record": { "test": "bending", "direction": "warp", "specimen": 3 },
+                "samples": { "numbers": [57, 91, 92, 93], "lines": true },
+                "abscissa": 250.0,
+                "ordinate": 0.0,
+            })
+        );
+    }
+
+    #[test]
+    fn findings_are_read_as_they_were_written() {
+        let key = Key { parameter: Parameter::T0, direction: None };
+        let facts: [Fact; 6] = [
+            ReadFact::NoFabricFile {}.into(),
+            ReadFact::AssumedDimension { dimension: Divisor::Gauge, value: 0.05, test: Some(Test::Shear) }
+                .into(),
+            EvaluationFact::Implausible { key, value: 5e-3, range: Some([0.1, 2.0]) }.into(),
+            SectionFact::OneRigidity { fabric: "poplin".into(), known: None }.into(),
+            StudyFact::NotJoined { nodes: 2, at: [0.1, 0.2, 0.0] }.into(),
+            UsageFact::Renamed { name: "a".into(), renamed: "a-2".into(), because: Renaming::CaseTwice }
+                .into(),
+        ];
+        for fact in facts {
+            for place in [None, Some(Place::at("a.csv", 3, 7))] {
+                let finding = Finding { fact: fact.clone(), place };
+                let text = serde_json::to_string(&finding).unwrap();
+                assert_eq!(serde_json::from_str::<Finding>(&text).unwrap(), finding, "{text}");
             }
         }
     }

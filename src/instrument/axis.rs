@@ -6,10 +6,9 @@ use super::dialect::Key;
 use super::error::{Problem, ReadError};
 use super::layout::{Column, Context, Entry, Header};
 use super::sniff::folded;
-use super::told::plain;
 use super::words::{is_volt, known_unit};
 use super::{Conditions, Test};
-use crate::finding::{Finding, Place};
+use crate::finding::{Divisor, Finding, Place, ReadFact};
 use crate::quantity::{Dimension, Unit, divides_by_length, parse_quantity};
 
 /// How a number of a column becomes SI.
@@ -130,24 +129,14 @@ impl Axes<'_> {
         let by = axis.by.filter(|key| {
             !self.header.known.contains_key(key) && !self.context.conditions.states(self.test, *key)
         })?;
-        // The same words for all columns of a kind: one finding a file.
-        let cm = |metres: f64| plain(metres * 1e2);
-        let message = match by {
-            Key::Area => format!(
-                "no foot area is stated: force was divided by the standard {} cm²; state `area` in the header",
-                plain(FOOT_AREA * 1e4)
-            ),
-            Key::Gauge => format!(
-                "no gauge is stated: travel was divided by the standard {} cm; state `gauge` in the header or in [conditions.{}] of fabric.toml",
-                cm(self.conditions.gauge),
-                self.test.name()
-            ),
-            _ => format!(
-                "no width is stated: force or moment was divided by the standard {} cm; state `width` in the header or in [conditions] of fabric.toml",
-                cm(self.conditions.width)
-            ),
+        // The same for all columns of a kind: one finding a file.
+        let (dimension, value, test) = match by {
+            Key::Area => (Divisor::Area, FOOT_AREA, None),
+            Key::Gauge => (Divisor::Gauge, self.conditions.gauge, Some(self.test)),
+            _ => (Divisor::Width, self.conditions.width, None),
         };
-        Some(Finding::new("R109", message).at(Place::at(self.context.path, column.line, 0)))
+        let fact = ReadFact::AssumedDimension { dimension, value, test };
+        Some(Finding::new(fact).at(Place::at(self.context.path, column.line, 0)))
     }
 
     /// Area of the compression foot: the header, else 2 cm².

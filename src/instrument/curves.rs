@@ -11,7 +11,7 @@ use super::sniff::{Number, folded, number};
 use super::told;
 use super::words::SPECIMENS;
 use super::{Conditions, Direction, Measurement, Source, Test};
-use crate::finding::{Finding, Place};
+use crate::finding::{Finding, Place, ReadFact};
 use crate::quantity::{Angle, Curvature, Curve, Length, LineForce, Pressure, QuantityError};
 
 /// The measurement of one column pair, with what was noticed on the way; `None` if the pair holds
@@ -54,8 +54,8 @@ pub(super) fn measurement(
     if let (Some(stated), Some(named)) = (direction, context.label.direction)
         && stated != named
     {
-        let message = format!("the header says {stated}, the file name {named}: the header was taken");
-        findings.push(Finding::new("R106", message).at(Place::at(context.path, pair.x.line, 0)));
+        let fact = ReadFact::TwoDirections { header: stated, file_name: named };
+        findings.push(Finding::new(fact).at(Place::at(context.path, pair.x.line, 0)));
     }
     let curve = Curve::from_points(points.rows.iter().map(|&(_, a, b)| (x.apply(a), y.apply(b))));
     // A width of 1e-300 m or a range of 1e300 V is no slip that any number survives.
@@ -316,11 +316,7 @@ fn points(
 }
 
 fn truncated(row: &Row<'_>, context: &Context<'_>) -> Finding {
-    Finding::new("R102", "the last row is incomplete and was left out").at(Place::at(
-        context.path,
-        row.line,
-        0,
-    ))
+    Finding::new(ReadFact::RowIncomplete {}).at(Place::at(context.path, row.line, 0))
 }
 
 /// A cell as a finite number, or the error that names its place.

@@ -13,7 +13,7 @@ use serde_json::Value;
 
 use super::error::{Problem, ReadError};
 use super::{Direction, Source};
-use crate::finding::{Finding, Place};
+use crate::finding::{Finding, Place, ReadFact};
 use crate::quantity::{Curve, STANDARD_GRAVITY};
 
 /// What a FAB test does to the strip.
@@ -148,10 +148,8 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<(FabFile, Vec<Finding>), 
     }
     file.name = document.pointer("/custom/browzwear/name").and_then(Value::as_str).map(str::to_string);
     warnings(raw, "raw_data", &mut file.warnings);
-    let finding = |w: &String| {
-        Finding::new("R108", format!("the instrument's program warned: {w}")).at(Place::file(path))
-    };
-    let findings = file.warnings.iter().map(finding).collect();
+    let warned = file.warnings.iter().map(|w| ReadFact::InstrumentWarning { warning: w.clone() });
+    let findings = warned.map(|fact| Finding::new(fact).at(Place::file(path))).collect();
     Ok((file, findings))
 }
 

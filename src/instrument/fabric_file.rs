@@ -8,7 +8,7 @@ use super::conditions::StatedConditions;
 use super::dialect::Dialect;
 use super::error::{Problem, ReadError};
 use super::{FabricInfo, MeasuredResult, Origin};
-use crate::finding::{Finding, Place, position};
+use crate::finding::{Finding, Place, ReadFact, position};
 use crate::quantity::{ArealDensity, Length, Ratio};
 
 /// `fabric.toml`: what people know of a fabric and no instrument writes.
@@ -50,13 +50,13 @@ pub(super) fn read_fabric_file(
         notes: file.notes,
         results: file.results,
     };
-    let finding = |message| Finding::new("R104", message).at(Place::file(&path));
+    let finding = |fact| Finding::new(fact).at(Place::file(&path));
     let findings = info.results.iter().filter_map(unusable).map(finding).collect();
     Ok((info, file.conditions, findings))
 }
 
 /// What keeps a measured result from being compared with anything.
-fn unusable(result: &MeasuredResult) -> Option<String> {
+fn unusable(result: &MeasuredResult) -> Option<ReadFact> {
     let MeasuredResult { quantity, value, .. } = result;
     let wrong = match quantity.as_str() {
         "drape_coefficient" => value.parse::<Ratio>().err().map(|e| e.to_string()),
@@ -66,7 +66,7 @@ fn unusable(result: &MeasuredResult) -> Option<String> {
             "only drape_coefficient, drape_nodes and bending_length are compared with predictions".into(),
         ),
     };
-    wrong.map(|why| format!("the measured result `{quantity}` is left out: {why}"))
+    wrong.map(|reason| ReadFact::Unusable { names: vec![quantity.clone()], reason: Some(reason) })
 }
 
 /// Reads a dialect file.

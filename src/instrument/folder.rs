@@ -9,7 +9,7 @@ use super::error::{Problem, ReadError};
 use super::fabric_file::{read_dialect, read_fabric_file};
 use super::read::{FileContent, ReadSettings, read};
 use super::{FabricInfo, FabricInput, Inference, ResultValue};
-use crate::finding::{Finding, Place};
+use crate::finding::{Finding, Place, ReadFact};
 
 /// The fabrics of a batch, and what could not be read.
 #[derive(Clone, Debug, Default)]
@@ -194,8 +194,7 @@ fn folder_path(folder: &Path) -> &Path {
 }
 
 fn without_fabric_file(path: &Path) -> Finding {
-    let message = "there is no fabric.toml: the data count as measured, and of weave, areal density and source is known what the files say";
-    Finding::new("R101", message).at(Place::file(path))
+    Finding::new(ReadFact::NoFabricFile {}).at(Place::file(path))
 }
 
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, ReadError> {
@@ -424,9 +423,8 @@ fn finished(mut fabric: FabricInput) -> FabricInput {
     }
     let samples: BTreeSet<&str> = fabric.measurements.iter().filter_map(|m| m.sample.as_deref()).collect();
     if samples.len() > 1 {
-        let named = samples.into_iter().collect::<Vec<_>>().join(", ");
-        let message = format!("several samples are read as one fabric: {named}; give each its own folder");
-        fabric.findings.push(Finding::new("R105", message).at(Place::file(&fabric.path)));
+        let fact = ReadFact::SeveralSamples { samples: samples.into_iter().map(str::to_string).collect() };
+        fabric.findings.push(Finding::new(fact).at(Place::file(&fabric.path)));
     }
     // The areal density stands in the header of every file; once is enough.
     let mut known: Vec<ResultValue> = Vec::new();
@@ -451,8 +449,8 @@ fn renumber(fabric: &mut FabricInput) {
         let taken = seen.entry((m.test, m.direction)).or_default();
         if taken.contains(&m.specimen) {
             let next = taken.last().map_or(1, |n| n + 1);
-            let message = format!("specimen {} occurs twice; the later one is numbered {next}", m.specimen);
-            fabric.findings.push(Finding::new("R103", message).at(Place::file(&m.source.path)));
+            let fact = ReadFact::Renumbered { specimen: m.specimen, number: next };
+            fabric.findings.push(Finding::new(fact).at(Place::file(&m.source.path)));
             m.specimen = next;
         }
         taken.insert(m.specimen);

@@ -6,57 +6,10 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::fab::FabFile;
-use super::{Direction, Parameter};
+use super::{Direction, Parameter, Test};
 use crate::finding::{Finding, Place};
+use crate::kes::RecordName;
 use crate::quantity::Curve;
-
-/// The KES-F test that a curve comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Test {
-    /// FB1 tensile: x = strain (1), y = force per width (N/m).
-    Tensile,
-    /// FB1 shear: x = shear angle (rad), y = shear force per width (N/m).
-    Shear,
-    /// FB2 pure bending: x = curvature (1/m), y = moment per width (N).
-    Bending,
-    /// FB3 compression: x = thickness (m), y = pressure (Pa).
-    Compression,
-}
-
-impl Test {
-    /// Every test, in output order.
-    pub const ALL: [Self; 4] = [Self::Tensile, Self::Shear, Self::Bending, Self::Compression];
-
-    /// `tensile`, `shear`, `bending` or `compression`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Tensile => "tensile",
-            Self::Shear => "shear",
-            Self::Bending => "bending",
-            Self::Compression => "compression",
-        }
-    }
-
-    /// SI units of abscissa and ordinate.
-    pub fn axes(self) -> [&'static str; 2] {
-        match self {
-            Self::Tensile => ["1", "N/m"],
-            Self::Shear => ["rad", "N/m"],
-            Self::Bending => ["1/m", "N"],
-            Self::Compression => ["m", "Pa"],
-        }
-    }
-
-    /// The instrument, e.g. `KES-FB2`.
-    pub fn instrument(self) -> &'static str {
-        match self {
-            Self::Tensile | Self::Shear => "KES-FB1",
-            Self::Bending => "KES-FB2",
-            Self::Compression => "KES-FB3",
-        }
-    }
-}
 
 /// Where data come from; stated in every sheet and chart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -134,6 +87,11 @@ pub struct Measurement {
 }
 
 impl Measurement {
+    /// Which record it is.
+    pub fn record_name(&self) -> RecordName {
+        RecordName { test: self.test, direction: self.direction, specimen: self.specimen }
+    }
+
     /// The file and the line of the first sample.
     pub fn place(&self) -> Place {
         Place::at(&self.source.path, self.lines.first().copied().unwrap_or(0), 0)

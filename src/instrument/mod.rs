@@ -19,7 +19,6 @@ mod layout;
 mod limits;
 mod measurement;
 mod pairs;
-mod parameter;
 mod raw;
 mod read;
 mod result_table;
@@ -30,6 +29,7 @@ mod told;
 mod words;
 mod workbook;
 
+pub use crate::kes::{Direction, Parameter, Test};
 pub use conditions::{
     BendingConditions, CompressionConditions, ShearConditions, StatedConditions, TensileConditions,
     standard_conditions,
@@ -40,7 +40,5 @@ pub use fabric_file::read_dialect;
 pub use folder::{Batch, JOURNAL, Library, MANIFEST, read_fabrics};
 pub use measurement::{
     Conditions, FabricInfo, FabricInput, Inference, MeasuredResult, Measurement, Origin, ResultValue, Source,
-    Test,
 };
-pub use parameter::{Direction, Parameter};
 pub use read::{FileContent, ReadSettings, parse, read};

@@ -18,7 +18,7 @@ use super::sniff::{Sniffed, sniff};
 use super::words::{Label, Vocabulary};
 use super::workbook;
 use super::{Measurement, Parameter, ResultValue, Source};
-use crate::finding::{Finding, Place};
+use crate::finding::{Fact, Finding, Place, ReadFact};
 use crate::quantity::ArealDensity;
 
 /// What a reader may be told beforehand. The default infers everything and assumes no unit.
@@ -210,12 +210,13 @@ fn table(
                     if let Some((measurement, findings)) = read {
                         content.measurements.push(measurement);
                         // What was assumed for one column was assumed for all: that is said once.
-                        let said = |f: &Finding| {
-                            content.findings.iter().any(|k| (k.code, &k.message) == (f.code, &f.message))
-                        };
-                        let new: Vec<_> =
-                            findings.into_iter().filter(|f| f.code != "R109" || !said(f)).collect();
-                        content.findings.extend(new);
+                        for finding in findings {
+                            let assumed =
+                                matches!(finding.fact, Fact::Reading(ReadFact::AssumedDimension { .. }));
+                            if !(assumed && content.findings.iter().any(|k| k.fact == finding.fact)) {
+                                content.findings.push(finding);
+                            }
+                        }
                     }
                     weight(&pair.header, context, content)?;
                 }
@@ -287,8 +288,8 @@ fn number_specimens(path: &Path, content: &mut FileContent) {
         if m.specimen == 0 {
             m.specimen = next;
         } else if taken.contains(&m.specimen) {
-            let message = format!("specimen {} occurs twice; the later one is numbered {next}", m.specimen);
-            content.findings.push(Finding::new("R103", message).at(Place::at(path, m.lines[0], 0)));
+            let fact = ReadFact::Renumbered { specimen: m.specimen, number: next };
+            content.findings.push(Finding::new(fact).at(Place::at(path, m.lines[0], 0)));
             m.specimen = next;
         }
         taken.insert(m.specimen);

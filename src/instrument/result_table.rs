@@ -20,7 +20,7 @@ use super::sniff::{Number, folded, number};
 use super::statistic::{self, RowLabel, summing_up};
 use super::words::{known_unit, normalised, unit};
 use super::{Direction, Parameter, ResultValue};
-use crate::finding::{Finding, Place};
+use crate::finding::{Finding, Place, ReadFact};
 use crate::quantity::{Estimate, Unit};
 
 /// Values with the fabric that each belongs to.
@@ -411,9 +411,9 @@ impl Table<'_, '_> {
         }
         self.ignored.dedup();
         if !self.ignored.is_empty() {
-            let message = format!("no KES parameters, and left out: {}", self.ignored.join(", "));
+            let fact = ReadFact::Unusable { names: self.ignored, reason: None };
             let place = Place::at(self.context.path, self.heading.line, 0);
-            self.findings.push(Finding::new("R104", message).at(place));
+            self.findings.push(Finding::new(fact).at(place));
         }
         let values = out.into_iter().map(averaged).collect();
         let failures = self.failures.into_values().collect();

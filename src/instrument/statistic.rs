@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::dialect::Statistic;
 use super::words::{Vocabulary, normalised};
-use crate::finding::{Finding, Place};
+use crate::finding::{Finding, LeftOutLine, Place, ReadFact};
 
 /// What stands in a group of rows or curves.
 #[derive(Clone, Copy, Debug, Default)]
@@ -91,18 +91,12 @@ fn names_statistics<'r>(words: impl Iterator<Item = &'r str>, vocabulary: Vocabu
     others.len() > 1
 }
 
-/// The most that a message names one by one.
-const NAMED: usize = 8;
-
 /// What is said of rows or curves that were left out, each with its line.
-pub(super) fn finding(what: &str, left_out: &[(usize, impl Debug)], path: &Path) -> Option<Finding> {
-    let (line, _) = left_out.first()?;
-    let named = left_out.iter().take(NAMED).map(|(line, word)| format!("{word:?} (line {line})"));
-    let more = left_out.len().saturating_sub(NAMED);
-    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    let named = named.collect::<Vec<_>>().join(", ");
-    let message = format!("{what} that sum up others are left out: {named}{more}");
-    Some(Finding::new("R110", message).at(Place::at(path, *line, 0)))
+pub(super) fn finding(what: &str, left_out: &[(usize, impl ToString)], path: &Path) -> Option<Finding> {
+    let (first, _) = left_out.first()?;
+    let lines = left_out.iter().map(|(line, word)| LeftOutLine { line: *line, word: word.to_string() });
+    let fact = ReadFact::SummingUp { what: what.to_string(), left_out: lines.collect() };
+    Some(Finding::new(fact).at(Place::at(path, *first, 0)))
 }
 
 #[cfg(test)]

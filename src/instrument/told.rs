@@ -7,21 +7,17 @@ use super::dialect::Key;
 use super::layout::{Column, Context, Header, Pair};
 use super::words::unit as unit_of;
 use super::{Conditions, Direction, Test};
+use crate::quantity::without_rounding;
 
 /// A column and its scale, for people: `"curvature" (1/cm) times 100 is 1/m`.
 pub(super) fn scaled(column: &Column, scale: Scale, si: &str) -> String {
     let unit = column.unit.as_deref().unwrap_or("no unit stated");
     match scale {
-        Scale::Linear(f) => format!("{:?} ({unit}) times {} is {si}", column.name, plain(f)),
+        Scale::Linear(f) => format!("{:?} ({unit}) times {} is {si}", column.name, without_rounding(f)),
         Scale::Atan(f) => {
-            format!("{:?} ({unit}): {si} is the arc tangent of {} times it", column.name, plain(f))
+            format!("{:?} ({unit}): {si} is the arc tangent of {} times it", column.name, without_rounding(f))
         }
     }
-}
-
-/// A number without the last-bit noise of a conversion.
-pub(super) fn plain(value: f64) -> String {
-    format!("{value:.8e}").parse::<f64>().unwrap_or(value).to_string()
 }
 
 /// What a curve is and where that is stated, for people.
@@ -70,7 +66,7 @@ pub(super) fn conditions(test: Test, c: &Conditions, header: &Header) -> String 
                 None => "fabric.toml or dialect, not in the file".to_string(),
             };
             let factor = unit_of(unit).map_or(f64::NAN, |u| u.factor);
-            format!("{name} {} {unit} ({from})", plain(value / factor))
+            format!("{name} {} {unit} ({from})", without_rounding(value / factor))
         })
         .collect();
     format!("{}: {}", test.name(), told.join(", "))

@@ -15,7 +15,7 @@ pub use curve::Curve;
 pub use estimate::Estimate;
 pub use propagation::{Band, Bands, NoSpread};
 pub use sobol::{Population, Sampled, sampled, sobol_points};
-pub use text::significant;
+pub use text::{in_unit, significant, without_rounding};
 pub use unit::{Dimension, QuantityError, UNITS, Unit, counts_angles, divides_by_length, parse_quantity};
 
 /// Standard gravity in m/s², the value that defines the gram-force (exact).

@@ -1,5 +1,7 @@
 //! Numbers as people read them.
 
+use super::Unit;
+
 /// Four significant digits, without an exponent where people would not write one:
 /// `5120`, `0.05000`, `1.157e-5`.
 pub fn significant(value: f64) -> String {
@@ -13,6 +15,17 @@ pub fn significant(value: f64) -> String {
         return format!("{value:.3e}");
     }
     format!("{value:.*}", (3.0 - exponent).max(0.0) as usize)
+}
+
+/// A value (SI) in another unit of its dimension, with four significant digits: `8.000 deg`.
+pub fn in_unit(value: f64, unit: &str) -> String {
+    let factor = Unit::parse(unit).map_or(f64::NAN, |u| u.factor);
+    format!("{} {unit}", significant(value / factor))
+}
+
+/// A number without the noise that a conversion of units leaves in its last bits: `5` for 5.000000000000001.
+pub fn without_rounding(value: f64) -> String {
+    format!("{value:.8e}").parse::<f64>().unwrap_or(value).to_string()
 }
 
 #[cfg(test)]

@@ -212,13 +212,13 @@ fn figure(out: &mut String, figure: &Figure) {
 fn findings(out: &mut String, findings: &[Finding]) {
     out.push_str("<ul class=\"findings\">\n");
     for finding in findings {
-        let known = explain(finding.code);
+        let known = explain(finding.code());
         let class = if known.is_some_and(|e| e.kind == "error") { " class=\"error\"" } else { "" };
-        out.push_str(&format!("<li{class}><code>{}</code> ", escape(finding.code)));
+        out.push_str(&format!("<li{class}><code>{}</code> ", escape(finding.code())));
         if let Some(place) = &finding.place {
             out.push_str(&format!("<code>{}</code> ", escape(&place.to_string())));
         }
-        out.push_str(&escape(&finding.message));
+        out.push_str(&escape(&finding.message()));
         out.push_str("</li>\n");
     }
     out.push_str("</ul>\n");
@@ -252,13 +252,14 @@ fn address(path: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::finding::Place;
+    use crate::finding::{EvaluationFact, Place, ReadFact};
 
     fn page() -> Page {
         let rows = vec![
             vec!["poplin <A> & \"B\"".into(), "0.0922 ± 0.0030".into(), "ok".into()],
             vec!["経 wool".into(), "−1.2 × 10⁻⁵".into()],
         ];
+        let warning = ReadFact::InstrumentWarning { warning: "an <error>".into() };
         Page {
             title: "Results of kesf_data".into(),
             lead: "12 fabrics, 7 cases".into(),
@@ -273,8 +274,8 @@ mod tests {
                             rows,
                         },
                         Block::Findings(vec![
-                            Finding::new("O001", "an <error>").at(Place::at("a b.csv", 3, 1)),
-                            Finding::new("K999", "a finding"),
+                            Finding::new(warning).at(Place::at("a b.csv", 3, 1)),
+                            Finding::new(EvaluationFact::NoArealDensity {}),
                         ]),
                     ],
                 },
@@ -300,7 +301,9 @@ mod tests {
             std::fs::write(std::path::Path::new(&folder).join("index.html"), &text).unwrap();
         }
         assert!(text.contains("poplin &lt;A&gt; &amp; &quot;B&quot;"));
-        assert!(text.contains("<code>a b.csv:3:1</code> an &lt;error&gt;"));
+        assert!(
+            text.contains("<code>a b.csv:3:1</code> the instrument&#39;s program warned: an &lt;error&gt;")
+        );
         assert!(text.contains("src=\"./pop%20lin%231/%E7%B5%8C%20b.png\""));
         assert!(text.contains("href=\"./javascript%3Aalert%281%29\""));
         assert!(!text.contains("http"), "no address outside the folder");

@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 
 use crate::characterise::{FabricSheet, FrictionLaw, LawBand, MeanBranch, Settings};
 use crate::constitutive::{Entry, Input, Used, entries};
-use crate::finding::Finding;
+use crate::finding::{Fields, Finding};
 use crate::instrument::Parameter;
 use crate::quantity::{Curve, Estimate};
 use crate::section::ShellSection;
@@ -80,6 +80,8 @@ pub struct FindingEntry {
     pub code: &'static str,
     /// One sentence.
     pub message: String,
+    /// What the sentence is made of, by name; numbers are SI.
+    pub fields: Fields,
     /// File, where there is one.
     pub path: Option<String>,
     /// Line from 1, where there is one.
@@ -285,8 +287,9 @@ fn finding_entry(fabric: &str, finding: &Finding) -> FindingEntry {
     let place = finding.place.as_ref();
     FindingEntry {
         fabric: fabric.into(),
-        code: finding.code,
-        message: finding.message.clone(),
+        code: finding.code(),
+        message: finding.message(),
+        fields: finding.fields(),
         path: place.map(|p| slashes(&p.path)),
         line: place.map(|p| p.line).filter(|&line| line > 0),
     }
@@ -310,6 +313,7 @@ fn rows2(m: &Matrix2<f64>) -> [[f64; 2]; 2] {
 mod tests {
     use super::*;
     use crate::characterise::Key;
+    use crate::finding::EvaluationFact;
     use crate::finding::Place;
     use crate::instrument::{Direction, Source};
 
@@ -325,7 +329,9 @@ mod tests {
         sheet.moduli.insert(("secant".into(), Direction::Warp), Estimate::single(9e3));
         let source = Source { path: "p/b.csv".into(), sha256: "00".into(), ..Source::default() };
         sheet.sources = vec![source.clone(), source];
-        sheet.findings = vec![Finding::new("K003", "odd").at(Place::at("p/b.csv", 3, 0))];
+        let (own, other) = (Direction::Warp, Direction::Weft);
+        let fact = EvaluationFact::OtherDirection { parameter: Parameter::B, own, other, specimen: 2 };
+        sheet.findings = vec![Finding::new(fact).at(Place::at("p/b.csv", 3, 0))];
         let text = text(&sheet_document([&sheet], Some(&Settings::default()))).unwrap();
         assert!(text.ends_with("}\n"));
         let v: Value = serde_json::from_str(&text).unwrap();
@@ -347,6 +353,10 @@ mod tests {
         assert_eq!(parameters["LT"]["fabric"]["mean"], Value::Null);
         assert_eq!(v["fabrics"][0]["moduli"]["secant"]["warp"]["mean"], json!(9e3));
         assert_eq!(v["findings"][0]["line"], json!(3));
+        assert_eq!(
+            v["findings"][0]["fields"],
+            json!({ "parameter": "B", "own": "warp", "other": "weft", "specimen": 2 })
+        );
     }
 
     #[test]

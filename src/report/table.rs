@@ -281,8 +281,8 @@ pub fn failed_fabric_row(fabric: &str, code: &str) -> FabricRow {
 pub fn problem_row(finding: &Finding, otherwise: &str) -> ProblemRow {
     ProblemRow {
         place: finding.place.as_ref().map_or(otherwise.to_string(), ToString::to_string),
-        code: finding.code.into(),
-        message: finding.message.clone(),
+        code: finding.code().into(),
+        message: finding.message(),
         fabric: None,
     }
 }

@@ -7,7 +7,7 @@ use super::case::{Analysis, Case, Sheet};
 use super::checked::{lookup, unit_of};
 use super::result::CaseResult;
 use crate::fields::{Extrapolation, Resultants};
-use crate::finding::{Finding, Place};
+use crate::finding::{CoarseQuantity, Finding, Place, StudyFact};
 use crate::model::Dof;
 
 /// A case on its own mesh and on coarser ones.
@@ -79,17 +79,11 @@ impl Convergence {
     /// What the mesh leaves too open.
     pub(super) fn finding(&self, case: &Case) -> Option<Finding> {
         let open = |q: &&MeshSeries| q.left() > COARSE && q.finest().abs() > SMALL * q.size;
-        let open: Vec<String> = (self.quantities.iter().filter(open))
-            .map(|q| format!("{} (± {:.1} %)", q.quantity, 100.0 * q.left()))
+        let quantities: Vec<CoarseQuantity> = (self.quantities.iter().filter(open))
+            .map(|q| CoarseQuantity { quantity: q.quantity.clone(), left: q.left() })
             .collect();
-        let message = match (self.quantities.is_empty(), open.is_empty()) {
-            (true, _) => {
-                "the coarser meshes of [convergence] have none of the results: take more `cells`".into()
-            }
-            (_, false) => format!("the mesh is coarse for {}: take more `cells`", open.join(", ")),
-            _ => return None,
-        };
-        Some(Finding::new("S106", message).at(Place::file(&case.path)))
+        (self.quantities.is_empty() || !quantities.is_empty())
+            .then(|| Finding::new(StudyFact::CoarseMesh { quantities }).at(Place::file(&case.path)))
     }
 }
 
@@ -237,7 +231,7 @@ at = ["0 m", "0.5 m"]
         let absent = ["centre.theta_x", "centre.shear_y", "edge.w", "centre.membrane_x", "edge.moment_xy"];
         assert!(absent.iter().all(|q| found.get(q).is_none()));
         assert!(found.get("edge.moment_x").is_some() && found.get("strain_energy").is_some());
-        let told = |q: &MeshSeries| result.findings.iter().any(|f| f.message.contains(&q.quantity));
+        let told = |q: &MeshSeries| result.findings.iter().any(|f| f.message().contains(&q.quantity));
         assert!(found.quantities.iter().all(|q| told(q) == (q.left() > COARSE)), "{:?}", result.findings);
     }
 
@@ -248,8 +242,8 @@ at = ["0 m", "0.5 m"]
         let found = result.convergence.as_ref().unwrap();
         // 2 x 2 elements have one free node: three displacements, three modes across the sheet and two in it.
         assert!(found.quantities.len() < 12 && found.get("frequency_1").is_some());
-        let coarse = result.findings.iter().find(|f| f.code == "S106").unwrap();
-        assert!(coarse.message.contains("frequency_2 ("), "{}", coarse.message);
+        let coarse = result.findings.iter().find(|f| f.code() == "S106").unwrap();
+        assert!(coarse.message().contains("frequency_2 ("), "{}", coarse.message());
     }
 
     /// Checking a case finds what only its coarser meshes lack, and names them.

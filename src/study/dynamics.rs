@@ -13,7 +13,7 @@ use super::nonlinear::largest_w;
 use super::result::Outcome;
 use crate::element::Mass;
 use crate::fields::Locator;
-use crate::finding::{Finding, Place};
+use crate::finding::{Finding, Place, StudyFact};
 use crate::mesh::QuadMesh;
 use crate::model::Model;
 use crate::quantity::{Frequency, Time, counts_angles};
@@ -144,17 +144,8 @@ impl Record<'_> {
 
 /// The finding of energies that do not add up, or of a damping that gives; both are parts of the largest work.
 fn unbalanced(case: &Case, imbalance: f64, given: f64) -> Option<Finding> {
-    let what = if imbalance >= given {
-        format!("the energies miss the work of the loads by up to {:.0} %", 100.0 * imbalance)
-    } else {
-        format!("the damping gives {:.0} % of the work of the loads instead of taking it", 100.0 * given)
-    };
-    let message = format!(
-        "{what}: take a shorter step (with a tolerance, a smaller one), a load that ramps instead of a jump, and forces for a \
-         moment about the normal, where the sheet has no mass"
-    );
     (imbalance.max(given) > IMBALANCE_LIMIT)
-        .then(|| Finding::new("S110", message).at(Place::file(&case.path)))
+        .then(|| Finding::new(StudyFact::Unbalanced { imbalance, given }).at(Place::file(&case.path)))
 }
 
 /// Integrates in time and keeps the history.

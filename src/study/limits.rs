@@ -8,10 +8,10 @@ use super::StudyError;
 use super::case::{Analysis, Case, LoadTable};
 use super::result::CaseResult;
 use crate::element::{Bending, Cells, Drilling, Membrane};
-use crate::finding::{Finding, Place};
+use crate::finding::{Excess, Finding, Place, StudyFact};
 use crate::mesh::{QuadMesh, Unjoined, normal};
 use crate::model::{Dof, Model};
-use crate::quantity::{Angle, significant};
+use crate::quantity::Angle;
 
 /// Above this ratio of deflection to bending thickness the sheet's own stretching carries part of
 /// the load: an immovable clamped square is 3 % off at 0.24 and 12 % off at 0.47 (von Karman
@@ -106,31 +106,18 @@ pub(super) fn findings(
     beyond: Option<&Beyond>,
     in_plane: bool,
 ) -> Vec<Finding> {
-    let mut findings = Vec::new();
-    let mut add =
-        |code, message: String| findings.push(Finding::new(code, message).at(Place::file(&case.path)));
+    let mut facts = Vec::new();
     if let Some(beyond) = beyond {
-        add("S101", beyond.message(&case.analysis));
+        facts.push(beyond.fact(&case.analysis));
     }
-    if let Some(message) = too_few_cells(model) {
-        add("S102", message.into());
+    if let Some(cells) = too_few_cells(model) {
+        facts.push(StudyFact::FreeModes { cells });
     }
     if let Some(reasons) = against_one_cell(model) {
-        add(
-            "S123",
-            format!(
-                "profile = \"fourth_order\" is for flat sheets of equal rectangles along warp and weft between clamped and hard \
-                 supported edges, and here {reasons}: the default may be closer"
-            ),
-        );
+        facts.push(StudyFact::NotFourthOrder { reasons });
     }
     if in_plane && matches!(model.formulation.drilling, Drilling::Seed(_)) {
-        let what = if extent.flat {
-            "carries the moments about the normal of the sheet, and its rotations there, past the membrane"
-        } else {
-            "strains rigid rotations of a curved sheet"
-        };
-        add("S103", format!("the seed's drilling spring {what}: take drilling = \"scaled\""));
+        facts.push(StudyFact::DrillingSpring { flat: extent.flat });
     }
     // With large rotations it is what a thin sheet asks for.
     let small = matches!(
@@ -138,73 +125,47 @@ pub(super) fn findings(
         Analysis::Linear {} | Analysis::Modal { .. } | Analysis::Newmark { large_rotations: false, .. }
     );
     if in_plane && small && model.formulation.membrane == Membrane::OneCell {
-        let message = "one smoothing cell of the membrane leaves it motions in the plane of the sheet that cost next to \
-                       nothing: take membrane = \"cells\"";
-        add("S107", message.into());
+        facts.push(StudyFact::OneMembraneCell {});
     }
     if let Some(Unjoined { nodes, first }) = extent.unjoined {
-        let [x, y, z] = [first.x, first.y, first.z].map(significant);
-        add(
-            "S108",
-            format!(
-                "the mesh is not joined: {nodes} nodes lie on an edge of a quad that they do not belong to, the first at \
-                 ({x}, {y}, {z}) m, and the sheet is cut there; merge the surfaces in Gmsh (Coherence;) and mesh again, unless \
-                 the cut is meant"
-            ),
-        );
+        facts.push(StudyFact::NotJoined { nodes, at: first.coords.into() });
     }
     if let Some(set) = extent.flat.then(|| turned_in_plane(case)).flatten() {
-        let message = format!(
-            "theta_z of set `{set}` turns its nodes, and hardly the sheet: prescribe an in-plane rotation through [[rigid]]"
-        );
-        add("S109", message);
+        facts.push(StudyFact::TurnedInPlane { set: set.to_string() });
     }
-    findings
+    facts.into_iter().map(|fact| Finding::new(fact).at(Place::file(&case.path))).collect()
 }
 
 impl Beyond {
-    fn message(&self, analysis: &Analysis) -> String {
-        let cure = match analysis {
-            Analysis::Newmark { .. } => {
-                "give [analysis] large_rotations = true for the true motion, or lower the load"
-            }
-            _ => {
-                "take [analysis] kind = \"nonlinear\" for the true shape, lower the load, or read the result as a \
-                 stiffness, not as a shape"
-            }
+    fn fact(&self, analysis: &Analysis) -> StudyFact {
+        let (excess, value, ratio, limit) = match *self {
+            Self::Deflection(w, ratio) => (Excess::Deflection, w, ratio, LINEAR_LIMIT),
+            Self::Displacement(u, ratio) => (Excess::Displacement, u, ratio, DISPLACEMENT_LIMIT),
         };
-        match self {
-            Self::Deflection(w, ratio) => format!(
-                "the deflection of {w:.3e} m is {ratio:.2e} bending thicknesses: a linear solve is meaningful below {LINEAR_LIMIT} only; \
-                 {cure}"
-            ),
-            Self::Displacement(u, ratio) => format!(
-                "the displacement of {u:.3e} m is {ratio:.2e} of the size of the sheet: a linear solve is meaningful for small \
-                 ones, below {DISPLACEMENT_LIMIT}; {cure}"
-            ),
-        }
+        let in_time = matches!(analysis, Analysis::Newmark { .. });
+        StudyFact::BeyondLinear { excess, value, ratio, limit, in_time }
     }
 }
 
-/// The modes without energy that the smoothing cells leave to bending.
-fn too_few_cells(model: &Model) -> Option<&'static str> {
+/// Smoothing cells of an element, where they leave modes without energy to bending.
+fn too_few_cells(model: &Model) -> Option<usize> {
     match model.formulation.cells {
-        Cells::Grid { along_xi: 1, along_eta: 1 } => {
-            Some("one smoothing cell leaves spurious zero-energy modes: take subcells = 4")
-        }
+        Cells::Grid { along_xi: 1, along_eta: 1 } => Some(1),
         // In a row of cells along ξ, a rotation ξη bends by η, whose mean over each cell is 0: only the torsion
         // resists it.
-        Cells::Grid { along_xi: 1, .. } | Cells::Grid { along_eta: 1, .. }
-            if model.section.d_b[(2, 2)] == 0.0 && model.formulation.bending == Bending::Cells =>
+        Cells::Grid { along_xi, along_eta }
+            if along_xi.min(along_eta) == 1
+                && model.section.d_b[(2, 2)] == 0.0
+                && model.formulation.bending == Bending::Cells =>
         {
-            Some("smoothing cells in one row with H = 0 leave a spurious mode: take subcells = 4")
+            Some((along_xi * along_eta) as usize)
         }
         _ => None,
     }
 }
 
 /// Why one bending cell is not of fourth order in a model that has it; `None` where nothing speaks against it.
-fn against_one_cell(model: &Model) -> Option<String> {
+fn against_one_cell(model: &Model) -> Option<Vec<String>> {
     if model.formulation.bending == Bending::Cells {
         return None;
     }
@@ -247,7 +208,7 @@ fn against_one_cell(model: &Model) -> Option<String> {
             ));
         }
     }
-    (!reasons.is_empty()).then(|| reasons.join(", "))
+    (!reasons.is_empty()).then_some(reasons)
 }
 
 /// The sides (m) of an element, the shorter one first, if it is a rectangle along warp and weft, or any rectangle in an
@@ -303,12 +264,7 @@ pub(super) fn is_compressed(result: &CaseResult, extent: &Extent) -> Result<bool
 
 /// The finding of a sheet that would buckle.
 pub(super) fn buckles(case: &Case, directions: usize) -> Finding {
-    let message = format!(
-        "under these loads the sheet has lost its stiffness in {directions} direction(s): it buckles or wrinkles before, and the \
-         linear answer is that of a sheet that is kept from it; take [analysis] kind = \"nonlinear\" with method = \"flow\", or \
-         lower the load"
-    );
-    Finding::new("S105", message).at(Place::file(&case.path))
+    Finding::new(StudyFact::Buckles { directions }).at(Place::file(&case.path))
 }
 
 /// The largest displacement of the sheet normal to itself (m).

@@ -9,7 +9,7 @@ use super::StudyError;
 use super::case::{Case, MethodChoice, NonlinearTable};
 use super::result::Outcome;
 use crate::fields::Locator;
-use crate::finding::{Finding, Place};
+use crate::finding::{Finding, Place, StudyFact};
 use crate::mesh::QuadMesh;
 use crate::model::Model;
 use crate::section::SheetLaw;
@@ -253,18 +253,25 @@ fn conclude(
             path.stability = Some(solution.stability);
             let negative = solution.stability.negative_pivots;
             if negative > 0 {
-                findings.push(Finding::new("S111", unstable(negative)));
+                findings.push(Finding::new(StudyFact::Unstable { directions: negative }));
             }
             if solution.state.factor != 1.0 {
                 path.converged = false;
-                findings.push(Finding::new("S112", unfinished(solution.state.factor, path.steps.len())));
+                let (factor, steps) = (solution.state.factor, path.steps.len());
+                findings.push(Finding::new(StudyFact::Unfinished { factor, steps }));
             }
         }
-        Err(ref e @ NonlinearError::NotConverged { ref obstacle, .. }) => {
+        Err(NonlinearError::NotConverged { step, obstacle, iterations, residual, tolerance, last }) => {
             path.converged = false;
-            let (story, cure) = (e.story().unwrap_or_default(), cure(table, obstacle));
-            let message = format!("{story}; {cure}; the results are the last state that was reached");
-            findings.push(Finding::new("N007", message));
+            findings.push(Finding::new(StudyFact::NotConverged {
+                step,
+                factor: last.factor,
+                obstacle: obstacle.text(iterations, residual, tolerance),
+                iterations,
+                residual,
+                tolerance,
+                cure: cure(table, &obstacle).to_string(),
+            }));
         }
         Err(other) => return Err(other.into()),
     }
@@ -288,28 +295,7 @@ fn turned_about_more(model: &Model, state: &State) -> Option<Finding> {
         })
     });
     let largest = off.fold(0.0, f64::max);
-    (largest > TURNED).then(|| {
-        let message = format!(
-            "nodes whose rotation about an axis is held have turned about it by {largest:.2} rad, as the rotations about the other axes \
-             are free: the result depends on the steps by which it was reached; hold the others too, or compare with a smaller \
-             largest_step"
-        );
-        Finding::new("S121", message)
-    })
-}
-
-fn unstable(negative_pivots: usize) -> String {
-    format!(
-        "the equilibrium is unstable: its energy falls in {negative_pivots} direction(s), and a real sheet would leave it; \
-         take [analysis] method = \"flow\", or perturbation = 1e-3 with method = \"newton\""
-    )
-}
-
-fn unfinished(factor: f64, steps: usize) -> String {
-    format!(
-        "the path ended at {factor:.4} of the load after {steps} steps: give [analysis] more steps, or read the result at \
-         that load"
-    )
+    (largest > TURNED).then(|| Finding::new(StudyFact::TurnedAbout { rotation: largest }))
 }
 
 /// What to change in the case.

@@ -14,9 +14,9 @@ use crate::element::Mass;
 use crate::fields::{
     ProbeValue, Recovery, Resultants, element_means, element_means_moved, reaction_resultants,
 };
-use crate::finding::Finding;
+use crate::finding::{Finding, StudyFact};
 use crate::model::{Model, ModelError};
-use crate::quantity::{Curve, significant};
+use crate::quantity::Curve;
 use crate::section::SheetLaw;
 use crate::solve::nonlinear::State;
 use crate::solve::{self, Factors, Solution};
@@ -70,18 +70,16 @@ pub struct CheckResult {
 impl CheckResult {
     /// S122: that the check does not hold.
     pub(super) fn finding(&self, case: &Case) -> Finding {
-        let percent = |v: f64| significant(100.0 * v);
-        let message = format!(
-            "`{}` is {} {unit}, and {} {unit} was expected: {} % off, {} % allowed",
-            self.quantity,
-            significant(self.value),
-            significant(self.expected),
-            percent(self.relative_error),
-            percent(self.relative_tolerance),
-            unit = self.unit,
-        );
-        let place = case.place_of(&message);
-        Finding::new("S122", message).at(place)
+        let fact = StudyFact::CheckFails {
+            quantity: self.quantity.clone(),
+            value: self.value,
+            expected: self.expected,
+            unit: self.unit.to_string(),
+            relative_error: self.relative_error,
+            relative_tolerance: self.relative_tolerance,
+        };
+        let place = case.place_of(&fact.to_string());
+        Finding::new(fact).at(place)
     }
 }
 

@@ -14,7 +14,7 @@ use super::{PreparedCase, StudyError, build};
 use crate::constitutive::{Constitutive, Input};
 use crate::element::Mass;
 use crate::fields::{Locator, Recovery};
-use crate::finding::{Finding, Place};
+use crate::finding::{Finding, Place, StudyFact};
 use crate::model::Model;
 use crate::section::{SheetLaw, ShellSection};
 use crate::solve::newmark;
@@ -237,10 +237,7 @@ fn of_unit_size(shape: &[f64]) -> Vec<f64> {
 }
 
 fn fewer_modes(case: &Case, found: usize, wanted: usize) -> Finding {
-    let message = format!(
-        "the model has {found} modes, and {wanted} were asked for: refine the mesh, or ask for fewer"
-    );
-    Finding::new("S104", message).at(Place::file(&case.path))
+    Finding::new(StudyFact::FewerModes { found, wanted }).at(Place::file(&case.path))
 }
 
 /// The mass matrix of a case: the key `mass`, or the older `lumped`.

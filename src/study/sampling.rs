@@ -17,7 +17,7 @@ use super::case::{Analysis, BendingKind, Case, TestFormulation, UncertaintyTable
 use super::{PreparedCase, PreparedTest, Status, StudyError, Watch, drape, simulate_cycle};
 use crate::characterise::FabricSheet;
 use crate::constitutive::{self, Constitutive, Input, law_inputs, moved};
-use crate::finding::{Finding, Place};
+use crate::finding::{Finding, Place, StudyFact};
 use crate::instrument::{Direction, Parameter, Test};
 use crate::law::Mode;
 use crate::quantity::{Estimate, Population, Sampled, sampled, sobol_points};
@@ -329,19 +329,16 @@ impl Sampler<'_> {
         let mut findings = Vec::new();
         let bands = || quantities.iter().flat_map(|q| [q.mean_fabric, q.next_specimen]).flatten();
         if let Some(failed) = bands().map(|b| b.failed).max().filter(|n| *n > 0) {
-            let text = format!(
-                "{failed} of {} points of the inputs gave no result: the bands are of the others",
-                self.table.points
-            );
-            findings.push(Finding::new("S116", text).at(Place::file(&self.case.path)));
+            let fact = StudyFact::FailedPoints { failed, points: self.table.points };
+            findings.push(Finding::new(fact).at(Place::file(&self.case.path)));
         }
         let mut names: Vec<&str> =
             quantities.iter().flat_map(|q| &q.without_spread).map(String::as_str).collect();
         names.sort_unstable();
         names.dedup();
         if !names.is_empty() {
-            let text = format!("no band where a single value is all there is of: {}", names.join(", "));
-            findings.push(Finding::new("S117", text).at(Place::file(&self.case.path)));
+            let fact = StudyFact::NoBand { inputs: names.into_iter().map(str::to_string).collect() };
+            findings.push(Finding::new(fact).at(Place::file(&self.case.path)));
         }
         findings
     }

@@ -70,7 +70,7 @@ fn an_input_without_spread_forbids_the_band() {
         assert_eq!(q.without_spread, ["areal density"]);
         assert_eq!((q.mean_fabric, q.next_specimen), (None, None));
     }
-    assert_eq!(found.findings.iter().map(|f| f.code).collect::<Vec<_>>(), ["S117"]);
+    assert_eq!(found.findings.iter().map(|f| f.code()).collect::<Vec<_>>(), ["S117"]);
     // Unless the case says that it is exact, by its name.
     let mut exact = case.clone();
     let table = exact.uncertainty.as_mut().unwrap();

@@ -26,7 +26,7 @@ use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use self::identify::Path;
 use super::{Branch, CycleChoice, FabricSheet, Key, Settings, SpecimenResult};
-use crate::finding::{Finding, Place};
+use crate::finding::{EvaluationFact, Finding, Place, Subject};
 use crate::instrument::{Conditions, Direction, Parameter, Test};
 use crate::law::Channel;
 use crate::quantity::{Curve, Estimate};
@@ -199,21 +199,20 @@ impl FabricSheet {
 
 /// Adds the laws to a sheet.
 pub(super) fn add(sheet: &mut FabricSheet, settings: &Settings) {
-    let found: Vec<Result<FrictionLaw, Finding>> =
-        sheet.specimens.par_iter().map(|s| of_specimen(s, settings).map_err(|why| none(s, why))).collect();
-    for law in found {
+    let found: Vec<_> = sheet.specimens.par_iter().map(|s| of_specimen(s, settings)).collect();
+    for (specimen, law) in sheet.specimens.iter().zip(found) {
         match law {
             Ok(law) => sheet.laws.push(law),
-            Err(finding) => sheet.findings.push(finding),
+            Err(why) => sheet.findings.push(none(specimen, why)),
         }
     }
     for (i, strip) in sheet.strips.iter().enumerate() {
         match strip::law(i, strip) {
             Ok(law) => sheet.laws.push(law),
-            Err(why) => {
-                let text =
-                    format!("strip S{} {}: no friction law, {why}", strip::number(strip), strip.direction);
-                sheet.findings.push(Finding::new("K041", text));
+            Err(reason) => {
+                let subject = Subject::Strip { strip: strip.kind.name().into(), direction: strip.direction };
+                let reason = reason.to_string();
+                sheet.findings.push(Finding::new(EvaluationFact::NoLaw { subject, reason }));
             }
         }
     }
@@ -304,9 +303,8 @@ fn fitted(specimen: &SpecimenResult, settings: &Settings) -> Option<FrictionLaw>
 /// K041: a loop that was recorded, but has no law.
 fn none(specimen: &SpecimenResult, why: &str) -> Finding {
     let m = &specimen.measurement;
-    let direction = m.direction.map_or(String::new(), |d| format!(" {d}"));
-    let text = format!("{}{direction}, specimen {}: no friction law, {why}", m.test.name(), m.specimen);
-    Finding::new("K041", text).at(Place::file(&m.source.path))
+    let (subject, reason) = (Subject::Record(m.record_name()), why.to_string());
+    Finding::new(EvaluationFact::NoLaw { subject, reason }).at(Place::file(&m.source.path))
 }
 
 /// The corrected record as one path of strain and stress, and the samples of each cycle. Of a

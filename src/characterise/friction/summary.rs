@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::{Basis, FrictionLaw, extract};
 use crate::characterise::closed_loop::TURNED;
 use crate::characterise::{FabricSheet, Settings};
-use crate::finding::Finding;
+use crate::finding::{EvaluationFact, Finding, Missed};
 use crate::instrument::{Conditions, Direction, Parameter, Test};
 use crate::law::{Backbone, Channel, Family, LawError, Slider, Widening};
 use crate::quantity::{Angle, Curvature, LineForce, significant};
@@ -42,19 +42,14 @@ pub(super) fn add(sheet: &mut FabricSheet, settings: &Settings) {
         }
     }
     for law in made {
-        let direction = law.direction.map_or(String::new(), |d| format!(" {d}"));
         let range = match law.test {
             Test::Tensile => law.channel.backbone().knots().last().unwrap_or(f64::NAN),
             test => conditions(test, settings).maximum,
         };
-        let slips = || law.channel.sliders().map(|s| 100.0 * s.slip / range);
-        let text = format!(
-            "{}{direction}: the friction law has the summary values and an assumed spectrum, slip levels of {} to {} % of the range: there is no loop to take it from",
-            law.test.name(),
-            significant(slips().fold(f64::INFINITY, f64::min)),
-            significant(slips().fold(0.0, f64::max)),
-        );
-        sheet.findings.push(Finding::new("K040", text));
+        let slips = || law.channel.sliders().map(|s| s.slip / range);
+        let slips = [slips().fold(f64::INFINITY, f64::min), slips().fold(0.0, f64::max)];
+        let (test, direction) = (law.test, law.direction);
+        sheet.findings.push(Finding::new(EvaluationFact::AssumedSpectrum { test, direction, slips }));
         sheet.findings.extend(missed(sheet, &law));
         sheet.laws.push(law);
     }
@@ -62,27 +57,21 @@ pub(super) fn add(sheet: &mut FabricSheet, settings: &Settings) {
 
 /// K042: summary values of which no law can be made.
 fn none(test: Test, direction: Option<Direction>, why: &str) -> Finding {
-    let direction = direction.map_or(String::new(), |d| format!(" {d}"));
-    Finding::new("K042", format!("{}{direction}: no friction law of the summary values: {why}", test.name()))
+    let (reason, missed) = (Some(why.to_string()), Vec::new());
+    Finding::new(EvaluationFact::NoLoopOfValues { test, direction, reason, missed })
 }
 
 /// K042: values that a law does not give back.
 fn missed(sheet: &FabricSheet, law: &FrictionLaw) -> Option<Finding> {
-    let off = |(p, ours): (&Parameter, &f64)| {
-        let theirs = sheet.get(*p, law.direction)?.mean;
+    let off = |(parameter, ours): (&Parameter, &f64)| {
+        let theirs = sheet.get(*parameter, law.direction)?.mean;
         let missed = theirs != 0.0 && (ours - theirs).abs() > MISSED * theirs.abs();
-        missed.then(|| format!("{p} {:+.0} %", 100.0 * (ours / theirs - 1.0)))
+        missed.then(|| Missed { parameter: *parameter, relative_error: ours / theirs - 1.0 })
     };
-    let off: Vec<String> = law.values.iter().filter_map(off).collect();
-    let direction = law.direction.map_or(String::new(), |d| format!(" {d}"));
-    (!off.is_empty()).then(|| {
-        let text = format!(
-            "{}{direction}: the friction law of the summary values misses some of them ({}): they do not belong to one loop of its kind",
-            law.test.name(),
-            off.join(", ")
-        );
-        Finding::new("K042", text)
-    })
+    let missed: Vec<Missed> = law.values.iter().filter_map(off).collect();
+    let (test, direction, reason) = (law.test, law.direction, None);
+    (!missed.is_empty())
+        .then(|| Finding::new(EvaluationFact::NoLoopOfValues { test, direction, reason, missed }))
 }
 
 fn law(test: Test, direction: Option<Direction>, channel: Channel, settings: &Settings) -> FrictionLaw {

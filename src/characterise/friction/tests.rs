@@ -221,7 +221,7 @@ fn laws_of_summary_values_give_them_back() {
     }
     super::add(&mut sheet, &Settings::default());
     assert_eq!(sheet.laws.len(), 3);
-    assert!(sheet.findings.iter().all(|f| f.code == "K040"));
+    assert!(sheet.findings.iter().all(|f| f.code() == "K040"));
     for test in [Test::Bending, Test::Shear, Test::Tensile] {
         let law = sheet.law(test, Some(Direction::Weft)).unwrap();
         assert_eq!(law.basis, Basis::AssumedSpectrum);

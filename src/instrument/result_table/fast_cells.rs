@@ -1,7 +1,7 @@
 //! FAST values in a result table, and the KES parameters that follow from them.
 
 use super::{Table, is_gap};
-use crate::finding::{Finding, Place};
+use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::curves::finite;
 use crate::instrument::dialect::TableColumn;
 use crate::instrument::error::{Problem, ReadError};
@@ -95,8 +95,8 @@ impl Table<'_, '_> {
                 inferred: true,
                 place: place.clone(),
             };
-            let message = format!("{parameter} was calculated from the FAST value {}", cell.value.symbol());
-            self.derived.push((cell.fabric.clone(), Finding::new("R107", message).at(place)));
+            let fact = ReadFact::FromFast { parameter, symbol: cell.value.symbol().to_string() };
+            self.derived.push((cell.fabric.clone(), Finding::new(fact).at(place)));
             self.values.push((cell.fabric, value));
         }
     }

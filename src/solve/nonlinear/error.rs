@@ -61,7 +61,8 @@ impl Obstacle {
         }
     }
 
-    fn text(&self, iterations: usize, residual: f64, tolerance: f64) -> String {
+    /// What it means, of an attempt with so many iterations, that residual, and that tolerance.
+    pub fn text(&self, iterations: usize, residual: f64, tolerance: f64) -> String {
         match self {
             Self::Residual => format!(
                 "no convergence in {iterations} iterations (residual {residual:.1e} of the loads, {tolerance:.0e} is accepted)"

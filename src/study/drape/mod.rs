@@ -26,7 +26,7 @@ pub use rim::Folds;
 use super::case::{Analysis, Case, LoadTable, Shape, Sheet};
 use super::{StudyError, Watch, build, solver};
 use crate::characterise::FabricSheet;
-use crate::finding::{Finding, Place};
+use crate::finding::{Finding, Place, StudyFact};
 use crate::model::Model;
 use crate::quantity::Ratio;
 use crate::section::{SheetLaw, ShellSection};
@@ -328,45 +328,24 @@ fn findings(
     searches: usize,
     elastic: bool,
 ) -> Vec<Finding> {
-    let place = || Place::file(&case.path);
-    let mut findings = Vec::new();
+    let mut facts = Vec::new();
     if elastic {
-        findings.push(
-            Finding::new(
-                "S113",
-                "elastic: the friction between yarns is left out, which holds a sheet up: the coefficient is too low by it",
-            )
-            .at(place()),
-        );
+        facts.push(StudyFact::ElasticDrape {});
     }
     if !failed.is_empty() {
-        let starts: Vec<String> = failed.iter().map(|(start, _)| start.to_string()).collect();
-        let message = format!(
-            "{} of {searches} searches ended in no equilibrium (folds at the start: {}); the band is of the others",
-            failed.len(),
-            starts.join(", ")
-        );
-        findings.push(Finding::new("S114", message).at(place()));
+        let starts = failed.iter().map(|(start, _)| *start).collect();
+        facts.push(StudyFact::FailedSearches { starts, searches });
     }
     if let Some(finest) = meshes.last().filter(|s| s.negative_pivots > 0) {
-        let message = format!(
-            "the state of lowest energy is unstable in {} directions: it is no shape that a sheet stays in",
-            finest.negative_pivots
-        );
-        findings.push(Finding::new("S115", message).at(place()));
+        facts.push(StudyFact::UnstableDrape { directions: finest.negative_pivots });
     }
     if let [.., coarser, finest] = meshes {
         let change = finest.coefficient - coarser.coefficient;
         if change.abs() > MESH_ERROR {
-            let message = format!(
-                "the last refinement, to {} elements, changed the coefficient by {:+.1} points: as much may be left to the mesh",
-                finest.elements,
-                100.0 * change
-            );
-            findings.push(Finding::new("S119", message).at(place()));
+            facts.push(StudyFact::CoarseDrape { elements: finest.elements, change });
         }
     }
-    findings
+    facts.into_iter().map(|fact| Finding::new(fact).at(Place::file(&case.path))).collect()
 }
 
 #[cfg(test)]

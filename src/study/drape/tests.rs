@@ -58,7 +58,7 @@ fn a_cloth_hangs_in_folds_and_does_so_always() {
     }
     let [low, high] = drape.band();
     assert!(low <= drape.finest.coefficient && drape.finest.coefficient <= high);
-    assert!(drape.findings.iter().any(|f| f.code == "S113"));
+    assert!(drape.findings.iter().any(|f| f.code() == "S113"));
     let again = run(&cloth);
     assert_eq!((again.states, again.finest), (drape.states, drape.finest));
 }
@@ -94,7 +94,7 @@ fn a_coarse_mesh_is_a_finding() {
     let case = case(1e-6, "", "");
     let told = |coefficients: &[f64]| {
         let meshes: Vec<DrapeState> = coefficients.iter().map(|c| state(*c)).collect();
-        findings(&case, &meshes, &[], 1, false).first().map(|f| (f.code, f.message.clone()))
+        findings(&case, &meshes, &[], 1, false).first().map(|f| (f.code(), f.message()))
     };
     let (code, message) = told(&[0.6, 0.503, 0.475]).unwrap();
     assert!(code == "S119" && message.contains("5040 elements") && message.contains("by -2.8"), "{message}");

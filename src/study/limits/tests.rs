@@ -49,7 +49,7 @@ fn solved(text: &str) -> Result<CaseResult, StudyError> {
 
 fn codes(more: &str) -> Vec<&'static str> {
     let result = solved(&format!("{}{more}", STRIP.replace("SHEET", OUTLINE))).unwrap();
-    result.findings.iter().map(|f| f.code).collect()
+    result.findings.iter().map(|f| f.code()).collect()
 }
 
 #[test]
@@ -58,7 +58,7 @@ fn cells_in_one_row_need_a_torsional_rigidity() {
     for (cells, told) in [("[3, 1]", true), ("[1, 2]", true), ("2", true), ("3", false), ("[2, 3]", false)] {
         let element = format!("{PRESSURE}[element]\nsubcells = {cells}\n");
         let result = solved(&format!("{limp}{element}")).unwrap();
-        assert_eq!(result.findings.iter().any(|f| f.code == "S102"), told, "{cells}");
+        assert_eq!(result.findings.iter().any(|f| f.code() == "S102"), told, "{cells}");
         assert_eq!(codes(&element), [""; 0], "{cells} with a torsional rigidity");
     }
     assert_eq!(codes(&format!("{PRESSURE}[element]\nsubcells = [1, 1]\n")), ["S102"]);
@@ -71,7 +71,7 @@ fn the_profile_of_fourth_order_tells_of_sheets_that_it_is_not_for() {
         let text = text.replace("SHEET", sheet);
         let element = "[element]\nprofile = \"fourth_order\"\nsubcells = 2\n";
         let mut findings = solved(&format!("{text}{PRESSURE}{element}")).unwrap().findings;
-        findings.retain(|f| f.code != "S101");
+        findings.retain(|f| f.code() != "S101");
         findings.into_iter().map(|f| f.to_string()).collect::<Vec<_>>().join("\n")
     };
     let turned = |angle: u8| format!("{OUTLINE}\nwarp_angle_deg = {angle}");
@@ -193,8 +193,8 @@ fn what_a_mesh_file_alone_can_have() {
     let (joined, apart) = ([2, 6, 8, 4], [5, 6, 8, 7]);
     assert!(solve(joined, false, "").unwrap().findings.is_empty());
     let cut = solve(apart, false, "").unwrap();
-    assert_eq!(cut.findings[0].code, "S108");
-    let message = &cut.findings[0].message;
+    assert_eq!(cut.findings[0].code(), "S108");
+    let message = &cut.findings[0].message();
     assert!(message.contains("4 nodes") && message.contains("(1.000, 0, 0) m"), "{message}");
     // Upright, an angle from x and a displacement along x and y have no meaning.
     let refused = |sheet: &str| solve(joined, true, sheet).unwrap_err();

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::Test;
 use crate::quantity::Unit;
@@ -154,6 +155,29 @@ impl fmt::Display for Parameter {
 impl Serialize for Parameter {
     fn serialize<S: serde::Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
         s.serialize_str(self.symbol())
+    }
+}
+
+impl<'de> Deserialize<'de> for Parameter {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        let symbol = String::deserialize(d)?;
+        Self::from_symbol(&symbol).ok_or_else(|| D::Error::custom(format!("{symbol:?} is no KES parameter")))
+    }
+}
+
+/// A parameter in a direction (`None`: the fabric as a whole). Its text is `B warp`, or `T0`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct Key {
+    /// Which parameter.
+    pub parameter: Parameter,
+    /// Which direction.
+    pub direction: Option<Direction>,
+}
+
+impl fmt::Display for Key {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.parameter)?;
+        self.direction.map_or(Ok(()), |direction| write!(f, " {direction}"))
     }
 }
 

@@ -1,0 +1,409 @@
+//! Facts of the evaluation of records and tables.
+
+use super::parts::{Missed, RecordAxis, Samples, StripLength, Subject};
+use crate::finding::Place;
+use crate::kes::{Direction, Key, Parameter, RecordName, Test, series};
+use crate::quantity::{STANDARD_GRAVITY, in_unit, significant};
+
+super::facts! {
+    /// What a reader of a parameter sheet must know.
+    EvaluationFact {
+        /// A specimen or a strip that gives nothing.
+        "K001" NotEvaluated {
+            /// Which one.
+            subject: Subject,
+            /// Why.
+            reason: String,
+        } = "{subject}: the {} is left out: {reason}", subject.noun();
+        /// Something that a parameter needs is not in the record.
+        "K002" Missing {
+            /// The record.
+            record: RecordName,
+            /// The parameters or moduli that it does not give.
+            what: String,
+            /// Why.
+            reason: String,
+        } = "{record}: {what} is left out: {reason}";
+        /// A fitted slope and that between the ends of its window are not the same.
+        "K003" SlopesDiffer {
+            /// The record.
+            record: RecordName,
+            /// Which slope.
+            slope: String,
+            /// Difference over the fitted slope.
+            difference: f64,
+            /// R² of the fit.
+            r_squared: f64,
+            /// Samples in the window.
+            samples: usize,
+        } = "{record}: {slope}: the two-point slope differs by {:.0} % from the fitted one (R² = {r_squared:.3}, n = {samples}); \
+             the curve bends or is noisy in this window", 100.0 * difference;
+        /// A slope of few samples.
+        "K004" FewSamples {
+            /// The record.
+            record: RecordName,
+            /// Which slope.
+            slope: String,
+            /// Samples in the window.
+            samples: usize,
+        } = "{record}: {slope} rests on {samples} samples only";
+        /// A record that does not reach the set maximum.
+        "K005" ShortOfMaximum {
+            /// The record.
+            record: RecordName,
+            /// Where it ends (SI).
+            reached: f64,
+            /// The set maximum (SI).
+            maximum: f64,
+        } = "{record}: the record ends at {}, short of the set maximum of {}; the values are not comparable with those at \
+             the full maximum", in_unit(*reached, record.test.kes_maximum()), in_unit(*maximum, record.test.kes_maximum());
+        /// A record that goes beyond the set maximum.
+        "K006" BeyondMaximum {
+            /// The record.
+            record: RecordName,
+            /// Where it ends (SI).
+            reached: f64,
+            /// The set maximum (SI).
+            maximum: f64,
+        } = "{record}: the record goes to {}, beyond the set maximum of {}: check the stated conditions and units",
+            in_unit(*reached, record.test.kes_maximum()), in_unit(*maximum, record.test.kes_maximum());
+        /// Records of a test that were taken under several conditions.
+        "K007" ConditionsDiffer {
+            /// The test.
+            test: Test,
+            /// File of the first record.
+            first: String,
+        } = "the {} records were not taken under the same conditions (maximum or tension differ from those of {first})",
+            test.name();
+        /// A large correction of the zero.
+        "K008" LargeCorrection {
+            /// The record.
+            record: RecordName,
+            /// The axis that was corrected.
+            axis: RecordAxis,
+            /// What was taken off (SI).
+            taken_off: f64,
+            /// The part of the value at the maximum above which a correction is large.
+            limit: f64,
+        } = "{record}: {}", correction(record.test, *axis, *taken_off, *limit);
+        /// Noise of the ordinate.
+        "K009" Noise {
+            /// The record.
+            record: RecordName,
+            /// Its standard deviation over the range of the record.
+            part: f64,
+        } = "{record}: the noise is {:.1} % of the range of the record", 100.0 * part;
+        /// A repeat that a test calls an outlier.
+        "K010" StandsApart {
+            /// The value.
+            key: Key,
+            /// Number of the repeat, from 1: of the specimen, or of the row of a table.
+            repeat: usize,
+            /// Whether it is one of a table.
+            in_table: bool,
+            /// How many others there are.
+            others: usize,
+            /// The test that it fails.
+            criterion: String,
+        } = "{key}: {} stands apart from the other {others} ({criterion}); it is kept in the mean",
+            repeat_name(*repeat, *in_table);
+        /// A value that no woven apparel fabric has.
+        "K011" Implausible {
+            /// The value.
+            key: Key,
+            /// Its mean (SI).
+            value: f64,
+            /// The plausible range (KES unit); none for a loop that runs backwards.
+            range: Option<[f64; 2]>,
+        } = "{key} = {:.4} {} {}", value / key.parameter.kes_factor(), key.parameter.kes_unit(), implausible(*range);
+        /// G of warp and weft differ.
+        "K012" ShearDiffers {
+            /// Their difference over their mean.
+            difference: f64,
+        } = "G differs by {:.0} % between warp and weft, although both tests measure one constant", 100.0 * difference;
+        /// A specimen that fits the other direction.
+        "K013" OtherDirection {
+            /// The parameter that shows it.
+            parameter: Parameter,
+            /// Its direction as labelled.
+            own: Direction,
+            /// The direction that it fits.
+            other: Direction,
+            /// Number of the specimen.
+            specimen: usize,
+        } = "{parameter}: {own} specimen {specimen} fits the {other} specimens and not its own: is its direction labelled correctly?";
+        /// A value that its table calls inferred.
+        "K014" Inferred {
+            /// The value.
+            key: Key,
+        } = "{key} is inferred by its source, not measured";
+        /// A record without a direction.
+        "K015" NoDirection {
+            /// The record.
+            record: RecordName,
+        } = "{record}: no yarn direction is stated; its values stand for the fabric as a whole";
+        /// A table and the curves disagree.
+        "K016" TableDiffers {
+            /// The value.
+            key: Key,
+            /// Mean of the table (SI).
+            table: f64,
+            /// Mean of the curves (SI).
+            curves: f64,
+        } = "{key}: the table gives {:.4}, the curves give {:.4} {}; the curves are used",
+            table / key.parameter.kes_factor(), curves / key.parameter.kes_factor(), key.parameter.kes_unit();
+        /// No areal density.
+        "K017" NoArealDensity {} =
+            "no areal density: FB3 does not measure it; state areal_density in fabric.toml (mass of a 20 x 20 cm specimen)";
+        /// Half of a loop.
+        "K018" OneSide {
+            /// The record.
+            record: RecordName,
+            /// The parameter.
+            parameter: Parameter,
+        } = "{record}: {parameter} comes from one side only, not from the mean of both";
+        /// Two specimens have one number.
+        "K019" NumberTwice {
+            /// The later record.
+            record: RecordName,
+        } = "{}: specimen {} occurs twice; both are used", record.series(), record.specimen;
+        /// Moduli from a table.
+        "K020" ModuliOfTable {
+            /// The force per width at which EMT is taken (N/m).
+            maximum: f64,
+        } = "tensile moduli come from the table's EMT, taken at {:.4} gf/cm; the low-load tangent cannot be known from a table",
+            maximum / Parameter::Hg.kes_factor();
+        /// T0 from fabric.toml.
+        "K021" StatedThickness {} = "T0 is the thickness of fabric.toml, whose pressure is not known";
+        /// Samples that are not numbers.
+        "K022" NotNumbers {
+            /// The record.
+            record: RecordName,
+            /// How many.
+            samples: usize,
+        } = "{record}: {samples} samples that are not numbers are passed over";
+        /// Moduli from FAB strips.
+        "K030" ModuliOfStrips {
+            /// The strip of each direction.
+            strips: Vec<StripLength>,
+            /// The force per width of the secant (N/m).
+            secant: f64,
+            /// What the instrument's program warned of.
+            warnings: Vec<String>,
+        } = "moduli are those of strips, from the onset of load at {}; the secant is at {} gf/cm; the instrument's program gave {}",
+            strip_lengths(strips), significant(secant / Parameter::Hg.kes_factor()), warned(warnings);
+        /// B from buckled FAB strips.
+        "K031" BuckledStrips {
+            /// Direction of the strips.
+            direction: Direction,
+            /// B of each (N·m).
+            values: Vec<f64>,
+        } = "B {direction} is an estimate from buckled strips ({} µN·m down and up): friction and an unknown load zero are in it, \
+             expect it up to twice too high", micro(values);
+        /// T0 from a FAB file.
+        "K032" FabThickness {
+            /// The thickness (m).
+            thickness: f64,
+            /// Contacts behind it.
+            contacts: usize,
+        } = "T0 is the thickness of the FAB instrument, {} mm over {contacts} contacts, whose pressure is not that of FB3",
+            significant(1e3 * thickness);
+        /// G from a FAB strip on the bias.
+        "K033" BiasStrip {
+            /// The force per width at which it is taken (N/m).
+            force: f64,
+            /// G in the last cycle (N/m).
+            last: f64,
+            /// G in the first cycle (N/m).
+            first: f64,
+            /// Length over width of the strip.
+            slenderness: f64,
+        } = "G is estimated from the bias strip at {} gf/cm as FAST does: {} N/m in the last cycle, {} in the first; the strip \
+             is {} times as long as wide, so its clamps stiffen it",
+            significant(force / Parameter::Hg.kes_factor()), significant(*last), significant(*first), significant(*slenderness);
+        /// A FAB bend test whose load hardly changes.
+        "K034" LowLoad {
+            /// Direction of the strip.
+            direction: Direction,
+            /// Its key in the file.
+            strip: String,
+            /// Range of the load (N).
+            range: f64,
+        } = "{direction} {strip}: the load changes by {} gf only, so that noise and resolution of the cell are in B",
+            significant(range / (1e-3 * STANDARD_GRAVITY));
+        /// A friction law of summary values.
+        "K040" AssumedSpectrum {
+            /// The test.
+            test: Test,
+            /// Its direction.
+            direction: Option<Direction>,
+            /// The smallest and the largest slip level over the range.
+            slips: [f64; 2],
+        } = "{}: the friction law has the summary values and an assumed spectrum, slip levels of {} to {} % of the range: \
+             there is no loop to take it from",
+            series(*test, *direction), significant(100.0 * slips[0]), significant(100.0 * slips[1]);
+        /// A loop without a friction law.
+        "K041" NoLaw {
+            /// The record or strip.
+            subject: Subject,
+            /// Why.
+            reason: String,
+        } = "{subject}: no friction law, {reason}";
+        /// Summary values that make no law, or are not those of the law that was made.
+        "K042" NoLoopOfValues {
+            /// The test.
+            test: Test,
+            /// Its direction.
+            direction: Option<Direction>,
+            /// Why there is no law; none if there is one.
+            reason: Option<String>,
+            /// The values that the law does not give back.
+            missed: Vec<Missed>,
+        } = "{}: {}", series(*test, *direction), no_loop(reason.as_deref(), missed);
+        /// A record of several cycles.
+        "K043" SeveralCycles {
+            /// The record.
+            record: RecordName,
+            /// How many.
+            cycles: usize,
+            /// Where the second begins.
+            second: Samples,
+            /// The one that is evaluated: `first` or `last`.
+            evaluated: String,
+        } = "{record}: the record has {cycles} cycles, the second from about {second} on; the values are those of the {evaluated} \
+             (setting cycle). Are they several specimens? Then each needs a heading or a file of its own";
+        /// An amplifier at the end of its range.
+        "K044" Clipped {
+            /// The record.
+            record: RecordName,
+            /// Samples in a row.
+            count: usize,
+            /// The first of them.
+            first: Samples,
+            /// The ordinate (SI).
+            ordinate: f64,
+            /// `greatest` or `least`.
+            extreme: String,
+            /// The abscissae between which they lie (SI).
+            between: [f64; 2],
+        } = "{record}: {count} samples in a row from {first} on sit at exactly {}, the {extreme} of the record, between {} and \
+             {}: the range of the amplifier? What is read there is not the cloth's",
+            in_unit(*ordinate, record.test.kes_axes()[1]),
+            in_unit(between[0], record.test.kes_axes()[0]),
+            in_unit(between[1], record.test.kes_axes()[0]);
+        /// Samples that jump away and back.
+        "K045" Dropout {
+            /// The record.
+            record: RecordName,
+            /// The samples.
+            samples: Samples,
+            /// Abscissa of the first (SI).
+            abscissa: f64,
+            /// Ordinate of the first (SI).
+            ordinate: f64,
+        } = "{record}: {} away and back in {samples}, first to {} and {}: a dropout? Nothing is taken out, and what is read \
+             there is wrong",
+            if samples.numbers.len() == 1 { "a sample jumps" } else { "samples jump" },
+            in_unit(*abscissa, record.test.kes_axes()[0]),
+            in_unit(*ordinate, record.test.kes_axes()[1]);
+        /// The record goes on elsewhere.
+        "K046" Jump {
+            /// The record.
+            record: RecordName,
+            /// The axis that steps.
+            axis: RecordAxis,
+            /// By how much (SI).
+            step: f64,
+            /// The step over the usual one, of the abscissa.
+            times: Option<f64>,
+            /// The samples before which it does.
+            samples: Samples,
+        } = "{record}: {}", jump(record.test, *axis, *step, *times, samples);
+        /// A copy of another record.
+        "K047" Copy {
+            /// The copy.
+            record: RecordName,
+            /// Number of the specimen of which it is one.
+            original: usize,
+            /// Where that was read.
+            place: Place,
+        } = "{}: specimen {} is left out: its samples are those of specimen {original} ({place}), number by number, so that it is \
+             a copy and no repeat", record.series(), record.specimen;
+    }
+}
+
+fn repeat_name(repeat: usize, in_table: bool) -> String {
+    if in_table { format!("repeat {repeat} of the table") } else { format!("specimen {repeat}") }
+}
+
+fn correction(test: Test, axis: RecordAxis, taken_off: f64, limit: f64) -> String {
+    let [abscissa, ordinate] = test.kes_axes();
+    if axis == RecordAxis::Abscissa {
+        let shown = in_unit(taken_off, abscissa);
+        return format!(
+            "slack of {shown} was taken off, more than {:.0} % of the strain at the maximum",
+            100.0 * limit
+        );
+    }
+    let from = match test {
+        Test::Tensile => " the force",
+        Test::Compression => " the pressure",
+        Test::Shear | Test::Bending => "",
+    };
+    format!("a zero offset of {} was taken off{from}", in_unit(taken_off, ordinate))
+}
+
+fn implausible(range: Option<[f64; 2]>) -> String {
+    match range {
+        Some([low, high]) => format!(
+            "is outside {low} to {high}, the range of woven apparel fabrics: check unit, specimen width and conditions"
+        ),
+        None => "is negative: the loop runs backwards".into(),
+    }
+}
+
+fn strip_lengths(strips: &[StripLength]) -> String {
+    let text = |s: &StripLength| {
+        format!("{} {} cm in cycle {}", s.direction, significant(100.0 * s.length), s.cycle)
+    };
+    strips.iter().map(text).collect::<Vec<_>>().join(", ")
+}
+
+fn warned(warnings: &[String]) -> String {
+    if warnings.is_empty() { "no warning".into() } else { format!("warnings: {}", warnings.join(", ")) }
+}
+
+fn micro(values: &[f64]) -> String {
+    values.iter().map(|b| significant(1e6 * b)).collect::<Vec<_>>().join(", ")
+}
+
+fn no_loop(reason: Option<&str>, missed: &[Missed]) -> String {
+    let list: Vec<String> =
+        missed.iter().map(|m| format!("{} {:+.0} %", m.parameter, 100.0 * m.relative_error)).collect();
+    match reason {
+        Some(reason) => format!("no friction law of the summary values: {reason}"),
+        None => format!(
+            "the friction law of the summary values misses some of them ({}): they do not belong to one loop of its kind",
+            list.join(", ")
+        ),
+    }
+}
+
+fn jump(test: Test, axis: RecordAxis, step: f64, times: Option<f64>, samples: &Samples) -> String {
+    let [abscissa, ordinate] = test.kes_axes();
+    match (axis, times) {
+        (RecordAxis::Abscissa, Some(times)) => format!(
+            "the abscissa steps by {} in {samples}, {times:.0} times the usual step: are samples lost there? The values rest on a \
+             straight line across",
+            in_unit(step, abscissa)
+        ),
+        (RecordAxis::Abscissa, None) => {
+            format!("the abscissa steps by {} in {samples}", in_unit(step, abscissa))
+        }
+        (RecordAxis::Ordinate, _) => format!(
+            "the ordinate steps by {} in {samples}, while the drive runs on: did the specimen slip or tear, or was the range \
+             switched?",
+            in_unit(step, ordinate)
+        ),
+    }
+}

@@ -1,0 +1,135 @@
+//! What findings say, as data: one enum for each group of codes, from which codes, fields and sentences are made.
+//!
+//! Each variant has its own code, typed fields (SI where nothing else is said) and the sentence that is written of
+//! them. Programs ask the variant and its fields; nothing reads a sentence.
+
+mod evaluation;
+mod parts;
+mod reading;
+mod section;
+mod study;
+mod usage;
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+pub use evaluation::EvaluationFact;
+pub use parts::{
+    CoarseQuantity, Divisor, Excess, LeftOutLine, Missed, RecordAxis, Renaming, Samples, StripLength, Subject,
+};
+pub use reading::ReadFact;
+pub use section::SectionFact;
+pub use study::StudyFact;
+pub use usage::UsageFact;
+
+/// The data of a JSON object, in the order of their declaration.
+pub type Fields = serde_json::Map<String, Value>;
+
+/// Makes an enum of facts: a variant, its code, its fields and the format of its sentence, with the arguments that
+/// are not fields as they stand.
+macro_rules! facts {
+    ($(#[$meta:meta])* $name:ident {$(
+        $(#[$doc:meta])* $code:literal $variant:ident { $($(#[$field_doc:meta])* $field:ident: $type:ty),* $(,)? }
+            = $format:literal $(, $argument:expr)*;
+    )*}) => {
+        $(#[$meta])*
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[serde(tag = "code", content = "fields")]
+        pub enum $name {$(
+            #[doc = concat!("`", $code, "`: ")]
+            $(#[$doc])*
+            #[serde(rename = $code)]
+            $variant { $($(#[$field_doc])* $field: $type),* },
+        )*}
+
+        impl $name {
+            /// The stable code; see [`explain`](crate::finding::explain).
+            pub fn code(&self) -> &'static str {
+                match self { $(Self::$variant { .. } => $code,)* }
+            }
+        }
+
+        /// The sentence: what was found, what was expected, what to do.
+        impl std::fmt::Display for $name {
+            #[allow(unused_variables)]
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                match self {
+                    $(Self::$variant { $($field),* } => write!(f, $format $(, $argument)*),)*
+                }
+            }
+        }
+    };
+}
+use facts;
+
+/// What a finding says.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Fact {
+    /// Of files (codes `R`).
+    Reading(ReadFact),
+    /// Of the evaluation of records and tables (`K`).
+    Evaluation(EvaluationFact),
+    /// Of what a sheet leaves open for a section (`C`).
+    Section(SectionFact),
+    /// Of a case and its results (`S`, `N`).
+    Study(StudyFact),
+    /// Of the task as it was given (`O`).
+    Usage(UsageFact),
+}
+
+impl Fact {
+    /// The stable code, e.g. `K003`; see [`explain`](crate::finding::explain).
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Reading(fact) => fact.code(),
+            Self::Evaluation(fact) => fact.code(),
+            Self::Section(fact) => fact.code(),
+            Self::Study(fact) => fact.code(),
+            Self::Usage(fact) => fact.code(),
+        }
+    }
+
+    /// The fields by their names; numbers that are not finite are null.
+    pub fn fields(&self) -> Fields {
+        match serde_json::to_value(self) {
+            Ok(Value::Object(mut document)) => match document.remove("fields") {
+                Some(Value::Object(fields)) => fields,
+                _ => Fields::new(),
+            },
+            _ => Fields::new(),
+        }
+    }
+}
+
+impl fmt::Display for Fact {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Reading(fact) => fact.fmt(f),
+            Self::Evaluation(fact) => fact.fmt(f),
+            Self::Section(fact) => fact.fmt(f),
+            Self::Study(fact) => fact.fmt(f),
+            Self::Usage(fact) => fact.fmt(f),
+        }
+    }
+}
+
+/// A group of facts is a fact.
+macro_rules! groups {
+    ($($group:ident($name:ty)),*) => {$(
+        impl From<$name> for Fact {
+            fn from(fact: $name) -> Self {
+                Self::$group(fact)
+            }
+        }
+    )*};
+}
+groups!(
+    Reading(ReadFact),
+    Evaluation(EvaluationFact),
+    Section(SectionFact),
+    Study(StudyFact),
+    Usage(UsageFact)
+);

@@ -1,0 +1,105 @@
+//! Facts of files.
+
+use super::parts::{Divisor, LeftOutLine};
+use crate::kes::{Direction, Parameter, Test};
+use crate::quantity::without_rounding;
+
+super::facts! {
+    /// What a reader of the data of a file must know.
+    ReadFact {
+        /// A folder without fabric.toml.
+        "R101" NoFabricFile {} =
+            "there is no fabric.toml: the data count as measured, and of weave, areal density and source is known what the files say";
+        /// The last row of a file was cut off.
+        "R102" RowIncomplete {} = "the last row is incomplete and was left out";
+        /// Two specimens have one number.
+        "R103" Renumbered {
+            /// The number in the file.
+            specimen: usize,
+            /// The number that the later one has here.
+            number: usize,
+        } = "specimen {specimen} occurs twice; the later one is numbered {number}";
+        /// Values that nothing here can use.
+        "R104" Unusable {
+            /// Their names.
+            names: Vec<String>,
+            /// What is wrong with a measured result of fabric.toml; none of columns that are no parameters.
+            reason: Option<String>,
+        } = "{}", unusable(names, reason.as_deref());
+        /// Files of several samples make one fabric.
+        "R105" SeveralSamples {
+            /// Their names.
+            samples: Vec<String>,
+        } = "several samples are read as one fabric: {}; give each its own folder", samples.join(", ");
+        /// Two statements of the yarn direction.
+        "R106" TwoDirections {
+            /// In the header.
+            header: Direction,
+            /// In the name of the file.
+            file_name: Direction,
+        } = "the header says {header}, the file name {file_name}: the header was taken";
+        /// A parameter that was calculated from a value of FAST.
+        "R107" FromFast {
+            /// The parameter.
+            parameter: Parameter,
+            /// Symbol of the FAST value.
+            symbol: String,
+        } = "{parameter} was calculated from the FAST value {symbol}";
+        /// What the program of the instrument wrote into the file.
+        "R108" InstrumentWarning {
+            /// The warning.
+            warning: String,
+        } = "the instrument's program warned: {warning}";
+        /// A column was divided by a dimension that nobody stated.
+        "R109" AssumedDimension {
+            /// By which it was divided.
+            dimension: Divisor,
+            /// Its standard value (SI).
+            value: f64,
+            /// The test of a gauge, which is stated for each test of its own; none of the others.
+            test: Option<Test>,
+        } = "{}", assumed(*dimension, *value, *test);
+        /// Rows, columns or curves that sum up others.
+        "R110" SummingUp {
+            /// `rows`, `columns` or `curves`.
+            what: String,
+            /// Which ones.
+            left_out: Vec<LeftOutLine>,
+        } = "{what} that sum up others are left out: {}", lines(left_out);
+    }
+}
+
+fn unusable(names: &[String], reason: Option<&str>) -> String {
+    let names = names.join(", ");
+    match reason {
+        Some(reason) => format!("the measured result `{names}` is left out: {reason}"),
+        None => format!("no KES parameters, and left out: {names}"),
+    }
+}
+
+fn assumed(dimension: Divisor, value: f64, test: Option<Test>) -> String {
+    let [cm, cm2] = [value * 1e2, value * 1e4].map(without_rounding);
+    match dimension {
+        Divisor::Area => format!(
+            "no foot area is stated: force was divided by the standard {cm2} cm²; state `area` in the header"
+        ),
+        Divisor::Gauge => format!(
+            "no gauge is stated: travel was divided by the standard {cm} cm; state `gauge` in the header or in [conditions{}] of fabric.toml",
+            test.map_or(String::new(), |test| format!(".{}", test.name()))
+        ),
+        Divisor::Width => format!(
+            "no width is stated: force or moment was divided by the standard {cm} cm; state `width` in the header or in [conditions] of fabric.toml"
+        ),
+    }
+}
+
+/// The most that a message names one by one.
+const NAMED: usize = 8;
+
+fn lines(left_out: &[LeftOutLine]) -> String {
+    let named: Vec<String> =
+        left_out.iter().take(NAMED).map(|l| format!("{:?} (line {})", l.word, l.line)).collect();
+    let more = left_out.len().saturating_sub(NAMED);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    named.join(", ") + &more
+}

@@ -1,0 +1,63 @@
+//! Facts of what a sheet leaves open for a section.
+
+use crate::kes::Direction;
+use crate::quantity::significant;
+
+super::facts! {
+    /// What stands in for something that was not measured.
+    SectionFact {
+        /// One bending rigidity stands for both directions.
+        "C010" OneRigidity {
+            /// Name of the fabric.
+            fabric: String,
+            /// The direction that is known; none if there is one value for the fabric.
+            known: Option<Direction>,
+        } = "{fabric}: B is known as {}; it stands for warp and weft alike",
+            known.map_or("one value for the fabric".to_string(), |known| format!("the {known} value only"));
+        /// Another tensile modulus than the chosen one.
+        "C011" OtherModulus {
+            /// Name of the fabric.
+            fabric: String,
+            /// The modulus that was asked for.
+            chosen: String,
+            /// The one that is used.
+            used: String,
+        } = "{fabric}: there is no {chosen} modulus; the {used} modulus is used instead";
+        /// No tensile modulus.
+        "C012" NoTensileModulus {
+            /// Name of the fabric.
+            fabric: String,
+            /// What stands in for it (N/m).
+            assumed: f64,
+        } = "{fabric}: no tensile modulus is known; {} N/m stands in for both (linear bending of a flat sheet \
+             does not depend on it, membrane results and the limit of linear theory do)", significant(*assumed);
+        /// No shear stiffness.
+        "C013" NoShearTest {
+            /// Name of the fabric.
+            fabric: String,
+            /// What stands in for G (N/m).
+            assumed: f64,
+        } = "{fabric}: no shear test is known; {} N/m stands in for G (linear bending hardly depends on it, \
+             in-plane results do)", significant(*assumed);
+        /// No thickness.
+        "C014" NoThickness {
+            /// Name of the fabric.
+            fabric: String,
+            /// What stands in for it (m).
+            assumed: f64,
+        } = "{fabric}: no thickness is known; {assumed} m stands in for it (statics do not depend on it)";
+        /// The torsional rigidity is zero.
+        "C016" NoTorsion {
+            /// Name of the fabric.
+            fabric: String,
+        } = "{fabric}: torsion is neglected (H = 0): twisting costs nothing, and bending on the bias is \
+             underestimated about twofold for woven cloth";
+        /// No hysteresis of bending.
+        "C017" NoHysteresis {
+            /// Name of the fabric.
+            fabric: String,
+            /// The residual curvature 2HB/(2B) that stands in for it (1/m).
+            residual: f64,
+        } = "{fabric}: no hysteresis of bending is known; a residual curvature 2HB/(2B) of {residual} 1/m stands in for it";
+    }
+}

@@ -1,0 +1,226 @@
+//! Facts of cases and their results.
+
+use super::parts::{CoarseQuantity, Excess};
+use crate::quantity::significant;
+
+super::facts! {
+    /// What a reader of a result must know.
+    StudyFact {
+        /// No equilibrium was found.
+        "N007" NotConverged {
+            /// The step that failed, from 1.
+            step: usize,
+            /// Part of the load at the last equilibrium.
+            factor: f64,
+            /// What stopped the search.
+            obstacle: String,
+            /// Iterations of the last attempt.
+            iterations: usize,
+            /// Unbalanced forces at its end, relative to loads or reactions.
+            residual: f64,
+            /// What would have been accepted.
+            tolerance: f64,
+            /// What to change in the case.
+            cure: String,
+        } = "step {step} from {factor:.4} of the load: {obstacle}; {cure}; the results are the last state that was reached";
+        /// A linear result beyond its meaning.
+        "S101" BeyondLinear {
+            /// What is too large.
+            excess: Excess,
+            /// The displacement (m).
+            value: f64,
+            /// Its ratio to the bending thickness, or to the size of the sheet.
+            ratio: f64,
+            /// The ratio up to which a linear solve has a meaning.
+            limit: f64,
+            /// Whether the case is one of motion in time.
+            in_time: bool,
+        } = "{}", beyond_linear(*excess, *value, *ratio, *limit, *in_time);
+        /// Modes of bending without energy.
+        "S102" FreeModes {
+            /// Smoothing cells of an element.
+            cells: usize,
+        } = "{}: take subcells = 4", if *cells == 1 {
+            "one smoothing cell leaves spurious zero-energy modes"
+        } else {
+            "smoothing cells in one row with H = 0 leave a spurious mode"
+        };
+        /// A drilling spring where it has an effect.
+        "S103" DrillingSpring {
+            /// Whether the sheet is flat.
+            flat: bool,
+        } = "the drilling spring of Nguyen-Trong et al. {}: take drilling = \"scaled\"", if *flat {
+            "carries the moments about the normal of the sheet, and its rotations there, past the membrane"
+        } else {
+            "strains rigid rotations of a curved sheet"
+        };
+        /// A model with fewer modes than were asked for.
+        "S104" FewerModes {
+            /// Modes of the model.
+            found: usize,
+            /// Modes that were asked for.
+            wanted: usize,
+        } = "the model has {found} modes, and {wanted} were asked for: refine the mesh, or ask for fewer";
+        /// A sheet that would buckle.
+        "S105" Buckles {
+            /// Directions without stiffness.
+            directions: usize,
+        } = "under these loads the sheet has lost its stiffness in {directions} direction(s): it buckles or wrinkles before, and the \
+             linear answer is that of a sheet that is kept from it; take [analysis] kind = \"nonlinear\" with method = \"flow\", or \
+             lower the load";
+        /// A mesh that leaves results open.
+        "S106" CoarseMesh {
+            /// Which results; none if the coarser meshes have none of them.
+            quantities: Vec<CoarseQuantity>,
+        } = "{}: take more `cells`", coarse(quantities);
+        /// A membrane with motions that cost nothing.
+        "S107" OneMembraneCell {} =
+            "one smoothing cell of the membrane leaves it motions in the plane of the sheet that cost next to \
+             nothing: take membrane = \"cells\"";
+        /// A mesh that is not joined.
+        "S108" NotJoined {
+            /// How many nodes lie on edges that they do not belong to.
+            nodes: usize,
+            /// The first (m).
+            at: [f64; 3],
+        } = "the mesh is not joined: {nodes} nodes lie on an edge of a quad that they do not belong to, the first at \
+             ({}, {}, {}) m, and the sheet is cut there; merge the surfaces in Gmsh (Coherence;) and mesh again, unless \
+             the cut is meant", significant(at[0]), significant(at[1]), significant(at[2]);
+        /// Nodes that are turned in the plane of the sheet.
+        "S109" TurnedInPlane {
+            /// The set.
+            set: String,
+        } = "theta_z of set `{set}` turns its nodes, and hardly the sheet: prescribe an in-plane rotation through [[rigid]]";
+        /// Energies that do not add up.
+        "S110" Unbalanced {
+            /// The part of the largest work that is missing.
+            imbalance: f64,
+            /// The part of it that the damping gives.
+            given: f64,
+        } = "{}: take a shorter step (with a tolerance, a smaller one), a load that ramps instead of a jump, and forces for a \
+             moment about the normal, where the sheet has no mass", energies(*imbalance, *given);
+        /// An unstable equilibrium.
+        "S111" Unstable {
+            /// Directions in which its energy falls.
+            directions: usize,
+        } = "the equilibrium is unstable: its energy falls in {directions} direction(s), and a real sheet would leave it; \
+             take [analysis] method = \"flow\", or perturbation = 1e-3 with method = \"newton\"";
+        /// A path that ended before the whole load.
+        "S112" Unfinished {
+            /// Part of the load at its end.
+            factor: f64,
+            /// Steps that were taken.
+            steps: usize,
+        } = "the path ended at {factor:.4} of the load after {steps} steps: give [analysis] more steps, or read the result at \
+             that load";
+        /// A drape without friction.
+        "S113" ElasticDrape {} =
+            "elastic: the friction between yarns is left out, which holds a sheet up: the coefficient is too low by it";
+        /// Searches for a drape without an end.
+        "S114" FailedSearches {
+            /// The folds at the start of each.
+            starts: Vec<usize>,
+            /// How many searches there were.
+            searches: usize,
+        } = "{} of {searches} searches ended in no equilibrium (folds at the start: {}); the band is of the others",
+            starts.len(), joined(starts);
+        /// An unstable drape.
+        "S115" UnstableDrape {
+            /// Directions in which its energy falls.
+            directions: usize,
+        } = "the state of lowest energy is unstable in {directions} directions: it is no shape that a sheet stays in";
+        /// Points of a sample without a result.
+        "S116" FailedPoints {
+            /// How many.
+            failed: usize,
+            /// Points of the sample.
+            points: u32,
+        } = "{failed} of {points} points of the inputs gave no result: the bands are of the others";
+        /// Inputs without a spread.
+        "S117" NoBand {
+            /// Their names.
+            inputs: Vec<String>,
+        } = "no band where a single value is all there is of: {}", inputs.join(", ");
+        /// Fabrics without a friction law for a case that needs one.
+        "S118" WithoutLaw {
+            /// Their names.
+            fabrics: Vec<String>,
+        } = "no friction law of bending (no FB2 loop, no 2HB beside B): left out for {}", fabrics.join(", ");
+        /// A drape that the mesh leaves open.
+        "S119" CoarseDrape {
+            /// Elements of the finest mesh.
+            elements: usize,
+            /// Change of the drape coefficient by the last refinement.
+            change: f64,
+        } = "the last refinement, to {elements} elements, changed the coefficient by {:+.1} points: as much may be left to the mesh",
+            100.0 * change;
+        /// Rotations that depend on the steps.
+        "S121" TurnedAbout {
+            /// The largest rotation about an axis that is held (rad).
+            rotation: f64,
+        } = "nodes whose rotation about an axis is held have turned about it by {rotation:.2} rad, as the rotations about the other axes \
+             are free: the result depends on the steps by which it was reached; hold the others too, or compare with a smaller \
+             largest_step";
+        /// A check that does not hold.
+        "S122" CheckFails {
+            /// What was checked.
+            quantity: String,
+            /// The value found (SI).
+            value: f64,
+            /// The value expected (SI).
+            expected: f64,
+            /// SI unit of both.
+            unit: String,
+            /// |value - expected| / |expected|.
+            relative_error: f64,
+            /// What is accepted of it.
+            relative_tolerance: f64,
+        } = "`{quantity}` is {} {unit}, and {} {unit} was expected: {} % off, {} % allowed",
+            significant(*value), significant(*expected),
+            significant(100.0 * relative_error), significant(100.0 * relative_tolerance);
+        /// Bending of fourth order where it is not for.
+        "S123" NotFourthOrder {
+            /// What speaks against it.
+            reasons: Vec<String>,
+        } = "profile = \"fourth_order\" is for flat sheets of equal rectangles along warp and weft between clamped and hard \
+             supported edges, and here {}: the default may be closer", reasons.join(", ");
+    }
+}
+
+fn beyond_linear(excess: Excess, value: f64, ratio: f64, limit: f64, in_time: bool) -> String {
+    let cure = if in_time {
+        "give [analysis] large_rotations = true for the true motion, or lower the load"
+    } else {
+        "take [analysis] kind = \"nonlinear\" for the true shape, lower the load, or read the result as a stiffness, not as a shape"
+    };
+    match excess {
+        Excess::Deflection => format!(
+            "the deflection of {value:.3e} m is {ratio:.2e} bending thicknesses: a linear solve is meaningful below {limit} only; \
+             {cure}"
+        ),
+        Excess::Displacement => format!(
+            "the displacement of {value:.3e} m is {ratio:.2e} of the size of the sheet: a linear solve is meaningful for small \
+             ones, below {limit}; {cure}"
+        ),
+    }
+}
+
+fn coarse(quantities: &[CoarseQuantity]) -> String {
+    if quantities.is_empty() {
+        return "the coarser meshes of [convergence] have none of the results".into();
+    }
+    let text = |q: &CoarseQuantity| format!("{} (± {:.1} %)", q.quantity, 100.0 * q.left);
+    format!("the mesh is coarse for {}", quantities.iter().map(text).collect::<Vec<_>>().join(", "))
+}
+
+fn energies(imbalance: f64, given: f64) -> String {
+    if imbalance >= given {
+        format!("the energies miss the work of the loads by up to {:.0} %", 100.0 * imbalance)
+    } else {
+        format!("the damping gives {:.0} % of the work of the loads instead of taking it", 100.0 * given)
+    }
+}
+
+fn joined(numbers: &[usize]) -> String {
+    numbers.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
+}

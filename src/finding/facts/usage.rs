@@ -1,0 +1,40 @@
+//! Facts of the task as it was given.
+
+use super::parts::Renaming;
+
+super::facts! {
+    /// What a reader of the results must know of the task.
+    UsageFact {
+        /// A case or a fabric has another name than it was given.
+        "O056" Renamed {
+            /// The name that was given.
+            name: String,
+            /// The name in the results.
+            renamed: String,
+            /// Why.
+            because: Renaming,
+        } = "{}", renamed_because(name, renamed, *because);
+        /// The fabric of a case is there twice.
+        "O060" FabricTwice {
+            /// The name of the fabric.
+            fabric: String,
+            /// The one that is taken.
+            taken: String,
+            /// The other one.
+            other: String,
+        } = "`{fabric}` is here and beside the case; this one is taken: {taken}, not {other}";
+    }
+}
+
+fn renamed_because(name: &str, renamed: &str, because: Renaming) -> String {
+    match because {
+        Renaming::CaseReserved => {
+            format!("a file of every fabric is named {name} too; this case is called {renamed}")
+        }
+        Renaming::CaseTwice => format!("another case is named {name} too; this case is called {renamed}"),
+        Renaming::FabricFolder => {
+            format!("{name:?} cannot be the name of a folder; this fabric is called {renamed}")
+        }
+        Renaming::FabricTwice => format!("another fabric is named {name} too; this one is called {renamed}"),
+    }
+}
