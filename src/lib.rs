@@ -43,5 +43,14 @@ pub mod verify;
 
 pub mod report;
 
+#[cfg(feature = "charts")]
+pub mod results;
+
+#[cfg(feature = "charts")]
+pub mod run;
+
 #[cfg(feature = "cli")]
 pub mod cli;
+
+#[cfg(feature = "charts")]
+pub use run::{RunReport, RunSettings, run};

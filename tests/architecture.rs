@@ -36,7 +36,9 @@ const LAYERS: &[(&str, &[&str], &[&str])] = &[
         &ABOVE_REPORT,
         &["base64", "csv", "dejavu", "percent_encoding", "plotters", "png", "polars", "quick_xml"],
     ),
-    ("cli", &ABOVE_CLI, &["clap", "clap_complete", "indicatif", "ctrlc", "toml"]),
+    ("results", &ABOVE_RESULTS, &["toml"]),
+    ("run", &["finding", "instrument", "study", "report", "results"], &[]),
+    ("cli", &ABOVE_CLI, &["clap", "clap_complete", "indicatif", "ctrlc"]),
 ];
 
 const ABOVE_STUDY: [&str; 14] = [
@@ -70,7 +72,7 @@ const ABOVE_REPORT: [&str; 11] = [
     "study",
 ];
 
-const ABOVE_CLI: [&str; 13] = [
+const ABOVE_RESULTS: [&str; 14] = [
     "quantity",
     "kes",
     "finding",
@@ -78,12 +80,27 @@ const ABOVE_CLI: [&str; 13] = [
     "instrument",
     "characterise",
     "section",
-    "constitutive",
+    "model",
     "solve",
     "fields",
+    "constitutive",
     "study",
     "verify",
     "report",
+];
+
+const ABOVE_CLI: [&str; 11] = [
+    "quantity",
+    "kes",
+    "finding",
+    "instrument",
+    "characterise",
+    "constitutive",
+    "study",
+    "verify",
+    "report",
+    "results",
+    "run",
 ];
 
 /// Paths under which alone a crate may be named.
@@ -99,6 +116,10 @@ fn files() -> BTreeMap<String, Vec<(PathBuf, String)>> {
     let mut modules = BTreeMap::new();
     for &(module, ..) in LAYERS {
         let (mut found, mut folders) = (Vec::new(), vec![root.join(module)]);
+        let file = root.join(format!("{module}.rs"));
+        if let (Ok(text), Some(_)) = (fs::read_to_string(&file), folders.pop_if(|folder| !folder.is_dir())) {
+            found.push((file, product_code(&text)));
+        }
         while let Some(folder) = folders.pop() {
             for entry in fs::read_dir(&folder).unwrap() {
                 let path = entry.unwrap().path();

@@ -3,8 +3,10 @@
 use clap::{Args, CommandFactory};
 use clap_complete::{Shell, generate};
 
-use super::diagnostics::Failure;
-use super::{Cli, Exit, Ui};
+use super::args::Cli;
+use super::exit::Exit;
+use super::ui::Ui;
+use crate::results::Failure;
 
 /// Print a completion script for a shell
 #[derive(Debug, Args)]
@@ -15,7 +17,7 @@ pub struct Options {
     shell: Shell,
 }
 
-pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
+pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let mut script = Vec::new();
     generate(options.shell, &mut Cli::command(), "kesf", &mut script);
     ui.print(&String::from_utf8_lossy(&script))

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use super::diagnostics::Failure;
+use crate::results::{Failure, FailureKind};
 
 /// Exit codes; rename or renumber never.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +25,7 @@ impl Exit {
         match failures {
             [] => Self::Done,
             _ if useful > 0 => Self::Partly,
-            all if all.iter().all(|f| f.exit == Self::Numerics) => Self::Numerics,
+            all if all.iter().all(|f| f.kind == FailureKind::Numerics) => Self::Numerics,
             _ => Self::Bad,
         }
     }
@@ -33,6 +33,17 @@ impl Exit {
     /// `Partly` instead of `Done` when something did not hold.
     pub fn unless(self, failed: bool) -> Self {
         if failed && self == Self::Done { Self::Partly } else { self }
+    }
+}
+
+impl From<&Failure> for Exit {
+    /// The end of a task of which nothing else was done.
+    fn from(failure: &Failure) -> Self {
+        match failure.kind {
+            FailureKind::Input => Self::Bad,
+            FailureKind::Numerics => Self::Numerics,
+            FailureKind::Interrupted => Self::Interrupted,
+        }
     }
 }
 
@@ -49,7 +60,7 @@ mod tests {
     #[test]
     fn a_batch_ends_by_what_was_useful() {
         let input = Failure::new("R004", "x");
-        let singular = Failure { exit: Exit::Numerics, ..Failure::new("N001", "x") };
+        let singular = Failure { kind: FailureKind::Numerics, ..Failure::new("N001", "x") };
         assert_eq!(Exit::of_batch(0, &[]), Exit::Done);
         assert_eq!(Exit::of_batch(2, std::slice::from_ref(&input)), Exit::Partly);
         assert_eq!(Exit::of_batch(0, &[input, singular.clone()]), Exit::Bad);

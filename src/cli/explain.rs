@@ -1,11 +1,12 @@
 //! `kesf explain`: the text behind a diagnostic code.
 
 use clap::Args;
-use serde_json::json;
+use serde::Serialize;
 
-use super::diagnostics::Failure;
-use super::{Exit, Ui};
+use super::exit::Exit;
+use super::ui::Ui;
 use crate::finding::{Explanation, explain, explanations};
+use crate::results::Failure;
 
 /// Explain a diagnostic code
 #[derive(Debug, Args)]
@@ -16,8 +17,15 @@ pub struct Options {
     codes: Vec<String>,
 }
 
-pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
-    let mut found: Vec<&Explanation> = Vec::new();
+/// `kesf.explanations/1`.
+#[derive(Serialize)]
+struct Document<'a> {
+    schema: &'static str,
+    codes: &'a [&'static Explanation],
+}
+
+pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
+    let mut found: Vec<&'static Explanation> = Vec::new();
     for code in &options.codes {
         if code == "all" {
             found.extend(explanations());
@@ -29,7 +37,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         })?);
     }
     if ui.json {
-        return ui.document(json!({"schema": "kesf.explanations/1", "codes": found}));
+        return ui.document(Document { schema: "kesf.explanations/1", codes: &found });
     }
     let texts: Vec<_> = found.iter().map(|e| text(e)).collect();
     ui.print(&texts.join("\n"))

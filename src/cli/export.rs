@@ -5,17 +5,18 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use serde_json::json;
+use serde::Serialize;
 
-use super::diagnostics::Failure;
-use super::inputs::{EvaluateArgs, is_stdin, lossy};
-use super::output::{is_folder, now};
-use super::section::{AssumptionArgs, Sectioned};
-use super::{Exit, Ui};
+use super::assumptions::AssumptionArgs;
+use super::exit::Exit;
+use super::inputs::{EvaluateArgs, inputs};
+use super::output::{is_folder, is_stdin, now};
+use super::ui::Ui;
 use crate::finding::Place;
 use crate::report::OutputFolder;
 use crate::report::cards::{Material, Target, card};
 use crate::report::write::write_file;
+use crate::results::{Failure, Sectioned, sections};
 
 /// Write fabrics as material files of other programs
 #[derive(Debug, Args)]
@@ -50,47 +51,74 @@ fn target() -> impl TypedValueParser<Value = Target> {
     names.try_map(|name| Target::named(&name).ok_or("no target of that name"))
 }
 
-pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
+/// `kesf.export/1`: the cards, or where they were written.
+#[derive(Serialize)]
+struct Document<'a> {
+    schema: &'static str,
+    target: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cards: Option<&'a [Card]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    files: Option<Vec<String>>,
+}
+
+/// A card and its fabric.
+#[derive(Serialize)]
+struct Card {
+    fabric: String,
+    text: String,
+}
+
+pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let target = options.to;
-    let (sections, mut failures) = options.assume.sections(&options.inputs, &options.evaluate, ui)?;
+    let (inputs, reading) = (inputs(&options.inputs)?, options.evaluate.reading());
+    let (sections, mut failures) =
+        ui.observe(|observer| sections(&inputs, &reading, &options.assume.assumptions(), observer))?;
     let stamp = options.stamp.then(now);
-    let mut cards: Vec<(&str, String)> = Vec::new();
+    let mut cards: Vec<Card> = Vec::new();
     for Sectioned { path, sheet, made } in &sections {
         match card(target, &Material { sheet, made, stamp: stamp.as_deref() }) {
-            Ok(text) => cards.push((&sheet.name, text)),
+            Ok(text) => cards.push(Card { fabric: sheet.name.clone(), text }),
             Err(error) => {
                 let failure = Failure::from(error).of(&sheet.name).at(Place::file(path));
-                ui.diagnostics.error(&failure);
+                ui.error(&failure);
                 failures.push(failure);
             }
         }
     }
-    let output = &options.output;
-    let files = if is_stdin(output) && ui.json {
-        let cards: Vec<_> =
-            cards.iter().map(|(fabric, text)| json!({"fabric": fabric, "text": text})).collect();
-        ui.document(json!({"schema": "kesf.export/1", "target": target.name(), "cards": cards}))?;
+    let document = Document { schema: "kesf.export/1", target: target.name(), cards: None, files: None };
+    if is_stdin(&options.output) && ui.json {
+        ui.document(Document { cards: Some(&cards), ..document })?;
         return Ok(Exit::of_batch(cards.len(), &failures));
-    } else if cards.is_empty() {
-        Vec::new()
-    } else if is_folder(output) || (cards.len() > 1 && !is_stdin(output) && is_new_folder(output)) {
-        into_folder(options, target, &cards, &mut failures, ui)?
-    } else {
-        let [(_, text)] = &cards[..] else {
-            let text = format!("{} fabrics do not go into one file", cards.len());
-            return Err(Failure::new("O058", text).hint("give a folder, such as `-o cards/`"));
-        };
-        if is_stdin(output) {
-            ui.print(text)?;
-        } else {
-            write_file(output, text.as_bytes(), options.force)?;
-        }
-        vec![output.clone()]
-    };
+    }
+    let files = write(options, &cards, &mut failures, ui)?;
     if ui.json {
-        ui.document(json!({"schema": "kesf.export/1", "target": target.name(), "files": lossy(&files)}))?;
+        let files = files.iter().map(|path| path.to_string_lossy().into_owned()).collect();
+        ui.document(Document { files: Some(files), ..document })?;
     }
     Ok(Exit::of_batch(files.len(), &failures))
+}
+
+/// One card goes to a file or to standard output, several into a folder. Where they went.
+fn write(
+    options: &Options,
+    cards: &[Card],
+    failures: &mut Vec<Failure>,
+    ui: &Ui,
+) -> Result<Vec<PathBuf>, Failure> {
+    let output = &options.output;
+    let to_folder = is_folder(output) || (cards.len() > 1 && !is_stdin(output) && is_new_folder(output));
+    match cards {
+        [] => return Ok(Vec::new()),
+        _ if to_folder => return into_folder(options, cards, failures, ui),
+        [card] if is_stdin(output) => drop(ui.print(&card.text)?),
+        [card] => write_file(output, card.text.as_bytes(), options.force)?,
+        several => {
+            let text = format!("{} fabrics do not go into one file", several.len());
+            return Err(Failure::new("O058", text).hint("give a folder, such as `-o cards/`"));
+        }
+    }
+    Ok(vec![output.clone()])
 }
 
 /// Whether a name is free and looks like that of a folder: without an ending.
@@ -101,23 +129,22 @@ fn is_new_folder(path: &Path) -> bool {
 /// A file for each card. One that cannot be written costs the others nothing.
 fn into_folder(
     options: &Options,
-    target: Target,
-    cards: &[(&str, String)],
+    cards: &[Card],
     failures: &mut Vec<Failure>,
-    ui: &mut Ui,
+    ui: &Ui,
 ) -> Result<Vec<PathBuf>, Failure> {
     let folder = OutputFolder::open(&options.output, options.force)?;
     let (mut taken, mut files) = (BTreeSet::new(), Vec::new());
-    for (fabric, text) in cards {
+    for Card { fabric, text } in cards {
         // The same name may come from a folder and from a document.
         let mut names = (1..).map(|n| if n == 1 { fabric.to_string() } else { format!("{fabric}-{n}") });
         let Some(name) = names.find(|name| taken.insert(name.clone())) else { continue };
-        let name = format!("{name}.{}", target.ending());
+        let name = format!("{name}.{}", options.to.ending());
         match folder.write(&name, text.as_bytes()) {
             Ok(()) => files.push(folder.root().join(name)),
             Err(error) => {
                 let failure = Failure::from(error);
-                ui.diagnostics.error(&failure);
+                ui.error(&failure);
                 failures.push(failure);
             }
         }

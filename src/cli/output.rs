@@ -1,14 +1,13 @@
-//! The result: standard output or one file, complete or not at all; aligned columns for people.
+//! The result: standard output or one file, complete or not at all.
 
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::diagnostics::Failure;
-use super::inputs::is_stdin;
-use crate::report::html::Block;
+use crate::report::OutputFolder;
 use crate::report::write::write_file;
+use crate::results::Failure;
 
 /// Where a single result goes.
 #[derive(Debug, Args)]
@@ -85,74 +84,16 @@ pub fn now() -> String {
     chrono::Utc::now().to_rfc3339_opts(chrono::SecondsFormat::Secs, true)
 }
 
-/// Aligned columns for people: text to the left, numbers to the right, two blanks between.
-#[derive(Debug)]
-pub struct Columns {
-    rows: Vec<Vec<String>>,
+/// Whether an argument means standard input or output.
+pub fn is_stdin(path: &Path) -> bool {
+    path.as_os_str() == "-"
 }
 
-impl Columns {
-    /// Columns with these headings.
-    pub fn new<S: Into<String>>(headings: impl IntoIterator<Item = S>) -> Self {
-        Self { rows: vec![headings.into_iter().map(Into::into).collect()] }
+/// Opens a folder of results before the long work.
+pub fn open_folder(root: &Path, force: bool) -> Result<OutputFolder, Failure> {
+    if is_stdin(root) {
+        return Err(Failure::new("O050", "several files do not go to standard output")
+            .hint("name a folder, such as `-o out`; `--json` prints one document"));
     }
-
-    /// Adds a row; missing cells are empty.
-    pub fn row<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) {
-        self.rows.push(cells.into_iter().map(Into::into).collect());
-    }
-
-    /// Whether there is nothing below the headings.
-    pub fn is_empty(&self) -> bool {
-        self.rows.len() == 1
-    }
-
-    /// The same table for a page.
-    pub fn block(&self, caption: &str) -> Block {
-        let (header, rows) = (self.rows[0].clone(), self.rows[1..].to_vec());
-        Block::Table { caption: caption.into(), header, rows }
-    }
-
-    /// The text, with a final newline.
-    pub fn text(&self) -> String {
-        let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
-        let cell = |row: &Vec<String>, c: usize| row.get(c).cloned().unwrap_or_default();
-        let layout: Vec<(usize, bool)> = (0..columns)
-            .map(|c| {
-                let width = self.rows.iter().map(|r| cell(r, c).chars().count()).max().unwrap_or(0);
-                let body = || self.rows.iter().skip(1).map(|r| cell(r, c)).filter(|t| !t.is_empty());
-                (width, body().next().is_some() && body().all(|t| is_number(&t)))
-            })
-            .collect();
-        let mut text = String::new();
-        for row in &self.rows {
-            let mut line = String::new();
-            for (c, &(width, right)) in layout.iter().enumerate() {
-                let cell = cell(row, c);
-                let padding = " ".repeat(width - cell.chars().count());
-                line += &if right { padding + &cell } else { cell + &padding };
-                line += "  ";
-            }
-            text += line.trim_end();
-            text.push('\n');
-        }
-        text
-    }
-}
-
-fn is_number(text: &str) -> bool {
-    text == "-" || text.starts_with(|c: char| c.is_ascii_digit() || c == '-')
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_stand_to_the_right_and_no_line_ends_in_blanks() {
-        let mut columns = Columns::new(["fabric", "B", "note"]);
-        columns.row(["poplin", "0.05", ""]);
-        columns.row(["x", "12.5", "thin"]);
-        assert_eq!(columns.text(), "fabric     B  note\npoplin  0.05\nx       12.5  thin\n");
-    }
+    Ok(OutputFolder::open(root, force)?)
 }

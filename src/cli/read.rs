@@ -3,15 +3,15 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use serde_json::json;
+use serde::Serialize;
 
-use super::diagnostics::Failure;
-use super::inputs::{ReadArgs, Units, nothing_to_read};
+use super::exit::Exit;
+use super::inputs::{ReadArgs, Units, inputs};
 use super::output::{Format, OutputArgs};
-use super::{Exit, Ui};
+use super::ui::Ui;
 use crate::instrument::FabricInput;
-use crate::report::json::text;
 use crate::report::table::{CurveRow, csv, curve_rows, parquet};
+use crate::results::{Event, Failure, Found, Read, nothing_to_read};
 
 /// Read measurement files into one tidy table of points (CSV, Parquet or JSON)
 #[derive(Debug, Args)]
@@ -29,12 +29,23 @@ pub struct Options {
     reading: ReadArgs,
 }
 
-pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
+/// `kesf.curves/1`.
+#[derive(Serialize)]
+struct Document<'a> {
+    schema: &'static str,
+    fabrics: &'a [FabricInput],
+}
+
+pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let format = options.output.format(ui.json)?;
-    let (fabrics, failures) = options.reading.fabrics(&options.inputs, ui)?;
-    for finding in fabrics.iter().flat_map(|f| &f.findings) {
-        ui.diagnostics.finding(finding);
-    }
+    let (inputs, reading) = (inputs(&options.inputs)?, options.reading.reading());
+    let Read { done: fabrics, failures, .. } = ui.observe(|observer| {
+        let read = reading.each(&inputs, "reading", |fabric| fabric, observer)?;
+        for finding in read.done.iter().flat_map(|f| &f.findings) {
+            (observer.event)(Event::Found(Found { finding, fabric: None, of_batch: false }));
+        }
+        Ok::<_, Failure>(read)
+    })?;
     if fabrics.is_empty() && failures.is_empty() {
         return Err(nothing_to_read());
     }
@@ -45,11 +56,12 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
     let bytes = match format {
         Format::Text | Format::Csv => csv(&rows)?,
         Format::Parquet => parquet(&rows)?,
-        Format::Json => {
-            text(&ui.complete(json!({"schema": "kesf.curves/1", "fabrics": fabrics})))?.into_bytes()
-        }
+        Format::Json => ui.complete(Document { schema: "kesf.curves/1", fabrics: &fabrics })?.into_bytes(),
     };
     options.output.emit(&bytes)?;
-    let useful = |f: &&FabricInput| !(f.measurements.is_empty() && f.results.is_empty() && f.fab.is_empty());
-    Ok(Exit::of_batch(fabrics.iter().filter(useful).count(), &failures))
+    Ok(Exit::of_batch(fabrics.iter().filter(|f| has_content(f)).count(), &failures))
+}
+
+fn has_content(fabric: &FabricInput) -> bool {
+    !(fabric.measurements.is_empty() && fabric.results.is_empty() && fabric.fab.is_empty())
 }

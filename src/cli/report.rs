@@ -4,16 +4,16 @@ use std::path::PathBuf;
 
 use clap::Args;
 use indicatif::HumanBytes;
-use serde_json::json;
+use serde::Serialize;
 
-use super::diagnostics::Failure;
-use super::inputs::is_stdin;
-use super::output::is_folder;
-use super::{Exit, Ui};
+use super::exit::Exit;
+use super::output::{is_folder, is_stdin};
+use super::ui::Ui;
 use crate::finding::Place;
 use crate::report::OutputFolder;
 use crate::report::html::self_contained;
 use crate::report::write::{left, write_file};
+use crate::results::Failure;
 
 /// Name of the page within the folder.
 const PAGE: &str = "report.html";
@@ -33,7 +33,23 @@ pub struct Options {
     force: bool,
 }
 
-pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
+/// `kesf.report/1`: the page, or where it was written.
+#[derive(Serialize)]
+struct Document {
+    schema: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    page: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    output: Option<String>,
+}
+
+impl Default for Document {
+    fn default() -> Self {
+        Self { schema: "kesf.report/1", page: None, output: None }
+    }
+}
+
+pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let folder = &options.folder;
     // What is sent is what was made: no file that somebody else put or changed here.
     let left = left(folder)?;
@@ -49,7 +65,7 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         .ok_or_else(|| Failure::new("O059", "index.html is none of `kesf run`").at(Place::file(folder)))?;
     let written = match &options.output {
         Some(output) if is_stdin(output) && ui.json => {
-            return ui.document(json!({"schema": "kesf.report/1", "page": page}));
+            return ui.document(Document { page: Some(page), ..Document::default() });
         }
         Some(output) if is_stdin(output) => return ui.print(&page),
         Some(output) => {
@@ -65,8 +81,9 @@ pub fn run(options: &Options, ui: &mut Ui) -> Result<Exit, Failure> {
         }
     };
     if ui.json {
-        return ui.document(json!({"schema": "kesf.report/1", "output": written}));
+        let output = Some(written.to_string_lossy().into_owned());
+        return ui.document(Document { output, ..Document::default() });
     }
-    ui.diagnostics.note(&format!("{}: {}", written.display(), HumanBytes(page.len() as u64)));
+    ui.note(&format!("{}: {}", written.display(), HumanBytes(page.len() as u64)));
     Ok(Exit::Done)
 }

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::StudyError;
 use super::case::{Analysis, Case, TestFormulation};
@@ -23,7 +23,7 @@ pub struct SolverTable {
 }
 
 /// Method as written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SolverChoice {
     /// Direct, unless the factor would be too large.

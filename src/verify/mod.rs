@@ -8,6 +8,7 @@
 
 mod problem;
 mod suite;
+mod table;
 
 use std::ops::ControlFlow;
 
@@ -19,6 +20,7 @@ use problem::Statics;
 
 pub use problem::Problem;
 pub use suite::suite;
+pub use table::{Checked, Document, LineEntry, document, text};
 
 use crate::element::MaterialAxisError;
 use crate::mesh::MeshError;

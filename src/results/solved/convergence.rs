@@ -1,13 +1,13 @@
 //! What the mesh leaves open in results, as a table.
 
-use super::output::Columns;
-use super::task::Task;
 use crate::quantity::significant;
+use crate::results::columns::Columns;
+use crate::results::task::Task;
 use crate::study::CaseResult;
 
 /// One line a result of a case with `[convergence]`: its values from the coarsest mesh to the finest, what they
 /// approach, the order that was seen, and the grid convergence index.
-pub fn table(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
+pub(super) fn table(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
     let headings = ["result", "case", "fabric", "unit", "coarse to fine", "limit", "order", "± mesh (%)"];
     let mut table = Columns::new(headings);
     for (task, r) in solved {
@@ -25,5 +25,5 @@ pub fn table(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
             ]);
         }
     }
-    (!table.is_empty()).then_some(table)
+    table.filled()
 }

@@ -1,21 +1,23 @@
 //! Friction laws as text, and their parameters beside the measured ones.
 
-use super::output::Columns;
+use super::columns::Columns;
+use super::failure::Failure;
+use super::folder::Folder;
 use crate::characterise::{Basis, FabricSheet};
-use crate::instrument::{Direction, Parameter};
+use crate::instrument::{Direction, Parameter, Test};
 use crate::quantity::significant;
-use crate::report::chart::ParityPoint;
+use crate::report::chart::{self, ParityPoint};
+use crate::report::html::Figure;
 use crate::report::table::UnitSystem;
 
 /// One line a law, then one line a parameter that is re-extracted from its simulated cycle; empty for
 /// a sheet without laws.
-pub fn text(sheet: &FabricSheet, units: UnitSystem) -> String {
+pub(super) fn text(sheet: &FabricSheet, units: UnitSystem) -> String {
     if sheet.laws.is_empty() {
         return String::new();
     }
     let headings = ["friction law", "", "", "fit (%)", "line (%)", "noise (%)", "loop energy (%)"];
     let mut laws = Columns::new(headings);
-    let percent = |v: f64| format!("{:.2}", 100.0 * v);
     for law in &sheet.laws {
         let basis = match law.basis {
             Basis::Loop => format!("specimen {}", law.specimen),
@@ -24,8 +26,9 @@ pub fn text(sheet: &FabricSheet, units: UnitSystem) -> String {
         };
         let direction = law.direction.map_or("", Direction::name);
         let fit = law.fit.as_ref().map(|f| {
-            let of = [Some(f.fitted.nrmse), Some(f.fitted.line_nrmse), Some(f.noise), f.fitted.loop_energy];
-            of.map(|v| v.map_or("-".into(), percent))
+            let shares =
+                [Some(f.fitted.nrmse), Some(f.fitted.line_nrmse), Some(f.noise), f.fitted.loop_energy];
+            shares.map(|v| v.map_or("-".into(), percent))
         });
         laws.row(
             [law.test.name().into(), direction.into(), basis].into_iter().chain(fit.unwrap_or_default()),
@@ -50,7 +53,7 @@ pub fn text(sheet: &FabricSheet, units: UnitSystem) -> String {
 
 /// Charts of re-extracted against measured parameters over all fabrics: file, title, parameters.
 /// Four panels are what a page has room for.
-pub const PARITY: [(&str, &str, [Parameter; 4]); 2] = [
+const PARITY: [(&str, &str, [Parameter; 4]); 2] = [
     (
         "friction_stiffness.png",
         "Friction laws: stiffness and width",
@@ -63,8 +66,36 @@ pub const PARITY: [(&str, &str, [Parameter; 4]); 2] = [
     ),
 ];
 
+/// Writes the charts of [`PARITY`]; those that there are.
+pub(crate) fn write_parity(folder: &Folder, points: &[ParityPoint]) -> Result<Vec<Figure>, Failure> {
+    let subtitle =
+        "read from the simulated cycle of each friction law, by the evaluation of instrument files";
+    let mut drawn = Vec::new();
+    for (file, title, parameters) in PARITY {
+        let is_of_page = |p: &&ParityPoint| parameters.iter().any(|q| q.symbol() == p.quantity);
+        let points: Vec<ParityPoint> = points.iter().filter(is_of_page).cloned().collect();
+        if folder.chart(file, || chart::parity(&points, title, subtitle))? {
+            drawn.push(Figure { caption: title.into(), picture: file.into() });
+        }
+    }
+    Ok(drawn)
+}
+
+/// Writes `<fabric>/friction_bending.png` ...: laws beside the loops behind them; those that there are.
+pub(super) fn write_charts(folder: &Folder, sheet: &FabricSheet) -> Result<Vec<Figure>, Failure> {
+    let mut drawn = Vec::new();
+    for test in Test::ALL.map(Some).into_iter().chain([None]) {
+        let what = test.map_or("strips", Test::name);
+        let picture = format!("{}/friction_{what}.png", sheet.name);
+        if folder.chart(&picture, || chart::friction(sheet, test))? {
+            drawn.push(Figure { caption: format!("friction: {what}"), picture });
+        }
+    }
+    Ok(drawn)
+}
+
 /// Points of the charts of [`PARITY`].
-pub fn parity(sheet: &FabricSheet) -> Vec<ParityPoint> {
+pub(super) fn parity_points(sheet: &FabricSheet) -> Vec<ParityPoint> {
     sheet
         .re_extracted()
         .into_iter()
@@ -84,4 +115,8 @@ pub fn parity(sheet: &FabricSheet) -> Vec<ParityPoint> {
             }
         })
         .collect()
+}
+
+fn percent(ratio: f64) -> String {
+    format!("{:.2}", 100.0 * ratio)
 }

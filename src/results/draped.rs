@@ -1,18 +1,23 @@
-//! What `solve` and `run` show of a drape.
+//! A drape: rows, document, charts and text.
 
-use serde_json::{Value, json};
+use serde::Serialize;
 
-use super::diagnostics::Failure;
-use super::output::Columns;
+use super::columns::Columns;
+use super::failure::Failure;
+use super::folder::Folder;
+use super::sampled::{self, SamplingEntry};
+use super::solved::ModelEntry;
 use super::task::Task;
-use super::tree::Tree;
+use crate::finding::Finding;
 use crate::law::Mode;
 use crate::quantity::significant;
 use crate::report::chart::{self, DrapePlot, ParityPoint};
-use crate::report::json::text;
 use crate::report::table::{PredictionRow, relative_error};
 use crate::report::vtu::{MeshField, vtu};
 use crate::study::{Drape, DrapeState, measured_drape};
+
+/// The chart of simulated against measured coefficients of all fabrics.
+const PARITY: &str = "drape_parity.png";
 
 /// The measured coefficient of the task's fabric (0 to 1) and its method.
 fn measured<'a>(task: &'a Task) -> Option<(f64, &'a str)> {
@@ -24,7 +29,7 @@ fn percent(ratio: f64) -> String {
 }
 
 /// One line a drape.
-pub fn table<'a>(draped: impl Iterator<Item = (&'a Task<'a>, &'a Drape)>) -> Columns {
+pub(super) fn table<'a, 'w: 'a>(draped: impl Iterator<Item = (&'a Task<'w>, &'a Drape)>) -> Columns {
     let mut table = Columns::new([
         "drape",
         "fabric",
@@ -57,68 +62,148 @@ pub fn table<'a>(draped: impl Iterator<Item = (&'a Task<'a>, &'a Drape)>) -> Col
     table
 }
 
-fn state(s: &DrapeState) -> Value {
-    json!({
-        "start_folds": s.start, "elements": s.elements, "coefficient": s.coefficient,
-        "nodes": s.folds.count, "harmonic": s.folds.harmonic, "amplitude": s.folds.amplitude,
-        "energy": s.energy, "strain_energy": s.strain_energy, "residual": s.residual,
-        "negative_pivots": s.negative_pivots, "lowest_eigenvalue": s.lowest_eigenvalue,
-        "iterations": s.iterations,
-    })
+/// An entry of `kesf.solution/1`: a drape (SI).
+#[derive(Clone, Debug, Serialize)]
+pub struct DrapeEntry {
+    case: String,
+    fabric: Option<String>,
+    status: &'static str,
+    model: ModelEntry,
+    results: DrapeResults,
+    findings: Vec<Finding>,
 }
 
-/// An entry of `kesf.solution/1`.
-pub fn entry(task: &Task, d: &Drape) -> Value {
+#[derive(Clone, Debug, Serialize)]
+struct DrapeResults {
+    drape: DrapeValues,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct DrapeValues {
+    law: &'static str,
+    /// Of the state of lowest energy on the finest mesh, 0 to 1.
+    coefficient: f64,
+    /// Least and greatest coefficient of all states.
+    band: [f64; 2],
+    measured: Option<MeasuredDrape>,
+    uncertainty: Option<SamplingEntry>,
+    finest: StateEntry,
+    meshes: Vec<StateEntry>,
+    states: Vec<StateEntry>,
+    failed_starts: Vec<FailedStart>,
+    outline: OutlineEntry,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct MeasuredDrape {
+    value: f64,
+    method: String,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct StateEntry {
+    start_folds: usize,
+    elements: usize,
+    coefficient: f64,
+    nodes: usize,
+    harmonic: usize,
+    amplitude: f64,
+    energy: f64,
+    strain_energy: f64,
+    residual: f64,
+    negative_pivots: usize,
+    lowest_eigenvalue: f64,
+    iterations: usize,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct FailedStart {
+    start_folds: usize,
+    code: &'static str,
+}
+
+/// Distances of the outline from the axis of the disc, one a degree.
+#[derive(Clone, Debug, Serialize)]
+struct OutlineEntry {
+    unit: &'static str,
+    step_deg: u32,
+    distance: Vec<f64>,
+}
+
+impl StateEntry {
+    fn new(s: &DrapeState) -> Self {
+        Self {
+            start_folds: s.start,
+            elements: s.elements,
+            coefficient: s.coefficient,
+            nodes: s.folds.count,
+            harmonic: s.folds.harmonic,
+            amplitude: s.folds.amplitude,
+            energy: s.energy,
+            strain_energy: s.strain_energy,
+            residual: s.residual,
+            negative_pivots: s.negative_pivots,
+            lowest_eigenvalue: s.lowest_eigenvalue,
+            iterations: s.iterations,
+        }
+    }
+}
+
+/// The entry of a drape.
+pub(super) fn entry(task: &Task, d: &Drape) -> DrapeEntry {
     let mesh = &d.model.mesh;
-    let measured = measured(task).map(|(value, method)| json!({"value": value, "method": method}));
-    json!({
-        "case": d.case,
-        "fabric": task.fabric_name(),
-        "status": "ok",
-        "model": {"nodes": mesh.nodes.len(), "elements": mesh.quads.len(), "dofs": 6 * mesh.nodes.len()},
-        "results": {"drape": {
-            "law": law(task),
-            "coefficient": d.finest.coefficient,
-            "band": d.band(),
-            "measured": measured,
-            "uncertainty": task.sampling().map(|s| super::sampled::entry(s, "")),
-            "finest": state(&d.finest),
-            "meshes": d.meshes.iter().map(state).collect::<Vec<_>>(),
-            "states": d.states.iter().map(state).collect::<Vec<_>>(),
-            "failed_starts": d.failed.iter().map(|(start, e)| json!({"start_folds": start, "code": e.code()})).collect::<Vec<_>>(),
-            "outline": {"unit": "m", "step_deg": 1, "distance": d.outline},
-        }},
-        "findings": d.findings,
-    })
+    let drape = DrapeValues {
+        law: law(task),
+        coefficient: d.finest.coefficient,
+        band: d.band(),
+        measured: measured(task).map(|(value, method)| MeasuredDrape { value, method: method.to_string() }),
+        uncertainty: task.sampling().map(|s| SamplingEntry::ending_with(s, "")),
+        finest: StateEntry::new(&d.finest),
+        meshes: d.meshes.iter().map(StateEntry::new).collect(),
+        states: d.states.iter().map(StateEntry::new).collect(),
+        failed_starts: d
+            .failed
+            .iter()
+            .map(|(start, e)| FailedStart { start_folds: *start, code: e.code() })
+            .collect(),
+        outline: OutlineEntry { unit: "m", step_deg: 1, distance: d.outline.clone() },
+    };
+    DrapeEntry {
+        case: d.case.clone(),
+        fabric: task.fabric_name().map(str::to_string),
+        status: "ok",
+        model: ModelEntry { nodes: mesh.nodes.len(), elements: mesh.quads.len(), dofs: 6 * mesh.nodes.len() },
+        results: DrapeResults { drape },
+        findings: d.findings.clone(),
+    }
 }
 
-/// Coefficient beside what was measured, and the least and greatest of the states, for the table of
-/// predictions.
-pub fn predictions(task: &Task, d: &Drape) -> Vec<PredictionRow> {
-    let measured = measured(task).map(|(m, _)| m);
-    let row = |quantity: &str, simulated: f64, measured: Option<f64>| PredictionRow {
-        fabric: task.fabric_name().unwrap_or_default().into(),
-        case: d.case.clone(),
+/// Rows of `predictions.csv`: the coefficient beside what was measured, and the least and greatest of the states.
+pub(super) fn rows(task: &Task, d: &Drape) -> Vec<PredictionRow> {
+    let [low, high] = d.band();
+    let nodes = task.fabric.and_then(|sheet| {
+        let counted = sheet.info.results.iter().find(|r| r.quantity == "drape_nodes")?;
+        counted.value.parse::<f64>().ok()
+    });
+    let coefficient = measured(task).map(|(m, _)| m);
+    vec![
+        row(task, "drape_coefficient", d.finest.coefficient, coefficient),
+        row(task, "drape_coefficient_least", low, None),
+        row(task, "drape_coefficient_greatest", high, None),
+        row(task, "drape_nodes", d.finest.folds.count as f64, nodes),
+    ]
+}
+
+/// Without a band: those of the table are for the spread of measured inputs, which a band of states is not.
+fn row(task: &Task, quantity: &str, simulated: f64, measured: Option<f64>) -> PredictionRow {
+    PredictionRow {
         quantity: quantity.into(),
         simulated: Some(simulated),
         measured,
         unit: "1".into(),
         error: measured.and_then(|m| relative_error(simulated, m)),
-        // Those are for the spread of measured inputs, which a band of states is not.
-        simulated_low: None,
-        simulated_high: None,
-    };
-    let [low, high] = d.band();
-    let nodes = task.fabric.and_then(|sheet| {
-        let of_nodes = sheet.info.results.iter().find(|r| r.quantity == "drape_nodes")?;
-        of_nodes.value.parse::<f64>().ok()
-    });
-    vec![
-        row("drape_coefficient", d.finest.coefficient, measured),
-        row("drape_coefficient_least", low, None),
-        row("drape_coefficient_greatest", high, None),
-        row("drape_nodes", d.finest.folds.count as f64, nodes),
-    ]
+        ..task.row()
+    }
 }
 
 /// How the sheet of a case answers to strain.
@@ -130,11 +215,6 @@ fn law(task: &Task) -> &'static str {
     }
 }
 
-/// Where the fabric of a task comes from.
-fn origin(task: &Task) -> String {
-    task.fabric.map_or(String::new(), |f| format!("{} data", f.info.origin.name()))
-}
-
 /// A drape beside its measured coefficient.
 #[derive(Clone, Debug)]
 pub struct DrapePoint {
@@ -143,11 +223,11 @@ pub struct DrapePoint {
 }
 
 /// The drape beside its measured coefficient (in %); none where none was measured.
-pub fn point(task: &Task, d: &Drape) -> Option<DrapePoint> {
+pub(super) fn point(task: &Task, d: &Drape) -> Option<DrapePoint> {
     let (measured, _) = measured(task)?;
     let point = ParityPoint {
         label: task.fabric_name()?.into(),
-        group: format!("{}, {}", law(task), origin(task)),
+        group: format!("{}, {}", law(task), task.origin()),
         quantity: format!("Drape coefficient, {}", law(task)),
         unit: "%".into(),
         measured: 100.0 * measured,
@@ -161,7 +241,7 @@ pub fn point(task: &Task, d: &Drape) -> Option<DrapePoint> {
 
 /// Fabrics that were hung elastic and with friction: both lowest-energy states with their bands, and the measured
 /// coefficient beside them; none without such a fabric.
-pub fn bracket(points: &[DrapePoint]) -> Option<Columns> {
+pub(crate) fn bracket(points: &[DrapePoint]) -> Option<Columns> {
     let mut table = Columns::new(["drape (%)", "elastic", "friction", "measured", "measured is"]);
     let of = |law: Mode| points.iter().filter(move |p| p.law == law).map(|p| &p.point);
     for elastic in of(Mode::Elastic) {
@@ -180,41 +260,46 @@ pub fn bracket(points: &[DrapePoint]) -> Option<Columns> {
         let measured = format!("{:.1}", elastic.measured);
         table.row([elastic.label.clone(), cell(elastic), cell(friction), measured, place.into()]);
     }
-    (!table.is_empty()).then_some(table)
+    table.filled()
 }
 
-/// `drape_parity.png`, if there is anything to compare.
-pub fn parity(tree: &Tree, points: &[DrapePoint]) -> Result<(), Failure> {
-    if !tree.charts() {
-        return Ok(());
-    }
+/// Writes `drape_parity.png`, if there is anything to compare; its name if so.
+pub(crate) fn write_parity(folder: &Folder, points: &[DrapePoint]) -> Result<Option<String>, Failure> {
     let subtitle = "point: state of lowest energy, bar: all states found; the friction that elastic cloth lacks would raise its points";
     let points: Vec<ParityPoint> = points.iter().map(|p| p.point.clone()).collect();
-    tree.chart("drape_parity.png", chart::parity(&points, "Drape, simulated against measured", subtitle))?;
-    Ok(())
+    let drawn =
+        folder.chart(PARITY, || chart::parity(&points, "Drape, simulated against measured", subtitle))?;
+    Ok(drawn.then(|| PARITY.to_string()))
 }
 
-/// `<fabric>/<case>.json`, `.vtu`, `.png` (shadow) and `_view.png`.
-pub fn write(tree: &Tree, task: &Task, d: &Drape) -> Result<(), Failure> {
+/// Writes `<stem>.vtu`, `.png` (shadow) and `_view.png`; the charts that there are.
+pub(super) fn write(task: &Task, d: &Drape, folder: &Folder) -> Result<Vec<String>, Failure> {
     let stem = task.stem();
-    let document = json!({"schema": "kesf.solution/1", "solutions": [entry(task, d)]});
-    tree.write(&format!("{stem}.json"), text(&document)?.as_bytes())?;
-    let rest: Vec<[f64; 3]> = d.model.mesh.nodes.iter().map(|p| [p.x, p.y, p.z]).collect();
-    let now: Vec<[f64; 3]> = d.solution.state.position.iter().map(|p| [p.x, p.y, p.z]).collect();
-    let moved: Vec<f64> = now.iter().zip(&rest).flat_map(|(n, r)| [0, 1, 2].map(|k| n[k] - r[k])).collect();
-    let turned: Vec<f64> =
+    let position: Vec<[f64; 3]> = d.solution.state.position.iter().map(|p| [p.x, p.y, p.z]).collect();
+    let displacement: Vec<f64> = position
+        .iter()
+        .zip(&d.model.mesh.nodes)
+        .flat_map(|(now, rest)| [now[0] - rest.x, now[1] - rest.y, now[2] - rest.z])
+        .collect();
+    let rotation: Vec<f64> =
         d.solution.state.rotation.iter().flat_map(|r| <[f64; 3]>::from(r.scaled_axis())).collect();
     let fields = [
-        MeshField { name: "displacement", components: 3, values: &moved },
-        MeshField { name: "rotation", components: 3, values: &turned },
+        MeshField { name: "displacement", components: 3, values: &displacement },
+        MeshField { name: "rotation", components: 3, values: &rotation },
     ];
-    tree.write(&format!("{stem}.vtu"), &vtu(&now, &d.model.mesh.quads, &fields, &[])?)?;
-    if tree.charts() {
-        let plot = plot(task, d, &now);
-        tree.chart(&format!("{stem}.png"), chart::drape_shadow(&plot))?;
-        tree.chart(&format!("{stem}_view.png"), chart::drape_view(&plot))?;
+    folder.write(&format!("{stem}.vtu"), &vtu(&position, &d.model.mesh.quads, &fields, &[])?)?;
+    let mut drawn = Vec::new();
+    if folder.charts() {
+        let plot = plot(task, d, &position);
+        let (shadow, view) = (format!("{stem}.png"), format!("{stem}_view.png"));
+        if folder.chart(&shadow, || chart::drape_shadow(&plot))? {
+            drawn.push(shadow);
+        }
+        if folder.chart(&view, || chart::drape_view(&plot))? {
+            drawn.push(view);
+        }
     }
-    Ok(())
+    Ok(drawn)
 }
 
 fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
@@ -223,7 +308,7 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
         ("Drape coefficient".to_string(), format!("{} %", percent(s.coefficient))),
         (format!("band of {} states", d.states.len()), format!("{} to {} %", percent(low), percent(high))),
     ];
-    values.extend(super::sampled::values(task, "drape_coefficient", "%", 0.01));
+    values.extend(sampled::values(task, "drape_coefficient", "%", 0.01));
     if let Some((value, _)) = measured(task) {
         values.push(("measured".into(), format!("{} %", percent(value))));
     }
@@ -241,7 +326,7 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
             law(task),
             if s.negative_pivots == 0 { "stable" } else { "UNSTABLE" }
         ),
-        origin: origin(task),
+        origin: task.origin(),
         nodes,
         quads: &d.model.mesh.quads,
         disc_radius: d.disc_radius,

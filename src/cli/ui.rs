@@ -1,0 +1,123 @@
+//! What a command may use to speak: the format of the result, the diagnostics, threads and Ctrl-C.
+
+use std::io::Write as _;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use serde::Serialize;
+
+use super::args::Global;
+use super::diagnostics::{Diagnostics, FindingEntry};
+use super::exit::Exit;
+use super::output;
+use crate::report::json::text;
+use crate::results::{Event, Failure, FailureEntry, Observer};
+
+/// Set by Ctrl-C, read between items of work.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// The user's side of a command.
+pub struct Ui {
+    /// Whether results are JSON documents.
+    pub json: bool,
+    /// Whether details are wanted.
+    pub verbose: bool,
+    /// Threads that the work may take.
+    pub threads: usize,
+    diagnostics: Mutex<Diagnostics>,
+}
+
+/// A document with what was said beside it.
+#[derive(Serialize)]
+struct Complete<D> {
+    #[serde(flatten)]
+    document: D,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    findings: Option<Vec<FindingEntry>>,
+    failures: Vec<FailureEntry>,
+}
+
+impl Ui {
+    /// As the options want it.
+    pub fn new(global: &Global) -> Self {
+        let threads = global.threads.or_else(|| std::thread::available_parallelism().ok());
+        Self {
+            json: global.json,
+            verbose: global.verbose,
+            threads: threads.map_or(1, std::num::NonZero::get),
+            diagnostics: Mutex::new(Diagnostics::new(global)),
+        }
+    }
+
+    /// Threads and Ctrl-C. The first Ctrl-C ends the work at the next item, the second at once. Threads
+    /// of which no number was given are started by the first work that can be shared.
+    pub fn prepare(&self, global: &Global) -> Result<(), Failure> {
+        if let Some(threads) = global.threads {
+            rayon::ThreadPoolBuilder::new()
+                .num_threads(threads.get())
+                .build_global()
+                .map_err(|e| Failure::new("O053", format!("the threads cannot be started: {e}")))?;
+        }
+        let silent = global.json || global.quiet;
+        ctrlc::set_handler(move || {
+            if INTERRUPTED.swap(true, Ordering::Relaxed) {
+                std::process::exit(Exit::Interrupted as i32);
+            }
+            if !silent {
+                let text = "interrupted: the work in hand ends; Ctrl-C again stops at once";
+                let _ = writeln!(std::io::stderr(), "{text}");
+            }
+        })
+        .map_err(|e| Failure::new("O053", format!("Ctrl-C cannot be caught: {e}")))
+    }
+
+    /// Does work that tells what happens.
+    pub fn observe<T>(&self, work: impl FnOnce(&Observer) -> T) -> T {
+        let event = |event: Event<'_>| self.diagnostics().event(event);
+        let cancelled = || INTERRUPTED.load(Ordering::Relaxed);
+        work(&Observer { event: &event, cancelled: &cancelled })
+    }
+
+    fn diagnostics(&self) -> MutexGuard<'_, Diagnostics> {
+        self.diagnostics.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// An error: always shown.
+    pub fn error(&self, failure: &Failure) {
+        self.diagnostics().error(failure);
+    }
+
+    /// A remark.
+    pub fn note(&self, text: &str) {
+        self.diagnostics().note(text);
+    }
+
+    /// Number of findings so far, shown or not.
+    pub fn findings(&self) -> usize {
+        self.diagnostics().count
+    }
+
+    /// Prints a result as it is.
+    pub fn print(&self, text: &str) -> Result<Exit, Failure> {
+        output::to_stdout(text.as_bytes())?;
+        Ok(Exit::Done)
+    }
+
+    /// Prints a JSON document, with all that was said of the work.
+    pub fn document(&self, document: impl Serialize) -> Result<Exit, Failure> {
+        self.print(&self.complete(document)?)
+    }
+
+    /// The text of a JSON document with `findings` and `failures`: what was found, and what gave no result.
+    pub fn complete<D: Serialize>(&self, document: D) -> Result<String, Failure> {
+        let findings = Some(self.diagnostics().findings.clone());
+        let failures = self.diagnostics().failures.clone();
+        Ok(text(&Complete { document, findings, failures })?)
+    }
+
+    /// The same for a document that has its findings.
+    pub fn with_failures<D: Serialize>(&self, document: D) -> Result<String, Failure> {
+        let failures = self.diagnostics().failures.clone();
+        Ok(text(&Complete { document, findings: None, failures })?)
+    }
+}

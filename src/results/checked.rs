@@ -1,0 +1,141 @@
+//! Inputs that were read and checked, and nothing more.
+
+use serde::Serialize;
+
+use super::columns::Columns;
+use super::failure::Failure;
+use super::inputs::{self, Input, Read, Reading};
+use super::observer::Observer;
+use super::work::{named_fabric, no_such_fabric};
+use crate::finding::Finding;
+use crate::instrument::{FabricInput, Inference, Source};
+use crate::study::{Case, StudyError, validate};
+
+/// What is in the inputs.
+pub struct Checked {
+    /// In name order.
+    pub fabrics: Vec<FabricInput>,
+    /// In name order.
+    pub cases: Vec<Case>,
+    /// What cannot be read or makes no problem.
+    pub failures: Vec<Failure>,
+    inference_of_failures: Vec<Inference>,
+}
+
+/// `kesf.check/1`.
+#[derive(Clone, Debug, Serialize)]
+pub struct CheckDocument {
+    schema: &'static str,
+    fabrics: Vec<FabricEntry>,
+    cases: Vec<CaseEntry>,
+    errors: usize,
+    inference: Vec<Inference>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct FabricEntry {
+    name: String,
+    path: String,
+    files: Vec<Source>,
+    curves: usize,
+    values: usize,
+    findings: Vec<Finding>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct CaseEntry {
+    name: String,
+    path: String,
+    title: String,
+}
+
+/// Reads every fabric and builds every case of the inputs, and computes nothing. What fails and what is found goes to
+/// the observer.
+///
+/// # Errors
+/// O055 if there is nothing in the inputs, and those of [`Reading::each`].
+pub fn check(inputs: &[Input], reading: &Reading, observer: &Observer) -> Result<Checked, Failure> {
+    let (read, mut failures) = inputs::cases(inputs);
+    let mut cases = Vec::new();
+    for case in read {
+        match validate(&case) {
+            Ok(_) => cases.push(case),
+            Err(error) => failures.push(located(&case, error)),
+        }
+    }
+    let without_fabric = |case: &&Case| named_fabric(case).is_some_and(|path| !path.exists());
+    failures.extend(cases.iter().filter(without_fabric).map(no_such_fabric));
+    failures.iter().for_each(|failure| observer.failed(failure));
+    let others = inputs::without_cases(inputs);
+    let Read { done: fabrics, failures: unread, inference_of_failures } =
+        reading.each(&others, "reading", |fabric| fabric, observer)?;
+    failures.extend(unread);
+    fabrics.iter().flat_map(|f| &f.findings).for_each(|finding| observer.found(None, finding));
+    if fabrics.is_empty() && cases.is_empty() && failures.is_empty() {
+        return Err(Failure::new("O055", "there is neither a measurement nor a case in the inputs")
+            .hint("name a fabric folder, a measurement file or a case file"));
+    }
+    Ok(Checked { fabrics, cases, failures, inference_of_failures })
+}
+
+fn located(case: &Case, error: StudyError) -> Failure {
+    let failure = Failure::from(error);
+    if failure.place.is_some() {
+        return failure;
+    }
+    let place = case.place_of(&failure.message);
+    failure.at(place)
+}
+
+impl Checked {
+    fn inference(&self) -> impl Iterator<Item = &Inference> {
+        self.fabrics.iter().flat_map(|f| &f.inference).chain(&self.inference_of_failures)
+    }
+
+    /// The document.
+    pub fn document(&self) -> CheckDocument {
+        let fabric = |f: &FabricInput| FabricEntry {
+            name: f.name.clone(),
+            path: f.path.to_string_lossy().into_owned(),
+            files: f.sources.clone(),
+            curves: f.measurements.len(),
+            values: f.results.len(),
+            findings: f.findings.clone(),
+        };
+        let case = |c: &Case| CaseEntry {
+            name: c.name.clone(),
+            path: c.path.to_string_lossy().into_owned(),
+            title: c.title.clone(),
+        };
+        CheckDocument {
+            schema: "kesf.check/1",
+            fabrics: self.fabrics.iter().map(fabric).collect(),
+            cases: self.cases.iter().map(case).collect(),
+            errors: self.failures.len(),
+            inference: self.inference().cloned().collect(),
+        }
+    }
+
+    /// One line an input; with `verbose`, before it, how each file was understood.
+    pub fn text(&self, verbose: bool) -> String {
+        let mut text = String::new();
+        if verbose {
+            for inference in self.inference() {
+                let decisions: Vec<String> = inference.decisions.iter().map(|d| format!("  {d}\n")).collect();
+                text += &format!("{}\n{}\n", inference.path.display(), decisions.concat());
+            }
+        }
+        let mut columns = Columns::new(["input", "kind", "files", "curves", "values", "findings"]);
+        for f in &self.fabrics {
+            let curves = f.measurements.len() + f.fab.iter().map(|fab| fab.tests.len()).sum::<usize>();
+            let numbers = [f.sources.len(), curves, f.results.len(), f.findings.len()];
+            let name = [f.name.clone(), "fabric".to_string()];
+            columns.row(name.into_iter().chain(numbers.map(|n| n.to_string())));
+        }
+        for case in &self.cases {
+            columns.row([case.name.as_str(), "case"]);
+        }
+        let counts = (self.fabrics.len(), self.cases.len(), self.failures.len());
+        text + &format!("{}{} fabrics, {} cases, {} errors\n", columns.text(), counts.0, counts.1, counts.2)
+    }
+}

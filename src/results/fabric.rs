@@ -1,0 +1,174 @@
+//! What a batch keeps of a fabric once its files are written.
+
+use super::draped::DrapePoint;
+use super::failure::Failure;
+use super::folder::Folder;
+use super::inputs::Fabric;
+use super::observer::Observer;
+use super::outcome::Outcome;
+use super::overview;
+use super::task::Task;
+use super::tested::{self, Tested};
+use super::{friction, solved};
+use crate::characterise::FabricSheet;
+use crate::constitutive::{Assumptions, section};
+use crate::finding::{Finding, Place};
+use crate::report::chart::ParityPoint;
+use crate::report::html::Figure;
+use crate::report::json::{assumptions, section_document, sheet_document};
+use crate::report::table::{FabricRow, PredictionRow, ProblemRow, UnitSystem, fabric_rows, problem_row};
+use crate::study::{CaseResult, Status};
+
+/// What is left of a fabric.
+#[derive(Clone, Debug, Default)]
+pub struct FabricReport {
+    /// Its name.
+    pub name: String,
+    /// Whether it has values.
+    pub is_useful: bool,
+    /// Whether a check of one of its cases does not hold.
+    pub fails_a_check: bool,
+    /// B, G, E, T, W as shown in the overview.
+    pub cells: Vec<String>,
+    /// Case and largest deflection (m).
+    pub deflections: Vec<(String, f64)>,
+    /// `ok`, or what is the matter.
+    pub status: String,
+    /// Rows of `fabrics.csv`.
+    pub rows: Vec<FabricRow>,
+    /// Rows of `predictions.csv`.
+    pub predictions: Vec<PredictionRow>,
+    /// Rows of `problems.csv`.
+    pub problems: Vec<ProblemRow>,
+    /// Charts of tests and friction laws, then of cases.
+    pub figures: Vec<Figure>,
+    /// Points of the chart of simulated against measured stiffness.
+    pub parity: Vec<ParityPoint>,
+    /// Points of the charts of friction laws.
+    pub re_extracted: Vec<ParityPoint>,
+    /// Points of the chart of drape coefficients.
+    pub drapes: Vec<DrapePoint>,
+    /// Findings of sheet, section and cases.
+    pub findings: Vec<Finding>,
+    /// What failed.
+    pub failures: Vec<Failure>,
+}
+
+impl FabricReport {
+    /// Does all of the work for one fabric and writes its files.
+    pub(crate) fn new(fabric: &Fabric, tasks: &[Task], folder: &Folder, observer: &Observer) -> Self {
+        let sheet = &fabric.sheet;
+        let mut report = Self {
+            name: sheet.name.clone(),
+            is_useful: sheet.has_values(),
+            cells: overview::cells(sheet),
+            status: "ok".into(),
+            rows: fabric_rows(sheet, UnitSystem::Si),
+            findings: sheet.findings.clone(),
+            ..Self::default()
+        };
+        report
+            .keep_failure(folder.json(&format!("{}/sheet.json", sheet.name), &sheet_document([sheet], None)));
+        match section(sheet, &Assumptions::default()) {
+            Ok(made) => {
+                report.findings.extend(made.findings.iter().cloned());
+                let entry = (sheet, &made.section, &made.inputs[..], assumptions(&made.used));
+                let name = format!("{}/section.json", sheet.name);
+                report.keep_failure(folder.json(&name, &section_document([entry])));
+                report.simulate(sheet, tasks, folder, observer);
+            }
+            Err(error) => {
+                // Every case needs the section: one line, not one for each of them.
+                let failure = Failure::of_fabric(error, &sheet.name).at(Place::file(&fabric.path));
+                report.failures.push(failure);
+                report.draw(sheet, &[], folder);
+            }
+        }
+        report.close(fabric);
+        report
+    }
+
+    fn keep_failure(&mut self, result: Result<(), Failure>) {
+        self.failures.extend(result.err());
+    }
+
+    /// Every task of the fabric.
+    fn simulate(&mut self, sheet: &FabricSheet, tasks: &[Task], folder: &Folder, observer: &Observer) {
+        let mut simulated: Vec<Tested> = Vec::new();
+        for task in tasks {
+            let written = task.simulate(observer).and_then(|outcome| {
+                let figures = outcome.write(task, folder)?;
+                Ok((outcome, figures))
+            });
+            match written {
+                Ok((outcome, figures)) => {
+                    self.add(task, &outcome, figures);
+                    if let Outcome::Tested(tested) = outcome {
+                        simulated.extend(tested);
+                    }
+                }
+                Err(failure) => self.failures.push(failure),
+            }
+        }
+        self.draw(sheet, &simulated, folder);
+    }
+
+    fn add(&mut self, task: &Task, outcome: &Outcome, figures: Vec<Figure>) {
+        self.predictions.extend(outcome.rows(task));
+        self.findings.extend(outcome.findings(task).into_iter().cloned());
+        self.failures.extend(outcome.failures(task));
+        self.fails_a_check |= outcome.fails_a_check();
+        self.parity.extend(outcome.parity_points(task));
+        self.drapes.extend(outcome.drape_point(task));
+        self.figures.extend(figures);
+        if let Outcome::Solved(result) = outcome {
+            self.add_deflection(result);
+        }
+    }
+
+    fn add_deflection(&mut self, result: &CaseResult) {
+        self.deflections.push((result.case.clone(), result.w_max));
+        if result.status != Status::Ok && self.status == "ok" {
+            self.status = solved::status(result.status).into();
+        }
+    }
+
+    /// Charts of the tests and of the friction laws.
+    fn draw(&mut self, sheet: &FabricSheet, simulated: &[Tested], folder: &Folder) {
+        if !folder.charts() {
+            return;
+        }
+        let mut figures = Vec::new();
+        let of_tests = tested::write_fabric_charts(sheet, simulated, folder);
+        let of_laws = friction::write_charts(folder, sheet);
+        for drawn in [of_tests, of_laws] {
+            match drawn {
+                Ok(drawn) => figures.extend(drawn),
+                Err(failure) => self.failures.push(failure),
+            }
+        }
+        // They come before the charts of cases.
+        self.figures.splice(0..0, figures);
+        self.re_extracted = friction::parity_points(sheet);
+    }
+
+    /// Places of findings, rows of problems and the status.
+    fn close(&mut self, fabric: &Fabric) {
+        for finding in &mut self.findings {
+            finding.place.get_or_insert_with(|| Place::file(&fabric.path));
+        }
+        self.problems = self
+            .findings
+            .iter()
+            .map(|f| ProblemRow { fabric: Some(self.name.clone()), ..problem_row(f, &self.name) })
+            .collect();
+        if let Some(failure) = self.failures.first() {
+            self.status = failure.code.to_string();
+            self.rows.push(FabricRow {
+                fabric: self.name.clone(),
+                status: self.status.clone(),
+                ..FabricRow::default()
+            });
+        }
+    }
+}

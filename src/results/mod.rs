@@ -1,0 +1,72 @@
+//! The application: inputs become tasks, tasks become outcomes, and outcomes become rows, documents, files and text.
+//!
+//! [`Job`] says what is to be read and how, [`Job::read`] gives the [`Work`], [`Work::tasks`] the cases with their
+//! fabrics, [`Task::simulate`] the [`Outcome`] of one. [`crate::run`] does it all for a folder of results. An
+//! [`Observer`] follows the work and may end it; nothing here prints.
+//!
+//! An outcome is of one of four kinds, each a file of its own with its rows, document, fields, charts and text; only
+//! [`outcome`](Outcome) tells the kinds apart.
+
+mod batch;
+mod bent;
+mod checked;
+mod columns;
+mod draped;
+mod fabric;
+mod failure;
+mod folder;
+mod friction;
+mod inputs;
+pub mod list;
+mod names;
+mod observer;
+mod outcome;
+mod overview;
+mod page;
+mod sampled;
+mod section;
+mod sheet_text;
+mod solved;
+mod task;
+mod tested;
+mod work;
+
+pub use batch::{Batch, Kind};
+pub use bent::BendingEntry;
+pub use checked::{CheckDocument, Checked, check};
+pub use columns::Columns;
+pub use draped::{DrapeEntry, DrapePoint};
+pub use fabric::FabricReport;
+pub use failure::{Failure, FailureEntry, FailureKind};
+pub use folder::{Folder, MemorySink, Sink};
+pub use inputs::{
+    Curves, Fabric, FileEntry, Input, Read, Reading, ReadingEntry, cases, nothing_to_read, paths_of_several,
+    readable, unread, without_cases,
+};
+pub use observer::{Event, Found, Observer};
+pub use outcome::{ComparisonEntry, Document, Outcome, Solution};
+pub use sampled::{InputEntry, SamplingEntry};
+pub use section::{Sectioned, section_text, sections};
+pub use sheet_text::{evaluation_text, parameters_text, statistics_text};
+pub use solved::{ModelEntry, QuantityEntry, SolutionEntry, SolverEntry, TimingsEntry};
+pub use task::Task;
+pub use tested::{Stiffness, TestEntry, Tested};
+pub use work::{Job, Work, named_fabric, no_such_fabric};
+
+pub(crate) use draped::{bracket, write_parity as write_drape_parity};
+pub(crate) use friction::write_parity as write_friction_parity;
+pub(crate) use overview::table as overview;
+pub(crate) use page::{Benchmark, page};
+pub(crate) use solved::checks;
+
+use rayon::prelude::*;
+
+/// `f` of every item, in order; by several threads where there is more than one.
+pub(crate) fn each<T: Send, R: Send>(items: Vec<T>, f: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
+    if items.len() > 1 { items.into_par_iter().map(f).collect() } else { items.into_iter().map(f).collect() }
+}
+
+/// Parts of a text, with a blank line between.
+fn text_of(parts: Vec<String>) -> String {
+    parts.join("\n")
+}

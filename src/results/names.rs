@@ -1,0 +1,101 @@
+//! Names of fabrics and cases in a folder of results, where none takes the place of another.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::inputs::Fabric;
+use crate::finding::{Finding, Place, Renaming, UsageFact};
+use crate::study::Case;
+
+/// A name that a folder can have, here and under Windows: nothing of it leads into another, and no file or device
+/// is called so.
+fn folder_name(name: &str) -> String {
+    let flat = name.replace(['/', '\\'], "-");
+    let bare = flat.trim_matches('.').trim();
+    if bare.is_empty() {
+        return "fabric".into();
+    }
+    let lower = bare.to_lowercase();
+    let stem = lower.split('.').next().unwrap_or_default();
+    let port =
+        |kind| stem.strip_prefix(kind).is_some_and(|n| n.len() == 1 && n.as_bytes()[0].is_ascii_digit());
+    let device = ["con", "prn", "aux", "nul"].contains(&stem) || port("com") || port("lpt");
+    if device || OF_RUN.contains(&lower.as_str()) { format!("fabric-{bare}") } else { bare.into() }
+}
+
+/// What `run` puts beside the folders of the fabrics.
+const OF_RUN: [&str; 12] = [
+    "cases",
+    "drape_parity.png",
+    "fabrics.csv",
+    "fabrics.parquet",
+    "friction_energy.png",
+    "friction_stiffness.png",
+    "index.html",
+    "parity.png",
+    "predictions.csv",
+    "predictions.parquet",
+    "problems.csv",
+    "run.json",
+];
+
+/// Whether a fabric has files of its own of that name.
+fn is_reserved(name: &str) -> bool {
+    let name = name.to_lowercase();
+    ["sheet", "section", "tensile", "shear", "bending", "compression"].contains(&name.as_str())
+        || name.starts_with("friction_")
+}
+
+/// Numbers cases that share a name, so that the files of none take the place of another's.
+pub(super) fn distinguish_cases(cases: &mut [Case]) -> Vec<Finding> {
+    let own: BTreeSet<String> = cases.iter().map(|c| c.name.to_lowercase()).collect();
+    let (mut seen, mut findings) = (BTreeSet::new(), Vec::new());
+    for case in cases {
+        let reserved = case.fabric.is_some() && is_reserved(&case.name);
+        if !reserved && seen.insert(case.name.to_lowercase()) {
+            continue;
+        }
+        let numbered = |n: usize| format!("{}-{n}", case.name);
+        let free = |name: &String| {
+            let name = name.to_lowercase();
+            !own.contains(&name) && !seen.contains(&name)
+        };
+        let Some(name) = (2..).map(numbered).find(free) else { continue };
+        let because = if reserved { Renaming::CaseReserved } else { Renaming::CaseTwice };
+        let fact = UsageFact::Renamed { name: case.name.clone(), renamed: name.clone(), because };
+        findings.push(Finding::new(fact).at(Place::file(&case.path)));
+        seen.insert(name.to_lowercase());
+        case.name = name;
+    }
+    findings
+}
+
+/// Numbers fabrics that share a name, so that none hides another: the invented names are nobody else's.
+pub(super) fn distinguish_fabrics(fabrics: &mut [Fabric]) {
+    for Fabric { path, sheet } in fabrics.iter_mut() {
+        let name = folder_name(&sheet.name);
+        if name != sheet.name {
+            let because = Renaming::FabricFolder;
+            let fact = UsageFact::Renamed { name: sheet.name.clone(), renamed: name.clone(), because };
+            sheet.findings.push(Finding::new(fact).at(Place::file(path)));
+            sheet.name = name;
+        }
+    }
+    // Names that differ in case only are one folder under Windows and macOS.
+    let own: BTreeSet<String> = fabrics.iter().map(|f| f.sheet.name.to_lowercase()).collect();
+    let mut seen: BTreeMap<String, usize> = BTreeMap::new();
+    for Fabric { path, sheet } in fabrics {
+        let count = seen.entry(sheet.name.to_lowercase()).or_default();
+        *count += 1;
+        if *count > 1 {
+            let mut name = format!("{}-{count}", sheet.name);
+            while own.contains(&name.to_lowercase()) {
+                *count += 1;
+                name = format!("{}-{count}", sheet.name);
+            }
+            let because = Renaming::FabricTwice;
+            let fact = UsageFact::Renamed { name: sheet.name.clone(), renamed: name.clone(), because };
+            sheet.findings.push(Finding::new(fact).at(Place::file(path)));
+            sheet.name = name;
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! What a task gives, whatever its kind: the one place that tells the kinds apart.
+
+use serde::Serialize;
+
+use super::bent::{self, BendingEntry};
+use super::draped::{self, DrapeEntry, DrapePoint};
+use super::failure::Failure;
+use super::folder::Folder;
+use super::solved::{self, SolutionEntry};
+use super::task::Task;
+use super::tested::{self, TestEntry, Tested};
+use super::{sampled, text_of};
+use crate::finding::Finding;
+use crate::report::chart::ParityPoint;
+use crate::report::html::Figure;
+use crate::report::table::PredictionRow;
+use crate::study::bending::BendingResult;
+use crate::study::{CaseResult, Drape, Status};
+
+/// The result of a task.
+#[derive(Clone, Debug)]
+pub enum Outcome {
+    /// Of a case with a `[sheet]`.
+    Solved(Box<CaseResult>),
+    /// Of a drape.
+    Draped(Box<Drape>),
+    /// Of a `[virtual_test]`, one a direction.
+    Tested(Vec<Tested>),
+    /// Of a `[bending_test]`, with the directions that gave nothing.
+    Bent(BendingResult, Vec<Failure>),
+}
+
+/// A document with the outcome of a task or of several.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+pub enum Document {
+    /// `kesf.solution/1`.
+    Solutions {
+        /// `kesf.solution/1`.
+        schema: &'static str,
+        /// One a task.
+        solutions: Vec<Solution>,
+    },
+    /// `kesf.comparison/1`.
+    Comparisons {
+        /// `kesf.comparison/1`.
+        schema: &'static str,
+        /// One a direction.
+        comparisons: Vec<ComparisonEntry>,
+    },
+}
+
+/// An entry of `kesf.solution/1`.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+pub enum Solution {
+    /// A solved case.
+    Solved(Box<SolutionEntry>),
+    /// A drape.
+    Draped(Box<DrapeEntry>),
+}
+
+/// An entry of `kesf.comparison/1`.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+pub enum ComparisonEntry {
+    /// A simulated KES test.
+    Tested(Box<TestEntry>),
+    /// A bending test.
+    Bent(Box<BendingEntry>),
+}
+
+impl Document {
+    /// `kesf.solution/1`.
+    pub(super) fn solutions(solutions: Vec<Solution>) -> Self {
+        Self::Solutions { schema: "kesf.solution/1", solutions }
+    }
+
+    /// `kesf.comparison/1`.
+    pub(super) fn comparisons(comparisons: Vec<ComparisonEntry>) -> Self {
+        Self::Comparisons { schema: "kesf.comparison/1", comparisons }
+    }
+}
+
+/// Entries of a document; an outcome has those of one kind.
+pub(super) enum Entries {
+    Solutions(Vec<Solution>),
+    Comparisons(Vec<ComparisonEntry>),
+}
+
+impl Outcome {
+    /// Its entries; with `timings`, what differs from run to run too.
+    pub(super) fn entries(&self, task: &Task, timings: bool) -> Entries {
+        match self {
+            Self::Solved(result) => {
+                Entries::Solutions(vec![Solution::Solved(Box::new(solved::entry(task, result, timings)))])
+            }
+            Self::Draped(drape) => {
+                Entries::Solutions(vec![Solution::Draped(Box::new(draped::entry(task, drape)))])
+            }
+            Self::Tested(tested) => {
+                let entries = tested.iter().map(|t| Box::new(tested::entry(task, t)));
+                Entries::Comparisons(entries.map(ComparisonEntry::Tested).collect())
+            }
+            Self::Bent(result, _) => {
+                let entries = bent::entries(task, result).into_iter().map(Box::new);
+                Entries::Comparisons(entries.map(ComparisonEntry::Bent).collect())
+            }
+        }
+    }
+
+    /// The document of the task.
+    pub fn document(&self, task: &Task) -> Document {
+        match self.entries(task, false) {
+            Entries::Solutions(entries) => Document::solutions(entries),
+            Entries::Comparisons(entries) => Document::comparisons(entries),
+        }
+    }
+
+    /// Rows of `predictions.csv`, with the bands that were sampled.
+    pub fn rows(&self, task: &Task) -> Vec<PredictionRow> {
+        let mut rows = match self {
+            Self::Solved(result) => solved::rows(task, result),
+            Self::Draped(drape) => draped::rows(task, drape),
+            Self::Tested(tested) => tested.iter().flat_map(|t| tested::rows(task, t)).collect(),
+            Self::Bent(result, _) => bent::rows(task, result),
+        };
+        sampled::fill(&mut rows, task);
+        rows
+    }
+
+    /// Writes the files of the task: its document, fields and charts. Returns the charts.
+    ///
+    /// # Errors
+    /// Those of the encoders and of the folder.
+    pub fn write(&self, task: &Task, folder: &Folder) -> Result<Vec<Figure>, Failure> {
+        let stem = task.stem();
+        folder.json(&format!("{stem}.json"), &self.document(task))?;
+        let chart = format!("{stem}.png");
+        let drawn = match self {
+            Self::Solved(result) => {
+                solved::write(task, result, folder)?.then_some(chart).into_iter().collect()
+            }
+            Self::Draped(drape) => draped::write(task, drape, folder)?,
+            Self::Tested(tested) => {
+                tested::write_chart(task, tested, folder)?.then_some(chart).into_iter().collect()
+            }
+            Self::Bent(result, _) => bent::write_charts(task, result, folder)?,
+        };
+        Ok(drawn.into_iter().map(|picture| Figure { caption: task.case.title.clone(), picture }).collect())
+    }
+
+    /// What a reader of the outcome must know.
+    pub fn findings<'o>(&'o self, task: &'o Task) -> Vec<&'o Finding> {
+        let of_sampling = task.sampling().into_iter().flat_map(|s| &s.findings);
+        match self {
+            Self::Solved(result) => solved::findings(result).chain(of_sampling).collect(),
+            Self::Draped(drape) => drape.findings.iter().chain(of_sampling).collect(),
+            Self::Tested(_) | Self::Bent(..) => of_sampling.collect(),
+        }
+    }
+
+    /// What failed within it.
+    pub fn failures(&self, task: &Task) -> Vec<Failure> {
+        match self {
+            Self::Solved(result) => solved::unconverged(task, result).into_iter().collect(),
+            Self::Draped(_) | Self::Tested(_) => Vec::new(),
+            Self::Bent(_, failures) => failures.clone(),
+        }
+    }
+
+    /// Whether it holds anything to go on with.
+    pub fn is_useful(&self) -> bool {
+        match self {
+            Self::Solved(result) => result.status != Status::NotConverged,
+            Self::Draped(_) | Self::Tested(_) => true,
+            Self::Bent(result, failures) => failures.is_empty() || bent::is_useful(result),
+        }
+    }
+
+    /// Whether a check does not hold.
+    pub fn fails_a_check(&self) -> bool {
+        match self {
+            Self::Solved(result) => result.status == Status::CheckFailed,
+            Self::Draped(_) | Self::Tested(_) | Self::Bent(..) => false,
+        }
+    }
+
+    /// Points of the chart of simulated against measured stiffness.
+    pub(super) fn parity_points(&self, task: &Task) -> Vec<ParityPoint> {
+        match self {
+            Self::Tested(tested) => tested.iter().filter_map(|t| tested::parity_point(task, t)).collect(),
+            Self::Solved(_) | Self::Draped(_) | Self::Bent(..) => Vec::new(),
+        }
+    }
+
+    /// The drape beside its measured coefficient.
+    pub(super) fn drape_point(&self, task: &Task) -> Option<DrapePoint> {
+        match self {
+            Self::Draped(drape) => draped::point(task, drape),
+            Self::Solved(_) | Self::Tested(_) | Self::Bent(..) => None,
+        }
+    }
+}
+
+/// Outcomes as text, kind by kind; with `verbose` every step of a search, and what each solution took.
+pub(super) fn text(outcomes: &[(&Task, &Outcome)], verbose: bool) -> String {
+    let (mut solved, mut draped, mut tested, mut bent) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for &(task, outcome) in outcomes {
+        match outcome {
+            Outcome::Solved(result) => solved.push((task, &**result)),
+            Outcome::Draped(drape) => draped.push((task, &**drape)),
+            Outcome::Tested(tests) => tested.extend(tests.iter().map(|t| (task, t))),
+            Outcome::Bent(result, _) => bent.push((task, result)),
+        }
+    }
+    let mut parts = Vec::new();
+    parts.extend((!solved.is_empty()).then(|| solved::text(&solved, verbose)));
+    parts.extend(draped::table(draped.iter().copied()).filled().map(|table| table.text()));
+    parts.extend((!tested.is_empty()).then(|| tested::text(&tested)));
+    parts.extend(bent::texts(&bent));
+    parts.extend(sampled::table(outcomes.iter().map(|(task, _)| *task)));
+    text_of(parts)
+}

@@ -1,0 +1,74 @@
+//! The overview of a batch: one line a fabric.
+
+use super::columns::Columns;
+use super::fabric::FabricReport;
+use crate::characterise::FabricSheet;
+use crate::instrument::{Direction, Parameter};
+use crate::quantity::significant;
+use crate::study::{Analysis, Case};
+
+/// Headings before the deflections, in KES units.
+pub(super) const HEADINGS: [&str; 9] = [
+    "fabric",
+    "B warp",
+    "B weft",
+    "G warp",
+    "G weft",
+    "E warp (N/m)",
+    "E weft (N/m)",
+    "T (mm)",
+    "W (mg/cm²)",
+];
+
+/// Units of the columns that do not name theirs.
+pub(super) const CAPTION: &str = "B in gf·cm²/cm, G in gf/(cm·deg)";
+
+/// B, G, E, T, W: KES units, except E in N/m.
+pub(super) fn cells(sheet: &FabricSheet) -> Vec<String> {
+    let (warp, weft) = (Direction::Warp, Direction::Weft);
+    vec![
+        parameter(sheet, Parameter::B, Some(warp)),
+        parameter(sheet, Parameter::B, Some(weft)),
+        parameter(sheet, Parameter::G, Some(warp)),
+        parameter(sheet, Parameter::G, Some(weft)),
+        modulus(sheet, warp),
+        modulus(sheet, weft),
+        parameter(sheet, Parameter::T0, None),
+        parameter(sheet, Parameter::W, None),
+    ]
+}
+
+fn parameter(sheet: &FabricSheet, parameter: Parameter, direction: Option<Direction>) -> String {
+    let estimate = sheet.get(parameter, direction).or_else(|| sheet.get(parameter, None));
+    estimate.map_or("-".into(), |e| significant(e.mean / parameter.kes_factor()))
+}
+
+fn modulus(sheet: &FabricSheet, direction: Direction) -> String {
+    let named = |name: &str| sheet.moduli.get(&(name.to_string(), direction));
+    named("tangent_low").or_else(|| named("secant")).map_or("-".into(), |e| significant(e.mean))
+}
+
+/// One line a fabric, one column of deflections a case.
+pub(crate) fn table(reports: &[FabricReport], cases: &[Case]) -> Columns {
+    let cases: Vec<&str> = cases
+        .iter()
+        .filter(|c| c.sheet.is_some() && c.section.is_none() && !matches!(c.analysis, Analysis::Drape { .. }))
+        .map(|c| c.name.as_str())
+        .collect();
+    let deflections = cases.iter().map(|c| format!("w_max {c} (mm)"));
+    let headings = HEADINGS.map(String::from).into_iter().chain(deflections).chain(["status".to_string()]);
+    let mut table = Columns::new(headings);
+    for report in reports {
+        let mut row = vec![report.name.clone()];
+        row.extend(report.cells.iter().cloned());
+        row.extend(cases.iter().map(|case| deflection(report, case)));
+        row.push(report.status.clone());
+        table.row(row);
+    }
+    table
+}
+
+fn deflection(report: &FabricReport, case: &str) -> String {
+    let found = report.deflections.iter().find(|(name, _)| name == case);
+    found.map_or("-".into(), |(_, w)| significant(1e3 * w))
+}

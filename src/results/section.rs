@@ -1,0 +1,211 @@
+//! Shell sections of fabrics: from measurements, or from documents of this program.
+
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use nalgebra::Matrix3;
+
+use super::columns::Columns;
+use super::failure::Failure;
+use super::inputs::{Curves, Fabric, Input, Reading, nothing_to_read, paths_of_several};
+use super::observer::Observer;
+use crate::characterise::{FabricSheet, Key};
+use crate::constitutive::{Assumptions, Constitutive, Standing, entries, section};
+use crate::finding::{EvaluationFact, Fact, Place};
+use crate::quantity::{Bands, significant};
+use crate::report::read_back::{self, Document};
+
+/// A sheet and its section.
+#[derive(Clone, Debug)]
+pub struct Sectioned {
+    /// The folder or file.
+    pub path: PathBuf,
+    /// The fabric.
+    pub sheet: FabricSheet,
+    /// Its section.
+    pub made: Constitutive,
+}
+
+/// Inputs that are documents of this program, and the others.
+#[derive(Default)]
+struct Sorted {
+    documents: Vec<(PathBuf, Document)>,
+    others: Vec<Input>,
+    failures: Vec<Failure>,
+}
+
+impl Sorted {
+    fn new(inputs: &[Input]) -> Self {
+        let mut sorted = Self::default();
+        for input in inputs {
+            let path = input.path().to_path_buf();
+            match document_bytes(input).map_or(Ok(None), |bytes| read_back::read(&bytes)) {
+                Ok(Some(document)) => sorted.documents.push((path, document)),
+                Ok(None) => sorted.others.push(input.clone()),
+                Err(error) => sorted.failures.push(Failure::from(error).at(Place::file(path))),
+            }
+        }
+        sorted
+    }
+}
+
+/// The bytes of an input that may be a document: a JSON file, or anything in memory.
+fn document_bytes(input: &Input) -> Option<Cow<'_, [u8]>> {
+    match input {
+        Input::Memory { bytes, .. } => Some(Cow::Borrowed(bytes)),
+        Input::Path(path) => {
+            let is_json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
+            is_json.then(|| std::fs::read(path).ok().map(Cow::Owned))?
+        }
+    }
+}
+
+/// The section of every fabric that has one, and what failed. What is found and what fails goes to the observer.
+///
+/// # Errors
+/// O055 if there is nothing to read, and those of [`Reading::sheets`].
+pub fn sections(
+    inputs: &[Input],
+    reading: &Reading,
+    assumptions: &Assumptions,
+    observer: &Observer,
+) -> Result<(Vec<Sectioned>, Vec<Failure>), Failure> {
+    let Sorted { documents, others, mut failures } = Sorted::new(inputs);
+    failures.iter().for_each(|failure| observer.failed(failure));
+    let mut fabrics = Vec::new();
+    if !others.is_empty() {
+        let (read, unread) = reading.sheets(&others, &[assumptions.modulus], Curves::Dropped, observer)?;
+        fabrics = read;
+        failures.extend(unread);
+    }
+    let mut ready = Vec::new();
+    for (path, document) in documents {
+        match document {
+            Document::Sheets(sheets) => {
+                fabrics.extend(sheets.into_iter().map(|sheet| Fabric { path: path.clone(), sheet }));
+            }
+            Document::Sections(sections) => {
+                observer.note(&format!("{}: a section; its own assumptions stand", path.display()));
+                let sectioned = |(sheet, made)| Sectioned { path: path.clone(), sheet, made };
+                ready.extend(sections.into_iter().map(sectioned));
+            }
+        }
+    }
+    if fabrics.is_empty() && failures.is_empty() && ready.is_empty() {
+        return Err(nothing_to_read());
+    }
+    let shared = paths_of_several(&fabrics);
+    let mut done = Vec::new();
+    for fabric in fabrics {
+        match sectioned(fabric, assumptions, &shared, observer) {
+            Ok(sectioned) => done.push(sectioned),
+            Err(failure) => {
+                observer.failed(&failure);
+                failures.push(failure);
+            }
+        }
+    }
+    done.extend(ready);
+    Ok((done, failures))
+}
+
+/// `shared` are the paths that stand for several fabrics: there a finding names its fabric.
+fn sectioned(
+    Fabric { path, sheet }: Fabric,
+    assumptions: &Assumptions,
+    shared: &BTreeSet<PathBuf>,
+    observer: &Observer,
+) -> Result<Sectioned, Failure> {
+    let place = Place::file(&path);
+    let made =
+        section(&sheet, assumptions).map_err(|e| Failure::of_fabric(e, &sheet.name).at(place.clone()))?;
+    let name = shared.contains(&path).then_some(sheet.name.as_str());
+    for finding in &made.findings {
+        let mut finding = finding.clone();
+        finding.place.get_or_insert(place.clone());
+        observer.found(name, &finding);
+    }
+    Ok(Sectioned { path, sheet, made })
+}
+
+/// The matrices of a section, the assumptions behind them, the bands of their entries and the repeats of the inputs.
+pub fn section_text(sheet: &FabricSheet, c: &Constitutive) -> String {
+    let mut page = format!("{}\n", sheet.name);
+    for (symbol, unit, d) in [("D_m", "N/m", &c.section.d_m), ("D_b", "N·m", &c.section.d_b)] {
+        let _ = writeln!(page, "\n{symbol} ({unit}), x = warp, y = weft\n{}", matrix(d));
+    }
+    let (x, y) = (c.section.d_s[(0, 0)], c.section.d_s[(1, 1)]);
+    let _ = writeln!(page, "\nD_s (N/m)\n  {}  {}\n", significant(x), significant(y));
+    let mut columns = Columns::new(["input", "value", "source"]);
+    for u in &c.used {
+        columns.row([&u.name, &u.value as &str, &u.source]);
+    }
+    page += &columns.text();
+    for table in [bands(c), repeats(sheet, c)].into_iter().filter_map(Columns::filled) {
+        page += &format!("\n{}", table.text());
+    }
+    page
+}
+
+/// Every entry with its 95 % bands, or what forbids them.
+fn bands(c: &Constitutive) -> Columns {
+    let mut columns = Columns::new([
+        "entry",
+        "value",
+        "± 95 % of the mean",
+        "± 95 % of one specimen",
+        "no spread known of",
+    ]);
+    for e in entries(&c.section, &c.inputs) {
+        let half = |of: fn(&Bands) -> f64| e.bands.as_ref().map_or("-".into(), |b| significant(of(b)));
+        columns.row([
+            format!("{}[{},{}]", e.matrix, e.row, e.column),
+            significant(e.value),
+            half(|b| b.mean_fabric.half_width),
+            half(|b| b.next_specimen.half_width),
+            e.without_spread.join(", "),
+        ]);
+    }
+    columns
+}
+
+/// The measured inputs with their spread, and whether a repeat stands apart (K010).
+fn repeats(sheet: &FabricSheet, c: &Constitutive) -> Columns {
+    let mut columns = Columns::new(["measured", "mean", "SD", "n", "outlier"]);
+    for input in &c.inputs {
+        let e = &input.estimate;
+        let outlier = match input.standing {
+            Standing::Value(key) => sheet.findings.iter().find_map(|f| outlier(key, &f.fact)),
+            _ => None,
+        };
+        columns.row([
+            input.name.clone(),
+            significant(e.mean),
+            e.sd.map_or("-".into(), significant),
+            e.n.to_string(),
+            outlier.unwrap_or_default(),
+        ]);
+    }
+    columns
+}
+
+/// The repeat of a value that stands apart, if a finding says so.
+fn outlier(value: Key, fact: &Fact) -> Option<String> {
+    match fact {
+        Fact::Evaluation(EvaluationFact::StandsApart { key, repeat, in_table, .. }) if *key == value => {
+            Some(if *in_table {
+                format!("repeat {repeat} of the table")
+            } else {
+                format!("specimen {repeat}")
+            })
+        }
+        _ => None,
+    }
+}
+
+fn matrix(d: &Matrix3<f64>) -> String {
+    let row = |i: usize| (0..3).map(|j| format!("{:>11}", significant(d[(i, j)]))).collect::<String>();
+    (0..3).map(row).collect::<Vec<_>>().join("\n")
+}

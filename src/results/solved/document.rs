@@ -1,0 +1,192 @@
+//! The entry of `kesf.solution/1`.
+
+use indexmap::IndexMap;
+use serde::Serialize;
+
+use super::effort::{SolverEntry, TimingsEntry};
+use super::search::{SearchEntry, StepEntry, step_entries};
+use crate::finding::Finding;
+use crate::quantity::Band;
+use crate::results::sampled::{InputEntry, SamplingEntry};
+use crate::results::task::Task;
+use crate::study::{CaseResult, CheckResult, Convergence, History, Prediction, Probe, Status, Uncertainty};
+
+/// An entry of `kesf.solution/1`: a solved case (SI).
+#[derive(Clone, Debug, Serialize)]
+pub struct SolutionEntry {
+    case: String,
+    fabric: Option<String>,
+    status: Status,
+    model: ModelEntry,
+    solver: SolverEntry,
+    results: ResultsEntry,
+    checks: Vec<CheckResult>,
+    findings: Vec<Finding>,
+    /// Of a search in large rotations.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    steps: Option<Vec<StepEntry>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    search: Option<SearchEntry>,
+    /// Of a dynamic analysis.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    history: Option<History>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    timings: Option<TimingsEntry>,
+}
+
+/// Size of a model.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModelEntry {
+    /// Nodes of the mesh.
+    pub nodes: usize,
+    /// Elements of the mesh.
+    pub elements: usize,
+    /// Dofs of the systems that were solved.
+    pub dofs: usize,
+}
+
+/// A value with its unit.
+#[derive(Clone, Debug, Serialize)]
+pub struct QuantityEntry {
+    /// SI.
+    pub value: f64,
+    /// SI unit.
+    pub unit: &'static str,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct ResultsEntry {
+    w_max: QuantityEntry,
+    w_over_bending_thickness: f64,
+    probes: IndexMap<String, ProbeEntry>,
+    /// Sums over the supports; a motion in time and a mode have none.
+    reactions: Option<[f64; 3]>,
+    reaction_moments: Option<[f64; 3]>,
+    strain_energy: Option<f64>,
+    frequencies: Vec<f64>,
+    convergence: Option<Convergence>,
+    uncertainty: Option<UncertaintyEntry>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct ProbeEntry {
+    at: Vec<f64>,
+    u: [f64; 3],
+    theta: [f64; 3],
+    moment: [f64; 3],
+    membrane: [f64; 3],
+    shear: [f64; 2],
+}
+
+/// Bands by sampling, or by first-order propagation.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+enum UncertaintyEntry {
+    Sampled(SamplingEntry),
+    FirstOrder(FirstOrderEntry),
+}
+
+/// The inputs, and each quantity with its bands and its sensitivities.
+#[derive(Clone, Debug, Serialize)]
+struct FirstOrderEntry {
+    inputs: Vec<InputEntry>,
+    quantities: IndexMap<String, PredictionEntry>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct PredictionEntry {
+    value: f64,
+    unit: &'static str,
+    mean_fabric: Option<Band>,
+    next_specimen: Option<Band>,
+    without_spread: Vec<String>,
+    /// ∂ln y/∂ln p; none of a quantity that is 0 but for rounding, such as that of a field by its symmetry.
+    sensitivity: IndexMap<String, Option<f64>>,
+}
+
+/// The entry of a solved case. Seconds differ from run to run: they are left out of files.
+pub(in crate::results) fn entry(task: &Task, result: &CaseResult, timings: bool) -> SolutionEntry {
+    let mesh = &result.model.mesh;
+    SolutionEntry {
+        case: result.case.clone(),
+        fabric: task.fabric_name().map(str::to_string),
+        status: result.status,
+        model: ModelEntry { nodes: mesh.nodes.len(), elements: mesh.quads.len(), dofs: result.solution.dofs },
+        solver: SolverEntry::new(&result.solution),
+        results: results(task, result),
+        checks: result.checks.clone(),
+        findings: result.findings.clone(),
+        steps: result.path.as_ref().map(|path| step_entries(path, &result.probes)),
+        search: result.path.as_ref().map(SearchEntry::new),
+        history: result.history.clone(),
+        timings: timings.then(|| TimingsEntry::new(&result.solution)),
+    }
+}
+
+fn results(task: &Task, result: &CaseResult) -> ResultsEntry {
+    let reactions = result.reactions();
+    let uncertainty = match task.sampling() {
+        Some(sampling) => Some(UncertaintyEntry::Sampled(SamplingEntry::ending_with(sampling, ""))),
+        None => result.uncertainty.as_ref().map(|u| UncertaintyEntry::FirstOrder(FirstOrderEntry::new(u))),
+    };
+    ResultsEntry {
+        w_max: QuantityEntry { value: result.w_max, unit: "m" },
+        w_over_bending_thickness: result.w_over_thickness,
+        probes: result.probes.iter().map(|p| (p.name.clone(), ProbeEntry::new(p))).collect(),
+        reactions: reactions.map(|[force, _]| force.into()),
+        reaction_moments: reactions.map(|[_, moment]| moment.into()),
+        strain_energy: (!result.is_modal()).then_some(result.solution.strain_energy),
+        frequencies: result.frequencies.clone(),
+        convergence: result.convergence.clone(),
+        uncertainty,
+    }
+}
+
+impl ProbeEntry {
+    fn new(probe: &Probe) -> Self {
+        let (value, resultants) = (&probe.value, &probe.value.resultants);
+        Self {
+            at: probe.at.clone(),
+            u: value.u,
+            theta: value.theta,
+            moment: resultants.moment,
+            membrane: resultants.membrane,
+            shear: resultants.shear,
+        }
+    }
+}
+
+/// A value is 0 below this part of the largest of its unit.
+const ROUNDING: f64 = 1e-9;
+
+impl FirstOrderEntry {
+    fn new(u: &Uncertainty) -> Self {
+        Self {
+            inputs: u.inputs.iter().map(InputEntry::new).collect(),
+            quantities: u
+                .predictions
+                .iter()
+                .map(|p| (p.quantity.clone(), PredictionEntry::new(u, p)))
+                .collect(),
+        }
+    }
+}
+
+impl PredictionEntry {
+    fn new(u: &Uncertainty, p: &Prediction) -> Self {
+        let alike = u.predictions.iter().filter(|q| q.unit == p.unit);
+        let size = alike.map(|q| q.value.abs()).fold(0.0, f64::max);
+        let is_zero = p.value.abs() <= ROUNDING * size;
+        let derivatives = u.inputs.iter().zip(&p.derivatives);
+        Self {
+            value: p.value,
+            unit: p.unit,
+            mean_fabric: p.bands.map(|b| b.mean_fabric),
+            next_specimen: p.bands.map(|b| b.next_specimen),
+            without_spread: p.without_spread.clone(),
+            sensitivity: derivatives
+                .map(|(input, d)| (input.name.clone(), (!is_zero).then(|| d / p.value)))
+                .collect(),
+        }
+    }
+}

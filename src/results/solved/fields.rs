@@ -1,0 +1,101 @@
+//! Fields of a solved case: the VTU file, and the chart of its deflection.
+
+use crate::fields::{Resultants, warp_directions};
+use crate::report::chart::FieldPlot;
+use crate::report::vtu::{MeshField, vtu};
+use crate::results::failure::Failure;
+use crate::results::sampled;
+use crate::results::task::Task;
+use crate::study::{CaseResult, StudyError};
+
+/// Name, components and values of a field.
+type Field<'a> = (&'a str, usize, Vec<f64>);
+
+/// Three components a node of values with six a node.
+fn three_of_six(values: &[f64], from: usize) -> Vec<f64> {
+    values.chunks_exact(6).flat_map(|v| [v[from], v[from + 1], v[from + 2]]).collect()
+}
+
+/// Resultants as fields of nodes or cells, in material axes.
+fn resultants(all: &[Resultants]) -> [Field<'static>; 3] {
+    [
+        ("membrane_force", 3, all.iter().flat_map(|n| n.membrane).collect()),
+        ("moment", 3, all.iter().flat_map(|n| n.moment).collect()),
+        ("shear_force", 2, all.iter().flat_map(|n| n.shear).collect()),
+    ]
+}
+
+fn mesh_fields<'a>(fields: &'a [Field<'a>]) -> Vec<MeshField<'a>> {
+    fields
+        .iter()
+        .map(|(name, components, values)| MeshField { name, components: *components, values })
+        .collect()
+}
+
+/// The mesh and the deflection of a result, as the files want them.
+pub(super) struct Mesh {
+    nodes: Vec<[f64; 3]>,
+    quads: Vec<[u32; 4]>,
+    w: Vec<f64>,
+}
+
+impl Mesh {
+    pub fn new(result: &CaseResult) -> Self {
+        let mesh = &result.model.mesh;
+        Self {
+            nodes: mesh.nodes.iter().map(|p| [p.x, p.y, p.z]).collect(),
+            quads: mesh.quads.clone(),
+            w: result.solution.displacement.iter().skip(2).step_by(6).copied().collect(),
+        }
+    }
+
+    pub fn vtu(&self, result: &CaseResult) -> Result<Vec<u8>, Failure> {
+        let u = &result.solution.displacement;
+        let reaction = &result.solution.reaction;
+        let modes: Vec<(String, Vec<f64>)> = result
+            .modes
+            .iter()
+            .enumerate()
+            .map(|(k, m)| (format!("mode_{}", k + 1), three_of_six(m, 0)))
+            .collect();
+        let nodal = result.nodal().map_err(StudyError::from)?;
+        let mut fields = vec![("displacement", 3, three_of_six(u, 0)), ("rotation", 3, three_of_six(u, 3))];
+        if result.has_reactions() {
+            fields.extend([
+                ("reaction_force", 3, three_of_six(reaction, 0)),
+                ("reaction_moment", 3, three_of_six(reaction, 3)),
+            ]);
+        }
+        fields.extend(resultants(nodal));
+        fields.extend(modes.iter().map(|(name, shape)| (name.as_str(), 3, shape.clone())));
+        let warp = warp_directions(&result.model).iter().flat_map(|d| [d.x, d.y, d.z]).collect();
+        let mut cells = vec![("warp_direction", 3, warp)];
+        cells.extend(resultants(&result.element_means().map_err(StudyError::from)?));
+        Ok(vtu(&self.nodes, &self.quads, &mesh_fields(&fields), &mesh_fields(&cells))?)
+    }
+
+    pub fn plot(&self, task: &Task, result: &CaseResult) -> FieldPlot<'_> {
+        let fabric = task.fabric_name().unwrap_or("section of the case");
+        let cells = match result.model.formulation.bending_cells() {
+            1 => "one bending cell".into(),
+            many => format!("{many} smoothing cells"),
+        };
+        FieldPlot {
+            title: task.case.title.clone(),
+            subtitle: format!("{fabric}; {} elements, {cells} each", self.quads.len()),
+            origin: task.origin(),
+            quantity: "Deflection w".into(),
+            unit: "m".into(),
+            nodes: &self.nodes,
+            quads: &self.quads,
+            values: &self.w,
+            profile_along: "x, middle line of the mesh".into(),
+            profile: result.profile.clone(),
+            notes: (sampled::values(task, "w_max", "mm", 1e-3).into_iter())
+                .map(|(band, value)| format!("{band}: largest |w| {value}"))
+                .chain(result.findings.iter().map(|f| f.message()))
+                .collect(),
+            ..FieldPlot::default()
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! A solved case with a `[sheet]`: rows, document, fields, charts and text.
+
+mod convergence;
+mod document;
+mod effort;
+mod fields;
+mod search;
+mod text;
+
+pub(super) use document::entry;
+pub use document::{ModelEntry, QuantityEntry, SolutionEntry};
+pub use effort::{SolverEntry, TimingsEntry};
+pub(crate) use text::checks;
+pub(super) use text::{status, text};
+
+use super::failure::{Failure, FailureKind};
+use super::folder::Folder;
+use super::task::Task;
+use crate::finding::{Fact, Finding, StudyFact};
+use crate::report::chart;
+use crate::report::table::{PredictionRow, history_rows};
+use crate::study::CaseResult;
+
+/// Whether a finding says that a search found no equilibrium, or none at the whole load.
+fn is_unconverged(finding: &Finding) -> bool {
+    matches!(finding.fact, Fact::Study(StudyFact::NotConverged { .. } | StudyFact::Unfinished { .. }))
+}
+
+/// What a reader of the result must know; a search without an end is a failure instead.
+pub(super) fn findings(result: &CaseResult) -> impl Iterator<Item = &Finding> {
+    result.findings.iter().filter(|finding| !is_unconverged(finding))
+}
+
+/// The failure of a result that is only the last state of a search.
+pub(super) fn unconverged(task: &Task, result: &CaseResult) -> Option<Failure> {
+    let finding = result.findings.iter().find(|finding| is_unconverged(finding))?;
+    let mut failure = Failure::new(finding.code(), finding.message()).of(&task.name());
+    failure.place.clone_from(&finding.place);
+    Some(Failure { kind: FailureKind::Numerics, ..failure })
+}
+
+/// The largest deflection and that of each probe, or the natural frequencies.
+pub(super) fn rows(task: &Task, result: &CaseResult) -> Vec<PredictionRow> {
+    if !result.frequencies.is_empty() {
+        let numbered = result.frequencies.iter().enumerate();
+        return numbered.map(|(k, f)| row(task, result, format!("frequency_{}", k + 1), *f, "1/s")).collect();
+    }
+    let mut rows = vec![row(task, result, "w_max".into(), result.w_max, "m")];
+    for probe in &result.probes {
+        rows.push(row(task, result, format!("{}.w", probe.name), probe.value.u[2], "m"));
+    }
+    rows
+}
+
+fn row(task: &Task, result: &CaseResult, quantity: String, value: f64, unit: &str) -> PredictionRow {
+    let band = result.uncertainty.as_ref().and_then(|u| u.of(&quantity)?.mean_fabric());
+    PredictionRow {
+        quantity,
+        simulated: Some(value),
+        unit: unit.into(),
+        simulated_low: band.map(|[low, _]| low),
+        simulated_high: band.map(|[_, high]| high),
+        ..task.row()
+    }
+}
+
+/// Writes `<stem>.vtu`, `<stem>.png`, and `<stem>.csv` of what there is of a history; whether there is a chart.
+pub(super) fn write(task: &Task, result: &CaseResult, folder: &Folder) -> Result<bool, Failure> {
+    let stem = task.stem();
+    let history = history_rows(result);
+    if !history.is_empty() {
+        folder.csv(&format!("{stem}.csv"), &history)?;
+    }
+    let mesh = fields::Mesh::new(result);
+    folder.write(&format!("{stem}.vtu"), &mesh.vtu(result)?)?;
+    folder.chart(&format!("{stem}.png"), || chart::field(&mesh.plot(task, result)))
+}

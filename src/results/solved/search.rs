@@ -1,0 +1,142 @@
+//! How nonlinear analyses went: tables and document.
+
+use indexmap::IndexMap;
+use serde::Serialize;
+
+use crate::quantity::significant;
+use crate::results::columns::Columns;
+use crate::results::task::Task;
+use crate::solve::nonlinear::Stability;
+use crate::study::{CaseResult, LoadPath, MethodChoice, PathStep, Probe};
+
+/// One line a search: how far it came, what it took, and the linear answer beside it.
+pub(super) fn searches(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
+    let headings = [
+        "search",
+        "case",
+        "fabric",
+        "load factor",
+        "steps",
+        "iterations",
+        "cut-backs",
+        "residual",
+        "stable",
+        "linear w_max (mm)",
+    ];
+    let mut table = Columns::new(headings);
+    for (task, r) in solved {
+        let Some(path) = &r.path else { continue };
+        let last = path.steps.last();
+        table.row([
+            method_name(path.method).into(),
+            r.case.clone(),
+            task.fabric_name().unwrap_or_default().into(),
+            or_dash(last.map(|s| s.factor)),
+            path.steps.len().to_string(),
+            path.iterations().to_string(),
+            path.cut_backs().to_string(),
+            last.map_or("-".into(), |s| format!("{:.1e}", s.residual)),
+            stable(path).into(),
+            or_dash(path.linear_w_max.map(|w| 1e3 * w)),
+        ]);
+    }
+    table.filled()
+}
+
+/// Every step of every search.
+pub(super) fn steps(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
+    let headings =
+        ["step", "case", "fabric", "load factor", "iterations", "cut-backs", "residual", "w_max (mm)"];
+    let mut table = Columns::new(headings);
+    for (task, r) in solved {
+        for (k, s) in r.path.iter().flat_map(|p| p.steps.iter().enumerate()) {
+            table.row([
+                (k + 1).to_string(),
+                r.case.clone(),
+                task.fabric_name().unwrap_or_default().into(),
+                significant(s.factor),
+                s.iterations.to_string(),
+                s.cut_backs.to_string(),
+                format!("{:.1e}", s.residual),
+                significant(1e3 * s.w_max),
+            ]);
+        }
+    }
+    table.filled()
+}
+
+/// `search` of an entry of `kesf.solution/1`.
+#[derive(Clone, Debug, Serialize)]
+pub struct SearchEntry {
+    method: MethodChoice,
+    converged: bool,
+    iterations: usize,
+    cut_backs: usize,
+    stability: Option<Stability>,
+    linear_w_max: Option<f64>,
+}
+
+/// A step of `steps` (SI).
+#[derive(Clone, Debug, Serialize)]
+pub struct StepEntry {
+    factor: f64,
+    iterations: usize,
+    cut_backs: usize,
+    residual: f64,
+    strain_energy: f64,
+    dissipated: f64,
+    w_max: f64,
+    probes: IndexMap<String, [f64; 3]>,
+}
+
+impl SearchEntry {
+    pub fn new(path: &LoadPath) -> Self {
+        Self {
+            method: path.method,
+            converged: path.converged,
+            iterations: path.iterations(),
+            cut_backs: path.cut_backs(),
+            stability: path.stability,
+            linear_w_max: path.linear_w_max,
+        }
+    }
+}
+
+/// The steps of a search, with the displacements of the probes that are named.
+pub(super) fn step_entries(path: &LoadPath, probes: &[Probe]) -> Vec<StepEntry> {
+    path.steps.iter().enumerate().map(|(k, step)| step_entry(k, step, path, probes)).collect()
+}
+
+fn step_entry(k: usize, step: &PathStep, path: &LoadPath, probes: &[Probe]) -> StepEntry {
+    let displacements = probes.iter().zip(&path.probes);
+    StepEntry {
+        factor: step.factor,
+        iterations: step.iterations,
+        cut_backs: step.cut_backs,
+        residual: step.residual,
+        strain_energy: step.strain_energy,
+        dissipated: step.dissipated,
+        w_max: step.w_max,
+        probes: displacements.filter_map(|(p, u)| Some((p.name.clone(), *u.get(k)?))).collect(),
+    }
+}
+
+fn method_name(method: MethodChoice) -> &'static str {
+    match method {
+        MethodChoice::Newton => "newton",
+        MethodChoice::ArcLength => "arc length",
+        MethodChoice::Flow => "flow",
+    }
+}
+
+fn stable(path: &LoadPath) -> &'static str {
+    match &path.stability {
+        Some(s) if s.is_stable() => "yes",
+        Some(_) => "no",
+        None => "-",
+    }
+}
+
+fn or_dash(value: Option<f64>) -> String {
+    value.map_or("-".into(), significant)
+}

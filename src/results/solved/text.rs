@@ -1,0 +1,126 @@
+//! Solved cases as text.
+
+use std::collections::BTreeSet;
+
+use super::{convergence, effort, search};
+use crate::quantity::significant;
+use crate::results::columns::Columns;
+use crate::results::task::Task;
+use crate::study::{CaseResult, Status};
+
+/// Deflections, then frequencies, probes, what the mesh leaves open, histories, searches and checks; with `verbose`
+/// every step of a search; then why a deflection has no band; with `verbose` what each solution took.
+pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
+    let mut table =
+        Columns::new(["case", "fabric", "w_max (mm)", "± 95 % (mm)", "w/t_b", "elements", "status"]);
+    let mut probes = Columns::new(["probe", "case", "fabric", "u (mm)", "v (mm)", "w (mm)", "± 95 % (mm)"]);
+    let mut modes = Columns::new(["mode", "case", "fabric", "frequency (Hz)", "± 95 % (Hz)", "elements"]);
+    for (task, r) in solved {
+        let fabric = task.fabric_name().unwrap_or_default().to_string();
+        for (k, f) in r.frequencies.iter().enumerate() {
+            let elements = r.model.mesh.quads.len().to_string();
+            let half = half_width(r, &format!("frequency_{}", k + 1), 1.0);
+            modes.row([(k + 1).to_string(), r.case.clone(), fabric.clone(), significant(*f), half, elements]);
+        }
+        if !r.frequencies.is_empty() {
+            // The shape of a mode has no size.
+            continue;
+        }
+        let [w, ratio] = [significant(1e3 * r.w_max), significant(r.w_over_thickness)];
+        let elements = r.model.mesh.quads.len().to_string();
+        table.row([
+            r.case.clone(),
+            fabric.clone(),
+            w,
+            half_width(r, "w_max", 1e3),
+            ratio,
+            elements,
+            status(r.status).into(),
+        ]);
+        for p in &r.probes {
+            let u = p.value.u.map(|u| significant(1e3 * u));
+            let half = half_width(r, &format!("{}.w", p.name), 1e3);
+            probes
+                .row([vec![p.name.clone(), r.case.clone(), fabric.clone()], u.to_vec(), vec![half]].concat());
+        }
+    }
+    let steps = if verbose { search::steps(solved) } else { None };
+    let parts = [
+        table.filled(),
+        modes.filled(),
+        probes.filled(),
+        convergence::table(solved),
+        histories(solved),
+        search::searches(solved),
+        steps,
+        checks(solved.iter().map(|(_, r)| *r)),
+    ];
+    let tables = parts.into_iter().flatten().map(|t| t.text());
+    let text = tables.chain(without_band(solved)).collect::<Vec<_>>().join("\n");
+    let costs = verbose.then(|| effort::text(solved.iter().map(|(_, r)| *r)));
+    [text].into_iter().chain(costs).collect::<Vec<_>>().join("\n")
+}
+
+/// How dynamic analyses went, if there are any: instants kept, and what the balance of kinetic, strain and
+/// potential energy, damping and work misses at most, over the largest work.
+fn histories(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
+    let mut table =
+        Columns::new(["dynamics", "fabric", "instants", "end (s)", "energy imbalance (% of work)"]);
+    for (task, r) in solved {
+        let Some(history) = &r.history else { continue };
+        table.row([
+            r.case.clone(),
+            task.fabric_name().unwrap_or_default().to_string(),
+            history.time.len().to_string(),
+            history.time.last().map_or("-".into(), |t| significant(*t)),
+            significant(100.0 * history.imbalance),
+        ]);
+    }
+    table.filled()
+}
+
+/// The inputs without a spread that forbid the band of a largest deflection or first frequency, if there are any.
+fn without_band(solved: &[(&Task, &CaseResult)]) -> Option<String> {
+    let first = |(_, r): &(&Task, &CaseResult)| {
+        let u = r.uncertainty.as_ref()?;
+        u.of("w_max").or_else(|| u.of("frequency_1")).cloned()
+    };
+    let uncertain: Vec<_> = solved.iter().filter_map(first).collect();
+    let names: BTreeSet<&str> =
+        uncertain.iter().flat_map(|p| &p.without_spread).map(String::as_str).collect();
+    let names = names.into_iter().collect::<Vec<_>>().join(", ");
+    (!names.is_empty()).then(|| format!("no band (-) where a single value is all there is of: {names}\n"))
+}
+
+/// Half of the 95 % band of the mean fabric of a quantity, times `unit`; `-` where it has none.
+fn half_width(result: &CaseResult, quantity: &str, unit: f64) -> String {
+    let bands = result.uncertainty.as_ref().and_then(|u| u.of(quantity)?.bands);
+    bands.map_or("-".into(), |b| significant(unit * b.mean_fabric.half_width))
+}
+
+/// The checks of cases, if there are any.
+pub(crate) fn checks<'a>(results: impl Iterator<Item = &'a CaseResult>) -> Option<Columns> {
+    let mut table =
+        Columns::new(["check", "case", "found", "expected", "unit", "error", "tolerance", "outcome"]);
+    for r in results {
+        for c in &r.checks {
+            let percent = |v: f64| format!("{} %", significant(100.0 * v));
+            let numbers = [format!("{:.6e}", c.value), format!("{:.6e}", c.expected), c.unit.to_string()];
+            let errors = [percent(c.relative_error), percent(c.relative_tolerance)];
+            let outcome = if c.passed { "holds" } else { "fails" };
+            let head = [c.quantity.clone(), r.case.clone()];
+            table.row(head.into_iter().chain(numbers).chain(errors).chain([outcome.to_string()]));
+        }
+    }
+    table.filled()
+}
+
+/// The status of a result in words.
+pub(in crate::results) fn status(status: Status) -> &'static str {
+    match status {
+        Status::Ok => "ok",
+        Status::BeyondLinear => "beyond linear",
+        Status::CheckFailed => "check failed",
+        Status::NotConverged => "not converged",
+    }
+}

@@ -1,0 +1,444 @@
+//! A simulated KES test beside its measurement: rows, document, charts and text.
+
+use std::collections::BTreeMap;
+
+use indexmap::IndexMap;
+use serde::Serialize;
+
+use super::columns::Columns;
+use super::failure::Failure;
+use super::folder::Folder;
+use super::sampled::{self, SamplingEntry};
+use super::task::Task;
+use crate::characterise::FabricSheet;
+use crate::instrument::{Direction, Parameter, Test};
+use crate::law::Mode;
+use crate::quantity::{Band, Curve, Estimate, significant};
+use crate::report::chart::{self, ChartError, ParityPoint, SimulatedCurve};
+use crate::report::html::Figure;
+use crate::report::table::{PredictionRow, relative_error};
+use crate::study::{
+    Case, Comparison, EdgeEffect, Prediction, VirtualCurve, VirtualLoop, compare_curves, measured_curve,
+};
+
+/// A simulated test with what was measured.
+#[derive(Clone, Debug)]
+pub struct Tested {
+    /// E.g. `bending warp`.
+    pub name: String,
+    /// Name of its case.
+    pub case: String,
+    /// The simulated curve over the measured range.
+    pub curve: Curve,
+    /// The simulated test.
+    pub simulated: VirtualCurve,
+    /// The distance from the measured curves, where there are any.
+    pub comparison: Option<Comparison>,
+    /// The stiffness that the test is meant to measure; none of compression.
+    pub stiffness: Option<Stiffness>,
+}
+
+/// The stiffness that a test measures.
+#[derive(Clone, Debug)]
+pub struct Stiffness {
+    /// `E`, `G` or `B`.
+    pub symbol: &'static str,
+    /// SI unit.
+    pub unit: &'static str,
+    /// The estimate in the sheet.
+    pub measured: Option<Estimate>,
+}
+
+impl Tested {
+    /// A simulated test beside the sheet of its fabric.
+    pub(super) fn new(case: &Case, sheet: &FabricSheet, simulated: VirtualCurve) -> Self {
+        let (test, direction) = (simulated.test, simulated.direction);
+        let [from, to] = abscissae(sheet, test, direction);
+        let curve = if from < to { simulated.curve(from, to) } else { Curve::default() };
+        let name = match direction {
+            Some(direction) => format!("{} {direction}", test.name()),
+            None => test.name().to_string(),
+        };
+        Self {
+            name,
+            case: case.name.clone(),
+            curve,
+            comparison: compare_curves(sheet, &simulated),
+            stiffness: stiffness(case, sheet, test, direction),
+            simulated,
+        }
+    }
+
+    fn direction(&self) -> &'static str {
+        self.simulated.direction.map_or("", Direction::name)
+    }
+
+    /// The 95 % band of the simulated stiffness for the mean fabric.
+    fn band(&self) -> Option<Band> {
+        self.simulated.uncertainty.as_ref().and_then(|u| u.bands).map(|b| b.mean_fabric)
+    }
+}
+
+/// Where a simulated curve begins and ends: as the measured one, or as the instrument goes.
+fn abscissae(sheet: &FabricSheet, test: Test, direction: Option<Direction>) -> [f64; 2] {
+    let measured = measured_curve(sheet, test, direction);
+    if measured.len() > 1 {
+        let least = measured.x.iter().copied().fold(f64::INFINITY, f64::min);
+        let greatest = measured.x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        return [least, greatest];
+    }
+    match test {
+        Test::Tensile => [0.0, 0.05],
+        Test::Shear => [-8f64.to_radians(), 8f64.to_radians()],
+        Test::Bending => [-250.0, 250.0],
+        Test::Compression => [0.0, 0.0],
+    }
+}
+
+fn stiffness(
+    case: &Case,
+    sheet: &FabricSheet,
+    test: Test,
+    direction: Option<Direction>,
+) -> Option<Stiffness> {
+    let parameter = |p: Parameter| sheet.get(p, direction).or_else(|| sheet.get(p, None)).cloned();
+    let (symbol, unit, measured) = match test {
+        Test::Tensile => {
+            let name = case.assumptions.modulus.name();
+            ("E", "N/m", direction.and_then(|d| sheet.moduli.get(&(name, d)).cloned()))
+        }
+        Test::Shear => ("G", "N/m", parameter(Parameter::G)),
+        Test::Bending => ("B", "N·m", parameter(Parameter::B)),
+        Test::Compression => return None,
+    };
+    Some(Stiffness { symbol, unit, measured })
+}
+
+/// An entry of `kesf.comparison/1`: a simulated KES test.
+#[derive(Clone, Debug, Serialize)]
+pub struct TestEntry {
+    name: String,
+    case: String,
+    fabric: Option<String>,
+    rmse: Option<f64>,
+    nrmse: Option<f64>,
+    r2: Option<f64>,
+    n: usize,
+    unit: Option<&'static str>,
+    stiffness: Option<StiffnessEntry>,
+    edge_effect: Option<EdgeEffect>,
+    unstable_from: Option<f64>,
+    cycle: Option<IndexMap<&'static str, CycleEntry>>,
+    uncertainty: Option<SamplingEntry>,
+    x: Option<Vec<f64>>,
+    simulated: Option<Vec<f64>>,
+    measured: Option<Vec<f64>>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct StiffnessEntry {
+    symbol: &'static str,
+    unit: &'static str,
+    simulated: f64,
+    mean_fabric: Option<Band>,
+    next_specimen: Option<Band>,
+    without_spread: Option<Vec<String>>,
+    measured: Option<f64>,
+    sd: Option<f64>,
+}
+
+/// A parameter of a simulated cycle beside the measured one (SI).
+#[derive(Clone, Debug, Serialize)]
+struct CycleEntry {
+    simulated: f64,
+    measured: Option<f64>,
+    unit: &'static str,
+}
+
+/// The entry of a document.
+pub(super) fn entry(task: &Task, t: &Tested) -> TestEntry {
+    let c = t.comparison.as_ref();
+    TestEntry {
+        name: t.name.clone(),
+        case: task.case.name.clone(),
+        fabric: task.fabric_name().map(str::to_string),
+        rmse: c.map(|c| c.rmse),
+        nrmse: c.map(|c| c.nrmse),
+        r2: c.map(|c| c.r2),
+        n: c.map_or(0, |c| c.n),
+        unit: c.map(|c| c.unit),
+        stiffness: t.stiffness.as_ref().map(|stiffness| stiffness_entry(stiffness, &t.simulated)),
+        edge_effect: t.simulated.edge,
+        unstable_from: t.simulated.unstable_from,
+        cycle: t.simulated.cycle.as_ref().map(|cycle| cycle_entries(task, cycle)),
+        uncertainty: task.sampling().map(|s| SamplingEntry::ending_with(s, t.direction())),
+        x: c.map(|c| c.measured.x.clone()),
+        simulated: c.map(|c| c.simulated.y.clone()),
+        measured: c.map(|c| c.measured.y.clone()),
+    }
+}
+
+fn stiffness_entry(stiffness: &Stiffness, simulated: &VirtualCurve) -> StiffnessEntry {
+    let prediction: Option<&Prediction> = simulated.uncertainty.as_ref();
+    let bands = prediction.and_then(|p| p.bands);
+    let measured = stiffness.measured.as_ref();
+    StiffnessEntry {
+        symbol: stiffness.symbol,
+        unit: stiffness.unit,
+        simulated: simulated.apparent,
+        mean_fabric: bands.map(|b| b.mean_fabric),
+        next_specimen: bands.map(|b| b.next_specimen),
+        without_spread: prediction.map(|p| p.without_spread.clone()),
+        measured: measured.map(|e| e.mean),
+        sd: measured.and_then(|e| e.sd),
+    }
+}
+
+/// By symbol, in the order of the parameters.
+fn cycle_entries(task: &Task, cycle: &VirtualLoop) -> IndexMap<&'static str, CycleEntry> {
+    let entry = |(parameter, simulated): (&Parameter, &f64)| {
+        let measured = task.measured(*parameter, Some(cycle.direction));
+        (parameter.symbol(), CycleEntry { simulated: *simulated, measured, unit: parameter.si_unit() })
+    };
+    cycle.values.iter().map(entry).collect()
+}
+
+/// Rows of `predictions.csv`: the stiffness, or what the cycle of a sheet with friction gives (its elastic part alone
+/// is that of the case without friction).
+pub(super) fn rows(task: &Task, t: &Tested) -> Vec<PredictionRow> {
+    if let Some(cycle) = &t.simulated.cycle {
+        return cycle
+            .values
+            .iter()
+            .map(|(parameter, value)| cycle_row(task, t, *parameter, *value))
+            .collect();
+    }
+    let Some(Stiffness { symbol, unit, measured }) = &t.stiffness else { return Vec::new() };
+    let (simulated, band) = (t.simulated.apparent, t.band());
+    let mean = measured.as_ref().map(|e| e.mean);
+    vec![PredictionRow {
+        quantity: format!("{symbol} {}", t.direction()),
+        simulated: Some(simulated),
+        measured: mean,
+        unit: (*unit).into(),
+        error: mean.and_then(|m| relative_error(simulated, m)),
+        simulated_low: band.map(|b| simulated - b.half_width),
+        simulated_high: band.map(|b| simulated + b.half_width),
+        ..task.row()
+    }]
+}
+
+fn cycle_row(task: &Task, t: &Tested, parameter: Parameter, value: f64) -> PredictionRow {
+    let measured = task.measured(parameter, t.simulated.direction);
+    PredictionRow {
+        quantity: format!("{parameter} {}", t.direction()),
+        simulated: Some(value),
+        measured,
+        unit: parameter.si_unit().into(),
+        error: measured.and_then(|m| relative_error(value, m)),
+        ..task.row()
+    }
+}
+
+/// The point of the chart of simulated against measured stiffness.
+pub(super) fn parity_point(task: &Task, t: &Tested) -> Option<ParityPoint> {
+    let stiffness = t.stiffness.as_ref().filter(|_| t.simulated.cycle.is_none())?;
+    let measured = stiffness.measured.as_ref()?;
+    let quantity = match t.simulated.test {
+        Test::Tensile => "Tensile stiffness",
+        Test::Shear => "Shear stiffness G",
+        Test::Bending => "Bending rigidity B",
+        Test::Compression => "Compression",
+    };
+    Some(ParityPoint {
+        label: task.fabric_name().unwrap_or_default().into(),
+        group: t.direction().into(),
+        quantity: quantity.into(),
+        unit: stiffness.unit.into(),
+        measured: measured.mean,
+        measured_half_width: measured.ci95(),
+        simulated: t.simulated.apparent,
+        simulated_half_width: t.band().map(|b| b.half_width),
+        simulated_band: None,
+    })
+}
+
+/// Writes `<fabric>/<case>.png`, the simulated curves on the measured ones; whether there is one.
+pub(super) fn write_chart(task: &Task, tested: &[Tested], folder: &Folder) -> Result<bool, Failure> {
+    let (Some(sheet), Some(first)) = (task.fabric, tested.first()) else { return Ok(false) };
+    let test = first.simulated.test;
+    let curves = curves(Some(task), tested.iter(), test);
+    folder.chart(&format!("{}.png", task.stem()), || draw(sheet, test, &curves))
+}
+
+/// Writes `<fabric>/tensile.png` ..., with the simulated curves of its cases on top; those that there are. Cycles
+/// with friction have charts of their own.
+pub(super) fn write_fabric_charts(
+    sheet: &FabricSheet,
+    tested: &[Tested],
+    folder: &Folder,
+) -> Result<Vec<Figure>, Failure> {
+    let mut drawn = Vec::new();
+    for test in Test::ALL {
+        let curves = curves(None, tested.iter().filter(|t| t.simulated.cycle.is_none()), test);
+        let picture = format!("{}/{}.png", sheet.name, test.name());
+        if folder.chart(&picture, || draw(sheet, test, &curves))? {
+            drawn.push(Figure { caption: test.name().into(), picture });
+        }
+    }
+    Ok(drawn)
+}
+
+fn draw(sheet: &FabricSheet, test: Test, simulated: &[SimulatedCurve]) -> Result<Vec<u8>, ChartError> {
+    match test {
+        Test::Tensile => chart::tensile(sheet, simulated),
+        Test::Shear => chart::shear(sheet, simulated),
+        Test::Bending => chart::bending(sheet, simulated),
+        Test::Compression => chart::compression(sheet, simulated),
+    }
+}
+
+/// With the bands of the parameters of a cycle, where the task is named.
+fn curves<'a>(
+    task: Option<&Task>,
+    tested: impl Iterator<Item = &'a Tested>,
+    test: Test,
+) -> Vec<SimulatedCurve> {
+    tested.filter(|t| t.simulated.test == test && !t.curve.is_empty()).map(|t| curve(task, t)).collect()
+}
+
+fn curve(task: Option<&Task>, t: &Tested) -> SimulatedCurve {
+    let label = match t.simulated.cycle.as_ref().map(|c| c.mode) {
+        None => "simulated",
+        Some(Mode::Virgin) => "first loading with friction",
+        Some(Mode::Elastic | Mode::Friction) => "with friction",
+    };
+    let comparison = t.comparison.as_ref();
+    SimulatedCurve {
+        label: label.into(),
+        direction: t.simulated.direction,
+        curve: t.curve.clone(),
+        rmse: comparison.map(|c| c.rmse),
+        nrmse: comparison.map(|c| c.nrmse),
+        r2: comparison.map(|c| c.r2).filter(|r| r.is_finite()),
+        band: edges(t),
+        bands: task.map_or_else(Vec::new, |task| sampled_values(task, t)),
+        repeats: t.simulated.repeats(),
+    }
+}
+
+/// The bands of the parameters of a cycle for the mean fabric, in KES units.
+fn sampled_values(task: &Task, t: &Tested) -> Vec<(String, String)> {
+    let Some((cycle, sampling)) = t.simulated.cycle.as_ref().zip(task.sampling()) else { return Vec::new() };
+    let mut values = Vec::new();
+    for parameter in cycle.values.keys() {
+        let band = sampling.of(&format!("{parameter} {}", cycle.direction)).and_then(|q| q.mean_fabric);
+        if band.is_some() {
+            values.push((parameter.to_string(), sampled::interval(band, parameter.kes_factor())));
+        }
+    }
+    values
+}
+
+/// Both edges of the band of a simulated curve, where it has one at every point.
+fn edges(t: &Tested) -> Option<[Curve; 2]> {
+    Some([edge(t, -1.0)?, edge(t, 1.0)?])
+}
+
+fn edge(t: &Tested, sign: f64) -> Option<Curve> {
+    let at = |(x, y): (f64, f64)| Some((x, y + sign * t.simulated.band(x)?.half_width));
+    Some(Curve::from_points(t.curve.points().map(at).collect::<Option<Vec<_>>>()?))
+}
+
+/// One line a test, then what is to be said of some.
+pub(super) fn text(compared: &[(&Task, &Tested)]) -> String {
+    let mut table = Columns::new([
+        "test",
+        "fabric",
+        "",
+        "simulated",
+        "± 95 %",
+        "measured",
+        "± 95 %",
+        "unit",
+        "edge effect",
+        "closed form",
+        "RMSE",
+        "NRMSE",
+        "R²",
+        "n",
+    ]);
+    for (task, t) in compared {
+        table.row(text_row(task, t));
+    }
+    let notes: Vec<String> = compared.iter().flat_map(|(task, t)| notes(task, t)).collect();
+    [table.text(), notes.concat()].concat()
+}
+
+fn text_row(task: &Task, t: &Tested) -> Vec<String> {
+    let mut cells = vec![t.name.clone(), task.fabric_name().unwrap_or_default().to_string()];
+    match &t.stiffness {
+        Some(Stiffness { symbol, unit, measured }) => cells.extend([
+            symbol.to_string(),
+            significant(t.simulated.apparent),
+            or_dash(t.band().map(|b| b.half_width)),
+            or_dash(measured.as_ref().map(|e| e.mean)),
+            or_dash(measured.as_ref().and_then(Estimate::ci95)),
+            unit.to_string(),
+        ]),
+        None => cells.extend([const { String::new() }; 6]),
+    }
+    let edge = t.simulated.edge.as_ref();
+    cells.push(edge.map_or("-".into(), |e| fixed(e.ratio)));
+    cells.push(edge.and_then(|e| e.closed_form).map_or("-".into(), fixed));
+    match &t.comparison {
+        Some(c) => cells.extend([
+            format!("{} {}", significant(c.rmse), c.unit),
+            significant(c.nrmse),
+            significant(c.r2),
+            c.n.to_string(),
+        ]),
+        None => cells.extend(["-", "-", "-", "0"].map(String::from)),
+    }
+    cells
+}
+
+fn or_dash(value: Option<f64>) -> String {
+    value.map_or("-".into(), significant)
+}
+
+/// A ratio near 1.
+fn fixed(ratio: f64) -> String {
+    format!("{ratio:.5}")
+}
+
+/// What a tension across the specimen adds, where the specimen buckles, and the parameters of a cycle.
+fn notes(task: &Task, t: &Tested) -> Vec<String> {
+    let (simulated, name) = (&t.simulated, &t.name);
+    let mut notes = Vec::new();
+    if let Some(tension) = simulated.edge.and_then(|e| e.tension) {
+        let [value, adds] = [tension.value, tension.adds].map(significant);
+        let without = significant(simulated.apparent - tension.adds);
+        notes
+            .push(format!("{name}: {without} N/m, and {adds} N/m by the tension of {value} N/m across it\n"));
+    }
+    if let Some(x) = simulated.unstable_from {
+        let unit = match simulated.test {
+            Test::Tensile => "strain",
+            Test::Shear => "rad",
+            Test::Bending | Test::Compression => "1/m",
+        };
+        notes.push(format!("{name}: the specimen buckles before {} {unit}\n", significant(x)));
+    }
+    let values: BTreeMap<Parameter, f64> =
+        simulated.cycle.as_ref().map_or_else(BTreeMap::new, |cycle| cycle.values.clone());
+    for (p, value) in values {
+        let measured = task.measured(p, simulated.direction).map(|m| m / p.kes_factor());
+        let (value, unit) = (significant(value / p.kes_factor()), p.kes_unit());
+        let measured = or_dash(measured);
+        notes.push(format!(
+            "{name}: {p} {value} {unit} in the simulated cycle with friction, {measured} measured\n"
+        ));
+    }
+    notes
+}
