@@ -1,5 +1,6 @@
 //! What can be typed. Each command's own options stand beside it.
 
+use std::io::IsTerminal;
 use std::num::NonZeroUsize;
 
 use clap::{Args, ColorChoice, Parser, Subcommand};
@@ -41,6 +42,18 @@ pub struct Global {
     /// Threads; results do not depend on it [default: all cores]
     #[arg(short = 'j', long, global = true, value_name = "N", value_parser = threads)]
     pub threads: Option<NonZeroUsize>,
+}
+
+impl Global {
+    /// Whether messages are coloured.
+    pub fn has_color(&self) -> bool {
+        let is_plain = std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty());
+        match self.color {
+            ColorChoice::Always => true,
+            ColorChoice::Never => false,
+            ColorChoice::Auto => !is_plain && std::io::stderr().is_terminal(),
+        }
+    }
 }
 
 /// More threads than any machine has cores take longer to start than to work.

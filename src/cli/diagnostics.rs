@@ -2,39 +2,27 @@
 
 use std::io::{IsTerminal, Write};
 
-use clap::ColorChoice;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use super::args::Global;
-use crate::finding::Fields;
+use crate::report::json::FindingEntry;
 use crate::results::{Event, Failure, FailureEntry, Found};
 
 /// The voice of the program on standard error, and what it has said.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Diagnostics {
     json: bool,
     quiet: bool,
     verbose: bool,
     color: bool,
-    bar: ProgressBar,
+    bar: Option<ProgressBar>,
     /// Number of findings so far, shown or not.
     pub count: usize,
     /// Findings, for a document.
     pub findings: Vec<FindingEntry>,
     /// Failures, for a document.
     pub failures: Vec<FailureEntry>,
-}
-
-/// A finding of a document.
-#[derive(Clone, Debug, Serialize)]
-pub struct FindingEntry {
-    fabric: Option<String>,
-    code: &'static str,
-    message: String,
-    fields: Fields,
-    path: Option<String>,
-    line: Option<usize>,
 }
 
 /// A line on standard error with `--json`.
@@ -46,35 +34,25 @@ struct ErrorLine {
 impl Diagnostics {
     /// As the options and the terminal want it.
     pub fn new(global: &Global) -> Self {
-        let plain = std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty());
-        let color = match global.color {
-            ColorChoice::Always => true,
-            ColorChoice::Never => false,
-            ColorChoice::Auto => !plain && std::io::stderr().is_terminal(),
-        };
-        Self { quiet: global.quiet, verbose: global.verbose, color, ..Self::plain(global.json) }
+        Self {
+            quiet: global.quiet,
+            verbose: global.verbose,
+            color: global.has_color(),
+            ..Self::plain(global.json)
+        }
     }
 
     /// For errors in the options themselves, which are not known then.
     pub fn plain(json: bool) -> Self {
-        Self {
-            json,
-            quiet: true,
-            verbose: false,
-            color: false,
-            bar: ProgressBar::hidden(),
-            count: 0,
-            findings: Vec::new(),
-            failures: Vec::new(),
-        }
+        Self { json, quiet: true, ..Self::default() }
     }
 
     /// Says what happens.
     pub fn event(&mut self, event: Event) {
         match event {
             Event::Started(what, steps) => self.start(what, steps),
-            Event::Step => self.bar.inc(1),
-            Event::Finished => self.bar.finish_and_clear(),
+            Event::Step => self.bar.iter().for_each(|bar| bar.inc(1)),
+            Event::Finished => self.bar.take().iter().for_each(ProgressBar::finish_and_clear),
             Event::Failed(failure) => self.error(failure),
             Event::Found(found) => self.finding(found),
             Event::Note(text) => self.note(text),
@@ -88,7 +66,7 @@ impl Diagnostics {
         }
         let style = ProgressStyle::with_template("{msg} [{bar:40}] {pos}/{len} {eta}")
             .unwrap_or(ProgressStyle::default_bar());
-        self.bar = ProgressBar::new(steps as u64).with_style(style).with_message(what);
+        self.bar = Some(ProgressBar::new(steps as u64).with_style(style).with_message(what));
     }
 
     /// An error: always shown.
@@ -112,19 +90,11 @@ impl Diagnostics {
         if of_batch && !self.verbose && !self.json {
             return;
         }
-        let place = finding.place.as_ref();
-        self.findings.push(FindingEntry {
-            fabric: fabric.map(str::to_string),
-            code: finding.code(),
-            message: finding.message(),
-            fields: finding.fields(),
-            path: place.map(|p| p.path.to_string_lossy().into_owned()),
-            line: place.map(|p| p.line).filter(|line| *line > 0),
-        });
+        self.findings.push(FindingEntry::new(fabric, finding));
         if self.quiet || self.json {
             return;
         }
-        let place = place.map_or_else(|| "kesf".to_string(), ToString::to_string);
+        let place = finding.place.as_ref().map_or_else(|| "kesf".to_string(), ToString::to_string);
         let code = self.paint("33", finding.code());
         let fabric = fabric.map(|name| format!("{name}: ")).unwrap_or_default();
         self.line(&format!("{place}: {code} {fabric}{}", finding.fact));
@@ -143,6 +113,7 @@ impl Diagnostics {
 
     fn line(&self, text: &str) {
         // When standard error is closed there is nobody left to tell.
-        self.bar.suspend(|| drop(writeln!(std::io::stderr(), "{text}")));
+        let write = || drop(writeln!(std::io::stderr(), "{text}"));
+        self.bar.as_ref().map_or_else(write, |bar| bar.suspend(write));
     }
 }

@@ -1,6 +1,5 @@
 //! `kesf export`: fabrics as material files of other programs.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -12,11 +11,10 @@ use super::exit::Exit;
 use super::inputs::{EvaluateArgs, inputs};
 use super::output::{is_folder, is_stdin, now};
 use super::ui::Ui;
-use crate::finding::Place;
 use crate::report::OutputFolder;
-use crate::report::cards::{Material, Target, card};
+use crate::report::cards::Target;
 use crate::report::write::write_file;
-use crate::results::{Failure, Sectioned, sections};
+use crate::results::{Card, Failure, cards, sections, write_cards};
 
 /// Write fabrics as material files of other programs
 #[derive(Debug, Args)]
@@ -62,31 +60,16 @@ struct Document<'a> {
     files: Option<Vec<String>>,
 }
 
-/// A card and its fabric.
-#[derive(Serialize)]
-struct Card {
-    fabric: String,
-    text: String,
-}
-
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
-    let target = options.to;
     let (inputs, reading) = (inputs(&options.inputs)?, options.evaluate.reading());
-    let (sections, mut failures) =
-        ui.observe(|observer| sections(&inputs, &reading, &options.assume.assumptions(), observer))?;
-    let stamp = options.stamp.then(now);
-    let mut cards: Vec<Card> = Vec::new();
-    for Sectioned { path, sheet, made } in &sections {
-        match card(target, &Material { sheet, made, stamp: stamp.as_deref() }) {
-            Ok(text) => cards.push(Card { fabric: sheet.name.clone(), text }),
-            Err(error) => {
-                let failure = Failure::from(error).of(&sheet.name).at(Place::file(path));
-                ui.error(&failure);
-                failures.push(failure);
-            }
-        }
-    }
-    let document = Document { schema: "kesf.export/1", target: target.name(), cards: None, files: None };
+    let (cards, mut failures) = ui.observe(|observer| {
+        let (sections, mut failures) = sections(&inputs, &reading, &options.assume.assumptions(), observer)?;
+        let stamp = options.stamp.then(now);
+        let (cards, refused) = cards(&sections, options.to, stamp.as_deref(), observer);
+        failures.extend(refused);
+        Ok::<_, Failure>((cards, failures))
+    })?;
+    let document = Document { schema: "kesf.export/1", target: options.to.name(), cards: None, files: None };
     if is_stdin(&options.output) && ui.json {
         ui.document(Document { cards: Some(&cards), ..document })?;
         return Ok(Exit::of_batch(cards.len(), &failures));
@@ -110,7 +93,13 @@ fn write(
     let to_folder = is_folder(output) || (cards.len() > 1 && !is_stdin(output) && is_new_folder(output));
     match cards {
         [] => return Ok(Vec::new()),
-        _ if to_folder => return into_folder(options, cards, failures, ui),
+        _ if to_folder => {
+            let folder = OutputFolder::open(output, options.force)?;
+            let (names, refused) = ui.observe(|observer| write_cards(cards, options.to, &folder, observer));
+            folder.finish()?;
+            failures.extend(refused);
+            return Ok(names.into_iter().map(|name| output.join(name)).collect());
+        }
         [card] if is_stdin(output) => drop(ui.print(&card.text)?),
         [card] => write_file(output, card.text.as_bytes(), options.force)?,
         several => {
@@ -124,31 +113,4 @@ fn write(
 /// Whether a name is free and looks like that of a folder: without an ending.
 fn is_new_folder(path: &Path) -> bool {
     !path.exists() && path.extension().is_none()
-}
-
-/// A file for each card. One that cannot be written costs the others nothing.
-fn into_folder(
-    options: &Options,
-    cards: &[Card],
-    failures: &mut Vec<Failure>,
-    ui: &Ui,
-) -> Result<Vec<PathBuf>, Failure> {
-    let folder = OutputFolder::open(&options.output, options.force)?;
-    let (mut taken, mut files) = (BTreeSet::new(), Vec::new());
-    for Card { fabric, text } in cards {
-        // The same name may come from a folder and from a document.
-        let mut names = (1..).map(|n| if n == 1 { fabric.to_string() } else { format!("{fabric}-{n}") });
-        let Some(name) = names.find(|name| taken.insert(name.clone())) else { continue };
-        let name = format!("{name}.{}", options.to.ending());
-        match folder.write(&name, text.as_bytes()) {
-            Ok(()) => files.push(folder.root().join(name)),
-            Err(error) => {
-                let failure = Failure::from(error);
-                ui.error(&failure);
-                failures.push(failure);
-            }
-        }
-    }
-    folder.finish()?;
-    Ok(files)
 }

@@ -14,6 +14,7 @@ mod exit;
 mod explain;
 mod export;
 mod inputs;
+mod interrupt;
 mod list;
 mod output;
 mod read;
@@ -22,6 +23,7 @@ mod run;
 mod section;
 mod simulate;
 mod solve;
+mod tasks;
 mod ui;
 mod verify;
 

@@ -6,8 +6,8 @@ use clap::Args;
 use serde::Serialize;
 
 use super::exit::Exit;
-use super::inputs::TaskArgs;
 use super::output::{now, open_folder};
+use super::tasks::TaskArgs;
 use super::ui::Ui;
 use crate::report::table::PredictionRow;
 use crate::results::Failure;

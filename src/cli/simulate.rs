@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::exit::Exit;
-use super::inputs::TaskArgs;
 use super::output::open_folder;
+use super::tasks::TaskArgs;
 use super::ui::Ui;
 use crate::results::{Batch, Failure, Folder, Kind};
 

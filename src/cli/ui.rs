@@ -1,20 +1,15 @@
-//! What a command may use to speak: the format of the result, the diagnostics, threads and Ctrl-C.
+//! What a command may use to speak: the format of the result and the diagnostics.
 
-use std::io::Write as _;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde::Serialize;
 
 use super::args::Global;
-use super::diagnostics::{Diagnostics, FindingEntry};
+use super::diagnostics::Diagnostics;
 use super::exit::Exit;
-use super::output;
-use crate::report::json::text;
+use super::{interrupt, output};
+use crate::report::json::{FindingEntry, text};
 use crate::results::{Event, Failure, FailureEntry, Observer};
-
-/// Set by Ctrl-C, read between items of work.
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// The user's side of a command.
 pub struct Ui {
@@ -49,8 +44,7 @@ impl Ui {
         }
     }
 
-    /// Threads and Ctrl-C. The first Ctrl-C ends the work at the next item, the second at once. Threads
-    /// of which no number was given are started by the first work that can be shared.
+    /// Threads and Ctrl-C. Threads of which no number was given are started by the first work that can be shared.
     pub fn prepare(&self, global: &Global) -> Result<(), Failure> {
         if let Some(threads) = global.threads {
             rayon::ThreadPoolBuilder::new()
@@ -58,24 +52,13 @@ impl Ui {
                 .build_global()
                 .map_err(|e| Failure::new("O053", format!("the threads cannot be started: {e}")))?;
         }
-        let silent = global.json || global.quiet;
-        ctrlc::set_handler(move || {
-            if INTERRUPTED.swap(true, Ordering::Relaxed) {
-                std::process::exit(Exit::Interrupted as i32);
-            }
-            if !silent {
-                let text = "interrupted: the work in hand ends; Ctrl-C again stops at once";
-                let _ = writeln!(std::io::stderr(), "{text}");
-            }
-        })
-        .map_err(|e| Failure::new("O053", format!("Ctrl-C cannot be caught: {e}")))
+        interrupt::catch(global.json || global.quiet)
     }
 
     /// Does work that tells what happens.
     pub fn observe<T>(&self, work: impl FnOnce(&Observer) -> T) -> T {
         let event = |event: Event<'_>| self.diagnostics().event(event);
-        let cancelled = || INTERRUPTED.load(Ordering::Relaxed);
-        work(&Observer { event: &event, cancelled: &cancelled })
+        work(&Observer { event: &event, cancelled: &interrupt::is_set })
     }
 
     fn diagnostics(&self) -> MutexGuard<'_, Diagnostics> {

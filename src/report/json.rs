@@ -74,8 +74,8 @@ pub struct SheetEntry {
 /// A finding of a document.
 #[derive(Clone, Debug, Serialize)]
 pub struct FindingEntry {
-    /// The fabric it belongs to.
-    pub fabric: String,
+    /// The fabric it belongs to, where its place does not say so.
+    pub fabric: Option<String>,
     /// Code for `kesf explain`.
     pub code: &'static str,
     /// One sentence.
@@ -142,7 +142,7 @@ pub fn sheet_document<'a>(
         document.inputs.extend(
             sheet.sources.iter().map(|s| InputEntry { path: slashes(&s.path), sha256: s.sha256.clone() }),
         );
-        document.findings.extend(sheet.findings.iter().map(|f| finding_entry(&sheet.name, f)));
+        document.findings.extend(sheet.findings.iter().map(|f| FindingEntry::new(Some(&sheet.name), f)));
         document.fabrics.push(SheetEntry {
             name: sheet.name.clone(),
             title: sheet.info.title.clone(),
@@ -283,15 +283,18 @@ fn estimate(e: &Estimate, unit: &str) -> Value {
     json!({ "mean": e.mean, "sd": e.sd, "n": e.n, "unit": unit, "cv": e.cv(), "ci95": e.ci95() })
 }
 
-fn finding_entry(fabric: &str, finding: &Finding) -> FindingEntry {
-    let place = finding.place.as_ref();
-    FindingEntry {
-        fabric: fabric.into(),
-        code: finding.code(),
-        message: finding.message(),
-        fields: finding.fields(),
-        path: place.map(|p| slashes(&p.path)),
-        line: place.map(|p| p.line).filter(|&line| line > 0),
+impl FindingEntry {
+    /// The entry of a finding.
+    pub fn new(fabric: Option<&str>, finding: &Finding) -> Self {
+        let place = finding.place.as_ref();
+        Self {
+            fabric: fabric.map(str::to_string),
+            code: finding.code(),
+            message: finding.message(),
+            fields: finding.fields(),
+            path: place.map(|p| slashes(&p.path)),
+            line: place.map(|p| p.line).filter(|&line| line > 0),
+        }
     }
 }
 

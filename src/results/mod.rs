@@ -9,6 +9,7 @@
 
 mod batch;
 mod bent;
+mod cards;
 mod checked;
 mod columns;
 mod draped;
@@ -33,6 +34,7 @@ mod work;
 
 pub use batch::{Batch, Kind};
 pub use bent::BendingEntry;
+pub use cards::{Card, cards, write_cards};
 pub use checked::{CheckDocument, Checked, check};
 pub use columns::Columns;
 pub use draped::{DrapeEntry, DrapePoint};

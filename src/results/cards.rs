@@ -1,0 +1,92 @@
+//! Fabrics as material files of other programs.
+
+use std::collections::BTreeSet;
+
+use serde::Serialize;
+
+use super::failure::Failure;
+use super::folder::Sink;
+use super::observer::Observer;
+use super::section::Sectioned;
+use crate::finding::Place;
+use crate::report::cards::{Material, Target, card};
+
+/// The material file of a fabric.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Card {
+    /// Its name.
+    pub fabric: String,
+    /// The file.
+    pub text: String,
+}
+
+/// A card for each section that the target can hold, and why the others have none. `stamp` is the date to be noted.
+pub fn cards(
+    sections: &[Sectioned],
+    target: Target,
+    stamp: Option<&str>,
+    observer: &Observer,
+) -> (Vec<Card>, Vec<Failure>) {
+    let (mut cards, mut failures) = (Vec::new(), Vec::new());
+    for Sectioned { path, sheet, made } in sections {
+        match card(target, &Material { sheet, made, stamp }) {
+            Ok(text) => cards.push(Card { fabric: sheet.name.clone(), text }),
+            Err(error) => {
+                let failure = Failure::from(error).of(&sheet.name).at(Place::file(path));
+                observer.failed(&failure);
+                failures.push(failure);
+            }
+        }
+    }
+    (cards, failures)
+}
+
+/// Writes a file for each card, `<fabric>.<ending>`; the names of those that are there, and why others are not.
+pub fn write_cards(
+    cards: &[Card],
+    target: Target,
+    sink: &dyn Sink,
+    observer: &Observer,
+) -> (Vec<String>, Vec<Failure>) {
+    let (mut names, mut failures) = (Vec::new(), Vec::new());
+    let mut taken = BTreeSet::new();
+    for Card { fabric, text } in cards {
+        let name = format!("{}.{}", free_name(fabric, &mut taken), target.ending());
+        match sink.write(&name, text.as_bytes()) {
+            Ok(()) => names.push(name),
+            Err(error) => {
+                let failure = Failure::from(error);
+                observer.failed(&failure);
+                failures.push(failure);
+            }
+        }
+    }
+    (names, failures)
+}
+
+/// The name, or with a number behind it: the same name may come from a folder and from a document.
+fn free_name(name: &str, taken: &mut BTreeSet<String>) -> String {
+    let mut free = name.to_string();
+    let mut number = 1;
+    while !taken.insert(free.clone()) {
+        number += 1;
+        free = format!("{name}-{number}");
+    }
+    free
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::MemorySink;
+
+    #[test]
+    fn two_fabrics_of_one_name_have_a_file_each() {
+        let card = |text: &str| Card { fabric: "poplin".into(), text: text.into() };
+        let sink = MemorySink::default();
+        let (names, failures) =
+            write_cards(&[card("a"), card("b")], Target::Abaqus, &sink, &Observer::default());
+        assert_eq!((names, failures), (vec!["poplin.inp".to_string(), "poplin-2.inp".into()], Vec::new()));
+        assert_eq!(sink.into_files()["poplin-2.inp"], b"b");
+    }
+}
