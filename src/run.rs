@@ -26,7 +26,7 @@ use crate::report::html::{Figure, html};
 use crate::report::table::{FabricRow, PredictionRow, ProblemRow, problem_row};
 use crate::results::{
     Benchmark, Columns, Fabric, FabricReport, Failure, FileEntry, Folder, Job, Observer, Outcome,
-    ReadingEntry, Sink, Task, Work, bracket, checks, each, overview, page, readable, unread,
+    ReadingEntry, Sink, Task, Work, bracket, checks, each, overview, page, readable, simulate, unread,
     write_drape_parity, write_friction_parity,
 };
 use crate::study::{Analysis, Case, CaseResult, SolverChoice};
@@ -205,7 +205,7 @@ fn own_cases<'a, 'w>(
     let steps = own.iter().map(|task| task.stages() + 1).sum();
     observer.part("cases", steps, || {
         each(own, |task| {
-            let outcome = task.simulate(observer).and_then(|outcome| {
+            let outcome = simulate(task, observer).and_then(|outcome| {
                 let figures = outcome.write(task, folder)?;
                 Ok((outcome, figures))
             });

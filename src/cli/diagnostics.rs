@@ -5,7 +5,7 @@ use std::io::{IsTerminal, Write};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
-use super::args::Global;
+use super::global::Global;
 use crate::report::json::FindingEntry;
 use crate::results::{Event, Failure, FailureEntry, Found};
 

@@ -13,6 +13,7 @@ mod diagnostics;
 mod exit;
 mod explain;
 mod export;
+mod global;
 mod inputs;
 mod interrupt;
 mod list;

@@ -4,9 +4,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde::Serialize;
 
-use super::args::Global;
 use super::diagnostics::Diagnostics;
 use super::exit::Exit;
+use super::global::Global;
 use super::{interrupt, output};
 use crate::report::json::{FindingEntry, text};
 use crate::results::{Event, Failure, FailureEntry, Observer};

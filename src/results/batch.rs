@@ -1,11 +1,12 @@
 //! Cases of one kind, solved or compared.
 
 use super::draped;
-use super::each;
 use super::failure::Failure;
 use super::folder::Folder;
 use super::observer::Observer;
 use super::outcome::{Document, Entries, Outcome, text};
+use super::parallel::each;
+use super::simulate::simulate;
 use super::task::Task;
 use super::work::{Work, findings};
 use crate::study::Case;
@@ -85,7 +86,7 @@ impl<'w> Batch<'w> {
         let steps = tasks.len() + tasks.iter().map(Task::stages).sum::<usize>();
         let tasks = observer.part(kind.activity(), steps, || {
             each(tasks, |task| {
-                let outcome = simulate(&task, folder, observer);
+                let outcome = simulate_and_write(&task, folder, observer);
                 observer.step();
                 (task, outcome)
             })
@@ -154,9 +155,9 @@ impl<'w> Batch<'w> {
     }
 }
 
-fn simulate(task: &Task, folder: Option<&Folder>, observer: &Observer) -> Result<Outcome, Failure> {
+fn simulate_and_write(task: &Task, folder: Option<&Folder>, observer: &Observer) -> Result<Outcome, Failure> {
     observer.go_on()?;
-    let outcome = task.simulate(observer)?;
+    let outcome = simulate(task, observer)?;
     if let Some(folder) = folder {
         outcome.write(task, folder)?;
     }

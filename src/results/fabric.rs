@@ -7,6 +7,7 @@ use super::inputs::Fabric;
 use super::observer::Observer;
 use super::outcome::Outcome;
 use super::overview;
+use super::simulate::simulate;
 use super::task::Task;
 use super::tested::{self, Tested};
 use super::{friction, solved};
@@ -96,7 +97,7 @@ impl FabricReport {
     fn simulate(&mut self, sheet: &FabricSheet, tasks: &[Task], folder: &Folder, observer: &Observer) {
         let mut simulated: Vec<Tested> = Vec::new();
         for task in tasks {
-            let written = task.simulate(observer).and_then(|outcome| {
+            let written = simulate(task, observer).and_then(|outcome| {
                 let figures = outcome.write(task, folder)?;
                 Ok((outcome, figures))
             });

@@ -1,7 +1,7 @@
 //! The application: inputs become tasks, tasks become outcomes, and outcomes become rows, documents, files and text.
 //!
 //! [`Job`] says what is to be read and how, [`Job::read`] gives the [`Work`], [`Work::tasks`] the cases with their
-//! fabrics, [`Task::simulate`] the [`Outcome`] of one. [`crate::run`] does it all for a folder of results. An
+//! fabrics, [`simulate`](fn@simulate) the [`Outcome`] of one. [`crate::run`] does it all for a folder of results. An
 //! [`Observer`] follows the work and may end it; nothing here prints.
 //!
 //! An outcome is of one of four kinds, each a file of its own with its rows, document, fields, charts and text; only
@@ -24,9 +24,11 @@ mod observer;
 mod outcome;
 mod overview;
 mod page;
+mod parallel;
 mod sampled;
 mod section;
 mod sheet_text;
+mod simulate;
 mod solved;
 mod task;
 mod tested;
@@ -50,6 +52,7 @@ pub use outcome::{ComparisonEntry, Document, Outcome, Solution};
 pub use sampled::{InputEntry, SamplingEntry};
 pub use section::{Sectioned, section_text, sections};
 pub use sheet_text::{evaluation_text, parameters_text, statistics_text};
+pub use simulate::simulate;
 pub use solved::{ModelEntry, QuantityEntry, SolutionEntry, SolverEntry, TimingsEntry};
 pub use task::Task;
 pub use tested::{Stiffness, TestEntry, Tested};
@@ -59,16 +62,5 @@ pub(crate) use draped::{bracket, write_parity as write_drape_parity};
 pub(crate) use friction::write_parity as write_friction_parity;
 pub(crate) use overview::table as overview;
 pub(crate) use page::{Benchmark, page};
+pub(crate) use parallel::each;
 pub(crate) use solved::checks;
-
-use rayon::prelude::*;
-
-/// `f` of every item, in order; by several threads where there is more than one.
-pub(crate) fn each<T: Send, R: Send>(items: Vec<T>, f: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
-    if items.len() > 1 { items.into_par_iter().map(f).collect() } else { items.into_iter().map(f).collect() }
-}
-
-/// Parts of a text, with a blank line between.
-fn text_of(parts: Vec<String>) -> String {
-    parts.join("\n")
-}

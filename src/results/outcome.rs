@@ -6,10 +6,10 @@ use super::bent::{self, BendingEntry};
 use super::draped::{self, DrapeEntry, DrapePoint};
 use super::failure::Failure;
 use super::folder::Folder;
+use super::sampled;
 use super::solved::{self, SolutionEntry};
 use super::task::Task;
 use super::tested::{self, TestEntry, Tested};
-use super::{sampled, text_of};
 use crate::finding::Finding;
 use crate::report::chart::ParityPoint;
 use crate::report::html::Figure;
@@ -220,5 +220,5 @@ pub(super) fn text(outcomes: &[(&Task, &Outcome)], verbose: bool) -> String {
     parts.extend((!tested.is_empty()).then(|| tested::text(&tested)));
     parts.extend(bent::texts(&bent));
     parts.extend(sampled::table(outcomes.iter().map(|(task, _)| *task)));
-    text_of(parts)
+    parts.join("\n")
 }

@@ -1,6 +1,6 @@
 //! Charts of bending tests.
 
-use super::measured;
+use super::measured::measured;
 use super::text::{mm, or_dash};
 use crate::instrument::Direction;
 use crate::quantity::{Curve, significant};

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{measured, role};
+use super::measured::{measured, role};
 use crate::instrument::Direction;
 use crate::law::Channel;
 use crate::quantity::Curve;

@@ -2,6 +2,7 @@
 
 mod charts;
 mod document;
+mod measured;
 mod text;
 
 pub(super) use charts::write_charts;
@@ -9,19 +10,11 @@ pub use document::BendingEntry;
 pub(super) use document::entries;
 pub(super) use text::texts;
 
+use measured::measured;
+
 use super::task::Task;
 use crate::report::table::{PredictionRow, relative_error};
-use crate::study::bending::{
-    BendLoop, BendLoops, BendingResult, Cantilever, HeartLoop, Simulated, measured_bending_length,
-};
-
-fn role(l: &BendLoop) -> &'static str {
-    if l.fitted { "fitted" } else { "predicted" }
-}
-
-fn measured(task: &Task, c: &Cantilever) -> Option<f64> {
-    measured_bending_length(task.fabric?, c.direction)
-}
+use crate::study::bending::{BendLoop, BendLoops, BendingResult, Cantilever, HeartLoop, Simulated};
 
 /// Whether there is anything in a result: a FAB test may have lost every direction.
 pub(super) fn is_useful(result: &BendingResult) -> bool {

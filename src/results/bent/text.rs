@@ -1,6 +1,6 @@
 //! Bending tests as text.
 
-use super::{measured, role};
+use super::measured::{measured, role};
 use crate::quantity::{STANDARD_GRAVITY, significant};
 use crate::results::columns::Columns;
 use crate::results::task::Task;
