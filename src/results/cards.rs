@@ -85,8 +85,8 @@ mod tests {
         let card = |text: &str| Card { fabric: "poplin".into(), text: text.into() };
         let sink = MemorySink::default();
         let (names, failures) =
-            write_cards(&[card("a"), card("b")], Target::Abaqus, &sink, &Observer::default());
-        assert_eq!((names, failures), (vec!["poplin.inp".to_string(), "poplin-2.inp".into()], Vec::new()));
-        assert_eq!(sink.into_files()["poplin-2.inp"], b"b");
+            write_cards(&[card("a"), card("b")], Target::U3m, &sink, &Observer::default());
+        assert_eq!((names, failures), (vec!["poplin.u3m".to_string(), "poplin-2.u3m".into()], Vec::new()));
+        assert_eq!(sink.into_files()["poplin-2.u3m"], b"b");
     }
 }
