@@ -14,7 +14,7 @@ const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("quantity", &[], &[]),
     ("kes", &["quantity"], &[]),
     ("finding", &["quantity", "kes"], &["toml"]),
-    ("law", &[], &[]),
+    ("law", &["finding"], &[]),
     (
         "instrument",
         &["quantity", "kes", "finding"],
@@ -24,13 +24,17 @@ const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("section", &["finding", "quantity", "law"], &[]),
     ("analytical", &["section"], &[]),
     ("mesh", &["finding", "quantity"], &[]),
-    ("element", &["section", "mesh", "law"], &[]),
+    ("element", &["finding", "section", "mesh", "law"], &[]),
     ("model", &["finding", "quantity", "section", "mesh", "law", "element"], &[]),
     ("solve", &["finding", "quantity", "section", "mesh", "law", "element", "model"], &["faer"]),
     ("fields", &["finding", "quantity", "section", "mesh", "law", "element", "model", "solve"], &[]),
     ("constitutive", &["finding", "quantity", "law", "instrument", "characterise", "section"], &[]),
     ("study", &ABOVE_STUDY, &["toml"]),
-    ("verify", &["law", "section", "analytical", "mesh", "element", "model", "solve", "fields"], &["toml"]),
+    (
+        "verify",
+        &["finding", "law", "section", "analytical", "mesh", "element", "model", "solve", "fields"],
+        &["toml"],
+    ),
     (
         "report",
         &ABOVE_REPORT,

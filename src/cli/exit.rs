@@ -25,7 +25,7 @@ impl Exit {
         match failures {
             [] => Self::Done,
             _ if useful > 0 => Self::Partly,
-            all if all.iter().all(|f| f.kind == FailureKind::Numerics) => Self::Numerics,
+            all if all.iter().all(|f| f.kind() == FailureKind::Numerics) => Self::Numerics,
             _ => Self::Bad,
         }
     }
@@ -39,7 +39,7 @@ impl Exit {
 impl From<&Failure> for Exit {
     /// The end of a task of which nothing else was done.
     fn from(failure: &Failure) -> Self {
-        match failure.kind {
+        match failure.kind() {
             FailureKind::Input => Self::Bad,
             FailureKind::Numerics => Self::Numerics,
             FailureKind::Interrupted => Self::Interrupted,
@@ -60,7 +60,7 @@ mod tests {
     #[test]
     fn a_batch_ends_by_what_was_useful() {
         let input = Failure::new("R004", "x");
-        let singular = Failure { kind: FailureKind::Numerics, ..Failure::new("N001", "x") };
+        let singular = Failure::new("N001", "x");
         assert_eq!(Exit::of_batch(0, &[]), Exit::Done);
         assert_eq!(Exit::of_batch(2, std::slice::from_ref(&input)), Exit::Partly);
         assert_eq!(Exit::of_batch(0, &[input, singular.clone()]), Exit::Bad);

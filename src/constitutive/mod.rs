@@ -20,12 +20,11 @@ mod sensitivity;
 mod shear;
 
 use serde::Serialize;
-use thiserror::Error;
 
 use std::borrow::Cow;
 
 use crate::characterise::{FabricSheet, Key};
-use crate::finding::{Finding, SectionFact};
+use crate::finding::{Finding, SectionFact, as_text, errors};
 use crate::instrument::{Direction, Parameter};
 use crate::law::LawError;
 use crate::quantity::{Estimate, significant};
@@ -63,73 +62,50 @@ pub struct Used {
     pub source: String,
 }
 
-/// Why a sheet gives no section.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum ConstitutiveError {
-    /// C004: a value without which there is nothing to say.
-    #[error("C004 {fabric} has no {what}: {cure}")]
-    Missing {
-        /// Name of the fabric.
-        fabric: String,
-        /// What is missing.
-        what: String,
-        /// What to do.
-        cure: &'static str,
-    },
-    /// C005: a stiffness that is zero, negative or not a number.
-    #[error("C005 {fabric}: {what} is {value:e} {unit}, a positive number is needed: {cure}")]
-    NotPositive {
-        /// Name of the fabric.
-        fabric: String,
-        /// Which stiffness.
-        what: String,
-        /// Its value (SI).
-        value: f64,
-        /// The SI unit.
-        unit: &'static str,
-        /// What to do.
-        cure: &'static str,
-    },
-    /// C006: Poisson's ratio is outside the range in which energy is positive.
-    #[error("C006 Poisson's ratio {poisson} ({rule}) is too large: |nu| < {limit} is needed for {fabric}")]
-    Poisson {
-        /// Name of the fabric.
-        fabric: String,
-        /// The given ratio.
-        poisson: f64,
-        /// The rule.
-        rule: PoissonRule,
-        /// The limit of its absolute value.
-        limit: f64,
-    },
-    /// C001 to C003: the matrices do not describe a stable sheet.
-    #[error("{source} ({fabric})")]
-    Section {
-        /// Name of the fabric.
-        fabric: String,
-        /// What is wrong with the matrices.
-        source: SectionError,
-    },
-    /// M020: a law with friction cannot be made.
-    #[error("{source} ({fabric})")]
-    Law {
-        /// Name of the fabric.
-        fabric: String,
-        /// What is wrong with the law.
-        source: LawError,
-    },
-}
-
-impl ConstitutiveError {
-    /// The stable code.
-    pub fn code(&self) -> &'static str {
-        match self {
-            Self::Missing { .. } => "C004",
-            Self::NotPositive { .. } => "C005",
-            Self::Poisson { .. } => "C006",
-            Self::Law { .. } => "M020",
-            Self::Section { source, .. } => source.code(),
+errors! {
+    /// Why a sheet gives no section.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum ConstitutiveError {
+        of_fabric {
+            /// C001 to C003: the matrices do not describe a stable sheet.
+            Section(SectionError),
+            /// M020: a law with friction cannot be made.
+            Law(LawError),
         }
+        /// C004: a value without which there is nothing to say.
+        "C004" Missing {
+            /// Name of the fabric.
+            fabric: String,
+            /// What is missing.
+            what: String,
+            /// What to do.
+            cure: &'static str,
+        } = "{fabric} has no {what}: {cure}";
+        /// C005: a stiffness that is zero, negative or not a number.
+        "C005" NotPositive {
+            /// Name of the fabric.
+            fabric: String,
+            /// Which stiffness.
+            what: String,
+            /// Its value (SI).
+            value: f64,
+            /// The SI unit.
+            unit: &'static str,
+            /// What to do.
+            cure: &'static str,
+        } = "{fabric}: {what} is {value:e} {unit}, a positive number is needed: {cure}";
+        /// C006: Poisson's ratio is outside the range in which energy is positive.
+        "C006" Poisson {
+            /// Name of the fabric.
+            fabric: String,
+            /// The given ratio.
+            poisson: f64,
+            /// The rule.
+            #[serde(serialize_with = "as_text")]
+            rule: PoissonRule,
+            /// The limit of its absolute value.
+            limit: f64,
+        } = "Poisson's ratio {poisson} ({rule}) is too large: |nu| < {limit} is needed for {fabric}";
     }
 }
 

@@ -1,12 +1,15 @@
 //! One element, ready to give its matrices: frame, section in the element's axes, penalties.
 
+use std::fmt;
+
 use nalgebra::{Matrix2, Matrix3, Point3, SMatrix, SVector, Vector3};
-use thiserror::Error;
+use serde::Serialize;
 
 use super::cellwise::Cellwise;
 use super::quad4::{Frame, GAUSS_2X2, gauss_point};
 use super::yarns::Yarns;
 use super::{Bending, Cell, Cells, Drilling, Formulation, Membrane, drilling, hourglass, shear};
+use crate::finding::{Coded, Fields};
 use crate::section::{ShellSection, strain_rotation};
 
 /// 12 x 12, three dofs a node.
@@ -17,9 +20,37 @@ pub type Matrix24 = SMatrix<f64, 24, 24>;
 pub type Vector24 = SVector<f64, 24>;
 
 /// M008: the warp direction is normal to the element, so it has no direction in it.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-#[error("M008 the warp direction is normal to the sheet there: choose an axis that lies along it")]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MaterialAxisError;
+
+impl MaterialAxisError {
+    /// The stable code.
+    pub fn code(self) -> &'static str {
+        "M008"
+    }
+}
+
+impl Coded for MaterialAxisError {
+    fn code(&self) -> &'static str {
+        (*self).code()
+    }
+
+    fn message(&self) -> String {
+        "the warp direction is normal to the sheet there: choose an axis that lies along it".into()
+    }
+
+    fn fields(&self) -> Fields {
+        Fields::new()
+    }
+}
+
+impl fmt::Display for MaterialAxisError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.code(), self.message())
+    }
+}
+
+impl std::error::Error for MaterialAxisError {}
 
 /// An element's geometry and its section in the element's axes.
 #[derive(Clone, Copy, Debug)]

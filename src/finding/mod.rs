@@ -8,6 +8,7 @@
 //! sections, `M` meshes, elements and models, `N` numerics, `S` studies (cases and
 //! comparisons), `O` output files and usage.
 
+mod error;
 mod facts;
 mod words;
 
@@ -18,6 +19,8 @@ use std::sync::OnceLock;
 use serde::ser::SerializeStruct;
 use serde::{Deserialize, Serialize, Serializer};
 
+pub use error::{Coded, FailureKind};
+pub(crate) use error::{as_text, errors, fields_of};
 pub use facts::{
     CoarseQuantity, Divisor, EvaluationFact, Excess, Fact, Fields, LeftOutLine, Missed, ReadFact, RecordAxis,
     Renaming, Samples, SectionFact, StripLength, StudyFact, Subject, UsageFact,

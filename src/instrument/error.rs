@@ -1,8 +1,9 @@
 //! Why a file was not read: what was found, what was expected, what to do.
 
+use serde::Serialize;
 use thiserror::Error;
 
-use crate::finding::Place;
+use crate::finding::{Coded, Fields, Place, fields_of};
 
 /// A file, or a place in it, that cannot be read. One error never concerns more than one file.
 ///
@@ -50,10 +51,37 @@ impl ReadError {
     }
 }
 
+impl Coded for ReadError {
+    fn code(&self) -> &'static str {
+        self.problem.code()
+    }
+
+    fn message(&self) -> String {
+        self.problem.to_string()
+    }
+
+    fn fields(&self) -> Fields {
+        fields_of(&self.problem)
+    }
+
+    fn place(&self) -> Option<Place> {
+        Some(self.place.clone())
+    }
+
+    fn hint(&self) -> Option<&'static str> {
+        Some(self.problem.hint())
+    }
+
+    fn fabric(&self) -> Option<String> {
+        self.about.fabric.clone()
+    }
+}
+
 macro_rules! problems {
     ($($(#[$doc:meta])* $code:literal $variant:ident $({ $($(#[$fdoc:meta])* $field:ident: $type:ty),* $(,)? })? = $message:literal, $hint:literal;)*) => {
         /// What can be wrong with an input. Each kind has a code, a message and a cure.
-        #[derive(Clone, Debug, Error, PartialEq)]
+        #[derive(Clone, Debug, Error, PartialEq, Serialize)]
+        #[serde(untagged)]
         pub enum Problem {
             $(
                 #[doc = concat!("`", $code, "`: ")]

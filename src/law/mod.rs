@@ -15,51 +15,43 @@ pub use backbone::{Backbone, Elastic};
 pub use channel::{Channel, Family, MAX_SLIDERS, Mode, Response, Slider, State};
 pub use widening::Widening;
 
-use thiserror::Error;
-
-/// M020: numbers that make no law.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum LawError {
-    /// Knots and tangents do not belong together.
-    #[error(
-        "M020 a backbone needs a tangent for each knot, and one at least: {knots} knots, {tangents} tangents"
-    )]
-    Count {
-        /// Number of knots.
-        knots: usize,
-        /// Number of tangents.
-        tangents: usize,
-    },
-    /// Knots do not increase.
-    #[error("M020 the knots of a backbone must increase, but {after:e} follows {before:e}")]
-    Order {
-        /// A knot.
-        before: f64,
-        /// The next one.
-        after: f64,
-    },
-    /// A number is negative, or not finite.
-    #[error("M020 {what} of a law is {value:e}: it must be finite, and not below zero")]
-    Value {
-        /// Which number.
-        what: &'static str,
-        /// The number.
-        value: f64,
-    },
-    /// More sliders than a state has room for.
-    #[error("M020 a law of {count} sliders: there is room for {MAX_SLIDERS}")]
-    Sliders {
-        /// Number of sliders.
-        count: usize,
-    },
-    /// A slider's slip level rises faster than the strain.
-    #[error(
-        "M020 the slip level of {slip:e} widens faster than the strain grows (slope {slope}): take a smaller one"
-    )]
-    Steep {
-        /// Slip level of the slider.
-        slip: f64,
-        /// Greatest derivative of the widened level with respect to the strain.
-        slope: f64,
-    },
+use crate::finding::errors;
+errors! {
+    /// M020: numbers that make no law.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum LawError {
+        /// Knots and tangents do not belong together.
+        "M020" Count {
+            /// Number of knots.
+            knots: usize,
+            /// Number of tangents.
+            tangents: usize,
+        } = "a backbone needs a tangent for each knot, and one at least: {knots} knots, {tangents} tangents";
+        /// Knots do not increase.
+        "M020" Order {
+            /// A knot.
+            before: f64,
+            /// The next one.
+            after: f64,
+        } = "the knots of a backbone must increase, but {after:e} follows {before:e}";
+        /// A number is negative, or not finite.
+        "M020" Value {
+            /// Which number.
+            what: &'static str,
+            /// The number.
+            value: f64,
+        } = "{what} of a law is {value:e}: it must be finite, and not below zero";
+        /// More sliders than a state has room for.
+        "M020" Sliders {
+            /// Number of sliders.
+            count: usize,
+        } = "a law of {count} sliders: there is room for {MAX_SLIDERS}";
+        /// A slider's slip level rises faster than the strain.
+        "M020" Steep {
+            /// Slip level of the slider.
+            slip: f64,
+            /// Greatest derivative of the widened level with respect to the strain.
+            slope: f64,
+        } = "the slip level of {slip:e} widens faster than the strain grows (slope {slope}): take a smaller one";
+    }
 }

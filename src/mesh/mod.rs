@@ -8,13 +8,12 @@ mod orient;
 use std::collections::{BTreeMap, HashMap};
 
 use nalgebra::{Point3, Vector3};
-use thiserror::Error;
 
 pub use generate::{annulus, disc, distorted, graded_annulus, rectangle};
 pub use gmsh::parse_gmsh;
 pub use joined::Unjoined;
 
-use crate::finding::Place;
+use crate::finding::{Place, errors};
 
 /// A mesh of four-node quadrilaterals.
 ///
@@ -36,109 +35,80 @@ pub struct QuadMesh {
     pub edge_sets: BTreeMap<String, Vec<[u32; 2]>>,
 }
 
-/// Why a mesh cannot be used.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum MeshError {
-    /// M001: no element.
-    #[error("M001 the mesh has no quadrilateral")]
-    Empty,
-    /// M002: a quad names a node that does not exist.
-    #[error("M002 quad {quad} names node {node}, but there are {nodes} nodes (counted from 0)")]
-    NoSuchNode {
-        /// Index of the quad, from 0.
-        quad: usize,
-        /// The node it names.
-        node: u32,
-        /// Number of nodes.
-        nodes: usize,
-    },
-    /// M003: inverted, folded, non-convex or collapsed.
-    #[error(
-        "M003 quad {quad} (nodes {nodes:?}) is {what}: the smallest corner Jacobian is {ratio:.3} of the mean; \
-         every corner must turn counter-clockwise by less than 180 degrees"
-    )]
-    Shape {
-        /// Index of the quad, from 0.
-        quad: usize,
-        /// Its nodes.
-        nodes: [u32; 4],
-        /// `inverted`, `non-convex` or `degenerate`.
-        what: &'static str,
-        /// Smallest corner Jacobian over the mean of the four.
-        ratio: f64,
-    },
-    /// M004: a node that no quad uses.
-    #[error("M004 node {node} at ({x}, {y}, {z}) m belongs to no quad: remove it")]
-    UnconnectedNode {
-        /// Index of the node, from 0.
-        node: usize,
-        /// Its x.
-        x: f64,
-        /// Its y.
-        y: f64,
-        /// Its z.
-        z: f64,
-    },
-    /// M005: a coordinate is not finite.
-    #[error("M005 node {node} has a coordinate that is not a finite number")]
-    NotFinite {
-        /// Index of the node, from 0.
-        node: usize,
-    },
-    /// M006: sizes or counts that make no mesh.
-    #[error("M006 {what}")]
-    Parameters {
-        /// What is wrong and what is expected.
-        what: String,
-    },
-    /// M007: a set that the mesh does not have.
-    #[error("M007 the mesh has no set `{name}`; it has: {known}")]
-    NoSuchSet {
-        /// The name asked for.
-        name: String,
-        /// The names that exist.
-        known: String,
-    },
-    /// M012: neighbours whose normals point to different sides.
-    #[error(
-        "M012 quads {} and {} (counted from 0) have their normals on different sides of the sheet: turn one of them over",
-        quads[0], quads[1]
-    )]
-    Opposed {
-        /// The two quads.
-        quads: [usize; 2],
-    },
-    /// M013: the same quad twice.
-    #[error("M013 quads {} and {} (counted from 0) have the same nodes: remove one of them", quads[0], quads[1])]
-    Twice {
-        /// The two quads.
-        quads: [usize; 2],
-    },
-    /// M011: a mesh file that cannot be used.
-    #[error("{place}: M011 {message}")]
-    File {
-        /// File and line.
-        place: Place,
-        /// What was found, what is expected, what to do.
-        message: String,
-    },
-}
-
-impl MeshError {
-    /// The stable code, e.g. `M003`.
-    pub fn code(&self) -> &'static str {
-        match self {
-            Self::Empty => "M001",
-            Self::NoSuchNode { .. } => "M002",
-            Self::Shape { .. } => "M003",
-            Self::UnconnectedNode { .. } => "M004",
-            Self::NotFinite { .. } => "M005",
-            Self::Parameters { .. } => "M006",
-            Self::NoSuchSet { .. } => "M007",
-            Self::File { .. } => "M011",
-            Self::Opposed { .. } => "M012",
-            Self::Twice { .. } => "M013",
-        }
+errors! {
+    /// Why a mesh cannot be used.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum MeshError {
+        /// M001: no element.
+        "M001" Empty = "the mesh has no quadrilateral";
+        /// M002: a quad names a node that does not exist.
+        "M002" NoSuchNode {
+            /// Index of the quad, from 0.
+            quad: usize,
+            /// The node it names.
+            node: u32,
+            /// Number of nodes.
+            nodes: usize,
+        } = "quad {quad} names node {node}, but there are {nodes} nodes (counted from 0)";
+        /// M003: inverted, folded, non-convex or collapsed.
+        "M003" Shape {
+            /// Index of the quad, from 0.
+            quad: usize,
+            /// Its nodes.
+            nodes: [u32; 4],
+            /// `inverted`, `non-convex` or `degenerate`.
+            what: &'static str,
+            /// Smallest corner Jacobian over the mean of the four.
+            ratio: f64,
+        } = "quad {quad} (nodes {nodes:?}) is {what}: the smallest corner Jacobian is {ratio:.3} of the mean; \
+             every corner must turn counter-clockwise by less than 180 degrees";
+        /// M004: a node that no quad uses.
+        "M004" UnconnectedNode {
+            /// Index of the node, from 0.
+            node: usize,
+            /// Its x.
+            x: f64,
+            /// Its y.
+            y: f64,
+            /// Its z.
+            z: f64,
+        } = "node {node} at ({x}, {y}, {z}) m belongs to no quad: remove it";
+        /// M005: a coordinate is not finite.
+        "M005" NotFinite {
+            /// Index of the node, from 0.
+            node: usize,
+        } = "node {node} has a coordinate that is not a finite number";
+        /// M006: sizes or counts that make no mesh.
+        "M006" Parameters {
+            /// What is wrong and what is expected.
+            what: String,
+        } = "{what}";
+        /// M007: a set that the mesh does not have.
+        "M007" NoSuchSet {
+            /// The name asked for.
+            name: String,
+            /// The names that exist.
+            known: String,
+        } = "the mesh has no set `{name}`; it has: {known}";
+        /// M012: neighbours whose normals point to different sides.
+        "M012" Opposed {
+            /// The two quads.
+            quads: [usize; 2],
+        } = "quads {} and {} (counted from 0) have their normals on different sides of the sheet: turn one of them over",
+quads[0], quads[1];
+        /// M013: the same quad twice.
+        "M013" Twice {
+            /// The two quads.
+            quads: [usize; 2],
+        } = "quads {} and {} (counted from 0) have the same nodes: remove one of them", quads[0], quads[1];
+        /// M011: a mesh file that cannot be used.
+        "M011" File {
+            /// File and line.
+            #[serde(skip)]
+            place: Place,
+            /// What was found, what is expected, what to do.
+            message: String,
+        } at place.clone(), = "{message}";
     }
 }
 

@@ -8,7 +8,6 @@ mod support;
 use std::sync::Arc;
 
 use nalgebra::{Point3, Vector3};
-use thiserror::Error;
 
 pub use dof::{Dof, DofGroup};
 pub use hard::{HardEdge, OwnAxes};
@@ -18,6 +17,7 @@ pub use support::Support;
 use crate::element::{
     Bending, Formulation, Frame, MaterialAxisError, Prepared, gravity_load, pressure_load, pressure_moments,
 };
+use crate::finding::errors;
 use crate::mesh::{MeshError, QuadMesh, is_translated};
 use crate::section::ShellSection;
 
@@ -70,58 +70,40 @@ pub enum Load {
     },
 }
 
-/// Why a model cannot be assembled.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum ModelError {
-    /// A defect of the mesh, or a set that it does not have.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
-    /// M008.
-    #[error(transparent)]
-    MaterialAxis(#[from] MaterialAxisError),
-    /// M009: a hard simple support on an edge that is oblique to the axes, where something else turns the node.
-    #[error(
-        "M009 the node at ({:.4}, {:.4}, {:.4}) m is on a hard simple support that holds its rotation about ({:.3}, {:.3}, {:.3}), \
-         and {clash}: use kind = \"simply_supported_soft\" there",
-        at[0], at[1], at[2], about[0], about[1], about[2]
-    )]
-    Oblique {
-        /// Place of the node (m).
-        at: [f64; 3],
-        /// Direction of the rotation that is held, of length 1.
-        about: [f64; 3],
-        /// What it is besides.
-        clash: &'static str,
-    },
-    /// M014: two values of one dof.
-    #[error(
-        "M014 {dof} of the node at ({}, {}, {}) m is prescribed twice, as {} and as {} {}: remove one of the two, or leave \
-         the node out of one of the sets",
-        at[0], at[1], at[2], values[0], values[1], if dof.starts_with("theta") { "rad" } else { "m" }
-    )]
-    TwoValues {
-        /// Name of the dof.
-        dof: &'static str,
-        /// Both values (m or rad), in the order given.
-        values: [f64; 2],
-        /// Place of the node (m).
-        at: [f64; 3],
-    },
-    /// M010.
-    #[error(transparent)]
-    Body(#[from] RigidBodyError),
-}
-
-impl ModelError {
-    /// The stable code.
-    pub fn code(&self) -> &'static str {
-        match self {
-            Self::Mesh(e) => e.code(),
-            Self::MaterialAxis(_) => "M008",
-            Self::Oblique { .. } => "M009",
-            Self::Body(_) => "M010",
-            Self::TwoValues { .. } => "M014",
+errors! {
+    /// Why a model cannot be assembled.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum ModelError {
+        from {
+            /// A defect of the mesh, or a set that it does not have.
+            Mesh(MeshError),
+            /// M008.
+            MaterialAxis(MaterialAxisError),
+            /// M010.
+            Body(RigidBodyError),
         }
+        /// M009: a hard simple support on an edge that is oblique to the axes, where something else turns the node.
+        "M009" Oblique {
+            /// Place of the node (m).
+            at: [f64; 3],
+            /// Direction of the rotation that is held, of length 1.
+            about: [f64; 3],
+            /// What it is besides.
+            clash: &'static str,
+        } = "the node at ({:.4}, {:.4}, {:.4}) m is on a hard simple support that holds its rotation about ({:.3}, {:.3}, {:.3}), \
+             and {clash}: use kind = \"simply_supported_soft\" there",
+at[0], at[1], at[2], about[0], about[1], about[2];
+        /// M014: two values of one dof.
+        "M014" TwoValues {
+            /// Name of the dof.
+            dof: &'static str,
+            /// Both values (m or rad), in the order given.
+            values: [f64; 2],
+            /// Place of the node (m).
+            at: [f64; 3],
+        } = "{dof} of the node at ({}, {}, {}) m is prescribed twice, as {} and as {} {}: remove one of the two, or leave \
+             the node out of one of the sets",
+at[0], at[1], at[2], values[0], values[1], if dof.starts_with("theta") { "rad" } else { "m" };
     }
 }
 

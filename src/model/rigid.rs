@@ -1,10 +1,10 @@
 //! Nodes that move as one rigid body: a clamp that is free to follow the sheet, a plate that is much
 //! stiffer than the rest.
 
+use crate::finding::errors;
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DMatrixViewMut, DVector, Matrix3, Matrix6, Point3, Vector3};
-use thiserror::Error;
 
 use super::{Dof, DofGroup, OwnAxes};
 
@@ -19,28 +19,26 @@ pub struct RigidBody {
     pub nodes: Vec<u32>,
 }
 
-/// M010: what makes no rigid body.
-#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
-pub enum RigidBodyError {
-    /// A node follows two bodies.
-    #[error("M010 node {node} belongs to two rigid bodies: join them to one")]
-    Shared {
-        /// The node.
-        node: u32,
-    },
-    /// A support holds a node that is not the lead, in a way that does not follow from the lead's own.
-    #[error(
-        "M010 {dof} of node {node} is held, which belongs to a rigid body that is free to move it: hold node {lead}, \
-         which leads the body"
-    )]
-    Held {
-        /// The node.
-        node: u32,
-        /// Name of its dof.
-        dof: &'static str,
-        /// The node that may be held.
-        lead: u32,
-    },
+errors! {
+    /// M010: what makes no rigid body.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum RigidBodyError {
+        /// A node follows two bodies.
+        "M010" Shared {
+            /// The node.
+            node: u32,
+        } = "node {node} belongs to two rigid bodies: join them to one";
+        /// A support holds a node that is not the lead, in a way that does not follow from the lead's own.
+        "M010" Held {
+            /// The node.
+            node: u32,
+            /// Name of its dof.
+            dof: &'static str,
+            /// The node that may be held.
+            lead: u32,
+        } = "{dof} of node {node} is held, which belongs to a rigid body that is free to move it: hold node {lead}, \
+             which leads the body";
+    }
 }
 
 /// What ties the motion of nodes to the unknowns, for small displacements. A node of a rigid body follows its

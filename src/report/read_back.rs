@@ -7,33 +7,41 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix2, Matrix3};
 use serde::Deserialize;
-use thiserror::Error;
 
 use crate::characterise::{FabricSheet, Key};
 use crate::constitutive::{Constitutive, Used};
+use crate::finding::errors;
 use crate::instrument::{Direction, FabricInfo, Origin, Parameter};
 use crate::quantity::Estimate;
 use crate::section::{SectionError, ShellSection};
 
-/// Why a document is not read.
-#[derive(Debug, Error)]
-pub enum DocumentError {
-    /// O042: not as this program writes it.
-    #[error(
-        "O042 the document is not as kesf writes it: {0}; write it again with `kesf characterise` or `kesf section`"
-    )]
-    Shape(#[from] serde_json::Error),
-    /// O042: a name that is none of ours, or another unit.
-    #[error("O042 {fabric} has {what}; write the document again with this version of kesf")]
-    Content {
-        /// Name of the fabric.
-        fabric: String,
-        /// What is wrong.
-        what: String,
-    },
-    /// The section is none.
-    #[error(transparent)]
-    Section(#[from] SectionError),
+errors! {
+    /// Why a document is not read.
+    #[derive(Debug)]
+    pub enum DocumentError {
+        from {
+            /// The section is none.
+            Section(SectionError),
+        }
+        /// O042: not as this program writes it.
+        "O042" Shape {
+            /// What the parser said.
+            problem: String,
+        } = "the document is not as kesf writes it: {problem}; write it again with `kesf characterise` or `kesf section`";
+        /// O042: a name that is none of ours, or another unit.
+        "O042" Content {
+            /// Name of the fabric.
+            fabric: String,
+            /// What is wrong.
+            what: String,
+        } = "{fabric} has {what}; write the document again with this version of kesf";
+    }
+}
+
+impl From<serde_json::Error> for DocumentError {
+    fn from(e: serde_json::Error) -> Self {
+        Self::Shape { problem: e.to_string() }
+    }
 }
 
 /// A document of ours.

@@ -1,25 +1,25 @@
 //! Tidy tables: one observation a row, with its unit; as CSV, and as Parquet with the feature `tables`.
 
 use serde::Serialize;
-use thiserror::Error;
 
 use crate::characterise::FabricSheet;
-use crate::finding::Finding;
+use crate::finding::{Finding, errors};
 use crate::instrument::{Direction, FabricInput, Measurement, Parameter, Test};
 use crate::quantity::Estimate;
 use crate::study::CaseResult;
 
-/// Why there is no table.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum TableError {
-    /// O030: the CSV or Parquet writer refused.
-    #[error("O030 the {format} table could not be made: {problem}")]
-    Encode {
-        /// `CSV` or `Parquet`.
-        format: &'static str,
-        /// What the writer said.
-        problem: String,
-    },
+errors! {
+    /// Why there is no table.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum TableError {
+        /// O030: the CSV or Parquet writer refused.
+        "O030" Encode {
+            /// `CSV` or `Parquet`.
+            format: &'static str,
+            /// What the writer said.
+            problem: String,
+        } = "the {format} table could not be made: {problem}";
+    }
 }
 
 /// A row of a table: a plain struct whose field names are the column names.

@@ -1,12 +1,12 @@
 //! Meshes and fields as VTU files (VTK XML unstructured grid) for ParaView and PyVista.
 
+use crate::finding::errors;
 use std::io;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use quick_xml::Writer;
 use quick_xml::events::BytesText;
-use thiserror::Error;
 
 /// Values at the nodes or in the cells of a mesh (SI).
 #[derive(Clone, Copy, Debug)]
@@ -19,36 +19,36 @@ pub struct MeshField<'a> {
     pub values: &'a [f64],
 }
 
-/// Why there is no file.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum VtuError {
-    /// O020: a field has not one value for each node or cell.
-    #[error(
-        "O020 field `{name}` has {found} numbers, but {places} {kind} of {components} components were expected"
-    )]
-    Length {
-        /// The field.
-        name: String,
-        /// `nodes` or `cells`.
-        kind: &'static str,
-        /// How many nodes or cells there are.
-        places: usize,
-        /// Components that the field claims.
-        components: usize,
-        /// How many numbers it has.
-        found: usize,
-    },
-    /// O021: a quad names a node that is not there.
-    #[error("O021 a quad names node {node}, but there are {nodes} nodes")]
-    Node {
-        /// The index, from 0.
-        node: u32,
-        /// Number of nodes.
-        nodes: usize,
-    },
-    /// O022: the XML library refused.
-    #[error("O022 the VTU file could not be made: {0}")]
-    Encode(String),
+errors! {
+    /// Why there is no file.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum VtuError {
+        /// O020: a field has not one value for each node or cell.
+        "O020" Length {
+            /// The field.
+            name: String,
+            /// `nodes` or `cells`.
+            kind: &'static str,
+            /// How many nodes or cells there are.
+            places: usize,
+            /// Components that the field claims.
+            components: usize,
+            /// How many numbers it has.
+            found: usize,
+        } = "field `{name}` has {found} numbers, but {places} {kind} of {components} components were expected";
+        /// O021: a quad names a node that is not there.
+        "O021" Node {
+            /// The index, from 0.
+            node: u32,
+            /// Number of nodes.
+            nodes: usize,
+        } = "a quad names node {node}, but there are {nodes} nodes";
+        /// O022: the XML library refused.
+        "O022" Encode {
+            /// What it said.
+            problem: String,
+        } = "the VTU file could not be made: {problem}";
+    }
 }
 
 /// The bytes of a VTU file: nodes n x 3 (m), quads of four node indices, fields at nodes and in cells.
@@ -67,7 +67,7 @@ pub fn vtu(
     for (fields, kind, places) in [(point_data, "nodes", nodes.len()), (cell_data, "cells", quads.len())] {
         fields.iter().try_for_each(|field| field.fits(kind, places))?;
     }
-    document(nodes, quads, point_data, cell_data).map_err(|e| VtuError::Encode(e.to_string()))
+    document(nodes, quads, point_data, cell_data).map_err(|e| VtuError::Encode { problem: e.to_string() })
 }
 
 impl MeshField<'_> {

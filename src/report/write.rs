@@ -1,5 +1,6 @@
 //! Putting files in place: whole or not at all, and never over somebody else's work.
 
+use crate::finding::{Place, as_text, errors, path_as_text};
 use std::collections::BTreeMap;
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Read as _, Write as _};
@@ -8,7 +9,6 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use thiserror::Error;
 
 /// The list of files that this program wrote into a folder, with their hashes; readers of measurements pass by.
 pub const MANIFEST: &str = crate::instrument::MANIFEST;
@@ -17,54 +17,48 @@ pub const MANIFEST: &str = crate::instrument::MANIFEST;
 const JOURNAL: &str = crate::instrument::JOURNAL;
 const SCHEMA: &str = "kesf.manifest/1";
 
-/// Why a file was not written.
-#[derive(Debug, Error)]
-pub enum OutputError {
-    /// O001: the system refused.
-    #[error(
-        "{}: O001 cannot be written: {source}; choose another place with -o or free this one",
-        path.display()
-    )]
-    Write {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
-    /// O002: a file of that name is there, and is not (or no longer) the one that this program wrote.
-    #[error(
-        "{}: O002 exists and is not as this program left it; move it away, write elsewhere with -o, \
-         or overwrite it with --force",
-        path.display()
-    )]
-    NotOurs {
-        /// The file.
-        path: PathBuf,
-    },
-    /// O003: a name that would leave the folder, or none.
-    #[error("O003 `{name}` is not a name inside the output folder; rename the fabric or case it comes from")]
-    Name {
-        /// The name.
-        name: String,
-    },
-    /// O004: the manifest is there but cannot be read.
-    #[error(
-        "{}: O004 the list of our own files cannot be read: {problem}; overwrite everything with --force \
-         or write elsewhere with -o",
-        path.display()
-    )]
-    Manifest {
-        /// The manifest.
-        path: PathBuf,
-        /// What is wrong with it.
-        problem: String,
-    },
-    /// O005: another run is writing into the folder.
-    #[error("{}: O005 another kesf is writing into this folder; wait for it, or write elsewhere with -o", path.display())]
-    Busy {
-        /// The folder.
-        path: PathBuf,
-    },
+errors! {
+    /// Why a file was not written.
+    #[derive(Debug)]
+    pub enum OutputError {
+        /// O001: the system refused.
+        "O001" Write {
+            /// The file or folder.
+            #[serde(serialize_with = "path_as_text")]
+            path: PathBuf,
+            /// What the system said.
+            #[serde(serialize_with = "as_text")]
+            source: io::Error,
+        } at Place::file(path), = "cannot be written: {source}"
+            => "make the folder, free the place or its permissions, or write elsewhere with -o";
+        /// O002: a file of that name is there, and is not (or no longer) the one that this program wrote.
+        "O002" NotOurs {
+            /// The file.
+            #[serde(serialize_with = "path_as_text")]
+            path: PathBuf,
+        } at Place::file(path), = "exists and is not as this program left it"
+            => "write elsewhere with -o, or overwrite it with --force";
+        /// O003: a name that would leave the folder, or none.
+        "O003" Name {
+            /// The name.
+            name: String,
+        } = "`{name}` is not a name inside the output folder; rename the fabric or case it comes from";
+        /// O004: the manifest is there but cannot be read.
+        "O004" Manifest {
+            /// The manifest.
+            #[serde(serialize_with = "path_as_text")]
+            path: PathBuf,
+            /// What is wrong with it.
+            problem: String,
+        } at Place::file(path), = "the list of our own files cannot be read: {problem}"
+            => "write elsewhere with -o, or overwrite it with --force";
+        /// O005: another run is writing into the folder.
+        "O005" Busy {
+            /// The folder.
+            #[serde(serialize_with = "path_as_text")]
+            path: PathBuf,
+        } at Place::file(path), = "another kesf is writing into this folder" => "wait for it, or write elsewhere with -o";
+    }
 }
 
 /// Writes a file under a temporary name beside it and renames it: readers see the old bytes or the new.

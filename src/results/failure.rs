@@ -3,26 +3,8 @@
 use serde::Serialize;
 
 use crate::constitutive::ConstitutiveError;
-use crate::finding::Place;
-use crate::instrument::ReadError;
-use crate::report::OutputError;
-use crate::report::cards::CardError;
-use crate::report::chart::ChartError;
-use crate::report::read_back::DocumentError;
-use crate::report::table::{ProblemRow, TableError};
-use crate::report::vtu::VtuError;
-use crate::study::{CaseError, StudyError};
-
-/// What failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FailureKind {
-    /// Usage, input or output.
-    Input,
-    /// Singular or not converged.
-    Numerics,
-    /// The caller ended the work.
-    Interrupted,
-}
+use crate::finding::{Coded, FailureKind, Fields, Finding, Place};
+use crate::report::table::ProblemRow;
 
 /// Why an input or the whole task failed.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,12 +15,12 @@ pub struct Failure {
     pub place: Option<Place>,
     /// What is wrong, without code and place.
     pub message: String,
+    /// The data of the message by their names.
+    pub fields: Box<Fields>,
     /// The fabric that gave nothing, where a file has several.
     pub fabric: Option<Box<str>>,
     /// What to do.
     pub hint: Option<Box<str>>,
-    /// What failed.
-    pub kind: FailureKind,
 }
 
 /// `error` of a JSON line on standard error, and an entry of `failures` of a document.
@@ -54,6 +36,8 @@ pub struct FailureEntry {
     pub column: Option<usize>,
     /// What is wrong.
     pub message: String,
+    /// The data of the message by their names.
+    pub fields: Fields,
     /// What to do.
     pub hint: Option<String>,
 }
@@ -65,9 +49,9 @@ impl Failure {
             code: code.into(),
             place: None,
             message: message.into(),
+            fields: Box::default(),
             fabric: None,
             hint: None,
-            kind: FailureKind::Input,
         }
     }
 
@@ -85,13 +69,12 @@ impl Failure {
 
     /// O054: the caller ended the work.
     pub fn interrupted() -> Self {
-        Self { kind: FailureKind::Interrupted, ..Self::new("O054", "interrupted: nothing more was written") }
+        Self::new("O054", "interrupted: nothing more was written")
     }
 
-    /// A layer's error whose text begins with its code.
-    fn coded(code: &str, text: &str) -> Self {
-        let message = text.strip_prefix(code).unwrap_or(text).trim_start();
-        Self::new(code, message)
+    /// What kind of failure it is.
+    pub fn kind(&self) -> FailureKind {
+        FailureKind::of_code(&self.code)
     }
 
     /// The same with what comes before the message, such as the case and fabric it belongs to.
@@ -102,8 +85,10 @@ impl Failure {
 
     /// Why a fabric has no section; some of these errors name the fabric themselves.
     pub fn of_fabric(error: ConstitutiveError, name: &str) -> Self {
+        let names_it =
+            matches!(error, ConstitutiveError::Missing { .. } | ConstitutiveError::NotPositive { .. });
         let failure = Self::from(error);
-        if failure.message.starts_with(&format!("{name} ")) { failure } else { failure.of(name) }
+        if names_it { failure } else { failure.of(name) }
     }
 
     /// The row of `problems.csv`.
@@ -126,96 +111,42 @@ impl Failure {
             line: known(place.line),
             column: known(place.column),
             message: self.message.clone(),
+            fields: (*self.fields).clone(),
             hint: self.hint.as_deref().map(str::to_string),
         }
     }
 }
 
-impl From<ReadError> for Failure {
-    fn from(e: ReadError) -> Self {
-        let failure = Self::new(e.code(), e.problem.to_string()).hint(e.hint()).at(e.place);
-        match e.about.fabric {
+/// Errors of all layers.
+impl<E: Coded> From<E> for Failure {
+    fn from(e: E) -> Self {
+        let failure = Self {
+            place: e.place(),
+            fields: Box::new(e.fields()),
+            hint: e.hint().map(Into::into),
+            ..Self::new(e.code(), e.message())
+        };
+        match e.fabric() {
             Some(fabric) => Self { fabric: Some(fabric.as_str().into()), ..failure.of(&fabric) },
             None => failure,
         }
     }
 }
 
-impl From<ConstitutiveError> for Failure {
-    fn from(e: ConstitutiveError) -> Self {
-        Self::coded(e.code(), &e.to_string())
-    }
-}
-
-impl From<CaseError> for Failure {
-    fn from(e: CaseError) -> Self {
-        let text = e.to_string();
-        let place = e.place().clone();
-        // Place and code come first in the text of the error, and are shown on their own here.
-        let text = text.strip_prefix(&format!("{place}: ")).unwrap_or(&text);
-        Self::coded(e.code(), text).at(place)
-    }
-}
-
-impl From<StudyError> for Failure {
-    fn from(e: StudyError) -> Self {
-        let numeric = e.is_numeric();
-        let failure = match e {
-            StudyError::Case(e) => e.into(),
-            other => Self::coded(other.code(), &other.to_string()),
-        };
-        if numeric { Self { kind: FailureKind::Numerics, ..failure } } else { failure }
-    }
-}
-
-impl From<OutputError> for Failure {
-    fn from(e: OutputError) -> Self {
-        let (code, path, message) = match e {
-            OutputError::Write { path, source } => {
-                ("O001", Some(path), format!("cannot be written: {source}"))
-            }
-            OutputError::NotOurs { path } => {
-                ("O002", Some(path), "exists and is not as this program left it".into())
-            }
-            OutputError::Manifest { path, problem } => {
-                ("O004", Some(path), format!("the list of our own files cannot be read: {problem}"))
-            }
-            OutputError::Busy { path } => {
-                ("O005", Some(path), "another kesf is writing into this folder".into())
-            }
-            other @ OutputError::Name { .. } => return Self::coded("O003", &other.to_string()),
-        };
-        let hint = match code {
-            "O001" => "make the folder, free the place or its permissions, or write elsewhere with -o",
-            "O005" => "wait for it, or write elsewhere with -o",
-            _ => "write elsewhere with -o, or overwrite it with --force",
-        };
-        let failure = Self::new(code, message).hint(hint);
-        Self { place: path.map(Place::file), ..failure }
-    }
-}
-
-/// Encoders of results: they fail only when memory does, or on a defect of this program.
-macro_rules! encoder_failures {
-    ($($error:ty: $code:literal),*) => {$(
-        impl From<$error> for Failure {
-            fn from(e: $error) -> Self {
-                Self::coded($code, &e.to_string())
-            }
+/// A finding that leaves nothing of a result.
+impl From<&Finding> for Failure {
+    fn from(finding: &Finding) -> Self {
+        Self {
+            place: finding.place.clone(),
+            fields: Box::new(finding.fields()),
+            ..Self::new(finding.code(), finding.message())
         }
-    )*};
+    }
 }
-encoder_failures!(TableError: "O030", serde_json::Error: "O057");
 
-/// Errors whose text begins with their code.
-macro_rules! coded_failures {
-    ($($error:ty),*) => {$(
-        impl From<$error> for Failure {
-            fn from(e: $error) -> Self {
-                let text = e.to_string();
-                Self::coded(text.split(' ').next().unwrap_or_default(), &text)
-            }
-        }
-    )*};
+/// O057: a document cannot be encoded, for want of memory or by a defect of this program.
+impl From<serde_json::Error> for Failure {
+    fn from(e: serde_json::Error) -> Self {
+        Self::new("O057", e.to_string())
+    }
 }
-coded_failures!(ChartError, VtuError, CardError, DocumentError);

@@ -41,7 +41,8 @@ pub use checked::{CheckDocument, Checked, check};
 pub use columns::Columns;
 pub use draped::{DrapeEntry, DrapePoint};
 pub use fabric::FabricReport;
-pub use failure::{Failure, FailureEntry, FailureKind};
+pub use crate::finding::FailureKind;
+pub use failure::{Failure, FailureEntry};
 pub use folder::{Folder, MemorySink, Sink};
 pub use inputs::{
     Curves, Fabric, FileEntry, Input, Read, Reading, ReadingEntry, cases, nothing_to_read, paths_of_several,

@@ -4,8 +4,8 @@ mod law;
 
 pub use law::SheetLaw;
 
+use crate::finding::errors;
 use nalgebra::{Matrix2, Matrix3, SymmetricEigen};
-use thiserror::Error;
 
 /// Stiffness of a shell per unit width, in material axes (x = warp, y = weft).
 ///
@@ -25,63 +25,47 @@ pub struct ShellSection {
     pub thickness: f64,
 }
 
-/// Why a section cannot be used.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum SectionError {
-    /// C001: an entry is not a finite number.
-    #[error("C001 {matrix} has an entry that is not a finite number")]
-    NotFinite {
-        /// `D_m`, `D_b`, `D_s`, ...
-        matrix: &'static str,
-    },
-    /// C002: not symmetric.
-    #[error(
-        "C002 {matrix} is not symmetric: entry ({row},{column}) is {upper:e} but ({column},{row}) is {lower:e}; \
-         the two Poisson ratios must satisfy nu12 E2 = nu21 E1"
-    )]
-    NotSymmetric {
-        /// Which matrix.
-        matrix: &'static str,
-        /// Row, from 1.
-        row: usize,
-        /// Column, from 1.
-        column: usize,
-        /// Entry above the diagonal.
-        upper: f64,
-        /// Entry below the diagonal.
-        lower: f64,
-    },
-    /// C003: a strain state would release energy.
-    #[error("C003 {matrix} is not positive definite: its smallest eigenvalue is {eigenvalue:e}")]
-    NotPositiveDefinite {
-        /// Which matrix.
-        matrix: &'static str,
-        /// The offending eigenvalue.
-        eigenvalue: f64,
-    },
-    /// C007: a thickness or a mass that no sheet has.
-    #[error("C007 the {quantity} is {value} {unit}: it must be {least}")]
-    NotPositive {
-        /// `thickness` or `areal density`.
-        quantity: &'static str,
-        /// What was given (SI).
-        value: f64,
-        /// SI unit.
-        unit: &'static str,
-        /// What is accepted.
-        least: &'static str,
-    },
-}
-
-impl SectionError {
-    /// The stable code.
-    pub fn code(&self) -> &'static str {
-        match self {
-            Self::NotFinite { .. } => "C001",
-            Self::NotSymmetric { .. } => "C002",
-            Self::NotPositiveDefinite { .. } => "C003",
-            Self::NotPositive { .. } => "C007",
-        }
+errors! {
+    /// Why a section cannot be used.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum SectionError {
+        /// C001: an entry is not a finite number.
+        "C001" NotFinite {
+            /// `D_m`, `D_b`, `D_s`, ...
+            matrix: &'static str,
+        } = "{matrix} has an entry that is not a finite number";
+        /// C002: not symmetric.
+        "C002" NotSymmetric {
+            /// Which matrix.
+            matrix: &'static str,
+            /// Row, from 1.
+            row: usize,
+            /// Column, from 1.
+            column: usize,
+            /// Entry above the diagonal.
+            upper: f64,
+            /// Entry below the diagonal.
+            lower: f64,
+        } = "{matrix} is not symmetric: entry ({row},{column}) is {upper:e} but ({column},{row}) is {lower:e}; \
+             the two Poisson ratios must satisfy nu12 E2 = nu21 E1";
+        /// C003: a strain state would release energy.
+        "C003" NotPositiveDefinite {
+            /// Which matrix.
+            matrix: &'static str,
+            /// The offending eigenvalue.
+            eigenvalue: f64,
+        } = "{matrix} is not positive definite: its smallest eigenvalue is {eigenvalue:e}";
+        /// C007: a thickness or a mass that no sheet has.
+        "C007" NotPositive {
+            /// `thickness` or `areal density`.
+            quantity: &'static str,
+            /// What was given (SI).
+            value: f64,
+            /// SI unit.
+            unit: &'static str,
+            /// What is accepted.
+            least: &'static str,
+        } = "the {quantity} is {value} {unit}: it must be {least}";
     }
 }
 

@@ -6,6 +6,7 @@
 
 mod general;
 
+use crate::finding::errors;
 use std::sync::Arc;
 
 use super::multifrontal;
@@ -28,53 +29,35 @@ pub enum Path {
     Multifrontal,
 }
 
-/// Why there is no factor.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum FactorError {
-    /// A pivot is zero, negative or not a number.
-    #[error(
-        "N001 the stiffness matrix is not positive definite: pivot {pivot:e} at node {node}, dof {dof}; \
-         look for a missing support there, a zero stiffness or a turned-over element"
-    )]
-    NotPositiveDefinite {
-        /// Node of the pivot, from 0.
-        node: usize,
-        /// Dof of that node, from 0.
-        dof: usize,
-        /// The pivot that should have been positive.
-        pivot: f64,
-    },
-    /// A pivot of an indefinite matrix is zero or not a number.
-    #[error(
-        "N003 the tangent is singular: pivot {pivot:e} at node {node}, dof {dof}; \
-         it stands at a limit or bifurcation point, or something is not supported"
-    )]
-    Singular {
-        /// Node of the pivot, from 0.
-        node: usize,
-        /// Dof of that node, from 0.
-        dof: usize,
-        /// The pivot: zero or not a number.
-        pivot: f64,
-    },
-    /// The factor does not fit in memory.
-    #[error(
-        "N002 no memory for a factor of {bytes} bytes; use a coarser mesh, or iterate (method = \"iterative\" in [solver])"
-    )]
-    OutOfMemory {
-        /// Bytes of the factor; 0 where even the analysis did not fit.
-        bytes: usize,
-    },
-}
-
-impl FactorError {
-    /// The stable code.
-    pub fn code(&self) -> &'static str {
-        match self {
-            Self::NotPositiveDefinite { .. } => "N001",
-            Self::Singular { .. } => "N003",
-            Self::OutOfMemory { .. } => "N002",
-        }
+errors! {
+    /// Why there is no factor.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum FactorError {
+        /// A pivot is zero, negative or not a number.
+        "N001" NotPositiveDefinite {
+            /// Node of the pivot, from 0.
+            node: usize,
+            /// Dof of that node, from 0.
+            dof: usize,
+            /// The pivot that should have been positive.
+            pivot: f64,
+        } = "the stiffness matrix is not positive definite: pivot {pivot:e} at node {node}, dof {dof}; \
+             look for a missing support there, a zero stiffness or a turned-over element";
+        /// A pivot of an indefinite matrix is zero or not a number.
+        "N003" Singular {
+            /// Node of the pivot, from 0.
+            node: usize,
+            /// Dof of that node, from 0.
+            dof: usize,
+            /// The pivot: zero or not a number.
+            pivot: f64,
+        } = "the tangent is singular: pivot {pivot:e} at node {node}, dof {dof}; \
+             it stands at a limit or bifurcation point, or something is not supported";
+        /// The factor does not fit in memory.
+        "N002" OutOfMemory {
+            /// Bytes of the factor; 0 where even the analysis did not fit.
+            bytes: usize,
+        } = "no memory for a factor of {bytes} bytes; use a coarser mesh, or iterate (method = \"iterative\" in [solver])";
     }
 }
 

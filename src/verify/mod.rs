@@ -14,7 +14,6 @@ use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 use problem::Statics;
 
@@ -23,6 +22,7 @@ pub use suite::suite;
 pub use table::{Checked, Document, LineEntry, document, text};
 
 use crate::element::MaterialAxisError;
+use crate::finding::errors;
 use crate::mesh::MeshError;
 use crate::model::ModelError;
 use crate::solve::SolveError;
@@ -58,7 +58,7 @@ pub enum Reference {
 }
 
 /// The functions of [`analytical`](crate::analytical) that serve as references.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Function {
     /// Navier's double series: thin, SSSS.
@@ -110,31 +110,21 @@ impl Kind {
     }
 }
 
-/// Why a line has no value.
-#[derive(Clone, Debug, Error)]
-pub enum VerifyError {
-    /// The model cannot be solved.
-    #[error(transparent)]
-    Solve(#[from] SolveError),
-    /// The model has no equilibrium in large rotations.
-    #[error(transparent)]
-    Nonlinear(#[from] NonlinearError),
-    /// S201: the reference function does not cover the problem.
-    #[error("S201 the reference function {function:?} does not cover this problem")]
-    NoReference {
-        /// The function.
-        function: Function,
-    },
-}
-
-impl VerifyError {
-    /// The stable code.
-    pub fn code(&self) -> &'static str {
-        match self {
-            Self::Solve(e) => e.code(),
-            Self::Nonlinear(e) => e.code(),
-            Self::NoReference { .. } => "S201",
+errors! {
+    /// Why a line has no value.
+    #[derive(Clone, Debug)]
+    pub enum VerifyError {
+        from {
+            /// The model cannot be solved.
+            Solve(SolveError),
+            /// The model has no equilibrium in large rotations.
+            Nonlinear(NonlinearError),
         }
+        /// S201: the reference function does not cover the problem.
+        "S201" NoReference {
+            /// The function.
+            function: Function,
+        } = "the reference function {function:?} does not cover this problem";
     }
 }
 

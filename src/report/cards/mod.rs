@@ -9,13 +9,13 @@ mod u3m;
 
 use std::fmt::Write as _;
 
-use thiserror::Error;
 use unicode_normalization::UnicodeNormalization;
 
 pub use laminate::{Laminate, laminate};
 
 use crate::characterise::FabricSheet;
 use crate::constitutive::Constitutive;
+use crate::finding::errors;
 use crate::report::write::hash;
 use crate::section::SectionError;
 
@@ -78,26 +78,28 @@ impl Target {
     }
 }
 
-/// Why there is no card.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum CardError {
-    /// O040: the program cannot hold this stiffness.
-    #[error(
-        "O040 {program} cannot hold this stiffness: {reason}; export a section with torsional rigidity \
-         (--torsion huber)"
-    )]
-    Stiffness {
-        /// The program.
-        program: &'static str,
-        /// What is wrong.
-        reason: &'static str,
-    },
-    /// The section is none.
-    #[error(transparent)]
-    Section(#[from] SectionError),
-    /// O041: the document could not be written.
-    #[error("O041 the U3M document could not be made: {0}")]
-    Json(String),
+errors! {
+    /// Why there is no card.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum CardError {
+        from {
+            /// The section is none.
+            Section(SectionError),
+        }
+        /// O040: the program cannot hold this stiffness.
+        "O040" Stiffness {
+            /// The program.
+            program: &'static str,
+            /// What is wrong.
+            reason: &'static str,
+        } = "{program} cannot hold this stiffness: {reason}; export a section with torsional rigidity \
+             (--torsion huber)";
+        /// O041: the document could not be written.
+        "O041" Json {
+            /// What it said.
+            problem: String,
+        } = "the U3M document could not be made: {problem}";
+    }
 }
 
 /// A fabric with its section, as it is handed over.

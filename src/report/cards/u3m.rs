@@ -65,7 +65,7 @@ const NO_DATE: &str = "1970-01-01T00:00:00Z";
 
 /// The document.
 pub fn document(material: &Material<'_>) -> Result<String, CardError> {
-    let wrong = |e: serde_json::Error| CardError::Json(e.to_string());
+    let wrong = |e: serde_json::Error| CardError::Json { problem: e.to_string() };
     let Material { sheet, made, stamp } = *material;
     let section = section_document([(sheet, &made.section, &made.inputs[..], assumptions(&made.used))]);
     let parameters = serde_json::to_value(sheet_document([sheet], None)).map_err(wrong)?;

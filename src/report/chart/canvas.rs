@@ -190,7 +190,7 @@ impl Canvas {
             yppu: PIXELS_PER_METRE,
             unit: png::Unit::Meter,
         }));
-        let failed = |e: png::EncodingError| ChartError::Drawing(e.to_string());
+        let failed = |e: png::EncodingError| ChartError::Drawing { problem: e.to_string() };
         encoder.add_itxt_chunk("Title".into(), title.into()).map_err(failed)?;
         encoder.add_text_chunk("Software".into(), "kesf".into()).map_err(failed)?;
         let mut writer = encoder.write_header().map_err(failed)?;
@@ -231,7 +231,7 @@ impl Canvas {
 }
 
 pub(super) fn drawing(error: impl std::fmt::Display) -> ChartError {
-    ChartError::Drawing(error.to_string())
+    ChartError::Drawing { problem: error.to_string() }
 }
 
 /// Cuts a polyline into its dashes.

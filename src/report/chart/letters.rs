@@ -77,7 +77,7 @@ pub(super) fn register() -> Result<(), ChartError> {
         register_font(FONT, FontStyle::Normal, dejavu::sans::regular()).is_ok()
             && register_font(FONT, FontStyle::Bold, dejavu::sans::bold()).is_ok()
     });
-    if ok { Ok(()) } else { Err(ChartError::Drawing("the built-in font is not readable".into())) }
+    if ok { Ok(()) } else { Err(ChartError::Drawing { problem: "the built-in font is not readable".into() }) }
 }
 
 /// The glyph of a character that only Unifont has.

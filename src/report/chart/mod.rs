@@ -24,8 +24,6 @@ mod profile;
 mod schematic;
 mod spread;
 
-use thiserror::Error;
-
 pub use drape::{DrapePlot, drape_shadow, drape_view};
 pub use fabric::{SimulatedCurve, bending, compression, shear, tensile};
 pub use field::{FieldPlot, field};
@@ -34,30 +32,33 @@ pub use friction::friction;
 pub use parity::{ParityPoint, parity};
 pub use profile::{ProfileLine, ProfilePlot, profile};
 
-/// Why there is no chart.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum ChartError {
-    /// O010: neither a curve nor the parameters that a schematic needs.
-    #[error("O010 no {chart} chart of {name}: {missing}")]
-    NothingToDraw {
-        /// Which chart.
-        chart: String,
-        /// The fabric or case.
-        name: String,
-        /// What would be needed.
-        missing: String,
-    },
-    /// O011: lists that belong together have different lengths, or an index points past the nodes.
-    #[error("O011 the data of the chart {name} do not fit together: {problem}")]
-    Inconsistent {
-        /// The chart's title.
-        name: String,
-        /// What does not fit.
-        problem: String,
-    },
-    /// O012: the drawing library or the PNG encoder failed.
-    #[error("O012 drawing failed: {0}")]
-    Drawing(String),
+use crate::finding::errors;
+errors! {
+    /// Why there is no chart.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum ChartError {
+        /// O010: neither a curve nor the parameters that a schematic needs.
+        "O010" NothingToDraw {
+            /// Which chart.
+            chart: String,
+            /// The fabric or case.
+            name: String,
+            /// What would be needed.
+            missing: String,
+        } = "no {chart} chart of {name}: {missing}";
+        /// O011: lists that belong together have different lengths, or an index points past the nodes.
+        "O011" Inconsistent {
+            /// The chart's title.
+            name: String,
+            /// What does not fit.
+            problem: String,
+        } = "the data of the chart {name} do not fit together: {problem}";
+        /// O012: the drawing library or the PNG encoder failed.
+        "O012" Drawing {
+            /// What it said.
+            problem: String,
+        } = "drawing failed: {problem}";
+    }
 }
 
 /// Title, subtitle and the mark of origin that every chart carries above the plot.

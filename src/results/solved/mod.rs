@@ -13,7 +13,7 @@ pub use effort::{SolverEntry, TimingsEntry};
 pub(crate) use text::checks;
 pub(super) use text::{status, text};
 
-use super::failure::{Failure, FailureKind};
+use super::failure::Failure;
 use super::folder::Folder;
 use super::task::Task;
 use crate::finding::{Fact, Finding, StudyFact};
@@ -34,9 +34,7 @@ pub(super) fn findings(result: &CaseResult) -> impl Iterator<Item = &Finding> {
 /// The failure of a result that is only the last state of a search.
 pub(super) fn unconverged(task: &Task, result: &CaseResult) -> Option<Failure> {
     let finding = result.findings.iter().find(|finding| is_unconverged(finding))?;
-    let mut failure = Failure::new(finding.code(), finding.message()).of(&task.name());
-    failure.place.clone_from(&finding.place);
-    Some(Failure { kind: FailureKind::Numerics, ..failure })
+    Some(Failure::from(finding).of(&task.name()))
 }
 
 /// The largest deflection and that of each probe, or the natural frequencies.

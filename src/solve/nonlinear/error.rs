@@ -1,37 +1,43 @@
 //! Why there is no equilibrium, and what stopped a search.
 
-use thiserror::Error;
+use serde::Serialize;
 
 use super::State;
+use crate::finding::errors;
 use crate::solve::SolveError;
 use crate::solve::factor::FactorError;
 
-/// Why there is no equilibrium.
-#[derive(Clone, Debug, Error)]
-pub enum NonlinearError {
-    /// The model cannot be assembled or its tangent not be factorised.
-    #[error(transparent)]
-    Solve(#[from] SolveError),
-    /// N007: no equilibrium was found, and steps cannot be made smaller.
-    #[error("N007 {}; {}", self.story().unwrap_or_default(), obstacle.cure())]
-    NotConverged {
-        /// The step that failed, from 1.
-        step: usize,
-        /// What stopped its last attempt.
-        obstacle: Obstacle,
-        /// Iterations of its last attempt.
-        iterations: usize,
-        /// Unbalanced forces relative to loads or reactions at the end of it.
-        residual: f64,
-        /// What would have been accepted.
-        tolerance: f64,
-        /// The last equilibrium.
-        last: Box<State>,
-    },
+errors! {
+    /// Why there is no equilibrium.
+    #[derive(Clone, Debug)]
+    pub enum NonlinearError {
+        from {
+            /// The model cannot be assembled or its tangent not be factorised.
+            Solve(SolveError),
+        }
+        /// N007: no equilibrium was found, and steps cannot be made smaller.
+        "N007" NotConverged {
+            /// The step that failed, from 1.
+            step: usize,
+            /// What stopped its last attempt.
+            obstacle: Obstacle,
+            /// Iterations of its last attempt.
+            iterations: usize,
+            /// Unbalanced forces relative to loads or reactions at the end of it.
+            residual: f64,
+            /// What would have been accepted.
+            tolerance: f64,
+            /// The last equilibrium.
+            #[serde(skip)]
+            last: Box<State>,
+        } = "step {step} from {:.4} of the load: {}; {}",
+            last.factor, obstacle.text(*iterations, *residual, *tolerance), obstacle.cure();
+    }
 }
 
 /// What stops a step, and makes a shorter one worth trying.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Obstacle {
     /// Forces were still out of balance after all iterations.
     Residual,
@@ -78,25 +84,6 @@ impl Obstacle {
             Self::Folded => "elements bend by more than 90 degrees, which the mesh cannot show".into(),
             Self::Uphill => "the sheet is unstable there, and no drag brings it away".into(),
             Self::TooFar => "the path cannot be followed so far in one step".into(),
-        }
-    }
-}
-
-impl NonlinearError {
-    /// Where a search ended and why, without code and cure; `None` of other errors.
-    pub fn story(&self) -> Option<String> {
-        let Self::NotConverged { step, obstacle, iterations, residual, tolerance, last } = self else {
-            return None;
-        };
-        let text = obstacle.text(*iterations, *residual, *tolerance);
-        Some(format!("step {step} from {:.4} of the load: {text}", last.factor))
-    }
-
-    /// The stable code.
-    pub fn code(&self) -> &'static str {
-        match self {
-            Self::Solve(e) => e.code(),
-            Self::NotConverged { .. } => "N007",
         }
     }
 }
