@@ -7,9 +7,12 @@
 use std::path::Path;
 
 use approx::assert_relative_eq;
+use kesf::characterise::Settings;
 use kesf::instrument::Direction;
+use kesf::quantity::{Angle, Curvature};
 use kesf::section::ShellSection;
-use kesf::study::{Case, VirtualCurve, simulate};
+use kesf::solve::Options;
+use kesf::study::{Case, PreparedTest, VirtualCurve, simulate};
 use nalgebra::{Matrix2, Matrix3};
 
 fn fabric(nu_b: f64) -> ShellSection {
@@ -113,4 +116,40 @@ fn the_example_cases_are_read() {
     let files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
     assert_eq!(files.len(), 6);
     files.iter().for_each(|file| drop(Case::read(file).unwrap_or_else(|e| panic!("{e}"))));
+}
+
+/// The slope is taken in the window of the settings, which moves the measured value too. Reference: the trellis under
+/// tension for what the tension adds, the rigidity itself in bending.
+#[test]
+fn the_slope_is_taken_in_the_window_of_the_settings() {
+    let s = fabric(0.0);
+    let case = |test: &str, keys: &str| {
+        let text = format!(
+            "title = \"t\"\nfabric = \"*\"\n[virtual_test]\ntest = \"{test}\"\nformulation = \"nonlinear\"\n{keys}\n"
+        );
+        Case::parse(Path::new("t.toml"), &text).unwrap()
+    };
+    let shear = case("shear", "cells = [5, 40]");
+    let shear = PreparedTest::new(&shear, shear.virtual_test.as_ref().unwrap(), &Options::default()).unwrap();
+    let mut found = Vec::new();
+    for window in [[0.5f64, 2.5], [0.5, 5.0], [5.0, 7.0]].map(|w| w.map(f64::to_radians)) {
+        let settings = Settings { shear_slope: window.map(Angle), ..Settings::default() };
+        let t = shear.simulate(Direction::Warp, &s, &settings).unwrap();
+        assert_eq!(t.window, Some(window));
+        let [from, to] = window;
+        assert_relative_eq!(t.apparent, (t.at(to) - t.at(from)) / (to - from), max_relative = 1e-12);
+        let slope = |w: f64| (trellis(w, 60.0, 6000.0, to) - trellis(w, 60.0, 6000.0, from)) / (to - from);
+        let adds = t.edge.unwrap().tension.unwrap().adds;
+        // As above: W stretches the gauge, and the closed form has it.
+        assert_relative_eq!(adds, slope(9.80665) - slope(0.0), max_relative = 0.01);
+        found.push(t.apparent);
+    }
+    assert!(found[0] != found[1] && found[1] != found[2], "{found:?}");
+    let bending = case("bending", "");
+    let bending =
+        PreparedTest::new(&bending, bending.virtual_test.as_ref().unwrap(), &Options::default()).unwrap();
+    let settings = Settings { bending_slope: [Curvature(20.0), Curvature(190.0)], ..Settings::default() };
+    let t = bending.simulate(Direction::Warp, &s, &settings).unwrap();
+    assert_eq!(t.window, Some([20.0, 190.0]));
+    assert_relative_eq!(t.apparent, 1e-5, max_relative = 1e-8);
 }

@@ -4,19 +4,6 @@ use super::{FabricSheet, Settings};
 use crate::finding::{EvaluationFact, Finding};
 use crate::instrument::{Direction, FabricInput, Measurement, Parameter, Test};
 
-/// Plausible means of woven apparel fabrics in KES units; a value outside is a question, not an error.
-const PLAUSIBLE: [(Parameter, f64, f64); 9] = [
-    (Parameter::B, 0.01, 1.0),
-    (Parameter::G, 0.3, 3.0),
-    (Parameter::Lt, 0.4, 1.0),
-    (Parameter::Emt, 1.0, 30.0),
-    (Parameter::Rt, 30.0, 80.0),
-    (Parameter::T0, 0.1, 2.0),
-    (Parameter::W, 3.0, 50.0),
-    (Parameter::Lc, 0.1, 1.0),
-    (Parameter::Rc, 20.0, 100.0),
-];
-
 /// Loop widths: a negative one means that the branches were taken for each other.
 const WIDTHS: [Parameter; 4] = [Parameter::Hg, Parameter::Hg5, Parameter::Hb, Parameter::Hb05];
 
@@ -31,10 +18,10 @@ pub(super) fn plausibility(sheet: &FabricSheet, input: &FabricInput) -> Vec<Find
             place: cell.map(|c| c.place.clone()),
             fact: EvaluationFact::Implausible { key: *key, value: estimate.mean, range }.into(),
         };
-        if let Some((_, low, high)) = PLAUSIBLE.iter().find(|p| p.0 == key.parameter)
-            && !(*low..=*high).contains(&value)
+        if let Some([low, high]) = key.parameter.plausible()
+            && !(low..=high).contains(&value)
         {
-            findings.push(implausible(Some([*low, *high])));
+            findings.push(implausible(Some([low, high])));
         }
         if WIDTHS.contains(&key.parameter) && value < 0.0 {
             findings.push(implausible(None));

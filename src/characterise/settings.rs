@@ -5,12 +5,12 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize, Serializer, de};
 
+use crate::kes::Test;
+use crate::kes::specimen::{
+    BENDING_READINGS, BENDING_SLOPE, COMPRESSION_START, DEGREE, GF_PER_CM, SHEAR_READINGS, SHEAR_SLOPE,
+    TENSILE, TENSILE_SLOPE,
+};
 use crate::quantity::{Angle, Curvature, LineForce, Pressure, QuantityError, Ratio, STANDARD_GRAVITY};
-
-/// gf/cm in N/m.
-const GF_PER_CM: f64 = STANDARD_GRAVITY * 0.1;
-/// One degree in rad.
-const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// How a stiffness is taken from the loading branch of a tensile test.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,15 +150,15 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            shear_slope: [Angle(0.5 * DEGREE), Angle(2.5 * DEGREE)],
-            shear_readings: [Angle(0.5 * DEGREE), Angle(5.0 * DEGREE)],
+            shear_slope: SHEAR_SLOPE.map(Angle),
+            shear_readings: SHEAR_READINGS.map(Angle),
             tension_correction: false,
-            bending_slope: [Curvature(50.0), Curvature(150.0)],
-            bending_readings: [Curvature(100.0), Curvature(50.0)],
-            tangent_low: [LineForce(5.0 * GF_PER_CM), LineForce(20.0 * GF_PER_CM)],
+            bending_slope: BENDING_SLOPE.map(Curvature),
+            bending_readings: BENDING_READINGS.map(Curvature),
+            tangent_low: TENSILE_SLOPE.map(LineForce),
             moduli: vec![Modulus::TangentLow, Modulus::Secant, Modulus::Energy],
-            table_maximum: LineForce(500.0 * GF_PER_CM),
-            compression_start: Pressure(0.5 * STANDARD_GRAVITY * 10.0),
+            table_maximum: LineForce(TENSILE.maximum),
+            compression_start: Pressure(COMPRESSION_START),
             cycle: CycleChoice::First,
             strip_onset: LineForce(GF_PER_CM),
             strip_windows: [[2.0, 5.0], [20.0, 100.0]].map(|w| w.map(|f| LineForce(f * GF_PER_CM))).to_vec(),
@@ -213,6 +213,15 @@ impl Settings {
         let (key, _, why) =
             windows.into_iter().chain(strips).chain(readings).chain(parts).find(|(_, fits, _)| !fits)?;
         Some(format!("`{key}` cannot be used: {why}"))
+    }
+
+    /// The abscissae (SI) between which the slope of a test is taken: G of shear, B of bending; none of the others.
+    pub fn slope_window(&self, test: Test) -> Option<[f64; 2]> {
+        match test {
+            Test::Shear => Some(self.shear_slope.map(Angle::si)),
+            Test::Bending => Some(self.bending_slope.map(Curvature::si)),
+            Test::Tensile | Test::Compression => None,
+        }
     }
 
     /// Name and value of each setting that enters a parameter, in KES units, for printing beside a result.

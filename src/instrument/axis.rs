@@ -1,6 +1,5 @@
 //! Axes: the scale that takes the numbers of a column to the SI axis of its test.
 
-use super::conditions::FOOT_AREA;
 use super::curves::positive;
 use super::dialect::Key;
 use super::error::{Problem, ReadError};
@@ -9,6 +8,7 @@ use super::sniff::folded;
 use super::words::{is_volt, known_unit};
 use super::{Conditions, Test};
 use crate::finding::{Divisor, Finding, Place, ReadFact};
+use crate::kes::specimen::FOOT_AREA;
 use crate::quantity::{Dimension, Unit, divides_by_length, parse_quantity};
 
 /// How a number of a column becomes SI.

@@ -68,21 +68,10 @@ pub struct CompressionConditions {
     pub maximum: Option<Pressure>,
 }
 
-/// Area of the standard compression foot, 2.0 cm² (m²).
-pub(super) const FOOT_AREA: f64 = 2.0e-4;
-
-/// The standard set of conditions (kes.md, section 1): 20 cm wide specimens, 5 cm between the jaws
-/// of FB1 and 1 cm between the clamps of FB2, maxima of 500 gf/cm, 8 deg, 2.5 1/cm and 50 gf/cm²,
-/// and 10 gf/cm of tension during shear.
+/// The standard set of conditions of a test; see [`specimen`](crate::kes::specimen).
 pub fn standard_conditions(test: Test) -> Conditions {
-    const GF_PER_CM: f64 = 0.980_665;
-    let (gauge, maximum, pretension) = match test {
-        Test::Tensile => (0.05, 500.0 * GF_PER_CM, 0.0),
-        Test::Shear => (0.05, 8f64.to_radians(), 10.0 * GF_PER_CM),
-        Test::Bending => (0.01, 250.0, 0.0),
-        Test::Compression => (0.0, 50.0 * 98.0665, 0.0),
-    };
-    Conditions { width: 0.20, gauge, maximum, pretension }
+    let spec = test.spec();
+    Conditions { width: spec.width, gauge: spec.gauge, maximum: spec.maximum, pretension: spec.pretension }
 }
 
 impl StatedConditions {

@@ -1,6 +1,7 @@
 //! What the instruments of the Kawabata Evaluation System measure: tests, yarn directions and parameters.
 
 mod parameter;
+pub mod specimen;
 
 use std::fmt;
 

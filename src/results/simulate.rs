@@ -91,7 +91,7 @@ fn test(task: &Task, spec: &VirtualTest) -> Result<Vec<Tested>, Failure> {
     let prepared = task.prepared_test(spec)?;
     let mut tested = Vec::new();
     for direction in [Direction::Warp, Direction::Weft] {
-        let mut curve = prepared.simulate_measured(direction, &section, &inputs)?;
+        let mut curve = prepared.simulate_measured(direction, &section, &sheet.settings, &inputs)?;
         if let Some(made) = &made {
             let options = SolveOptions::default();
             curve.cycle = study::simulate_cycle(task.case, spec, direction, sheet, made, &options)?;

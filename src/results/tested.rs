@@ -87,12 +87,7 @@ fn abscissae(sheet: &FabricSheet, test: Test, direction: Option<Direction>) -> [
         let greatest = measured.x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         return [least, greatest];
     }
-    match test {
-        Test::Tensile => [0.0, 0.05],
-        Test::Shear => [-8f64.to_radians(), 8f64.to_radians()],
-        Test::Bending => [-250.0, 250.0],
-        Test::Compression => [0.0, 0.0],
-    }
+    test.spec().range
 }
 
 fn stiffness(

@@ -128,7 +128,7 @@ pub fn sample(
                             .map(|(p, v)| Reading::new(format!("{p} {direction}"), *v, p.si_unit())),
                     ),
                     None => {
-                        let value = prepared.simulate(direction, &made.section)?.apparent;
+                        let value = prepared.simulate(direction, &made.section, &sheet.settings)?.apparent;
                         let (symbol, unit) = stiffness(spec.test);
                         readings.push(Reading::new(format!("{symbol} {direction}"), value, unit));
                     }

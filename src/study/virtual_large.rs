@@ -12,6 +12,7 @@ use super::StudyError;
 use super::case::VirtualTest;
 use crate::element::Formulation;
 use crate::instrument::Test;
+use crate::kes::specimen::TestSpec;
 use crate::mesh;
 use crate::model::{Dof, Load, Model, RigidBody, Support};
 use crate::quantity::Curve;
@@ -19,15 +20,9 @@ use crate::section::ShellSection;
 use crate::solve::nonlinear::{Method, Settings, plan, search};
 use crate::solve::{Options, Plan};
 
-/// Largest curvature of KES-FB2 (1/m).
-const CURVATURE: f64 = 250.0;
-
-/// Tension across the sheared specimen of KES-FB1: 10 gf/cm (N/m).
-const PRETENSION: f64 = 9.80665;
-
-/// Strains, and angles in degrees, at which force is read; the slope of G is taken from 0.5 to 2.5 degrees.
+/// Strains, and angles in degrees, at which force is read; angles besides those of the window in which G is taken.
 const STRAINS: [f64; 4] = [0.001, 0.01, 0.03, 0.05];
-const ANGLES: [f64; 5] = [0.5, 2.5, 4.0, 6.0, 8.0];
+const ANGLES: [f64; 3] = [4.0, 6.0, 8.0];
 
 /// Elements along and across; those of a shear test resolve what its free edges give up.
 pub(super) const CELLS: [usize; 2] = [10, 20];
@@ -65,11 +60,11 @@ pub(super) struct Reading {
 impl LargeTest {
     pub fn new(
         spec: &VirtualTest,
-        (gauge, width): (f64, f64),
         formulation: Formulation,
         section: ShellSection,
         options: &Options,
     ) -> Result<Self, StudyError> {
+        let TestSpec { gauge, width, maximum, pretension, .. } = *spec.test.spec();
         let [along, across] =
             spec.cells.unwrap_or(if spec.test == Test::Shear { SHEAR_CELLS } else { CELLS });
         let mesh = mesh::rectangle(gauge, width, along, across)?;
@@ -83,8 +78,8 @@ impl LargeTest {
             loads: Vec::new(),
             bodies: vec![RigidBody { nodes: clamp.clone() }],
         };
-        let curvature = spec.curvature.map_or(CURVATURE, |k| k.si());
-        let pretension = spec.pretension.map_or(PRETENSION, |w| w.si());
+        let curvature = spec.curvature.map_or(maximum, |k| k.si());
+        let pretension = spec.pretension.map_or(pretension, |w| w.si());
         let step = if spec.test == Test::Bending { 1.0 / BENDING_STEPS as f64 } else { 1.0 };
         let settings =
             Settings { tolerance: 1e-10, first_step: step, largest_step: step, ..Settings::default() };
@@ -97,11 +92,13 @@ impl LargeTest {
         self.pretension
     }
 
-    /// Drives the clamp. Both clamps stay rigid; what the instrument does not hold is free.
+    /// Drives the clamp, through the ends of the window in which the slope is taken. Both clamps stay rigid; what the
+    /// instrument does not hold is free.
     pub fn read(
         &self,
         section: &ShellSection,
         warp: Vector3<f64>,
+        window: Option<[f64; 2]>,
         options: &Options,
     ) -> Result<Reading, StudyError> {
         let model = Model { section: section.clone(), warp, ..self.model.clone() };
@@ -122,8 +119,8 @@ impl LargeTest {
             }
             _ => {
                 let mut slack = Reading { curve: reading.curve.clone(), slack: None, unstable_from: None };
-                self.shear(&model, 0.0, &ANGLES[..2], &mut slack, options)?;
-                self.shear(&model, self.pretension, &ANGLES, &mut reading, options)?;
+                self.shear(&model, 0.0, &angles(window, &[]), &mut slack, options)?;
+                self.shear(&model, self.pretension, &angles(window, &ANGLES), &mut reading, options)?;
                 reading.slack = Some(slack.curve);
             }
         }
@@ -141,7 +138,7 @@ impl LargeTest {
         let force = Vector3::x() * (tension * self.width);
         let load = Load::Point { nodes: vec![self.clamp[0]], force, moment: Vector3::zeros() };
         let model = Model { loads: vec![load], ..model.clone() };
-        for x in angles.iter().map(|a| a.to_radians()) {
+        for &x in angles {
             let held = [Dof::W, Dof::ThetaX, Dof::ThetaY, Dof::ThetaZ].map(|d| (d, 0.0));
             let held = [&held[..], &[(Dof::V, x.tan() * self.gauge)]].concat();
             self.drive(model.clone(), held, Dof::V, x, reading, options)?;
@@ -171,4 +168,13 @@ impl LargeTest {
         }
         Ok(())
     }
+}
+
+/// The ends of a window (rad) and other angles (degrees), in their order (rad); zero is known without a run.
+fn angles(window: Option<[f64; 2]>, others: &[f64]) -> Vec<f64> {
+    let others = others.iter().map(|degrees| degrees.to_radians());
+    let mut all: Vec<f64> = window.into_iter().flatten().chain(others).filter(|x| *x > 0.0).collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    all
 }

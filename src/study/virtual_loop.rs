@@ -18,12 +18,12 @@ use nalgebra::Vector3;
 
 use super::case::{Case, VirtualTest};
 use super::virtual_large::CELLS;
-use super::virtual_test::WIDTH;
 use super::{StudyError, build};
 use crate::characterise::{FabricSheet, Settings as Evaluation, parameters};
 use crate::constitutive::{Constitutive, tension};
 use crate::element::Formulation;
 use crate::instrument::{Conditions, Direction, Parameter, Test};
+use crate::kes::specimen::TestSpec;
 use crate::law::{Channel, Mode};
 use crate::mesh;
 use crate::model::{Dof, Load, Model, RigidBody, Support};
@@ -138,6 +138,7 @@ pub fn simulate_loop(
         return Ok(None);
     }
     let (gauge, maximum) = (conditions.gauge, conditions.maximum);
+    let TestSpec { width, .. } = *spec.test.spec();
     let (mut section, mut law) = (section.clone(), law.clone());
     let mode = law.mode;
     if spec.test == Test::Tensile {
@@ -165,7 +166,7 @@ pub fn simulate_loop(
     let rest = model.mesh.nodes[lead];
     let solution = solve(&model, &settings, options, |step: &Step<'_>| {
         let moved = step.state.position[lead] - rest;
-        let reaction = |dof: Dof| step.reaction[6 * lead + dof as usize] / WIDTH;
+        let reaction = |dof: Dof| step.reaction[6 * lead + dof as usize] / width;
         record.push(match spec.test {
             Test::Bending => (step.state.factor * maximum, reaction(Dof::ThetaY)),
             Test::Shear => ((moved.y / gauge).atan(), reaction(Dof::V)),
@@ -194,7 +195,8 @@ fn model(
     maximum: f64,
 ) -> Result<Model, StudyError> {
     let [along, across] = spec.cells.unwrap_or(CELLS);
-    let mesh = mesh::rectangle(gauge, WIDTH, along, across)?;
+    let TestSpec { width, .. } = *spec.test.spec();
+    let mesh = mesh::rectangle(gauge, width, along, across)?;
     let (left, right) = (mesh.set("left")?.to_vec(), mesh.set("right")?.to_vec());
     let turns = [(Dof::ThetaX, 0.0), (Dof::ThetaZ, 0.0)];
     let held = match spec.test {
@@ -209,7 +211,7 @@ fn model(
         supports.push(Support::fix(&free, &[Dof::W, Dof::ThetaX, Dof::ThetaY]));
     }
     supports.push(Support::at(vec![right[0]], [&held[..], &turns].concat()));
-    let force = Vector3::new(maximum * WIDTH, 0.0, 0.0);
+    let force = Vector3::new(maximum * width, 0.0, 0.0);
     let bodies = vec![RigidBody { nodes: right.clone() }];
     let pull = Load::Point { nodes: right, force, moment: Vector3::zeros() };
     Ok(Model {

@@ -18,17 +18,15 @@ use super::solver;
 use super::uncertainty::{Prediction, energy_derivative};
 use super::virtual_large::LargeTest;
 use super::virtual_loop::VirtualLoop;
-use crate::characterise::FabricSheet;
+use crate::characterise::{FabricSheet, Settings};
 use crate::constitutive::Input;
 use crate::instrument::{Direction, Parameter, Test};
+use crate::kes::specimen::TestSpec;
 use crate::mesh;
 use crate::model::{Dof, Model, Support};
 use crate::quantity::{Band, Bands, Curve, Estimate};
 use crate::section::ShellSection;
 use crate::solve::{self, Options, Plan};
-
-/// Standard specimen: width between the free edges (m).
-pub(super) const WIDTH: f64 = 0.20;
 
 /// A simulated test. Axes are those of [`Test`].
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +42,9 @@ pub struct VirtualCurve {
     pub ideal: f64,
     /// What clamps and free edges do to the stiffness; none for compression.
     pub edge: Option<EdgeEffect>,
+    /// The abscissae (SI) between which the slope `apparent` is taken, as the settings of the sheet want it: of shear
+    /// and bending. The line of a linear test has the same slope in all.
+    pub window: Option<[f64; 2]>,
     /// The abscissa at which the specimen was found unstable first: a real one buckles before. In large
     /// rotations only.
     pub unstable_from: Option<f64>,
@@ -115,6 +116,7 @@ impl VirtualCurve {
             apparent: slope,
             ideal: slope,
             edge: None,
+            window: None,
             unstable_from: None,
             uncertainty: None,
             cycle: None,
@@ -190,7 +192,6 @@ pub struct PreparedTest {
     model: Model,
     plan: Plan,
     options: Options,
-    gauge: f64,
     /// In large rotations.
     large: Option<LargeTest>,
 }
@@ -201,17 +202,13 @@ impl PreparedTest {
     /// # Errors
     /// See [`StudyError`]; S003 for compression, which a shell does not have.
     pub fn new(case: &Case, spec: &VirtualTest, options: &Options) -> Result<Self, StudyError> {
-        let gauge = match spec.test {
-            Test::Tensile | Test::Shear => 0.05,
-            Test::Bending => 0.01,
-            Test::Compression => {
-                return Err(case.inconsistent(
-                    "a shell has no thickness to compress: use `compression` of a sheet".into(),
-                ));
-            }
-        };
+        if spec.test == Test::Compression {
+            return Err(case
+                .inconsistent("a shell has no thickness to compress: use `compression` of a sheet".into()));
+        }
+        let TestSpec { gauge, width, .. } = *spec.test.spec();
         let [cells_along, cells_across] = spec.cells.unwrap_or([10, 20]);
-        let mesh = mesh::rectangle(gauge, WIDTH, cells_along, cells_across)?;
+        let mesh = mesh::rectangle(gauge, width, cells_along, cells_across)?;
         let (left, right) = (mesh.set("left")?.to_vec(), mesh.set("right")?.to_vec());
         // A small unit of the abscissa; the solution is scaled, so its size is free.
         let x = match spec.test {
@@ -229,9 +226,7 @@ impl PreparedTest {
         };
         let formulation = build::formulation(case)?;
         let large = match spec.formulation {
-            TestFormulation::Nonlinear => {
-                Some(LargeTest::new(spec, (gauge, WIDTH), formulation, stand_in(), options)?)
-            }
+            TestFormulation::Nonlinear => Some(LargeTest::new(spec, formulation, stand_in(), options)?),
             TestFormulation::Linear => None,
         };
         let model = Model {
@@ -245,15 +240,20 @@ impl PreparedTest {
         };
         let options = solver::options(case, options)?;
         let plan = Plan::of(&model, &options)?;
-        Ok(Self { test: spec.test, x, reading, right, model, plan, options, gauge, large })
+        Ok(Self { test: spec.test, x, reading, right, model, plan, options, large })
     }
 
-    /// Simulates the test of a specimen cut along `direction`.
+    /// Simulates the test of a specimen cut along `direction`; the slope is read in the window of `settings`.
     ///
     /// # Errors
     /// See [`StudyError`].
-    pub fn simulate(&self, direction: Direction, section: &ShellSection) -> Result<VirtualCurve, StudyError> {
-        self.simulate_measured(direction, section, &[])
+    pub fn simulate(
+        &self,
+        direction: Direction,
+        section: &ShellSection,
+        settings: &Settings,
+    ) -> Result<VirtualCurve, StudyError> {
+        self.simulate_measured(direction, section, settings, &[])
     }
 
     /// The same for a section that was made of `inputs`: their spread becomes the uncertainty of the
@@ -265,6 +265,7 @@ impl PreparedTest {
         &self,
         direction: Direction,
         section: &ShellSection,
+        settings: &Settings,
         inputs: &[Input],
     ) -> Result<VirtualCurve, StudyError> {
         let warp: Vector3<f64> = match direction {
@@ -279,16 +280,18 @@ impl PreparedTest {
             Test::Shear => along.d_m[(2, 2)],
             _ => along.d_b[(0, 0)],
         };
+        let window = settings.slope_window(self.test);
         if let Some(large) = &self.large {
-            let reading = large.read(section, warp, &self.options)?;
-            let apparent = slope(self.test, &reading.curve);
-            let slack = reading.slack.as_ref().map_or(apparent, |curve| slope(self.test, curve));
+            let reading = large.read(section, warp, window, &self.options)?;
+            let apparent = slope(window, &reading.curve);
+            let slack = reading.slack.as_ref().map_or(apparent, |curve| slope(window, curve));
             let tension = Tension { value: large.pretension(), adds: apparent - slack };
             let tension = reading.slack.is_some().then_some(tension);
             let edge = Some(EdgeEffect { tension, ..self.edge(slack / ideal, &along) });
             return Ok(VirtualCurve {
                 ideal,
                 edge,
+                window,
                 unstable_from: reading.unstable_from,
                 law: Law::Points(reading.curve),
                 ..VirtualCurve::line(self.test, Some(direction), apparent)
@@ -297,7 +300,7 @@ impl PreparedTest {
         let model = Model { section: section.clone(), warp, ..self.model.clone() };
         let solution = solve::solve_with(&model, &self.plan, &self.options)?;
         let at = |n: &u32| solution.reaction[6 * *n as usize + self.reading as usize];
-        let apparent = self.right.iter().map(at).sum::<f64>() / WIDTH / self.x;
+        let apparent = self.right.iter().map(at).sum::<f64>() / self.test.spec().width / self.x;
         let edge = Some(self.edge(apparent / ideal, &along));
         let uncertainty = (!inputs.is_empty())
             .then(|| self.uncertainty(&model, &solution.displacement, apparent, inputs))
@@ -305,6 +308,7 @@ impl PreparedTest {
         Ok(VirtualCurve {
             ideal,
             edge,
+            window,
             uncertainty,
             ..VirtualCurve::line(self.test, Some(direction), apparent)
         })
@@ -312,7 +316,8 @@ impl PreparedTest {
 
     /// The ratio beside its closed form, material axes along the specimen.
     fn edge(&self, ratio: f64, along: &ShellSection) -> EdgeEffect {
-        let (slenderness, shear) = (self.gauge / WIDTH, along.d_m[(2, 2)]);
+        let spec = self.test.spec();
+        let (slenderness, shear) = (spec.gauge / spec.width, along.d_m[(2, 2)]);
         let (closed_form, formula) = match self.test {
             Test::Tensile => {
                 let reach = 0.5 / slenderness * (shear / uniaxial(along, 1)).sqrt();
@@ -340,7 +345,7 @@ impl PreparedTest {
         inputs: &[Input],
     ) -> Result<Prediction, StudyError> {
         let [low, high] = model.mesh.bounds();
-        let scale = 2.0 / (WIDTH * self.x * self.x * (high.x - low.x));
+        let scale = 2.0 / (self.test.spec().width * self.x * self.x * (high.x - low.x));
         let groups = Plan::groups(model, &self.options);
         let derivatives = inputs
             .iter()
@@ -359,14 +364,10 @@ fn uniaxial(section: &ShellSection, axis: usize) -> f64 {
     section.d_m.try_inverse().map_or(f64::NAN, |c| 1.0 / c[(axis, axis)])
 }
 
-/// The slope of a curve where the instrument takes it: B from 0.5 to 1.5 1/cm, G from 0.5 to 2.5 degrees, tension
-/// from the origin. A curve that ends before is taken as a whole.
-fn slope(test: Test, curve: &Curve) -> f64 {
-    let [from, to] = match test {
-        Test::Bending => [50.0, 150.0],
-        Test::Shear => [0.5, 2.5].map(f64::to_radians),
-        _ => [0.0, curve.x.get(1).copied().unwrap_or(0.0)],
-    };
+/// The slope of a curve in the window of the evaluation; that of a test without one (tension) from the origin. A
+/// curve that ends before is taken as a whole.
+fn slope(window: Option<[f64; 2]>, curve: &Curve) -> f64 {
+    let [from, to] = window.unwrap_or_else(|| [0.0, curve.x.get(1).copied().unwrap_or(0.0)]);
     let end = curve.x.last().copied().unwrap_or(0.0);
     let [from, to] = if end < to { [0.0, end] } else { [from, to] };
     (interpolate(curve, to) - interpolate(curve, from)) / (to - from)
@@ -383,7 +384,8 @@ fn interpolate(curve: &Curve, x: f64) -> f64 {
     }
 }
 
-/// Simulates a mechanical test of a specimen cut along `direction`: a [`PreparedTest`] used once.
+/// Simulates a mechanical test of a specimen cut along `direction`: a [`PreparedTest`] used once, with the customary
+/// windows.
 ///
 /// # Errors
 /// See [`StudyError`]; S003 for compression, which a shell does not have.
@@ -393,7 +395,7 @@ pub fn simulate(
     direction: Direction,
     section: &ShellSection,
 ) -> Result<VirtualCurve, StudyError> {
-    PreparedTest::new(case, spec, &Options::default())?.simulate(direction, section)
+    PreparedTest::new(case, spec, &Options::default())?.simulate(direction, section, &Settings::default())
 }
 
 /// The compression curve of a sheet: the exponential through its two thicknesses, T0 at the pressure of its settings
@@ -409,6 +411,7 @@ pub fn compression(sheet: &FabricSheet) -> Option<VirtualCurve> {
         apparent: 0.0,
         ideal: 0.0,
         edge: None,
+        window: None,
         unstable_from: None,
         uncertainty: None,
         cycle: None,

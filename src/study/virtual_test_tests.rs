@@ -120,14 +120,14 @@ fn bands_agree_with_monte_carlo() {
         .unwrap();
         let spec = case.virtual_test.as_ref().unwrap();
         let prepared = PreparedTest::new(&case, spec, &Options::default()).unwrap();
-        let curve = prepared.simulate_measured(direction, &section, &inputs).unwrap();
+        let curve = prepared.simulate_measured(direction, &section, &Settings::default(), &inputs).unwrap();
         let prediction = curve.uncertainty.as_ref().unwrap();
         let moved = |steps: &[f64]| {
             let mut section = section.clone();
             for (input, step) in inputs.iter().zip(steps) {
                 section = input.derivative.step(&section, *step);
             }
-            prepared.simulate(direction, &section).unwrap().apparent
+            prepared.simulate(direction, &section, &Settings::default()).unwrap().apparent
         };
         for (k, derivative) in prediction.derivatives.iter().enumerate() {
             let at = |by: f64| moved(&(0..5).map(|i| if i == k { by } else { 0.0 }).collect::<Vec<_>>());

@@ -7,8 +7,9 @@ use crate::characterise::closed_loop::TURNED;
 use crate::characterise::{FabricSheet, Settings};
 use crate::finding::{EvaluationFact, Finding, Missed};
 use crate::instrument::{Conditions, Direction, Parameter, Test};
+use crate::kes::specimen::BENDING;
 use crate::law::{Backbone, Channel, Family, LawError, Slider, Widening};
-use crate::quantity::{Angle, Curvature, LineForce, significant};
+use crate::quantity::{LineForce, significant};
 
 /// Slip levels over the greatest strain of the test, each with a third of the friction: 0.03 to
 /// 0.1 1/cm of 2.5 1/cm in bending, where measured loops of cloth have them.
@@ -96,8 +97,7 @@ fn law(test: Test, direction: Option<Direction>, channel: Channel, settings: &Se
 /// The standard cycle of a test.
 fn conditions(test: Test, settings: &Settings) -> Conditions {
     let maximum = match test {
-        Test::Bending => Curvature(250.0).si(),
-        Test::Shear => Angle(8f64.to_radians()).si(),
+        Test::Bending | Test::Shear => test.spec().maximum,
         Test::Tensile => settings.table_maximum.si(),
         Test::Compression => f64::NAN,
     };
@@ -149,7 +149,7 @@ fn sliders(stress: f64, e_max: f64) -> Vec<Slider> {
 /// # Errors
 /// M020 for values that are negative or not finite.
 pub fn bending_law(b: f64, width: f64) -> Result<Channel, LawError> {
-    bending(b, width, Curvature(250.0).si())
+    bending(b, width, BENDING.maximum)
 }
 
 /// `M = B K` and friction of half the width 2HB.

@@ -8,7 +8,8 @@ use std::collections::BTreeMap;
 
 use crate::characterise::FabricSheet;
 use crate::instrument::{Direction, Parameter, Test};
-use crate::quantity::Curve;
+use crate::kes::specimen::{BENDING, SHEAR};
+use crate::quantity::{Angle, Curve};
 
 use super::loops::{TestAxes, Trace, leading};
 
@@ -30,7 +31,7 @@ fn trace(sheet: &FabricSheet, test: Test, direction: Option<Direction>, axes: &T
     let value = |p: Parameter| sheet.get(p, direction).or_else(|| sheet.get(p, None)).map(|e| e.mean);
     let parts = match test {
         Test::Tensile => tensile(value)?,
-        Test::Shear => shear(value)?,
+        Test::Shear => shear(value, sheet.settings.shear_readings.map(Angle::si))?,
         Test::Bending => bending(value)?,
         Test::Compression => compression(value)?,
     };
@@ -98,19 +99,19 @@ fn power_laws(
 
 fn bending(value: impl Fn(Parameter) -> Option<f64>) -> Option<Parts> {
     let (b, width) = (value(Parameter::B)?, value(Parameter::Hb)?);
-    Some(trapezoid(250.0, |k| b * k, |_| 0.5 * width))
+    Some(trapezoid(BENDING.maximum, |k| b * k, |_| 0.5 * width))
 }
 
-fn shear(value: impl Fn(Parameter) -> Option<f64>) -> Option<Parts> {
-    let (g, at_half) = (value(Parameter::G)?, value(Parameter::Hg)?);
-    let at_five = value(Parameter::Hg5).unwrap_or(at_half);
-    let degree = std::f64::consts::PI / 180.0;
-    // The half width is read at 0.5 and 5 degrees; a straight line between, and as far as the test goes.
+/// With the angles at which 2HG and 2HG5 are read (rad).
+fn shear(value: impl Fn(Parameter) -> Option<f64>, [near, far]: [f64; 2]) -> Option<Parts> {
+    let (g, narrow) = (value(Parameter::G)?, value(Parameter::Hg)?);
+    let wide = value(Parameter::Hg5).unwrap_or(narrow);
+    // A straight line between the two widths, and as far as the test goes.
     let half = |phi: f64| {
-        let t = (phi.abs() / degree - 0.5) / 4.5;
-        0.5 * (at_half + t.max(0.0) * (at_five - at_half))
+        let t = (phi.abs() - near) / (far - near);
+        0.5 * (narrow + t.max(0.0) * (wide - narrow))
     };
-    Some(trapezoid(8.0 * degree, |phi| g * phi, half))
+    Some(trapezoid(SHEAR.maximum, |phi| g * phi, half))
 }
 
 /// A closed loop: forth at the upper side, back at the lower one, upright at the ends.

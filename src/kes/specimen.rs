@@ -1,0 +1,144 @@
+//! The standard specimen and conditions of each test: the one place where they stand (SI).
+//!
+//! Reading takes from here what a file does not state, evaluation its windows, virtual tests their specimen, charts
+//! their ranges. Sources: Kawabata (1980), The Standardization and Analysis of Hand Evaluation, 2nd ed., and the
+//! manuals of KES-FB1 to FB3.
+
+use super::{Parameter, Test};
+use crate::quantity::STANDARD_GRAVITY;
+
+/// 1 gf/cm (N/m).
+pub const GF_PER_CM: f64 = STANDARD_GRAVITY * 0.1;
+/// 1 gf/cm² (Pa).
+const GF_PER_CM2: f64 = 98.0665;
+/// 1 degree (rad).
+pub const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// Shear angles between which G is fitted: 0.5 to 2.5 degrees (rad).
+pub const SHEAR_SLOPE: [f64; 2] = [0.5 * DEGREE, 2.5 * DEGREE];
+/// Shear angles at which 2HG and 2HG5 are read: 0.5 and 5 degrees (rad).
+pub const SHEAR_READINGS: [f64; 2] = [0.5 * DEGREE, 5.0 * DEGREE];
+/// Curvatures between which B is fitted: 0.5 to 1.5 1/cm (1/m).
+pub const BENDING_SLOPE: [f64; 2] = [50.0, 150.0];
+/// Curvatures at which 2HB and 2HB05 are read: 1.0 and 0.5 1/cm (1/m).
+pub const BENDING_READINGS: [f64; 2] = [100.0, 50.0];
+/// Forces per width between which the low-load tangent is fitted: 5 to 20 gf/cm (N/m).
+pub const TENSILE_SLOPE: [f64; 2] = [5.0 * GF_PER_CM, 20.0 * GF_PER_CM];
+/// Pressure at which T0 is read: 0.5 gf/cm² (Pa).
+pub const COMPRESSION_START: f64 = 0.5 * STANDARD_GRAVITY * 10.0;
+/// Area of the foot of KES-FB3: 2 cm² (m²).
+pub const FOOT_AREA: f64 = 2.0e-4;
+
+/// The standard specimen of a test, and how the test is run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TestSpec {
+    /// Width between the free edges (m).
+    pub width: f64,
+    /// Length between jaws or clamps (m); 0 of compression, which has none.
+    pub gauge: f64,
+    /// The set maximum: force per width (N/m), shear angle (rad), curvature (1/m) or pressure (Pa).
+    pub maximum: f64,
+    /// Constant tension across the specimen (N/m); 0 but in shear.
+    pub pretension: f64,
+    /// Abscissae that are shown where there is no record (SI; see [`Test`]).
+    pub range: [f64; 2],
+    /// Whether the drive goes to both sides.
+    pub two_sided: bool,
+}
+
+/// KES-FB1, tension.
+pub const TENSILE: TestSpec = TestSpec {
+    width: 0.20,
+    gauge: 0.05,
+    maximum: 500.0 * GF_PER_CM,
+    pretension: 0.0,
+    range: [0.0, 0.05],
+    two_sided: false,
+};
+
+/// KES-FB1, shear.
+pub const SHEAR: TestSpec = TestSpec {
+    width: 0.20,
+    gauge: 0.05,
+    maximum: 8.0 * DEGREE,
+    pretension: 10.0 * GF_PER_CM,
+    range: [-8.0 * DEGREE, 8.0 * DEGREE],
+    two_sided: true,
+};
+
+/// KES-FB2, pure bending.
+pub const BENDING: TestSpec = TestSpec {
+    width: 0.20,
+    gauge: 0.01,
+    maximum: 250.0,
+    pretension: 0.0,
+    range: [-250.0, 250.0],
+    two_sided: true,
+};
+
+/// KES-FB3, compression.
+pub const COMPRESSION: TestSpec = TestSpec {
+    width: 0.20,
+    gauge: 0.0,
+    maximum: 50.0 * GF_PER_CM2,
+    pretension: 0.0,
+    // From one thickness to another: there is none without a record.
+    range: [0.0, 0.0],
+    two_sided: false,
+};
+
+impl Test {
+    /// The standard specimen and conditions.
+    pub fn spec(self) -> &'static TestSpec {
+        match self {
+            Self::Tensile => &TENSILE,
+            Self::Shear => &SHEAR,
+            Self::Bending => &BENDING,
+            Self::Compression => &COMPRESSION,
+        }
+    }
+}
+
+impl Parameter {
+    /// Plausible means of woven apparel fabrics (KES unit), where they are known: a value outside is a question, not
+    /// an error.
+    pub fn plausible(self) -> Option<[f64; 2]> {
+        match self {
+            Self::B => Some([0.01, 1.0]),
+            Self::G => Some([0.3, 3.0]),
+            Self::Lt => Some([0.4, 1.0]),
+            Self::Emt => Some([1.0, 30.0]),
+            Self::Rt => Some([30.0, 80.0]),
+            Self::T0 => Some([0.1, 2.0]),
+            Self::W => Some([3.0, 50.0]),
+            Self::Lc => Some([0.1, 1.0]),
+            Self::Rc => Some([20.0, 100.0]),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quantity::{Angle, Curvature, LineForce, Pressure};
+
+    /// What the customary units say, to the rounding of a conversion.
+    #[test]
+    fn the_standard_set_is_that_of_the_customary_units() {
+        let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-15, "{a} {b}");
+        let force = |text: &str| text.parse::<LineForce>().unwrap().si();
+        let angle = |text: &str| text.parse::<Angle>().unwrap().si();
+        let curvature = |text: &str| text.parse::<Curvature>().unwrap().si();
+        let pressure = |text: &str| text.parse::<Pressure>().unwrap().si();
+        near(TENSILE.maximum, force("500 gf/cm"));
+        near(TENSILE_SLOPE[1], force("20 gf/cm"));
+        near(SHEAR.maximum, angle("8 deg"));
+        near(SHEAR.pretension, force("10 gf/cm"));
+        near(SHEAR_SLOPE[1], angle("2.5 deg"));
+        near(BENDING.maximum, curvature("2.5 1/cm"));
+        near(BENDING_SLOPE[0], curvature("0.5 1/cm"));
+        near(COMPRESSION.maximum, pressure("50 gf/cm²"));
+        near(COMPRESSION_START, pressure("0.5 gf/cm²"));
+    }
+}
