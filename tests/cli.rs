@@ -237,8 +237,13 @@ fn a_table_of_fabrics_loses_only_the_bad_ones() {
     assert_eq!(names, ["C", "a-b"]);
     assert_eq!(document["failures"][0]["code"], "R017");
     assert_eq!(document["failures"][0]["line"], 7);
+    assert_eq!(document["failures"][0]["fields"], serde_json::json!({ "found": "n/a" }));
     let found: Vec<&Value> = document["findings"].as_array().unwrap().iter().collect();
-    assert!(found.iter().any(|f| f["code"] == "K010" && f["fabric"] == "a-b"), "{found:?}");
+    let outlier = found.iter().find(|f| f["code"] == "K010" && f["fabric"] == "a-b").unwrap();
+    let fields = serde_json::json!({
+        "key": { "parameter": "B", "direction": null }, "repeat": 5, "in_table": true, "others": 4, "criterion": "MAD",
+    });
+    assert_eq!(outlier["fields"], fields);
     assert_eq!(found.iter().filter(|f| f["code"] == "R101").count(), 1);
 }
 

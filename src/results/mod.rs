@@ -34,6 +34,7 @@ mod task;
 mod tested;
 mod work;
 
+pub use crate::finding::FailureKind;
 pub use batch::{Batch, Kind};
 pub use bent::BendingEntry;
 pub use cards::{Card, cards, write_cards};
@@ -41,7 +42,6 @@ pub use checked::{CheckDocument, Checked, check};
 pub use columns::Columns;
 pub use draped::{DrapeEntry, DrapePoint};
 pub use fabric::FabricReport;
-pub use crate::finding::FailureKind;
 pub use failure::{Failure, FailureEntry};
 pub use folder::{Folder, MemorySink, Sink};
 pub use inputs::{
