@@ -9,6 +9,8 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
+pub mod platform;
+
 pub mod quantity;
 
 pub mod kes;

@@ -3,13 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
-
 use super::error::{Problem, ReadError};
 use super::fabric_file::{read_dialect, read_fabric_file};
 use super::read::{FileContent, ReadSettings, read};
 use super::{FabricInfo, FabricInput, Inference, ResultValue};
 use crate::finding::{Finding, Place, ReadFact};
+use crate::platform;
 
 /// The fabrics of a batch, and what could not be read.
 #[derive(Clone, Debug, Default)]
@@ -140,11 +139,8 @@ impl Library {
                 progress(file);
                 content
             };
-            let read: Vec<_> = if few {
-                group.files.iter().map(file).collect()
-            } else {
-                group.files.par_iter().map(file).collect()
-            };
+            let read: Vec<_> =
+                if few { group.files.iter().map(file).collect() } else { platform::map(&group.files, file) };
             let (mut contents, mut failures) = (Vec::new(), Vec::new());
             for content in read {
                 match content {
@@ -160,7 +156,7 @@ impl Library {
         let groups: Vec<_> = if few {
             self.groups.into_iter().map(group).collect()
         } else {
-            self.groups.into_par_iter().map(group).collect()
+            platform::map(self.groups, group)
         };
         let (mut all, mut failures) = (Vec::new(), self.failures);
         for (done, unread) in groups {

@@ -1,10 +1,10 @@
 //! Spread of measured inputs through a function that is not linear: scrambled Sobol points.
 
-use rayon::prelude::*;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::{Estimate, NoSpread};
+use crate::platform;
 
 /// Which of two questions a sample answers; see [`Bands`](super::Bands).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
@@ -77,7 +77,7 @@ pub fn sampled(
         progress();
         y
     };
-    let all: Vec<Vec<f64>> = points.par_iter().map(evaluate).collect();
+    let all: Vec<Vec<f64>> = platform::map(points, evaluate);
     let of = |k: usize| all.iter().filter_map(|y| y.get(k).copied()).filter(|y| y.is_finite()).collect();
     (0..results).map(|k| summed_up(of(k), points.len())).collect()
 }

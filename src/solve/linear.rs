@@ -1,13 +1,12 @@
 //! Linear statics.
 
-use std::time::Instant;
-
 use super::error::SolveError;
 use super::factor::{Counts, Path};
 use super::group::{Equations, GroupSolver, Way};
 use super::iterative;
 use super::plan::Plan;
 use crate::model::{DofGroup, Model};
+use crate::platform::Stopwatch;
 
 /// How to solve; the result does not depend on it beyond rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +20,7 @@ pub struct Options {
     /// Factorise or iterate; linear statics only, every other analysis factorises.
     pub method: Method,
     /// Where [`Method::Auto`] draws the line: bytes of a factor.
-    pub factor_limit: usize,
+    pub factor_limit: u64,
     /// When the iteration ends.
     pub iteration: iterative::Settings,
 }
@@ -40,7 +39,7 @@ pub enum Method {
 
 /// Bytes of a factor above which [`Method::Auto`] iterates: a fixed number, so that results do not
 /// depend on the machine. The 6-dof shell of 640 x 640 elements stays below it.
-pub const FACTOR_LIMIT: usize = 8_000_000_000;
+pub const FACTOR_LIMIT: u64 = 8_000_000_000;
 
 impl Default for Options {
     fn default() -> Self {
@@ -206,18 +205,18 @@ fn planned(
     let direct = plan.groups.iter().map(|(group, analysis)| (*group, Way::Direct(analysis)));
     for (group, way) in direct.chain(plan.iterated.iter().map(|group| (*group, Way::Iterative))) {
         let equations = Equations::new(model, group, &plan.pattern, &load, &held);
-        let start = Instant::now();
+        let watch = Stopwatch::start();
         let matrix = equations.matrix()?;
-        solution.timings.assemble_s += start.elapsed().as_secs_f64();
+        solution.timings.assemble_s += watch.seconds();
 
-        let start = Instant::now();
+        let watch = Stopwatch::start();
         let (solver, mut system) = equations.prepare(matrix, way, options)?;
-        solution.timings.factor_s += start.elapsed().as_secs_f64();
+        solution.timings.factor_s += watch.seconds();
 
-        let start = Instant::now();
+        let watch = Stopwatch::start();
         equations.solve(&solver, &mut system, &mut solution)?;
         solution.systems.push(system);
-        solution.timings.solve_s += start.elapsed().as_secs_f64();
+        solution.timings.solve_s += watch.seconds();
         keep(solver);
     }
     Ok(solution)

@@ -22,6 +22,7 @@ pub use self::symbolic::work;
 use super::factor::{Counts, FactorError, Form};
 use super::ordering::Ordering;
 use super::sparse::{BlockGraph, BlockMatrix};
+use crate::platform;
 
 /// Operations below which a subtree is one task: about 20 microseconds.
 const GRAIN: f64 = 5e5;
@@ -197,16 +198,11 @@ impl Symbolic {
             }
             lock(&self.workspaces).push(workspace);
         };
-        let run = &run;
-        in_pool(threads, || {
-            rayon::scope(|scope| {
-                for (t, task) in tasks.iter().enumerate() {
-                    if self.tree.supernodes[task.fronts.1].first == task.fronts.0 {
-                        scope.spawn(move |_| run(t));
-                    }
-                }
-            });
-        });
+        let leaf = |t: &usize| {
+            let (first, last) = tasks[*t].fronts;
+            self.tree.supernodes[last].first == first
+        };
+        platform::run_all(threads, (0..tasks.len()).filter(leaf), &run);
         failed.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
     }
 
@@ -243,16 +239,4 @@ impl Symbolic {
 /// A lock that outlives a panic elsewhere: the panic is passed on by the scope anyway.
 fn lock<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Runs in the current pool where it has no more than so many threads, else in one that does.
-fn in_pool(threads: usize, run: impl FnOnce() + Send) {
-    if rayon::current_num_threads() <= threads {
-        return run();
-    }
-    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool.install(run),
-        // No more threads to be had: those that there are.
-        Err(_) => run(),
-    }
 }

@@ -1,12 +1,11 @@
 //! What depends on the mesh, its rigid bodies and its hard supports only, shared by every fabric on it.
 
-use std::time::Instant;
-
 use super::SolveError;
 use super::assemble::Pattern;
 use super::factor::{self, Analysis, Path};
 use super::linear::{Method, Options};
 use crate::model::{Dof, DofGroup, Model};
+use crate::platform::Stopwatch;
 
 /// Node pattern of a mesh, and ordering and symbolic factorisation for each dof group in use.
 #[derive(Debug)]
@@ -48,7 +47,7 @@ impl Plan {
     }
 
     fn chosen(model: &Model, groups: &[DofGroup], options: &Options) -> Result<Self, SolveError> {
-        let start = Instant::now();
+        let watch = Stopwatch::start();
         let mesh = &model.mesh;
         let pattern = Pattern::new(mesh, model.links()?);
         let mut plan = Self { pattern, groups: Vec::new(), iterated: Vec::new(), seconds: (0.0, 0.0) };
@@ -59,17 +58,17 @@ impl Plan {
         let coordinates: Vec<[f64; 3]> = mesh.nodes.iter().map(|p| [p.x, p.y, p.z]).collect();
         let graph = &plan.pattern.graph;
         let order = factor::order(graph, Some(&coordinates)).map_err(SolveError::Factor)?;
-        plan.seconds.0 = start.elapsed().as_secs_f64();
+        plan.seconds.0 = watch.seconds();
         for &group in groups {
             let analysis = factor::analyse_ordered(graph, group.dofs().len(), &order, options.path)
                 .map_err(SolveError::Factor)?;
-            if options.method == Method::Auto && analysis.counts().bytes > options.factor_limit {
+            if options.method == Method::Auto && analysis.counts().bytes as u64 > options.factor_limit {
                 plan.iterated.push(group);
             } else {
                 plan.groups.push((group, analysis));
             }
         }
-        plan.seconds.1 = start.elapsed().as_secs_f64() - plan.seconds.0;
+        plan.seconds.1 = watch.seconds() - plan.seconds.0;
         Ok(plan)
     }
 

@@ -1,10 +1,9 @@
 //! Bending tests of other laboratories, as shells in large rotations: cantilever, heart loop,
 //! and the bend loop of FAB strips.
 
-use rayon::prelude::*;
-
 use crate::characterise::FabricSheet;
 use crate::instrument::{Direction, Parameter, Test};
+use crate::platform;
 use crate::quantity::Length;
 use crate::section::ShellSection;
 
@@ -80,7 +79,7 @@ pub fn simulate_records(
     let usual = FabSettings::default();
     let settings = FabSettings { cells: spec.cells.unwrap_or(usual.cells), ..usual };
     let of = |d| bend_loops(&sheet.bend_tests, d, density.mean, &settings);
-    let along: Vec<_> = Direction::ALL.into_par_iter().map(|d| (d, of(d))).collect();
+    let along: Vec<_> = platform::map(Direction::ALL, |d| (d, of(d)));
     let (mut loops, mut failed) = (Vec::new(), Vec::new());
     for (direction, result) in along {
         match result {

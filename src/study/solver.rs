@@ -47,7 +47,7 @@ impl From<SolverChoice> for Method {
 /// A size of memory, such as `"8 GB"` (10⁹ bytes each).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
-pub struct Bytes(pub usize);
+pub struct Bytes(pub u64);
 
 impl FromStr for Bytes {
     type Err = String;
@@ -62,7 +62,7 @@ impl FromStr for Bytes {
         };
         let bytes = number.parse::<f64>().map_err(|_| wrong())? * factor;
         // Saturates far beyond any machine.
-        if bytes >= 0.0 { Ok(Self(bytes as usize)) } else { Err(wrong()) }
+        if bytes >= 0.0 { Ok(Self(bytes as u64)) } else { Err(wrong()) }
     }
 }
 

@@ -12,7 +12,6 @@ mod table;
 
 use std::ops::ControlFlow;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use problem::Statics;
@@ -25,6 +24,7 @@ use crate::element::MaterialAxisError;
 use crate::finding::errors;
 use crate::mesh::MeshError;
 use crate::model::ModelError;
+use crate::platform::{self, Stopwatch};
 use crate::solve::SolveError;
 use crate::solve::nonlinear::NonlinearError;
 
@@ -176,14 +176,14 @@ pub struct Comparison {
 impl Line {
     /// Solves the problem and compares.
     pub fn check(&self) -> Outcome {
-        let start = std::time::Instant::now();
+        let watch = Stopwatch::start();
         let mut statics = Statics::default();
         let result = self.compare(&mut statics);
         let residual = statics.residual;
         // A value that is not a number compares as false.
         let pass = result.as_ref().is_ok_and(|c| c.error.abs() <= self.tolerance.limit())
             && residual.is_none_or(|r| r <= RESIDUAL);
-        Outcome { result, residual, pass, seconds: start.elapsed().as_secs_f64() }
+        Outcome { result, residual, pass, seconds: watch.seconds() }
     }
 
     fn compare(&self, statics: &mut Statics) -> Result<Comparison, VerifyError> {
@@ -220,5 +220,5 @@ pub fn run(lines: &[Line], observe: impl Fn(&Outcome) -> ControlFlow<()> + Sync)
         observe(&outcome).is_continue().then_some(outcome)
     };
     // One line at a time: their costs differ by four orders of magnitude.
-    lines.par_iter().with_max_len(1).map(check).collect()
+    platform::try_map(lines, check)
 }

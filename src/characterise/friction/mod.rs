@@ -21,7 +21,6 @@ mod summary;
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use self::identify::Path;
@@ -29,6 +28,7 @@ use super::{Branch, CycleChoice, FabricSheet, Key, Settings, SpecimenResult};
 use crate::finding::{EvaluationFact, Finding, Place, Subject};
 use crate::instrument::{Conditions, Direction, Parameter, Test};
 use crate::law::Channel;
+use crate::platform;
 use crate::quantity::{Curve, Estimate};
 
 pub use bands::LawBand;
@@ -199,7 +199,7 @@ impl FabricSheet {
 
 /// Adds the laws to a sheet.
 pub(super) fn add(sheet: &mut FabricSheet, settings: &Settings) {
-    let found: Vec<_> = sheet.specimens.par_iter().map(|s| of_specimen(s, settings)).collect();
+    let found: Vec<_> = platform::map(&sheet.specimens, |s| of_specimen(s, settings));
     for (specimen, law) in sheet.specimens.iter().zip(found) {
         match law {
             Ok(law) => sheet.laws.push(law),

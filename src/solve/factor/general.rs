@@ -108,7 +108,7 @@ impl Symbolic {
         }
         let pattern = SymbolicSparseColMatRef::new_checked(n, n, &self.col_ptr, None, &self.row_idx);
         let matrix = SparseColMatRef::new(pattern, &values);
-        let par = if threads > 1 { Par::rayon(threads) } else { Par::Seq };
+        let par = par(threads);
         let len = self.cholesky.len_val();
         let mut l = Vec::new();
         l.try_reserve_exact(len).map_err(|_| FactorError::OutOfMemory { bytes: len * size_of::<f64>() })?;
@@ -174,6 +174,18 @@ impl Symbolic {
         }
         Counts { nnz_l, stored: self.cholesky.len_val(), flops, ..Counts::default() }
     }
+}
+
+/// How faer is to share its work.
+#[cfg(feature = "threads")]
+fn par(threads: usize) -> Par {
+    if threads > 1 { Par::rayon(threads) } else { Par::Seq }
+}
+
+/// How faer is to share its work: not at all.
+#[cfg(not(feature = "threads"))]
+fn par(_threads: usize) -> Par {
+    Par::Seq
 }
 
 /// The values of L, and of D on the diagonal of an indefinite matrix.

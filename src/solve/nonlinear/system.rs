@@ -5,7 +5,6 @@ mod rates;
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector3};
-use rayon::prelude::*;
 
 use super::sheet::{Answer, Forces, Sheet};
 use super::{NonlinearError, Settings, State};
@@ -13,6 +12,7 @@ use crate::element::corotational::Motion;
 use crate::element::{Matrix24, Vector24, follower_pressure, follower_pressure_tangent, lumped_mass};
 use crate::model::rigid::lever;
 use crate::model::{Links, Model, ModelError};
+use crate::platform;
 use crate::solve::SolveError;
 use crate::solve::assemble::{scatter, unit_rows};
 use crate::solve::factor::{Factor, FactorError};
@@ -123,7 +123,7 @@ impl<'a> System<'a> {
 
     /// Applies `f` to every index, in parallel if asked for; the results are in order.
     fn each<T: Send>(&self, range: std::ops::Range<usize>, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
-        if self.threads > 1 { range.into_par_iter().map(f).collect() } else { range.map(f).collect() }
+        if self.threads > 1 { platform::map(range, f) } else { range.map(f).collect() }
     }
 
     /// Forces in a state, with the loads times its factor and `extra` loads on top.

@@ -19,7 +19,6 @@ use std::ops::ControlFlow;
 use nalgebra::{UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use rayon::prelude::*;
 
 pub use rim::Folds;
 
@@ -28,6 +27,7 @@ use super::{StudyError, Watch, build, solver};
 use crate::characterise::FabricSheet;
 use crate::finding::{Finding, Place, StudyFact};
 use crate::model::Model;
+use crate::platform;
 use crate::quantity::Ratio;
 use crate::section::{SheetLaw, ShellSection};
 use crate::solve::nonlinear::{Flow, NonlinearError, Settings, Solution, State, Step, plan, relax_from};
@@ -133,14 +133,12 @@ pub fn drape(
     build::weighed(&model)?;
     let single = Options { threads: 1, ..solver::options(case, options)? };
     let shared = plan(&model, &single)?;
-    let searches: Vec<Result<(Solution, DrapeState), (usize, NonlinearError)>> = folds
-        .par_iter()
-        .map(|&start| {
+    let searches: Vec<Result<(Solution, DrapeState), (usize, NonlinearError)>> =
+        platform::map(folds, |&start| {
             let found = ring.relax(&model, law, &shared, ring.start(&model, start), &single, watch);
             (watch.stage)();
             found.map(|s| (s.clone(), ring.state(&model, &s, start))).map_err(|e| (start, e))
-        })
-        .collect();
+        });
     let go_on = || if (watch.stopped)() { Err(StudyError::Stopped) } else { Ok(()) };
     go_on()?;
     let (mut found, mut failed) = (Vec::new(), Vec::new());
