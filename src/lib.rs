@@ -56,3 +56,7 @@ pub mod cli;
 
 #[cfg(feature = "charts")]
 pub use run::{RunReport, RunSettings, run};
+
+#[cfg(test)]
+#[path = "../tests/common/mod.rs"]
+mod common;

@@ -9,6 +9,8 @@
 //! References: heavy elastica, hanging loops and slack strips of `kesf::analytical` (analytical, no code
 //! shared), Peirce's formula (published), a FAB record of a cupro weave (measured, where it is at hand).
 
+mod common;
+
 use std::path::Path;
 
 use kesf::analytical::beam::heart_load;
@@ -276,7 +278,7 @@ fn inclined_clamps_are_found() {
 fn a_measured_fab_record() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/u3m/physics_example2.json");
     if !path.exists() {
-        println!("skipped: no {}", path.display());
+        common::skipped("a_measured_fab_record", &format!("no {}", path.display()));
         return;
     }
     let file = read(&path, &ReadSettings::default()).unwrap().fab.unwrap();

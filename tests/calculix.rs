@@ -6,6 +6,8 @@
 
 #![cfg(feature = "cli")]
 
+mod common;
+
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
@@ -84,7 +86,7 @@ fn section() -> ShellSection {
 #[test]
 fn a_card_bends_and_stretches_like_the_sheet() {
     if Command::new("ccx").arg("-v").output().is_err() {
-        println!("skipped: no ccx");
+        common::skipped("a_card_bends_and_stretches_like_the_sheet", "no ccx");
         return;
     }
     let card = Command::new(env!("CARGO_BIN_EXE_kesf"))

@@ -3,6 +3,8 @@
 //! References: `truth.toml` of the synthetic fabrics (analytical: closed forms and dense sums of the
 //! generator, which shares no code with the evaluation) and the published tables themselves.
 
+mod common;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -137,7 +139,7 @@ fn a_real_fab_record() {
         PathBuf::from,
     );
     if !path.is_file() {
-        println!("skipped: no {}", path.display());
+        common::skipped("a_real_fab_record", &format!("no {}", path.display()));
         return;
     }
     let batch = read_fabrics(&[path], &ReadSettings::default(), &|_: &Path| ());

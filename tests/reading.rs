@@ -1,5 +1,7 @@
 //! Reading of whole folders: the shipped fabrics, and the real FAB record where it is present.
 
+mod common;
+
 use std::path::{Path, PathBuf};
 
 use approx::assert_relative_eq;
@@ -13,7 +15,7 @@ fn the_shipped_fabrics_are_read_completely() {
     for name in ["poplin", "twill", "satin"] {
         let folder = root.join(name);
         if !folder.is_dir() {
-            println!("skipped: no {}", folder.display());
+            common::skipped("the_shipped_fabrics_are_read_completely", &format!("no {}", folder.display()));
             continue;
         }
         let batch = read_fabrics(&[folder], &ReadSettings::default(), &|_: &Path| ());
@@ -62,7 +64,7 @@ fn the_shipped_fabrics_are_read_completely() {
 fn published_result_tables_are_read() {
     let folder = Path::new("../shared/data/published");
     if !folder.is_dir() {
-        println!("skipped: no {}", folder.display());
+        common::skipped("published_result_tables_are_read", &format!("no {}", folder.display()));
         return;
     }
     let batch = read_fabrics(&[folder.to_path_buf()], &ReadSettings::default(), &|_: &Path| ());
@@ -88,7 +90,7 @@ fn published_result_tables_are_read() {
 fn the_real_fab_record_is_read() {
     let file = Path::new("../shared/data/u3m/physics_example2.json");
     if !file.is_file() {
-        println!("skipped: no {}", file.display());
+        common::skipped("the_real_fab_record_is_read", &format!("no {}", file.display()));
         return;
     }
     let batch = read_fabrics(&[file.to_path_buf()], &ReadSettings::default(), &|_: &Path| ());

@@ -234,11 +234,11 @@ fn laws_of_summary_values_give_them_back() {
 }
 
 /// The sheet of the cupro weave (Browzwear FAB, U3M 1.1), where its file is there.
-fn cupro_weave() -> Option<crate::characterise::FabricSheet> {
+fn cupro_weave(test: &str) -> Option<crate::characterise::FabricSheet> {
     let file =
         std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/u3m/physics_example2.json");
     if !file.exists() {
-        println!("skipped: no {}", file.display());
+        crate::common::skipped(test, &format!("no {}", file.display()));
         return None;
     }
     let batch = crate::instrument::read_fabrics(&[file], &Default::default(), &|_| ());
@@ -251,7 +251,7 @@ fn cupro_weave() -> Option<crate::characterise::FabricSheet> {
 #[test]
 fn strips_of_a_real_cupro_weave() {
     use crate::instrument::{Direction, fab::FabKind};
-    let Some(sheet) = cupro_weave() else { return };
+    let Some(sheet) = cupro_weave("strips_of_a_real_cupro_weave") else { return };
     // Direction, strip, last cycle, the one before (NRMSE, %).
     let reached = [
         (Direction::Warp, 1, 0.60, 3.4),
@@ -285,7 +285,7 @@ fn strips_of_a_real_cupro_weave() {
 /// 4 %; over its own span two are not by squares (short weft 4.1 %, long bias 4.4 %).
 #[test]
 fn exponents_that_other_strips_give() {
-    let Some(sheet) = cupro_weave() else { return };
+    let Some(sheet) = cupro_weave("exponents_that_other_strips_give") else { return };
     let exponents: Vec<f64> = (0..=50).map(|i| 0.02 * f64::from(i)).collect();
     let figures = |strip: &crate::characterise::Strip| -> Vec<[f64; 2]> {
         let of = |p: &f64| {
@@ -330,7 +330,7 @@ fn exponents_that_other_strips_give() {
 /// before its last cycle is, at its end, as that cycle left it.
 #[test]
 fn strips_are_held_to_what_loops_are_held_to() {
-    let Some(sheet) = cupro_weave() else { return };
+    let Some(sheet) = cupro_weave("strips_are_held_to_what_loops_are_held_to") else { return };
     let strip = sheet.strips[0].clone();
     let mut one_way = strip.clone();
     one_way.cycles.last_mut().unwrap().branches.truncate(1);
@@ -356,7 +356,7 @@ fn strips_are_held_to_what_loops_are_held_to() {
 fn summary_values_beside_strips_give_laws() {
     use crate::characterise::{Basis, Key, Settings};
     use crate::instrument::{Direction, Parameter, Test};
-    let Some(mut sheet) = cupro_weave() else { return };
+    let Some(mut sheet) = cupro_weave("summary_values_beside_strips_give_laws") else { return };
     for (parameter, value) in [(Parameter::Lt, 0.72), (Parameter::Rt, 0.55), (Parameter::Emt, 0.05)] {
         let key = Key { parameter, direction: Some(Direction::Warp) };
         sheet.values.insert(key, crate::quantity::Estimate::single(value));
