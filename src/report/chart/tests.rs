@@ -16,6 +16,9 @@ use crate::instrument::{
 use crate::quantity::{Curve, Estimate};
 use crate::study;
 
+mod drawn;
+mod picture;
+
 const WARP: Option<Direction> = Some(Direction::Warp);
 const WEFT: Option<Direction> = Some(Direction::Weft);
 
@@ -266,7 +269,7 @@ fn the_four_charts_of_a_measured_fabric() {
 fn every_shipped_fabric_has_the_charts_that_its_data_allow() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("kesf_data");
     if !folder.is_dir() {
-        println!("skipped: no kesf_data");
+        crate::common::skipped("every_shipped_fabric_has_the_charts_that_its_data_allow", "no kesf_data");
         return;
     }
     let batch = instrument::read_fabrics(&[folder], &instrument::ReadSettings::default(), &|_| {});
