@@ -3,7 +3,7 @@
 //! # Layers
 //!
 //! The list of modules below is the layering: a module may use the ones above it only
-//! (`tests/architecture.rs` holds the exact table). Two arms meet in one type:
+//! (`tests/architecture/rules.rs` holds the exact table). Two arms meet in one type:
 //! [`instrument`] and [`characterise`] know cloth, [`mesh`] to [`fields`] know shells,
 //! and [`constitutive`] turns a [`characterise::FabricSheet`] into a [`section::ShellSection`].
 #![forbid(unsafe_code)]

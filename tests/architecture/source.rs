@@ -275,8 +275,7 @@ impl Scan {
                 TokenTree::Ident(first) => {
                     let line = first.span().start().line;
                     let mut segments = before.to_vec();
-                    loop {
-                        let Some(TokenTree::Ident(segment)) = all.get(at) else { break };
+                    while let Some(TokenTree::Ident(segment)) = all.get(at) {
                         segments.push(segment.to_string());
                         self.module.words.push(segment.to_string());
                         at += 1;

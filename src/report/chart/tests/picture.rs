@@ -188,7 +188,7 @@ pub fn along(points: &[Point]) -> Vec<Point> {
 }
 
 fn disc(at: Point, reach: f64) -> impl Iterator<Item = (usize, usize)> {
-    let range = |c: f64, end: usize| {
+    let range = move |c: f64, end: usize| {
         let first = (c - reach).floor().max(0.0) as usize;
         first..((c + reach).ceil().max(0.0) as usize + 1).min(end)
     };
