@@ -21,12 +21,13 @@ use serde::Serialize;
 
 use crate::finding::Finding;
 use crate::instrument::Source;
+use crate::platform::map_several;
 use crate::report::chart;
 use crate::report::html::{Figure, html};
 use crate::report::table::{FabricRow, PredictionRow, ProblemRow, problem_row};
 use crate::results::{
     Benchmark, Columns, Fabric, FabricReport, Failure, FileEntry, Folder, Job, Observer, Outcome,
-    ReadingEntry, Sink, Task, Work, bracket, checks, each, overview, page, readable, simulate, unread,
+    ReadingEntry, Sink, Task, Work, bracket, checks, overview, page, readable, simulate, unread,
     write_drape_parity, write_friction_parity,
 };
 use crate::study::{Analysis, Case, CaseResult, SolverChoice};
@@ -186,7 +187,7 @@ fn fabrics(
         observer.step();
         Some(report)
     };
-    let reports = observer.part("fabrics", steps, || each(work.fabrics.iter().collect(), report))?;
+    let reports = observer.part("fabrics", steps, || map_several(work.fabrics.iter().collect(), report))?;
     Ok(reports.into_iter().flatten().collect())
 }
 
@@ -204,7 +205,7 @@ fn own_cases<'a, 'w>(
     let own: Vec<&Task> = tasks.iter().filter(|t| t.fabric.is_none() && t.case.sheet.is_some()).collect();
     let steps = own.iter().map(|task| task.stages() + 1).sum();
     observer.part("cases", steps, || {
-        each(own, |task| {
+        map_several(own, |task| {
             let outcome = simulate(task, observer).and_then(|outcome| {
                 let figures = outcome.write(task, folder)?;
                 Ok((outcome, figures))

@@ -8,4 +8,4 @@ mod clock;
 mod parallel;
 
 pub use clock::Stopwatch;
-pub use parallel::{Items, map, run_all, try_map};
+pub use parallel::{Items, map, map_several, run_all, try_map};

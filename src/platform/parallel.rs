@@ -30,6 +30,11 @@ pub fn map<T: Send, R: Send>(items: impl Items<T>, function: impl Fn(T) -> R + S
     items.into_iter().map(function).collect()
 }
 
+/// [`map`], with a single item on the calling thread: starting others takes longer.
+pub fn map_several<T: Send, R: Send>(items: Vec<T>, function: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
+    if items.len() > 1 { map(items, function) } else { items.into_iter().map(function).collect() }
+}
+
 /// `function` of every item, each a task of its own: for few items of very different cost. `None`
 /// as soon as one gives `None`; then some items are not looked at.
 #[cfg(feature = "threads")]

@@ -5,10 +5,10 @@ use super::failure::Failure;
 use super::folder::Folder;
 use super::observer::Observer;
 use super::outcome::{Document, Entries, Outcome, text};
-use super::parallel::each;
 use super::simulate::simulate;
 use super::task::Task;
 use super::work::{Work, findings};
+use crate::platform::map_several;
 use crate::study::Case;
 
 /// Which cases are done together.
@@ -85,7 +85,7 @@ impl<'w> Batch<'w> {
         }
         let steps = tasks.len() + tasks.iter().map(Task::stages).sum::<usize>();
         let tasks = observer.part(kind.activity(), steps, || {
-            each(tasks, |task| {
+            map_several(tasks, |task| {
                 let outcome = simulate_and_write(&task, folder, observer);
                 observer.step();
                 (task, outcome)

@@ -90,7 +90,7 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
         ],
         &["toml"],
     ),
-    ("run", &["finding", "instrument", "study", "report", "results"], &[]),
+    ("run", &["platform", "finding", "instrument", "study", "report", "results"], &[]),
     (
         "cli",
         &[
