@@ -241,7 +241,7 @@ fn a_table_of_fabrics_loses_only_the_bad_ones() {
     let found: Vec<&Value> = document["findings"].as_array().unwrap().iter().collect();
     let outlier = found.iter().find(|f| f["code"] == "K010" && f["fabric"] == "a-b").unwrap();
     let fields = serde_json::json!({
-        "key": { "parameter": "B", "direction": null }, "repeat": 5, "in_table": true, "others": 4, "criterion": "MAD",
+        "key": { "parameter": "B", "direction": "warp" }, "repeat": 5, "in_table": true, "others": 4, "criterion": "MAD",
     });
     assert_eq!(outlier["fields"], fields);
     assert_eq!(found.iter().filter(|f| f["code"] == "R101").count(), 1);

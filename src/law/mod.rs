@@ -7,8 +7,6 @@
 
 mod backbone;
 mod channel;
-#[cfg(test)]
-mod tests;
 mod widening;
 
 pub use backbone::{Backbone, Elastic};
@@ -16,6 +14,7 @@ pub use channel::{Channel, Family, MAX_SLIDERS, Mode, Response, Slider, State};
 pub use widening::Widening;
 
 use crate::finding::errors;
+
 errors! {
     /// M020: numbers that make no law.
     #[derive(Clone, Debug, PartialEq)]
@@ -55,3 +54,6 @@ errors! {
         } = "the slip level of {slip:e} widens faster than the strain grows (slope {slope}): take a smaller one";
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -10,7 +10,7 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("quantity", &["platform"], &[]),
     ("kes", &["quantity"], &[]),
     ("finding", &["quantity", "kes"], &["toml"]),
-    ("law", &[], &[]),
+    ("law", &["finding"], &[]),
     (
         "instrument",
         &["platform", "quantity", "kes", "finding"],
@@ -20,7 +20,7 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("section", &["finding", "quantity", "law"], &[]),
     ("analytical", &["section"], &[]),
     ("mesh", &["finding", "quantity"], &[]),
-    ("element", &["section", "mesh", "law"], &[]),
+    ("element", &["finding", "section", "mesh", "law"], &[]),
     ("model", &["finding", "quantity", "section", "mesh", "law", "element"], &[]),
     ("solve", &["platform", "finding", "quantity", "section", "mesh", "law", "element", "model"], &["faer"]),
     ("fields", &["finding", "quantity", "section", "mesh", "law", "element", "model", "solve"], &[]),
@@ -48,7 +48,18 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ),
     (
         "verify",
-        &["platform", "law", "section", "analytical", "mesh", "element", "model", "solve", "fields"],
+        &[
+            "platform",
+            "finding",
+            "law",
+            "section",
+            "analytical",
+            "mesh",
+            "element",
+            "model",
+            "solve",
+            "fields",
+        ],
         &["toml"],
     ),
     (

@@ -33,6 +33,7 @@ pub use parity::{ParityPoint, parity};
 pub use profile::{ProfileLine, ProfilePlot, profile};
 
 use crate::finding::errors;
+
 errors! {
     /// Why there is no chart.
     #[derive(Clone, Debug, PartialEq)]
