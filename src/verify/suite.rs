@@ -3,7 +3,8 @@
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::{Kind, Line, Problem, Reference, Tolerance};
+use super::line::{Kind, Line, Reference, Tolerance};
+use super::problem::Problem;
 
 const FILES: [&str; 11] = [
     include_str!("suite/element.toml"),

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Kind, Line, Outcome, RESIDUAL, Tolerance};
+use super::line::{Kind, Line, Outcome, RESIDUAL, Tolerance};
 
 /// A line of the suite with what came out.
 pub type Checked<'a> = (&'a Line, &'a Outcome);

@@ -1,7 +1,7 @@
 //! Axes: ranges, ticks at round numbers, and the frame that maps data to the page.
 
-use super::ChartError;
 use super::canvas::{Canvas, Point, Stroke};
+use super::error::ChartError;
 use super::letters::{Align, Type};
 use super::palette::{GREY, GRID, INK};
 use crate::report::number::{fixed, power_of_ten};

@@ -6,7 +6,8 @@
 use plotters::prelude::{BitMapBackend, DrawingBackend, RGBColor, ShapeStyle};
 use plotters::style::Color;
 
-use super::{ChartError, letters};
+use super::error::ChartError;
+use super::letters;
 
 /// Page size in pixels: 6 in x 4.5 in at 300 dpi.
 pub(super) const WIDTH: usize = 1800;

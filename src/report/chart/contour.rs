@@ -2,9 +2,9 @@
 
 use plotters::prelude::RGBColor;
 
-use super::ChartError;
 use super::axes::{Frame, Range};
 use super::canvas::{Canvas, Point, Stroke};
+use super::error::ChartError;
 use super::letters::{Align, Type};
 use super::palette::{INK, diverging, lighter, sequential};
 

@@ -6,9 +6,10 @@ use nalgebra::Vector3;
 use plotters::prelude::RGBColor;
 
 use super::canvas::{Canvas, HEIGHT, Point, Stroke, WIDTH};
+use super::error::ChartError;
+use super::head::Head;
 use super::palette::{BLUE, GREY, INK, WARNING, darker, lighter};
 use super::panel::{self, Row};
-use super::{ChartError, Head};
 
 /// What [`drape_shadow`] and [`drape_view`] draw (m).
 #[derive(Clone, Debug, Default)]

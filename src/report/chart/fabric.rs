@@ -8,12 +8,14 @@ use crate::study::Comparison;
 
 use super::axes::{Frame, Range};
 use super::canvas::{Canvas, HEIGHT, Point, Stroke, WIDTH};
+use super::error::ChartError;
+use super::head::Head;
 use super::loops::{self, TestAxes, Trace};
 use super::marks::{Marks, has_readings, reading_stroke};
 use super::palette::{self, GREY, darker, lighter};
 use super::panel::{self, Row};
+use super::schematic;
 use super::spread::Spread;
-use super::{ChartError, Head, schematic};
 
 /// A simulated curve to be drawn over the measured ones, with its distance from them.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -6,9 +6,11 @@ use crate::report::number::{prefixed, significant};
 use super::axes::{Frame, Label, Range};
 use super::canvas::{Canvas, HEIGHT, Point, Stroke, WIDTH};
 use super::contour::{self, Levels};
+use super::error::ChartError;
+use super::head::Head;
 use super::letters::Type;
 use super::palette::{BLUE, INK, VERMILLION, WARNING};
-use super::{ChartError, Head, panel};
+use super::panel;
 
 /// What [`field`] draws. Lengths are metres, values SI.
 #[derive(Clone, Debug, Default)]

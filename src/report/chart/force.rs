@@ -9,10 +9,11 @@ use crate::study::bending::{Agreement, BendLoop, BendLoops, Simulated};
 
 use super::axes::{Frame, Label, Range};
 use super::canvas::{Canvas, Point, Stroke, WIDTH};
+use super::error::ChartError;
+use super::head::Head;
 use super::letters::Type;
 use super::palette::{BLUE, GREY, INK, VERMILLION, lighter};
 use super::panel::{self, Row};
-use super::{ChartError, Head};
 
 /// What [`bend_loops`] draws.
 #[derive(Clone, Debug, PartialEq)]

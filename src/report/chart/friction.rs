@@ -6,12 +6,13 @@ use crate::report::number::{plain_exponent, power_of_ten, significant, unit_text
 
 use super::axes::{Frame, Label, Range};
 use super::canvas::{Canvas, HEIGHT, Point, Stroke, WIDTH};
+use super::error::ChartError;
 use super::fabric::symbol;
+use super::head::Head;
 use super::letters::{Align, Type};
 use super::loops::TestAxes;
 use super::palette::{self, GREY, INK, darker, lighter};
 use super::panel::{self, Row};
-use super::{ChartError, Head};
 
 /// Between which abscissae of the page the panels stand.
 const PANELS: [f64; 2] = [30.0, 1390.0];

@@ -11,8 +11,8 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{IntoTextStyle, register_font};
 use unifont::Glyph;
 
-use super::ChartError;
 use super::canvas::{Canvas, OVERSAMPLING, Point, device, drawing};
+use super::error::ChartError;
 
 const FONT: &str = "kesf DejaVu Sans";
 /// Plotters measures a font by ascent + descent, in this many ems for DejaVu Sans.

@@ -3,9 +3,9 @@
 use crate::characterise::{FabricSheet, Window};
 use crate::instrument::{Parameter, Test};
 
-use super::ChartError;
 use super::axes::Frame;
 use super::canvas::{Canvas, Point, Stroke};
+use super::error::ChartError;
 use super::fabric::symbol;
 use super::letters::{Align, Type};
 use super::loops::{TestAxes, Trace};

@@ -2,8 +2,8 @@
 
 use plotters::prelude::RGBColor;
 
-use super::ChartError;
 use super::canvas::{Canvas, Point, Stroke};
+use super::error::ChartError;
 use super::letters::{Align, Type};
 use super::palette::{GREY, GROUPS, INK};
 

@@ -4,10 +4,11 @@ use crate::report::number::{fixed, prefixed, significant};
 
 use super::axes::{Frame, Label, Range};
 use super::canvas::{Canvas, Point, Stroke, WIDTH};
+use super::error::ChartError;
+use super::head::Head;
 use super::letters::Type;
 use super::palette::{GREY, INK, lighter};
 use super::panel::{self, Row, marker};
-use super::{ChartError, Head};
 
 /// One comparison.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -5,9 +5,10 @@ use crate::quantity::Curve;
 
 use super::axes::{Frame, Label, Range};
 use super::canvas::{Canvas, Point, Stroke, WIDTH};
+use super::error::ChartError;
+use super::head::Head;
 use super::palette::{self, GREY, INK};
 use super::panel::{self, Row};
-use super::{ChartError, Head};
 
 /// A strip in the view.
 #[derive(Clone, Debug, PartialEq)]

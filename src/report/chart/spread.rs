@@ -3,9 +3,9 @@
 use crate::characterise::MeanBranch;
 use crate::quantity::Curve;
 
-use super::ChartError;
 use super::axes::Frame;
 use super::canvas::{Canvas, Point, Stroke};
+use super::error::ChartError;
 use super::fabric::SimulatedCurve;
 use super::loops::TestAxes;
 use super::palette::{self, GREY, darker, lighter};

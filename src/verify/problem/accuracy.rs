@@ -2,10 +2,11 @@
 
 use serde::Deserialize;
 
-use super::super::{Function, VerifyError};
-use super::Statics;
 use super::plate::PlateProblem;
+use super::setting::Statics;
 use crate::fields::Extrapolation;
+use crate::verify::error::VerifyError;
+use crate::verify::function::Function;
 
 /// Slope of the error of a plate in a log-log plot, from `n` to `2 n` elements.
 #[derive(Clone, Debug, Deserialize)]

@@ -3,10 +3,10 @@
 use nalgebra::Vector3;
 use serde::Deserialize;
 
-use super::super::VerifyError;
-use super::{DrillingChoice, Law, Layout, Statics, default_alpha, formulation};
+use super::setting::{DrillingChoice, Law, Layout, Statics, default_alpha, formulation};
 use crate::mesh::disc;
 use crate::model::{Load, Model, Support};
+use crate::verify::error::VerifyError;
 
 /// A clamped or simply supported disc of radius 1, rigidity 1, t = 1e-3, under unit pressure.
 #[derive(Clone, Copy, Debug, Deserialize)]

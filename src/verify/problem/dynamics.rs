@@ -6,8 +6,7 @@ use std::ops::ControlFlow;
 use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 use serde::Deserialize;
 
-use super::super::VerifyError;
-use super::Law;
+use super::setting::Law;
 use crate::element::{Formulation, Mass};
 use crate::mesh::rectangle;
 use crate::model::{DofGroup, Load, Model, Support};
@@ -15,6 +14,7 @@ use crate::solve::assemble::{Kind, Pattern, assemble};
 use crate::solve::factor::FactorError;
 use crate::solve::newmark::{LoadHistory, Rayleigh, Settings, newmark};
 use crate::solve::{Options, SolveError};
+use crate::verify::error::VerifyError;
 
 /// A clamped unit square of 8 x 8 elements under a step of pressure, from rest, over two periods of the
 /// first mode; consistent mass.

@@ -3,10 +3,10 @@
 use nalgebra::{DMatrix, Matrix3, Point3, Rotation3, SMatrix, Vector3};
 use serde::Deserialize;
 
-use super::super::VerifyError;
-use super::{DrillingChoice, Layout, default_alpha, formulation, isotropic};
+use super::setting::{DrillingChoice, Layout, default_alpha, formulation, isotropic};
 use crate::element::{Bending, Formulation, Prepared, Vector24};
 use crate::section::ShellSection;
+use crate::verify::error::VerifyError;
 
 /// Motions of one element that cost no energy.
 #[derive(Clone, Copy, Debug, Deserialize)]

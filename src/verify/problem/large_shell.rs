@@ -7,14 +7,14 @@ use std::ops::ControlFlow;
 use nalgebra::{Matrix2, Matrix3, Point3, Vector3};
 use serde::Deserialize;
 
-use super::super::VerifyError;
+use super::setting::{DrillingChoice, Layout, default_alpha, formulation, isotropic, unit};
 use super::shell::mapped;
-use super::{DrillingChoice, Layout, default_alpha, formulation, isotropic, unit};
 use crate::mesh::{MeshError, QuadMesh, rectangle};
 use crate::model::{Dof, Load, Model, Support};
 use crate::section::ShellSection;
 use crate::solve::Options;
 use crate::solve::nonlinear::{ArcLength, Settings, follow, solve};
+use crate::verify::error::VerifyError;
 
 /// A shell in large rotations.
 #[derive(Clone, Copy, Debug, Deserialize)]

@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use nalgebra::{Matrix2, Matrix3, Point3, Rotation3, Vector2, Vector3};
 use serde::Deserialize;
 
-use super::super::VerifyError;
-use super::{DrillingChoice, Layout, Statics, default_alpha, formulation, isotropic};
+use super::setting::{DrillingChoice, Layout, Statics, default_alpha, formulation, isotropic};
 use crate::element::{Bending, Formulation};
 use crate::fields::{Resultants, element_means};
 use crate::mesh::{QuadMesh, distorted, rectangle};
 use crate::model::{Dof, Model, Support};
 use crate::section::ShellSection;
+use crate::verify::error::VerifyError;
 
 /// A patch test over several cell layouts, flat and turned in space.
 #[derive(Clone, Debug, Deserialize)]

@@ -3,8 +3,7 @@
 use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
-use super::super::{Function, VerifyError};
-use super::{Law, Layout, Statics, nearest, unit};
+use super::setting::{Law, Layout, Statics, nearest, unit};
 use crate::analytical::levy::Edge;
 use crate::analytical::mindlin::MindlinPlate;
 use crate::analytical::{Plate, PlateState};
@@ -13,6 +12,8 @@ use crate::fields;
 use crate::mesh::{distorted, rectangle};
 use crate::model::{Dof, DofGroup, Load, Model, Support};
 use crate::solve::{Options, modes};
+use crate::verify::error::VerifyError;
+use crate::verify::function::Function;
 
 /// A rectangle `[0, a] x [0, b]`, one section, unit pressure.
 #[derive(Clone, Debug, Deserialize)]

@@ -6,12 +6,12 @@ use std::f64::consts::TAU;
 use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
-use super::super::VerifyError;
-use super::{DrillingChoice, Law, Layout, Statics, default_alpha, formulation, nearest};
+use super::setting::{DrillingChoice, Law, Layout, Statics, default_alpha, formulation, nearest};
 use crate::element::{Bending, Formulation};
 use crate::fields;
 use crate::mesh::{QuadMesh, rectangle};
 use crate::model::{Dof, Load, Model, Support};
+use crate::verify::error::VerifyError;
 
 /// A clamped square plate of side 10, t = 0.01, ν = 0.3: a quarter of it with 2 x 2 elements, whose middle
 /// node is moved to (2.5 + s, 2.5 + s); uniform pressure.

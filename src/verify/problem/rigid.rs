@@ -3,12 +3,12 @@
 use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
-use super::super::VerifyError;
-use super::{Law, Statics};
+use super::setting::{Law, Statics};
 use crate::element::{Formulation, Mass};
 use crate::mesh::rectangle;
 use crate::model::{Dof, Load, Model, RigidBody, Support};
 use crate::solve::{Options, modes};
+use crate::verify::error::VerifyError;
 
 /// A cantilever strip of length 1 and rigidity D = 1 (ν = 0), 2 cm wide, unit mass per area.
 #[derive(Clone, Copy, Debug, Deserialize)]

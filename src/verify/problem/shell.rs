@@ -5,11 +5,11 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
-use super::super::VerifyError;
-use super::{DrillingChoice, Layout, Statics, default_alpha, formulation, isotropic, unit};
+use super::setting::{DrillingChoice, Layout, Statics, default_alpha, formulation, isotropic, unit};
 use crate::mesh::{QuadMesh, rectangle};
 use crate::model::{Dof, Load, Model, Support};
 use crate::section::ShellSection;
+use crate::verify::error::VerifyError;
 
 /// A shell of the usual obstacle course.
 #[derive(Clone, Copy, Debug, Deserialize)]

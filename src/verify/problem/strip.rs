@@ -6,7 +6,6 @@ use std::ops::ControlFlow;
 use nalgebra::{Matrix2, Matrix3, Vector3};
 use serde::Deserialize;
 
-use super::super::{Function, VerifyError};
 use crate::analytical::elastica::{heavy_elastica, tip_loaded};
 use crate::element::{Formulation, Mass};
 use crate::mesh::rectangle;
@@ -16,6 +15,8 @@ use crate::solve::Options;
 use crate::solve::newmark::{LoadHistory, Rayleigh};
 use crate::solve::nonlinear::dynamics::{Dynamics, integrate};
 use crate::solve::nonlinear::{Settings, solve};
+use crate::verify::error::VerifyError;
+use crate::verify::function::Function;
 
 /// A cantilever of unit length and rigidity, ν = 0, square elements.
 #[derive(Clone, Copy, Debug, Deserialize)]
