@@ -39,16 +39,23 @@ pub fn mean_branches(sheet: &FabricSheet, test: Test) -> Vec<MeanBranch> {
     let mut directions: Vec<Option<Direction>> = specimens.iter().map(|s| s.measurement.direction).collect();
     directions.sort();
     directions.dedup();
-    let of = |direction| {
-        let repeats = specimens.iter().filter(move |s| s.measurement.direction == direction);
-        let branches = repeats.clone().next().map_or(0, |s| s.branches.len());
-        let repeats: Vec<_> = repeats.filter(|s| s.branches.len() == branches).collect();
-        (0..branches).filter_map(move |k| {
-            let curves: Vec<&Curve> = repeats.iter().map(|s| &s.branches[k].curve).collect();
-            mean_branch(test, direction, &curves)
-        })
+    directions.into_iter().flat_map(|direction| mean_branches_along(&specimens, test, direction)).collect()
+}
+
+/// The mean branches of the specimens of a direction that have as many as the first.
+fn mean_branches_along(
+    specimens: &[&SpecimenResult],
+    test: Test,
+    direction: Option<Direction>,
+) -> Vec<MeanBranch> {
+    let along = || specimens.iter().filter(|s| s.measurement.direction == direction);
+    let branches = along().next().map_or(0, |s| s.branches.len());
+    let repeats: Vec<_> = along().filter(|s| s.branches.len() == branches).collect();
+    let mean = |k: usize| {
+        let curves: Vec<&Curve> = repeats.iter().map(|s| &s.branches[k].curve).collect();
+        mean_branch(test, direction, &curves)
     };
-    directions.into_iter().flat_map(of).collect()
+    (0..branches).filter_map(mean).collect()
 }
 
 /// The mean of curves; `None` for fewer than two, or if they have no range in common.

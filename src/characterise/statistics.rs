@@ -107,8 +107,7 @@ pub(super) fn swapped(sheet: &FabricSheet) -> Vec<Finding> {
     let mut findings = Vec::new();
     for parameter in [Parameter::Emt, Parameter::B] {
         for (own, other) in [(Direction::Warp, Direction::Weft), (Direction::Weft, Direction::Warp)] {
-            let of = |d| sheet.get(parameter, Some(d)).map(|e| e.values.as_slice()).unwrap_or_default();
-            for i in misplaced(of(own), of(other)) {
+            for i in misplaced(repeats(sheet, parameter, own), repeats(sheet, parameter, other)) {
                 let key = Key { parameter, direction: Some(own) };
                 let Some(measurement) = repeat(sheet, key, i) else { continue };
                 let specimen = measurement.specimen;
@@ -118,6 +117,11 @@ pub(super) fn swapped(sheet: &FabricSheet) -> Vec<Finding> {
         }
     }
     findings
+}
+
+/// The values of the repeats (SI).
+fn repeats(sheet: &FabricSheet, parameter: Parameter, direction: Direction) -> &[f64] {
+    sheet.get(parameter, Some(direction)).map(|e| e.values.as_slice()).unwrap_or_default()
 }
 
 /// Indices in `own` that lie with `other` although the rest of `own` lies clearly apart.

@@ -138,6 +138,11 @@ fn cycle(
     Some(StripCycle { onset, slack, residual, offset: zero / width, branches, moduli, fits })
 }
 
+/// The strips of a direction and a kind.
+fn strips_of_kind(strips: &[Strip], direction: Direction, kind: FabKind) -> Vec<&Strip> {
+    strips.iter().filter(|s| s.direction == direction && s.kind == kind).collect()
+}
+
 /// Moduli of the long strips (short ones where there is no other), last cycle.
 fn stiffness(sheet: &mut FabricSheet, files: &[FabFile], settings: &Settings, place: &Place) {
     let mut lengths: Vec<StripLength> = Vec::new();
@@ -145,10 +150,10 @@ fn stiffness(sheet: &mut FabricSheet, files: &[FabFile], settings: &Settings, pl
         if sheet.moduli.keys().any(|(_, d)| *d == direction) {
             continue;
         }
-        let of = |kind| -> Vec<&Strip> {
-            sheet.strips.iter().filter(|s| s.direction == direction && s.kind == kind).collect()
-        };
-        let strips = Some(of(FabKind::S2)).filter(|s| !s.is_empty()).unwrap_or_else(|| of(FabKind::S1));
+        let mut strips = strips_of_kind(&sheet.strips, direction, FabKind::S2);
+        if strips.is_empty() {
+            strips = strips_of_kind(&sheet.strips, direction, FabKind::S1);
+        }
         let last: Vec<&StripCycle> = strips.iter().filter_map(|s| s.cycles.last()).collect();
         let Some(shown) = last.first() else { continue };
         lengths.push(StripLength { direction, length: shown.onset, cycle: strips[0].cycles.len() });

@@ -9,7 +9,7 @@
 
 use nalgebra::Matrix3;
 
-use super::{Assumptions, Constant, ConstitutiveError, Notes, PoissonRule, Standing};
+use super::{Assumptions, Constant, ConstitutiveError, InputSource, Notes, PoissonRule};
 use crate::characterise::Modulus;
 use crate::finding::SectionFact;
 use crate::instrument::Direction;
@@ -84,9 +84,10 @@ fn record(
     notes: &mut Notes,
 ) -> [f64; 2] {
     let [e1, e2] = [warp.mean, weft.mean];
-    let standing = |direction| modulus.map_or(Standing::Tensile, |m| Standing::Modulus(m.name(), direction));
-    notes.origin("E warp", (warp, standing(Direction::Warp)), &[(Constant::Tensile(0), 1.0)]);
-    notes.origin("E weft", (weft, standing(Direction::Weft)), &[(Constant::Tensile(1), 1.0)]);
+    let from =
+        |direction| modulus.map_or(InputSource::Tensile, |m| InputSource::Modulus(m.name(), direction));
+    notes.origin("E warp", (warp, from(Direction::Warp)), &[(Constant::Tensile(0), 1.0)]);
+    notes.origin("E weft", (weft, from(Direction::Weft)), &[(Constant::Tensile(1), 1.0)]);
     let value = format!("warp {} N/m, weft {} N/m", significant(e1), significant(e2));
     notes.used("tensile modulus", value, source);
     [e1, e2]
@@ -94,6 +95,6 @@ fn record(
 
 /// The modulus of the sheet in both directions.
 fn known<'a>(modulus: Modulus, notes: &Notes<'a>) -> Option<[&'a Estimate; 2]> {
-    let of = |direction| notes.sheet.moduli.get(&(modulus.name(), direction));
-    Some([of(Direction::Warp)?, of(Direction::Weft)?])
+    let moduli = &notes.sheet.moduli;
+    Some([moduli.get(&(modulus.name(), Direction::Warp))?, moduli.get(&(modulus.name(), Direction::Weft))?])
 }

@@ -15,7 +15,7 @@ mod assumptions;
 mod bending;
 mod friction;
 mod membrane;
-mod moved;
+mod perturbed;
 mod sensitivity;
 mod shear;
 
@@ -32,7 +32,7 @@ use crate::section::{SectionError, SheetLaw, ShellSection};
 
 pub use assumptions::{Assumptions, BendingCoupling, ChoiceError, PoissonRule, Torsion, TransverseShear};
 pub use friction::tension;
-pub use moved::{Standing, law_inputs, moved};
+pub use perturbed::{InputSource, law_inputs, perturbed};
 use sensitivity::{Constant, Origin};
 pub use sensitivity::{Entry, Input, SectionDerivative, bands, entries};
 
@@ -156,15 +156,15 @@ fn thickness(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, Consti
     let measured = [Parameter::T0, Parameter::Tm]
         .into_iter()
         .find_map(|p| Some((value(sheet, p, None)?, format!("measured: {p}"))));
-    let single = |t: f64| (Estimate::single(t), Standing::Thickness);
+    let single = |t: f64| (Estimate::single(t), InputSource::Thickness);
     let stated = || sheet.info.thickness.map(|t| (single(t), "measured: fabric.toml".to_string()));
-    let ((estimate, standing), source) = measured.or_else(stated).unwrap_or_else(|| {
+    let ((estimate, from), source) = measured.or_else(stated).unwrap_or_else(|| {
         let t = assumptions.thickness;
         notes.finding(SectionFact::NoThickness { fabric: sheet.name.clone(), assumed: t.si() });
         (single(t.si()), "assumed: not measured".to_string())
     });
     let value = estimate.mean;
-    notes.origin("thickness", (&estimate, standing), &[(Constant::Thickness, 1.0)]);
+    notes.origin("thickness", (&estimate, from), &[(Constant::Thickness, 1.0)]);
     notes.positive("thickness", value, "m", "measure it (KES-FB3) or correct it in fabric.toml")?;
     notes.used("thickness", format!("{} mm", significant(value * 1e3)), source);
     Ok(value)
@@ -174,17 +174,17 @@ fn thickness(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, Consti
 fn areal_density(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, ConstitutiveError> {
     let sheet = notes.sheet;
     let measured = value(sheet, Parameter::W, None).map(|w| (w, "measured: W"));
-    let single = |w: f64| (Estimate::single(w), Standing::ArealDensity);
+    let single = |w: f64| (Estimate::single(w), InputSource::ArealDensity);
     let stated = || sheet.info.areal_density.map(|w| (single(w), "measured: fabric.toml"));
     let assumed = || assumptions.areal_density.map(|w| (single(w.si()), "assumed: not measured"));
-    let Some(((estimate, standing), source)) = measured.or_else(stated).or_else(assumed) else {
+    let Some(((estimate, from), source)) = measured.or_else(stated).or_else(assumed) else {
         return Err(notes.missing(
             "areal density",
             "weigh the specimen and write areal_density = \"150 g/m²\" in its fabric.toml, or areal_density in the [assumptions] of the case (`kesf section`, `kesf export`: --areal-density)",
         ));
     };
     let value = estimate.mean;
-    notes.origin("areal density", (&estimate, standing), &[(Constant::ArealDensity, 1.0)]);
+    notes.origin("areal density", (&estimate, from), &[(Constant::ArealDensity, 1.0)]);
     notes.positive("areal density", value, "kg/m²", "correct it in its fabric.toml or result table")?;
     notes.used("areal density", format!("{} g/m²", significant(value * 1e3)), source);
     Ok(value)
@@ -195,9 +195,9 @@ fn value(
     sheet: &FabricSheet,
     parameter: Parameter,
     direction: Option<Direction>,
-) -> Option<(Estimate, Standing)> {
+) -> Option<(Estimate, InputSource)> {
     let estimate = sheet.get(parameter, direction)?.clone();
-    Some((estimate, Standing::Value(Key { parameter, direction })))
+    Some((estimate, InputSource::Value(Key { parameter, direction })))
 }
 
 /// What is written down on the way: the sheet, the inputs used and the findings.
@@ -213,11 +213,11 @@ impl Notes<'_> {
     fn origin(
         &mut self,
         name: impl Into<String>,
-        (estimate, standing): (&Estimate, Standing),
+        (estimate, source): (&Estimate, InputSource),
         gives: &[(Constant, f64)],
     ) {
         let (estimate, gives) = (estimate.clone(), gives.to_vec());
-        self.origins.push(Origin { name: name.into(), estimate, standing, gives });
+        self.origins.push(Origin { name: name.into(), estimate, source, gives });
     }
 
     /// The same for a parameter of the sheet; nothing if the sheet has none.
@@ -227,12 +227,12 @@ impl Notes<'_> {
         direction: Option<Direction>,
         gives: &[(Constant, f64)],
     ) {
-        if let Some((estimate, standing)) = value(self.sheet, parameter, direction) {
+        if let Some((estimate, from)) = value(self.sheet, parameter, direction) {
             let name = match direction {
                 Some(direction) => format!("{parameter} {direction}"),
                 None => parameter.symbol().to_string(),
             };
-            self.origin(name, (&estimate, standing), gives);
+            self.origin(name, (&estimate, from), gives);
         }
     }
 

@@ -7,7 +7,7 @@
 use nalgebra::{Matrix2, Matrix3};
 use serde::Serialize;
 
-use super::{Assumptions, BendingCoupling, PoissonRule, Standing, Torsion, TransverseShear};
+use super::{Assumptions, BendingCoupling, InputSource, PoissonRule, Torsion, TransverseShear};
 use crate::quantity::{Bands, Estimate};
 use crate::section::ShellSection;
 
@@ -18,8 +18,8 @@ pub struct Input {
     pub name: String,
     /// Value (SI) with its spread over repeats; a stand-in is a single value.
     pub estimate: Estimate,
-    /// Where the value stands.
-    pub standing: Standing,
+    /// Where the value is.
+    pub source: InputSource,
     /// Derivative of the section per logarithm of the input; 0 of one that only a law with friction has.
     pub derivative: SectionDerivative,
 }
@@ -131,7 +131,7 @@ pub(super) enum Constant {
 pub(super) struct Origin {
     pub name: String,
     pub estimate: Estimate,
-    pub standing: Standing,
+    pub source: InputSource,
     pub gives: Vec<(Constant, f64)>,
 }
 
@@ -141,12 +141,12 @@ pub(super) fn inputs(section: &ShellSection, assumptions: &Assumptions, origins:
     let bias = bias.map_or(0.0, |o| o.estimate.mean);
     origins
         .into_iter()
-        .map(|Origin { name, estimate, standing, gives }| {
+        .map(|Origin { name, estimate, source, gives }| {
             let mut derivative = SectionDerivative::default();
             for (constant, share) in gives {
                 derivative.add(&of_constant(section, assumptions, bias, constant), share);
             }
-            Input { name, estimate, standing, derivative }
+            Input { name, estimate, source, derivative }
         })
         .collect()
 }

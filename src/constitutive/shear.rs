@@ -12,7 +12,7 @@
 
 use nalgebra::Matrix2;
 
-use super::{Assumptions, Constant, ConstitutiveError, Notes, Standing, TransverseShear};
+use super::{Assumptions, Constant, ConstitutiveError, InputSource, Notes, TransverseShear};
 use crate::finding::SectionFact;
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::{Estimate, significant};
@@ -44,7 +44,7 @@ pub(super) fn in_plane(assumptions: &Assumptions, notes: &mut Notes) -> Result<f
             None => {
                 let g = assumptions.shear;
                 notes.finding(SectionFact::NoShearTest { fabric: notes.fabric(), assumed: g.si() });
-                notes.origin("G", (&Estimate::single(g.si()), Standing::Shear), &[(Constant::Shear, 1.0)]);
+                notes.origin("G", (&Estimate::single(g.si()), InputSource::Shear), &[(Constant::Shear, 1.0)]);
                 (g.si(), "assumed: no shear test".to_string())
             }
         },

@@ -12,7 +12,7 @@ use super::failure::Failure;
 use super::inputs::{Curves, Fabric, Input, Reading, nothing_to_read, paths_of_several};
 use super::observer::Observer;
 use crate::characterise::{FabricSheet, Key};
-use crate::constitutive::{Assumptions, Constitutive, Standing, entries, section};
+use crate::constitutive::{Assumptions, Constitutive, InputSource, entries, section};
 use crate::finding::{EvaluationFact, Fact, Place};
 use crate::quantity::{Bands, significant};
 use crate::report::read_back::{self, Document};
@@ -176,8 +176,8 @@ fn repeats(sheet: &FabricSheet, c: &Constitutive) -> Columns {
     let mut columns = Columns::new(["measured", "mean", "SD", "n", "outlier"]);
     for input in &c.inputs {
         let e = &input.estimate;
-        let outlier = match input.standing {
-            Standing::Value(key) => sheet.findings.iter().find_map(|f| outlier(key, &f.fact)),
+        let outlier = match input.source {
+            InputSource::Value(key) => sheet.findings.iter().find_map(|f| outlier(key, &f.fact)),
             _ => None,
         };
         columns.row([

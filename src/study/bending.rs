@@ -78,8 +78,8 @@ pub fn simulate_records(
     })?;
     let usual = FabSettings::default();
     let settings = FabSettings { cells: spec.cells.unwrap_or(usual.cells), ..usual };
-    let of = |d| bend_loops(&sheet.bend_tests, d, density.mean, &settings);
-    let along: Vec<_> = platform::map(Direction::ALL, |d| (d, of(d)));
+    let along: Vec<_> =
+        platform::map(Direction::ALL, |d| (d, bend_loops(&sheet.bend_tests, d, density.mean, &settings)));
     let (mut loops, mut failed) = (Vec::new(), Vec::new());
     for (direction, result) in along {
         match result {

@@ -64,8 +64,8 @@ impl Convergence {
             let (unit, finest) = (unit_of(case, &quantity)?, values.last()?.abs());
             let size = sizes.like(&quantity).unwrap_or(finest);
             // A coarse mesh may have fewer modes.
-            let told = values.len() == results.len() && finest > ROUNDING * size;
-            let extrapolation = Extrapolation::of(&values).filter(|_| told)?;
+            let known = values.len() == results.len() && finest > ROUNDING * size;
+            let extrapolation = Extrapolation::of(&values).filter(|_| known)?;
             Some(MeshSeries { quantity, unit, values, extrapolation, size })
         };
         Ok(Self { cells, quantities: names(case).into_iter().filter_map(series).collect() })

@@ -16,7 +16,7 @@ use super::bending::{BendingResult, simulate_strips};
 use super::case::{Analysis, BendingKind, Case, TestFormulation, UncertaintyTable};
 use super::{PreparedCase, PreparedTest, Status, StudyError, Watch, drape, simulate_cycle};
 use crate::characterise::FabricSheet;
-use crate::constitutive::{self, Constitutive, Input, law_inputs, moved};
+use crate::constitutive::{self, Constitutive, Input, law_inputs, perturbed};
 use crate::finding::{Finding, Place, StudyFact};
 use crate::instrument::{Direction, Parameter, Test};
 use crate::law::Mode;
@@ -316,7 +316,7 @@ impl Sampler<'_> {
         inputs: &[Input],
         values: &[f64],
     ) -> Vec<f64> {
-        let (sheet, assumptions) = moved(sheet, &self.case.assumptions, inputs, values);
+        let (sheet, assumptions) = perturbed(sheet, &self.case.assumptions, inputs, values);
         let made = constitutive::section(&sheet, &assumptions).ok();
         let readings = made.and_then(|made| (self.evaluate)(&sheet, &made).ok()).unwrap_or_default();
         let value = |q: &SampledQuantity| {

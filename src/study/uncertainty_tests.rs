@@ -12,7 +12,7 @@ use super::super::{Case, CaseResult, PreparedCase, build};
 use super::*;
 use crate::analytical::Plate;
 use crate::characterise::{FabricSheet, Key};
-use crate::constitutive::{Assumptions, Standing, section};
+use crate::constitutive::{Assumptions, InputSource, section};
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::Estimate;
 use crate::section::ShellSection;
@@ -42,7 +42,7 @@ fn solved(case: &Case, section: &ShellSection, inputs: &[Input]) -> CaseResult {
 }
 
 fn input(name: &str, derivative: SectionDerivative) -> Input {
-    Input { name: name.into(), estimate: Estimate::single(1.0), standing: Standing::Shear, derivative }
+    Input { name: name.into(), estimate: Estimate::single(1.0), source: InputSource::Shear, derivative }
 }
 
 /// A bending stiffness D11, D22, D66 and each of them as an input, with the shear as a fourth.

@@ -1,7 +1,7 @@
 //! References: closed forms, published estimates, differences of whole solutions, and Monte Carlo.
 
 use super::*;
-use crate::constitutive::Standing;
+use crate::constitutive::InputSource;
 use approx::assert_relative_eq;
 use nalgebra::{Matrix2, Matrix3};
 use std::path::Path;
@@ -109,7 +109,7 @@ fn bands_agree_with_monte_carlo() {
         .map(|(name, estimate, derivative)| Input {
             name: name.into(),
             estimate,
-            standing: Standing::Shear,
+            source: InputSource::Shear,
             derivative,
         })
         .to_vec();

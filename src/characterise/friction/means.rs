@@ -70,15 +70,16 @@ impl FabricSheet {
     /// The law of the specimen in the middle by B, G, WT or WC, or that from summary values; that of the fabric where
     /// the direction has none.
     pub fn law(&self, test: Test, direction: Option<Direction>) -> Option<&FrictionLaw> {
-        let of = |direction| {
-            let mut found: Vec<&FrictionLaw> = (self.laws.iter())
-                .filter(|l| l.test == test && l.direction == direction && l.basis != Basis::Strip)
-                .collect();
-            let value = |l: &FrictionLaw| l.values.get(&leading(test).0).copied().unwrap_or(0.0);
-            found.sort_by(|a, b| value(a).total_cmp(&value(b)));
-            found.get(found.len().saturating_sub(1) / 2).copied()
-        };
-        of(direction).or_else(|| of(None))
+        self.middle_law(test, direction).or_else(|| self.middle_law(test, None))
+    }
+
+    fn middle_law(&self, test: Test, direction: Option<Direction>) -> Option<&FrictionLaw> {
+        let mut found: Vec<&FrictionLaw> = (self.laws.iter())
+            .filter(|l| l.test == test && l.direction == direction && l.basis != Basis::Strip)
+            .collect();
+        let value = |l: &FrictionLaw| l.values.get(&leading(test).0).copied().unwrap_or(0.0);
+        found.sort_by(|a, b| value(a).total_cmp(&value(b)));
+        found.get(found.len().saturating_sub(1) / 2).copied()
     }
 
     /// The law to calculate with: [`law`](Self::law) with the means that the sheet has of its values.

@@ -181,19 +181,19 @@ pub struct ReExtracted {
 impl FabricSheet {
     /// Every parameter that both the instrument and a law give, in order of parameter and direction.
     pub fn re_extracted(&self) -> Vec<ReExtracted> {
-        let of = |(key, measured): (&Key, &Estimate)| {
-            let mine =
-                |l: &&FrictionLaw| Some(l.test) == key.parameter.test() && l.direction == key.direction;
-            let laws = || self.laws.iter().filter(mine);
-            let values: Vec<f64> = laws().filter_map(|l| l.values.get(&key.parameter).copied()).collect();
-            Some(ReExtracted {
-                key: *key,
-                simulated: Estimate::of(&values)?,
-                measured: measured.clone(),
-                from_loops: laws().any(|l| l.basis == Basis::Loop),
-            })
-        };
-        self.values.iter().filter_map(of).collect()
+        self.values.iter().filter_map(|(key, measured)| self.re_extracted_value(*key, measured)).collect()
+    }
+
+    fn re_extracted_value(&self, key: Key, measured: &Estimate) -> Option<ReExtracted> {
+        let mine = |l: &&FrictionLaw| Some(l.test) == key.parameter.test() && l.direction == key.direction;
+        let laws = || self.laws.iter().filter(mine);
+        let values: Vec<f64> = laws().filter_map(|l| l.values.get(&key.parameter).copied()).collect();
+        Some(ReExtracted {
+            key,
+            simulated: Estimate::of(&values)?,
+            measured: measured.clone(),
+            from_loops: laws().any(|l| l.basis == Basis::Loop),
+        })
     }
 }
 

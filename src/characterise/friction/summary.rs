@@ -113,20 +113,21 @@ fn channel(
 ) -> Option<Result<Channel, String>> {
     let value = |p| sheet.get(p, direction).map(|e| e.mean).filter(|v| v.is_finite() && *v >= 0.0);
     let maximum = conditions(test, settings).maximum;
-    let told = |made: Result<Channel, LawError>| made.map_err(|e| e.to_string());
     Some(match test {
-        Test::Bending => told(bending(value(Parameter::B)?, value(Parameter::Hb)?, maximum)),
+        Test::Bending => {
+            bending(value(Parameter::B)?, value(Parameter::Hb)?, maximum).map_err(|e| e.to_string())
+        }
         Test::Shear => {
             let near = value(Parameter::Hg)?;
             let widths = [near, value(Parameter::Hg5).unwrap_or(near)];
-            told(shear(value(Parameter::G)?, widths, settings, maximum))
+            shear(value(Parameter::G)?, widths, settings, maximum).map_err(|e| e.to_string())
         }
         Test::Tensile => {
             let [lt, rt, emt] = [Parameter::Lt, Parameter::Rt, Parameter::Emt].map(value);
             let (lt, rt, emt) = (lt?, rt?, emt?);
             let parts = |v: f64| v > 0.0 && v <= 1.0;
             if parts(lt) && parts(rt) && emt > 0.0 {
-                told(tension([lt, rt, emt], settings))
+                tension([lt, rt, emt], settings).map_err(|e| e.to_string())
             } else {
                 let [lt, rt, emt] = [lt, 100.0 * rt, 100.0 * emt].map(significant);
                 Err(format!(

@@ -5,9 +5,9 @@ use crate::characterise::{FabricSheet, Key};
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::{ArealDensity, Estimate, Length, LineForce};
 
-/// Where the value of an input stands.
+/// Where the value of an input is: in the sheet, or in the assumptions.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Standing {
+pub enum InputSource {
     /// A parameter of the sheet.
     Value(Key),
     /// A modulus of the sheet, by name and direction.
@@ -24,7 +24,7 @@ pub enum Standing {
 
 /// The sheet and the assumptions with `values` (SI) in place of those of the inputs. Friction laws follow, as they are
 /// brought to the values of the sheet where they are used ([`FabricSheet::mean_law`]).
-pub fn moved(
+pub fn perturbed(
     sheet: &FabricSheet,
     assumptions: &Assumptions,
     inputs: &[Input],
@@ -33,21 +33,21 @@ pub fn moved(
     let (mut sheet, mut assumptions) = (sheet.clone(), assumptions.clone());
     for (input, &value) in inputs.iter().zip(values) {
         let set = |estimate: &mut Estimate| estimate.mean = value;
-        match &input.standing {
-            Standing::Value(key) => sheet.values.get_mut(key).into_iter().for_each(set),
-            Standing::Modulus(name, direction) => {
+        match &input.source {
+            InputSource::Value(key) => sheet.values.get_mut(key).into_iter().for_each(set),
+            InputSource::Modulus(name, direction) => {
                 sheet.moduli.get_mut(&(name.clone(), *direction)).into_iter().for_each(set);
             }
-            Standing::Thickness => match &mut sheet.info.thickness {
+            InputSource::Thickness => match &mut sheet.info.thickness {
                 Some(stated) => *stated = value,
                 None => assumptions.thickness = Length(value),
             },
-            Standing::ArealDensity => match &mut sheet.info.areal_density {
+            InputSource::ArealDensity => match &mut sheet.info.areal_density {
                 Some(stated) => *stated = value,
                 None => assumptions.areal_density = Some(ArealDensity(value)),
             },
-            Standing::Tensile => assumptions.tensile = LineForce(value),
-            Standing::Shear => assumptions.shear = LineForce(value),
+            InputSource::Tensile => assumptions.tensile = LineForce(value),
+            InputSource::Shear => assumptions.shear = LineForce(value),
         }
     }
     (sheet, assumptions)
@@ -60,7 +60,7 @@ pub fn law_inputs(sheet: &FabricSheet, parameter: Parameter) -> Vec<Input> {
         sheet.values.get(&key).map(|estimate| Input {
             name: direction.map_or(parameter.symbol().into(), |d| format!("{parameter} {d}")),
             estimate: estimate.clone(),
-            standing: Standing::Value(key),
+            source: InputSource::Value(key),
             derivative: SectionDerivative::default(),
         })
     };
