@@ -39,6 +39,8 @@ pub mod fields;
 
 pub mod constitutive;
 
+pub mod case;
+
 pub mod study;
 
 pub mod verify;

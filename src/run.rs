@@ -30,7 +30,8 @@ use crate::results::{
     ReadingEntry, Sink, Task, Work, bracket, checks, overview, page, readable, simulate, unread,
     write_drape_parity, write_friction_parity,
 };
-use crate::study::{Analysis, Case, CaseResult, SolverChoice};
+use crate::case::{Case, SolverChoice};
+use crate::study::CaseResult;
 
 /// What is made of the results.
 #[derive(Clone, Debug)]
@@ -154,7 +155,7 @@ pub fn write(
 
 fn leave_out_drapes(work: &mut Work, settings: &RunSettings, observer: &Observer) {
     work.cases.retain(|case| {
-        let is_left_out = !settings.drape && matches!(case.analysis, Analysis::Drape { .. });
+        let is_left_out = !settings.drape && case.is_drape();
         if is_left_out {
             observer.note(&format!("{}: left out, it takes minutes; add --drape", case.path.display()));
         }

@@ -176,10 +176,9 @@ fn a_direction_that_fails_leaves_the_others() {
     let mut sheet = FabricSheet { bend_tests: vec![good, torn], ..FabricSheet::default() };
     let case = "title = \"t\"\nfabric = \"*\"\n[bending_test]\ntest = \"fab_bend_loop\"\ncells = 12\n";
     let case = Case::parse(Path::new("t.toml"), case).unwrap();
-    let spec = case.bending_test.as_ref().unwrap();
-    assert_eq!(simulate_records(&case, spec, &sheet).unwrap_err().code(), "S003", "no areal density");
+    assert_eq!(simulate_records(&case, Some(12), &sheet).unwrap_err().code(), "S003", "no areal density");
     sheet.values.insert(Key { parameter: Parameter::W, direction: None }, Estimate::single(density));
-    let (result, failed) = simulate_records(&case, spec, &sheet).unwrap();
+    let (result, failed) = simulate_records(&case, Some(12), &sheet).unwrap();
     let BendingResult::FabBendLoop(found) = result else { unreachable!("it is a FAB case") };
     assert!(found.len() == 1 && found[0].direction == Direction::Warp);
     assert!(failed.len() == 1 && failed[0].0 == Direction::Weft, "{failed:?}");

@@ -17,7 +17,7 @@ fn every_shipped_case_is_read_and_every_explicit_section_passes_its_checks() {
     let mut checks = 0;
     for path in shipped() {
         let case = Case::read(&path).unwrap_or_else(|e| panic!("{e}"));
-        let Some(table) = &case.section else { continue };
+        let Some(table) = case.section() else { continue };
         let result = solve_case(&case, section(table).unwrap(), &Options::default()).unwrap();
         for check in &result.checks {
             println!("{}: {} error {:.2e}", case.name, check.quantity, check.relative_error);
@@ -34,7 +34,7 @@ fn every_shipped_case_is_read_and_every_explicit_section_passes_its_checks() {
 fn decoupled_and_coupled_solutions_are_equal() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/benchmark_clamped_orthotropic.toml");
     let case = Case::read(&path).unwrap();
-    let s = section(case.section.as_ref().unwrap()).unwrap();
+    let s = section(case.section().unwrap()).unwrap();
     let apart = solve_case(&case, s.clone(), &Options::default()).unwrap();
     let together = solve_case(&case, s, &Options { coupled: true, ..Options::default() }).unwrap();
     let scale = apart.w_max.abs();
@@ -44,13 +44,22 @@ fn decoupled_and_coupled_solutions_are_equal() {
 }
 
 fn parsed(analysis: &str, load: &str) -> Case {
+    Case::parse(Path::new("inline.toml"), &text_of(analysis, load)).unwrap()
+}
+
+/// The same sheet held nowhere.
+fn free(analysis: &str, load: &str) -> Case {
+    let text = text_of(analysis, load).replace("\"clamped\"", "\"free\"");
+    Case::parse(Path::new("inline.toml"), &text).unwrap()
+}
+
+fn text_of(analysis: &str, load: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/benchmark_clamped_isotropic.toml");
     let text = std::fs::read_to_string(path).unwrap().replace("cells = [40, 40]", "cells = [12, 12]");
     let end = text.find("[[checks]]").unwrap();
     let loads = text.find("[[loads]]").unwrap();
     let probes = text.find("[[probes]]").unwrap();
-    let text = format!("{}{load}{}[analysis]\n{analysis}\n", &text[..loads], &text[probes..end]);
-    Case::parse(Path::new("inline.toml"), &text).unwrap()
+    format!("{}{load}{}[analysis]\n{analysis}\n", &text[..loads], &text[probes..end])
 }
 
 const PRESSURE: &str = "[[loads]]\nkind = \"pressure\"\nvalue = \"1e-6 Pa\"\n";
@@ -59,7 +68,7 @@ const PRESSURE: &str = "[[loads]]\nkind = \"pressure\"\nvalue = \"1e-6 Pa\"\n";
 #[test]
 fn a_modal_case_gives_frequencies_and_the_first_shape() {
     let case = parsed("kind = \"modal\"\nmodes = 3", "");
-    let s = section(case.section.as_ref().unwrap()).unwrap();
+    let s = section(case.section().unwrap()).unwrap();
     let result = solve_case(&case, s, &Options::default()).unwrap();
     assert_eq!(result.frequencies.len(), 3);
     let omega = result.frequencies[0] * std::f64::consts::TAU;
@@ -68,8 +77,7 @@ fn a_modal_case_gives_frequencies_and_the_first_shape() {
     assert!(result.modes.len() == 3 && result.modes[0] == result.solution.displacement);
     assert!(result.is_modal() && !result.has_reactions() && result.solution.dofs > 0);
     let all = parsed("kind = \"modal\"\nmodes = 10000", "");
-    let result =
-        solve_case(&all, section(all.section.as_ref().unwrap()).unwrap(), &Options::default()).unwrap();
+    let result = solve_case(&all, section(all.section().unwrap()).unwrap(), &Options::default()).unwrap();
     assert_eq!(result.findings[0].code(), "S104");
 }
 
@@ -78,14 +86,14 @@ fn a_modal_case_gives_frequencies_and_the_first_shape() {
 fn a_moved_clamp_carries_the_sheet() {
     let load = "[[loads]]\nkind = \"prescribed\"\nset = \"boundary\"\ndof = \"w\"\nvalue = \"1 µm\"\n";
     let case = parsed("kind = \"linear\"", load);
-    let s = section(case.section.as_ref().unwrap()).unwrap();
+    let s = section(case.section().unwrap()).unwrap();
     let result = solve_case(&case, s, &Options::default()).unwrap();
     let w = result.solution.displacement.iter().skip(2).step_by(6);
     assert!(w.into_iter().all(|w| (w / 1e-6 - 1.0).abs() < 1e-9));
     // A clamped edge that is pushed: its force is that of the other edges, to all digits that matter.
     let pushed = load.replace("boundary", "left");
     let case = parsed("kind = \"linear\"", &pushed);
-    let s = section(case.section.as_ref().unwrap()).unwrap();
+    let s = section(case.section().unwrap()).unwrap();
     let result = solve_case(&case, s, &Options::default()).unwrap();
     let reactions = || result.solution.reaction.iter().skip(2).step_by(6);
     let (sum, largest) = (reactions().sum::<f64>(), reactions().fold(0.0f64, |m, r| m.max(r.abs())));
@@ -97,9 +105,8 @@ fn a_moved_clamp_carries_the_sheet() {
 fn a_free_sheet_is_damped() {
     let analysis = "kind = \"newmark\"\nduration = \"0.02 s\"\nstep = \"0.5 ms\"\ndamping = [0.05, 0.05]";
     let load = "[[loads]]\nkind = \"point\"\nset = \"boundary\"\nvalue = \"1e-9 N\"\ndirection = [0, 0, 1]\n";
-    let mut case = parsed(analysis, load);
-    case.supports.clear();
-    let s = section(case.section.as_ref().unwrap()).unwrap();
+    let case = free(analysis, load);
+    let s = section(case.section().unwrap()).unwrap();
     let history = solve_case(&case, s, &Options::default()).unwrap().history.unwrap();
     let last = history.energy.last().unwrap();
     assert!(last.dissipated > 1e-3 * last.work.abs(), "{last:?}");
@@ -111,7 +118,7 @@ fn a_free_sheet_is_damped() {
 #[test]
 fn a_dynamic_case_swings_about_the_static_deflection() {
     let case = parsed("kind = \"newmark\"\nduration = \"0.175 s\"\nstep = \"0.5 ms\"", PRESSURE);
-    let s = section(case.section.as_ref().unwrap()).unwrap();
+    let s = section(case.section().unwrap()).unwrap();
     let dynamic = solve_case(&case, s.clone(), &Options::default()).unwrap();
     let still = solve_case(&parsed("kind = \"linear\"", PRESSURE), s, &Options::default()).unwrap();
     let ratio = dynamic.w_max / still.w_max;
@@ -147,7 +154,7 @@ fn a_mesh_file_is_used_with_its_unit_and_its_groups() {
         let text =
             format!("{head}[sheet]\n{sheet}\n[[supports]]\nset = \"{set}\"\nkind = \"clamped\"\n{rest}");
         let case = Case::parse(&folder.path().join("c.toml"), &text).unwrap();
-        let s = section(case.section.as_ref().unwrap()).unwrap();
+        let s = section(case.section().unwrap()).unwrap();
         solve_case(&case, s, &Options::default()).map(|r| r.w_max)
     };
     let from_file = solve("file = \"part.msh\"\nunit = \"mm\"", "held").unwrap();
@@ -190,7 +197,7 @@ kind = "clamped"
     let parse = |text: &str| Case::parse(Path::new("inline.toml"), text);
     let solve = |text: &str| {
         let case = parse(text).unwrap();
-        let s = section(case.section.as_ref().unwrap()).unwrap();
+        let s = section(case.section().unwrap()).unwrap();
         solve_case(&case, s, &Options::default())
     };
     let result = solve(&format!("{head}{clamp}{turn}")).unwrap();
@@ -215,4 +222,36 @@ kind = "clamped"
     );
     let both = solve(&modal("mass = \"lumped\"\nlumped = true")).unwrap_err();
     assert!(both.to_string().contains("remove `lumped`"), "{both}");
+}
+
+/// What only the mesh can tell stands at the value that it is about too, not at the first word that is the same.
+#[test]
+fn what_is_found_late_stands_where_it_is_written() {
+    let text = text_of("kind = \"linear\"", PRESSURE);
+    let text = text.replace("title = \"", "title = \"rim ");
+    let line_of = |text: &str, word: &str| text[..text.rfind(word).unwrap()].matches('\n').count() + 1;
+    let place = |text: &str| {
+        let case = Case::parse(Path::new("c.toml"), text).unwrap();
+        let error = kesf::study::validate(&case).unwrap_err();
+        let place = error.place().unwrap_or_else(|| panic!("{error}")).clone();
+        (error.code(), place.line, place.column)
+    };
+    let rim = text.replace("set = \"boundary\"", "set = \"rim\"");
+    assert_eq!(place(&rim), ("M007", line_of(&rim, "set = \"rim\""), 7));
+    let held = "[[supports]]\nset = \"left\"\nkind = \"free\"\n";
+    let second = format!("{text}{held}{}", held.replace("left", "rim"));
+    assert_eq!(place(&second), ("M007", line_of(&second, "set = \"rim\""), 7));
+    let push = "[[loads]]\nkind = \"point\"\nset = \"rim\"\nvalue = \"1 N\"\ndirection = [0, 0, 1]\n";
+    let pushed = format!("{text}{push}");
+    assert_eq!(place(&pushed), ("M007", line_of(&pushed, "set = \"rim\""), 7));
+    let inside =
+        "[[loads]]\nkind = \"edge_force\"\nset = \"all\"\nvalue = \"1 N/m\"\ndirection = [0, 0, 1]\n";
+    let moved =
+        inside.replace("edge_force", "prescribed").replace("direction = [0, 0, 1]\n", "dof = \"w\"\n");
+    let moved = format!("{text}{}", moved.replace("\"all\"", "\"rim\"").replace("1 N/m", "1 mm"));
+    assert_eq!(place(&moved), ("M007", line_of(&moved, "set = \"rim\""), 7));
+    let probe = format!("{text}[[probes]]\nname = \"rim\"\nat = [\"2 m\", \"0 m\"]\n");
+    assert_eq!(place(&probe), ("S003", line_of(&probe, "at = [\"2 m\""), 6));
+    let body = format!("{text}[[rigid]]\nname = \"left\"\nset = \"right\"\n");
+    assert_eq!(place(&body), ("S003", line_of(&body, "name = \"left\""), 8));
 }

@@ -55,7 +55,7 @@ const NONLINEAR: &str = "kind = \"nonlinear\"";
 const THRUST: &str = "kind = \"edge_force\"\nset = \"right\"\nvalue = \"0.001 N/m\"\ndirection = [-1, 0, 0]";
 
 fn cloth(case: &Case) -> ShellSection {
-    section(case.section.as_ref().unwrap()).unwrap()
+    section(case.section().unwrap()).unwrap()
 }
 
 fn solved(case: &Case) -> CaseResult {

@@ -34,7 +34,7 @@ fn case(nu: f64, sheet: [f64; 2], cells: [usize; 2], rest: &str) -> Case {
 }
 
 fn solved(case: &Case) -> Result<CaseResult, StudyError> {
-    solve_case(case, section(case.section.as_ref().unwrap()).unwrap(), &Options::default())
+    solve_case(case, section(case.section().unwrap()).unwrap(), &Options::default())
 }
 
 /// A simply supported square under a force of 1 µN.

@@ -37,7 +37,7 @@ fn run(test: &str, keys: &str, direction: Direction, section: &ShellSection) -> 
         "title = \"t\"\nfabric = \"*\"\n[virtual_test]\ntest = \"{test}\"\nformulation = \"nonlinear\"\n{keys}\n"
     );
     let case = Case::parse(Path::new("t.toml"), &text).unwrap();
-    simulate(&case, case.virtual_test.as_ref().unwrap(), direction, section).unwrap()
+    simulate(&case, case.specimen().unwrap(), direction, section).unwrap()
 }
 
 /// At every curvature up to 2.5 1/cm, in both directions and both senses.
@@ -93,7 +93,7 @@ fn a_tension_across_adds_itself_to_the_shear() {
     // What free edges take off is that of small displacements on the same mesh; the rest is the trellis.
     let text = format!("title = \"t\"\nfabric = \"*\"\n[virtual_test]\ntest = \"shear\"\n{cells}\n");
     let case = Case::parse(Path::new("t.toml"), &text).unwrap();
-    let small = simulate(&case, case.virtual_test.as_ref().unwrap(), Direction::Warp, &s).unwrap();
+    let small = simulate(&case, case.specimen().unwrap(), Direction::Warp, &s).unwrap();
     let slope = |w: f64| {
         let at = |degrees: f64| trellis(w, 60.0, 6000.0, degrees.to_radians());
         (at(2.5) - at(0.5)) / 2f64.to_radians()

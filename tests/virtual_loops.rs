@@ -8,6 +8,7 @@
 
 use std::path::{Path, PathBuf};
 
+use kesf::case::{Case, Drive, ShellTest, VirtualTest};
 use kesf::characterise::{FabricSheet, FrictionLaw, Settings, characterise};
 use kesf::constitutive::{Assumptions, section, tension};
 use kesf::element::Formulation;
@@ -15,7 +16,7 @@ use kesf::instrument::{Direction, Parameter, ReadSettings, Test, read_fabrics};
 use kesf::law::Mode;
 use kesf::section::SheetLaw;
 use kesf::solve::Options;
-use kesf::study::{Case, PreparedCase, TestFormulation, VirtualLoop, VirtualTest, simulate_loop};
+use kesf::study::{PreparedCase, VirtualLoop, simulate_loop};
 
 fn sheet(name: &str) -> FabricSheet {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("kesf_data").join(name);
@@ -32,13 +33,12 @@ fn with_friction() -> Assumptions {
 /// law, over its span.
 fn simulated(sheet: &FabricSheet, test: Test, law: SheetLaw) -> (VirtualLoop, f64) {
     let made = section(sheet, &with_friction()).unwrap();
-    let spec = VirtualTest {
-        test,
-        cells: Some([8, 2]),
-        formulation: TestFormulation::Nonlinear,
-        curvature: None,
-        pretension: None,
+    let drive = match ShellTest::of(test).unwrap() {
+        ShellTest::Tensile => Drive::Stretch,
+        ShellTest::Shear => Drive::Shear { pretension: None },
+        ShellTest::Bending => Drive::Bend { curvature: None },
     };
+    let spec = VirtualTest { cells: Some([8, 2]), drive };
     let direction = Direction::Warp;
     let found = simulate_loop(
         &spec,
@@ -49,7 +49,7 @@ fn simulated(sheet: &FabricSheet, test: Test, law: SheetLaw) -> (VirtualLoop, f6
         (&sheet.conditions(test, Some(direction)), &Settings::default()),
         &Options::default(),
     );
-    let found = found.unwrap().unwrap();
+    let found = found.unwrap();
     let own = sheet.law(test, Some(direction)).unwrap();
     let channel = match test {
         Test::Tensile => sheet.mean_law(test, Some(direction)),
@@ -152,7 +152,7 @@ fn a_case_says_whether_cloth_has_friction() {
     let sheet = sheet("matsudaira_b_wool_tropical");
     let solve = |law: &str| {
         let case = strip(law, "kind = \"nonlinear\"").unwrap();
-        let made = section(&sheet, &case.assumptions).unwrap();
+        let made = section(&sheet, case.assumptions().unwrap()).unwrap();
         let found = PreparedCase::new(&case, &Options::default()).unwrap().solve_fabric(&made).unwrap();
         let path = found.path.unwrap();
         assert!(path.converged);

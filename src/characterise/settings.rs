@@ -1,10 +1,13 @@
 //! Windows, readings and thresholds of the evaluation.
 
 use std::fmt;
+use std::path::Path;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize, Serializer, de};
+use thiserror::Error;
 
+use crate::finding::{Place, TomlError, TomlFile};
 use crate::kes::Test;
 use crate::kes::specimen::{
     BENDING_READINGS, BENDING_SLOPE, COMPRESSION_START, DEGREE, GF_PER_CM, SHEAR_READINGS, SHEAR_SLOPE,
@@ -93,6 +96,22 @@ pub enum CycleChoice {
     Last,
 }
 
+/// Why settings cannot be used.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("{place}: the settings cannot be used: {reason}")]
+pub struct SettingsError {
+    /// File, and position of the key or value.
+    pub place: Place,
+    /// What was found, and what is expected.
+    pub reason: String,
+}
+
+impl From<TomlError> for SettingsError {
+    fn from(TomlError { place, message }: TomlError) -> Self {
+        Self { place, reason: message }
+    }
+}
+
 /// Everything in the evaluation that a laboratory may do differently. The defaults are the
 /// customary ones (Kawabata's standard conditions); they are printed beside every sheet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -178,9 +197,25 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// What no evaluation can be made with, if anything: a window that does not rise, or a threshold that is not
-    /// positive. The message quotes the key.
-    pub fn contradiction(&self) -> Option<String> {
+    /// Parses the text of a settings file; `path` names it in messages.
+    ///
+    /// # Errors
+    /// What cannot be used, at its key or value.
+    pub fn parse(path: &Path, text: &str) -> Result<Self, SettingsError> {
+        let file = TomlFile::parse(path, text)?;
+        let settings: Self = file.root().read()?;
+        match settings.contradiction() {
+            None => Ok(settings),
+            Some((key, why)) => Err(SettingsError {
+                place: file.root().value_place(key),
+                reason: format!("`{key}` cannot be used: {why}"),
+            }),
+        }
+    }
+
+    /// What no evaluation can be made with, if anything: the key of a window that does not rise, or of a threshold that
+    /// is not positive, and why.
+    fn contradiction(&self) -> Option<(&'static str, &'static str)> {
         let window = |key, [a, b]: [f64; 2]| (key, a >= 0.0 && a < b, "a window has to rise from 0 or more");
         let above = |key, values: &[f64]| (key, values.iter().all(|v| *v > 0.0), "it has to be above 0");
         let part = |key, r: Ratio| (key, (0.0..1.0).contains(&r.si()), "a part is 0 to 100 %");
@@ -212,7 +247,7 @@ impl Settings {
         ];
         let (key, _, why) =
             windows.into_iter().chain(strips).chain(readings).chain(parts).find(|(_, fits, _)| !fits)?;
-        Some(format!("`{key}` cannot be used: {why}"))
+        Some((key, why))
     }
 
     /// The abscissae (SI) between which the slope of a test is taken: G of shear, B of bending; none of the others.
@@ -289,8 +324,7 @@ mod tests {
 
     #[test]
     fn values_that_no_evaluation_can_use_are_refused_by_name() {
-        let wrong =
-            |line: &str| toml::from_str::<Settings>(line).unwrap().contradiction().unwrap_or_default();
+        let wrong = |line: &str| Settings::parse(Path::new("s.toml"), line).unwrap_err().to_string();
         for (line, key) in [
             ("reversal = \"-1 %\"", "`reversal`"),
             ("reversal = \"0 %\"", "`reversal`"),
@@ -302,6 +336,12 @@ mod tests {
         ] {
             assert!(wrong(line).contains(key), "{line}: {}", wrong(line));
         }
+        let place = |text: &str| {
+            let error = Settings::parse(Path::new("s.toml"), text).unwrap_err();
+            (error.place.line, error.place.column)
+        };
+        assert_eq!(place("noise = \"1 %\"\nreversal = \"-1 %\""), (2, 12));
+        assert_eq!(place("noise = \"1 %\"\nshear_window = 1"), (2, 1));
         assert_eq!(Settings::default().contradiction(), None);
         assert!(matches!("window(100 gf/cm, 20 gf/cm)".parse::<Modulus>(), Err(QuantityError::Order { .. })));
     }

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use super::inputs::{EvaluateArgs, inputs};
 use super::ui::Ui;
 use crate::results::{Failure, Job};
-use crate::study::SolverChoice;
+use crate::case::SolverChoice;
 
 /// Cases and fabrics on the command line.
 #[derive(Debug, Args)]

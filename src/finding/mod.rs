@@ -10,7 +10,7 @@
 
 mod error;
 mod facts;
-mod words;
+mod toml_file;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,8 @@ pub use facts::{
     CoarseQuantity, Divisor, EvaluationFact, Excess, Fact, Fields, LeftOutLine, Missed, ReadFact, RecordAxis,
     Renaming, Samples, SectionFact, StripLength, StudyFact, Subject, UsageFact,
 };
-pub(crate) use words::{Words, position};
+pub use toml_file::Located;
+pub(crate) use toml_file::{Node, ReadLater, TomlError, TomlFile, position};
 
 /// Where in an input something was found. Lines and columns count from 1; a column counts
 /// characters of the decoded line. 0 means "not applicable".

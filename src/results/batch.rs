@@ -23,8 +23,8 @@ pub enum Kind {
 impl Kind {
     fn includes(self, case: &Case) -> bool {
         match self {
-            Self::Solve => case.sheet.is_some(),
-            Self::Compare => case.virtual_test.is_some() || case.bending_test.is_some(),
+            Self::Solve => case.has_sheet(),
+            Self::Compare => !case.has_sheet(),
         }
     }
 

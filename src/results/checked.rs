@@ -7,7 +7,7 @@ use super::failure::Failure;
 use super::inputs::{self, Input, Read, Reading};
 use super::observer::Observer;
 use super::work::{named_fabric, no_such_fabric};
-use crate::finding::Finding;
+use crate::finding::{Finding, Place};
 use crate::instrument::{FabricInput, Inference, Source};
 use crate::study::{Case, StudyError, validate};
 
@@ -83,8 +83,7 @@ fn located(case: &Case, error: StudyError) -> Failure {
     if failure.place.is_some() {
         return failure;
     }
-    let place = case.place_of(&failure.message);
-    failure.at(place)
+    failure.at(Place::file(&case.path))
 }
 
 impl Checked {

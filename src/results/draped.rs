@@ -208,7 +208,7 @@ fn row(task: &Task, quantity: &str, simulated: f64, measured: Option<f64>) -> Pr
 
 /// How the sheet of a case answers to strain.
 fn law(task: &Task) -> &'static str {
-    match task.case.assumptions.law {
+    match task.case.law() {
         Mode::Elastic => "elastic",
         Mode::Virgin => "first loading with friction",
         Mode::Friction => "friction",
@@ -236,7 +236,7 @@ pub(super) fn point(task: &Task, d: &Drape) -> Option<DrapePoint> {
         simulated_half_width: None,
         simulated_band: Some(d.band().map(|b| 100.0 * b)),
     };
-    Some(DrapePoint { law: task.case.assumptions.law, point })
+    Some(DrapePoint { law: task.case.law(), point })
 }
 
 /// Fabrics that were hung elastic and with friction: both lowest-energy states with their bands, and the measured

@@ -10,7 +10,7 @@ use super::failure::Failure;
 use super::names::distinguish_fabrics;
 use super::observer::Observer;
 use crate::characterise::{FabricSheet, Modulus, Settings, characterise};
-use crate::finding::{Place, Words, position};
+use crate::finding::Place;
 use crate::instrument::{
     FabricInput, Inference, Library, ReadError, ReadSettings, ResultValue, parse, read_dialect,
 };
@@ -148,14 +148,7 @@ impl Reading {
         let Some(path) = &self.settings else { return Ok(Settings::default()) };
         let text =
             std::fs::read_to_string(path).map_err(|e| bad_settings(Place::file(path), &e.to_string()))?;
-        let settings: Settings = toml::from_str(&text).map_err(|e| {
-            let (line, column) = position(&text, e.span().map_or(0, |s| s.start));
-            bad_settings(Place::at(path, line, column), e.message())
-        })?;
-        match settings.contradiction() {
-            Some(reason) => Err(bad_settings(Words::of(&text).place(path, &reason), &reason)),
-            None => Ok(settings),
-        }
+        Settings::parse(path, &text).map_err(|e| bad_settings(e.place, &e.reason))
     }
 
     /// The entry of a document.

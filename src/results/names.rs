@@ -50,7 +50,7 @@ pub(super) fn distinguish_cases(cases: &mut [Case]) -> Vec<Finding> {
     let own: BTreeSet<String> = cases.iter().map(|c| c.name.to_lowercase()).collect();
     let (mut seen, mut findings) = (BTreeSet::new(), Vec::new());
     for case in cases {
-        let reserved = case.fabric.is_some() && is_reserved(&case.name);
+        let reserved = case.fabric().is_some() && is_reserved(&case.name);
         if !reserved && seen.insert(case.name.to_lowercase()) {
             continue;
         }

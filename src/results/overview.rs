@@ -5,7 +5,7 @@ use super::fabric::FabricReport;
 use crate::characterise::FabricSheet;
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::significant;
-use crate::study::{Analysis, Case};
+use crate::case::Case;
 
 /// Headings before the deflections, in KES units.
 pub(super) const HEADINGS: [&str; 9] = [
@@ -52,7 +52,7 @@ fn modulus(sheet: &FabricSheet, direction: Direction) -> String {
 pub(crate) fn table(reports: &[FabricReport], cases: &[Case]) -> Columns {
     let cases: Vec<&str> = cases
         .iter()
-        .filter(|c| c.sheet.is_some() && c.section.is_none() && !matches!(c.analysis, Analysis::Drape { .. }))
+        .filter(|c| c.sheet().is_some() && c.fabric().is_some())
         .map(|c| c.name.as_str())
         .collect();
     let deflections = cases.iter().map(|c| format!("w_max {c} (mm)"));

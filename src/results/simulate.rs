@@ -7,10 +7,11 @@ use super::task::Task;
 use super::tested::Tested;
 use crate::characterise::FabricSheet;
 use crate::constitutive;
-use crate::instrument::{Direction, Test};
+use crate::instrument::Direction;
 use crate::solve::Options as SolveOptions;
-use crate::study::bending::{BendingResult, simulate_records, simulate_strips};
-use crate::study::{self, BendingKind, BendingTest, CaseResult, Drape, StudyError, VirtualTest};
+use crate::case::{BendingTest, InstrumentTest, Problem, ShellSpecimen};
+use crate::study::bending::{BendingResult, simulate_cantilever, simulate_heart_loop, simulate_records};
+use crate::study::{self, CaseResult, Drape, StudyError};
 
 /// Simulates what the case describes, its bands included; `observer` is told of every stage.
 ///
@@ -18,23 +19,22 @@ use crate::study::{self, BendingKind, BendingTest, CaseResult, Drape, StudyError
 /// Why there is no result, at the place in the case file.
 pub fn simulate(task: &Task, observer: &Observer) -> Result<Outcome, Failure> {
     sample(task, observer)?;
-    let outcome = if let Some(spec) = &task.case.virtual_test {
-        test(task, spec).map(Outcome::Tested)
-    } else if let Some(spec) = &task.case.bending_test {
-        bend(task, spec).map(|(result, failures)| Outcome::Bent(result, failures))
-    } else if task.is_drape() {
-        drape(task, observer).map(|drape| Outcome::Draped(Box::new(drape)))
-    } else {
-        solve(task).map(|result| Outcome::Solved(Box::new(result)))
+    let outcome = match &task.case.problem {
+        Problem::InstrumentTest(spec) => test(task, spec).map(Outcome::Tested),
+        Problem::BendingTest(spec) => {
+            bend(task, spec).map(|(result, failures)| Outcome::Bent(result, failures))
+        }
+        Problem::Drape(_) => drape(task, observer).map(|drape| Outcome::Draped(Box::new(drape))),
+        Problem::Sheet(_) => solve(task).map(|result| Outcome::Solved(Box::new(result))),
     };
     outcome.map_err(|failure| task.located(failure))
 }
 
 /// Samples the bands of a case with `[uncertainty]`; nothing without.
 fn sample(task: &Task, observer: &Observer) -> Result<(), Failure> {
-    let Some(sheet) = task.fabric.filter(|_| task.case.uncertainty.is_some()) else { return Ok(()) };
+    let Some(sheet) = task.fabric.filter(|_| task.case.sampling().is_some()) else { return Ok(()) };
     let stage = || observer.step();
-    let sampled = constitutive::section(sheet, &task.case.assumptions)
+    let sampled = constitutive::section(sheet, &task.assumptions())
         .map_err(Failure::from)
         .and_then(|made| Ok(study::sample(task.case, sheet, &made, observer.watch(&stage))?));
     let sampling = sampled.map_err(|failure| task.located(failure))?;
@@ -63,15 +63,23 @@ fn drape(task: &Task, observer: &Observer) -> Result<Drape, Failure> {
 
 /// A `[bending_test]`; with the result, the directions that failed.
 fn bend(task: &Task, spec: &BendingTest) -> Result<(BendingResult, Vec<Failure>), Failure> {
-    if let (BendingKind::FabBendLoop, Some(sheet)) = (spec.test, task.fabric) {
-        // It finds a rigidity of its own and needs no section.
-        let (result, failed) = simulate_records(task.case, spec, sheet)?;
-        return Ok((result, failed.into_iter().map(|(d, e)| failed_direction(task, d, e)).collect()));
-    }
-    let (section, _) = task.section()?;
     let nothing = FabricSheet::default();
     let sheet = task.fabric.unwrap_or(&nothing);
-    Ok((simulate_strips(task.case, spec, sheet, &section)?, Vec::new()))
+    match spec {
+        // It finds a rigidity of its own and needs no section.
+        BendingTest::FabBendLoop { cells, .. } => {
+            let (result, failed) = simulate_records(task.case, *cells, sheet)?;
+            Ok((result, failed.into_iter().map(|(d, e)| failed_direction(task, d, e)).collect()))
+        }
+        BendingTest::Cantilever(strip) => {
+            let (section, _) = task.section()?;
+            Ok((simulate_cantilever(strip, sheet, &section)?, Vec::new()))
+        }
+        BendingTest::HeartLoop { strip, length } => {
+            let (section, _) = task.section()?;
+            Ok((simulate_heart_loop(strip, *length, &section)?, Vec::new()))
+        }
+    }
 }
 
 fn failed_direction(task: &Task, direction: Direction, error: StudyError) -> Failure {
@@ -79,22 +87,32 @@ fn failed_direction(task: &Task, direction: Direction, error: StudyError) -> Fai
 }
 
 /// A `[virtual_test]` along warp and weft, compared with the sheet.
-fn test(task: &Task, spec: &VirtualTest) -> Result<Vec<Tested>, Failure> {
+fn test(task: &Task, spec: &InstrumentTest) -> Result<Vec<Tested>, Failure> {
     let nothing = FabricSheet::default();
     let sheet = task.fabric.unwrap_or(&nothing);
-    if spec.test == Test::Compression {
-        let curves = study::compression(sheet).into_iter();
-        return Ok(curves.map(|curve| Tested::new(task.case, sheet, curve)).collect());
+    match spec {
+        InstrumentTest::Compression(_) => {
+            let curves = study::compression(sheet).into_iter();
+            Ok(curves.map(|curve| Tested::new(task.case, sheet, curve)).collect())
+        }
+        InstrumentTest::Shell(specimen) => test_specimen(task, specimen, sheet),
     }
+}
+
+fn test_specimen(
+    task: &Task,
+    specimen: &ShellSpecimen,
+    sheet: &FabricSheet,
+) -> Result<Vec<Tested>, Failure> {
     let (section, made) = task.section()?;
     let inputs = made.as_ref().map_or_else(Vec::new, |c| c.inputs.clone());
-    let prepared = task.prepared_test(spec)?;
+    let prepared = task.prepared_test(specimen)?;
     let mut tested = Vec::new();
     for direction in [Direction::Warp, Direction::Weft] {
         let mut curve = prepared.simulate_measured(direction, &section, &sheet.settings, &inputs)?;
         if let Some(made) = &made {
             let options = SolveOptions::default();
-            curve.cycle = study::simulate_cycle(task.case, spec, direction, sheet, made, &options)?;
+            curve.cycle = study::simulate_cycle(specimen, direction, sheet, made, &options)?;
         }
         tested.push(Tested::new(task.case, sheet, curve));
     }

@@ -5,14 +5,16 @@ use std::sync::{Arc, OnceLock};
 
 use super::failure::Failure;
 use super::inputs::Fabric;
+use crate::case::{Case, ShellSpecimen};
 use crate::characterise::FabricSheet;
-use crate::constitutive::{self, Constitutive};
+use crate::constitutive::{self, Assumptions, Constitutive};
+use crate::finding::Place;
 use crate::instrument::{Direction, Parameter};
 use crate::report::table::PredictionRow;
 use crate::section::ShellSection;
 use crate::solve::Options as SolveOptions;
 use crate::study::{
-    self, Analysis, Case, PreparedCase, PreparedTest, Sampling, VirtualTest, drape_stages, sampling_stages,
+    self, PreparedCase, PreparedTest, Sampling, drape_stages, sampling_stages,
 };
 
 /// A case and its fabric; none for a case with constants of its own.
@@ -53,8 +55,8 @@ impl<'a> Task<'a> {
     }
 
     /// The specimen of the test of the case, made by the first of its tasks.
-    pub(super) fn prepared_test(&self, spec: &VirtualTest) -> Result<&PreparedTest, Failure> {
-        let prepare = || Ok(PreparedTest::new(self.case, spec, &self.shared.options)?);
+    pub(super) fn prepared_test(&self, specimen: &ShellSpecimen) -> Result<&PreparedTest, Failure> {
+        let prepare = || Ok(PreparedTest::new(self.case, specimen, &self.shared.options)?);
         self.shared.test.get_or_init(prepare).as_ref().map_err(Clone::clone)
     }
 
@@ -84,11 +86,7 @@ impl Task<'_> {
     /// A failure of this task: with its name, at its case file unless it has a place of its own.
     pub(super) fn located(&self, failure: Failure) -> Failure {
         let failure = failure.of(&self.name());
-        if failure.place.is_some() {
-            return failure;
-        }
-        let place = self.case.place_of(&failure.message);
-        failure.at(place)
+        if failure.place.is_some() { failure } else { failure.at(Place::file(&self.case.path)) }
     }
 
     /// Names the task in messages: `case`, or `case of fabric`.
@@ -128,15 +126,23 @@ impl Task<'_> {
     /// # Errors
     /// Why there is none.
     pub fn section(&self) -> Result<(ShellSection, Option<Constitutive>), Failure> {
-        match (self.fabric, &self.case.section) {
+        match (self.fabric, self.case.problem.section()) {
             (Some(sheet), _) => {
-                let made = constitutive::section(sheet, &self.case.assumptions)?;
+                let made = constitutive::section(sheet, &self.assumptions())?;
                 Ok((made.section.clone(), Some(made)))
             }
-            (None, Some(table)) => Ok((study::section(table)?, None)),
-            // `Case::read` refuses a case with neither.
+            (None, Some(table)) => {
+                let section = study::section(&table.value).map_err(Failure::from);
+                Ok((section.map_err(|failure| failure.at(self.case.place(table)))?, None))
+            }
+            // A case for a fabric becomes a task with one.
             (None, None) => Err(Failure::new("O055", format!("{} has no section", self.case.name))),
         }
+    }
+
+    /// The choices between the sheet of its fabric and the section.
+    pub(super) fn assumptions(&self) -> Assumptions {
+        self.case.assumptions().cloned().unwrap_or_default()
     }
 
     /// The mean of a parameter of its fabric in a direction, or of the fabric as a whole (SI).
@@ -147,7 +153,7 @@ impl Task<'_> {
 
     /// Whether its case is a drape.
     pub fn is_drape(&self) -> bool {
-        matches!(self.case.analysis, Analysis::Drape { .. })
+        self.case.is_drape()
     }
 
     /// The bands that [`simulate`](super::simulate) has found.

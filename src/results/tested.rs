@@ -10,7 +10,7 @@ use super::failure::Failure;
 use super::folder::Folder;
 use super::sampled::{self, SamplingEntry};
 use super::task::Task;
-use crate::characterise::FabricSheet;
+use crate::characterise::{FabricSheet, Modulus};
 use crate::instrument::{Direction, Parameter, Test};
 use crate::law::Mode;
 use crate::quantity::{Band, Curve, Estimate, significant};
@@ -99,7 +99,7 @@ fn stiffness(
     let parameter = |p: Parameter| sheet.get(p, direction).or_else(|| sheet.get(p, None)).cloned();
     let (symbol, unit, measured) = match test {
         Test::Tensile => {
-            let name = case.assumptions.modulus.name();
+            let name = case.assumptions().map_or(Modulus::TangentLow, |a| a.modulus).name();
             ("E", "N/m", direction.and_then(|d| sheet.moduli.get(&(name, d)).cloned()))
         }
         Test::Shear => ("G", "N/m", parameter(Parameter::G)),

@@ -9,10 +9,9 @@ use super::inputs::{self, Curves, Fabric, Input, Reading};
 use super::names::distinguish_cases;
 use super::observer::Observer;
 use super::task::{Shared, Task};
+use crate::case::{Case, FabricMaterial, SolverChoice};
 use crate::finding::{Finding, Place, StudyFact, UsageFact};
-use crate::instrument::Test;
 use crate::solve::Options as SolveOptions;
-use crate::study::{Case, SolverChoice, SolverTable};
 
 /// Inputs and how they are to be used.
 #[derive(Clone, Debug, Default)]
@@ -49,7 +48,7 @@ impl Job {
             observer.found(None, &finding);
         }
         if let Some(solver) = self.solver {
-            cases.iter_mut().for_each(|case| choose_solver(case, solver));
+            cases.iter_mut().for_each(|case| case.use_solver(solver));
         }
         failures.iter().for_each(|failure| observer.failed(failure));
         let mut fabrics = inputs::without_cases(&self.inputs);
@@ -66,16 +65,11 @@ impl Job {
                 }
             }
         }
-        let moduli: Vec<_> = cases.iter().map(|c| c.assumptions.modulus).collect();
+        let moduli: Vec<_> = cases.iter().filter_map(|c| c.assumptions()).map(|a| a.modulus).collect();
         let (fabrics, unread) = self.reading.sheets(&fabrics, &moduli, Curves::Kept, observer)?;
         failures.extend(unread);
         Ok(Work { cases, fabrics, failures, threads: self.threads.max(1) })
     }
-}
-
-fn choose_solver(case: &mut Case, solver: SolverChoice) {
-    let kept = if solver == SolverChoice::Direct { SolverTable::default() } else { case.solver };
-    case.solver = SolverTable { method: Some(solver), ..kept };
 }
 
 /// The fabric that a case names, unless it is among the inputs already, with what is doubtful about it; `None` for a
@@ -94,7 +88,7 @@ fn fabric_of_case(case: &Case, inputs: &[Input]) -> Result<Named, Failure> {
 
 /// The folder that a case names: as it stands, else beside the case file.
 pub fn named_fabric(case: &Case) -> Option<PathBuf> {
-    let path = PathBuf::from(case.fabric.as_deref().filter(|f| *f != "*")?);
+    let path = PathBuf::from(case.fabric().map(|f| &f.name.value).filter(|f| *f != "*")?);
     let beside = beside_case(case, &path);
     Some(if path.exists() { path } else { beside.unwrap_or(path) })
 }
@@ -106,9 +100,9 @@ fn beside_case(case: &Case, path: &Path) -> Option<PathBuf> {
 
 /// O055: a case whose fabric is nowhere.
 pub fn no_such_fabric(case: &Case) -> Failure {
-    let name = case.fabric.as_deref().unwrap_or_default();
-    let text = format!("there is no fabric `{name}`, neither from here nor beside the case");
-    let place = case.place_of(&text);
+    let name = case.fabric().map(|f| f.name.clone()).unwrap_or_default();
+    let text = format!("there is no fabric `{}`, neither from here nor beside the case", name.value);
+    let place = case.place(&name);
     Failure::new("O055", text)
         .at(place)
         .hint("correct the name in the case, or write fabric = \"*\" and name a fabric beside it")
@@ -116,15 +110,14 @@ pub fn no_such_fabric(case: &Case) -> Failure {
 
 /// O060: a case whose fabric is there twice, and which one was taken.
 fn two_fabrics(case: &Case, taken: &Path) -> Option<Finding> {
-    let name = case.fabric.as_deref()?;
-    let other = beside_case(case, Path::new(name)).filter(|p| !is_within(p, taken))?;
+    let FabricMaterial { name, .. } = case.fabric()?;
+    let other = beside_case(case, Path::new(&name.value)).filter(|p| !is_within(p, taken))?;
     let fact = UsageFact::FabricTwice {
-        fabric: name.to_string(),
+        fabric: name.value.clone(),
         taken: std::path::absolute(taken).unwrap_or_else(|_| taken.to_path_buf()).display().to_string(),
         other: std::path::absolute(&other).unwrap_or(other).display().to_string(),
     };
-    let place = case.place_of(&fact.to_string());
-    Some(Finding::new(fact).at(place))
+    Some(Finding::new(fact).at(case.place(name)))
 }
 
 fn is_within(path: &Path, folder: &Path) -> bool {
@@ -149,7 +142,7 @@ impl Work {
         for case in &self.cases {
             let options = SolveOptions { threads, ..SolveOptions::default() };
             let shared = Arc::new(Shared::new(options));
-            if case.section.is_some() {
+            if case.section().is_some() {
                 tasks.push(Task::new(case, None, shared));
                 continue;
             }
@@ -204,7 +197,7 @@ impl Work {
 
     /// What to say of fabrics that no task is for because every case brings or names its own.
     pub(super) fn idle(&self, tasks: &[Task]) -> Option<String> {
-        let has_own = |case: &Case| case.section.is_some() || named_fabric(case).is_some();
+        let has_own = |case: &Case| case.section().is_some() || named_fabric(case).is_some();
         if self.cases.is_empty() || !self.cases.iter().all(has_own) {
             return None;
         }
@@ -223,9 +216,7 @@ pub(super) fn findings<'a, 'w: 'a>(tasks: impl Iterator<Item = &'a Task<'w>>) ->
     let mut all = Vec::new();
     for task in tasks {
         let Some(sheet) = task.fabric else { continue };
-        let uses_section = !task.case.is_for_fab_records()
-            && task.case.virtual_test.as_ref().is_none_or(|t| t.test != Test::Compression);
-        let made = if uses_section { task.section().ok().and_then(|(_, made)| made) } else { None };
+        let made = if task.case.needs_section() { task.section().ok().and_then(|(_, made)| made) } else { None };
         for finding in sheet.findings.iter().chain(made.iter().flat_map(|c| &c.findings)) {
             let mut finding = finding.clone();
             finding.place = finding.place.or_else(|| task.path.map(Place::file));

@@ -7,8 +7,9 @@ use crate::platform;
 use crate::quantity::Length;
 use crate::section::ShellSection;
 
-use super::StudyError;
-use super::case::{BendingKind, BendingTest, Case};
+use super::{Case, StudyError, refused};
+use crate::case::Strip;
+use crate::finding::Located;
 
 mod cantilever;
 mod fab;
@@ -33,51 +34,60 @@ pub enum BendingResult {
     FabBendLoop(Vec<BendLoops>),
 }
 
-/// Simulates a cantilever or a heart loop of a section along warp and weft. Where the sheet has a law of
-/// bending with friction, from loops or from B and 2HB, the cantilever is simulated with it too.
+/// Simulates a cantilever of a section along warp and weft. Where the sheet has a law of bending with friction, from
+/// loops or from B and 2HB, it is simulated with it too.
 ///
 /// # Errors
-/// See [`StudyError`]; S003 for a FAB bend loop, which needs records: see [`simulate_records`].
-pub fn simulate_strips(
-    case: &Case,
-    spec: &BendingTest,
+/// See [`StudyError`].
+pub fn simulate_cantilever(
+    strip: &Strip,
     sheet: &FabricSheet,
     section: &ShellSection,
 ) -> Result<BendingResult, StudyError> {
-    let width = spec.width.map(Length::si);
-    let cells = spec.cells.unwrap_or(CELLS);
-    let both = [Direction::Warp, Direction::Weft].into_iter();
-    let law = |direction| sheet.mean_law(Test::Bending, Some(direction));
-    match (spec.test, spec.length) {
-        (BendingKind::Cantilever, _) => Ok(BendingResult::Cantilever(
-            both.map(|d| cantilever(section, d, law(d).as_ref(), width, cells)).collect::<Result<_, _>>()?,
-        )),
-        (BendingKind::HeartLoop, Some(length)) => Ok(BendingResult::HeartLoop(
-            both.map(|d| {
-                let cells = spec.cells.unwrap_or_else(|| heart_cells(section, d, length.si()));
-                heart_loop(section, d, length.si(), width, cells)
-            })
-            .collect::<Result<_, _>>()?,
-        )),
-        _ => Err(case.inconsistent("the bending test needs a length, or records of a fabric".into())),
-    }
+    let (width, cells) = (strip.width.map(Length::si), strip.cells.unwrap_or(CELLS));
+    let along = |direction| {
+        let law = sheet.mean_law(Test::Bending, Some(direction));
+        cantilever(section, direction, law.as_ref(), width, cells)
+    };
+    Ok(BendingResult::Cantilever(WARP_AND_WEFT.into_iter().map(along).collect::<Result<_, _>>()?))
 }
 
-/// Simulates the FAB bend tests of a sheet along every direction that has them. A direction that fails does not
-/// take the others with it: it comes back beside the result, with its error.
+/// Simulates a heart loop of a section along warp and weft.
+///
+/// # Errors
+/// See [`StudyError`].
+pub fn simulate_heart_loop(
+    strip: &Strip,
+    length: Length,
+    section: &ShellSection,
+) -> Result<BendingResult, StudyError> {
+    let width = strip.width.map(Length::si);
+    let along = |direction| {
+        let cells = strip.cells.unwrap_or_else(|| heart_cells(section, direction, length.si()));
+        heart_loop(section, direction, length.si(), width, cells)
+    };
+    Ok(BendingResult::HeartLoop(WARP_AND_WEFT.into_iter().map(along).collect::<Result<_, _>>()?))
+}
+
+const WARP_AND_WEFT: [Direction; 2] = [Direction::Warp, Direction::Weft];
+
+/// Simulates the FAB bend tests of a sheet along every direction that has them, with `cells` elements along half of the
+/// strip, or the usual number. A direction that fails does not take the others with it: it comes back beside the result,
+/// with its error.
 ///
 /// # Errors
 /// S003 for a sheet without areal density.
 pub fn simulate_records(
     case: &Case,
-    spec: &BendingTest,
+    cells: Option<usize>,
     sheet: &FabricSheet,
 ) -> Result<(BendingResult, Vec<(Direction, StudyError)>), StudyError> {
     let density = sheet.get(Parameter::W, None).ok_or_else(|| {
-        case.inconsistent("a fab_bend_loop needs the areal density of the fabric (`M` of its file)".into())
+        let message = "a fab_bend_loop needs the areal density of the fabric (`M` of its file)";
+        refused(case, &Located::from(()), message)
     })?;
     let usual = FabSettings::default();
-    let settings = FabSettings { cells: spec.cells.unwrap_or(usual.cells), ..usual };
+    let settings = FabSettings { cells: cells.unwrap_or(usual.cells), ..usual };
     let along: Vec<_> =
         platform::map(Direction::ALL, |d| (d, bend_loops(&sheet.bend_tests, d, density.mean, &settings)));
     let (mut loops, mut failed) = (Vec::new(), Vec::new());

@@ -1,20 +1,19 @@
 //! A case and a section become a model.
 
 use std::path::Path;
-use std::str::FromStr;
 
-use nalgebra::{Matrix2, Matrix3, Vector3};
+use nalgebra::{Matrix2, Matrix3, Point3, Vector3};
 
-use super::case::{
-    Analysis, Case, DrillingChoice, LoadTable, Profile, SectionTable, Shape, Sheet, Subcells, SupportKind,
-    SupportTable,
+use super::{Case, StudyError, placed, refused};
+use crate::case::{
+    Held, Layout, Mounting, Outline, PointOfAction, Prescribed, RigidSet, SectionTable, Sheet, SheetLoad,
+    SheetPoint, SheetProblem, SheetSupport, SupportKind, Warp,
 };
-use super::{StudyError, rigid};
-use crate::element::{Cells, Drilling, Formulation, Membrane};
-use crate::finding::Place;
+use crate::fields::{Locator, nearest};
+use crate::finding::{Located, Place};
 use crate::mesh::{self, MeshError, QuadMesh};
-use crate::model::{Dof, Load, Model, Support};
-use crate::quantity::{Angle, Force, Length, Moment, STANDARD_GRAVITY};
+use crate::model::{Load, Model, RigidBody, Support};
+use crate::quantity::significant;
 use crate::section::ShellSection;
 use crate::solve::SolveError;
 
@@ -38,78 +37,52 @@ pub fn section(table: &SectionTable) -> Result<ShellSection, StudyError> {
     .checked()?)
 }
 
-/// The formulation that a case asks for.
-///
-/// # Errors
-/// S003 for a number of smoothing cells that has no layout.
-pub fn formulation(case: &Case) -> Result<Formulation, StudyError> {
-    let mut formulation = match case.element.profile {
-        Some(Profile::Seed) => Formulation::seed(),
-        Some(Profile::FourthOrder) => Formulation::fourth_order(),
-        None => Formulation::default(),
-    };
-    match case.element.subcells {
-        None => {}
-        Some(Subcells::Count(nc)) => {
-            formulation.cells = Cells::from_count(nc).ok_or_else(|| {
-                case.inconsistent(format!(
-                    "subcells = {nc} has no layout: take 1, 2, 3, 4, 9, 16 ... or [nx, ny]"
-                ))
-            })?;
-        }
-        Some(Subcells::Grid([nx, ny])) if nx > 0 && ny > 0 => formulation.cells = Cells::grid(nx, ny),
-        Some(Subcells::Grid(_)) => {
-            return Err(case.inconsistent("subcells = [nx, ny] needs two positive numbers".into()));
-        }
-    }
-    match case.element.drilling {
-        None => {}
-        Some(DrillingChoice::Scaled) => formulation.drilling = Drilling::Scaled,
-        Some(DrillingChoice::HughesBrezzi) => formulation.drilling = Drilling::HughesBrezzi,
-        Some(DrillingChoice::Seed) => formulation.drilling = Drilling::Seed(1e-3),
-    }
-    let of_drape = matches!(case.analysis, Analysis::Drape { .. }).then_some(Membrane::OneCell);
-    formulation.membrane = case.element.membrane.or(of_drape).unwrap_or(formulation.membrane);
-    if let Some(alpha) = case.element.shear_stabilisation {
-        if !(0.0..=1.0).contains(&alpha) {
-            return Err(case.inconsistent(format!("shear_stabilisation = {alpha}: it must be 0 to 1")));
-        }
-        formulation.shear_stabilisation = alpha;
-    }
-    Ok(formulation)
-}
-
-/// The model of a case with a `[sheet]`.
+/// The model of a sheet of a case: its mesh, what holds it, and what acts on it.
 ///
 /// # Errors
 /// S003, and the errors of mesh and model.
-pub fn model(case: &Case, sheet: &Sheet, section: ShellSection) -> Result<Model, StudyError> {
-    let mut mesh = sheet_mesh(case, sheet)?;
-    let bodies = rigid::bodies(case, &mut mesh)?;
-    let (mut supports, mut prescribed) = (Vec::new(), Vec::new());
-    for table in &case.supports {
-        supports.extend(support(case, &mesh, table)?);
+pub(super) fn model(
+    case: &Case,
+    sheet: &Sheet,
+    mounting: &Mounting,
+    (loads, prescribed): (&[SheetLoad], &[Prescribed]),
+    section: ShellSection,
+) -> Result<Model, StudyError> {
+    let mut mesh = placed(case, &sheet.table, sheet_mesh(case, sheet))?;
+    let bodies = bodies(case, &mut mesh, &mounting.bodies)?;
+    let mut supports = Vec::new();
+    for held in &mounting.supports {
+        supports.extend(placed(case, &held.set, support(&mesh, held))?);
     }
-    let mut loads = Vec::new();
-    for table in &case.loads {
-        match table {
-            LoadTable::Prescribed { set, dof, value } => {
-                let dof = dof_named(case, dof)?;
-                let value = match dof {
-                    Dof::U | Dof::V | Dof::W => quantity::<Length>(case, value)?.si(),
-                    _ => quantity::<Angle>(case, value)?.si(),
-                };
-                prescribed.push(Support::at(mesh.set(set)?.to_vec(), vec![(dof, value)]));
-            }
-            LoadTable::Point { .. } => loads.extend(point_load(case, &mesh, table)?),
-            other => loads.push(load(case, &mesh, other)?),
-        }
+    let mut acting = Vec::new();
+    for load in loads {
+        acting.extend(model_loads(case, &mesh, load)?);
+    }
+    let mut given = Vec::new();
+    for Prescribed { set, dof, value, .. } in prescribed {
+        let nodes = placed(case, set, mesh.set(&set.value))?;
+        given.push(Support::at(nodes.to_vec(), vec![(*dof, *value)]));
     }
     // A value over a support is a support that moves; two values contradict each other.
-    Support::agree(&mesh, &prescribed)?;
-    supports.extend(prescribed);
-    let formulation = formulation(case)?;
-    Ok(Model { mesh, section, warp: sheet.warp_direction(), formulation, supports, loads, bodies })
+    Support::agree(&mesh, &given)?;
+    supports.extend(given);
+    let formulation = mounting.formulation;
+    let warp = sheet.layout.warp.direction();
+    Ok(Model { mesh, section, warp, formulation, supports, loads: acting, bodies })
+}
+
+/// The model of a sheet of a case that is solved, which may be coarser than its own.
+///
+/// # Errors
+/// S003, and the errors of mesh and model.
+pub(super) fn model_on(
+    case: &Case,
+    problem: &SheetProblem,
+    sheet: &Sheet,
+    section: ShellSection,
+) -> Result<Model, StudyError> {
+    let loads = (problem.analysis.loads(), problem.analysis.prescribed());
+    model(case, sheet, &problem.mounting, loads, section)
 }
 
 /// Refuses a weight of nothing: gravity would leave the sheet at rest, without a word.
@@ -125,194 +98,150 @@ pub(super) fn weighed(model: &Model) -> Result<(), SolveError> {
 }
 
 fn sheet_mesh(case: &Case, sheet: &Sheet) -> Result<QuadMesh, StudyError> {
-    let mesh = match (sheet.shape, &sheet.file) {
-        (Some(shape), None) => outline(case, sheet, shape)?,
-        (None, Some(file)) => mesh_file(case, sheet, file)?,
-        _ => return Err(case.inconsistent("[sheet] needs either `shape` or `file`, and not both".into())),
-    };
-    if sheet.warp_angle_deg != 0.0 && !mesh.is_level() {
-        return Err(case.inconsistent(format!(
+    let Layout { warp, inside_radius, distortion, seed } = &sheet.layout;
+    let mesh = outline(case, &sheet.outline)?;
+    if let Warp::Angle(angle) = warp
+        && angle.value != 0.0
+        && !mesh.is_level()
+    {
+        let message = format!(
             "[sheet] warp_angle_deg = {} is an angle from x in a plane z = const, and the sheet is in none: give the \
              direction of the warp, such as warp = [1, 0, 0]",
-            sheet.warp_angle_deg
-        )));
+            angle.value
+        );
+        return Err(refused(case, angle, message));
     }
-    let mut mesh = mesh::distorted(mesh, sheet.distortion, sheet.seed)?;
+    let mut mesh = mesh::distorted(mesh, *distortion, *seed)?;
     mesh.check()?;
-    if let Some(radius) = sheet.inside_radius {
-        let nodes = mesh.nodes_about_the_middle(radius.si());
+    if let Some(radius) = inside_radius {
+        let nodes = mesh.nodes_about_the_middle(radius.value.si());
         if nodes.is_empty() {
-            return Err(case.inconsistent(format!(
+            let message = format!(
                 "[sheet] `inside_radius` of {} m has no node of the mesh in it: give a larger one, or more `cells`",
-                radius.si()
-            )));
+                radius.value.si()
+            );
+            return Err(refused(case, radius, message));
         }
         mesh.node_sets.insert("inside_radius".into(), nodes);
     }
     Ok(mesh)
 }
 
-fn mesh_file(case: &Case, sheet: &Sheet, file: &Path) -> Result<QuadMesh, StudyError> {
-    let sizes = [sheet.width, sheet.height, sheet.diameter, sheet.inner_diameter];
-    if sizes.iter().any(Option::is_some) || sheet.cells.is_some() || sheet.grading.is_some() {
-        return Err(case.inconsistent(
-            "[sheet] file brings its own sizes: remove width, height, diameters, cells and grading".into(),
-        ));
-    }
-    let unit = sheet.unit.as_deref().ok_or_else(|| {
-        case.inconsistent(
-            "[sheet] file needs `unit`, the unit of its coordinates, such as unit = \"mm\"".into(),
-        )
-    })?;
-    let scale =
-        format!("1 {unit}").parse::<Length>().map_err(|e| case.inconsistent(format!("[sheet] unit: {e}")))?;
-    let path = case.path.parent().unwrap_or(Path::new("")).join(file);
-    let text = std::fs::read_to_string(&path).map_err(|e| MeshError::File {
-        place: Place::file(&path),
-        message: format!("the mesh cannot be read: {e}"),
-    })?;
-    Ok(mesh::parse_gmsh(&path, &text, scale.si())?)
-}
-
-fn outline(case: &Case, sheet: &Sheet, shape: Shape) -> Result<QuadMesh, StudyError> {
-    let word = format!("{shape:?}").to_lowercase();
-    let need = |value: Option<Length>, key: &str| {
-        value
-            .map(Length::si)
-            .ok_or_else(|| case.inconsistent(format!("[sheet] shape = \"{word}\" needs `{key}`")))
-    };
-    let [a, b] = sheet.cells.ok_or_else(|| {
-        case.inconsistent(format!("[sheet] shape = \"{word}\" needs `cells`, such as [40, 40]"))
-    })?;
-    let unused = match shape {
-        _ if sheet.unit.is_some() => Some("unit"),
-        _ if sheet.grading.is_some() && shape != Shape::Annulus => Some("grading"),
-        Shape::Rectangle | Shape::Strip => sheet.diameter.or(sheet.inner_diameter).map(|_| "diameters"),
-        Shape::Disc => {
-            sheet.width.or(sheet.height).or(sheet.inner_diameter).map(|_| "width, height, inner_diameter")
+fn outline(case: &Case, outline: &Outline) -> Result<QuadMesh, StudyError> {
+    Ok(match outline {
+        Outline::Rectangle { size: [width, height], cells: [a, b] } => {
+            mesh::rectangle(width.si(), height.si(), *a, *b)?
         }
-        Shape::Annulus => sheet.width.or(sheet.height).map(|_| "width, height"),
-    };
-    if let Some(keys) = unused {
-        return Err(case.inconsistent(format!("[sheet] shape = \"{word}\" does not use {keys}: remove it")));
-    }
-    Ok(match shape {
-        Shape::Rectangle | Shape::Strip => {
-            mesh::rectangle(need(sheet.width, "width")?, need(sheet.height, "height")?, a, b)?
-        }
-        Shape::Disc if a == b => mesh::disc(0.5 * need(sheet.diameter, "diameter")?, a)?,
-        Shape::Disc => {
-            return Err(case.inconsistent("cells of a disc: give one number twice, such as [16, 16]".into()));
-        }
-        Shape::Annulus => mesh::graded_annulus(
-            0.5 * need(sheet.inner_diameter, "inner_diameter")?,
-            0.5 * need(sheet.diameter, "diameter")?,
-            [a, b],
-            sheet.grading.unwrap_or(1.0),
+        Outline::Disc { diameter, cells } => mesh::disc(0.5 * diameter.si(), *cells)?,
+        Outline::Annulus(ring) => mesh::graded_annulus(
+            0.5 * ring.inner_diameter.si(),
+            0.5 * ring.diameter.si(),
+            ring.cells,
+            ring.grading,
         )?,
-    })
-}
-
-fn dof_named(case: &Case, name: &str) -> Result<Dof, StudyError> {
-    Dof::from_name(name).ok_or_else(|| {
-        case.inconsistent(format!("`{name}` is not a dof: take u, v, w, theta_x, theta_y or theta_z"))
-    })
-}
-
-fn support(case: &Case, mesh: &QuadMesh, table: &SupportTable) -> Result<Vec<Support>, StudyError> {
-    let nodes = mesh.set(&table.set)?;
-    Ok(match (table.kind, &table.fix) {
-        (Some(kind), None) => match kind {
-            SupportKind::Clamped => vec![Support::clamped(nodes)],
-            SupportKind::SimplySupported => vec![Support::simple(mesh, &table.set, true)?],
-            SupportKind::SimplySupportedSoft => vec![Support::simple(mesh, &table.set, false)?],
-            SupportKind::SymmetryX => vec![Support::symmetry_x(nodes)],
-            SupportKind::SymmetryY => vec![Support::symmetry_y(nodes)],
-            SupportKind::Free => Vec::new(),
-        },
-        (None, Some(names)) => {
-            let dofs = names.iter().map(|n| dof_named(case, n)).collect::<Result<Vec<_>, _>>()?;
-            vec![Support::fix(nodes, &dofs)]
-        }
-        _ => {
-            return Err(case.inconsistent(format!(
-                "the support of set `{}` needs either `kind` or `fix`, and not both",
-                table.set
-            )));
+        Outline::File { path, unit } => {
+            let path = case.path.parent().unwrap_or(Path::new("")).join(path);
+            let text = std::fs::read_to_string(&path).map_err(|e| MeshError::File {
+                place: Place::file(&path),
+                message: format!("the mesh cannot be read: {e}"),
+            })?;
+            mesh::parse_gmsh(&path, &text, unit.si())?
         }
     })
 }
 
-/// A direction of any length as a unit vector.
-fn unit(case: &Case, direction: &[f64; 3]) -> Result<Vector3<f64>, StudyError> {
-    let v = Vector3::from(*direction);
-    let length = v.norm();
-    if length > 0.0 && length.is_finite() {
-        Ok(v / length)
-    } else {
-        Err(case.inconsistent(format!(
-            "direction {direction:?} has no direction: give a vector such as [0, 0, -1]"
-        )))
+/// The rigid bodies of a case; their points of reference are added to the mesh as nodes and sets.
+///
+/// # Errors
+/// S003 for a name that the mesh uses already; M007 for an unknown set.
+fn bodies(case: &Case, mesh: &mut QuadMesh, sets: &[RigidSet]) -> Result<Vec<RigidBody>, StudyError> {
+    let mut bodies = Vec::with_capacity(sets.len());
+    for RigidSet { name, set, at } in sets {
+        if mesh.node_sets.contains_key(&name.value) {
+            let message =
+                format!("[[rigid]] name = \"{}\" is a set of the mesh already: choose another", name.value);
+            return Err(refused(case, name, message));
+        }
+        let set = placed(case, set, mesh.set(&set.value))?.to_vec();
+        let places = set.iter().map(|n| mesh.nodes[*n as usize].coords);
+        let mean = || Point3::from(places.sum::<Vector3<f64>>() / set.len() as f64);
+        let lead = mesh.nodes.len() as u32;
+        mesh.nodes.push(at.map_or_else(mean, SheetPoint::point));
+        mesh.node_sets.insert(name.value.clone(), vec![lead]);
+        bodies.push(RigidBody { nodes: [&[lead], &set[..]].concat() });
     }
+    Ok(bodies)
 }
 
-/// The loads of a force or moment on a set, or on the corners of the element that holds a point.
-fn point_load(case: &Case, mesh: &QuadMesh, table: &LoadTable) -> Result<Vec<Load>, StudyError> {
-    let LoadTable::Point { set, at, value, direction } = table else { return Ok(Vec::new()) };
-    let along = unit(case, direction)?;
-    let (force, moment) = match (Force::from_str(value), Moment::from_str(value)) {
-        (Ok(force), _) => (along * force.si(), Vector3::zeros()),
-        (_, Ok(moment)) => (Vector3::zeros(), along * moment.si()),
-        (Err(e), _) => return Err(case.inconsistent(format!("point load: {e}"))),
-    };
-    match (set, at) {
-        (Some(set), None) => Ok(vec![Load::Point { nodes: mesh.set(set)?.to_vec(), force, moment }]),
-        (None, Some(at)) => {
-            let place = at.locate(case, mesh, "the point load")?;
+fn support(mesh: &QuadMesh, support: &SheetSupport) -> Result<Vec<Support>, StudyError> {
+    let set = &support.set.value;
+    let nodes = mesh.set(set)?;
+    Ok(match &support.held {
+        Held::Kind(SupportKind::Clamped) => vec![Support::clamped(nodes)],
+        Held::Kind(SupportKind::SimplySupported) => vec![Support::simple(mesh, set, true)?],
+        Held::Kind(SupportKind::SimplySupportedSoft) => vec![Support::simple(mesh, set, false)?],
+        Held::Kind(SupportKind::SymmetryX) => vec![Support::symmetry_x(nodes)],
+        Held::Kind(SupportKind::SymmetryY) => vec![Support::symmetry_y(nodes)],
+        Held::Kind(SupportKind::Free) => Vec::new(),
+        Held::Dofs(dofs) => vec![Support::fix(nodes, dofs)],
+    })
+}
+
+/// The loads of the model: one, or one for each corner of the element that holds a point.
+fn model_loads(case: &Case, mesh: &QuadMesh, load: &SheetLoad) -> Result<Vec<Load>, StudyError> {
+    Ok(match load {
+        SheetLoad::Pressure { value, follower: false } => vec![Load::Pressure(value.si())],
+        SheetLoad::Pressure { value, follower: true } => vec![Load::FollowerPressure(value.si())],
+        SheetLoad::Gravity(acceleration) => vec![Load::Gravity(*acceleration)],
+        SheetLoad::Point { on: PointOfAction::Set(set), force, moment } => {
+            let nodes = placed(case, set, mesh.set(&set.value))?.to_vec();
+            vec![Load::Point { nodes, force: *force, moment: *moment }]
+        }
+        SheetLoad::Point { on: PointOfAction::At(at), force, moment } => {
+            let place = locate(case, mesh, at, "the point load")?;
             let shares = mesh.quads[place.quad].into_iter().zip(place.weights);
             let of_node = |(node, share): (u32, f64)| Load::Point {
                 nodes: vec![node],
-                force: force * share,
-                moment: moment * share,
+                force: *force * share,
+                moment: *moment * share,
             };
-            Ok(shares.map(of_node).collect())
+            shares.map(of_node).collect()
         }
-        _ => Err(case.inconsistent("a point load needs either `set` or `at`, and not both".into())),
-    }
-}
-
-fn load(case: &Case, mesh: &QuadMesh, table: &LoadTable) -> Result<Load, StudyError> {
-    let unit = |direction: &[f64; 3]| unit(case, direction);
-    let edges = |set: &str| {
-        let edges = mesh.set_edges(set)?;
-        if edges.is_empty() {
-            return Err(
-                case.inconsistent(format!("set `{set}` has no edge on the boundary to carry an edge load"))
-            );
+        SheetLoad::Edge { set, force, moment } => {
+            let edges = placed(case, set, mesh.set_edges(&set.value))?;
+            if edges.is_empty() {
+                let message =
+                    format!("set `{}` has no edge on the boundary to carry an edge load", set.value);
+                return Err(refused(case, set, message));
+            }
+            vec![Load::Edge { edges, force: *force, moment: *moment }]
         }
-        Ok(edges)
-    };
-    Ok(match table {
-        LoadTable::Pressure { value, follower: false } => Load::Pressure(value.si()),
-        LoadTable::Pressure { value, follower: true } => Load::FollowerPressure(value.si()),
-        LoadTable::Gravity { value, direction } => {
-            let g = value.map_or(STANDARD_GRAVITY, |v| v.si());
-            Load::Gravity(unit(&direction.unwrap_or([0.0, 0.0, -1.0]))? * g)
-        }
-        LoadTable::EdgeForce { set, value, direction } => {
-            Load::Edge { edges: edges(set)?, force: unit(direction)? * value.si(), moment: Vector3::zeros() }
-        }
-        LoadTable::EdgeMoment { set, value, direction } => {
-            Load::Edge { edges: edges(set)?, force: Vector3::zeros(), moment: unit(direction)? * value.si() }
-        }
-        // Held dofs and forces at points are the caller's.
-        LoadTable::Prescribed { .. } | LoadTable::Point { .. } => Load::Pressure(0.0),
     })
 }
 
-fn quantity<Q: FromStr<Err = crate::quantity::QuantityError>>(
+/// Where a point lies in a mesh; `what` names it in the message.
+///
+/// # Errors
+/// S003 for a point off the sheet.
+pub(super) fn locate(
     case: &Case,
-    text: &str,
-) -> Result<Q, StudyError> {
-    text.parse().map_err(|e| case.inconsistent(format!("prescribed value: {e}")))
+    mesh: &QuadMesh,
+    at: &Located<SheetPoint>,
+    what: &str,
+) -> Result<Locator, StudyError> {
+    let point = at.value.point();
+    Locator::find(mesh, &point).ok_or_else(|| {
+        let given: Vec<String> = at.value.coordinates().iter().map(f64::to_string).collect();
+        let near = nearest(mesh, &point);
+        let distance = (near - point).norm();
+        let off_plane = matches!(at.value, SheetPoint::Plane(_)) && near.z.abs() > 1e-6 * distance;
+        let cure = if off_plane { ": give `at` its z as a third coordinate" } else { "" };
+        let [x, y, z] = [near.x, near.y, near.z].map(significant);
+        let message = format!(
+            "{what} at ({}) m lies outside the sheet, whose nearest point ({x}, {y}, {z}) m is {} m away{cure}",
+            given.join(", "),
+            significant(distance)
+        );
+        refused(case, at, message)
+    })
 }

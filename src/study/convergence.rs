@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::StudyError;
-use super::case::{Analysis, Case, Sheet};
-use super::checked::{lookup, unit_of};
+use super::checked::lookup;
 use super::result::CaseResult;
+use super::{Case, StudyError};
+use crate::case::{Analysis, Modal, ProbePoint, SheetProblem, unit_of};
 use crate::fields::{Extrapolation, Resultants};
 use crate::finding::{CoarseQuantity, Finding, Place, StudyFact};
 use crate::model::Dof;
@@ -43,32 +43,25 @@ const SMALL: f64 = 0.01;
 const COARSE: f64 = 0.05;
 
 impl Convergence {
-    /// The coarser sheets of a case, coarsest first; none without `[convergence]`.
-    pub(super) fn coarser(case: &Case) -> Vec<Sheet> {
-        let (Some(table), Some(sheet)) = (case.convergence, &case.sheet) else { return Vec::new() };
-        let halved =
-            |times: u32| Sheet { cells: sheet.cells.map(|c| c.map(|n| n >> times)), ..sheet.clone() };
-        (1..table.meshes).rev().map(halved).collect()
-    }
-
     /// From the results on the meshes, coarsest first.
     ///
     /// # Errors
     /// M008 if the warp direction is normal to an element.
-    pub(super) fn of(case: &Case, results: &[&CaseResult]) -> Result<Self, StudyError> {
-        let sheets = Self::coarser(case);
-        let cells = sheets.iter().chain(&case.sheet).filter_map(|s| s.cells).collect();
+    pub(super) fn of(problem: &SheetProblem, results: &[&CaseResult]) -> Result<Self, StudyError> {
+        let coarser = problem.analysis.coarser().into_iter().flat_map(|meshes| &meshes.value);
+        let cells = coarser.chain([&problem.sheet]).filter_map(|s| s.outline.cells()).collect();
         let sizes = results.last().map_or(Ok(Sizes::default()), |finest| Sizes::of(finest))?;
         let series = |quantity: String| {
             let values: Vec<f64> = results.iter().filter_map(|r| lookup(&quantity, r)).collect();
-            let (unit, finest) = (unit_of(case, &quantity)?, values.last()?.abs());
+            let unit = unit_of(&quantity, &problem.analysis, &problem.probes)?;
+            let (unit, finest) = (unit, values.last()?.abs());
             let size = sizes.like(&quantity).unwrap_or(finest);
             // A coarse mesh may have fewer modes.
             let known = values.len() == results.len() && finest > ROUNDING * size;
             let extrapolation = Extrapolation::of(&values).filter(|_| known)?;
             Some(MeshSeries { quantity, unit, values, extrapolation, size })
         };
-        Ok(Self { cells, quantities: names(case).into_iter().filter_map(series).collect() })
+        Ok(Self { cells, quantities: names(problem).into_iter().filter_map(series).collect() })
     }
 
     /// The series of a quantity.
@@ -141,18 +134,17 @@ impl Sizes {
 }
 
 /// The results of a case by name.
-fn names(case: &Case) -> Vec<String> {
-    if let Analysis::Modal { modes, .. } = case.analysis {
-        return (1..=modes).map(|k| format!("frequency_{k}")).collect();
+fn names(problem: &SheetProblem) -> Vec<String> {
+    if let Analysis::Modal(Modal { modes, .. }) = &problem.analysis {
+        return (1..=*modes).map(|k| format!("frequency_{k}")).collect();
     }
     let components = || {
         let dofs = Dof::ALL.into_iter().map(Dof::name);
         dofs.chain(Resultants::COMPONENTS.into_iter().map(|(name, _)| name))
     };
-    let of_probe =
-        |p: &super::ProbeTable| components().map(|c| format!("{}.{c}", p.name)).collect::<Vec<_>>();
+    let of_probe = |p: &ProbePoint| components().map(|c| format!("{}.{c}", p.name)).collect::<Vec<_>>();
     let all = ["w_max".to_string(), "strain_energy".to_string()];
-    all.into_iter().chain(case.probes.iter().flat_map(of_probe)).collect()
+    all.into_iter().chain(problem.probes.iter().flat_map(of_probe)).collect()
 }
 
 #[cfg(test)]
@@ -206,7 +198,7 @@ at = ["0 m", "0.5 m"]
     }
 
     fn solved(case: &Case) -> CaseResult {
-        let section = build::section(case.section.as_ref().unwrap()).unwrap();
+        let section = build::section(case.section().unwrap()).unwrap();
         solve_case(case, section, &Options::default()).unwrap()
     }
 

@@ -5,19 +5,17 @@ use std::ops::ControlFlow;
 
 use serde::Serialize;
 
-use super::PreparedCase;
-use super::StudyError;
-use super::case::Case;
 use super::limits::largest_displacement;
 use super::nonlinear::largest_w;
 use super::result::Outcome;
+use super::{Case, PreparedCase, StudyError, refused};
+use crate::case::Rotations;
 use crate::element::Mass;
 use crate::fields::Locator;
-use crate::finding::{Finding, Place, StudyFact};
+use crate::finding::{Finding, Located, Place, StudyFact};
 use crate::mesh::QuadMesh;
 use crate::model::Model;
-use crate::quantity::{Frequency, Time, counts_angles};
-use crate::solve::newmark::{self, Energy, Instant, LoadHistory, Rayleigh};
+use crate::solve::newmark::{self, Energy, Instant, Rayleigh};
 use crate::solve::nonlinear::dynamics::{Dynamics, integrate_with};
 use crate::solve::{self, Solution};
 
@@ -40,18 +38,8 @@ pub struct History {
     pub imbalance: f64,
 }
 
-/// Spectral radius of large rotations when left out: a tenth of the highest frequencies goes in a step.
-const SPECTRAL_RADIUS: f64 = 0.9;
-
 /// Above this part of the largest work a balance of energies that does not close is worth a word.
 const IMBALANCE_LIMIT: f64 = 0.05;
-
-/// Large rotations: whether, and their spectral radius.
-#[derive(Clone, Copy)]
-pub(super) struct Large {
-    pub rotations: bool,
-    pub spectral_radius: Option<f64>,
-}
 
 /// Motions of a free sheet as a whole.
 const RIGID_MOTIONS: usize = 6;
@@ -61,7 +49,7 @@ const RIGID_MOTIONS: usize = 6;
 pub(super) fn rayleigh(
     prepared: &PreparedCase<'_>,
     model: &Model,
-    ratios: Option<[f64; 2]>,
+    ratios: Option<&Located<[f64; 2]>>,
     mass: Mass,
 ) -> Result<Rayleigh, StudyError> {
     let Some(ratios) = ratios else { return Ok(Rayleigh::default()) };
@@ -74,44 +62,20 @@ pub(super) fn rayleigh(
     if omega.len() < 3 {
         omega = lowest(3 + RIGID_MOTIONS)?;
     }
-    let inconsistent = |message: String| Err(prepared.case.inconsistent(message));
+    let inconsistent = |message: String| Err(refused(prepared.case, ratios, message));
     let (Some(first), Some(last)) = (omega.first(), omega.last()) else {
         return inconsistent("[analysis] damping: the sheet has no natural frequency to damp".into());
     };
-    let factors = Rayleigh::from_ratios(ratios, [*first, *last]);
+    let factors = Rayleigh::from_ratios(ratios.value, [*first, *last]);
     if factors.alpha < 0.0 || factors.beta < 0.0 {
         let [low, high] = [first, last].map(|w| crate::quantity::significant(w / TAU));
         return inconsistent(format!(
-            "[analysis] damping = {ratios:?} at {low} Hz and {high} Hz needs a negative factor of the mass or the \
-             stiffness, which feeds other modes: take ratios that differ less"
+            "[analysis] damping = {:?} at {low} Hz and {high} Hz needs a negative factor of the mass or the \
+             stiffness, which feeds other modes: take ratios that differ less",
+            ratios.value
         ));
     }
     Ok(factors)
-}
-
-pub(super) fn load_history(case: &Case, text: &str) -> Result<LoadHistory, StudyError> {
-    let unknown = |reason: String| {
-        case.inconsistent(format!(
-            "load = \"{text}\": {reason}; write \"step\", \"ramp until 0.1 s\" or \"sine 5 Hz\""
-        ))
-    };
-    if text == "step" {
-        return Ok(LoadHistory::Step);
-    }
-    let above_zero = |value: f64| {
-        if value > 0.0 { Ok(value) } else { Err(unknown(format!("{value} is not above 0"))) }
-    };
-    if let Some(until) = text.strip_prefix("ramp until ") {
-        let end = until.parse::<Time>().map_err(|e| unknown(e.to_string()))?;
-        return above_zero(end.si()).map(LoadHistory::Ramp);
-    }
-    if let Some(text) = text.strip_prefix("sine ") {
-        let frequency = text.parse::<Frequency>().map_err(|e| unknown(e.to_string()))?.si();
-        // In rad/s it is an angular frequency.
-        let turn = if counts_angles(text) { TAU } else { 1.0 };
-        return above_zero(frequency / turn).map(LoadHistory::Sine);
-    }
-    Err(unknown("no such history".into()))
 }
 
 /// What an observer keeps.
@@ -153,12 +117,9 @@ pub(super) fn dynamics(
     prepared: &PreparedCase<'_>,
     model: &Model,
     settings: &newmark::Settings,
-    large: Large,
+    rotations: Rotations,
 ) -> Result<Outcome, StudyError> {
     let case = prepared.case;
-    if large.spectral_radius.is_some_and(|r| !large.rotations || !(0.0..=1.0).contains(&r)) {
-        return Err(case.inconsistent("spectral_radius is 0 to 1, and needs large_rotations = true".into()));
-    }
     let mut record = Record {
         mesh: &model.mesh,
         locators: &prepared.probes,
@@ -169,9 +130,8 @@ pub(super) fn dynamics(
         },
         solution: Solution { dofs: prepared.plan.rows(model), ..Solution::at_rest(model) },
     };
-    let state = if large.rotations {
+    let state = if let Rotations::Large { spectral_radius } = rotations {
         let newmark::Settings { duration, step, tolerance, damping, load, mass } = *settings;
-        let spectral_radius = large.spectral_radius.unwrap_or(SPECTRAL_RADIUS);
         let dynamics = Dynamics { duration, step, tolerance, spectral_radius, damping, load, mass };
         Some(integrate_with(model, &prepared.plan, &dynamics, &prepared.options, |at| record.see(at))?)
     } else {
@@ -184,26 +144,4 @@ pub(super) fn dynamics(
     let given = history.energy.iter().map(|e| -e.dissipated / work).fold(0.0, f64::max);
     let findings = unbalanced(case, history.imbalance, given).into_iter().collect();
     Ok(Outcome { history: Some(history), state, findings, ..Outcome::of(solution) })
-}
-
-#[cfg(test)]
-mod tests {
-    use std::path::Path;
-
-    use super::*;
-
-    #[test]
-    fn an_angular_frequency_is_no_frequency_in_hertz() {
-        let text = "title = \"t\"\nfabric = \"*\"\n[virtual_test]\ntest = \"bending\"\n";
-        let case = Case::parse(Path::new("c.toml"), text).unwrap();
-        let sine = |text: &str| match load_history(&case, text) {
-            Ok(LoadHistory::Sine(hertz)) => hertz,
-            other => panic!("{other:?}"),
-        };
-        assert_eq!(sine("sine 5 Hz"), 5.0);
-        for one in ["sine 6.283185307179586 rad/s", "sine 360 deg/s", "sine 60 1/min"] {
-            assert!((sine(one) - 1.0).abs() < 1e-12, "{one}");
-        }
-        assert!(load_history(&case, "sine 0 rad/s").is_err());
-    }
 }

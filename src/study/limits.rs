@@ -4,14 +4,13 @@ use std::collections::HashSet;
 
 use nalgebra::Vector3;
 
-use super::StudyError;
-use super::case::{Analysis, Case, LoadTable};
 use super::result::CaseResult;
+use super::{Case, StudyError};
+use crate::case::{Analysis, Prescribed, SheetProblem};
 use crate::element::{Bending, Cells, Drilling, Membrane};
 use crate::finding::{Excess, Finding, Place, StudyFact};
 use crate::mesh::{QuadMesh, Unjoined, normal};
 use crate::model::{Dof, Model};
-use crate::quantity::Angle;
 
 /// Above this ratio of deflection to bending thickness the sheet's own stretching carries part of
 /// the load: an immovable clamped square is 3 % off at 0.24 and 12 % off at 0.47 (von Karman
@@ -100,7 +99,7 @@ impl Beyond {
 
 /// What a reader of a result must know of its model; `in_plane` tells whether its membrane moves.
 pub(super) fn findings(
-    case: &Case,
+    (case, problem): (&Case, &SheetProblem),
     model: &Model,
     extent: &Extent,
     beyond: Option<&Beyond>,
@@ -108,7 +107,7 @@ pub(super) fn findings(
 ) -> Vec<Finding> {
     let mut facts = Vec::new();
     if let Some(beyond) = beyond {
-        facts.push(beyond.fact(&case.analysis));
+        facts.push(beyond.fact(&problem.analysis));
     }
     if let Some(cells) = too_few_cells(model) {
         facts.push(StudyFact::FreeModes { cells });
@@ -120,17 +119,14 @@ pub(super) fn findings(
         facts.push(StudyFact::DrillingSpring { flat: extent.flat });
     }
     // With large rotations it is what a thin sheet asks for.
-    let small = matches!(
-        case.analysis,
-        Analysis::Linear {} | Analysis::Modal { .. } | Analysis::Newmark { large_rotations: false, .. }
-    );
+    let small = !problem.analysis.has_large_rotations();
     if in_plane && small && model.formulation.membrane == Membrane::OneCell {
         facts.push(StudyFact::OneMembraneCell {});
     }
     if let Some(Unjoined { nodes, first }) = extent.unjoined {
         facts.push(StudyFact::NotJoined { nodes, at: first.coords.into() });
     }
-    if let Some(set) = extent.flat.then(|| turned_in_plane(case)).flatten() {
+    if let Some(set) = extent.flat.then(|| turned_in_plane(problem)).flatten() {
         facts.push(StudyFact::TurnedInPlane { set: set.to_string() });
     }
     facts.into_iter().map(|fact| Finding::new(fact).at(Place::file(&case.path))).collect()
@@ -142,7 +138,7 @@ impl Beyond {
             Self::Deflection(w, ratio) => (Excess::Deflection, w, ratio, LINEAR_LIMIT),
             Self::Displacement(u, ratio) => (Excess::Displacement, u, ratio, DISPLACEMENT_LIMIT),
         };
-        let in_time = matches!(analysis, Analysis::Newmark { .. });
+        let in_time = matches!(analysis, Analysis::Newmark(_));
         StudyFact::BeyondLinear { excess, value, ratio, limit, in_time }
     }
 }
@@ -233,17 +229,10 @@ fn along_the_yarns(model: &Model, quad: usize) -> Option<[f64; 2]> {
 }
 
 /// A set without a body whose rotation about z is prescribed: only the drilling stiffness takes it to the sheet.
-fn turned_in_plane(case: &Case) -> Option<&str> {
-    case.loads.iter().find_map(|load| match load {
-        LoadTable::Prescribed { set, dof, value }
-            if Dof::from_name(dof) == Some(Dof::ThetaZ)
-                && value.parse::<Angle>().is_ok_and(|angle| angle.si() != 0.0)
-                && case.rigid.iter().all(|body| body.name != *set) =>
-        {
-            Some(set.as_str())
-        }
-        _ => None,
-    })
+fn turned_in_plane(problem: &SheetProblem) -> Option<&str> {
+    let of_body = |p: &Prescribed| problem.mounting.bodies.iter().any(|b| b.name.value == p.set.value);
+    let turns = |p: &&Prescribed| p.dof == Dof::ThetaZ && p.value != 0.0 && !of_body(p);
+    problem.analysis.prescribed().iter().find(turns).map(|p| p.set.value.as_str())
 }
 
 /// Whether the sheet is pressed in its plane anywhere, beyond rounding.

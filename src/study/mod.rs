@@ -3,7 +3,6 @@
 
 pub mod bending;
 mod build;
-mod case;
 mod checked;
 mod compare;
 mod convergence;
@@ -11,43 +10,39 @@ mod drape;
 mod dynamics;
 mod limits;
 mod nonlinear;
-mod point;
 mod prepared;
 mod result;
-mod rigid;
 mod run;
 mod sampling;
-mod solver;
 mod uncertainty;
 mod virtual_large;
 mod virtual_loop;
 mod virtual_test;
 mod watch;
 
-pub use build::{formulation, model, section};
-pub use case::{
-    Analysis, BendingKind, BendingTest, Case, CaseError, Check, ConvergenceTable, MethodChoice,
-    NonlinearTable, ProbeTable, Reference, ReferenceKind, SectionTable, Shape, Sheet, TestFormulation,
-    UncertaintyTable, VirtualTest,
-};
+use std::error::Error;
+use std::fmt;
+
+use serde::Serialize;
+
+pub use crate::case::{Case, CaseError};
+pub use build::section;
 pub use compare::{Comparison, compare_curves, measured_curve};
 pub use convergence::{Convergence, MeshSeries};
 pub use drape::{Drape, DrapeState, Folds, drape, drape_stages, measured_drape};
 pub use dynamics::History;
 pub use nonlinear::{LoadPath, PathStep};
-pub use point::SheetPoint;
 pub use prepared::{PreparedCase, validate};
 pub use result::{CaseResult, CheckResult, Probe, Status};
-pub use rigid::RigidTable;
 pub use run::solve_case;
 pub use sampling::{SampledQuantity, Sampling, sample, sampling_stages};
-pub use solver::{Bytes, SolverChoice, SolverTable};
 pub use uncertainty::{Prediction, Uncertainty};
 pub use virtual_loop::{VirtualLoop, simulate_cycle, simulate_loop};
 pub use virtual_test::{EdgeEffect, PreparedTest, Tension, VirtualCurve, compression, simulate};
 pub use watch::Watch;
 
-use crate::finding::errors;
+use crate::case::{Problem, SheetProblem};
+use crate::finding::{Coded, Fields, Located, Place, errors};
 use crate::law::LawError;
 use crate::mesh::MeshError;
 use crate::model::ModelError;
@@ -75,6 +70,10 @@ errors! {
             /// M020: numbers that make no law.
             Law(LawError),
         }
+        inner {
+            /// Any of these, about a value of the case file.
+            Placed(PlacedError),
+        }
         /// O054: [`Watch::stopped`] said so.
         "O054" Stopped = "interrupted";
         /// S004: no overhang of the cantilever test brings the chord to its angle.
@@ -87,8 +86,86 @@ errors! {
     }
 }
 
-impl Case {
-    fn inconsistent(&self, message: String) -> StudyError {
-        self.refused(message).into()
+/// An error about a value of the case file.
+#[derive(Debug, Serialize)]
+#[serde(transparent)]
+pub struct PlacedError {
+    /// Position of the value.
+    #[serde(skip)]
+    pub place: Place,
+    /// What is wrong with it.
+    pub error: Box<StudyError>,
+}
+
+impl PlacedError {
+    /// The stable code; see [`explain`](crate::finding::explain).
+    pub fn code(&self) -> &'static str {
+        self.error.code()
+    }
+}
+
+impl Coded for PlacedError {
+    fn code(&self) -> &'static str {
+        self.error.code()
+    }
+
+    fn message(&self) -> String {
+        self.error.message()
+    }
+
+    fn fields(&self) -> Fields {
+        self.error.fields()
+    }
+
+    /// That of the error itself, such as a line of a mesh file, or else that of the value.
+    fn place(&self) -> Option<Place> {
+        self.error.place().or_else(|| Some(self.place.clone()))
+    }
+
+    fn hint(&self) -> Option<&'static str> {
+        self.error.hint()
+    }
+}
+
+impl fmt::Display for PlacedError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let place = self.error.place().map_or_else(|| format!("{}: ", self.place), |_| String::new());
+        write!(f, "{place}{}", self.error)
+    }
+}
+
+impl Error for PlacedError {}
+
+/// The error of a step that a value of the case asks for, at the place of that value.
+fn placed<V, T, E: Into<StudyError>>(
+    case: &Case,
+    value: &Located<V>,
+    result: Result<T, E>,
+) -> Result<T, StudyError> {
+    result.map_err(|error| match error.into() {
+        error @ (StudyError::Case(_) | StudyError::Placed(_)) => error,
+        error => StudyError::Placed(PlacedError { place: case.place(value), error: Box::new(error) }),
+    })
+}
+
+/// S003 about a value of the case.
+fn refused<V>(case: &Case, value: &Located<V>, message: impl Into<String>) -> StudyError {
+    case.refused(value, message).into()
+}
+
+/// The problem of a case with supports and loads.
+///
+/// # Errors
+/// S003 for a case of another kind: it is compared or searched, not solved.
+fn sheet_problem(case: &Case) -> Result<&SheetProblem, StudyError> {
+    match &case.problem {
+        Problem::Sheet(problem) => Ok(problem),
+        Problem::Drape(_) => {
+            Err(refused(case, &Located::from(()), "a drape is a search for many states, not one solve"))
+        }
+        Problem::InstrumentTest(_) | Problem::BendingTest(_) => {
+            let message = "the case has no [sheet]; a [virtual_test] is compared, not solved";
+            Err(refused(case, &Located::from(()), message))
+        }
     }
 }

@@ -4,18 +4,15 @@ use std::ops::ControlFlow;
 
 use serde::Serialize;
 
-use super::PreparedCase;
-use super::StudyError;
-use super::case::{Case, MethodChoice, NonlinearTable};
 use super::result::Outcome;
+use super::{PreparedCase, StudyError, refused};
+use crate::case::{MethodChoice, Nonlinear};
 use crate::fields::Locator;
 use crate::finding::{Finding, Place, StudyFact};
 use crate::mesh::QuadMesh;
 use crate::model::Model;
 use crate::section::SheetLaw;
-use crate::solve::nonlinear::{
-    self, ArcLength, Flow, Method, NonlinearError, Obstacle, Perturbation, Settings, Stability, State, Step,
-};
+use crate::solve::nonlinear::{self, Method, NonlinearError, Obstacle, Settings, Stability, State, Step};
 use crate::solve::{self, Solution};
 
 /// How a search for an equilibrium went.
@@ -66,97 +63,6 @@ impl LoadPath {
     }
 }
 
-/// Refuses keys that the method does not have, and values out of range.
-fn checked(case: &Case, table: &NonlinearTable) -> Result<(), StudyError> {
-    let method = table.method;
-    let only = |given: bool, key: &str, of: &[MethodChoice]| {
-        let names: Vec<&str> = of.iter().map(|m| name(*m)).collect();
-        if given && !of.contains(&method) {
-            let names = names.join("\" or \"");
-            return Err(case.inconsistent(format!(
-                "[analysis] {key} belongs to method = \"{names}\": remove it, or change the method"
-            )));
-        }
-        Ok(())
-    };
-    use MethodChoice::{ArcLength as Arc, Flow as Relax, Newton};
-    only(table.first_step.is_some(), "first_step", &[Newton, Arc])?;
-    only(table.largest_step.is_some(), "largest_step", &[Newton])?;
-    only(table.smallest_step.is_some(), "smallest_step", &[Newton])?;
-    only(table.steps.is_some(), "steps", &[Arc, Relax])?;
-    only(table.iterations.is_some(), "iterations", &[Newton, Arc])?;
-    only(table.perturbation.is_some() || table.seed.is_some(), "perturbation", &[Newton, Relax])?;
-    if method == Newton && table.seed.is_some() && table.perturbation.is_none() {
-        return Err(
-            case.inconsistent("[analysis] seed needs a perturbation, such as perturbation = 1e-3".into())
-        );
-    }
-    let fractions = [
-        ("tolerance", table.tolerance),
-        ("first_step", table.first_step),
-        ("largest_step", table.largest_step),
-        ("smallest_step", table.smallest_step),
-    ];
-    for (key, value) in fractions {
-        if value.is_some_and(|v| !(v > 0.0 && v <= 1.0)) {
-            return Err(case.inconsistent(format!("[analysis] {key} must be above 0 and at most 1")));
-        }
-    }
-    if table.perturbation.is_some_and(|p| !(0.0..=1.0).contains(&p)) {
-        return Err(case.inconsistent("[analysis] perturbation must be 0 to 1".into()));
-    }
-    if table.iterations == Some(0) || table.steps == Some(0) {
-        return Err(case.inconsistent("[analysis] iterations and steps must be at least 1".into()));
-    }
-    Ok(())
-}
-
-/// Settings and method of a case.
-///
-/// # Errors
-/// S003 for keys that the method does not have, and for values out of range.
-pub(super) fn way(case: &Case, table: &NonlinearTable) -> Result<(Settings, Method), StudyError> {
-    use MethodChoice::{ArcLength as Arc, Flow as Relax, Newton};
-    checked(case, table)?;
-    let default = Settings::default();
-    let largest_step = table.largest_step.unwrap_or(default.largest_step);
-    let settings = Settings {
-        tolerance: table.tolerance.unwrap_or(default.tolerance),
-        iterations: table.iterations.unwrap_or(default.iterations),
-        first_step: table.first_step.unwrap_or(default.first_step).min(largest_step),
-        largest_step,
-        smallest_step: table.smallest_step.unwrap_or(default.smallest_step),
-        ..default
-    };
-    let seed = table.seed.unwrap_or(1);
-    let method = match table.method {
-        Newton => Method::Newton(table.perturbation.map(|size| Perturbation { size, seed })),
-        Arc => {
-            let default = ArcLength::default();
-            Method::ArcLength(ArcLength {
-                first: table.first_step.unwrap_or(default.first),
-                steps: table.steps.unwrap_or(default.steps),
-                until: Some(1.0),
-                ..default
-            })
-        }
-        Relax => {
-            let default = Flow::default();
-            let perturbation = table.perturbation.unwrap_or(default.perturbation);
-            Method::Flow(Flow { perturbation, seed, steps: table.steps.unwrap_or(default.steps) })
-        }
-    };
-    Ok((settings, method))
-}
-
-fn name(method: MethodChoice) -> &'static str {
-    match method {
-        MethodChoice::Newton => "newton",
-        MethodChoice::ArcLength => "arc_length",
-        MethodChoice::Flow => "flow",
-    }
-}
-
 /// What an observer keeps.
 struct Record<'a> {
     mesh: &'a QuadMesh,
@@ -202,26 +108,24 @@ pub(super) fn equilibrium(
     prepared: &PreparedCase<'_>,
     model: &Model,
     law: Option<&SheetLaw>,
-    table: &NonlinearTable,
+    analysis: &Nonlinear,
 ) -> Result<Outcome, StudyError> {
     let (case, options) = (prepared.case, &prepared.options);
-    let (settings, method) = way(case, table)?;
-    let settings = Settings { law: law.cloned(), ..settings };
+    let Nonlinear { settings, method, perturbation, .. } = analysis;
+    let settings = Settings { law: law.cloned(), ..settings.clone() };
     let perturbs = matches!(method, Method::Newton(Some(_)));
     let pushes = |node: &[f64]| node[..3].iter().any(|f| *f != 0.0);
     if perturbs && !model.load_vector().chunks_exact(6).any(pushes) {
-        return Err(case.inconsistent(
-            "[analysis] perturbation is relative to the forces, and there are none here, only held values or moments: \
-             add a small force across the sheet instead"
-                .into(),
-        ));
+        let message = "[analysis] perturbation is relative to the forces, and there are none here, only held values or moments: \
+                       add a small force across the sheet instead";
+        return Err(refused(case, perturbation, message));
     }
     let linear = solve::solve(model, options).ok();
     let mut record = Record {
         mesh: &model.mesh,
         locators: &prepared.probes,
         path: LoadPath {
-            method: table.method,
+            method: MethodChoice::of(method),
             converged: true,
             steps: Vec::new(),
             probes: vec![Vec::new(); prepared.probes.len()],
@@ -231,9 +135,8 @@ pub(super) fn equilibrium(
         state: State::rest(&model.mesh),
         solution: Solution::at_rest(model),
     };
-    let found =
-        nonlinear::search(model, &prepared.plan, &settings, &method, options, |step| record.see(step));
-    let mut findings = conclude(found, table, &mut record.path)?;
+    let found = nonlinear::search(model, &prepared.plan, &settings, method, options, |step| record.see(step));
+    let mut findings = conclude(found, MethodChoice::of(method), &mut record.path)?;
     findings.extend(turned_about_more(model, &record.state));
     let findings = findings.into_iter().map(|f| f.at(Place::file(&case.path))).collect();
     let mut solution = record.solution;
@@ -244,7 +147,7 @@ pub(super) fn equilibrium(
 /// What the end of a search means: stability, and what a reader must know.
 fn conclude(
     found: Result<nonlinear::Solution, NonlinearError>,
-    table: &NonlinearTable,
+    method: MethodChoice,
     path: &mut LoadPath,
 ) -> Result<Vec<Finding>, StudyError> {
     let mut findings = Vec::new();
@@ -270,7 +173,7 @@ fn conclude(
                 iterations,
                 residual,
                 tolerance,
-                cure: cure(table, &obstacle).to_string(),
+                cure: cure(method, &obstacle).to_string(),
             }));
         }
         Err(other) => return Err(other.into()),
@@ -299,8 +202,8 @@ fn turned_about_more(model: &Model, state: &State) -> Option<Finding> {
 }
 
 /// What to change in the case.
-fn cure(table: &NonlinearTable, obstacle: &Obstacle) -> &'static str {
-    match (obstacle, table.method) {
+fn cure(method: MethodChoice, obstacle: &Obstacle) -> &'static str {
+    match (obstacle, method) {
         (Obstacle::Folded, _) => "in [sheet] take more cells, so that a fold goes over several of them",
         (Obstacle::Moving | Obstacle::Unstable, MethodChoice::Flow) => {
             "in [analysis] try more steps, and in [sheet] more cells"

@@ -4,14 +4,11 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::{Matrix2, Matrix3, Point3};
 
-use super::case::{Analysis, Case, Sheet};
-use super::checked::expected;
-use super::convergence::Convergence;
-use super::dynamics::load_history;
 use super::limits::Extent;
-use super::nonlinear::way;
-use super::{StudyError, build, solver};
+use super::{Case, StudyError, build, placed, refused, sheet_problem};
+use crate::case::{Analysis, Newmark, Outline, ProbePoint, Problem, Sheet, SheetProblem};
 use crate::fields::{Line, Locator, Recovery};
+use crate::finding::Located;
 use crate::mesh::QuadMesh;
 use crate::model::{DofGroup, Model};
 use crate::section::ShellSection;
@@ -23,6 +20,7 @@ use crate::solve::{Options, Plan};
 #[derive(Debug)]
 pub struct PreparedCase<'a> {
     pub(super) case: &'a Case,
+    pub(super) problem: &'a SheetProblem,
     pub(super) options: Options,
     /// With a stand-in for the section.
     model: Model,
@@ -50,47 +48,47 @@ impl<'a> PreparedCase<'a> {
     /// # Errors
     /// See [`StudyError`]: the case itself, its mesh, supports and loads; N002.
     pub fn new(case: &'a Case, options: &Options) -> Result<Self, StudyError> {
-        let Some(sheet) = &case.sheet else {
-            return Err(
-                case.inconsistent("the case has no [sheet]; a [virtual_test] is compared, not solved".into())
-            );
-        };
-        let options = &solver::options(case, options)?;
-        let own = Self::on(case, sheet, options)?;
-        let coarser = Convergence::coarser(case);
-        let coarser = coarser
-            .iter()
-            .map(|sheet| Self::on(case, sheet, options).map_err(|e| too_coarse(case, sheet, &e)));
+        let problem = sheet_problem(case)?;
+        let options = &case.options(options)?;
+        let own = Self::on(case, problem, &problem.sheet, options)?;
+        let coarser = problem.analysis.coarser().into_iter().flat_map(|meshes| {
+            let on = |sheet| Self::on(case, problem, sheet, options);
+            meshes.value.iter().map(move |sheet| on(sheet).map_err(|e| too_coarse(case, meshes, sheet, &e)))
+        });
         Ok(Self { coarser: coarser.collect::<Result<_, _>>()?, ..own })
     }
 
     /// The case on the mesh of a sheet.
-    fn on(case: &'a Case, sheet: &Sheet, options: &Options) -> Result<Self, StudyError> {
-        let model = build::model(case, sheet, stand_in())?;
+    fn on(
+        case: &'a Case,
+        problem: &'a SheetProblem,
+        sheet: &Sheet,
+        options: &Options,
+    ) -> Result<Self, StudyError> {
+        let model = build::model_on(case, problem, sheet, stand_in())?;
         let all = Plan::all_groups(&model, options);
-        let groups = match &case.analysis {
-            Analysis::Modal { .. } => all.clone(),
-            Analysis::Nonlinear(table) => {
-                // Keys that do not fit are refused before anything is computed.
-                way(case, table)?;
-                vec![DofGroup::Shell]
+        let groups = match &problem.analysis {
+            Analysis::Modal(_) => all.clone(),
+            Analysis::Linear(_) => Plan::groups(&model, options),
+            Analysis::Newmark(_) if !problem.analysis.has_large_rotations() => Plan::groups(&model, options),
+            Analysis::Newmark(_) | Analysis::Nonlinear(_) => vec![DofGroup::Shell],
+        };
+        let plan = match &problem.analysis {
+            Analysis::Linear(_) => Plan::of(&model, options)?,
+            Analysis::Modal(_) | Analysis::Newmark(_) | Analysis::Nonlinear(_) => {
+                Plan::new(&model, &groups, options.path)?
             }
-            Analysis::Newmark { large_rotations: true, .. } => vec![DofGroup::Shell],
-            _ => Plan::groups(&model, options),
         };
-        let plan = match case.analysis {
-            Analysis::Linear {} => Plan::of(&model, options)?,
-            _ => Plan::new(&model, &groups, options.path)?,
-        };
-        let damped = matches!(case.analysis, Analysis::Newmark { damping: Some(_), .. });
+        let damped = matches!(&problem.analysis, Analysis::Newmark(Newmark { damping: Some(_), .. }));
         let all_groups =
             (damped && all != groups).then(|| Plan::new(&model, &all, options.path)).transpose()?;
-        let probes = locators(case, &model.mesh)?;
+        let probes = locators(case, problem, &model.mesh)?;
         let [from, to] = middle_line(&model.mesh);
         let middle = Line::new(&model.mesh, &from, &to, STEPS);
-        let extent = Extent::of(&model.mesh, sheet.file.is_some());
+        let extent = Extent::of(&model.mesh, matches!(sheet.outline, Outline::File { .. }));
         Ok(Self {
             case,
+            problem,
             options: *options,
             model,
             plan,
@@ -115,40 +113,52 @@ impl<'a> PreparedCase<'a> {
 /// # Errors
 /// See [`StudyError`].
 pub fn validate(case: &Case) -> Result<(), StudyError> {
-    let section = case.section.as_ref().map(build::section).transpose()?;
-    let Some(sheet) = &case.sheet else { return Ok(()) };
-    solver::options(case, &Options::default())?;
-    let model = build::model(case, sheet, section.unwrap_or_else(stand_in))?;
-    build::weighed(&model)?;
-    match &case.analysis {
-        Analysis::Nonlinear(table) => drop(way(case, table)?),
-        Analysis::Newmark { load, .. } => drop(load_history(case, load)?),
-        _ => {}
+    let section = case.problem.section();
+    let section = section.map(|table| placed(case, table, build::section(&table.value))).transpose()?;
+    let section = section.unwrap_or_else(stand_in);
+    case.options(&Options::default())?;
+    match &case.problem {
+        Problem::Sheet(problem) => {
+            let model = build::model_on(case, problem, &problem.sheet, section)?;
+            check_model(&model, problem.analysis.has_large_rotations())?;
+            locators(case, problem, &model.mesh)?;
+            for (meshes, sheet) in
+                problem.analysis.coarser().iter().flat_map(|m| m.value.iter().map(move |s| (m, s)))
+            {
+                let model = build::model_on(case, problem, sheet, stand_in());
+                let on = model.and_then(|model| locators(case, problem, &model.mesh));
+                on.map_err(|e| too_coarse(case, meshes, sheet, &e))?;
+            }
+            Ok(())
+        }
+        Problem::Drape(problem) => {
+            let loads = problem.loads();
+            let model = build::model(case, &problem.sheet(), &problem.mounting, (&loads, &[]), section)?;
+            check_model(&model, true)
+        }
+        Problem::InstrumentTest(_) | Problem::BendingTest(_) => Ok(()),
     }
+}
+
+/// Weight and supports of a model.
+fn check_model(model: &Model, large_rotations: bool) -> Result<(), StudyError> {
+    build::weighed(model)?;
     let links = model.links()?;
     model.held(&links)?;
-    let large = matches!(
-        case.analysis,
-        Analysis::Nonlinear(_) | Analysis::Drape { .. } | Analysis::Newmark { large_rotations: true, .. }
-    );
-    if let Some(own) = links.first_own_axes().filter(|_| large) {
-        return Err(own.in_large_rotations(&model).into());
+    match links.first_own_axes() {
+        Some(own) if large_rotations => Err(own.in_large_rotations(model).into()),
+        _ => Ok(()),
     }
-    locators(case, &model.mesh)?;
-    for sheet in Convergence::coarser(case) {
-        let on = build::model(case, &sheet, stand_in()).and_then(|model| locators(case, &model.mesh));
-        on.map_err(|e| too_coarse(case, &sheet, &e))?;
-    }
-    case.checks.iter().try_for_each(|c| expected(case, c).map(drop))
 }
 
 /// An error on a coarser mesh of `[convergence]`, which its reader has not written.
-fn too_coarse(case: &Case, sheet: &Sheet, error: &StudyError) -> StudyError {
-    let cells = sheet.cells.unwrap_or_default();
-    case.inconsistent(format!(
+fn too_coarse(case: &Case, meshes: &Located<Vec<Sheet>>, sheet: &Sheet, error: &StudyError) -> StudyError {
+    let cells = sheet.outline.cells().unwrap_or_default();
+    let message = format!(
         "[convergence] needs the case on cells = {cells:?} too, and there: {error}; take more `cells` or meshes = 2, or \
          move what lies beyond the corners of that mesh inside"
-    ))
+    );
+    refused(case, meshes, message)
 }
 
 /// Ones: which dofs the loads set in motion does not depend on the section, whose density is positive.
@@ -169,6 +179,7 @@ fn middle_line(mesh: &QuadMesh) -> [Point3<f64>; 2] {
     [Point3::new(low.x, middle.y, middle.z), Point3::new(high.x, middle.y, middle.z)]
 }
 
-fn locators(case: &Case, mesh: &QuadMesh) -> Result<Vec<Locator>, StudyError> {
-    case.probes.iter().map(|p| p.at.locate(case, mesh, &format!("probe `{}`", p.name))).collect()
+fn locators(case: &Case, problem: &SheetProblem, mesh: &QuadMesh) -> Result<Vec<Locator>, StudyError> {
+    let locate = |p: &ProbePoint| build::locate(case, mesh, &p.at, &format!("probe `{}`", p.name));
+    problem.probes.iter().map(locate).collect()
 }

@@ -5,16 +5,16 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::case::{Case, Reference};
 use super::convergence::Convergence;
 use super::dynamics::History;
 use super::nonlinear::LoadPath;
 use super::uncertainty::Uncertainty;
+use crate::case::Reference;
 use crate::element::Mass;
 use crate::fields::{
     ProbeValue, Recovery, Resultants, element_means, element_means_moved, reaction_resultants,
 };
-use crate::finding::{Finding, StudyFact};
+use crate::finding::{Finding, Place, StudyFact};
 use crate::model::{Model, ModelError};
 use crate::quantity::Curve;
 use crate::section::SheetLaw;
@@ -68,8 +68,8 @@ pub struct CheckResult {
 }
 
 impl CheckResult {
-    /// S122: that the check does not hold.
-    pub(super) fn finding(&self, case: &Case) -> Finding {
+    /// S122: that the check at a place does not hold.
+    pub(super) fn finding(&self, place: Place) -> Finding {
         let fact = StudyFact::CheckFails {
             quantity: self.quantity.clone(),
             value: self.value,
@@ -78,7 +78,6 @@ impl CheckResult {
             relative_error: self.relative_error,
             relative_tolerance: self.relative_tolerance,
         };
-        let place = case.place_of(&fact.to_string());
         Finding::new(fact).at(place)
     }
 }

@@ -2,17 +2,16 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::case::{Analysis, Case};
 use super::checked::check;
 use super::convergence::Convergence;
-use super::dynamics::{Large, dynamics, load_history, rayleigh};
+use super::dynamics::{dynamics, rayleigh};
 use super::limits::{Beyond, buckles, findings, is_compressed};
 use super::nonlinear::{equilibrium, largest_w};
 use super::result::{CaseResult, Kept, Outcome, Probe, Status};
 use super::uncertainty::{linear_uncertainty, modal_uncertainty};
-use super::{PreparedCase, StudyError, build};
+use super::{Case, PreparedCase, StudyError, build};
+use crate::case::{Analysis, ProbePoint};
 use crate::constitutive::{Constitutive, Input};
-use crate::element::Mass;
 use crate::fields::{Locator, Recovery};
 use crate::finding::{Finding, Place, StudyFact};
 use crate::model::Model;
@@ -65,7 +64,7 @@ impl PreparedCase<'_> {
         let case = self.case;
         let mut result = self.results(section, law, inputs)?;
         // A mesh that is too large to factorise is not examined, and the result stands where that cannot be done.
-        let examined = matches!(case.analysis, Analysis::Linear {}) && !self.plan.iterates();
+        let examined = matches!(self.problem.analysis, Analysis::Linear(_)) && !self.plan.iterates();
         if result.status == Status::Ok && examined && is_compressed(&result, &self.extent)? {
             let lost = lost_directions(&result.model, &result.solution.displacement, &self.options);
             if let Some(lost) = lost.ok().filter(|n| *n > 0) {
@@ -78,12 +77,14 @@ impl PreparedCase<'_> {
             let on = |coarser: &Self| coarser.results(section.clone(), law, &[]);
             let coarser = self.coarser.iter().map(on).collect::<Result<Vec<_>, _>>()?;
             let meshes: Vec<&CaseResult> = coarser.iter().chain([&result]).collect();
-            let convergence = Convergence::of(case, &meshes)?;
+            let convergence = Convergence::of(self.problem, &meshes)?;
             result.findings.extend(convergence.finding(case));
             result.convergence = Some(convergence);
         }
-        result.checks = case.checks.iter().map(|c| check(case, c, &result)).collect::<Result<_, _>>()?;
-        let failed = result.checks.iter().filter(|c| !c.passed).map(|c| c.finding(case));
+        let checks = &self.problem.checks;
+        result.checks = checks.iter().map(|c| check(case, c, &result)).collect::<Result<_, _>>()?;
+        let failed = result.checks.iter().zip(checks).filter(|(result, _)| !result.passed);
+        let failed = failed.map(|(result, check)| result.finding(case.place(&check.quantity)));
         result.findings.extend(failed);
         if result.status != Status::NotConverged && result.checks.iter().any(|c| !c.passed) {
             result.status = Status::CheckFailed;
@@ -108,7 +109,7 @@ impl PreparedCase<'_> {
             Kept::Nothing => None,
             Kept::Modes(modes, mass) => Some(modal_uncertainty(&model, (&modes, mass), inputs)?),
             Kept::Factors(factors) => {
-                let names = case.probes.iter().map(|p| p.name.as_str());
+                let names = self.problem.probes.iter().map(|p| p.name.as_str());
                 let named: Vec<_> = names.zip(self.probes.iter().copied()).collect();
                 let recovery = self.recovery.get_or_init(|| Recovery::new(&model.mesh));
                 Some(linear_uncertainty(&model, (&solution, &factors), inputs, &named, recovery)?)
@@ -128,7 +129,7 @@ impl PreparedCase<'_> {
             is_linear.then(|| Beyond::of(&model, &self.extent, &solution.displacement, ratio)).flatten();
         let in_plane = |u: &Vec<f64>| self.extent.moves_in_plane(u);
         let in_plane = shapes.iter().any(in_plane) || in_plane(&solution.displacement);
-        let mut findings = findings(case, &model, &self.extent, beyond.as_ref(), in_plane);
+        let mut findings = findings((case, self.problem), &model, &self.extent, beyond.as_ref(), in_plane);
         findings.extend(own);
         let status = match &path {
             Some(path) if !path.converged => Status::NotConverged,
@@ -155,11 +156,11 @@ impl PreparedCase<'_> {
             uncertainty,
             convergence: None,
             findings,
-            modal: matches!(case.analysis, Analysis::Modal { .. }),
+            modal: matches!(self.problem.analysis, Analysis::Modal(_)),
             recovery: Arc::clone(&self.recovery),
             nodal: OnceLock::new(),
         };
-        result.probes = probes(case, &self.probes, &result)?;
+        result.probes = probes(&self.problem.probes, &self.probes, &result)?;
         Ok(result)
     }
 }
@@ -170,60 +171,40 @@ fn analyse(
     law: Option<&SheetLaw>,
 ) -> Result<Outcome, StudyError> {
     let (case, options) = (prepared.case, &prepared.options);
-    match &case.analysis {
-        Analysis::Linear {} => {
+    match &prepared.problem.analysis {
+        Analysis::Linear(_) => {
             let (solution, factors) = solve::solve_keeping(model, Some(&prepared.plan), options)?;
             Ok(Outcome { kept: Kept::Factors(factors), ..Outcome::of(solution) })
         }
-        Analysis::Modal { modes: count, mass, lumped } => {
-            let mass = mass_choice(case, *mass, *lumped)?;
-            let modes = solve::modes_with(model, &prepared.plan, *count, mass, options)?;
-            let wanted = *count;
+        Analysis::Modal(modal) => {
+            let modes = solve::modes_with(model, &prepared.plan, modal.modes, modal.mass, options)?;
             let mut solution = Solution { dofs: prepared.plan.rows(model), ..Solution::at_rest(model) };
             let shapes: Vec<Vec<f64>> = modes.iter().map(|m| of_unit_size(&m.shape)).collect();
             if let Some(first) = shapes.first() {
                 solution.displacement.clone_from(first);
             }
             let frequencies = modes.iter().map(solve::Mode::frequency).collect();
-            let findings = (modes.len() < wanted).then(|| fewer_modes(case, modes.len(), wanted));
+            let findings = (modes.len() < modal.modes).then(|| fewer_modes(case, modes.len(), modal.modes));
             Ok(Outcome {
                 frequencies,
                 modes: shapes,
-                kept: Kept::Modes(modes, mass),
+                kept: Kept::Modes(modes, modal.mass),
                 findings: findings.into_iter().collect(),
                 ..Outcome::of(solution)
             })
         }
-        Analysis::Newmark {
-            duration,
-            step,
-            tolerance,
-            damping,
-            load,
-            mass,
-            lumped,
-            large_rotations,
-            spectral_radius,
-        } => {
-            let mass = mass_choice(case, *mass, *lumped)?;
+        Analysis::Newmark(newmark) => {
             let settings = newmark::Settings {
-                duration: duration.si(),
-                step: step.si(),
-                tolerance: *tolerance,
-                damping: rayleigh(prepared, model, *damping, mass)?,
-                load: load_history(case, load)?,
-                mass,
+                duration: newmark.duration.si(),
+                step: newmark.step.si(),
+                tolerance: newmark.tolerance,
+                damping: rayleigh(prepared, model, newmark.damping.as_ref(), newmark.mass)?,
+                load: newmark.history,
+                mass: newmark.mass,
             };
-            if !(settings.step > 0.0 && settings.duration >= settings.step) {
-                return Err(case.inconsistent("newmark needs 0 < step <= duration".into()));
-            }
-            let large = Large { rotations: *large_rotations, spectral_radius: *spectral_radius };
-            dynamics(prepared, model, &settings, large)
+            dynamics(prepared, model, &settings, newmark.rotations)
         }
-        Analysis::Nonlinear(table) => equilibrium(prepared, model, law, table),
-        Analysis::Drape { .. } => {
-            Err(case.inconsistent("a drape is a search for many states, not one solve".into()))
-        }
+        Analysis::Nonlinear(nonlinear) => equilibrium(prepared, model, law, nonlinear),
     }
 }
 
@@ -240,29 +221,20 @@ fn fewer_modes(case: &Case, found: usize, wanted: usize) -> Finding {
     Finding::new(StudyFact::FewerModes { found, wanted }).at(Place::file(&case.path))
 }
 
-/// The mass matrix of a case: the key `mass`, or the older `lumped`.
-fn mass_choice(case: &Case, mass: Option<Mass>, lumped: Option<bool>) -> Result<Mass, StudyError> {
-    match (mass, lumped) {
-        (Some(_), Some(_)) => {
-            Err(case.inconsistent("[analysis] gives both `mass` and `lumped`: remove `lumped`".into()))
-        }
-        (Some(mass), None) => Ok(mass),
-        (None, Some(false)) => Ok(Mass::Consistent),
-        (None, Some(true)) => Ok(Mass::Lumped),
-        (None, None) => Ok(Mass::default()),
-    }
-}
-
-fn probes(case: &Case, locators: &[Locator], result: &CaseResult) -> Result<Vec<Probe>, StudyError> {
+fn probes(
+    points: &[ProbePoint],
+    locators: &[Locator],
+    result: &CaseResult,
+) -> Result<Vec<Probe>, StudyError> {
     if locators.is_empty() {
         return Ok(Vec::new());
     }
     let nodal = result.nodal()?;
     let value = |at: &Locator| at.value(&result.model.mesh, &result.solution.displacement, nodal);
-    Ok(case
-        .probes
-        .iter()
-        .zip(locators)
-        .map(|(p, at)| Probe { name: p.name.clone(), at: p.at.coordinates(), value: value(at) })
-        .collect())
+    let probe = |(p, at): (&ProbePoint, &Locator)| Probe {
+        name: p.name.clone(),
+        at: p.at.value.coordinates(),
+        value: value(at),
+    };
+    Ok(points.iter().zip(locators).map(probe).collect())
 }

@@ -12,11 +12,13 @@
 //! Inputs are independent. One without a spread stays at its value; a result that moves with it has
 //! no band, as it would be too narrow.
 
-use super::bending::{BendingResult, simulate_strips};
-use super::case::{Analysis, BendingKind, Case, TestFormulation, UncertaintyTable};
-use super::{PreparedCase, PreparedTest, Status, StudyError, Watch, drape, simulate_cycle};
+use super::bending::{BendingResult, simulate_cantilever, simulate_heart_loop};
+use super::{Case, PreparedCase, PreparedTest, Status, StudyError, Watch, drape, refused, simulate_cycle};
+use crate::case::{
+    BendingTest, DrapeProblem, FabricMaterial, InstrumentTest, Problem, SamplingPlan, ShellSpecimen,
+};
 use crate::characterise::FabricSheet;
-use crate::constitutive::{self, Constitutive, Input, law_inputs, perturbed};
+use crate::constitutive::{self, Assumptions, Constitutive, Input, law_inputs, perturbed};
 use crate::finding::{Finding, Place, StudyFact};
 use crate::instrument::{Direction, Parameter, Test};
 use crate::law::Mode;
@@ -87,7 +89,7 @@ const NEGLIGIBLE: f64 = 1e-3;
 
 /// How often [`Watch::stage`] of [`sample`] is called at most.
 pub fn sampling_stages(case: &Case) -> usize {
-    case.uncertainty.as_ref().map_or(0, |table| 2 * table.points as usize)
+    case.sampling().map_or(0, |table| 2 * table.points as usize)
 }
 
 /// The bands of a case with `[uncertainty]`; `None` without that table. The points are solved in parallel; [`Watch::stage`]
@@ -101,73 +103,96 @@ pub fn sample(
     made: &Constitutive,
     watch: Watch<'_>,
 ) -> Result<Option<Sampling>, StudyError> {
-    let Some(table) = &case.uncertainty else { return Ok(None) };
+    let Some(FabricMaterial { assumptions, sampling: Some(plan), .. }) = case.fabric() else {
+        return Ok(None);
+    };
     let options = &Options { threads: 1, ..Options::default() };
     let mut inputs = made.inputs.clone();
-    let sampler = |inputs, evaluate| Sampler { case, table, inputs, evaluate }.run(sheet, made, watch);
-    if let Some(spec) = &case.bending_test {
-        if spec.test == BendingKind::Cantilever {
+    let sampler =
+        |inputs, evaluate| Sampler { case, assumptions, plan, inputs, evaluate }.run(sheet, made, watch);
+    match &case.problem {
+        Problem::BendingTest(BendingTest::Cantilever(strip)) => {
             inputs.extend(law_inputs(sheet, Parameter::Hb));
+            let bend = |sheet: &FabricSheet, made: &Constitutive| {
+                simulate_cantilever(strip, sheet, &made.section).map(|r| of_strips(&r))
+            };
+            sampler(inputs, &bend).map(Some)
         }
-        let bend = |sheet: &FabricSheet, made: &Constitutive| {
-            simulate_strips(case, spec, sheet, &made.section).map(|r| of_strips(&r))
-        };
-        return sampler(inputs, &bend).map(Some);
-    }
-    if let Some(spec) = &case.virtual_test {
-        if spec.test == Test::Tensile && case.assumptions.law != Mode::Elastic {
-            inputs.extend(law_inputs(sheet, Parameter::Wt));
+        Problem::BendingTest(BendingTest::HeartLoop { strip, length }) => {
+            let bend = |_: &FabricSheet, made: &Constitutive| {
+                simulate_heart_loop(strip, *length, &made.section).map(|r| of_strips(&r))
+            };
+            sampler(inputs, &bend).map(Some)
         }
-        let prepared = PreparedTest::new(case, spec, options)?;
-        let test = |sheet: &FabricSheet, made: &Constitutive| {
-            let mut readings = Vec::new();
-            for direction in [Direction::Warp, Direction::Weft] {
-                match simulate_cycle(case, spec, direction, sheet, made, options)? {
-                    Some(cycle) => readings.extend(
-                        (cycle.values.iter())
-                            .map(|(p, v)| Reading::new(format!("{p} {direction}"), *v, p.si_unit())),
-                    ),
-                    None => {
-                        let value = prepared.simulate(direction, &made.section, &sheet.settings)?.apparent;
-                        let (symbol, unit) = stiffness(spec.test);
-                        readings.push(Reading::new(format!("{symbol} {direction}"), value, unit));
-                    }
-                }
+        Problem::InstrumentTest(InstrumentTest::Shell(specimen)) => {
+            if specimen.test.test() == Test::Tensile && case.law() != Mode::Elastic {
+                inputs.extend(law_inputs(sheet, Parameter::Wt));
             }
-            Ok(readings)
-        };
-        return sampler(inputs, &test).map(Some);
-    }
-    if let Analysis::Drape { folds, .. } = &case.analysis {
-        let analysis = Analysis::Drape { folds: folds.clone(), refinements: 0 };
-        let coarse = Case { analysis, ..case.clone() };
-        let hang = |_: &FabricSheet, made: &Constitutive| {
-            let hung =
-                drape(&coarse, &made.section, made.law.as_ref(), options, Watch { stage: &|| (), ..watch })?;
-            Ok(vec![Reading::new("drape_coefficient", hung.finest.coefficient, "1")])
-        };
-        return sampler(inputs, &hang).map(Some);
-    }
-    let prepared = PreparedCase::new(case, options)?;
-    let solve = |_: &FabricSheet, made: &Constitutive| {
-        let result = prepared.solve_fabric(made)?;
-        if result.status == Status::NotConverged {
-            return Ok(Vec::new());
+            let prepared = PreparedTest::new(case, specimen, options)?;
+            let test = |sheet: &FabricSheet, made: &Constitutive| {
+                of_specimen(specimen, &prepared, sheet, made, options)
+            };
+            sampler(inputs, &test).map(Some)
         }
-        let of_probe = |p: &super::Probe| {
-            let u = p.value.u;
-            ["u", "v", "w"]
-                .into_iter()
-                .zip(u)
-                .map(|(c, v)| Reading::new(format!("{}.{c}", p.name), v, "m"))
-                .collect()
-        };
-        let probes: Vec<Vec<Reading>> = result.probes.iter().map(of_probe).collect();
-        Ok(std::iter::once(Reading::new("w_max", result.w_max, "m"))
-            .chain(probes.into_iter().flatten())
-            .collect())
-    };
-    sampler(inputs, &solve).map(Some)
+        Problem::Drape(problem) => {
+            let problem = DrapeProblem { refinements: 0, ..problem.clone() };
+            let coarse = Case { problem: Problem::Drape(problem), ..case.clone() };
+            let hang = |_: &FabricSheet, made: &Constitutive| {
+                let watch = Watch { stage: &|| (), ..watch };
+                let hung = drape(&coarse, &made.section, made.law.as_ref(), options, watch)?;
+                Ok(vec![Reading::new("drape_coefficient", hung.finest.coefficient, "1")])
+            };
+            sampler(inputs, &hang).map(Some)
+        }
+        Problem::Sheet(_) => {
+            let prepared = PreparedCase::new(case, options)?;
+            let solve = |_: &FabricSheet, made: &Constitutive| of_sheet(&prepared, made);
+            sampler(inputs, &solve).map(Some)
+        }
+        // Records are of one specimen, and the closed form of compression has bands of its own.
+        Problem::BendingTest(BendingTest::FabBendLoop { .. })
+        | Problem::InstrumentTest(InstrumentTest::Compression(_)) => Ok(None),
+    }
+}
+
+/// The parameters of the cycle of a specimen with friction, or the stiffness of an elastic one, along warp and weft.
+fn of_specimen(
+    specimen: &ShellSpecimen,
+    prepared: &PreparedTest,
+    sheet: &FabricSheet,
+    made: &Constitutive,
+    options: &Options,
+) -> Result<Vec<Reading>, StudyError> {
+    let mut readings = Vec::new();
+    for direction in [Direction::Warp, Direction::Weft] {
+        match simulate_cycle(specimen, direction, sheet, made, options)? {
+            Some(cycle) => {
+                let values = cycle.values.iter();
+                readings
+                    .extend(values.map(|(p, v)| Reading::new(format!("{p} {direction}"), *v, p.si_unit())));
+            }
+            None => {
+                let value = prepared.simulate(direction, &made.section, &sheet.settings)?.apparent;
+                let (symbol, unit) = stiffness(specimen.test.test());
+                readings.push(Reading::new(format!("{symbol} {direction}"), value, unit));
+            }
+        }
+    }
+    Ok(readings)
+}
+
+/// The largest deflection and the displacements of the probes; nothing where no equilibrium was found.
+fn of_sheet(prepared: &PreparedCase<'_>, made: &Constitutive) -> Result<Vec<Reading>, StudyError> {
+    let result = prepared.solve_fabric(made)?;
+    if result.status == Status::NotConverged {
+        return Ok(Vec::new());
+    }
+    let mut readings = vec![Reading::new("w_max", result.w_max, "m")];
+    for probe in &result.probes {
+        let components = ["u", "v", "w"].into_iter().zip(probe.value.u);
+        readings.extend(components.map(|(c, v)| Reading::new(format!("{}.{c}", probe.name), v, "m")));
+    }
+    Ok(readings)
 }
 
 /// Symbol and SI unit of what an elastic test reads.
@@ -196,36 +221,10 @@ fn of_strips(result: &BendingResult) -> Vec<Reading> {
     }
 }
 
-impl Case {
-    /// Why `[uncertainty]` has no meaning for the case, if it has none.
-    pub(super) fn against_sampling(&self) -> Option<&'static str> {
-        if self.section.is_some() {
-            return Some(
-                "the constants of a [section] have no spread: remove [uncertainty], or name a `fabric`",
-            );
-        }
-        let records = |t: &super::BendingTest| t.test == BendingKind::FabBendLoop;
-        if self.bending_test.as_ref().is_some_and(records) {
-            return Some("FAB records are of one specimen and have no spread: remove [uncertainty]");
-        }
-        let linear = match (&self.virtual_test, &self.bending_test) {
-            (Some(test), _) => test.formulation == TestFormulation::Linear,
-            (_, Some(_)) => false,
-            _ => !matches!(
-                self.analysis,
-                Analysis::Nonlinear(_) | Analysis::Drape { .. } | Analysis::Newmark { .. }
-            ),
-        };
-        linear.then_some(
-            "[uncertainty] is for drapes, nonlinear statics, dynamics, cantilevers, heart loops and virtual tests in large \
-             rotations: remove it, the bands of linear cases need no points",
-        )
-    }
-}
-
 struct Sampler<'a> {
     case: &'a Case,
-    table: &'a UncertaintyTable,
+    assumptions: &'a Assumptions,
+    plan: &'a SamplingPlan,
     inputs: Vec<Input>,
     evaluate: Evaluate<'a>,
 }
@@ -244,16 +243,19 @@ impl Sampler<'_> {
             })
             .collect();
         if let Some(unknown) =
-            self.table.exact.iter().find(|name| !self.inputs.iter().any(|i| i.name == **name))
+            self.plan.exact.iter().find(|name| !self.inputs.iter().any(|i| i.name == name.value))
         {
             let names: Vec<&str> = self.inputs.iter().map(|i| i.name.as_str()).collect();
-            let text =
-                format!("[uncertainty] exact: there is no input `{unknown}`; there are {}", names.join(", "));
-            return Err(self.case.inconsistent(text));
+            let text = format!(
+                "[uncertainty] exact: there is no input `{}`; there are {}",
+                unknown.value,
+                names.join(", ")
+            );
+            return Err(refused(self.case, unknown, text));
         }
         let (spread, single): (Vec<Input>, Vec<Input>) =
             self.inputs.iter().cloned().partition(|i| i.estimate.n > 1 && i.estimate.cv().is_some());
-        for input in single.into_iter().filter(|i| !self.table.exact.contains(&i.name)) {
+        for input in single.into_iter().filter(|i| !self.plan.exact.iter().any(|name| name.value == i.name)) {
             let values = self.at(
                 sheet,
                 &quantities,
@@ -276,7 +278,8 @@ impl Sampler<'_> {
             }
         }
         let findings = self.findings(&quantities);
-        let UncertaintyTable { points, seed, exact } = self.table.clone();
+        let SamplingPlan { points, seed, exact } = self.plan.clone();
+        let exact = exact.into_iter().map(|name| name.value).collect();
         Ok(Sampling { inputs: self.inputs, points, seed, exact, quantities, findings })
     }
 
@@ -290,7 +293,7 @@ impl Sampler<'_> {
     ) {
         let estimates: Vec<&Estimate> = inputs.iter().map(|i| &i.estimate).collect();
         // All of them have a spread.
-        let Ok(points) = sobol_points(&estimates, population, self.table.points, self.table.seed) else {
+        let Ok(points) = sobol_points(&estimates, population, self.plan.points, self.plan.seed) else {
             return;
         };
         let at = |values: &[f64]| {
@@ -316,7 +319,7 @@ impl Sampler<'_> {
         inputs: &[Input],
         values: &[f64],
     ) -> Vec<f64> {
-        let (sheet, assumptions) = perturbed(sheet, &self.case.assumptions, inputs, values);
+        let (sheet, assumptions) = perturbed(sheet, self.assumptions, inputs, values);
         let made = constitutive::section(&sheet, &assumptions).ok();
         let readings = made.and_then(|made| (self.evaluate)(&sheet, &made).ok()).unwrap_or_default();
         let value = |q: &SampledQuantity| {
@@ -329,7 +332,7 @@ impl Sampler<'_> {
         let mut findings = Vec::new();
         let bands = || quantities.iter().flat_map(|q| [q.mean_fabric, q.next_specimen]).flatten();
         if let Some(failed) = bands().map(|b| b.failed).max().filter(|n| *n > 0) {
-            let fact = StudyFact::FailedPoints { failed, points: self.table.points };
+            let fact = StudyFact::FailedPoints { failed, points: self.plan.points };
             findings.push(Finding::new(fact).at(Place::file(&self.case.path)));
         }
         let mut names: Vec<&str> =

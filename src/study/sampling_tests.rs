@@ -33,7 +33,7 @@ fn a_cantilever_has_the_band_of_its_closed_form() {
         case("[bending_test]\ntest = \"cantilever\"\ncells = 12\n[uncertainty]\npoints = 64\n").unwrap();
     let known = Estimate { mean: 0.15, sd: Some(1e-9), n: 500, values: Vec::new() };
     let sheet = sheet(known);
-    let made = constitutive::section(&sheet, &case.assumptions).unwrap();
+    let made = constitutive::section(&sheet, case.assumptions().unwrap()).unwrap();
     let count = std::sync::atomic::AtomicUsize::new(0);
     let progress = || {
         count.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
@@ -64,7 +64,7 @@ fn an_input_without_spread_forbids_the_band() {
     let case =
         case("[bending_test]\ntest = \"cantilever\"\ncells = 8\n[uncertainty]\npoints = 16\n").unwrap();
     let sheet = sheet(Estimate::single(0.15));
-    let made = constitutive::section(&sheet, &case.assumptions).unwrap();
+    let made = constitutive::section(&sheet, case.assumptions().unwrap()).unwrap();
     let found = sample(&case, &sheet, &made, Watch::default()).unwrap().unwrap();
     for q in &found.quantities {
         assert_eq!(q.without_spread, ["areal density"]);
@@ -72,14 +72,17 @@ fn an_input_without_spread_forbids_the_band() {
     }
     assert_eq!(found.findings.iter().map(|f| f.code()).collect::<Vec<_>>(), ["S117"]);
     // Unless the case says that it is exact, by its name.
-    let mut exact = case.clone();
-    let table = exact.uncertainty.as_mut().unwrap();
-    table.exact = vec!["areal density".into()];
+    let with = |name: &str| {
+        let exact = format!("[uncertainty]\npoints = 16\nexact = [\"{name}\"]\n");
+        self::case(&format!("[bending_test]\ntest = \"cantilever\"\ncells = 8\n{exact}")).unwrap()
+    };
+    let exact = with("areal density");
     let found = sample(&exact, &sheet, &made, Watch::default()).unwrap().unwrap();
     assert!(found.findings.is_empty() && found.quantities.iter().all(|q| q.mean_fabric.is_some()));
-    exact.uncertainty.as_mut().unwrap().exact = vec!["weight".into()];
+    let error = sample(&with("weight"), &sheet, &made, Watch::default()).unwrap_err();
     assert!(
-        sample(&exact, &sheet, &made, Watch::default()).unwrap_err().to_string().contains("areal density")
+        error.to_string().contains("areal density") && error.to_string().starts_with("t.toml:8:10:"),
+        "{error}"
     );
 }
 
@@ -94,7 +97,7 @@ fn a_motion_has_bands() {
         [[loads]]\nkind = \"pressure\"\nvalue = \"2e-6 Pa\"\n";
     let case = case(text).unwrap();
     let sheet = sheet(Estimate::single(0.15));
-    let made = constitutive::section(&sheet, &case.assumptions).unwrap();
+    let made = constitutive::section(&sheet, case.assumptions().unwrap()).unwrap();
     let found = sample(&case, &sheet, &made, Watch::default()).unwrap().unwrap();
     let w = found.of("w_max").unwrap();
     let [low, high] = w.mean_fabric.unwrap().interval;
@@ -112,8 +115,9 @@ fn the_table_is_refused_where_it_has_no_meaning() {
     assert!(refused(&format!("{test}sobol = 128\n")).contains("points"));
     assert!(refused("[virtual_test]\ntest = \"bending\"\n[uncertainty]\n").contains("linear cases"));
     assert!(refused("[bending_test]\ntest = \"fab_bend_loop\"\n[uncertainty]\n").contains("one specimen"));
-    let drape = "[uncertainty]\n[analysis]\nkind = \"drape\"\n[sheet]\nshape = \"annulus\"\n[[supports]]\nset = \"inner\"\nkind = \"clamped\"\n[[loads]]\nkind = \"gravity\"\n";
-    assert_eq!(case(drape).unwrap().uncertainty, Some(UncertaintyTable::default()));
+    let drape = "[uncertainty]\n[analysis]\nkind = \"drape\"\n[sheet]\nshape = \"annulus\"\ninner_diameter = \"18 cm\"\ndiameter = \"30 cm\"\ncells = [4, 48]\n[[supports]]\nset = \"inner\"\nkind = \"clamped\"\n[[loads]]\nkind = \"gravity\"\n";
+    let usual = SamplingPlan { points: 128, seed: 1, exact: Vec::new() };
+    assert_eq!(case(drape).unwrap().sampling(), Some(&usual));
 }
 
 /// The examples are cases, and each has the table.

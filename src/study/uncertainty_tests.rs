@@ -186,10 +186,8 @@ fn derivatives_of_frequencies_agree_with_differences() {
 #[test]
 fn derivatives_agree_with_differences_of_whole_solutions() {
     differences_agree(&case(6, MIXED));
-    let mut seed = case(6, MIXED);
-    seed.element.drilling = Some(super::super::case::DrillingChoice::HughesBrezzi);
-    seed.element.shear_stabilisation = Some(0.0);
-    differences_agree(&seed);
+    let element = "[element]\ndrilling = \"hughes_brezzi\"\nshear_stabilisation = 0.0\n";
+    differences_agree(&case(6, &format!("{MIXED}{element}")));
 }
 
 /// 4000 fabrics whose inputs are drawn around their means with their standard errors, each solved
@@ -211,7 +209,8 @@ fn the_band_of_the_mean_fabric_agrees_with_monte_carlo() {
         let z = normal.inverse_cdf(random.random_range(1e-12..1.0));
         e.mean *= (z * e.cv().unwrap() / (e.n as f64).sqrt()).exp();
     };
-    let mut model = build::model(&case, case.sheet.as_ref().unwrap(), c.section).unwrap();
+    let problem = case.sheet().unwrap();
+    let mut model = build::model_on(&case, problem, &problem.sheet, c.section).unwrap();
     let plan = Plan::new(&model, &Plan::groups(&model, &options), options.path).unwrap();
     let values: Vec<f64> = (0..DRAWS)
         .map(|_| {

@@ -9,9 +9,8 @@ use std::ops::ControlFlow;
 use nalgebra::Vector3;
 
 use super::StudyError;
-use super::case::VirtualTest;
+use crate::case::{ShellTest, VirtualTest};
 use crate::element::Formulation;
-use crate::instrument::Test;
 use crate::kes::specimen::TestSpec;
 use crate::mesh;
 use crate::model::{Dof, Load, Model, RigidBody, Support};
@@ -34,7 +33,7 @@ const BENDING_STEPS: usize = 10;
 /// A specimen between its clamps, ready for every section.
 #[derive(Debug)]
 pub(super) struct LargeTest {
-    test: Test,
+    test: ShellTest,
     gauge: f64,
     width: f64,
     /// Nodes of the moving clamp, the one that leads it first.
@@ -64,9 +63,9 @@ impl LargeTest {
         section: ShellSection,
         options: &Options,
     ) -> Result<Self, StudyError> {
-        let TestSpec { gauge, width, maximum, pretension, .. } = *spec.test.spec();
+        let TestSpec { gauge, width, maximum, pretension, .. } = *spec.test().spec();
         let [along, across] =
-            spec.cells.unwrap_or(if spec.test == Test::Shear { SHEAR_CELLS } else { CELLS });
+            spec.cells.unwrap_or(if spec.kind() == ShellTest::Shear { SHEAR_CELLS } else { CELLS });
         let mesh = mesh::rectangle(gauge, width, along, across)?;
         let clamp = mesh.set("right")?.to_vec();
         let model = Model {
@@ -78,13 +77,13 @@ impl LargeTest {
             loads: Vec::new(),
             bodies: vec![RigidBody { nodes: clamp.clone() }],
         };
-        let curvature = spec.curvature.map_or(maximum, |k| k.si());
-        let pretension = spec.pretension.map_or(pretension, |w| w.si());
-        let step = if spec.test == Test::Bending { 1.0 / BENDING_STEPS as f64 } else { 1.0 };
+        let curvature = spec.curvature().map_or(maximum, |k| k.si());
+        let pretension = spec.pretension().map_or(pretension, |w| w.si());
+        let step = if spec.kind() == ShellTest::Bending { 1.0 / BENDING_STEPS as f64 } else { 1.0 };
         let settings =
             Settings { tolerance: 1e-10, first_step: step, largest_step: step, ..Settings::default() };
         let plan = plan(&model, options)?;
-        Ok(Self { test: spec.test, gauge, width, clamp, curvature, pretension, settings, plan, model })
+        Ok(Self { test: spec.kind(), gauge, width, clamp, curvature, pretension, settings, plan, model })
     }
 
     /// Tension per width while the specimen is sheared (N/m).
@@ -105,19 +104,19 @@ impl LargeTest {
         let mut reading =
             Reading { curve: Curve::from_points([(0.0, 0.0)]), slack: None, unstable_from: None };
         match self.test {
-            Test::Bending => {
+            ShellTest::Bending => {
                 let turn = (Dof::ThetaY, self.curvature * self.gauge);
                 let held = vec![(Dof::V, 0.0), (Dof::ThetaX, 0.0), turn, (Dof::ThetaZ, 0.0)];
                 self.drive(model, held, Dof::ThetaY, self.curvature, &mut reading, options)?;
             }
-            Test::Tensile => {
+            ShellTest::Tensile => {
                 for x in STRAINS {
                     let mut held: Vec<(Dof, f64)> = Dof::ALL.map(|d| (d, 0.0)).to_vec();
                     held[0].1 = x * self.gauge;
                     self.drive(model.clone(), held, Dof::U, x, &mut reading, options)?;
                 }
             }
-            _ => {
+            ShellTest::Shear => {
                 let mut slack = Reading { curve: reading.curve.clone(), slack: None, unstable_from: None };
                 self.shear(&model, 0.0, &angles(window, &[]), &mut slack, options)?;
                 self.shear(&model, self.pretension, &angles(window, &ANGLES), &mut reading, options)?;

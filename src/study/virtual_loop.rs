@@ -16,9 +16,10 @@ use std::ops::ControlFlow;
 
 use nalgebra::Vector3;
 
-use super::case::{Case, VirtualTest};
+use super::StudyError;
 use super::virtual_large::CELLS;
-use super::{StudyError, build};
+use super::StudyError;
+use crate::case::{ShellSpecimen, ShellTest, VirtualTest};
 use crate::characterise::{FabricSheet, Settings as Evaluation, parameters};
 use crate::constitutive::{Constitutive, tension};
 use crate::element::Formulation;
@@ -88,34 +89,32 @@ impl VirtualLoop {
     }
 }
 
-/// Simulates the test of a case for a fabric with friction; `None` for an elastic one, and for compression.
+/// Simulates a test for a fabric with friction; `None` for an elastic one.
 ///
 /// # Errors
 /// See [`StudyError`].
 pub fn simulate_cycle(
-    case: &Case,
-    spec: &VirtualTest,
+    specimen: &ShellSpecimen,
     direction: Direction,
     sheet: &FabricSheet,
     made: &Constitutive,
     options: &Options,
 ) -> Result<Option<VirtualLoop>, StudyError> {
     let Some(mut law) = made.law.clone() else { return Ok(None) };
-    if spec.test == Test::Tensile {
+    let spec = &specimen.test;
+    if spec.kind() == ShellTest::Tensile {
         let [x, y] = tension(sheet);
         (law.channels[0], law.channels[1]) = (x, y);
     }
-    let formulation = build::formulation(case)?;
-    let mut conditions = sheet.conditions(spec.test, Some(direction));
-    if let (Test::Bending, Some(curvature)) = (spec.test, spec.curvature) {
+    let mut conditions = sheet.conditions(spec.test(), Some(direction));
+    if let Some(curvature) = spec.curvature() {
         conditions.maximum = curvature.si();
     }
     let run = (&conditions, &sheet.settings);
-    simulate_loop(spec, formulation, direction, &made.section, &law, run, options)
+    simulate_loop(spec, specimen.formulation, direction, &made.section, &law, run, options).map(Some)
 }
 
-/// Simulates the cycle of a specimen cut along `direction`; `None` for compression, which a shell does not
-/// have.
+/// Simulates the cycle of a specimen cut along `direction`.
 ///
 /// The cycle goes to the maximum of the conditions; the parameters are those of the evaluation.
 ///
@@ -133,15 +132,12 @@ pub fn simulate_loop(
     law: &SheetLaw,
     (conditions, evaluation): (&Conditions, &Evaluation),
     options: &Options,
-) -> Result<Option<VirtualLoop>, StudyError> {
-    if spec.test == Test::Compression {
-        return Ok(None);
-    }
+) -> Result<VirtualLoop, StudyError> {
     let (gauge, maximum) = (conditions.gauge, conditions.maximum);
-    let TestSpec { width, .. } = *spec.test.spec();
+    let TestSpec { width, .. } = *spec.test().spec();
     let (mut section, mut law) = (section.clone(), law.clone());
     let mode = law.mode;
-    if spec.test == Test::Tensile {
+    if spec.kind() == ShellTest::Tensile {
         if law.channels[0].is_some() && law.channels[1].is_some() {
             (section.d_m[(0, 1)], section.d_m[(1, 0)]) = (0.0, 0.0);
         }
@@ -151,9 +147,9 @@ pub fn simulate_loop(
     let model = Model { formulation, ..model(spec, direction, section, gauge, maximum)? };
     let right = model.mesh.set("right")?.to_vec();
     let lead = right[0] as usize;
-    let (path, steps) = match spec.test {
-        Test::Tensile => (vec![1.0, 0.0], STEPS[1]),
-        _ => (vec![1.0, -1.0, 0.0], STEPS[0]),
+    let (path, steps) = match spec.kind() {
+        ShellTest::Tensile => (vec![1.0, 0.0], STEPS[1]),
+        ShellTest::Shear | ShellTest::Bending => (vec![1.0, -1.0, 0.0], STEPS[0]),
     };
     let settings = Settings {
         first_step: 1.0 / steps,
@@ -167,23 +163,16 @@ pub fn simulate_loop(
     let solution = solve(&model, &settings, options, |step: &Step<'_>| {
         let moved = step.state.position[lead] - rest;
         let reaction = |dof: Dof| step.reaction[6 * lead + dof as usize] / width;
-        record.push(match spec.test {
-            Test::Bending => (step.state.factor * maximum, reaction(Dof::ThetaY)),
-            Test::Shear => ((moved.y / gauge).atan(), reaction(Dof::V)),
-            _ => (moved.x / gauge, step.state.factor * maximum),
+        record.push(match spec.kind() {
+            ShellTest::Bending => (step.state.factor * maximum, reaction(Dof::ThetaY)),
+            ShellTest::Shear => ((moved.y / gauge).atan(), reaction(Dof::V)),
+            ShellTest::Tensile => (moved.x / gauge, step.state.factor * maximum),
         });
         ControlFlow::Continue(())
     })?;
     let record = Curve::from_points(record);
-    let values = parameters(spec.test, Some(direction), conditions, &record, evaluation);
-    Ok(Some(VirtualLoop {
-        test: spec.test,
-        direction,
-        mode,
-        record,
-        values,
-        iterations: solution.iterations,
-    }))
+    let values = parameters(spec.test(), Some(direction), conditions, &record, evaluation);
+    Ok(VirtualLoop { test: spec.test(), direction, mode, record, values, iterations: solution.iterations })
 }
 
 /// The specimen between its clamps; the lead of the moving one is the first node of the set `right`.
@@ -195,17 +184,17 @@ fn model(
     maximum: f64,
 ) -> Result<Model, StudyError> {
     let [along, across] = spec.cells.unwrap_or(CELLS);
-    let TestSpec { width, .. } = *spec.test.spec();
+    let TestSpec { width, .. } = *spec.test().spec();
     let mesh = mesh::rectangle(gauge, width, along, across)?;
     let (left, right) = (mesh.set("left")?.to_vec(), mesh.set("right")?.to_vec());
     let turns = [(Dof::ThetaX, 0.0), (Dof::ThetaZ, 0.0)];
-    let held = match spec.test {
-        Test::Bending => vec![(Dof::V, 0.0), (Dof::ThetaY, maximum * gauge)],
-        Test::Shear => vec![(Dof::V, maximum.tan() * gauge), (Dof::W, 0.0), (Dof::ThetaY, 0.0)],
-        _ => vec![(Dof::V, 0.0), (Dof::W, 0.0), (Dof::ThetaY, 0.0)],
+    let held = match spec.kind() {
+        ShellTest::Bending => vec![(Dof::V, 0.0), (Dof::ThetaY, maximum * gauge)],
+        ShellTest::Shear => vec![(Dof::V, maximum.tan() * gauge), (Dof::W, 0.0), (Dof::ThetaY, 0.0)],
+        ShellTest::Tensile => vec![(Dof::V, 0.0), (Dof::W, 0.0), (Dof::ThetaY, 0.0)],
     };
     let mut supports = vec![Support::clamped(&left)];
-    if spec.test != Test::Bending {
+    if spec.kind() != ShellTest::Bending {
         let all = 0..mesh.nodes.len() as u32;
         let free: Vec<u32> = all.filter(|n| !left.contains(n) && !right.contains(n)).collect();
         supports.push(Support::fix(&free, &[Dof::W, Dof::ThetaX, Dof::ThetaY]));
@@ -215,7 +204,7 @@ fn model(
     let bodies = vec![RigidBody { nodes: right.clone() }];
     let pull = Load::Point { nodes: right, force, moment: Vector3::zeros() };
     Ok(Model {
-        loads: if spec.test == Test::Tensile { vec![pull] } else { Vec::new() },
+        loads: if spec.kind() == ShellTest::Tensile { vec![pull] } else { Vec::new() },
         mesh,
         section,
         warp: match direction {

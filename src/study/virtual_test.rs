@@ -10,14 +10,12 @@
 
 use nalgebra::Vector3;
 
-use super::StudyError;
-use super::build;
-use super::case::{Case, TestFormulation, VirtualTest};
 use super::prepared::stand_in;
-use super::solver;
 use super::uncertainty::{Prediction, energy_derivative};
 use super::virtual_large::LargeTest;
 use super::virtual_loop::VirtualLoop;
+use super::{Case, StudyError};
+use crate::case::{ShellSpecimen, ShellTest};
 use crate::characterise::{FabricSheet, Settings};
 use crate::constitutive::Input;
 use crate::instrument::{Direction, Parameter, Test};
@@ -200,35 +198,29 @@ impl PreparedTest {
     /// Makes the test of a case ready.
     ///
     /// # Errors
-    /// See [`StudyError`]; S003 for compression, which a shell does not have.
-    pub fn new(case: &Case, spec: &VirtualTest, options: &Options) -> Result<Self, StudyError> {
-        if spec.test == Test::Compression {
-            return Err(case
-                .inconsistent("a shell has no thickness to compress: use `compression` of a sheet".into()));
-        }
-        let TestSpec { gauge, width, .. } = *spec.test.spec();
+    /// See [`StudyError`].
+    pub fn new(case: &Case, specimen: &ShellSpecimen, options: &Options) -> Result<Self, StudyError> {
+        let (spec, formulation, test) = (&specimen.test, specimen.formulation, specimen.test.kind());
+        let TestSpec { gauge, width, .. } = *spec.test().spec();
         let [cells_along, cells_across] = spec.cells.unwrap_or([10, 20]);
         let mesh = mesh::rectangle(gauge, width, cells_along, cells_across)?;
         let (left, right) = (mesh.set("left")?.to_vec(), mesh.set("right")?.to_vec());
         // A small unit of the abscissa; the solution is scaled, so its size is free.
-        let x = match spec.test {
-            Test::Bending => 1.0,
-            _ => 1e-3,
+        let x = match test {
+            ShellTest::Bending => 1.0,
+            ShellTest::Tensile | ShellTest::Shear => 1e-3,
         };
-        let (reading, moved) = match spec.test {
-            Test::Tensile => (Dof::U, vec![(Dof::U, x * gauge), (Dof::V, 0.0), (Dof::ThetaZ, 0.0)]),
-            Test::Shear => (Dof::V, vec![(Dof::U, 0.0), (Dof::V, x * gauge), (Dof::ThetaZ, 0.0)]),
+        let (reading, moved) = match test {
+            ShellTest::Tensile => (Dof::U, vec![(Dof::U, x * gauge), (Dof::V, 0.0), (Dof::ThetaZ, 0.0)]),
+            ShellTest::Shear => (Dof::V, vec![(Dof::U, 0.0), (Dof::V, x * gauge), (Dof::ThetaZ, 0.0)]),
             // A circular arc: θy = κ x and w = -κ x² / 2 satisfy w,x = -θy.
-            _ => {
+            ShellTest::Bending => {
                 let w = -0.5 * x * gauge * gauge;
                 (Dof::ThetaY, vec![(Dof::ThetaY, x * gauge), (Dof::W, w), (Dof::ThetaX, 0.0)])
             }
         };
-        let formulation = build::formulation(case)?;
-        let large = match spec.formulation {
-            TestFormulation::Nonlinear => Some(LargeTest::new(spec, formulation, stand_in(), options)?),
-            TestFormulation::Linear => None,
-        };
+        let large = spec.is_large().then(|| LargeTest::new(spec, formulation, stand_in(), options));
+        let large = large.transpose()?;
         let model = Model {
             mesh,
             section: stand_in(),
@@ -238,9 +230,9 @@ impl PreparedTest {
             loads: Vec::new(),
             bodies: Vec::new(),
         };
-        let options = solver::options(case, options)?;
+        let options = case.options(options)?;
         let plan = Plan::of(&model, &options)?;
-        Ok(Self { test: spec.test, x, reading, right, model, plan, options, large })
+        Ok(Self { test: spec.test(), x, reading, right, model, plan, options, large })
     }
 
     /// Simulates the test of a specimen cut along `direction`; the slope is read in the window of `settings`.
@@ -388,14 +380,14 @@ fn interpolate(curve: &Curve, x: f64) -> f64 {
 /// windows.
 ///
 /// # Errors
-/// See [`StudyError`]; S003 for compression, which a shell does not have.
+/// See [`StudyError`].
 pub fn simulate(
     case: &Case,
-    spec: &VirtualTest,
+    specimen: &ShellSpecimen,
     direction: Direction,
     section: &ShellSection,
 ) -> Result<VirtualCurve, StudyError> {
-    PreparedTest::new(case, spec, &Options::default())?.simulate(direction, section, &Settings::default())
+    PreparedTest::new(case, specimen, &Options::default())?.simulate(direction, section, &Settings::default())
 }
 
 /// The compression curve of a sheet: the exponential through its two thicknesses, T0 at the pressure of its settings

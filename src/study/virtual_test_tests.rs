@@ -30,7 +30,7 @@ fn fabric(nu: f64, nu_b: f64) -> ShellSection {
 
 fn run(test: &str, direction: Direction, section: &ShellSection) -> VirtualCurve {
     let case = case(test);
-    simulate(&case, case.virtual_test.as_ref().unwrap(), direction, section).unwrap()
+    simulate(&case, case.specimen().unwrap(), direction, section).unwrap()
 }
 
 /// FB2 bends a 20 x 1 cm strip into a cylinder: M = D11 κ (analytical; exact without D12).
@@ -118,7 +118,7 @@ fn bands_agree_with_monte_carlo() {
             &format!("title = \"t\"\nfabric = \"*\"\n[virtual_test]\ntest = \"{test}\"\ncells = [4, 6]\n"),
         )
         .unwrap();
-        let spec = case.virtual_test.as_ref().unwrap();
+        let spec = case.specimen().unwrap();
         let prepared = PreparedTest::new(&case, spec, &Options::default()).unwrap();
         let curve = prepared.simulate_measured(direction, &section, &Settings::default(), &inputs).unwrap();
         let prediction = curve.uncertainty.as_ref().unwrap();

@@ -26,8 +26,26 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("fields", &["finding", "quantity", "section", "mesh", "law", "element", "model", "solve"], &[]),
     ("constitutive", &["finding", "quantity", "law", "instrument", "characterise", "section"], &[]),
     (
+        "case",
+        &[
+            "quantity",
+            "kes",
+            "finding",
+            "law",
+            "instrument",
+            "characterise",
+            "element",
+            "model",
+            "solve",
+            "fields",
+            "constitutive",
+        ],
+        &[],
+    ),
+    (
         "study",
         &[
+            "case",
             "platform",
             "quantity",
             "kes",
@@ -44,7 +62,7 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
             "fields",
             "constitutive",
         ],
-        &["toml"],
+        &[],
     ),
     (
         "verify",
@@ -83,6 +101,7 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
     (
         "results",
         &[
+            "case",
             "platform",
             "quantity",
             "kes",
@@ -101,10 +120,11 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
         ],
         &["toml"],
     ),
-    ("run", &["platform", "finding", "instrument", "study", "report", "results"], &[]),
+    ("run", &["case", "platform", "finding", "instrument", "study", "report", "results"], &[]),
     (
         "cli",
         &[
+            "case",
             "platform",
             "quantity",
             "kes",

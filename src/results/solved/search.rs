@@ -7,7 +7,8 @@ use crate::quantity::significant;
 use crate::results::columns::Columns;
 use crate::results::task::Task;
 use crate::solve::nonlinear::Stability;
-use crate::study::{CaseResult, LoadPath, MethodChoice, PathStep, Probe};
+use crate::case::MethodChoice;
+use crate::study::{CaseResult, LoadPath, PathStep, Probe};
 
 /// One line a search: how far it came, what it took, and the linear answer beside it.
 pub(super) fn searches(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {

@@ -22,10 +22,10 @@ use rand_pcg::Pcg64Mcg;
 
 pub use rim::Folds;
 
-use super::case::{Analysis, Case, LoadTable, Shape, Sheet};
-use super::{StudyError, Watch, build, solver};
+use super::{Case, StudyError, Watch, build, refused};
+use crate::case::{Annulus, DrapeProblem, Outline, Problem, Sheet};
 use crate::characterise::FabricSheet;
-use crate::finding::{Finding, Place, StudyFact};
+use crate::finding::{Finding, Located, Place, StudyFact};
 use crate::model::Model;
 use crate::platform;
 use crate::quantity::Ratio;
@@ -121,17 +121,15 @@ pub fn drape(
     options: &Options,
     watch: Watch<'_>,
 ) -> Result<Drape, StudyError> {
-    let (folds, refinements) = match &case.analysis {
-        Analysis::Drape { folds, refinements } if !folds.is_empty() => (folds, *refinements),
-        Analysis::Drape { .. } => {
-            return Err(case.inconsistent("folds = []: give at least one number".into()));
-        }
-        _ => return Err(case.inconsistent("the case is no drape: write [analysis] kind = \"drape\"".into())),
+    let Problem::Drape(problem) = &case.problem else {
+        let message = "the case is no drape: write [analysis] kind = \"drape\"";
+        return Err(refused(case, &Located::from(()), message));
     };
-    let ring = Ring::of(case)?;
-    let model = build::model(case, &ring.sheet, section.clone())?;
+    let DrapeProblem { folds, refinements, .. } = problem;
+    let ring = Ring::of(problem);
+    let model = ring.model(case, problem, section)?;
     build::weighed(&model)?;
-    let single = Options { threads: 1, ..solver::options(case, options)? };
+    let single = Options { threads: 1, ..case.options(options)? };
     let shared = plan(&model, &single)?;
     let searches: Vec<Result<(Solution, DrapeState), (usize, NonlinearError)>> =
         platform::map(folds, |&start| {
@@ -155,9 +153,9 @@ pub fn drape(
     };
     let (mut ring, mut model, mut solution, start) = (ring, model, lowest.clone(), found[0].1.start);
     let mut meshes = vec![found[0].1.clone()];
-    for _ in 0..refinements {
+    for _ in 0..*refinements {
         let finer = ring.refined();
-        let fine = build::model(case, &finer.sheet, section.clone())?;
+        let fine = finer.model(case, problem, section)?;
         let from = refine::refined(&solution.state, &model.mesh, &fine.mesh, ring.cells);
         solution = finer.relax(&fine, law, &plan(&fine, options)?, from, options, watch)?;
         go_on()?;
@@ -187,9 +185,9 @@ pub fn drape(
 
 /// How often [`Watch::stage`] is called for a case.
 pub fn drape_stages(case: &Case) -> usize {
-    match &case.analysis {
-        Analysis::Drape { folds, refinements } => folds.len() + refinements,
-        _ => 0,
+    match &case.problem {
+        Problem::Drape(DrapeProblem { folds, refinements, .. }) => folds.len() + refinements,
+        Problem::Sheet(_) | Problem::InstrumentTest(_) | Problem::BendingTest(_) => 0,
     }
 }
 
@@ -201,54 +199,38 @@ pub fn measured_drape(sheet: &FabricSheet) -> Option<(f64, &str)> {
 
 /// The ring between disc and rim.
 struct Ring {
-    sheet: Sheet,
+    seed: u64,
     cells: [usize; 2],
     inner: f64,
     outer: f64,
 }
 
 impl Ring {
-    fn of(case: &Case) -> Result<Self, StudyError> {
-        let sheet = case.sheet.as_ref().filter(|s| s.shape == Some(Shape::Annulus));
-        let sizes = sheet.and_then(|s| Some((s.clone(), s.cells?, s.inner_diameter?.si(), s.diameter?.si())));
-        let Some((sheet, cells, inner, outer)) = sizes else {
-            return Err(case.inconsistent(
-                "a drape needs a [sheet] of shape = \"annulus\" with inner_diameter (the disc), diameter and cells"
-                    .into(),
-            ));
-        };
-        if !(case.probes.is_empty() && case.checks.is_empty()) {
-            return Err(case.inconsistent("a drape has no [[probes]] and no [[checks]]: remove them".into()));
-        }
-        let on_disc = !case.supports.is_empty() && case.supports.iter().all(|s| s.set == "inner");
-        if !on_disc || !case.rigid.is_empty() {
-            return Err(case.inconsistent(
-                "a drape hangs from its disc alone: [[supports]] of set = \"inner\" only, and no [[rigid]]"
-                    .into(),
-            ));
-        }
-        let falls = |load: &LoadTable| match load {
-            LoadTable::Gravity { direction, .. } => {
-                direction.is_none_or(|[x, y, z]| x == 0.0 && y == 0.0 && z < 0.0)
-            }
-            _ => false,
-        };
-        if !case.loads.iter().all(falls) {
-            return Err(case.inconsistent(
-                "a drape hangs under its weight: [[loads]] of kind = \"gravity\" along -z only".into(),
-            ));
-        }
-        Ok(Self { sheet, cells, inner: 0.5 * inner, outer: 0.5 * outer })
+    fn of(problem: &DrapeProblem) -> Self {
+        let Annulus { inner_diameter, diameter, cells, .. } = problem.ring;
+        let (inner, outer) = (0.5 * inner_diameter.si(), 0.5 * diameter.si());
+        Self { seed: problem.layout.seed, cells, inner, outer }
     }
 
     fn refined(&self) -> Self {
-        let cells = self.cells.map(|n| 2 * n);
-        Self { sheet: Sheet { cells: Some(cells), ..self.sheet.clone() }, cells, ..*self }
+        Self { cells: self.cells.map(|n| 2 * n), ..*self }
+    }
+
+    /// The model of the problem with the cells of this ring.
+    fn model(
+        &self,
+        case: &Case,
+        problem: &DrapeProblem,
+        section: &ShellSection,
+    ) -> Result<Model, StudyError> {
+        let outline = Outline::Annulus(Annulus { cells: self.cells, ..problem.ring });
+        let sheet = Sheet { outline, ..problem.sheet() };
+        build::model(case, &sheet, &problem.mounting, (&problem.loads(), &[]), section.clone())
     }
 
     /// The flat ring, waved by folds whose place along the rim is random, but the same always.
     fn start(&self, model: &Model, folds: usize) -> State {
-        let mut random = Pcg64Mcg::seed_from_u64(self.sheet.seed ^ folds as u64);
+        let mut random = Pcg64Mcg::seed_from_u64(self.seed ^ folds as u64);
         let phase: f64 = random.random_range(0.0..std::f64::consts::TAU);
         let (n, width) = (folds as f64, self.outer - self.inner);
         let mut state = State::rest(&model.mesh);
@@ -278,7 +260,7 @@ impl Ring {
         watch: Watch<'_>,
     ) -> Result<Solution, NonlinearError> {
         let settings = Settings { tolerance: TOLERANCE, law: law.cloned(), ..Settings::default() };
-        let flow = Flow { perturbation: 0.0, seed: self.sheet.seed, steps: STEPS };
+        let flow = Flow { perturbation: 0.0, seed: self.seed, steps: STEPS };
         let observe =
             |_: &Step<'_>| if (watch.stopped)() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
         relax_from(model, plan, from, &settings, &flow, options, observe)

@@ -40,7 +40,7 @@ fn case(b: f64, from: &str, to: &str) -> Case {
 }
 
 fn run(case: &Case) -> Drape {
-    let section = build::section(case.section.as_ref().unwrap()).unwrap();
+    let section = build::section(case.section().unwrap()).unwrap();
     drape(case, &section, None, &Options::default(), Watch::default()).unwrap()
 }
 
@@ -113,7 +113,7 @@ fn a_stiff_sheet_stays_flat() {
 #[test]
 fn a_drape_can_be_stopped() {
     let case = case(2e-5, "", "");
-    let section = build::section(case.section.as_ref().unwrap()).unwrap();
+    let section = build::section(case.section().unwrap()).unwrap();
     let asked = std::sync::atomic::AtomicUsize::new(0);
     let stopped = || asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed) >= 2;
     let watch = Watch { stopped: &stopped, ..Watch::default() };
@@ -126,7 +126,7 @@ fn a_drape_can_be_stopped() {
 fn what_is_no_drape_is_refused() {
     let refused = |from, to| {
         let case = case(1e-5, from, to);
-        let section = build::section(case.section.as_ref().unwrap()).unwrap();
+        let section = build::section(case.section().unwrap()).unwrap();
         drape(&case, &section, None, &Options::default(), Watch::default()).unwrap_err().to_string()
     };
     assert!(refused("folds = [3, 5]", "folds = []").contains("S003"));

@@ -39,7 +39,7 @@ fn prescribed(set: &str, dof: &str, value: &str) -> String {
 
 fn solved_of(text: &str, path: &Path) -> Result<CaseResult, StudyError> {
     let case = Case::parse(path, text)?;
-    let section = build::section(case.section.as_ref().unwrap())?;
+    let section = build::section(case.section().unwrap())?;
     solve_case(&case, section, &Default::default())
 }
 

@@ -1,6 +1,6 @@
 //! What is wrong with a case file.
 
-use crate::finding::{Place, errors};
+use crate::finding::{Place, TomlError, errors};
 
 errors! {
     /// What is wrong with a case file.
@@ -22,16 +22,15 @@ errors! {
             /// What was found and expected.
             message: String,
         } at place.clone(), = "{message}";
-        /// S003: a combination of keys that makes no problem.
+        /// S003: a value, or a combination of keys, that makes no problem.
         "S003" Inconsistent {
-            /// The file.
+            /// Position of the key or value.
             #[serde(skip)]
             place: Place,
             /// What is missing or too much, and what to do.
             message: String,
         } at place.clone(), = "{message}";
     }
-}
 
 impl CaseError {
     /// File and position.
@@ -42,4 +41,15 @@ impl CaseError {
             | Self::Inconsistent { place, .. } => place,
         }
     }
+}
+
+impl From<TomlError> for CaseError {
+    fn from(TomlError { place, message }: TomlError) -> Self {
+        Self::Malformed { place, message }
+    }
+}
+
+/// S003 at a place.
+pub(super) fn refused<T>(place: Place, message: impl Into<String>) -> Result<T, CaseError> {
+    Err(CaseError::Inconsistent { place, message: message.into() })
 }

@@ -1,0 +1,377 @@
+//! `[analysis]`: what is computed.
+
+use std::f64::consts::TAU;
+
+use serde::Deserialize;
+
+use super::CaseError;
+use super::error::refused;
+use super::loads::{Prescribed, SheetLoad, SheetLoads};
+use super::nonlinear::NonlinearTable;
+use super::sheet::Sheet;
+use crate::element::Mass;
+use crate::finding::{Located, Node, Place, TomlError};
+use crate::quantity::{Frequency, Time, counts_angles};
+use crate::solve::newmark::LoadHistory;
+use crate::solve::nonlinear::{Method, Settings};
+
+/// `[analysis]`.
+#[derive(Clone, Debug)]
+pub(super) enum AnalysisTable {
+    /// Small displacements, one solve; the analysis of a case without the table.
+    Linear(LinearTable),
+    /// Natural frequencies and modes, without loads.
+    Modal(ModalTable),
+    /// Dynamics from rest.
+    Newmark(NewmarkTable),
+    /// Statics in large rotations.
+    Nonlinear(NonlinearTable),
+    /// A round sheet hangs from a disc.
+    Drape(DrapeTable),
+}
+
+/// `kind = "linear"`: small displacements, one solve.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LinearTable {}
+
+/// `kind = "modal"`: natural frequencies and modes, without loads.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct ModalTable {
+    /// How many of the lowest; 6.
+    modes: usize,
+    /// How the mass of an element goes to its nodes; `lumped` (row sums).
+    mass: Option<Mass>,
+    /// The older word: `true` is `mass = "lumped"`, `false` is `mass = "consistent"`.
+    lumped: Option<bool>,
+}
+
+impl Default for ModalTable {
+    fn default() -> Self {
+        Self { modes: 6, mass: None, lumped: None }
+    }
+}
+
+/// `kind = "newmark"`: dynamics from rest (Newmark's method, average acceleration).
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct NewmarkTable {
+    /// End of the time range.
+    duration: Time,
+    /// Time step; the first one when a tolerance is given.
+    step: Time,
+    /// Relative local error at which the step adapts, above 0 and below 1; constant step when left out. The
+    /// errors of the steps add up, over a few periods to about its power 2/3.
+    tolerance: Option<f64>,
+    /// Damping ratios of the first and the third natural frequency; undamped when left out.
+    damping: Option<[f64; 2]>,
+    /// `"step"`, `"ramp until 0.1 s"` or `"sine 5 Hz"` (the same as `"sine 31.416 rad/s"`).
+    #[serde(default = "step_load")]
+    load: String,
+    /// How the mass of an element goes to its nodes; `lumped` (row sums).
+    mass: Option<Mass>,
+    /// The older word: `true` is `mass = "lumped"`, `false` is `mass = "consistent"`.
+    lumped: Option<bool>,
+    /// Rotations of any size (generalised-α method) instead of small displacements.
+    #[serde(default)]
+    large_rotations: bool,
+    /// How much of the highest frequencies is left after a step, 0 to 1; 0.9. With large rotations only.
+    spectral_radius: Option<f64>,
+}
+
+/// `kind = "drape"`: a round sheet hangs from a disc, an `annulus` held at `inner`, in large rotations.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct DrapeTable {
+    /// Folds that the sheet is given at the start, one search for each: the equilibria are many.
+    pub folds: Vec<usize>,
+    /// How often the cells are halved for the state of lowest energy.
+    pub refinements: usize,
+}
+
+impl Default for DrapeTable {
+    fn default() -> Self {
+        Self { folds: vec![3, 4, 5, 6, 7], refinements: 1 }
+    }
+}
+
+/// What is computed of a sheet.
+#[derive(Clone, Debug)]
+pub enum Analysis {
+    /// Small displacements, one solve.
+    Linear(Linear),
+    /// Natural frequencies and modes.
+    Modal(Modal),
+    /// Dynamics from rest.
+    Newmark(Newmark),
+    /// Statics in large rotations.
+    Nonlinear(Box<Nonlinear>),
+}
+
+/// Small displacements, one solve.
+#[derive(Clone, Debug)]
+pub struct Linear {
+    /// What acts.
+    pub loads: SheetLoads,
+    /// Coarser meshes, coarsest first, that show what the mesh leaves open.
+    pub coarser: Option<Located<Vec<Sheet>>>,
+}
+
+/// Natural frequencies and modes.
+#[derive(Clone, Debug)]
+pub struct Modal {
+    /// How many of the lowest, 1 or more.
+    pub modes: usize,
+    /// How the mass of an element goes to its nodes.
+    pub mass: Mass,
+    /// Coarser meshes, coarsest first, that show what the mesh leaves open.
+    pub coarser: Option<Located<Vec<Sheet>>>,
+}
+
+/// Dynamics from rest: nothing is prescribed.
+#[derive(Clone, Debug)]
+pub struct Newmark {
+    /// Forces and moments.
+    pub loads: Vec<SheetLoad>,
+    /// End of the time range, not before the first step.
+    pub duration: Time,
+    /// Time step, above 0; the first one with a tolerance.
+    pub step: Time,
+    /// Relative local error at which the step adapts; constant step without.
+    pub tolerance: Option<f64>,
+    /// Damping ratios of the first and the third natural frequency, 0 to below 1; undamped without.
+    pub damping: Option<Located<[f64; 2]>>,
+    /// How the loads vary in time.
+    pub history: LoadHistory,
+    /// How the mass of an element goes to its nodes.
+    pub mass: Mass,
+    /// The size of rotations.
+    pub rotations: Rotations,
+}
+
+/// The size of rotations in a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rotations {
+    /// Small displacements (Newmark's method).
+    Small,
+    /// Any size (generalised-α method).
+    Large {
+        /// How much of the highest frequencies is left after a step, 0 to 1.
+        spectral_radius: f64,
+    },
+}
+
+/// Statics in large rotations.
+#[derive(Clone, Debug)]
+pub struct Nonlinear {
+    /// What acts.
+    pub loads: SheetLoads,
+    /// Tolerances and steps.
+    pub settings: Settings,
+    /// The way to the equilibrium.
+    pub method: Method,
+    /// Position of the perturbation, or else of the table, in the case file.
+    pub perturbation: Located<()>,
+}
+
+/// Spectral radius of large rotations when left out: a tenth of the highest frequencies goes in a step.
+const SPECTRAL_RADIUS: f64 = 0.9;
+
+impl Analysis {
+    /// What acts; nothing in a modal analysis.
+    pub fn loads(&self) -> &[SheetLoad] {
+        match self {
+            Self::Linear(linear) => &linear.loads.acting,
+            Self::Nonlinear(nonlinear) => &nonlinear.loads.acting,
+            Self::Newmark(newmark) => &newmark.loads,
+            Self::Modal(_) => &[],
+        }
+    }
+
+    /// What is prescribed; nothing in a modal analysis and in a motion.
+    pub fn prescribed(&self) -> &[Prescribed] {
+        match self {
+            Self::Linear(linear) => &linear.loads.prescribed,
+            Self::Nonlinear(nonlinear) => &nonlinear.loads.prescribed,
+            Self::Modal(_) | Self::Newmark(_) => &[],
+        }
+    }
+
+    /// Coarser meshes that show what the mesh leaves open, coarsest first.
+    pub fn coarser(&self) -> Option<&Located<Vec<Sheet>>> {
+        match self {
+            Self::Linear(Linear { coarser, .. }) | Self::Modal(Modal { coarser, .. }) => coarser.as_ref(),
+            Self::Newmark(_) | Self::Nonlinear(_) => None,
+        }
+    }
+
+    /// How the mass of an element goes to its nodes, where the analysis has a mass.
+    pub fn mass(&self) -> Option<Mass> {
+        match self {
+            Self::Modal(modal) => Some(modal.mass),
+            Self::Newmark(newmark) => Some(newmark.mass),
+            Self::Linear(_) | Self::Nonlinear(_) => None,
+        }
+    }
+
+    /// Whether rotations may be large.
+    pub fn has_large_rotations(&self) -> bool {
+        match self {
+            Self::Linear(_) | Self::Modal(_) => false,
+            Self::Newmark(newmark) => newmark.rotations != Rotations::Small,
+            Self::Nonlinear(_) => true,
+        }
+    }
+}
+
+impl AnalysisTable {
+    /// Reads the `[analysis]` of a case; a linear one when left out.
+    pub fn read(case: &Node<'_>) -> Result<Self, TomlError> {
+        const KINDS: [&str; 5] = ["linear", "modal", "newmark", "nonlinear", "drape"];
+        let Some(at) = case.get("analysis") else { return Ok(Self::Linear(LinearTable {})) };
+        Ok(match super::kind_of(&at, &KINDS)? {
+            "linear" => Self::Linear(at.read_without("kind")?),
+            "modal" => Self::Modal(at.read_without("kind")?),
+            "newmark" => Self::Newmark(at.read_without("kind")?),
+            "nonlinear" => Self::Nonlinear(at.read_without("kind")?),
+            _ => Self::Drape(at.read_without("kind")?),
+        })
+    }
+
+    /// Whether a law with friction has a meaning: in statics in large rotations.
+    pub fn can_have_friction(&self) -> bool {
+        match self {
+            Self::Nonlinear(_) | Self::Drape(_) => true,
+            Self::Linear(_) | Self::Modal(_) | Self::Newmark(_) => false,
+        }
+    }
+
+    /// Whether bands by sampling have a meaning: where results are no linear function of the inputs.
+    pub fn can_be_sampled(&self) -> bool {
+        match self {
+            Self::Newmark(_) | Self::Nonlinear(_) | Self::Drape(_) => true,
+            Self::Linear(_) | Self::Modal(_) => false,
+        }
+    }
+}
+
+impl ModalTable {
+    /// How many modes, and the mass matrix, of the table at a node.
+    pub fn checked(&self, at: &Node<'_>) -> Result<(usize, Mass), CaseError> {
+        if self.modes == 0 {
+            return refused(at.value_place("modes"), "[analysis] modes = 0 asks for nothing: take 1 or more");
+        }
+        Ok((self.modes, mass(self.mass, self.lumped, at)?))
+    }
+}
+
+impl NewmarkTable {
+    /// The motion under loads of the table at a node.
+    pub fn checked(&self, at: &Node<'_>, loads: SheetLoads) -> Result<Newmark, CaseError> {
+        if let Some(prescribed) = loads.prescribed.first() {
+            let place = Place { line: prescribed.table.line, column: prescribed.table.column, ..at.place() };
+            return refused(place, "a dynamic analysis has no prescribed values: remove them");
+        }
+        let in_range = |ratio: &f64| (0.0..1.0).contains(ratio);
+        if self.damping.is_some_and(|ratios| !ratios.iter().all(in_range)) {
+            return refused(
+                at.value_place("damping"),
+                "[analysis] damping ratios are parts of the critical damping: take 0 to below 1",
+            );
+        }
+        if self.tolerance.is_some_and(|t| !(t > 0.0 && t < 1.0)) {
+            return refused(
+                at.value_place("tolerance"),
+                "[analysis] tolerance is the local error of a step relative to the displacement: take one above 0 and \
+                 below 1, such as 1e-3",
+            );
+        }
+        let (step, duration) = (self.step.si(), self.duration.si());
+        if !(step > 0.0 && duration >= step) {
+            return refused(at.value_place("step"), "newmark needs 0 < step <= duration");
+        }
+        Ok(Newmark {
+            loads: loads.acting,
+            duration: self.duration,
+            step: self.step,
+            tolerance: self.tolerance,
+            damping: self.damping.map(|ratios| at.located_at("damping", ratios)),
+            history: load_history(&self.load).or_else(|reason| refused(at.value_place("load"), reason))?,
+            mass: mass(self.mass, self.lumped, at)?,
+            rotations: self.rotations(at)?,
+        })
+    }
+
+    fn rotations(&self, at: &Node<'_>) -> Result<Rotations, CaseError> {
+        let message = "spectral_radius is 0 to 1, and needs large_rotations = true";
+        match (self.large_rotations, self.spectral_radius) {
+            (false, None) => Ok(Rotations::Small),
+            (false, Some(_)) => refused(at.key_place("spectral_radius"), message),
+            (true, Some(radius)) if !(0.0..=1.0).contains(&radius) => {
+                refused(at.value_place("spectral_radius"), message)
+            }
+            (true, radius) => Ok(Rotations::Large { spectral_radius: radius.unwrap_or(SPECTRAL_RADIUS) }),
+        }
+    }
+}
+
+/// The mass matrix: the key `mass`, or the older `lumped`.
+fn mass(mass: Option<Mass>, lumped: Option<bool>, at: &Node<'_>) -> Result<Mass, CaseError> {
+    match (mass, lumped) {
+        (Some(_), Some(_)) => {
+            let message = "[analysis] gives both `mass` and `lumped`: remove `lumped`";
+            refused(at.key_place("lumped"), message)
+        }
+        (Some(mass), None) => Ok(mass),
+        (None, Some(false)) => Ok(Mass::Consistent),
+        (None, Some(true)) => Ok(Mass::Lumped),
+        (None, None) => Ok(Mass::default()),
+    }
+}
+
+fn step_load() -> String {
+    "step".into()
+}
+
+/// A history as it is written, or why it is none.
+fn load_history(text: &str) -> Result<LoadHistory, String> {
+    let history = if text == "step" {
+        Ok(LoadHistory::Step)
+    } else if let Some(until) = text.strip_prefix("ramp until ") {
+        let end = until.parse::<Time>().map_err(|e| e.to_string());
+        end.and_then(|end| above_zero(end.si())).map(LoadHistory::Ramp)
+    } else if let Some(frequency) = text.strip_prefix("sine ") {
+        // In rad/s it is an angular frequency.
+        let turn = if counts_angles(frequency) { TAU } else { 1.0 };
+        let hertz = frequency.parse::<Frequency>().map_err(|e| e.to_string());
+        hertz.and_then(|f| above_zero(f.si() / turn)).map(LoadHistory::Sine)
+    } else {
+        Err("no such history".into())
+    };
+    history.map_err(|reason| {
+        format!("load = \"{text}\": {reason}; write \"step\", \"ramp until 0.1 s\" or \"sine 5 Hz\"")
+    })
+}
+
+fn above_zero(value: f64) -> Result<f64, String> {
+    if value > 0.0 { Ok(value) } else { Err(format!("{value} is not above 0")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_angular_frequency_is_no_frequency_in_hertz() {
+        let sine = |text: &str| match load_history(text) {
+            Ok(LoadHistory::Sine(hertz)) => hertz,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(sine("sine 5 Hz"), 5.0);
+        for one in ["sine 6.283185307179586 rad/s", "sine 360 deg/s", "sine 60 1/min"] {
+            assert!((sine(one) - 1.0).abs() < 1e-12, "{one}");
+        }
+        assert!(load_history("sine 0 rad/s").is_err());
+    }
+}

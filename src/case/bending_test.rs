@@ -1,0 +1,129 @@
+//! `[bending_test]`: a bending test of another instrument than KES.
+
+use serde::Deserialize;
+
+use super::CaseError;
+use super::error::refused;
+use super::material::{FabricMaterial, Material};
+use crate::finding::Node;
+use crate::quantity::Length;
+
+/// `[bending_test]`: a strip in large rotations, once along the warp and once along the weft (a FAB test
+/// along the bias too).
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BendingTestTable {
+    /// Which test.
+    pub test: BendingKind,
+    /// Elements along the strip of a cantilever, along half of a loop, 4 at least; 32, and along a long heart loop as
+    /// many as its bends need.
+    cells: Option<usize>,
+    /// Width of a cantilever or heart loop with free edges; left out, the strip bends to a cylinder.
+    width: Option<Length>,
+    /// Length of the strip of a heart loop.
+    length: Option<Length>,
+}
+
+/// The bending tests of a strip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum BendingKind {
+    /// Peirce, Shirley, FAST-2: the overhang at 41.5°.
+    Cantilever,
+    /// A strip hung by both ends, which point upwards.
+    HeartLoop,
+    /// FAB: force against the distance of two clamps; the fabric must bring the records.
+    FabBendLoop,
+}
+
+/// A bending test of a strip.
+#[derive(Clone, Debug)]
+pub enum BendingTest {
+    /// Peirce, Shirley, FAST-2: the overhang at 41.5°.
+    Cantilever(Strip),
+    /// A strip hung by both ends, which point upwards.
+    HeartLoop {
+        /// The strip.
+        strip: Strip,
+        /// Its length.
+        length: Length,
+    },
+    /// FAB: force against the distance of two clamps, with the records of a fabric.
+    FabBendLoop {
+        /// The fabric.
+        fabric: FabricMaterial,
+        /// Elements along half of the strip, 4 at least, where the case says so.
+        cells: Option<usize>,
+    },
+}
+
+/// A strip that is bent.
+#[derive(Clone, Debug)]
+pub struct Strip {
+    /// What it is made of.
+    pub material: Material,
+    /// Elements along it, or along half of a loop, 4 at least, where the case says so.
+    pub cells: Option<usize>,
+    /// Its width with free edges; without, it bends to a cylinder.
+    pub width: Option<Length>,
+}
+
+impl BendingTestTable {
+    /// Whether the test needs records of a fabric.
+    pub fn uses_records(&self) -> bool {
+        match self.test {
+            BendingKind::FabBendLoop => true,
+            BendingKind::Cantilever | BendingKind::HeartLoop => false,
+        }
+    }
+
+    /// The test of the table at a node, in the table of a case.
+    pub fn checked(
+        &self,
+        at: &Node<'_>,
+        material: Material,
+        case: &Node<'_>,
+    ) -> Result<BendingTest, CaseError> {
+        if self.cells.is_some_and(|c| c < 4) {
+            let message = "a [bending_test] needs at least 4 `cells` along the strip";
+            return refused(at.value_place("cells"), message);
+        }
+        for (key, length) in [("length", self.length), ("width", self.width)] {
+            if length.is_some_and(|l| l.si() <= 0.0) {
+                let example = if key == "length" { "15 cm" } else { "2.5 cm" };
+                let message = format!("[bending_test] `{key}` must be positive, such as \"{example}\"");
+                return refused(at.value_place(key), message);
+            }
+        }
+        let (cells, width) = (self.cells, self.width);
+        match (self.test, self.length, material) {
+            (BendingKind::Cantilever, None, material) => {
+                Ok(BendingTest::Cantilever(Strip { material, cells, width }))
+            }
+            (BendingKind::Cantilever, Some(_), _) => {
+                refused(at.key_place("length"), "a cantilever finds its own length: remove `length`")
+            }
+            (BendingKind::HeartLoop, Some(length), material) => {
+                Ok(BendingTest::HeartLoop { strip: Strip { material, cells, width }, length })
+            }
+            (BendingKind::HeartLoop, None, _) => {
+                let message = "a heart_loop needs the `length` of its strip, such as \"15 cm\"";
+                refused(at.place(), message)
+            }
+            (BendingKind::FabBendLoop, length, _) if length.or(width).is_some() => {
+                let key = if length.is_some() { "length" } else { "width" };
+                refused(
+                    at.key_place(key),
+                    "the records of a fab_bend_loop say the size of the strip: remove `length` and `width`",
+                )
+            }
+            (BendingKind::FabBendLoop, _, Material::Fabric(fabric)) => {
+                Ok(BendingTest::FabBendLoop { fabric, cells })
+            }
+            (BendingKind::FabBendLoop, _, Material::Section(_)) => refused(
+                case.key_place("section"),
+                "a fab_bend_loop needs the records of a fabric: name a `fabric` in the place of the [section]",
+            ),
+        }
+    }
+}

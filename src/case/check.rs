@@ -1,0 +1,183 @@
+//! `[[probes]]` and `[[checks]]`: what is reported and what must come out.
+
+use std::f64::consts::TAU;
+
+use serde::{Deserialize, Serialize};
+
+use super::CaseError;
+use super::analysis::{Analysis, Modal};
+use super::error::refused;
+use super::point::SheetPoint;
+use crate::fields::Resultants;
+use crate::finding::{Located, Node};
+use crate::quantity::{Unit, counts_angles, parse_quantity};
+
+/// `[[probes]]`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ProbeTable {
+    /// Name used in results and checks.
+    name: String,
+    /// Point of the undeformed sheet: `[x, y]` in the plane z = 0, or `[x, y, z]`.
+    at: SheetPoint,
+}
+
+/// A named point whose values are reported.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProbePoint {
+    /// Name used in results and checks; no other probe of the case has it.
+    pub name: String,
+    /// Point of the undeformed sheet.
+    pub at: Located<SheetPoint>,
+}
+
+/// `[[checks]]`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CheckTable {
+    /// `w_max`, `strain_energy`, `frequency_1` ..., or `<probe>.<u|v|w|theta_x|...|moment_x|membrane_x|shear_x ...>`.
+    quantity: String,
+    /// Expected value with unit; a frequency in `rad/s` is an angular one.
+    expected: String,
+    /// Accepted |value - expected| / |expected|.
+    relative_tolerance: f64,
+    /// Where the expected value comes from.
+    reference: Reference,
+}
+
+/// A value that must come out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// A quantity that the case has.
+    pub quantity: Located<String>,
+    /// Expected value (SI), not 0.
+    pub expected: f64,
+    /// SI unit of the value.
+    pub unit: &'static str,
+    /// Accepted |value - expected| / |expected|, above 0.
+    pub relative_tolerance: f64,
+    /// Where the expected value comes from.
+    pub reference: Reference,
+}
+
+/// The source of an expected value.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Reference {
+    /// What kind of reference.
+    pub kind: ReferenceKind,
+    /// Citation.
+    pub source: String,
+}
+
+/// Kinds of references; an accuracy claim never rests on `own`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ReferenceKind {
+    /// A closed form or a high-precision series.
+    Analytical,
+    /// A number printed elsewhere.
+    Published,
+    /// A measurement.
+    Measured,
+    /// This program's own earlier result: guards against change, proves nothing.
+    Own,
+}
+
+/// The probes of the tables of a case.
+pub(super) fn probes(tables: &[ProbeTable], case: &Node<'_>) -> Result<Vec<ProbePoint>, CaseError> {
+    let mut probes: Vec<ProbePoint> = Vec::with_capacity(tables.len());
+    let places = case.get("probes");
+    for (table, at) in tables.iter().zip(places.iter().flat_map(Node::items)) {
+        if probes.iter().any(|p| p.name == table.name) {
+            let message = format!("two [[probes]] are called `{}`: give each a name of its own", table.name);
+            return refused(at.value_place("name"), message);
+        }
+        probes.push(ProbePoint { name: table.name.clone(), at: at.located_at("at", table.at) });
+    }
+    Ok(probes)
+}
+
+/// The checks of the tables of a case with an analysis and probes.
+pub(super) fn checks(
+    tables: &[CheckTable],
+    case: &Node<'_>,
+    analysis: &Analysis,
+    probes: &[ProbePoint],
+) -> Result<Vec<Check>, CaseError> {
+    let places = case.get("checks");
+    let pairs = tables.iter().zip(places.iter().flat_map(Node::items));
+    pairs.map(|(table, at)| table.check(&at, analysis, probes)).collect()
+}
+
+impl CheckTable {
+    fn check(&self, at: &Node<'_>, analysis: &Analysis, probes: &[ProbePoint]) -> Result<Check, CaseError> {
+        let (number, given) = parse_quantity(&self.expected, "3.1 mm")
+            .or_else(|e| refused(at.value_place("expected"), format!("check of {}: {e}", self.quantity)))?;
+        if number == 0.0 {
+            let message = format!(
+                "the check of {} expects 0, from which no value has a relative error: check the quantity where it \
+                 is not 0",
+                self.quantity
+            );
+            return refused(at.value_place("expected"), message);
+        }
+        if !(self.relative_tolerance.is_finite() && self.relative_tolerance > 0.0) {
+            let message = format!(
+                "the check of `{}` has relative_tolerance = {}: give a positive number, such as 0.02",
+                self.quantity, self.relative_tolerance
+            );
+            return refused(at.value_place("relative_tolerance"), message);
+        }
+        let Some(unit) = unit_of(&self.quantity, analysis, probes) else {
+            let names: Vec<&str> = probes.iter().map(|p| p.name.as_str()).collect();
+            let message = format!(
+                "there is no quantity `{}` to check: take w_max, strain_energy, frequency_1 ..., or PROBE.COMPONENT with the probes [{}] and \
+                 u v w theta_x theta_y theta_z moment_x moment_y moment_xy membrane_x membrane_y membrane_xy shear_x shear_y",
+                self.quantity,
+                names.join(", ")
+            );
+            return refused(at.value_place("quantity"), message);
+        };
+        if Unit::parse(unit).map(|u| u.dimension) != Ok(given.dimension) {
+            let message = format!(
+                "check of {}: `{}` has the wrong dimension, it is in {unit}",
+                self.quantity, self.expected
+            );
+            return refused(at.value_place("expected"), message);
+        }
+        // Frequencies are in Hz: one in rad/s is an angular frequency.
+        let turn = if unit == "1/s" && counts_angles(&self.expected) { TAU } else { 1.0 };
+        Ok(Check {
+            quantity: at.located_at("quantity", self.quantity.clone()),
+            expected: number * given.factor / turn,
+            unit,
+            relative_tolerance: self.relative_tolerance,
+            reference: self.reference.clone(),
+        })
+    }
+}
+
+/// SI unit of a quantity by name, if an analysis with these probes has it.
+pub(crate) fn unit_of(quantity: &str, analysis: &Analysis, probes: &[ProbePoint]) -> Option<&'static str> {
+    let modes = match analysis {
+        Analysis::Modal(Modal { modes, .. }) => *modes,
+        Analysis::Linear(_) | Analysis::Newmark(_) | Analysis::Nonlinear(_) => 0,
+    };
+    match quantity {
+        "w_max" => return Some("m"),
+        "strain_energy" => return (modes == 0).then_some("J"),
+        _ => {}
+    }
+    if let Some(number) = quantity.strip_prefix("frequency_") {
+        return number.parse::<usize>().is_ok_and(|n| (1..=modes).contains(&n)).then_some("1/s");
+    }
+    let (name, component) = quantity.split_once('.')?;
+    probes.iter().find(|p| p.name == name)?;
+    let resultant = Resultants::COMPONENTS.iter().find(|(name, _)| *name == component);
+    match component {
+        "u" | "v" | "w" => Some("m"),
+        "theta_x" | "theta_y" | "theta_z" => Some("rad"),
+        _ => resultant.map(|(_, unit)| *unit),
+    }
+}

@@ -1,0 +1,176 @@
+//! `[element]`: the formulation.
+
+use std::fmt;
+
+use serde::de::{self, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+
+use super::CaseError;
+use super::error::refused;
+use crate::element::{Cells, Drilling, Formulation, Mass, Membrane};
+use crate::finding::Node;
+
+/// `[element]`; what is left out is as in the profile, and that is the default one when left out.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct ElementTable {
+    /// A named formulation to start from.
+    profile: Option<Profile>,
+    /// Smoothing cells: a number (1, 2, 3, 4, 9, 16 ...) or `[along_xi, along_eta]`; 4.
+    subcells: Option<Subcells>,
+    /// Smoothing cells of the membrane: `cells` (as bending) or `one_cell`; `cells`, in a drape
+    /// `one_cell`.
+    membrane: Option<Membrane>,
+    /// α of the transverse shear, 0 to 1; 0.05, in the profile `seed` 0; `fourth_order` has its own.
+    shear_stabilisation: Option<f64>,
+    /// What holds the drilling rotation; `scaled`, in the profile `seed` `seed`.
+    drilling: Option<DrillingChoice>,
+}
+
+/// Named formulations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Profile {
+    /// That of Nguyen-Trong, Ferreira and Gomes: nc = 4, no shear stabilisation, drilling spring 1e-3.
+    Seed,
+    /// One bending cell and the residual bending flexibility: bending waves of fourth order on equal rectangles along
+    /// the yarns, so frequencies and deflections of flat sheets between clamped and hard supported edges. Moments keep the
+    /// second order, `[convergence]` takes second order for everything, and S123 tells of sheets for which this profile is not.
+    FourthOrder,
+}
+
+/// Smoothing cells as written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Subcells {
+    /// nc of Nguyen-Trong et al.
+    Count(u32),
+    /// A grid.
+    Grid([u8; 2]),
+}
+
+impl<'de> Deserialize<'de> for Subcells {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        struct CountOrGrid;
+        impl<'de> Visitor<'de> for CountOrGrid {
+            type Value = Subcells;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number of smoothing cells, such as 4, or [nx, ny]")
+            }
+
+            fn visit_i64<E: de::Error>(self, number: i64) -> Result<Subcells, E> {
+                let count = u32::try_from(number);
+                count
+                    .map(Subcells::Count)
+                    .map_err(|_| E::invalid_value(de::Unexpected::Signed(number), &self))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, grid: A) -> Result<Subcells, A::Error> {
+                let grid = de::value::SeqAccessDeserializer::new(grid);
+                <[u8; 2]>::deserialize(grid).map(Subcells::Grid)
+            }
+        }
+        d.deserialize_any(CountOrGrid)
+    }
+}
+
+/// Drilling stiffness as written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum DrillingChoice {
+    /// Scaled penalty (default).
+    Scaled,
+    /// Penalty with the membrane shear stiffness.
+    HughesBrezzi,
+    /// The spring of Nguyen-Trong et al., 1e-3 of the largest diagonal term.
+    Seed,
+}
+
+/// What an element is for, as far as its formulation depends on it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Purpose {
+    /// Whether rotations are large.
+    pub large_rotations: bool,
+    /// Whether it is a drape.
+    pub drape: bool,
+    /// Mass matrix of an analysis that has one.
+    pub mass: Option<Mass>,
+}
+
+impl Purpose {
+    /// Statics in small or large rotations.
+    pub fn statics(large_rotations: bool) -> Self {
+        Self { large_rotations, drape: false, mass: None }
+    }
+}
+
+impl ElementTable {
+    /// The formulation that the table asks for; `case` is the file's table, which may be without `[element]`.
+    pub fn formulation(&self, case: &Node<'_>, purpose: Purpose) -> Result<Formulation, CaseError> {
+        let at = &case.get("element").unwrap_or(*case);
+        if self.profile == Some(Profile::FourthOrder) {
+            self.fits_fourth_order(case, at, purpose)?;
+        }
+        let mut formulation = match self.profile {
+            Some(Profile::Seed) => Formulation::seed(),
+            Some(Profile::FourthOrder) => Formulation::fourth_order(),
+            None => Formulation::default(),
+        };
+        if let Some(subcells) = self.subcells {
+            formulation.cells = cells(subcells, at)?;
+        }
+        match self.drilling {
+            None => {}
+            Some(DrillingChoice::Scaled) => formulation.drilling = Drilling::Scaled,
+            Some(DrillingChoice::HughesBrezzi) => formulation.drilling = Drilling::HughesBrezzi,
+            Some(DrillingChoice::Seed) => formulation.drilling = Drilling::Seed(1e-3),
+        }
+        let of_drape = purpose.drape.then_some(Membrane::OneCell);
+        formulation.membrane = self.membrane.or(of_drape).unwrap_or(formulation.membrane);
+        if let Some(alpha) = self.shear_stabilisation {
+            if !(0.0..=1.0).contains(&alpha) {
+                let message = format!("shear_stabilisation = {alpha}: it must be 0 to 1");
+                return refused(at.value_place("shear_stabilisation"), message);
+            }
+            formulation.shear_stabilisation = alpha;
+        }
+        Ok(formulation)
+    }
+
+    fn fits_fourth_order(&self, case: &Node<'_>, at: &Node<'_>, purpose: Purpose) -> Result<(), CaseError> {
+        if purpose.large_rotations {
+            let message = "the [element] profile `fourth_order` is derived for small rotations: remove it";
+            return refused(at.value_place("profile"), message);
+        }
+        if self.shear_stabilisation.is_some() {
+            return refused(
+                at.key_place("shear_stabilisation"),
+                "`shear_stabilisation` is given by the [element] profile \"fourth_order\": remove one of them",
+            );
+        }
+        if purpose.mass.is_some_and(|mass| mass != Mass::Lumped) {
+            let analysis = case.get("analysis").unwrap_or(*case);
+            let key = if analysis.has("mass") { "mass" } else { "lumped" };
+            return refused(
+                analysis.value_place(key),
+                "the [element] profile `fourth_order` goes with mass = \"lumped\", the default: remove it, or the other mass",
+            );
+        }
+        Ok(())
+    }
+}
+
+fn cells(subcells: Subcells, at: &Node<'_>) -> Result<Cells, CaseError> {
+    let place = || at.value_place("subcells");
+    match subcells {
+        Subcells::Count(nc) => match Cells::from_count(nc) {
+            Some(cells) => Ok(cells),
+            None => refused(
+                place(),
+                format!("subcells = {nc} has no layout: take 1, 2, 3, 4, 9, 16 ... or [nx, ny]"),
+            ),
+        },
+        Subcells::Grid([nx, ny]) if nx > 0 && ny > 0 => Ok(Cells::grid(nx, ny)),
+        Subcells::Grid(_) => refused(place(), "subcells = [nx, ny] needs two positive numbers"),
+    }
+}

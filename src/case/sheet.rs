@@ -1,0 +1,292 @@
+//! `[sheet]`: outline, mesh and orientation.
+
+use std::path::{Path, PathBuf};
+
+use nalgebra::Vector3;
+use serde::Deserialize;
+
+use super::CaseError;
+use super::error::refused;
+use crate::finding::{Located, Node};
+use crate::quantity::Length;
+
+/// `[sheet]`: an outline that is divided into cells, or a mesh from a file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SheetTable {
+    /// Which outline; left out when the mesh comes from a file.
+    shape: Option<Shape>,
+    /// A Gmsh mesh (MSH 4.1, ASCII, quads), relative to the case file.
+    file: Option<PathBuf>,
+    /// Unit of the coordinates in the file, such as `"mm"`.
+    unit: Option<String>,
+    /// Along x (`rectangle`), or the length of a `strip` along x.
+    width: Option<Length>,
+    /// Along y (`rectangle`), or the breadth of a `strip` along y.
+    height: Option<Length>,
+    /// Of a `disc`; outer one of an `annulus`.
+    diameter: Option<Length>,
+    /// Inner one of an `annulus`.
+    inner_diameter: Option<Length>,
+    /// The nodes within this distance of the middle of the sheet are the set `inside_radius`.
+    inside_radius: Option<Length>,
+    /// Cells along x and y; across the core of a disc (one number twice); along the radius and
+    /// around an annulus.
+    cells: Option<[usize; 2]>,
+    /// Width of the outermost cells of an `annulus` over that of the innermost; 1, equal widths. Where a sheet bends
+    /// sharply over the edge that holds it, narrow cells belong there.
+    grading: Option<f64>,
+    /// Angle of the warp from x, of a sheet in a plane z = const.
+    #[serde(default)]
+    warp_angle_deg: f64,
+    /// Direction of the warp, `[x, y, z]` of any length, projected on each element: for sheets that are not in a plane
+    /// z = const.
+    warp: Option<[f64; 3]>,
+    /// Seeded displacement of interior nodes along x and y, 0 to 0.5 of half an edge; of a sheet in a plane z = const.
+    #[serde(default)]
+    distortion: f64,
+    /// Seed of the distortion.
+    #[serde(default)]
+    seed: u64,
+}
+
+/// Outline of a sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Shape {
+    /// `width` x `height`, lower left corner at the origin.
+    Rectangle,
+    /// The same; the word for a long narrow one.
+    Strip,
+    /// `diameter`, centre at the origin.
+    Disc,
+    /// `inner_diameter` to `diameter`, centre at the origin.
+    Annulus,
+}
+
+impl Shape {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Rectangle => "rectangle",
+            Self::Strip => "strip",
+            Self::Disc => "disc",
+            Self::Annulus => "annulus",
+        }
+    }
+}
+
+/// A sheet at rest with its mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sheet {
+    /// What is meshed.
+    pub outline: Outline,
+    /// What all outlines have.
+    pub layout: Layout,
+    /// Position of the table in the case file.
+    pub table: Located<()>,
+}
+
+/// What a sheet has beside its outline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layout {
+    /// The warp.
+    pub warp: Warp,
+    /// The nodes within this distance of the middle are the set `inside_radius`.
+    pub inside_radius: Option<Located<Length>>,
+    /// Seeded displacement of interior nodes along x and y, 0 to 0.5 of half an edge.
+    pub distortion: f64,
+    /// Seed of the distortion.
+    pub seed: u64,
+}
+
+/// The direction of the warp.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Warp {
+    /// Angle from x (degrees), of a sheet in a plane z = const.
+    Angle(Located<f64>),
+    /// A direction of any length but 0, projected on each element.
+    Direction(Vector3<f64>),
+}
+
+impl Warp {
+    /// The direction of the warp.
+    pub fn direction(&self) -> Vector3<f64> {
+        match self {
+            Self::Angle(degrees) => {
+                let (sin, cos) = degrees.value.to_radians().sin_cos();
+                Vector3::new(cos, sin, 0.0)
+            }
+            Self::Direction(direction) => *direction,
+        }
+    }
+}
+
+/// What is meshed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outline {
+    /// From the origin along x and y.
+    Rectangle {
+        /// Along x and y.
+        size: [Length; 2],
+        /// Along x and y.
+        cells: [usize; 2],
+    },
+    /// About the origin.
+    Disc {
+        /// Its diameter.
+        diameter: Length,
+        /// Cells across its core.
+        cells: usize,
+    },
+    /// About the origin.
+    Annulus(Annulus),
+    /// From a Gmsh file.
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Unit of its coordinates (m).
+        unit: Length,
+    },
+}
+
+/// A ring about the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Annulus {
+    /// Its inner diameter.
+    pub inner_diameter: Length,
+    /// Its outer diameter.
+    pub diameter: Length,
+    /// Along the radius and around.
+    pub cells: [usize; 2],
+    /// Width of the outermost cells over that of the innermost.
+    pub grading: f64,
+}
+
+impl Outline {
+    /// The cells; none of a mesh from a file.
+    pub fn cells(&self) -> Option<[usize; 2]> {
+        match self {
+            Self::Rectangle { cells, .. } => Some(*cells),
+            Self::Disc { cells, .. } => Some([*cells; 2]),
+            Self::Annulus(ring) => Some(ring.cells),
+            Self::File { .. } => None,
+        }
+    }
+
+    /// The same outline with cells that are 2^`times` as wide; a mesh from a file stays as it is.
+    pub(super) fn coarser(&self, times: u32) -> Self {
+        let mut coarse = self.clone();
+        match &mut coarse {
+            Self::Rectangle { cells, .. } | Self::Annulus(Annulus { cells, .. }) => {
+                *cells = cells.map(|n| n >> times);
+            }
+            Self::Disc { cells, .. } => *cells >>= times,
+            Self::File { .. } => {}
+        }
+        coarse
+    }
+}
+
+impl SheetTable {
+    /// The sheet of the table at a node.
+    pub fn sheet(&self, at: &Node<'_>) -> Result<Sheet, CaseError> {
+        let outline = match (self.shape, &self.file) {
+            (Some(shape), None) => self.outline(shape, at)?,
+            (None, Some(file)) => self.mesh_file(file, at)?,
+            (Some(_), Some(_)) => {
+                return refused(at.key_place("file"), "[sheet] needs either `shape` or `file`, and not both");
+            }
+            (None, None) => {
+                return refused(at.place(), "[sheet] needs either `shape` or `file`, and not both");
+            }
+        };
+        let layout = Layout {
+            warp: self.warp(at)?,
+            inside_radius: self.inside_radius.map(|r| at.located_at("inside_radius", r)),
+            distortion: self.distortion,
+            seed: self.seed,
+        };
+        Ok(Sheet { outline, layout, table: at.located(()) })
+    }
+
+    fn warp(&self, at: &Node<'_>) -> Result<Warp, CaseError> {
+        let angle = self.warp_angle_deg;
+        if !angle.is_finite() {
+            let place = at.value_place("warp_angle_deg");
+            return refused(
+                place,
+                format!("[sheet] warp_angle_deg = {angle} is no angle: give degrees from x"),
+            );
+        }
+        let Some(warp) = self.warp else { return Ok(Warp::Angle(at.located_at("warp_angle_deg", angle))) };
+        if angle != 0.0 {
+            let place = at.key_place("warp_angle_deg");
+            return refused(place, "[sheet] gives both `warp` and `warp_angle_deg`: remove one of them");
+        }
+        let direction = Vector3::from(warp);
+        if !direction.norm().is_normal() {
+            let message =
+                format!("[sheet] warp = {warp:?} has no direction: give a vector such as [1, 0, 0]");
+            return refused(at.value_place("warp"), message);
+        }
+        Ok(Warp::Direction(direction))
+    }
+
+    fn mesh_file(&self, file: &Path, at: &Node<'_>) -> Result<Outline, CaseError> {
+        let sizes = ["width", "height", "diameter", "inner_diameter", "cells", "grading"];
+        if let Some(key) = sizes.into_iter().find(|key| at.has(key)) {
+            return refused(
+                at.key_place(key),
+                "[sheet] file brings its own sizes: remove width, height, diameters, cells and grading",
+            );
+        }
+        let Some(unit) = &self.unit else {
+            return refused(
+                at.value_place("file"),
+                "[sheet] file needs `unit`, the unit of its coordinates, such as unit = \"mm\"",
+            );
+        };
+        let unit = format!("1 {unit}").parse::<Length>();
+        let unit = unit.or_else(|e| refused(at.value_place("unit"), format!("[sheet] unit: {e}")))?;
+        Ok(Outline::File { path: file.to_path_buf(), unit })
+    }
+
+    fn outline(&self, shape: Shape, at: &Node<'_>) -> Result<Outline, CaseError> {
+        let word = shape.word();
+        let need = |value: Option<Length>, key: &str| match value {
+            Some(length) => Ok(length),
+            None => refused(at.place(), format!("[sheet] shape = \"{word}\" needs `{key}`")),
+        };
+        let Some(cells) = self.cells else {
+            let message = format!("[sheet] shape = \"{word}\" needs `cells`, such as [40, 40]");
+            return refused(at.place(), message);
+        };
+        let unused: &[&str] = match shape {
+            Shape::Rectangle | Shape::Strip => &["unit", "grading", "diameter", "inner_diameter"],
+            Shape::Disc => &["unit", "grading", "width", "height", "inner_diameter"],
+            Shape::Annulus => &["unit", "width", "height"],
+        };
+        if let Some(key) = unused.iter().find(|key| at.has(key)) {
+            let message = format!("[sheet] shape = \"{word}\" does not use `{key}`: remove it");
+            return refused(at.key_place(key), message);
+        }
+        Ok(match shape {
+            Shape::Rectangle | Shape::Strip => {
+                Outline::Rectangle { size: [need(self.width, "width")?, need(self.height, "height")?], cells }
+            }
+            Shape::Disc if cells[0] == cells[1] => {
+                Outline::Disc { diameter: need(self.diameter, "diameter")?, cells: cells[0] }
+            }
+            Shape::Disc => {
+                let message = "cells of a disc: give one number twice, such as [16, 16]";
+                return refused(at.value_place("cells"), message);
+            }
+            Shape::Annulus => Outline::Annulus(Annulus {
+                inner_diameter: need(self.inner_diameter, "inner_diameter")?,
+                diameter: need(self.diameter, "diameter")?,
+                cells,
+                grading: self.grading.unwrap_or(1.0),
+            }),
+        })
+    }
+}
