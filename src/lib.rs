@@ -47,6 +47,8 @@ pub mod verify;
 
 pub mod report;
 
+pub mod schema;
+
 #[cfg(feature = "charts")]
 pub mod results;
 

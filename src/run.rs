@@ -19,6 +19,7 @@
 
 use serde::Serialize;
 
+use crate::case::{Case, SolverChoice};
 use crate::finding::Finding;
 use crate::instrument::Source;
 use crate::platform::map_several;
@@ -30,7 +31,6 @@ use crate::results::{
     ReadingEntry, Sink, Task, Work, bracket, checks, overview, page, readable, simulate, unread,
     write_drape_parity, write_friction_parity,
 };
-use crate::case::{Case, SolverChoice};
 use crate::study::CaseResult;
 
 /// What is made of the results.

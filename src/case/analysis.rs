@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
@@ -15,8 +16,9 @@ use crate::quantity::{Frequency, Time, counts_angles};
 use crate::solve::newmark::LoadHistory;
 use crate::solve::nonlinear::{Method, Settings};
 
-/// `[analysis]`.
-#[derive(Clone, Debug)]
+/// `[analysis]`: what is computed; of several kinds, `linear` without the table.
+#[derive(Clone, Debug, JsonSchema)]
+#[schemars(tag = "kind", rename_all = "snake_case")]
 pub(super) enum AnalysisTable {
     /// Small displacements, one solve; the analysis of a case without the table.
     Linear(LinearTable),
@@ -31,17 +33,18 @@ pub(super) enum AnalysisTable {
 }
 
 /// `kind = "linear"`: small displacements, one solve.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct LinearTable {}
 
 /// `kind = "modal"`: natural frequencies and modes, without loads.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct ModalTable {
-    /// How many of the lowest; 6.
+    /// How many of the lowest.
     modes: usize,
-    /// How the mass of an element goes to its nodes; `lumped` (row sums).
+    /// How the mass of an element goes to its nodes.
+    #[schemars(extend("default" = "lumped"))]
     mass: Option<Mass>,
     /// The older word: `true` is `mass = "lumped"`, `false` is `mass = "consistent"`.
     lumped: Option<bool>,
@@ -54,7 +57,7 @@ impl Default for ModalTable {
 }
 
 /// `kind = "newmark"`: dynamics from rest (Newmark's method, average acceleration).
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct NewmarkTable {
     /// End of the time range.
@@ -63,25 +66,30 @@ pub(super) struct NewmarkTable {
     step: Time,
     /// Relative local error at which the step adapts, above 0 and below 1; constant step when left out. The
     /// errors of the steps add up, over a few periods to about its power 2/3.
+    #[schemars(example = 1e-3)]
     tolerance: Option<f64>,
     /// Damping ratios of the first and the third natural frequency; undamped when left out.
+    #[schemars(example = [0.02, 0.02])]
     damping: Option<[f64; 2]>,
     /// `"step"`, `"ramp until 0.1 s"` or `"sine 5 Hz"` (the same as `"sine 31.416 rad/s"`).
     #[serde(default = "step_load")]
+    #[schemars(example = &"ramp until 0.1 s")]
     load: String,
-    /// How the mass of an element goes to its nodes; `lumped` (row sums).
+    /// How the mass of an element goes to its nodes.
+    #[schemars(extend("default" = "lumped"))]
     mass: Option<Mass>,
     /// The older word: `true` is `mass = "lumped"`, `false` is `mass = "consistent"`.
     lumped: Option<bool>,
     /// Rotations of any size (generalised-α method) instead of small displacements.
     #[serde(default)]
     large_rotations: bool,
-    /// How much of the highest frequencies is left after a step, 0 to 1; 0.9. With large rotations only.
+    /// How much of the highest frequencies is left after a step, 0 to 1. With large rotations only.
+    #[schemars(extend("default" = 0.9))]
     spectral_radius: Option<f64>,
 }
 
 /// `kind = "drape"`: a round sheet hangs from a disc, an `annulus` held at `inner`, in large rotations.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct DrapeTable {
     /// Folds that the sheet is given at the start, one search for each: the equilibria are many.

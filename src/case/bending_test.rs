@@ -1,5 +1,6 @@
 //! `[bending_test]`: a bending test of another instrument than KES.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
@@ -10,13 +11,14 @@ use crate::quantity::Length;
 
 /// `[bending_test]`: a strip in large rotations, once along the warp and once along the weft (a FAB test
 /// along the bias too).
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BendingTestTable {
     /// Which test.
     pub test: BendingKind,
-    /// Elements along the strip of a cantilever, along half of a loop, 4 at least; 32, and along a long heart loop as
-    /// many as its bends need.
+    /// Elements along the strip of a cantilever, along half of a loop, 4 at least; along a long heart
+    /// loop as many as its bends need when left out.
+    #[schemars(extend("default" = 32))]
     cells: Option<usize>,
     /// Width of a cantilever or heart loop with free edges; left out, the strip bends to a cylinder.
     width: Option<Length>,
@@ -25,7 +27,7 @@ pub(super) struct BendingTestTable {
 }
 
 /// The bending tests of a strip.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum BendingKind {
     /// Peirce, Shirley, FAST-2: the overhang at 41.5°.

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::CaseError;
@@ -13,10 +14,11 @@ use crate::finding::{Located, Node};
 use crate::quantity::{Unit, counts_angles, parse_quantity};
 
 /// `[[probes]]`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ProbeTable {
     /// Name used in results and checks.
+    #[schemars(example = &"centre")]
     name: String,
     /// Point of the undeformed sheet: `[x, y]` in the plane z = 0, or `[x, y, z]`.
     at: SheetPoint,
@@ -32,16 +34,20 @@ pub struct ProbePoint {
 }
 
 /// `[[checks]]`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CheckTable {
     /// `w_max`, `strain_energy`, `frequency_1` ..., or `<probe>.<u|v|w|theta_x|...|moment_x|membrane_x|shear_x ...>`.
+    #[schemars(example = &"centre.w")]
     quantity: String,
     /// Expected value with unit; a frequency in `rad/s` is an angular one.
+    #[schemars(example = &"3.1 mm")]
     expected: String,
     /// Accepted |value - expected| / |expected|.
+    #[schemars(example = 0.02)]
     relative_tolerance: f64,
     /// Where the expected value comes from.
+    #[schemars(example = serde_json::json!({"kind": "analytical", "source": "Timoshenko & Woinowsky-Krieger, Table 35"}))]
     reference: Reference,
 }
 
@@ -61,17 +67,18 @@ pub struct Check {
 }
 
 /// The source of an expected value.
-#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Reference {
     /// What kind of reference.
     pub kind: ReferenceKind,
     /// Citation.
+    #[schemars(example = &"Timoshenko & Woinowsky-Krieger, Table 35")]
     pub source: String,
 }
 
 /// Kinds of references; an accuracy claim never rests on `own`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ReferenceKind {
     /// A closed form or a high-precision series.

@@ -1,5 +1,6 @@
 //! `[convergence]`: what the mesh leaves open in a result.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
@@ -8,10 +9,10 @@ use super::sheet::Sheet;
 use crate::finding::{Located, Node};
 
 /// `[convergence]`: the case is solved on coarser meshes too, of which each halves the `cells` of the next.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct ConvergenceTable {
-    /// Meshes with that of `[sheet]`, the finest: 2, with the order of the element assumed, or 3, which show it; 3.
+    /// Meshes with that of `[sheet]`, the finest: 2, with the order of the element assumed, or 3, which show it.
     meshes: u32,
 }
 

@@ -1,7 +1,9 @@
 //! `[element]`: the formulation.
 
+use std::borrow::Cow;
 use std::fmt;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
@@ -11,24 +13,27 @@ use crate::element::{Cells, Drilling, Formulation, Mass, Membrane};
 use crate::finding::Node;
 
 /// `[element]`; what is left out is as in the profile, and that is the default one when left out.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct ElementTable {
     /// A named formulation to start from.
     profile: Option<Profile>,
-    /// Smoothing cells: a number (1, 2, 3, 4, 9, 16 ...) or `[along_xi, along_eta]`; 4.
+    /// Smoothing cells: a number (1, 2, 3, 4, 9, 16 ...) or `[along_xi, along_eta]`.
+    #[schemars(extend("default" = 4))]
     subcells: Option<Subcells>,
-    /// Smoothing cells of the membrane: `cells` (as bending) or `one_cell`; `cells`, in a drape
-    /// `one_cell`.
+    /// Smoothing cells of the membrane: `cells` (as bending) or `one_cell`, which is the default of a drape.
+    #[schemars(extend("default" = "cells"))]
     membrane: Option<Membrane>,
-    /// α of the transverse shear, 0 to 1; 0.05, in the profile `seed` 0; `fourth_order` has its own.
+    /// α of the transverse shear, 0 to 1; in the profile `seed` 0 when left out, and `fourth_order` has its own.
+    #[schemars(extend("default" = 0.05))]
     shear_stabilisation: Option<f64>,
-    /// What holds the drilling rotation; `scaled`, in the profile `seed` `seed`.
+    /// What holds the drilling rotation; in the profile `seed` `seed` when left out.
+    #[schemars(extend("default" = "scaled"))]
     drilling: Option<DrillingChoice>,
 }
 
 /// Named formulations.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum Profile {
     /// That of Nguyen-Trong, Ferreira and Gomes: nc = 4, no shear stabilisation, drilling spring 1e-3.
@@ -46,6 +51,21 @@ enum Subcells {
     Count(u32),
     /// A grid.
     Grid([u8; 2]),
+}
+
+impl JsonSchema for Subcells {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Subcells".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let grid = generator.subschema_for::<[u8; 2]>();
+        json_schema!({"anyOf": [{"type": "integer", "minimum": 1}, grid], "examples": [4, [2, 2]]})
+    }
 }
 
 impl<'de> Deserialize<'de> for Subcells {
@@ -75,7 +95,7 @@ impl<'de> Deserialize<'de> for Subcells {
 }
 
 /// Drilling stiffness as written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum DrillingChoice {
     /// Scaled penalty (default).

@@ -31,6 +31,7 @@ errors! {
             message: String,
         } at place.clone(), = "{message}";
     }
+}
 
 impl CaseError {
     /// File and position.

@@ -1,6 +1,7 @@
 //! `[[loads]]`: what acts on the sheet.
 
 use nalgebra::Vector3;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
@@ -14,8 +15,9 @@ use crate::quantity::{
     STANDARD_GRAVITY,
 };
 
-/// `[[loads]]`.
-#[derive(Clone, Debug)]
+/// `[[loads]]`: what acts on the sheet, or what a part of it is given; of several kinds.
+#[derive(Clone, Debug, JsonSchema)]
+#[schemars(tag = "kind", rename_all = "snake_case")]
 pub(super) enum LoadTable {
     /// Along the normal of the sheet (+z of a flat one).
     Pressure(PressureTable),
@@ -32,7 +34,7 @@ pub(super) enum LoadTable {
 }
 
 /// `kind = "pressure"`: along the normal of the sheet (+z of a flat one).
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PressureTable {
     /// Pressure.
@@ -44,63 +46,75 @@ pub(super) struct PressureTable {
 }
 
 /// `kind = "gravity"`: own weight.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct GravityTable {
-    /// Acceleration; standard gravity when left out.
+    /// Acceleration.
+    #[schemars(extend("default" = "9.80665 m/s²"))]
     value: Option<Acceleration>,
-    /// Direction, of any length; `[0, 0, -1]` when left out.
+    /// Direction, of any length.
+    #[schemars(extend("default" = [0, 0, -1]), example = [0.0, 0.0, -1.0])]
     direction: Option<[f64; 3]>,
 }
 
 /// `kind = "point"`: a force (N) or moment (N·m): the total of the nodes of a set, which share it equally, or at one
 /// point, whose element passes it to its corners by the shape functions.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PointTable {
     /// Node set.
+    #[schemars(example = &"right")]
     set: Option<String>,
     /// Point of the undeformed sheet instead: `[x, y]` in the plane z = 0, or `[x, y, z]`.
     at: Option<SheetPoint>,
     /// Force, such as `"0.1 N"`, or moment, such as `"1 N·mm"`.
+    #[schemars(extend("x-unit" = "N or N·m"), example = &"0.1 N")]
     value: String,
     /// Direction of the force or axis of the moment, of any length.
+    #[schemars(example = [0.0, 0.0, -1.0])]
     direction: [f64; 3],
 }
 
 /// `kind = "edge_force"`: a force per length on the boundary edges of a set.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct EdgeForceTable {
     /// Node set.
+    #[schemars(example = &"right")]
     set: String,
     /// Force per length.
     value: LineForce,
     /// Direction, of any length.
+    #[schemars(example = [0.0, 0.0, -1.0])]
     direction: [f64; 3],
 }
 
 /// `kind = "edge_moment"`: a moment per length on the boundary edges of a set.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct EdgeMomentTable {
     /// Node set.
+    #[schemars(example = &"right")]
     set: String,
     /// Moment per length.
     value: LineMoment,
     /// Axis, of any length.
+    #[schemars(example = [0.0, 0.0, -1.0])]
     direction: [f64; 3],
 }
 
 /// `kind = "prescribed"`: a displacement or rotation of a set.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PrescribedTable {
     /// Node set.
+    #[schemars(example = &"right")]
     set: String,
     /// `u v w theta_x theta_y theta_z`.
+    #[schemars(example = &"w")]
     dof: String,
     /// Displacement, such as `"1 mm"`, or rotation, such as `"2 deg"`.
+    #[schemars(extend("x-unit" = "m or rad"), example = &"1 mm")]
     value: String,
 }
 

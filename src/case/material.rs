@@ -1,5 +1,6 @@
 //! What a case is about: `fabric` with `[assumptions]`, or the constants of a `[section]`.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
@@ -54,26 +55,27 @@ impl Material {
 }
 
 /// `[section]`: constants of a shell, per unit width.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SectionTable {
-    /// E1 t.
+    /// E1 t: tensile stiffness along the warp.
     pub tensile_warp: LineForce,
-    /// E2 t.
+    /// E2 t: tensile stiffness along the weft.
     pub tensile_weft: LineForce,
-    /// √(ν12 ν21).
+    /// √(ν12 ν21), between -1 and 1.
+    #[schemars(example = 0.3)]
     pub poisson: f64,
-    /// G12 t.
+    /// G12 t: shear stiffness.
     pub shear: LineForce,
-    /// D11.
+    /// D11: bending rigidity along the warp.
     pub bending_warp: BendingRigidity,
-    /// D22.
+    /// D22: bending rigidity along the weft.
     pub bending_weft: BendingRigidity,
-    /// D12.
+    /// D12: coupling of the bending along warp and weft.
     pub bending_coupling: BendingRigidity,
-    /// D66, the H of Nguyen-Trong et al.
+    /// D66: torsional rigidity, the H of Nguyen-Trong et al.
     pub torsion: BendingRigidity,
-    /// χ G_t t.
+    /// χ G_t t: transverse shear stiffness.
     pub transverse_shear: LineForce,
     /// Mass per area.
     pub areal_density: ArealDensity,

@@ -26,6 +26,7 @@ mod virtual_test;
 
 use std::path::{Path, PathBuf};
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::characterise::FabricSheet;
@@ -67,14 +68,17 @@ pub struct Case {
 }
 
 /// A case file; unknown keys are refused.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct CaseTable {
+pub(crate) struct CaseTable {
     /// For people.
+    #[schemars(example = &"Clamped square under uniform pressure")]
     title: String,
     /// Where the problem comes from.
+    #[schemars(example = &"ISO 9073-9")]
     source: Option<String>,
     /// A fabric folder, from the working directory or else beside the case file, or `*` for every fabric at hand.
+    #[schemars(example = &"kesf_data/poplin")]
     fabric: Option<String>,
     /// Explicit constants instead of a fabric.
     section: Option<SectionTable>,
@@ -93,6 +97,7 @@ struct CaseTable {
     rigid: Vec<supports::RigidTable>,
     /// What acts on the sheet.
     #[serde(default, rename = "loads")]
+    #[schemars(with = "Vec<loads::LoadTable>")]
     _loads: ReadLater,
     /// A test of an instrument instead of `sheet`, `supports` and `loads`.
     virtual_test: Option<virtual_test::VirtualTestTable>,
@@ -100,6 +105,7 @@ struct CaseTable {
     bending_test: Option<bending_test::BendingTestTable>,
     /// What is computed.
     #[serde(default, rename = "analysis")]
+    #[schemars(with = "Option<analysis::AnalysisTable>")]
     _analysis: ReadLater,
     /// Bands by scrambled Sobol points of the measured inputs; none when left out.
     uncertainty: Option<uncertainty::UncertaintyTable>,

@@ -1,6 +1,9 @@
 //! Points of the sheet as a case writes them.
 
+use std::borrow::Cow;
+
 use nalgebra::Point3;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 
 use crate::quantity::Length;
@@ -13,6 +16,23 @@ pub enum SheetPoint {
     Plane([Length; 2]),
     /// `[x, y, z]`.
     Space([Length; 3]),
+}
+
+impl JsonSchema for SheetPoint {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "SheetPoint".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": "array", "items": generator.subschema_for::<Length>(), "minItems": 2, "maxItems": 3,
+            "examples": [["10 cm", "10 cm"]],
+        })
+    }
 }
 
 impl TryFrom<Vec<Length>> for SheetPoint {

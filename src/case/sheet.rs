@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
@@ -11,14 +12,16 @@ use crate::finding::{Located, Node};
 use crate::quantity::Length;
 
 /// `[sheet]`: an outline that is divided into cells, or a mesh from a file.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SheetTable {
     /// Which outline; left out when the mesh comes from a file.
     shape: Option<Shape>,
     /// A Gmsh mesh (MSH 4.1, ASCII, quads), relative to the case file.
+    #[schemars(example = &"part.msh")]
     file: Option<PathBuf>,
-    /// Unit of the coordinates in the file, such as `"mm"`.
+    /// Unit of the coordinates in the file.
+    #[schemars(example = &"mm")]
     unit: Option<String>,
     /// Along x (`rectangle`), or the length of a `strip` along x.
     width: Option<Length>,
@@ -32,18 +35,23 @@ pub(super) struct SheetTable {
     inside_radius: Option<Length>,
     /// Cells along x and y; across the core of a disc (one number twice); along the radius and
     /// around an annulus.
+    #[schemars(example = [40, 40])]
     cells: Option<[usize; 2]>,
-    /// Width of the outermost cells of an `annulus` over that of the innermost; 1, equal widths. Where a sheet bends
+    /// Width of the outermost cells of an `annulus` over that of the innermost. Where a sheet bends
     /// sharply over the edge that holds it, narrow cells belong there.
+    #[schemars(extend("default" = 1.0), example = 5.0)]
     grading: Option<f64>,
     /// Angle of the warp from x, of a sheet in a plane z = const.
     #[serde(default)]
+    #[schemars(extend("x-unit" = "deg"), example = 45.0)]
     warp_angle_deg: f64,
     /// Direction of the warp, `[x, y, z]` of any length, projected on each element: for sheets that are not in a plane
     /// z = const.
+    #[schemars(example = [1.0, 0.0, 0.0])]
     warp: Option<[f64; 3]>,
     /// Seeded displacement of interior nodes along x and y, 0 to 0.5 of half an edge; of a sheet in a plane z = const.
     #[serde(default)]
+    #[schemars(example = 0.2)]
     distortion: f64,
     /// Seed of the distortion.
     #[serde(default)]
@@ -51,7 +59,7 @@ pub(super) struct SheetTable {
 }
 
 /// Outline of a sheet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Shape {
     /// `width` x `height`, lower left corner at the origin.

@@ -1,5 +1,6 @@
 //! `[uncertainty]`: bands of results that are no linear function of the measured inputs.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
@@ -7,15 +8,16 @@ use super::error::refused;
 use crate::finding::{Located, Node};
 
 /// `[uncertainty]`: the case is solved at scrambled Sobol points of the measured inputs.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct UncertaintyTable {
-    /// Points of each of the two bands, mean fabric and next specimen: a power of two, 16 to 4096; 128.
+    /// Points of each of the two bands, mean fabric and next specimen: a power of two, 16 to 4096.
     points: u32,
-    /// Of the scrambling; 1. The same seed gives the same points.
+    /// Of the scrambling. The same seed gives the same points.
     seed: u32,
-    /// Inputs without a spread that are to be taken as exact, by their names, such as `areal density`; none.
+    /// Inputs without a spread that are to be taken as exact, by their names, such as `areal density`.
     /// Any other input without a spread forbids the bands of what it moves.
+    #[schemars(example = ["areal density"])]
     exact: Vec<String>,
 }
 

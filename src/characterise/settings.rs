@@ -1,9 +1,11 @@
 //! Windows, readings and thresholds of the evaluation.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize, Serializer, de};
 use thiserror::Error;
 
@@ -73,6 +75,23 @@ impl FromStr for Modulus {
     }
 }
 
+impl JsonSchema for Modulus {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Modulus".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": "string", "pattern": r"^\s*(tangent_low|secant|energy|window\(.+,.+\))\s*$",
+            "examples": ["tangent_low", "secant", "energy", "window(5 gf/cm, 20 gf/cm)"],
+        })
+    }
+}
+
 impl Serialize for Modulus {
     fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
         s.collect_str(self)
@@ -86,7 +105,7 @@ impl<'de> Deserialize<'de> for Modulus {
 }
 
 /// Which cycle of a repeated test the parameters are taken from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum CycleChoice {
     /// The first: virgin cloth, as the KES parameters are defined.
@@ -114,7 +133,7 @@ impl From<TomlError> for SettingsError {
 
 /// Everything in the evaluation that a laboratory may do differently. The defaults are the
 /// customary ones (Kawabata's standard conditions); they are printed beside every sheet.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Angles between which G is fitted, on both sides (0.5 to 2.5 deg; the literature also uses 0.5 to 5 deg).

@@ -1,13 +1,17 @@
 //! `kesf list`: what the program knows.
 
+use std::path::{Path, PathBuf};
+
 use clap::{Args, ValueEnum};
 
 use super::exit::Exit;
 use super::ui::Ui;
 use crate::instrument::DIALECT_FILES;
+use crate::report::write::write_file;
 use crate::results::{Failure, list};
+use crate::schema::{case_reference, schemas};
 
-/// List the formats, dialects, units, analyses, exports and codes that the program knows
+/// List the formats, dialects, units, analyses, exports, codes, schemas and keys that the program knows
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: kesf list units\n`kesf list dialects -v` prints the dialect files themselves, as examples for one's own."
@@ -16,6 +20,12 @@ pub struct Options {
     /// What to list
     #[arg(value_enum)]
     topic: Topic,
+    /// Write the JSON Schemas into this folder
+    #[arg(short, long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+    /// Overwrite files in that folder that this tool did not write
+    #[arg(long)]
+    force: bool,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -32,6 +42,10 @@ enum Topic {
     Units,
     /// Diagnostic codes
     Codes,
+    /// JSON Schemas of the files that are read; `-o FOLDER` writes them
+    Schemas,
+    /// All keys of a case file, as Markdown
+    Keys,
 }
 
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
@@ -43,6 +57,18 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         Topic::Exports => list::exports(),
         Topic::Units => list::units(),
         Topic::Codes => list::codes(),
+        Topic::Schemas => match &options.output {
+            Some(folder) => return write_schemas(folder, options.force),
+            None => list::schemas(),
+        },
+        Topic::Keys => return ui.print(&case_reference()),
     };
     if ui.json { ui.document(list.document()) } else { ui.print(&list.text()) }
+}
+
+fn write_schemas(folder: &Path, force: bool) -> Result<Exit, Failure> {
+    for file in schemas() {
+        write_file(&folder.join(format!("{}.json", file.name)), file.text().as_bytes(), force)?;
+    }
+    Ok(Exit::Done)
 }

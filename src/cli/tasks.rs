@@ -6,8 +6,8 @@ use clap::{Args, ValueEnum};
 
 use super::inputs::{EvaluateArgs, inputs};
 use super::ui::Ui;
-use crate::results::{Failure, Job};
 use crate::case::SolverChoice;
+use crate::results::{Failure, Job};
 
 /// Cases and fabrics on the command line.
 #[derive(Debug, Args)]

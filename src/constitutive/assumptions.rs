@@ -1,8 +1,10 @@
 //! What a KES sheet leaves open, and the choices that close it.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, de};
 use thiserror::Error;
 
@@ -14,7 +16,7 @@ use crate::quantity::{ArealDensity, BendingRigidity, Curvature, Length, LineForc
 ///
 /// In a case file this is the table `[assumptions]`; on the command line each field is an option.
 /// The texts are the same in both.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Assumptions {
     /// Which slope of the tensile curve is the modulus; `tangent_low`. A window must be among the
@@ -24,12 +26,16 @@ pub struct Assumptions {
     /// copy at hand; 0.3 is the middle of what is customary for woven cloth.
     pub poisson: f64,
     /// How one ratio becomes two; `geometric`.
+    #[schemars(extend("default" = "geometric"))]
     pub poisson_rule: PoissonRule,
     /// Where the torsional rigidity D66 comes from; `huber`.
+    #[schemars(extend("default" = "huber"))]
     pub torsion: Torsion,
     /// The coupling D12 of D_b; 0, as in the seed.
+    #[schemars(extend("default" = 0), extend("examples" = [0.2, "1e-6 N·m"]))]
     pub bending_coupling: BendingCoupling,
     /// Where the transverse shear stiffness comes from; `in_plane`.
+    #[schemars(extend("default" = "in_plane"))]
     pub transverse_shear: TransverseShear,
     /// Whether bending and shear have friction: `elastic` (the section alone), `friction` (it slips and
     /// remembers) or `virgin` (the curve of first loading, without memory); `elastic`. For large
@@ -143,7 +149,7 @@ pub enum TransverseShear {
 
 /// `FromStr`, `Display` and `Deserialize` (a TOML string or number) of a choice: keywords, else a value.
 macro_rules! choice {
-    ($name:ident, $field:literal, $expected:literal, { $($word:literal => $variant:ident),* }, $parse:expr, $show:expr) => {
+    ($name:ident, $field:literal, $expected:literal, { $($word:literal => $variant:ident),* }, $unit:expr, $parse:expr, $show:expr) => {
         impl FromStr for $name {
             type Err = ChoiceError;
 
@@ -171,6 +177,20 @@ macro_rules! choice {
             }
         }
 
+        impl JsonSchema for $name {
+            fn inline_schema() -> bool {
+                true
+            }
+
+            fn schema_name() -> Cow<'static, str> {
+                stringify!($name).into()
+            }
+
+            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+                choice_schema(&[$($word),*], $unit)
+            }
+        }
+
         impl<'de> Deserialize<'de> for $name {
             fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
                 text_or_number(d)?.parse().map_err(de::Error::custom)
@@ -184,6 +204,7 @@ choice!(
     "poisson_rule",
     "geometric, major or zero",
     { "geometric" => Geometric, "major" => Major, "zero" => Zero },
+    None,
     |_| None,
     |_| String::new()
 );
@@ -193,6 +214,7 @@ choice!(
     "torsion",
     "huber, bias, shear, neglect, or a rigidity such as `3e-6 N·m`",
     { "huber" => Huber, "bias" => Bias, "shear" => Shear, "neglect" => Neglect },
+    Some("N·m"),
     |text| text.parse().ok().map(Self::Value),
     |other| match other {
         Torsion::Value(h) => h.to_string(),
@@ -205,6 +227,7 @@ choice!(
     "bending_coupling",
     "a ratio such as `0.2` (D12 = 0.2 √(B1 B2)) or a rigidity such as `1e-6 N·m`",
     {},
+    Some("N·m"),
     |text| {
         let ratio = text.parse().ok().filter(|nu: &f64| nu.is_finite()).map(Self::Poisson);
         ratio.or_else(|| text.parse().ok().map(Self::Value))
@@ -220,12 +243,24 @@ choice!(
     "transverse_shear",
     "in_plane, or a stiffness such as `416 N/m`",
     { "in_plane" => InPlane },
+    Some("N/m"),
     |text| text.parse().ok().map(Self::Value),
     |other| match other {
         TransverseShear::Value(s) => s.to_string(),
         TransverseShear::InPlane => String::new(),
     }
 );
+
+/// A choice in a schema: keywords, or a text that begins with a number.
+fn choice_schema(keywords: &[&str], value: Option<&str>) -> Schema {
+    let words = keywords.iter().map(|word| json_schema!({"const": word})).collect::<Vec<_>>();
+    let value = value.map(|unit| {
+        json_schema!({"type": "string", "pattern": r"^\s*[+-]?[0-9.]", "x-unit": unit, "examples": [format!("3e-6 {unit}")]})
+    });
+    // Without keywords it may be a ratio too.
+    let number = keywords.is_empty().then(|| json_schema!({"type": "number"}));
+    json_schema!({"anyOf": words.into_iter().chain(number).chain(value).collect::<Vec<_>>()})
+}
 
 /// The text of a TOML string or number.
 fn text_or_number<'de, D: Deserializer<'de>>(d: D) -> Result<String, D::Error> {

@@ -1,6 +1,7 @@
 //! Mass matrices, Eq. (12).
 
 use nalgebra::{Matrix3, Matrix4, Matrix6, Vector3};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Matrix24;
@@ -27,7 +28,7 @@ use crate::section::ShellSection;
 ///
 /// In the plane of the sheet straight lines are what the element has: consistent +k²h²/24, row sums -k²h²/24,
 /// and the mean is of fourth order along the mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Mass {
     /// `ρ ∫ N_i N_j dA`.

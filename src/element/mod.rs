@@ -31,6 +31,7 @@ pub use quad4::{Frame, GAUSS_2X2, GaussPoint, gauss_point, shape};
 pub use smoothing::{Cell, Cells};
 pub use yarns::{YarnStrain, Yarns};
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// How an element is formulated.
@@ -50,7 +51,7 @@ pub struct Formulation {
 }
 
 /// How the membrane strain of an element is smoothed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Membrane {
     /// Over the cells of the formulation.

@@ -1,5 +1,6 @@
 //! Test conditions: what a file states, else what its owner states, else the standard set.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::dialect::Key;
@@ -7,7 +8,7 @@ use super::{Conditions, Test};
 use crate::quantity::{Angle, Curvature, Length, LineForce, Pressure};
 
 /// Conditions that files leave out; the `[conditions]` of fabric.toml and of dialects.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct StatedConditions {
     /// Specimen width in every test.
@@ -23,7 +24,7 @@ pub struct StatedConditions {
 }
 
 /// Conditions of FB1 tensile.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct TensileConditions {
     /// Specimen width.
@@ -35,7 +36,7 @@ pub struct TensileConditions {
 }
 
 /// Conditions of FB1 shear.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ShearConditions {
     /// Specimen width.
@@ -49,7 +50,7 @@ pub struct ShearConditions {
 }
 
 /// Conditions of FB2.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct BendingConditions {
     /// Specimen width.
@@ -61,7 +62,7 @@ pub struct BendingConditions {
 }
 
 /// Conditions of FB3.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct CompressionConditions {
     /// Set maximum of the pressure.

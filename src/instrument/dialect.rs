@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, de};
 
 use super::conditions::StatedConditions;
@@ -10,7 +11,7 @@ use super::words::normalised;
 use super::{Direction, Test};
 
 /// What a column of a curve holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
     /// Tensile strain, or extension between the jaws.
@@ -57,7 +58,7 @@ impl Role {
 }
 
 /// What a header line states.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Key {
     /// Name of the fabric.
@@ -89,7 +90,7 @@ pub enum Key {
 }
 
 /// What a column of a result table holds, apart from parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TableColumn {
     /// Identifier of the fabric; goes before `Fabric`.
@@ -115,7 +116,7 @@ pub enum TableColumn {
 }
 
 /// How a row or a column sums up others; it is no specimen itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Statistic {
     /// The mean.
@@ -129,7 +130,7 @@ pub enum Statistic {
 /// The words and marks of one kind of file. A laboratory with a layout of its own writes one.
 ///
 /// Words are compared after NFKC in lower case, without accents, blanks and punctuation.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Dialect {
     /// Short name, e.g. `kes-japanese`.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::conditions::StatedConditions;
@@ -12,9 +13,9 @@ use crate::finding::{Finding, Place, ReadFact, position};
 use crate::quantity::{ArealDensity, Length, Ratio};
 
 /// `fabric.toml`: what people know of a fabric and no instrument writes.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-struct FabricFile {
+pub(crate) struct FabricFile {
     #[serde(alias = "title")]
     name: Option<String>,
     weave: Option<String>,

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::fab::FabFile;
@@ -12,7 +13,7 @@ use crate::kes::RecordName;
 use crate::quantity::Curve;
 
 /// Where data come from; stated in every sheet and chart.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Origin {
     /// Instrument files of a laboratory.
@@ -122,7 +123,7 @@ pub struct ResultValue {
 }
 
 /// A measured behaviour kept for comparison with predictions, from `fabric.toml`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeasuredResult {
     /// What was measured, e.g. `drape_coefficient`, `drape_nodes`, `bending_length`.

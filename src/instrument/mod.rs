@@ -36,6 +36,7 @@ pub use conditions::{
 };
 pub use dialect::{DIALECT_FILES, Dialect, Key, Role, Statistic, TableColumn, dialects};
 pub use error::{About, Problem, ReadError};
+pub(crate) use fabric_file::FabricFile;
 pub use fabric_file::read_dialect;
 pub use folder::{Batch, JOURNAL, Library, MANIFEST, read_fabrics};
 pub use measurement::{

@@ -5,12 +5,13 @@ pub mod specimen;
 
 use std::fmt;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use parameter::{Direction, Key, Parameter};
 
 /// The KES-F test that a curve comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Test {
     /// FB1 tensile: x = strain (1), y = force per width (N/m).

@@ -1,5 +1,6 @@
 //! The law of one strain component, and its memory at a point.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::widening::Growth;
@@ -47,7 +48,7 @@ struct Parts {
 }
 
 /// What the sliders do.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Mode {
     /// Nothing: the backbone alone.

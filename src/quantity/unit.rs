@@ -4,6 +4,8 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::str::FromStr;
 
+use schemars::generate::Contract;
+use schemars::{Schema, json_schema};
 use serde::Deserializer;
 use serde::de::{self, Visitor};
 use thiserror::Error;
@@ -311,6 +313,20 @@ pub fn counts_angles(text: &str) -> bool {
 /// same dimension, does not. A text that is no unit divides by nothing.
 pub fn divides_by_length(text: &str) -> bool {
     Parser::read(text).is_ok_and(|(_, lengths)| lengths.iter().any(|power| *power < 0))
+}
+
+/// The schema of a quantity: a text such as the example where it is read, a number in SI where it is written.
+pub(super) fn schema(si: &'static str, example: &'static str, contract: &Contract) -> Schema {
+    if contract.is_serialize() {
+        return json_schema!({"type": "number", "x-unit": si});
+    }
+    json_schema!({
+            "type": "string",
+            // A number and its unit, which may begin with a digit after a blank, as `1/cm` does.
+            "pattern": r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(\s*[^\s\d.,eE+-].*|\s+\d.*)$",
+            "x-unit": si,
+            "examples": [example],
+    })
 }
 
 /// Deserialises a newtype from its text form, and answers a bare number with what to write.

@@ -9,6 +9,7 @@ use crate::finding::explanations;
 use crate::instrument::dialects;
 use crate::quantity::UNITS;
 use crate::report::cards::Target;
+use crate::schema;
 
 /// Headings and rows of a list.
 pub struct List {
@@ -126,6 +127,12 @@ fn dimension(kg: i8, m: i8, s: i8) -> String {
     };
     let factors: Vec<_> = [("kg", kg), ("m", m), ("s", s)].into_iter().filter_map(power).collect();
     if factors.is_empty() { "1".into() } else { factors.join("·") }
+}
+
+/// JSON Schemas of the files that the program reads.
+pub fn schemas() -> List {
+    let rows = schema::schemas().into_iter().map(|file| vec![json!(file.name), json!(file.title)]);
+    List { headings: &["name", "title"], rows: rows.collect() }
 }
 
 /// Diagnostic codes.

@@ -2,10 +2,10 @@
 
 use super::columns::Columns;
 use super::fabric::FabricReport;
+use crate::case::Case;
 use crate::characterise::FabricSheet;
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::significant;
-use crate::case::Case;
 
 /// Headings before the deflections, in KES units.
 pub(super) const HEADINGS: [&str; 9] = [

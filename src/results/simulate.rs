@@ -5,11 +5,11 @@ use super::observer::Observer;
 use super::outcome::Outcome;
 use super::task::Task;
 use super::tested::Tested;
+use crate::case::{BendingTest, InstrumentTest, Problem, ShellSpecimen};
 use crate::characterise::FabricSheet;
 use crate::constitutive;
 use crate::instrument::Direction;
 use crate::solve::Options as SolveOptions;
-use crate::case::{BendingTest, InstrumentTest, Problem, ShellSpecimen};
 use crate::study::bending::{BendingResult, simulate_cantilever, simulate_heart_loop, simulate_records};
 use crate::study::{self, CaseResult, Drape, StudyError};
 
@@ -99,11 +99,7 @@ fn test(task: &Task, spec: &InstrumentTest) -> Result<Vec<Tested>, Failure> {
     }
 }
 
-fn test_specimen(
-    task: &Task,
-    specimen: &ShellSpecimen,
-    sheet: &FabricSheet,
-) -> Result<Vec<Tested>, Failure> {
+fn test_specimen(task: &Task, specimen: &ShellSpecimen, sheet: &FabricSheet) -> Result<Vec<Tested>, Failure> {
     let (section, made) = task.section()?;
     let inputs = made.as_ref().map_or_else(Vec::new, |c| c.inputs.clone());
     let prepared = task.prepared_test(specimen)?;

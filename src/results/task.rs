@@ -13,9 +13,7 @@ use crate::instrument::{Direction, Parameter};
 use crate::report::table::PredictionRow;
 use crate::section::ShellSection;
 use crate::solve::Options as SolveOptions;
-use crate::study::{
-    self, PreparedCase, PreparedTest, Sampling, drape_stages, sampling_stages,
-};
+use crate::study::{self, PreparedCase, PreparedTest, Sampling, drape_stages, sampling_stages};
 
 /// A case and its fabric; none for a case with constants of its own.
 #[derive(Clone)]

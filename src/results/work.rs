@@ -216,7 +216,8 @@ pub(super) fn findings<'a, 'w: 'a>(tasks: impl Iterator<Item = &'a Task<'w>>) ->
     let mut all = Vec::new();
     for task in tasks {
         let Some(sheet) = task.fabric else { continue };
-        let made = if task.case.needs_section() { task.section().ok().and_then(|(_, made)| made) } else { None };
+        let made =
+            if task.case.needs_section() { task.section().ok().and_then(|(_, made)| made) } else { None };
         for finding in sheet.findings.iter().chain(made.iter().flat_map(|c| &c.findings)) {
             let mut finding = finding.clone();
             finding.place = finding.place.or_else(|| task.path.map(Place::file));

@@ -17,8 +17,8 @@ use std::ops::ControlFlow;
 use nalgebra::Vector3;
 
 use super::StudyError;
-use super::virtual_large::CELLS;
 use super::StudyError;
+use super::virtual_large::CELLS;
 use crate::case::{ShellSpecimen, ShellTest, VirtualTest};
 use crate::characterise::{FabricSheet, Settings as Evaluation, parameters};
 use crate::constitutive::{Constitutive, tension};

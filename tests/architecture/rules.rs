@@ -98,9 +98,11 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
         ],
         &["base64", "csv", "dejavu", "percent_encoding", "plotters", "png", "polars", "quick_xml"],
     ),
+    ("schema", &["quantity", "instrument", "characterise", "case"], &[]),
     (
         "results",
         &[
+            "schema",
             "case",
             "platform",
             "quantity",
@@ -124,6 +126,7 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
     (
         "cli",
         &[
+            "schema",
             "case",
             "platform",
             "quantity",

@@ -3,11 +3,11 @@
 use indexmap::IndexMap;
 use serde::Serialize;
 
+use crate::case::MethodChoice;
 use crate::quantity::significant;
 use crate::results::columns::Columns;
 use crate::results::task::Task;
 use crate::solve::nonlinear::Stability;
-use crate::case::MethodChoice;
 use crate::study::{CaseResult, LoadPath, PathStep, Probe};
 
 /// One line a search: how far it came, what it took, and the linear answer beside it.
