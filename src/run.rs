@@ -203,7 +203,7 @@ fn own_cases<'a, 'w>(
     folder: &Folder,
     observer: &Observer,
 ) -> Result<Vec<Own<'a, 'w>>, Failure> {
-    let own: Vec<&Task> = tasks.iter().filter(|t| t.fabric.is_none() && t.case.sheet.is_some()).collect();
+    let own: Vec<&Task> = tasks.iter().filter(|t| t.fabric.is_none() && t.case.has_sheet()).collect();
     let steps = own.iter().map(|task| task.stages() + 1).sum();
     observer.part("cases", steps, || {
         map_several(own, |task| {

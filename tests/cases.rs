@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use kesf::finding::Coded;
 use kesf::solve::Options;
 use kesf::study::{Case, Status, section, solve_case};
 
@@ -233,7 +234,7 @@ fn what_is_found_late_stands_where_it_is_written() {
     let place = |text: &str| {
         let case = Case::parse(Path::new("c.toml"), text).unwrap();
         let error = kesf::study::validate(&case).unwrap_err();
-        let place = error.place().unwrap_or_else(|| panic!("{error}")).clone();
+        let place = Coded::place(&error).unwrap_or_else(|| panic!("{error}"));
         (error.code(), place.line, place.column)
     };
     let rim = text.replace("set = \"boundary\"", "set = \"rim\"");

@@ -130,7 +130,7 @@ fn the_slope_is_taken_in_the_window_of_the_settings() {
         Case::parse(Path::new("t.toml"), &text).unwrap()
     };
     let shear = case("shear", "cells = [5, 40]");
-    let shear = PreparedTest::new(&shear, shear.virtual_test.as_ref().unwrap(), &Options::default()).unwrap();
+    let shear = PreparedTest::new(&shear, shear.specimen().unwrap(), &Options::default()).unwrap();
     let mut found = Vec::new();
     for window in [[0.5f64, 2.5], [0.5, 5.0], [5.0, 7.0]].map(|w| w.map(f64::to_radians)) {
         let settings = Settings { shear_slope: window.map(Angle), ..Settings::default() };
@@ -146,8 +146,7 @@ fn the_slope_is_taken_in_the_window_of_the_settings() {
     }
     assert!(found[0] != found[1] && found[1] != found[2], "{found:?}");
     let bending = case("bending", "");
-    let bending =
-        PreparedTest::new(&bending, bending.virtual_test.as_ref().unwrap(), &Options::default()).unwrap();
+    let bending = PreparedTest::new(&bending, bending.specimen().unwrap(), &Options::default()).unwrap();
     let settings = Settings { bending_slope: [Curvature(20.0), Curvature(190.0)], ..Settings::default() };
     let t = bending.simulate(Direction::Warp, &s, &settings).unwrap();
     assert_eq!(t.window, Some([20.0, 190.0]));

@@ -69,7 +69,7 @@ pub(super) struct NewmarkTable {
     #[schemars(example = 1e-3)]
     tolerance: Option<f64>,
     /// Damping ratios of the first and the third natural frequency; undamped when left out.
-    #[schemars(example = [0.02, 0.02])]
+    #[schemars(extend("examples" = [[0.02, 0.02]]))]
     damping: Option<[f64; 2]>,
     /// `"step"`, `"ramp until 0.1 s"` or `"sine 5 Hz"` (the same as `"sine 31.416 rad/s"`).
     #[serde(default = "step_load")]

@@ -53,7 +53,7 @@ pub(super) struct GravityTable {
     #[schemars(extend("default" = "9.80665 m/s²"))]
     value: Option<Acceleration>,
     /// Direction, of any length.
-    #[schemars(extend("default" = [0, 0, -1]), example = [0.0, 0.0, -1.0])]
+    #[schemars(extend("default" = [0, 0, -1]), extend("examples" = [[0.0, 0.0, -1.0]]))]
     direction: Option<[f64; 3]>,
 }
 
@@ -71,7 +71,7 @@ pub(super) struct PointTable {
     #[schemars(extend("x-unit" = "N or N·m"), example = &"0.1 N")]
     value: String,
     /// Direction of the force or axis of the moment, of any length.
-    #[schemars(example = [0.0, 0.0, -1.0])]
+    #[schemars(extend("examples" = [[0.0, 0.0, -1.0]]))]
     direction: [f64; 3],
 }
 
@@ -85,7 +85,7 @@ pub(super) struct EdgeForceTable {
     /// Force per length.
     value: LineForce,
     /// Direction, of any length.
-    #[schemars(example = [0.0, 0.0, -1.0])]
+    #[schemars(extend("examples" = [[0.0, 0.0, -1.0]]))]
     direction: [f64; 3],
 }
 
@@ -99,7 +99,7 @@ pub(super) struct EdgeMomentTable {
     /// Moment per length.
     value: LineMoment,
     /// Axis, of any length.
-    #[schemars(example = [0.0, 0.0, -1.0])]
+    #[schemars(extend("examples" = [[0.0, 0.0, -1.0]]))]
     direction: [f64; 3],
 }
 

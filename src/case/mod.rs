@@ -19,6 +19,7 @@ mod problem;
 mod sheet;
 mod solver;
 mod supports;
+mod tables;
 #[cfg(test)]
 mod tests;
 mod uncertainty;

@@ -35,7 +35,7 @@ pub(super) struct SheetTable {
     inside_radius: Option<Length>,
     /// Cells along x and y; across the core of a disc (one number twice); along the radius and
     /// around an annulus.
-    #[schemars(example = [40, 40])]
+    #[schemars(extend("examples" = [[40, 40]]))]
     cells: Option<[usize; 2]>,
     /// Width of the outermost cells of an `annulus` over that of the innermost. Where a sheet bends
     /// sharply over the edge that holds it, narrow cells belong there.
@@ -47,7 +47,7 @@ pub(super) struct SheetTable {
     warp_angle_deg: f64,
     /// Direction of the warp, `[x, y, z]` of any length, projected on each element: for sheets that are not in a plane
     /// z = const.
-    #[schemars(example = [1.0, 0.0, 0.0])]
+    #[schemars(extend("examples" = [[1.0, 0.0, 0.0]]))]
     warp: Option<[f64; 3]>,
     /// Seeded displacement of interior nodes along x and y, 0 to 0.5 of half an edge; of a sheet in a plane z = const.
     #[serde(default)]

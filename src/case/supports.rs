@@ -20,7 +20,7 @@ pub(super) struct SupportTable {
     /// A named kind.
     kind: Option<SupportKind>,
     /// Names of dofs: `u v w theta_x theta_y theta_z`.
-    #[schemars(example = ["u", "w"])]
+    #[schemars(extend("examples" = [["u", "w"]]))]
     fix: Option<Vec<String>>,
 }
 

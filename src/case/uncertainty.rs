@@ -17,7 +17,7 @@ pub(super) struct UncertaintyTable {
     seed: u32,
     /// Inputs without a spread that are to be taken as exact, by their names, such as `areal density`.
     /// Any other input without a spread forbids the bands of what it moves.
-    #[schemars(example = ["areal density"])]
+    #[schemars(extend("examples" = [["areal density"]]))]
     exact: Vec<String>,
 }
 

@@ -80,7 +80,9 @@ fn without_null(schema: &mut schemars::Schema) {
                 if only.contains_key("$ref") && !object.is_empty() {
                     object.insert("allOf".into(), json!([only]));
                 } else {
-                    only.into_iter().for_each(|(key, value)| drop(object.entry(key).or_insert(value)));
+                    for (key, value) in only {
+                        object.entry(key).or_insert(value);
+                    }
                 }
             }
             _ => {}

@@ -152,6 +152,9 @@ impl<'a> Reader<'a> {
         if own.get("x-unit").is_some() && own["type"] == "string" {
             return "quantity".into();
         }
+        if let Some(only) = own.get("const") {
+            return format!("`{}`", literal(only));
+        }
         if let Some(options) = own["oneOf"].as_array() {
             let names: Vec<String> =
                 options.iter().filter_map(|o| o["const"].as_str()).map(|c| format!("`\"{c}\"`")).collect();
@@ -210,19 +213,18 @@ impl<'a> Reader<'a> {
             return literal(example);
         }
         let own = self.resolved(schema);
-        if let Some(first) = own["oneOf"].get(0).and_then(|choice| choice.get("const")) {
-            return literal(first);
+        if let Some(only) = own.get("const").or_else(|| own["oneOf"].get(0)?.get("const")) {
+            return literal(only);
         }
-        if let Some(first) = own["anyOf"].get(0) {
-            return self.example(first);
-        }
-        match own["type"].as_str() {
-            Some("array") => {
+        match (own["type"].as_str(), schema.get("default"), own["anyOf"].get(0)) {
+            (Some("boolean"), default, _) => (default != Some(&Value::Bool(true))).to_string(),
+            (_, Some(default), _) => literal(default),
+            (_, None, Some(first)) => self.example(first),
+            (Some("array"), None, None) => {
                 let count = own["minItems"].as_u64().unwrap_or(1).max(1) as usize;
                 format!("[{}]", vec![self.example(&own["items"]); count].join(", "))
             }
-            Some("boolean") => (schema["default"] != true).to_string(),
-            _ => schema.get("default").map_or_else(String::new, literal),
+            _ => String::new(),
         }
     }
 }

@@ -17,7 +17,6 @@ use std::ops::ControlFlow;
 use nalgebra::Vector3;
 
 use super::StudyError;
-use super::StudyError;
 use super::virtual_large::CELLS;
 use crate::case::{ShellSpecimen, ShellTest, VirtualTest};
 use crate::characterise::{FabricSheet, Settings as Evaluation, parameters};
