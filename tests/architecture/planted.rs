@@ -101,12 +101,13 @@ fn clock_threads_and_files_are_seen() {
         ("\n\nuse std::time::{Duration, Instant as Now};", "std::time::Instant"),
         ("fn f() {\nvec![\nstd::fs::read(\"a\")]; }", "std::fs"),
         ("fn f() {\n\nstd::thread::spawn(g); }", "std::thread"),
+        ("use std::io::{self, Write};\nfn f() {\nio::stdout(); }", "std::io::stdout"),
         ("#[cfg(feature = \"threads\")]\n\nuse rayon::prelude::*;", "rayon"),
     ] {
         let found = rules::places(&with_element(text));
         assert_eq!(found, [format!("src/element/mod.rs:3: {what} must not be named here")], "{text}");
     }
-    assert_eq!(rules::places(&with_element("use std::time::Duration;\nuse std::fmt;")), [""; 0]);
+    assert_eq!(rules::places(&with_element("use std::time::Duration;\nuse std::{fmt, io};")), [""; 0]);
 }
 
 #[test]

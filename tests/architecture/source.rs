@@ -103,11 +103,16 @@ impl Crate {
 
     /// A path that is named in a module, from the root of the crate; `None` for one of another crate.
     pub fn absolute(&self, module: &[String], segments: &[String]) -> Option<Vec<String>> {
+        self.resolved(module, segments, 8)
+    }
+
+    /// Names that are imported may be imported by names that are imported: `steps` of that are followed.
+    fn resolved(&self, module: &[String], segments: &[String], steps: usize) -> Option<Vec<String>> {
         let (mut at, mut rest) = match segments.first()?.as_str() {
             "crate" => (vec![], &segments[1..]),
             "self" => (module.to_vec(), &segments[1..]),
             "super" => (module.to_vec(), segments),
-            first => return self.local(module, first, segments),
+            first => return self.local(module, first, segments, steps.checked_sub(1)?),
         };
         while let Some((first, more)) = rest.split_first().filter(|(first, _)| *first == "super") {
             debug_assert_eq!(first, "super");
@@ -119,15 +124,34 @@ impl Crate {
     }
 
     /// A path that begins with a module inside this one, or with a name that this one imports.
-    fn local(&self, module: &[String], first: &str, segments: &[String]) -> Option<Vec<String>> {
+    fn local(
+        &self,
+        module: &[String],
+        first: &str,
+        segments: &[String],
+        steps: usize,
+    ) -> Option<Vec<String>> {
         let below = [module, &[first.to_string()]].concat();
         if self.modules.contains_key(&below) {
             return Some([module, segments].concat());
         }
         let here = self.modules.get(module)?;
         let (_, target) = here.imports.iter().find(|(alias, _)| alias == first)?;
-        let target = target.first().filter(|name| *name != first).and(self.absolute(module, target))?;
+        let target = target
+            .first()
+            .filter(|name| *name != first)
+            .and_then(|_| self.resolved(module, target, steps))?;
         Some([&target, &segments[1..]].concat())
+    }
+
+    /// A path of another crate with its first name as it was imported: `io::stdout` is `std::io::stdout`.
+    pub fn foreign(&self, module: &[String], segments: &[String]) -> Vec<String> {
+        let imports = self.modules.get(module).map(|m| &m.imports).into_iter().flatten();
+        let mut found = imports.filter(|(alias, target)| *alias == segments[0] && target.len() > 1);
+        match found.next() {
+            Some((_, target)) if segments.len() > 1 => [target, &segments[1..]].concat(),
+            _ => segments.to_vec(),
+        }
     }
 
     /// The module that defines what an absolute path names: names that others pass on are followed.
