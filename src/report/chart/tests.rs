@@ -16,9 +16,6 @@ use crate::instrument::{
 use crate::quantity::{Curve, Estimate};
 use crate::study;
 
-mod drawn;
-mod picture;
-
 const WARP: Option<Direction> = Some(Direction::Warp);
 const WEFT: Option<Direction> = Some(Direction::Weft);
 

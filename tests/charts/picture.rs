@@ -4,15 +4,21 @@
 //! comes from two numbers at an axis and the tick marks beside them, so that a curve which is
 //! drawn at the wrong place of a right axis is seen, and one at the right place of a wrong axis too.
 
-use super::super::canvas::{Canvas, HEIGHT, Point, WIDTH};
-use super::super::letters::Type;
-use super::super::palette::INK;
-use plotters::prelude::RGBColor;
+use ab_glyph::{Font, FontRef, Glyph, ScaleFont, point};
+
+pub const WIDTH: usize = 1800;
+pub const HEIGHT: usize = 1350;
+
+/// Pixels from the upper left corner of the page.
+pub type Point = (f64, f64);
+pub type Color = [u8; 3];
 
 /// Largest difference of a channel between pixels of one colour.
 const SAME: i32 = 36;
-/// Least correlation of a text with the place where it is found.
-const ALIKE: f64 = 0.9;
+/// Least correlation of a text with the place where it is found; of a number, which is short, so that a
+/// shift by half a pixel weighs more.
+const TEXT: f64 = 0.9;
+const NUMBER: f64 = 0.8;
 
 pub struct Picture {
     pixels: Vec<[u8; 3]>,
@@ -20,9 +26,6 @@ pub struct Picture {
 
 /// Left, top, right, bottom (right and bottom outside).
 pub type Region = [usize; 4];
-
-/// The page beside the column of values.
-pub const PLOT: Region = [0, 130, 1400, HEIGHT];
 
 /// A linear axis: page position of a value.
 #[derive(Clone, Copy, Debug)]
@@ -51,24 +54,24 @@ impl Picture {
         self.pixels[y * WIDTH + x]
     }
 
-    pub fn is(&self, x: usize, y: usize, color: RGBColor) -> bool {
+    pub fn is(&self, x: usize, y: usize, color: Color) -> bool {
         let [r, g, b] = self.pixel(x, y).map(i32::from);
-        let (cr, cg, cb) = (i32::from(color.0), i32::from(color.1), i32::from(color.2));
+        let [cr, cg, cb] = color.map(i32::from);
         (r - cr).abs().max((g - cg).abs()).max((b - cb).abs()) <= SAME
     }
 
     /// Whether there is ink of a colour within so many pixels of a place.
-    pub fn has(&self, at: Point, reach: f64, color: RGBColor) -> bool {
+    pub fn has(&self, at: Point, reach: f64, color: Color) -> bool {
         disc(at, reach).any(|(x, y)| self.is(x, y, color))
     }
 
     /// The part of the places that have ink of a colour within so many pixels.
-    pub fn covered(&self, places: &[Point], reach: f64, color: RGBColor) -> f64 {
+    pub fn covered(&self, places: &[Point], reach: f64, color: Color) -> f64 {
         places.iter().filter(|p| self.has(**p, reach, color)).count() as f64 / places.len() as f64
     }
 
     /// The part of the ink of a colour in a region that is farther than `reach` from every place.
-    pub fn stray(&self, places: &[Point], reach: f64, color: RGBColor, region: Region) -> f64 {
+    pub fn stray(&self, places: &[Point], reach: f64, color: Color, region: Region) -> f64 {
         let mut near = vec![false; WIDTH * HEIGHT];
         for place in places {
             disc(*place, reach).for_each(|(x, y)| near[y * WIDTH + x] = true);
@@ -82,7 +85,7 @@ impl Picture {
     }
 
     /// The smallest box around the ink of a colour.
-    pub fn extent(&self, color: RGBColor, region: Region) -> [f64; 4] {
+    pub fn extent(&self, color: Color, region: Region) -> [f64; 4] {
         let ink = inside(region).filter(|(x, y)| self.is(*x, *y, color));
         ink.fold([f64::MAX, f64::MAX, 0.0, 0.0], |e, (x, y)| {
             let (x, y) = (x as f64, y as f64);
@@ -94,12 +97,17 @@ impl Picture {
         255.0 - self.pixel(x, y).iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0
     }
 
-    /// The middle of the place in the region that looks most like the text; `None` where none does.
-    pub fn find(&self, text: &str, kind: Type, region: Region) -> Option<Point> {
-        let (template, width, height) = template(text, kind);
+    /// The middle of the place in the region that looks most like the text in letters of so many pixels
+    /// an em; `None` where none does.
+    pub fn find(&self, text: &str, kind: (f32, bool), region: Region) -> Option<Point> {
+        self.best(text, kind, region, TEXT)
+    }
+
+    fn best(&self, text: &str, (size, bold): (f32, bool), region: Region, least: f64) -> Option<Point> {
+        let (template, width, height) = template(text, size, bold);
         let norm = template.iter().map(|v| v * v).sum::<f64>().sqrt();
         let [left, top, right, bottom] = region;
-        let mut best = (ALIKE, None);
+        let mut best = (least, None);
         for y in top..(bottom.min(HEIGHT)).saturating_sub(height) {
             for x in left..(right.min(WIDTH)).saturating_sub(width) {
                 // Most places are white in the middle row.
@@ -124,53 +132,19 @@ impl Picture {
         best.1
     }
 
-    /// The scale along the bottom of a frame whose lower edge is in the region.
+    /// The scale along the numbers below a frame; each is centred at its tick mark.
     pub fn x_scale(&self, numbers: [&str; 2], region: Region) -> Scale {
-        let at = numbers.map(|number| {
-            let (x, y) = self.number(number, region);
-            // The number is centred below its tick mark.
-            let mark = |at: &usize| (8..45).any(|up| self.run_up(*at, y as usize - up) >= 5);
-            let around = (x as usize - 9)..=(x as usize + 9);
-            self.mark_middle(around.filter(mark), number)
-        });
-        Scale { at, value: numbers.map(value) }
+        Scale { at: numbers.map(|number| self.number(number, region).0), value: numbers.map(value) }
     }
 
-    /// The scale along the left side of a frame.
+    /// The scale along the numbers left of a frame.
     pub fn y_scale(&self, numbers: [&str; 2], region: Region) -> Scale {
-        let at = numbers.map(|number| {
-            let (x, y) = self.number(number, region);
-            let mark =
-                |at: &usize| (0..90).map(|right| x as usize + right).any(|x| self.run_right(x, *at) >= 5);
-            // Beside the digits, where no letter is as wide as a tick mark and the white before it.
-            let around = (y as usize - 9)..=(y as usize + 9);
-            self.mark_middle(around.filter(mark), number)
-        });
-        Scale { at, value: numbers.map(value) }
+        Scale { at: numbers.map(|number| self.number(number, region).1), value: numbers.map(value) }
     }
 
     fn number(&self, number: &str, region: Region) -> Point {
-        self.find(number, Type::new(26.0, INK), region)
+        self.best(number, (26.0, false), region, NUMBER)
             .unwrap_or_else(|| panic!("the number {number} is nowhere in {region:?}"))
-    }
-
-    fn mark_middle(&self, marks: impl Iterator<Item = usize>, number: &str) -> f64 {
-        let marks: Vec<usize> = marks.collect();
-        assert!((1..=4).contains(&marks.len()), "tick marks at {number}: {marks:?}");
-        marks.iter().sum::<usize>() as f64 / marks.len() as f64 + 0.5
-    }
-
-    /// How many pixels from here upwards are dark, below a dark line that is crossed at right angles.
-    fn run_up(&self, x: usize, y: usize) -> usize {
-        let dark = (0..14).take_while(|up| self.darkness(x, y - up) > 120.0).count();
-        let line = |y: usize| (x - 30..x + 30).all(|x| self.darkness(x, y) > 120.0);
-        if self.darkness(x, y + 1) < 60.0 && (y - 14..y).any(line) { dark } else { 0 }
-    }
-
-    fn run_right(&self, x: usize, y: usize) -> usize {
-        let dark = (0..14).take_while(|right| self.darkness(x + right, y) > 120.0).count();
-        let line = |x: usize| (y - 30..y + 30).all(|y| self.darkness(x, y) > 120.0);
-        if self.darkness(x - 1, y) < 60.0 && (x..x + 14).any(line) { dark } else { 0 }
     }
 }
 
@@ -202,21 +176,39 @@ fn inside([left, top, right, bottom]: Region) -> impl Iterator<Item = (usize, us
     (top..bottom.min(HEIGHT)).flat_map(move |y| (left..right.min(WIDTH)).map(move |x| (x, y)))
 }
 
-/// The darkness of a text on white, row by row, its width and its height.
-fn template(text: &str, kind: Type) -> (Vec<f64>, usize, usize) {
-    let mut canvas = Canvas::new().unwrap();
-    canvas.text((100.0, 100.0), text, kind).unwrap();
-    let page = Picture::decode(&canvas.png("text").unwrap());
-    let ink = |(x, y): &(usize, usize)| page.darkness(*x, *y) > 0.0;
-    let places: Vec<_> = inside([0, 0, WIDTH, 200]).filter(ink).collect();
-    let ends = |of: fn(&(usize, usize)) -> usize| {
-        (places.iter().map(of).min().unwrap(), places.iter().map(of).max().unwrap() + 1)
-    };
-    let ((left, right), (top, bottom)) = (ends(|p| p.0), ends(|p| p.1));
+/// The darkness of a text in DejaVu Sans on white, row by row, its width and its height.
+fn template(text: &str, size: f32, bold: bool) -> (Vec<f64>, usize, usize) {
+    let font =
+        FontRef::try_from_slice(if bold { dejavu::sans::bold() } else { dejavu::sans::regular() }).unwrap();
+    let scale = size * font.height_unscaled() / font.units_per_em().unwrap();
+    let scaled = font.as_scaled(scale);
     // White around it belongs to the text: `5` is not found in `55`.
-    let region = [left - 4, top - 2, right + 4, bottom + 2];
-    let values = inside(region).map(|(x, y)| page.darkness(x, y)).collect();
-    (values, region[2] - region[0], region[3] - region[1])
+    let (width, height) = ((text.len() as f32 * size) as usize + 20, 2 * size as usize);
+    let mut page = vec![0.0; width * height];
+    let (mut x, mut last) = (10.0, None);
+    for c in text.chars() {
+        let id = font.glyph_id(c);
+        x += last.map_or(0.0, |last| scaled.kern(last, id));
+        let glyph = Glyph { id, scale: scale.into(), position: point(x, 1.4 * size) };
+        if let Some(outline) = font.outline_glyph(glyph) {
+            let corner = outline.px_bounds().min;
+            outline.draw(|dx, dy, part| {
+                page[(corner.y as usize + dy as usize) * width + corner.x as usize + dx as usize] +=
+                    229.0 * f64::from(part);
+            });
+        }
+        x += scaled.h_advance(id);
+        last = Some(id);
+    }
+    let ink = |(_, v): &(usize, &f64)| **v > 0.0;
+    let places: Vec<usize> = page.iter().enumerate().filter(ink).map(|(i, _)| i).collect();
+    let (left, right) =
+        (places.iter().map(|i| i % width).min().unwrap(), places.iter().map(|i| i % width).max().unwrap());
+    let (top, bottom) = (places[0] / width, places[places.len() - 1] / width);
+    let rows = top - 2..bottom + 3;
+    let values =
+        rows.clone().flat_map(|y| page[y * width + left - 4..y * width + right + 5].to_vec()).collect();
+    (values, right - left + 9, rows.len())
 }
 
 /// The number that is printed with a minus sign of its own.
