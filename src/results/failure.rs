@@ -1,5 +1,8 @@
 //! Why an input or a task gave no result: one line, whatever layer it comes from.
 
+use std::error::Error;
+use std::fmt;
+
 use serde::Serialize;
 
 use crate::constitutive::ConstitutiveError;
@@ -116,6 +119,21 @@ impl Failure {
         }
     }
 }
+
+impl fmt::Display for Failure {
+    /// In one line: place, code, message and what to do, as the command prints it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(place) = &self.place {
+            write!(f, "{place}: ")?;
+        }
+        // A parser may answer in several lines.
+        let message: Vec<&str> = self.message.lines().map(str::trim).collect();
+        write!(f, "{} {}", self.code, message.join(" "))?;
+        self.hint.as_ref().map_or(Ok(()), |hint| write!(f, "; {hint}"))
+    }
+}
+
+impl Error for Failure {}
 
 /// Errors of all layers.
 impl<E: Coded> From<E> for Failure {
