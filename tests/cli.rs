@@ -87,6 +87,29 @@ fn explain_and_list_know_the_codes_and_units() {
     assert!(stdout(&run(&["completions", "bash"])).contains("complete -F"));
 }
 
+/// A page for the command and one for each subcommand; each has the options and the example of its `--help`.
+#[test]
+fn every_command_has_a_manual_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let pages = run(&["man", "-o", folder.path().to_str().unwrap()]);
+    assert_eq!(code(&pages), 0, "{}", stderr(&pages));
+    let help = stdout(&run(&["--help"]));
+    let list = help.split("Commands:\n").nth(1).unwrap().split("\n\n").next().unwrap();
+    let first_words =
+        list.lines().filter(|l| !l.starts_with("    ")).filter_map(|l| l.split_whitespace().next());
+    let commands: Vec<&str> = first_words.filter(|word| *word != "help").collect();
+    assert!(commands.contains(&"run") && commands.contains(&"man"), "{commands:?}");
+    assert_eq!(stdout(&pages).lines().count(), commands.len() + 1);
+    for command in commands {
+        let page = std::fs::read_to_string(folder.path().join(format!("kesf-{command}.1"))).unwrap();
+        assert!(page.contains(".TH") && page.contains("SH SYNOPSIS"), "{page}");
+    }
+    let section = std::fs::read_to_string(folder.path().join("kesf-section.1")).unwrap();
+    assert!(section.contains("kesf section kesf_data/poplin"), "{section}");
+    // A second run may overwrite what the first one wrote.
+    assert_eq!(code(&run(&["man", "-o", folder.path().to_str().unwrap()])), 0);
+}
+
 #[test]
 fn a_published_table_comes_out_as_it_went_in() {
     let sheet = run(&["--json", "characterise", "kesf_data/matsudaira_a_cotton_broad"]);

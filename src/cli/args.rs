@@ -5,7 +5,7 @@ use clap::{Parser, Subcommand};
 use super::global::Global;
 
 use super::{
-    characterise, check, compare, completions, explain, export, list, read, report, run, section, solve,
+    characterise, check, compare, completions, explain, export, list, man, read, report, run, section, solve,
     verify,
 };
 
@@ -39,4 +39,5 @@ pub enum Command {
     List(list::Options),
     Explain(explain::Options),
     Completions(completions::Options),
+    Man(man::Options),
 }

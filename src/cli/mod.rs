@@ -17,6 +17,7 @@ mod global;
 mod inputs;
 mod interrupt;
 mod list;
+mod man;
 mod output;
 mod read;
 mod report;
@@ -72,6 +73,7 @@ fn dispatch(command: &Command, ui: &Ui) -> Result<Exit, Failure> {
         Command::List(options) => list::run(options, ui),
         Command::Explain(options) => explain::run(options, ui),
         Command::Completions(options) => completions::run(options, ui),
+        Command::Man(options) => man::run(options, ui),
     }
 }
 

@@ -141,7 +141,7 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
             "results",
             "run",
         ],
-        &["clap", "clap_complete", "indicatif", "ctrlc", "rayon"],
+        &["clap", "clap_complete", "clap_mangen", "indicatif", "ctrlc", "rayon"],
     ),
 ];
 
