@@ -52,8 +52,8 @@ impl Page {
 
     /// Lines of shell blocks that call the program, with the subcommand.
     pub fn commands_named(&self) -> Vec<(String, String)> {
-        let lines = self.fenced().into_iter().filter(|(info, _)| info == "sh" || info == "console");
-        let lines = lines.flat_map(|(_, lines)| lines);
+        let blocks = self.fenced().into_iter();
+        let lines = blocks.flat_map(|(info, lines)| lines.into_iter().filter(move |l| is_command(&info, l)));
         lines.filter_map(|line| subcommand(&line).map(|word| (line.clone(), word))).collect()
     }
 
@@ -83,6 +83,11 @@ impl Page {
     fn prose(&self) -> String {
         self.text.split("\n```").step_by(2).collect()
     }
+}
+
+/// Whether a line of a block is a command and not what one prints.
+fn is_command(info: &str, line: &str) -> bool {
+    info == "sh" || (info == "console" && line.starts_with("$ "))
 }
 
 /// A path without `..`.
