@@ -12,7 +12,7 @@ use super::inputs::{EvaluateArgs, inputs};
 use super::output::{is_folder, is_stdin, now};
 use super::ui::Ui;
 use crate::report::OutputFolder;
-use crate::report::cards::Target;
+use crate::report::cards::{EXPORTERS, Target, named};
 use crate::report::write::write_file;
 use crate::results::{Card, Failure, cards, sections, write_cards};
 
@@ -45,8 +45,8 @@ pub struct Options {
 }
 
 fn target() -> impl TypedValueParser<Value = Target> {
-    let names = PossibleValuesParser::new(Target::ALL.map(Target::name));
-    names.try_map(|name| Target::named(&name).ok_or("no target of that name"))
+    let names = PossibleValuesParser::new(EXPORTERS.iter().map(|t| t.name));
+    names.try_map(|name| named(&name).ok_or("no target of that name"))
 }
 
 /// `kesf.export/1`: the cards, or where they were written.
@@ -69,7 +69,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         failures.extend(refused);
         Ok::<_, Failure>((cards, failures))
     })?;
-    let document = Document { schema: "kesf.export/1", target: options.to.name(), cards: None, files: None };
+    let document = Document { schema: "kesf.export/1", target: options.to.name, cards: None, files: None };
     if is_stdin(&options.output) && ui.json {
         ui.document(Document { cards: Some(&cards), ..document })?;
         return Ok(Exit::of_batch(cards.len(), &failures));

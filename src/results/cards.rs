@@ -30,7 +30,12 @@ pub fn cards(
     let (mut cards, mut failures) = (Vec::new(), Vec::new());
     for Sectioned { path, sheet, made } in sections {
         match card(target, &Material { sheet, made, stamp }) {
-            Ok(text) => cards.push(Card { fabric: sheet.name.clone(), text }),
+            Ok(card) => {
+                for finding in card.findings {
+                    observer.found(Some(&sheet.name), &finding.at(Place::file(path)));
+                }
+                cards.push(Card { fabric: sheet.name.clone(), text: card.text });
+            }
             Err(error) => {
                 let failure = Failure::from(error).of(&sheet.name).at(Place::file(path));
                 observer.failed(&failure);
@@ -51,7 +56,7 @@ pub fn write_cards(
     let (mut names, mut failures) = (Vec::new(), Vec::new());
     let mut taken = BTreeSet::new();
     for Card { fabric, text } in cards {
-        let name = format!("{}.{}", free_name(fabric, &mut taken), target.ending());
+        let name = format!("{}.{}", free_name(fabric, &mut taken), target.ending);
         match sink.write(&name, text.as_bytes()) {
             Ok(()) => names.push(name),
             Err(error) => {
@@ -78,6 +83,7 @@ fn free_name(name: &str, taken: &mut BTreeSet<String>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::cards::named;
     use crate::results::MemorySink;
 
     #[test]
@@ -85,7 +91,7 @@ mod tests {
         let card = |text: &str| Card { fabric: "poplin".into(), text: text.into() };
         let sink = MemorySink::default();
         let (names, failures) =
-            write_cards(&[card("a"), card("b")], Target::U3m, &sink, &Observer::default());
+            write_cards(&[card("a"), card("b")], named("u3m").unwrap(), &sink, &Observer::default());
         assert_eq!((names, failures), (vec!["poplin.u3m".to_string(), "poplin-2.u3m".into()], Vec::new()));
         assert_eq!(sink.into_files()["poplin-2.u3m"], b"b");
     }

@@ -8,7 +8,7 @@ use super::columns::Columns;
 use crate::finding::explanations;
 use crate::instrument::dialects;
 use crate::quantity::UNITS;
-use crate::report::cards::Target;
+use crate::report::cards::{EXPORTERS, Target};
 use crate::schema;
 
 /// Headings and rows of a list.
@@ -105,9 +105,10 @@ pub fn known_dialects() -> List {
 
 /// Programs that a fabric can be handed to.
 pub fn exports() -> List {
-    let rows =
-        Target::ALL.map(|t| vec![json!(t.name()), json!(format!(".{}", t.ending())), json!(t.title())]);
-    List { headings: &["name", "ending", "what is written"], rows: rows.into() }
+    let row =
+        |t: &Target| vec![json!(t.name), json!(format!(".{}", t.ending)), json!(t.title), json!(t.holds)];
+    let headings = &["name", "ending", "what is written", "what it can hold of a fabric"];
+    List { headings, rows: EXPORTERS.iter().map(row).collect() }
 }
 
 /// Unit symbols with their SI values.

@@ -4,6 +4,7 @@
 //! them. Programs ask the variant and its fields; nothing reads a sentence.
 
 mod evaluation;
+mod exchange;
 mod parts;
 mod reading;
 mod section;
@@ -16,6 +17,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 pub use evaluation::EvaluationFact;
+pub use exchange::ExchangeFact;
 pub use parts::{
     CoarseQuantity, Divisor, Excess, LeftOutLine, Missed, RecordAxis, Renaming, Samples, StripLength, Subject,
 };
@@ -78,6 +80,8 @@ pub enum Fact {
     Study(StudyFact),
     /// Of the task as it was given (`O`).
     Usage(UsageFact),
+    /// Of other programs that read a card (`O`).
+    Exchange(ExchangeFact),
 }
 
 impl Fact {
@@ -89,6 +93,7 @@ impl Fact {
             Self::Section(fact) => fact.code(),
             Self::Study(fact) => fact.code(),
             Self::Usage(fact) => fact.code(),
+            Self::Exchange(fact) => fact.code(),
         }
     }
 
@@ -112,6 +117,7 @@ impl fmt::Display for Fact {
             Self::Section(fact) => fact.fmt(f),
             Self::Study(fact) => fact.fmt(f),
             Self::Usage(fact) => fact.fmt(f),
+            Self::Exchange(fact) => fact.fmt(f),
         }
     }
 }
@@ -131,5 +137,6 @@ groups!(
     Evaluation(EvaluationFact),
     Section(SectionFact),
     Study(StudyFact),
-    Usage(UsageFact)
+    Usage(UsageFact),
+    Exchange(ExchangeFact)
 );

@@ -35,13 +35,13 @@ pub const NO_STIFFNESS: &str = "D_b has a direction without stiffness";
 /// How far within its limits each thickness lies, squared.
 const WITHIN: f64 = 2.0;
 
-/// The laminate with the D_m and D_b of a section.
+/// The laminate with the D_m and D_b of a section, for a program that integrates each layer exactly.
 ///
 /// # Errors
 /// [`CardError::Stiffness`] if some way of bending has no stiffness (H = 0).
-pub fn laminate(section: &ShellSection) -> Result<Laminate, CardError> {
+pub fn laminate(program: &'static str, section: &ShellSection) -> Result<Laminate, CardError> {
     let (a, d) = (section.d_m, 12.0 * section.d_b);
-    let none = |reason| CardError::Stiffness { program: "CalculiX", reason };
+    let none = |reason| CardError::Stiffness { program, reason };
     let root = a.cholesky().ok_or(none("D_m is not positive definite"))?.l();
     let inverse = root.try_inverse().ok_or(none("D_m is singular"))?;
     // Symmetric, with the eigenvalues of a⁻¹ d.

@@ -1,80 +1,100 @@
 //! Fabrics as material files of other programs.
 //!
 //! A card states units, axes, the origin of the data and every assumption. What a program has no place for is left
-//! out and named; no value is invented. Cards are pure text: the same fabric gives the same bytes.
+//! out and told as a finding, with the size of what is lost; no value is invented. Cards are pure text: the same
+//! fabric gives the same bytes.
+//!
+//! A program is one file of this folder with an [`Exporter`], and one line in [`EXPORTERS`].
+//!
+//! | file | program | what it holds of a section |
+//! |---|---|---|
+//! | `abaqus.rs` | Abaqus | all of it |
+//! | `ansys.rs` | Ansys Mechanical APDL | all of it, if it resists twisting |
+//! | `calculix.rs` | CalculiX | all of it, as three layers |
+//! | `kratos.rs` | Kratos Multiphysics | all of it, as three layers |
+//! | `opensees.rs` | OpenSees | all of it, as three layers |
+//! | `lsdyna.rs` | LS-DYNA `*MAT_FABRIC` | tension, shear and mass of a membrane |
+//! | `nastran.rs` | Nastran and MYSTRAN | all of it |
+//! | `mujoco.rs` | MuJoCo 4 | strips along warp and weft; an isotropic sheet |
+//! | `usd.rs` | USD, as newton reads it | strips along warp and weft, shear; an isotropic sheet |
+//! | `newton.rs` | newton, Style3D | tension, shear and bending along warp and weft; torsion on a grid |
+//! | `u3m.rs` | U3M 1.1 | thickness, mass, composition; the rest under `custom` |
 
-mod finite_element;
+mod abaqus;
+mod ansys;
+mod calculix;
+mod constants;
+mod kratos;
 mod laminate;
+mod lsdyna;
+mod mujoco;
+mod nastran;
+mod newton;
+mod opensees;
+pub mod read;
+mod swatch;
+mod text;
 mod u3m;
-
-use std::fmt::Write as _;
-
-use unicode_normalization::UnicodeNormalization;
+mod usd;
 
 pub use laminate::{Laminate, laminate};
 
 use crate::characterise::FabricSheet;
 use crate::constitutive::Constitutive;
-use crate::finding::errors;
-use crate::report::write::hash;
-use crate::section::SectionError;
+use crate::finding::{Finding, errors};
+use crate::section::{SectionError, ShellSection};
 
-/// Programs that a fabric can be handed to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Target {
-    /// Abaqus: `*SHELL GENERAL SECTION`.
-    Abaqus,
-    /// Ansys Mechanical APDL: preintegrated section of SHELL181 and SHELL281.
-    Ansys,
-    /// CalculiX: three layers that have the stiffness of the sheet.
-    Calculix,
-    /// U3M 1.1 material.
-    U3m,
+/// A program that a fabric can be handed to.
+#[derive(Debug)]
+pub struct Exporter {
+    /// The name on the command line.
+    pub name: &'static str,
+    /// Ending of the files that the program expects.
+    pub ending: &'static str,
+    /// What is written, in a line.
+    pub title: &'static str,
+    /// What the material model of the program can and cannot hold of a section.
+    pub holds: &'static str,
+    /// Writes the card of a material with a checked section.
+    write: fn(&Material<'_>, &ShellSection) -> Result<Card, CardError>,
 }
 
-impl Target {
-    /// All of them, by name.
-    pub const ALL: [Self; 4] = [Self::Abaqus, Self::Ansys, Self::Calculix, Self::U3m];
+/// A program of [`EXPORTERS`].
+pub type Target = &'static Exporter;
 
-    /// The name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Abaqus => "abaqus",
-            Self::Ansys => "ansys",
-            Self::Calculix => "calculix",
-            Self::U3m => "u3m",
-        }
-    }
+/// Every program, by name.
+pub static EXPORTERS: &[Target] = &[
+    &abaqus::EXPORTER,
+    &ansys::EXPORTER,
+    &calculix::EXPORTER,
+    &kratos::EXPORTER,
+    &lsdyna::EXPORTER,
+    &mujoco::EXPORTER,
+    &nastran::EXPORTER,
+    &newton::EXPORTER,
+    &opensees::EXPORTER,
+    &u3m::EXPORTER,
+    &usd::EXPORTER,
+];
 
-    /// The target of a name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|t| t.name() == name)
-    }
+/// The target of a name.
+pub fn named(name: &str) -> Option<Target> {
+    EXPORTERS.iter().copied().find(|t| t.name == name)
+}
 
-    /// Ending of the files that the program expects.
-    pub fn ending(self) -> &'static str {
-        match self {
-            Self::Abaqus => "abaqus.inp",
-            Self::Calculix => "calculix.inp",
-            Self::Ansys => "mac",
-            Self::U3m => "u3m",
-        }
-    }
+/// A file for another program.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Card {
+    /// The text of the file.
+    pub text: String,
+    /// What the program cannot hold of the fabric, with the size of what is lost.
+    pub findings: Vec<Finding>,
+}
 
-    /// What is written, in a line.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Abaqus => {
-                "*SHELL GENERAL SECTION, *TRANSVERSE SHEAR STIFFNESS: the matrices as they are; SI"
-            }
-            Self::Ansys => "SECTYPE,,GENS with SSPA, SSPD, SSPE, SSPM: the matrices as they are; SI",
-            Self::Calculix => {
-                "*SHELL SECTION, COMPOSITE of three layers with the same D_m and D_b, for S8R; SI"
-            }
-            Self::U3m => {
-                "U3M 1.1 material: thickness, weight, composition; everything else under custom.kesf"
-            }
-        }
+impl From<String> for Card {
+    /// A card that loses nothing.
+    fn from(text: String) -> Self {
+        Self { text, findings: Vec::new() }
     }
 }
 
@@ -96,9 +116,11 @@ errors! {
              (--torsion huber)";
         /// O041: the document could not be written.
         "O041" Json {
-            /// What it said.
-            problem: String,
-        } = "the U3M document could not be made: {problem}";
+            /// The program.
+            program: &'static str,
+            /// What is wrong.
+            reason: String,
+        } = "the document of {program} could not be made: {reason}";
     }
 }
 
@@ -113,93 +135,13 @@ pub struct Material<'a> {
     pub stamp: Option<&'a str>,
 }
 
-/// The text of a card.
+/// The card of a fabric for a program.
 ///
 /// # Errors
 /// See [`CardError`].
-pub fn card(target: Target, material: &Material<'_>) -> Result<String, CardError> {
+pub fn card(target: Target, material: &Material<'_>) -> Result<Card, CardError> {
     let section = material.made.section.clone().checked()?;
-    match target {
-        Target::Abaqus => Ok(finite_element::abaqus(material, &section)),
-        Target::Ansys => finite_element::ansys(material, &section),
-        Target::Calculix => finite_element::calculix(material, &section),
-        Target::U3m => u3m::document(material),
-    }
-}
-
-/// What every card of a finite-element program begins with, as comments.
-fn preamble(material: &Material<'_>, comment: &str, notes: &[&str]) -> String {
-    let info = &material.sheet.info;
-    let mut lines = vec![
-        format!(
-            "{} ({} data), by kesf {}",
-            material.sheet.name,
-            info.origin.name(),
-            env!("CARGO_PKG_VERSION")
-        ),
-        "SI: m, kg, s, N. Local axis 1 is the warp, 2 the weft. Linear and elastic: no friction, no time."
-            .into(),
-    ];
-    lines.extend(material.stamp.map(|date| format!("date: {date}")));
-    lines.extend(info.source.iter().map(|s| format!("source: {s}")));
-    lines.extend(material.made.used.iter().map(|u| format!("{}: {} ({})", u.name, u.value, u.source)));
-    lines.extend(notes.iter().map(ToString::to_string));
-    let mut text = String::new();
-    for line in lines {
-        for part in wrapped(&ascii(&line)) {
-            let _ = writeln!(text, "{comment} {part}");
-        }
-    }
-    text
-}
-
-/// Text without characters that an input file may not hold.
-fn ascii(text: &str) -> String {
-    let plain = |c: char| match c {
-        '·' | '×' => Some('*'),
-        '–' | '−' => Some('-'),
-        c if c.is_ascii_graphic() || c == ' ' => Some(c),
-        c if c.is_whitespace() => Some(' '),
-        // Accents go, letters stay.
-        c if unicode_normalization::char::is_combining_mark(c) => None,
-        _ => Some('?'),
-    };
-    let greek = text.replace('√', "sqrt").replace('ν', "nu").replace(['µ', 'μ'], "u");
-    greek.nfkd().filter_map(plain).collect()
-}
-
-/// Lines of at most a hundred characters, broken between words.
-fn wrapped(text: &str) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in text.split(' ') {
-        let last = lines.len() - 1;
-        if !lines[last].is_empty() && lines[last].len() + word.len() > 100 {
-            lines.push(format!("  {word}"));
-        } else {
-            let gap = if lines[last].is_empty() { "" } else { " " };
-            lines[last] = format!("{}{gap}{word}", lines[last]);
-        }
-    }
-    lines
-}
-
-/// A name of at most so many characters for a set of elements or a section: capitals, digits and `_`. What had to
-/// change of the fabric's name stands in a tail of digits of its hash, so that two fabrics never share a label.
-fn label(name: &str, longest: usize) -> String {
-    const TAIL: usize = 6;
-    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
-    if name.chars().all(plain) && name.len() <= longest {
-        return name.to_ascii_uppercase();
-    }
-    let safe = ascii(name).to_ascii_uppercase();
-    let safe = safe.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' });
-    let kept: String = safe.take(longest - TAIL).collect();
-    format!("{kept}{}", &hash(name.as_bytes())[..TAIL].to_ascii_uppercase())
-}
-
-/// A number as every input file reads it.
-fn number(value: f64) -> String {
-    format!("{value:.9E}")
+    (target.write)(material, &section)
 }
 
 #[cfg(test)]

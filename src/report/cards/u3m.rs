@@ -7,8 +7,19 @@ use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 use uuid::Builder;
 
-use super::{CardError, Material};
+use super::{Card, CardError, Exporter, Material};
 use crate::report::json::{assumptions, section_document, sheet_document, text};
+
+use crate::section::ShellSection;
+
+/// `kesf export --to u3m`.
+pub static EXPORTER: Exporter = Exporter {
+    name: "u3m",
+    ending: "u3m",
+    title: "U3M 1.1 material: thickness, weight, composition; everything else under custom.kesf",
+    holds: "thickness, mass per area and composition; stiffness stands under `custom`, which other programs pass over.",
+    write: document,
+};
 
 /// Fibres that the format has a word for, beside ours for them.
 const FIBRES: &[(&str, &str)] = &[
@@ -64,8 +75,8 @@ const CONSTRUCTIONS: &[(&str, &str, &str)] = &[
 const NO_DATE: &str = "1970-01-01T00:00:00Z";
 
 /// The document.
-pub fn document(material: &Material<'_>) -> Result<String, CardError> {
-    let wrong = |e: serde_json::Error| CardError::Json { problem: e.to_string() };
+fn document(material: &Material<'_>, _: &ShellSection) -> Result<Card, CardError> {
+    let wrong = |e: serde_json::Error| CardError::Json { program: "U3M", reason: e.to_string() };
     let Material { sheet, made, stamp } = *material;
     let section = section_document([(sheet, &made.section, &made.inputs[..], assumptions(&made.used))]);
     let parameters = serde_json::to_value(sheet_document([sheet], None)).map_err(wrong)?;
@@ -104,7 +115,7 @@ pub fn document(material: &Material<'_>) -> Result<String, CardError> {
         },
         "custom": {"kesf": ours},
     });
-    text(&document).map_err(wrong)
+    Ok(text(&document).map_err(wrong)?.into())
 }
 
 /// A sheet without the samples of its friction laws, which are in `sheet.json`, and without the paths of its files:

@@ -1,0 +1,45 @@
+//! Facts of what other programs make of a fabric.
+
+use crate::quantity::significant;
+
+super::facts! {
+    /// What a reader of a card must know of the program that reads it.
+    ExchangeFact {
+        /// The program has another stiffness than the fabric.
+        "O043" OtherStiffness {
+            /// The program.
+            program: String,
+            /// Which stiffness.
+            what: String,
+            /// That of the program, in `unit`.
+            has: f64,
+            /// That of the fabric, in `unit`.
+            own: f64,
+            /// The unit (SI); empty for a ratio.
+            unit: String,
+        } = "{program} has {what} of {} where the fabric has {} ({})",
+            amount(*has, unit), amount(*own, unit), change(*has, *own);
+        /// The program has no place for a property.
+        "O044" NoPlace {
+            /// The program.
+            program: String,
+            /// The property.
+            what: String,
+        } = "{program} has no place for {what}; the card leaves it out";
+    }
+}
+
+fn amount(value: f64, unit: &str) -> String {
+    let number = significant(value);
+    if unit.is_empty() { number } else { format!("{number} {unit}") }
+}
+
+/// By how much the first differs from the second.
+fn change(has: f64, own: f64) -> String {
+    let off = has / own - 1.0;
+    match own {
+        0.0 => "the fabric has none".to_string(),
+        _ if off.abs() < 1.0 => format!("{:+.1} %", 100.0 * off),
+        _ => format!("{} times as much", significant(has / own)),
+    }
+}

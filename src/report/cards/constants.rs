@@ -1,0 +1,73 @@
+//! Engineering constants of a section, and what a program makes of a sheet that it cannot hold.
+
+use nalgebra::Matrix3;
+
+use crate::finding::{ExchangeFact, Finding};
+use crate::section::ShellSection;
+
+/// What a strip cut along a yarn shows: tensile stiffness and bending rigidity per width, free to contract.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Yarn {
+    /// Tensile stiffness of the strip (N/m).
+    pub tensile: f64,
+    /// Bending rigidity of the strip (N·m).
+    pub bending: f64,
+}
+
+/// The constants that programs without matrices ask for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Constants {
+    /// Strips along warp and weft.
+    pub yarns: [Yarn; 2],
+    /// Geometric mean of the two Poisson ratios of stretching.
+    pub poisson: f64,
+    /// Shear stiffness G (N/m).
+    pub shear: f64,
+    /// Torsional rigidity D66 (N·m).
+    pub torsion: f64,
+}
+
+impl Constants {
+    /// Those of a section.
+    pub fn of(section: &ShellSection) -> Self {
+        let [tensile, bending] = [&section.d_m, &section.d_b].map(uniaxial);
+        let d_m = &section.d_m;
+        Self {
+            yarns: [0, 1].map(|i| Yarn { tensile: tensile[i], bending: bending[i] }),
+            poisson: d_m[(0, 1)] / (d_m[(0, 0)] * d_m[(1, 1)]).sqrt(),
+            shear: d_m[(2, 2)],
+            torsion: section.d_b[(2, 2)],
+        }
+    }
+
+    /// The geometric mean of both strips: what a program without directions is given for a sheet.
+    pub fn mean(&self) -> Yarn {
+        let [warp, weft] = self.yarns;
+        Yarn { tensile: (warp.tensile * weft.tensile).sqrt(), bending: (warp.bending * weft.bending).sqrt() }
+    }
+}
+
+/// `D11 - D12²/D22` and `D22 - D12²/D11`: the stiffness along each axis where the other is free.
+fn uniaxial(d: &Matrix3<f64>) -> [f64; 2] {
+    let coupling = d[(0, 1)] * d[(0, 1)];
+    [d[(0, 0)] - coupling / d[(1, 1)], d[(1, 1)] - coupling / d[(0, 0)]]
+}
+
+/// `E1, E2, ν12, G12` of a plane stress stiffness `[Q11 Q12 0; Q12 Q22 0; 0 0 Q66]`.
+pub fn plane_stress(q: &Matrix3<f64>) -> [f64; 4] {
+    let [e1, e2] = uniaxial(q);
+    [e1, e2, q[(0, 1)] / q[(1, 1)], q[(2, 2)]]
+}
+
+/// O043: a stiffness that a program has for the fabric in the place of the fabric's own, unless the two agree to a
+/// tenth of a percent.
+pub fn lost(program: &str, what: &str, [has, own]: [f64; 2], unit: &str) -> Option<Finding> {
+    let near = (has - own).abs() <= 1e-3 * own.abs();
+    let [program, what, unit] = [program, what, unit].map(String::from);
+    (!near).then(|| Finding::new(ExchangeFact::OtherStiffness { program, what, has, own, unit }))
+}
+
+/// O044: something of the fabric for which a program has no place at all.
+pub fn no_place(program: &str, what: &str) -> Finding {
+    Finding::new(ExchangeFact::NoPlace { program: program.into(), what: what.into() })
+}

