@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use super::exit::Exit;
 use super::ui::Ui;
 use crate::instrument::DIALECT_FILES;
+use crate::report::OutputError;
 use crate::report::write::write_file;
 use crate::results::{Failure, list};
 use crate::schema::{case_reference, schemas};
@@ -67,6 +68,8 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
 }
 
 fn write_schemas(folder: &Path, force: bool) -> Result<Exit, Failure> {
+    std::fs::create_dir_all(folder)
+        .map_err(|source| OutputError::Write { path: folder.to_path_buf(), source })?;
     for file in schemas() {
         write_file(&folder.join(format!("{}.json", file.name)), file.text().as_bytes(), force)?;
     }
