@@ -163,7 +163,11 @@ fn a_mesh_file_is_used_with_its_unit_and_its_groups() {
         solve("shape = \"rectangle\"\nwidth = \"10 cm\"\nheight = \"10 cm\"\ncells = [2, 2]", "left")
             .unwrap();
     assert!((from_file / generated - 1.0).abs() < 1e-12, "{from_file} {generated}");
-    assert!(solve("file = \"part.msh\"", "held").unwrap_err().to_string().contains("unit = \"mm\""));
+    let text = format!(
+        "{head}[sheet]\nfile = \"part.msh\"\n[[supports]]\nset = \"held\"\nkind = \"clamped\"\n{rest}"
+    );
+    let error = Case::parse(&folder.path().join("c.toml"), &text).unwrap_err().to_string();
+    assert!(error.contains("unit = \"mm\""), "{error}");
 }
 
 /// `[[rigid]]` end to end: a clamped strip whose end is a rigid clamp about its middle. Turned through 0.1 rad
@@ -221,7 +225,7 @@ kind = "clamped"
     assert!(
         first("mass = \"averaged\"") > first("") && first("mass = \"averaged\"") < first("lumped = false")
     );
-    let both = solve(&modal("mass = \"lumped\"\nlumped = true")).unwrap_err();
+    let both = parse(&modal("mass = \"lumped\"\nlumped = true")).unwrap_err();
     assert!(both.to_string().contains("remove `lumped`"), "{both}");
 }
 

@@ -91,8 +91,8 @@ fn a_check_that_fails_and_a_set_that_is_missing_are_told_with_their_line() {
     let problems = fs::read_to_string(here.join("out/problems.csv")).unwrap();
     assert!(problems.contains("c.toml:18:12,S122"), "{problems}");
     for (from, to, expected) in [
-        ("0.02", "inf", "c.toml:18:12: S003"),
-        ("0.02", "-0.5", "c.toml:18:12: S003"),
+        ("0.02", "inf", "c.toml:20:22: S003"),
+        ("0.02", "-0.5", "c.toml:20:22: S003"),
         ("boundary", "nowhere", "c.toml:9:7: M007"),
         ("1e-6 Pa", "1e-6 m", "c.toml:13:9: S002"),
         ("value = \"1e-6 Pa\"\n", "", "c.toml:11:1: S002 missing field `value`"),

@@ -12,7 +12,12 @@ use kesf::study::{Case, CaseResult, PreparedCase, Status, StudyError, section, s
 
 /// A strip of cloth 20 x 1 cm along x, clamped on the left, in plane strain.
 fn strip(analysis: &str, load: &str) -> Case {
-    let text = format!(
+    let text = text_of(analysis, load);
+    Case::parse(Path::new("strip.toml"), &text).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn text_of(analysis: &str, load: &str) -> String {
+    format!(
         r#"title = "strip"
 [section]
 tensile_warp = "600 N/m"
@@ -45,8 +50,7 @@ at = ["20 cm", "5 mm"]
 [analysis]
 {analysis}
 "#
-    );
-    Case::parse(Path::new("strip.toml"), &text).unwrap_or_else(|e| panic!("{e}"))
+    )
 }
 
 const WEIGHT: &str = "kind = \"gravity\"";
@@ -219,8 +223,8 @@ fn a_strip_falls_and_the_linear_finding_names_the_cure() {
 #[test]
 fn keys_that_a_method_does_not_have_are_refused() {
     let refused = |analysis: &str, load: &str| -> StudyError {
-        let case = strip(analysis, load);
-        solve_case(&case, cloth(&case), &Options::default()).unwrap_err()
+        let case = Case::parse(Path::new("strip.toml"), &text_of(analysis, load)).map_err(StudyError::from);
+        case.and_then(|case| solve_case(&case, cloth(&case), &Options::default())).unwrap_err()
     };
     for analysis in [
         "method = \"flow\"\nfirst_step = 0.1",

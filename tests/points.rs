@@ -6,7 +6,7 @@
 use kesf::fields::{cells, warp_directions};
 use kesf::model::Load;
 use kesf::solve::{self, Options};
-use kesf::study::{Case, CaseResult, StudyError, section, solve_case};
+use kesf::study::{Case, CaseError, CaseResult, StudyError, section, solve_case};
 use nalgebra::Vector3;
 
 /// An isotropic sheet of t = 1 mm and D = 1 N·m with a Poisson ratio.
@@ -25,12 +25,16 @@ fn constants(nu: f64) -> String {
 }
 
 fn case(nu: f64, sheet: [f64; 2], cells: [usize; 2], rest: &str) -> Case {
+    parsed(nu, sheet, cells, rest).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn parsed(nu: f64, sheet: [f64; 2], cells: [usize; 2], rest: &str) -> Result<Case, CaseError> {
     let [width, height] = sheet;
     let text = format!(
         "{}[sheet]\nshape = \"rectangle\"\nwidth = \"{width} m\"\nheight = \"{height} m\"\ncells = {cells:?}\n{rest}",
         constants(nu)
     );
-    Case::parse(std::path::Path::new("inline.toml"), &text).unwrap_or_else(|e| panic!("{e}"))
+    Case::parse(std::path::Path::new("inline.toml"), &text)
 }
 
 fn solved(case: &Case) -> Result<CaseResult, StudyError> {
@@ -39,11 +43,14 @@ fn solved(case: &Case) -> Result<CaseResult, StudyError> {
 
 /// A simply supported square under a force of 1 µN.
 fn pressed(cells: usize, place: &str) -> Case {
-    let rest = format!(
+    case(0.3, [1.0, 1.0], [cells, cells], &press(place))
+}
+
+fn press(place: &str) -> String {
+    format!(
         "[[supports]]\nset = \"boundary\"\nkind = \"simply_supported\"\n[[loads]]\nkind = \"point\"\n{place}\n\
          value = \"1e-6 N\"\ndirection = [0, 0, 1]\n[[probes]]\nname = \"there\"\nat = [\"0.5 m\", \"0.5 m\"]\n"
-    );
-    case(0.3, [1.0, 1.0], [cells, cells], &rest)
+    )
 }
 
 #[test]
@@ -78,7 +85,10 @@ fn a_force_between_nodes_does_its_work_and_bends_the_plate() {
 
 #[test]
 fn places_of_a_point_load_that_make_no_sense_are_refused() {
-    let refused = |place: &str| solved(&pressed(4, place)).unwrap_err().to_string();
+    let refused = |place: &str| {
+        let case = parsed(0.3, [1.0, 1.0], [4, 4], &press(place));
+        case.map_err(StudyError::from).and_then(|case| solved(&case)).unwrap_err().to_string()
+    };
     let outside = refused("at = [\"1.5 m\", \"0.5 m\"]");
     assert!(outside.contains("point load at (1.5, 0.5) m lies outside the sheet"), "{outside}");
     assert!(outside.contains("is 0.5000 m away") && !outside.contains("third"), "{outside}");

@@ -196,6 +196,17 @@ impl Outline {
 }
 
 impl SheetTable {
+    /// The ring of a drape of the table at a node, and what it has beside its outline.
+    pub fn ring(&self, at: &Node<'_>) -> Result<(Annulus, Layout), CaseError> {
+        if self.shape != Some(Shape::Annulus) {
+            return refused(
+                at.value_place("shape"),
+                "a drape needs a [sheet] of shape = \"annulus\" with inner_diameter (the disc), diameter and cells",
+            );
+        }
+        Ok((self.annulus(at)?, self.layout(at)?))
+    }
+
     /// The sheet of the table at a node.
     pub fn sheet(&self, at: &Node<'_>) -> Result<Sheet, CaseError> {
         let outline = match (self.shape, &self.file) {
@@ -208,13 +219,16 @@ impl SheetTable {
                 return refused(at.place(), "[sheet] needs either `shape` or `file`, and not both");
             }
         };
-        let layout = Layout {
+        Ok(Sheet { outline, layout: self.layout(at)?, table: at.located(()) })
+    }
+
+    fn layout(&self, at: &Node<'_>) -> Result<Layout, CaseError> {
+        Ok(Layout {
             warp: self.warp(at)?,
             inside_radius: self.inside_radius.map(|r| at.located_at("inside_radius", r)),
             distortion: self.distortion,
             seed: self.seed,
-        };
-        Ok(Sheet { outline, layout, table: at.located(()) })
+        })
     }
 
     fn warp(&self, at: &Node<'_>) -> Result<Warp, CaseError> {
@@ -260,41 +274,55 @@ impl SheetTable {
     }
 
     fn outline(&self, shape: Shape, at: &Node<'_>) -> Result<Outline, CaseError> {
+        let need = |value, key| needed(value, key, shape, at);
+        match shape {
+            Shape::Rectangle | Shape::Strip => {
+                let cells = self.cells(shape, &["unit", "grading", "diameter", "inner_diameter"], at)?;
+                let size = [need(self.width, "width")?, need(self.height, "height")?];
+                Ok(Outline::Rectangle { size, cells })
+            }
+            Shape::Disc => {
+                let unused = ["unit", "grading", "width", "height", "inner_diameter"];
+                let [a, b] = self.cells(shape, &unused, at)?;
+                if a != b {
+                    let message = "cells of a disc: give one number twice, such as [16, 16]";
+                    return refused(at.value_place("cells"), message);
+                }
+                Ok(Outline::Disc { diameter: need(self.diameter, "diameter")?, cells: a })
+            }
+            Shape::Annulus => self.annulus(at).map(Outline::Annulus),
+        }
+    }
+
+    fn annulus(&self, at: &Node<'_>) -> Result<Annulus, CaseError> {
+        let cells = self.cells(Shape::Annulus, &["unit", "width", "height"], at)?;
+        Ok(Annulus {
+            inner_diameter: needed(self.inner_diameter, "inner_diameter", Shape::Annulus, at)?,
+            diameter: needed(self.diameter, "diameter", Shape::Annulus, at)?,
+            cells,
+            grading: self.grading.unwrap_or(1.0),
+        })
+    }
+
+    /// The cells of an outline, which has no use for some keys.
+    fn cells(&self, shape: Shape, unused: &[&str], at: &Node<'_>) -> Result<[usize; 2], CaseError> {
         let word = shape.word();
-        let need = |value: Option<Length>, key: &str| match value {
-            Some(length) => Ok(length),
-            None => refused(at.place(), format!("[sheet] shape = \"{word}\" needs `{key}`")),
-        };
-        let Some(cells) = self.cells else {
-            let message = format!("[sheet] shape = \"{word}\" needs `cells`, such as [40, 40]");
-            return refused(at.place(), message);
-        };
-        let unused: &[&str] = match shape {
-            Shape::Rectangle | Shape::Strip => &["unit", "grading", "diameter", "inner_diameter"],
-            Shape::Disc => &["unit", "grading", "width", "height", "inner_diameter"],
-            Shape::Annulus => &["unit", "width", "height"],
-        };
         if let Some(key) = unused.iter().find(|key| at.has(key)) {
             let message = format!("[sheet] shape = \"{word}\" does not use `{key}`: remove it");
             return refused(at.key_place(key), message);
         }
-        Ok(match shape {
-            Shape::Rectangle | Shape::Strip => {
-                Outline::Rectangle { size: [need(self.width, "width")?, need(self.height, "height")?], cells }
+        match self.cells {
+            Some(cells) => Ok(cells),
+            None => {
+                refused(at.place(), format!("[sheet] shape = \"{word}\" needs `cells`, such as [40, 40]"))
             }
-            Shape::Disc if cells[0] == cells[1] => {
-                Outline::Disc { diameter: need(self.diameter, "diameter")?, cells: cells[0] }
-            }
-            Shape::Disc => {
-                let message = "cells of a disc: give one number twice, such as [16, 16]";
-                return refused(at.value_place("cells"), message);
-            }
-            Shape::Annulus => Outline::Annulus(Annulus {
-                inner_diameter: need(self.inner_diameter, "inner_diameter")?,
-                diameter: need(self.diameter, "diameter")?,
-                cells,
-                grading: self.grading.unwrap_or(1.0),
-            }),
-        })
+        }
+    }
+}
+
+fn needed(value: Option<Length>, key: &str, shape: Shape, at: &Node<'_>) -> Result<Length, CaseError> {
+    match value {
+        Some(length) => Ok(length),
+        None => refused(at.place(), format!("[sheet] shape = \"{}\" needs `{key}`", shape.word())),
     }
 }

@@ -10,7 +10,7 @@ use super::error::refused;
 use super::loads::{LoadTable, SheetLoad, SheetLoads};
 use super::material::{FabricMaterial, Material, SectionTable, check_assumptions};
 use super::problem::{DrapeProblem, InstrumentTest, Mounting, Problem, SheetProblem, ShellSpecimen};
-use super::sheet::{Outline, Sheet, SheetTable};
+use super::sheet::{Sheet, SheetTable};
 use super::virtual_test::VirtualTestTable;
 use super::{CaseError, CaseTable};
 use crate::element::Formulation;
@@ -59,27 +59,32 @@ impl CaseTable {
             against_sampling: (!analysis.can_be_sampled()).then_some(LINEAR_BANDS),
         };
         let material = self.material(case, &abilities)?;
-        let sheet = table.sheet(at)?;
+        let of_sheet = at;
         let at = case.get("analysis").unwrap_or(*case);
-        let analysis = match analysis {
+        let (sheet, analysis) = match analysis {
             AnalysisTable::Drape(drape) => {
-                return self.drape_problem(case, material, sheet, drape).map(Problem::Drape);
+                return self.drape_problem(case, material, (table, of_sheet), drape).map(Problem::Drape);
             }
             AnalysisTable::Linear(_) => {
-                Analysis::Linear(Linear { loads: loads(case)?, coarser: self.coarser(case, &sheet)? })
+                let sheet = table.sheet(of_sheet)?;
+                let linear = Linear { loads: loads(case)?, coarser: self.coarser(case, &sheet)? };
+                (sheet, Analysis::Linear(linear))
             }
-            AnalysisTable::Modal(table) => {
+            AnalysisTable::Modal(modal) => {
+                let sheet = table.sheet(of_sheet)?;
+                let (modes, mass) = modal.checked(&at)?;
                 foreign(case, &["loads"], "a modal analysis has no loads: remove [[loads]]")?;
-                let (modes, mass) = table.checked(&at)?;
-                Analysis::Modal(Modal { modes, mass, coarser: self.coarser(case, &sheet)? })
+                let coarser = self.coarser(case, &sheet)?;
+                (sheet, Analysis::Modal(Modal { modes, mass, coarser }))
             }
-            AnalysisTable::Newmark(table) => {
+            AnalysisTable::Newmark(newmark) => {
                 foreign(case, &["convergence"], NO_CONVERGENCE)?;
-                Analysis::Newmark(table.checked(&at, loads(case)?)?)
+                (table.sheet(of_sheet)?, Analysis::Newmark(newmark.checked(&at, loads(case)?)?))
             }
-            AnalysisTable::Nonlinear(table) => {
+            AnalysisTable::Nonlinear(nonlinear) => {
                 foreign(case, &["convergence"], NO_CONVERGENCE)?;
-                Analysis::Nonlinear(Box::new(table.checked(&at, loads(case)?)?))
+                let nonlinear = Box::new(nonlinear.checked(&at, loads(case)?)?);
+                (table.sheet(of_sheet)?, Analysis::Nonlinear(nonlinear))
             }
         };
         let problem = self.sheet_problem(case, material, sheet, analysis)?;
@@ -267,7 +272,7 @@ impl CaseTable {
         &self,
         case: &Node<'_>,
         material: Material,
-        sheet: Sheet,
+        (sheet, of_sheet): (&SheetTable, &Node<'_>),
         drape: DrapeTable,
     ) -> Result<DrapeProblem, CaseError> {
         let at = case.get("analysis").unwrap_or(*case);
@@ -275,12 +280,7 @@ impl CaseTable {
             return refused(at.value_place("folds"), "folds = []: give at least one number");
         }
         foreign(case, &["convergence"], NO_CONVERGENCE)?;
-        let Outline::Annulus(ring) = sheet.outline else {
-            return refused(
-                case.get("sheet").unwrap_or(*case).value_place("shape"),
-                "a drape needs a [sheet] of shape = \"annulus\" with inner_diameter (the disc), diameter and cells",
-            );
-        };
+        let (ring, layout) = sheet.ring(of_sheet)?;
         let message = "a drape has no [[probes]] and no [[checks]]: remove them";
         foreign(case, &["probes", "checks"], message)?;
         let message =
@@ -298,8 +298,8 @@ impl CaseTable {
         Ok(DrapeProblem {
             material,
             ring,
-            layout: sheet.layout,
-            table: sheet.table,
+            layout,
+            table: of_sheet.located(()),
             mounting,
             gravity: weight(case)?,
             folds: drape.folds,

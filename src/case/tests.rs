@@ -150,7 +150,7 @@ fn what_is_refused_stands_where_it_is_written() {
         with("[assumptions]\nlaw = @\"friction\"\n"),
         good.replace("width", "@diameter = \"1 m\"\nwidth"),
         good.replace("[sheet]", "@[sheet]").replace("height = \"20 cm\"\n", ""),
-        good.replace("[sheet]", "@[[loads]]\nkind = \"gravity\"\n[analysis]\nkind = \"modal\"\n[sheet]"),
+        good.replace("[sheet]", "[[@loads]]\nkind = \"gravity\"\n[analysis]\nkind = \"modal\"\n[sheet]"),
         fabric("[virtual_test]\ntest = \"compression\"\n@cells = [4, 4]\n"),
         fabric("[virtual_test]\ntest = \"bending\"\n[[@probes]]\nname = \"p\"\nat = [\"1 m\", \"1 m\"]\n"),
         fabric("[bending_test]\ntest = \"heart_loop\"\nlength = @\"0 cm\"\n"),

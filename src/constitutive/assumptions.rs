@@ -20,9 +20,9 @@ use crate::quantity::{ArealDensity, BendingRigidity, Curvature, Length, LineForc
 #[serde(default, deny_unknown_fields)]
 pub struct Assumptions {
     /// Which slope of the tensile curve is the modulus; `tangent_low`. A window must be among the
-    /// moduli that the sheet was characterised with ([`crate::characterise::Settings::moduli`]).
+    /// moduli that the sheet was characterised with (`moduli` of the settings).
     pub modulus: Modulus,
-    /// Poisson's ratio; 0.3. No KES test measures it, and the seed's value cannot be read in the
+    /// Poisson's ratio; 0.3. No KES test measures it, and the value of Nguyen-Trong et al. cannot be read in the
     /// copy at hand; 0.3 is the middle of what is customary for woven cloth.
     pub poisson: f64,
     /// How one ratio becomes two; `geometric`.
@@ -31,7 +31,7 @@ pub struct Assumptions {
     /// Where the torsional rigidity D66 comes from; `huber`.
     #[schemars(extend("default" = "huber"))]
     pub torsion: Torsion,
-    /// The coupling D12 of D_b; 0, as in the seed.
+    /// The coupling D12 of D_b; 0, as in Nguyen-Trong et al.
     #[schemars(extend("default" = 0), extend("examples" = [0.2, "1e-6 N·m"]))]
     pub bending_coupling: BendingCoupling,
     /// Where the transverse shear stiffness comes from; `in_plane`.
@@ -48,8 +48,10 @@ pub struct Assumptions {
     /// Stands in for a tensile modulus (N/m) that the sheet lacks; 5000 N/m, the secant of a
     /// fabric that stretches by about 10 % at 500 gf/cm. Linear bending of a flat sheet does not
     /// depend on it.
+    #[schemars(extend("default" = "5000 N/m"))]
     pub tensile: LineForce,
     /// Stands in for a shear stiffness G (N/m) that the sheet lacks; 56.188 N/m = 1 gf/(cm·deg).
+    #[schemars(extend("default" = "56.18796562 N/m"))]
     pub shear: LineForce,
     /// The tension W across the specimen of the shear test, whose share W tan φ is in the G of the sheet and is taken
     /// off for D_m; 0, as published G contain it and D_m = G is customary. KES-FB1 has 10 gf/cm. For
@@ -57,6 +59,7 @@ pub struct Assumptions {
     pub shear_tension: LineForce,
     /// Stands in for a thickness that the sheet lacks; 0.4 mm. No stiffness depends on it unless
     /// `torsion = "shear"`.
+    #[schemars(extend("default" = "0.4 mm"))]
     pub thickness: Length,
     /// Stands in for an areal density that the sheet lacks; none, because own weight depends on it.
     pub areal_density: Option<ArealDensity>,

@@ -34,9 +34,13 @@ folds = [3, 5]
 "#;
 
 fn case(b: f64, from: &str, to: &str) -> Case {
+    Case::parse(Path::new("drape.toml"), &text_of(b, from, to)).unwrap()
+}
+
+fn text_of(b: f64, from: &str, to: &str) -> String {
     let text = CASE.replace("BEND", &format!("{b} N·m")).replace("TWIST", &format!("{} N·m", 0.5 * b));
     assert!(text.contains(from));
-    Case::parse(Path::new("drape.toml"), &text.replace(from, to)).unwrap()
+    text.replace(from, to)
 }
 
 fn run(case: &Case) -> Drape {
@@ -125,9 +129,12 @@ fn a_drape_can_be_stopped() {
 #[test]
 fn what_is_no_drape_is_refused() {
     let refused = |from, to| {
-        let case = case(1e-5, from, to);
-        let section = build::section(case.section().unwrap()).unwrap();
-        drape(&case, &section, None, &Options::default(), Watch::default()).unwrap_err().to_string()
+        let text = text_of(1e-5, from, to);
+        let solved = Case::parse(Path::new("drape.toml"), &text).map_err(StudyError::from).and_then(|case| {
+            let section = build::section(case.section().unwrap()).unwrap();
+            drape(&case, &section, None, &Options::default(), Watch::default())
+        });
+        solved.unwrap_err().to_string()
     };
     assert!(refused("folds = [3, 5]", "folds = []").contains("S003"));
     assert!(
