@@ -1,11 +1,11 @@
 //! Axes: the scale that takes the numbers of a column to the SI axis of its test.
 
-use super::curves::positive;
+use super::curves::{positive, size};
 use super::dialect::Key;
 use super::error::{Problem, ReadError};
 use super::layout::{Column, Context, Entry, Header};
 use super::sniff::folded;
-use super::words::{is_volt, known_unit};
+use super::unit_text::{is_volt, known_unit};
 use super::{Conditions, Test};
 use crate::finding::{Divisor, Finding, Place, ReadFact};
 use crate::kes::specimen::FOOT_AREA;
@@ -127,7 +127,8 @@ impl Axes<'_> {
     /// What is said of a column that was divided by a dimension which nobody stated.
     pub fn assumed(&self, column: &Column, axis: Axis) -> Option<Finding> {
         let by = axis.by.filter(|key| {
-            !self.header.known.contains_key(key) && !self.context.conditions.states(self.test, *key)
+            let by_size = *key != Key::Area && size(self.header, self.context).is_some();
+            !by_size && !self.header.known.contains_key(key) && !self.context.conditions.states(self.test, *key)
         })?;
         // The same for all columns of a kind: one finding a file.
         let (dimension, value, test) = match by {
@@ -135,8 +136,22 @@ impl Axes<'_> {
             Key::Gauge => (Divisor::Gauge, self.conditions.gauge, Some(self.test)),
             _ => (Divisor::Width, self.conditions.width, None),
         };
-        let fact = ReadFact::AssumedDimension { dimension, value, test };
+        let not_understood = self.lengths_not_understood();
+        let fact = ReadFact::AssumedDimension { dimension, value, test, not_understood };
         Some(Finding::new(fact).at(Place::at(self.context.path, column.line, 0)))
+    }
+
+    /// Header lines of unknown words whose values are lengths or areas, for people: what was not understood is not denied.
+    fn lengths_not_understood(&self) -> Vec<String> {
+        let is_size = |text: &str| {
+            let text = folded(text).replace(',', ".");
+            let last = text.rsplit(['x', '×']).next().unwrap_or_default().trim().to_string();
+            parse_quantity(&last, "5 cm").is_ok_and(|(_, u)| u.dimension == LENGTH || u.dimension == AREA)
+        };
+        let known = |key: &String| self.context.vocabulary.key(key).is_some();
+        let size = self.header.known.get(&Key::Size).map(|e| e.text.clone());
+        let other = self.header.other.iter().filter(|(key, value)| !known(key) && is_size(value));
+        other.map(|(key, value)| format!("{key}: {value}")).chain(size).collect()
     }
 
     /// Area of the compression foot: the header, else 2 cm².

@@ -26,7 +26,25 @@ pub(super) fn tabbed(text: &str) -> Option<String> {
         rows += usize::from(numbers);
         split_gaps(line, if numbers { 1 } else { 2 }, &mut out);
     }
-    (rows >= ROWS).then_some(out)
+    if rows >= ROWS { Some(out) } else { by_gaps(text) }
+}
+
+/// A table with words in its rows: cells stand apart by two blanks or more, and every row of values has as many of them.
+fn by_gaps(text: &str) -> Option<String> {
+    let cells = |line: &str| line.trim().split("  ").filter(|c| !c.trim().is_empty()).count();
+    let has_number = |line: &str| line.split_whitespace().any(|c| matches!(number(c, '.'), Number::Value(_)));
+    let mut counts: Vec<usize> = text.lines().filter(|l| has_number(l)).map(cells).filter(|n| *n > 1).collect();
+    counts.sort_unstable();
+    let usual = *counts.get(counts.len() / 2)?;
+    // A hole in a row of values would shift the cells behind it; header lines hold two cells.
+    let whole = counts.iter().all(|n| *n == usual || *n == 2);
+    let rows = counts.iter().filter(|n| **n == usual).count();
+    if !whole || rows < ROWS || usual < 2 {
+        return None;
+    }
+    let mut out = String::with_capacity(text.len());
+    text.split_inclusive('\n').for_each(|line| split_gaps(line, 2, &mut out));
+    Some(out)
 }
 
 /// Copies a line, with a tab in place of the last blank of each gap of at least so many blanks.

@@ -9,7 +9,7 @@ use super::layout::{Context, Entry, Header, Pair};
 use super::raw::Row;
 use super::sniff::{Number, folded, number};
 use super::told;
-use super::words::SPECIMENS;
+use super::label::SPECIMENS;
 use super::{Conditions, Direction, Measurement, Source, Test};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::quantity::{Angle, Curvature, Curve, Length, LineForce, Pressure, QuantityError};
@@ -36,7 +36,12 @@ pub(super) fn measurement(
         told::scaled(&pair.x, x, test.axes()[0]),
         told::scaled(&pair.y, y, test.axes()[1])
     ));
-    let points = points(pair, rows, ends_file, context)?;
+    let mut points = points(pair, rows, ends_file, context)?;
+    if let Some((bx, by)) = &pair.back {
+        let back = Pair { x: bx.clone(), y: by.clone(), back: None, header: header.clone() };
+        points.join(self::points(&back, rows, ends_file, context)?);
+        log.push(format!("{:?} and {:?} are the branches of one curve", pair.y.name, by.name));
+    }
     if points.rows.is_empty() {
         return Ok(None);
     }
@@ -51,13 +56,22 @@ pub(super) fn measurement(
     let mut findings = points.findings;
     findings
         .extend([(&pair.x, x_axis), (&pair.y, y_axis)].into_iter().filter_map(|(c, a)| axes.assumed(c, a)));
+    if direction.is_some() && !header.known.contains_key(&Key::Direction) {
+        let place = Place::at(context.path, pair.x.line, 0);
+        findings.push(Finding::new(ReadFact::DirectionFromName {}).at(place));
+    }
     if let (Some(stated), Some(named)) = (direction, context.label.direction)
         && stated != named
     {
         let fact = ReadFact::TwoDirections { header: stated, file_name: named };
         findings.push(Finding::new(fact).at(Place::at(context.path, pair.x.line, 0)));
     }
-    let curve = Curve::from_points(points.rows.iter().map(|&(_, a, b)| (x.apply(a), y.apply(b))));
+    let mut curve = Curve::from_points(points.rows.iter().map(|&(_, a, b)| (x.apply(a), y.apply(b))));
+    if is_opposite(test, &curve) {
+        curve.y.iter_mut().for_each(|v| *v = 0.0 - *v);
+        let fact = ReadFact::SignTurned { ordinate: pair.y.name.clone(), abscissa: pair.x.name.clone() };
+        findings.push(Finding::new(fact).at(Place::at(context.path, pair.y.line, 0)));
+    }
     // A width of 1e-300 m or a range of 1e300 V is no slip that any number survives.
     if let Some(i) = curve.points().position(|(x, y)| !(x.is_finite() && y.is_finite())) {
         let found = format!("{} or {} in SI", points.rows[i].1, points.rows[i].2);
@@ -143,10 +157,35 @@ fn direction(pair: &Pair, context: &Context<'_>) -> Result<Direction, ReadError>
             let reason = format!("{:?} is not a direction (warp, weft or bias)", entry.text);
             context.error(entry.line, entry.column, Problem::BadValue { key: "direction".into(), reason })
         }),
-        None => context
-            .label
-            .direction
-            .ok_or_else(|| context.error(pair.x.line, pair.x.column, Problem::DirectionMissing)),
+        None => {
+            if let Some([a, b]) = context.label.conflict {
+                let reason = format!("the name of the file says {a} and {b}, and the header says nothing");
+                let problem = Problem::BadValue { key: "direction".into(), reason };
+                return Err(context.error(pair.x.line, pair.x.column, problem));
+            }
+            let named = context.label.direction;
+            named.ok_or_else(|| context.error(pair.x.line, pair.x.column, Problem::DirectionMissing))
+        }
+    }
+}
+
+/// Whether the ordinate is counted the other way round: cloth resists, so that moment and shear force rise with curvature
+/// and angle, and tension and pressure are not negative throughout.
+fn is_opposite(test: Test, curve: &Curve) -> bool {
+    match test {
+        Test::Bending | Test::Shear => {
+            let n = curve.len() as f64;
+            let (mx, my) = (curve.x.iter().sum::<f64>() / n, curve.y.iter().sum::<f64>() / n);
+            let sum = |f: fn(f64, f64) -> f64| curve.points().map(|(x, y)| f(x - mx, y - my)).sum::<f64>();
+            let (xy, xx, yy) = (sum(|a, b| a * b), sum(|a, _| a * a), sum(|_, b| b * b));
+            // A loop that is all hysteresis has no slope to tell.
+            xy < -0.5 * (xx * yy).sqrt()
+        }
+        Test::Tensile | Test::Compression => {
+            let low = curve.y.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = curve.y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            low < 0.0 && high < 0.05 * low.abs()
+        }
     }
 }
 
@@ -171,6 +210,10 @@ fn conditions(
     log: &mut Vec<String>,
 ) -> Result<Conditions, ReadError> {
     let mut c = context.conditions.over_standard(test);
+    if let Some((width, gauge)) = size(header, context) {
+        c.width = width;
+        c.gauge = if test == Test::Compression { c.gauge } else { gauge };
+    }
     let value = |key: Key, name: &str| quantity_of::<Length>(header, key, name, "mm", context);
     if let Some(width) = value(Key::Width, "width")? {
         c.width = positive(width.si(), Key::Width, header, context)?;
@@ -208,6 +251,20 @@ fn conditions(
         log.push(format!("header lines that no dialect knows, kept as text: {}", unknown.join(", ")));
     }
     Ok(c)
+}
+
+/// Width and distance between the jaws (m) of `20 x 5 cm`: the specimen is wide and short.
+pub(super) fn size(header: &Header, context: &Context<'_>) -> Option<(f64, f64)> {
+    let entry = header.known.get(&Key::Size)?;
+    let text = folded(&entry.text).replace(['×', 'X', '*'], "x");
+    let (first, second) = text.split_once('x')?;
+    let mark = |t: &str| if context.decimal == ',' { t.replace(',', ".") } else { t.to_string() };
+    let second = mark(second.trim());
+    let unit: String = second.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.' || c == ' ').to_string();
+    let first = mark(first.trim());
+    let first = if first.ends_with(|c: char| c.is_ascii_digit()) { format!("{first} {unit}") } else { first };
+    let length = |t: &str| t.parse::<Length>().ok().map(Length::si).filter(|v| *v > f64::MIN_POSITIVE);
+    Some((length(&first)?, length(&second)?))
 }
 
 /// The axis that has a set maximum.
@@ -277,6 +334,19 @@ struct Points {
     /// Line, abscissa, ordinate, in the units of the file.
     rows: Vec<(usize, f64, f64)>,
     findings: Vec<Finding>,
+}
+
+impl Points {
+    /// Adds the unloading branch, whichever way round its rows stand: it begins where loading ended.
+    fn join(&mut self, mut back: Points) {
+        if let (Some(end), Some(first), Some(last)) = (self.rows.last(), back.rows.first(), back.rows.last())
+            && (last.1 - end.1).abs() < (first.1 - end.1).abs()
+        {
+            back.rows.reverse();
+        }
+        self.rows.append(&mut back.rows);
+        self.findings.append(&mut back.findings);
+    }
 }
 
 /// The numbers of a pair. Rows in which both cells are empty belong to longer neighbours.

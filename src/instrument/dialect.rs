@@ -73,6 +73,8 @@ pub enum Key {
     Width,
     /// Distance between jaws or clamps.
     Gauge,
+    /// Width and distance between the jaws in one: `20 x 5 cm`.
+    Size,
     /// Area of the compression foot.
     Area,
     /// Set maximum of the drive or load.
@@ -127,6 +129,16 @@ pub enum Statistic {
     Other,
 }
 
+/// Which way the drive goes in a column that holds one branch of a curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BranchColumn {
+    /// Loading.
+    Loading,
+    /// Unloading.
+    Unloading,
+}
+
 /// The words and marks of one kind of file. A laboratory with a layout of its own writes one.
 ///
 /// Words are compared after NFKC in lower case, without accents, blanks and punctuation.
@@ -168,6 +180,9 @@ pub struct Dialect {
     /// Words of tests.
     #[serde(deserialize_with = "words")]
     pub tests: BTreeMap<Test, Vec<String>>,
+    /// Words of columns that hold one branch of a curve.
+    #[serde(deserialize_with = "words")]
+    pub branches: BTreeMap<BranchColumn, Vec<String>>,
     /// Heading words of result tables.
     #[serde(deserialize_with = "words")]
     pub table: BTreeMap<TableColumn, Vec<String>>,
@@ -237,11 +252,22 @@ pub fn dialects() -> &'static [Dialect] {
     })
 }
 
-/// The texts of the built-in dialects: examples for dialect files of one's own.
-pub const DIALECT_FILES: [&str; 3] = [
-    include_str!("dialects/kesf.toml"),
-    include_str!("dialects/kes-japanese.toml"),
-    include_str!("dialects/kes-european.toml"),
+/// The texts of the built-in dialects, one file for each language: examples for dialect files of one's own.
+pub const DIALECT_FILES: [&str; 14] = [
+    include_str!("dialects/english.toml"),
+    include_str!("dialects/japanese.toml"),
+    include_str!("dialects/portuguese.toml"),
+    include_str!("dialects/german.toml"),
+    include_str!("dialects/french.toml"),
+    include_str!("dialects/italian.toml"),
+    include_str!("dialects/spanish.toml"),
+    include_str!("dialects/dutch.toml"),
+    include_str!("dialects/polish.toml"),
+    include_str!("dialects/czech.toml"),
+    include_str!("dialects/turkish.toml"),
+    include_str!("dialects/chinese.toml"),
+    include_str!("dialects/chinese-traditional.toml"),
+    include_str!("dialects/korean.toml"),
 ];
 
 #[cfg(test)]

@@ -6,7 +6,8 @@
 //! 100 gf/cm and thickness at 2 and 100 gf/cm² are taken at other loads than EMT, T0 and Tm.
 
 use super::sniff::folded;
-use super::words::{normalised, split_unit};
+use super::unit_text::split_unit;
+use super::words::normalised;
 use super::{Direction, Parameter};
 
 /// A FAST value from which a KES parameter follows.
@@ -58,7 +59,8 @@ pub(super) fn heading(cell: &str) -> Option<(FastValue, Option<Direction>, Optio
     let (name, unit) = split_unit(&text);
     let (symbol, direction) = with_direction(&name);
     let value = match normalised(symbol).as_str() {
-        "c" | "bendinglength" => FastValue::BendingLength,
+        "c" if symbol.trim().eq_ignore_ascii_case("c") => FastValue::BendingLength,
+        "bendinglength" => FastValue::BendingLength,
         "eb5" => FastValue::Eb5,
         _ => return None,
     };

@@ -22,7 +22,7 @@ pub struct Batch {
 /// File names that hold measurements; a folder's other files are none of ours.
 const EXTENSIONS: &[&str] = &[
     "csv", "tsv", "txt", "dat", "asc", "prn", "kes", "fb1", "fb2", "fb3", "xlsx", "xlsm", "xls", "ods",
-    "json", "u3m",
+    "htm", "html", "zip", "json", "u3m",
 ];
 /// Files that are read by one thread: starting more takes longer.
 const FEW: usize = 16;
@@ -208,6 +208,14 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>, ReadError> {
 fn is_hidden(path: &Path) -> bool {
     // `~$` is the lock file of an open workbook.
     path.file_name().is_none_or(|n| n.to_string_lossy().starts_with(['.', '~']))
+}
+
+/// Whether a name in an archive is that of a file that may hold measurements.
+pub(super) fn is_data_name(name: &str) -> bool {
+    let path = Path::new(name);
+    let lower = |part: Option<&std::ffi::OsStr>| part.map(|p| p.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let hidden = name.split('/').any(|part| part.starts_with(['.', '~']) || part == "__MACOSX");
+    !hidden && EXTENSIONS.contains(&lower(path.extension()).as_str()) && !ABOUT.contains(&lower(path.file_stem()).as_str())
 }
 
 fn is_data(path: &Path) -> bool {

@@ -6,16 +6,19 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use super::column_name::ColumnName;
 use super::conditions::StatedConditions;
 use super::dialect::{Dialect, Key, Role};
 use super::error::{Problem, ReadError};
-use super::heading;
 use super::pairs;
 use super::raw::Row;
 use super::sniff::{Number, folded, number};
+use super::shape::{self, Region};
 use super::suggest;
-use super::words::{Label, Vocabulary, is_volt, split_unit, unit};
-use crate::finding::{Finding, Place};
+use super::label::Label;
+use super::unit_text::{is_volt, split_unit, unit};
+use super::vocabulary::Vocabulary;
+use crate::finding::{Finding, Place, ReadFact};
 
 /// What is known of a file before its rows are read.
 pub(super) struct Context<'a> {
@@ -67,6 +70,8 @@ pub(super) struct Column {
     pub unit: Option<String>,
     pub line: usize,
     pub column: usize,
+    /// Direction, specimen and branch that its name states.
+    pub says: ColumnName,
 }
 
 /// The two columns of one curve and the header that holds for it.
@@ -74,13 +79,15 @@ pub(super) struct Column {
 pub(super) struct Pair {
     pub x: Column,
     pub y: Column,
+    /// Abscissa and ordinate of the unloading branch, where it has columns of its own.
+    pub back: Option<(Column, Column)>,
     pub header: Header,
 }
 
 /// A part of the file that holds values.
 pub(super) enum Block<'t> {
     Curves { pairs: Vec<Pair>, rows: Vec<&'t Row<'t>> },
-    Table { header: Header, heading: &'t Row<'t>, rows: Vec<&'t Row<'t>> },
+    Table { header: Header, region: Region<'t> },
 }
 
 /// Splits rows into blocks, with what was noticed on the way.
@@ -92,7 +99,7 @@ pub(super) fn blocks<'t>(
     context: &Context<'_>,
 ) -> Result<(Vec<Block<'t>>, Vec<Finding>), ReadError> {
     let (header, lists, findings) = (Header::default(), Vec::new(), Vec::new());
-    let mut scanner = Scanner { rows, context, at: 0, header, lists, findings };
+    let mut scanner = Scanner { rows, context, at: 0, header, lists, labels: Vec::new(), findings };
     let mut blocks = Vec::new();
     let mut words: Vec<String> = Vec::new();
     while let Some(row) = rows.get(scanner.at) {
@@ -100,8 +107,12 @@ pub(super) fn blocks<'t>(
             scanner.at += 1;
         } else if let Some(columns) = scanner.headings(row) {
             blocks.push(scanner.curves(columns)?);
-        } else if heading::is_heading(row, context.vocabulary) {
-            blocks.push(scanner.table());
+        } else if let Some((region, end)) = shape::region(rows, scanner.at, context) {
+            scanner.at = end;
+            // What stood over columns of curves before is over.
+            scanner.lists.clear();
+            scanner.labels.clear();
+            blocks.push(Block::Table { header: scanner.header.clone(), region });
         } else if scanner.labels(row) {
             scanner.at += 1;
         } else if is_numeric(row, context.decimal) {
@@ -129,6 +140,8 @@ pub(super) struct Scanner<'t, 'a> {
     pub(super) header: Header,
     /// Header lines with several values, one for each column pair of the next headings.
     pub(super) lists: Vec<(Key, Vec<Entry>)>,
+    /// Rows of labels over the columns of the next headings, each with the index of its cell.
+    pub(super) labels: Vec<Vec<(usize, Label, Entry)>>,
     /// Curves that were left out.
     pub(super) findings: Vec<Finding>,
 }
@@ -138,14 +151,15 @@ impl<'t> Scanner<'t, '_> {
     fn headings(&self, row: &Row<'_>) -> Option<Vec<Column>> {
         let column = |(index, cell): (usize, &super::raw::Cell<'_>)| {
             let (name, unit) = split_unit(&cell.text);
-            let role = self.context.vocabulary.role(&name)?;
-            Some(Column { index, role, name, unit, line: row.line, column: cell.column })
+            let says = ColumnName::of(&name, self.context.vocabulary);
+            let role = says.role?;
+            Some(Column { index, role, name, unit, line: row.line, column: cell.column, says })
         };
         let columns: Vec<Column> = row.filled().filter_map(column).collect();
         let abscissa = columns.iter().any(|c| c.role.is_abscissa());
         let ordinate = columns.iter().any(|c| !c.role.is_abscissa() && c.role != Role::Ignored);
         // A result table may have columns named thickness and pressure too; then it has symbols.
-        let curve = abscissa && ordinate && !heading::is_heading(row, self.context.vocabulary);
+        let curve = abscissa && ordinate && !shape::has_symbols(row, self.context);
         let curve = curve || self.half_pair(row, &columns);
         if curve {
             return Some(columns);
@@ -177,6 +191,7 @@ impl<'t> Scanner<'t, '_> {
             unit: None,
             line: row.line,
             column: row.column(index),
+            says: ColumnName::default(),
         };
         Some(order.iter().enumerate().map(column).collect())
     }
@@ -187,12 +202,58 @@ impl<'t> Scanner<'t, '_> {
             self.at += 1;
             self.unit_row(&mut columns);
         }
-        let rows = self.data_rows(&columns);
+        let mut rows = self.data_rows(&columns);
+        while let Some(next) = self.next_page(heading, &rows, &columns) {
+            self.at = next;
+            rows.extend(self.data_rows(&columns));
+        }
         self.check_width(heading, &rows)?;
         let mut pairs = self.pairs(columns)?;
         self.distribute(&mut pairs)?;
         self.leave_out_statistics(&mut pairs);
         Ok(Block::Curves { pairs, rows })
+    }
+
+    /// The first row behind headings that stand once more, where the curves below go on: pages repeat the headings.
+    /// Curves that begin anew are other specimens.
+    fn next_page(&mut self, heading: &Row<'_>, rows: &[&Row<'_>], columns: &[Column]) -> Option<usize> {
+        let mut at = self.at;
+        while self.rows.get(at)?.is_blank() {
+            at += 1;
+        }
+        let same = |a: &Row<'_>, b: &Row<'_>| a.cells.iter().map(|c| &c.text).eq(b.cells.iter().map(|c| &c.text));
+        if is_numeric(heading, self.context.decimal) || !same(heading, self.rows.get(at)?) {
+            return None;
+        }
+        // A row of units below the headings stands again, too.
+        let first = self.rows.iter().position(|r| r.line == heading.line)?;
+        let units = self.rows.get(first + 1).filter(|r| rows.first().is_some_and(|d| d.line > r.line) && !r.is_blank());
+        at += 1;
+        if let (Some(units), Some(row)) = (units, self.rows.get(at)) {
+            at += usize::from(same(units, row));
+        }
+        let below = self.rows[at..].iter().find(|r| !r.is_blank())?;
+        let x = columns.iter().find(|c| c.role.is_abscissa())?;
+        let number = |r: &Row<'_>| match r.get(x.index).map(|c| number(c, self.context.decimal)) {
+            Some(Number::Value(v)) => Some(v),
+            _ => None,
+        };
+        let before: Vec<f64> = rows.iter().filter_map(|r| number(r)).collect();
+        let (start, last, next) = (*before.first()?, *before.last()?, number(below)?);
+        let step = before.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0f64, f64::max);
+        // Half a cycle that goes on to the other side is not over.
+        let second = self.rows[at..].iter().filter(|r| !r.is_blank()).nth(1).and_then(number).unwrap_or(next);
+        let side = |v: f64| if (v - start).abs() <= step { 0.0 } else { (v - start).signum() };
+        let sides: Vec<f64> = before.iter().map(|v| side(*v)).filter(|s| *s != 0.0).collect();
+        let one_sided = sides.windows(2).all(|w| w[0] == w[1]);
+        let beyond = (second - start) * sides.first().copied().unwrap_or(0.0) < 0.0;
+        let closed = (last - start).abs() <= step && !(one_sided && beyond);
+        let goes_on = (next - last).abs() <= 2.0 * step;
+        if goes_on && closed {
+            let place = Place::at(self.context.path, below.line, 0);
+            self.findings.push(Finding::new(ReadFact::HeadingsAgain {}).at(place));
+        }
+        (goes_on && !closed).then_some(at)
     }
 
     /// A row of units below headings that have none.
@@ -288,52 +349,22 @@ impl<'t> Scanner<'t, '_> {
         Err(self.context.error(row.line, row.column(named), problem))
     }
 
-    fn table(&mut self) -> Block<'t> {
-        let heading = &self.rows[self.at];
-        self.at += 1;
-        let start = self.at;
-        while self.rows.get(self.at).is_some_and(|r| !r.is_blank()) {
-            self.at += 1;
-        }
-        // A fabric may be called #12: a remark stands alone in its row.
-        let is_remark =
-            |r: &&Row<'_>| r.get(0).is_some_and(|t| t.starts_with('#')) && r.filled().count() == 1;
-        let rows = self.rows[start..self.at].iter().filter(|r| !is_remark(r)).collect();
-        Block::Table { header: self.header.clone(), heading, rows }
-    }
-
-    /// A row of labels over column blocks: `1,,2,,3`, `経-1 … 経-2` or `試料番号 1 … 試料番号 2`.
+    /// A row of labels over column blocks: `1,,2,,3`, `経-1 … 経-2`, `Warp,,Weft` or `試料番号 1 … 試料番号 2`.
     fn labels(&mut self, row: &Row<'_>) -> bool {
-        let labels: Vec<(Label, Entry)> = row
-            .filled()
-            .map(|(_, c)| {
-                let entry = Entry { text: folded(&c.text).into_owned(), line: row.line, column: c.column };
-                (Label::parse(&c.text, self.context.vocabulary), entry)
-            })
-            .collect();
-        let vocabulary = self.context.vocabulary;
-        let is_mean = |e: &Entry| pairs::of_label(&e.text, vocabulary).is_some();
-        let is_number = |l: &Label| l.specimen.is_some() && l.sample.is_none();
-        // Specimens come first: `maximum,2.5 1/cm` is a header line.
-        let complete = labels.first().is_some_and(|(l, _)| is_number(l))
-            && labels.iter().all(|(l, e)| is_number(l) || is_mean(e));
-        let above = self.rows[self.at + 1..].iter().find(|r| !r.is_blank());
-        if labels.len() < 2 || !complete || above.is_none_or(|r| self.headings(r).is_none()) {
+        let label = |(index, c): (usize, &super::raw::Cell<'_>)| {
+            let entry = Entry { text: folded(&c.text).into_owned(), line: row.line, column: c.column };
+            (index, Label::parse(&c.text, self.context.vocabulary), entry)
+        };
+        let labels: Vec<(usize, Label, Entry)> = row.filled().map(label).collect();
+        let is_mean = |e: &Entry| pairs::of_label(&e.text, self.context.vocabulary).is_some();
+        // Specimens and directions come first: `maximum,2.5 1/cm` is a header line, and so is `direction,warp`.
+        let complete = labels.first().is_some_and(|(_, l, _)| l.is_plain())
+            && labels.iter().all(|(_, l, e)| l.is_plain() || is_mean(e));
+        let below = || self.rows[self.at + 1..].iter().filter(|r| !r.is_blank()).take(2);
+        if labels.len() < 2 || !complete || !below().any(|r| self.headings(r).is_some()) {
             return false;
         }
-        let with = |text: String, e: &Entry| Entry { text, ..e.clone() };
-        let number =
-            |(l, e): &(Label, Entry)| l.specimen.map_or_else(|| e.clone(), |n| with(n.to_string(), e));
-        self.lists.push((Key::Specimen, labels.iter().map(number).collect()));
-        // A mean is left out, whatever its direction.
-        let any = labels.iter().find_map(|(l, _)| l.direction);
-        let direction = |(l, e): &(Label, Entry)| {
-            l.direction.or(any.filter(|_| is_mean(e))).map(|d| with(d.to_string(), e))
-        };
-        let directions: Vec<Entry> = labels.iter().filter_map(direction).collect();
-        if directions.len() == labels.len() {
-            self.lists.push((Key::Direction, directions));
-        }
+        self.labels.push(labels);
         true
     }
 
@@ -395,7 +426,13 @@ impl<'t> Scanner<'t, '_> {
             *value = format!("{value} {unit_text}");
         }
         let entry = |(text, column): (String, usize)| Entry { text, line, column };
-        match (self.context.vocabulary.key(&plain), values.len()) {
+        // "Sens" is a range in English and the direction in French: the value tells.
+        let is_direction = |t: &str| self.context.vocabulary.direction_exactly(t).is_some();
+        let key = match (self.context.vocabulary.key(&plain), &values[..]) {
+            (Some(Key::Sens), [(value, _)]) if is_direction(value) => Some(Key::Direction),
+            (key, _) => key,
+        };
+        match (key, values.len()) {
             (Some(Key::Remark) | None, _) => {
                 let text: Vec<String> = values.into_iter().map(|(t, _)| t).collect();
                 self.header.other.insert(plain, text.join(", "));

@@ -6,26 +6,34 @@
 
 mod axis;
 mod blanks;
+mod column_name;
 mod conditions;
 mod curves;
 mod dialect;
 mod error;
 pub mod fab;
 mod fabric_file;
+mod facets;
 mod fast;
 mod folder;
-mod heading;
+mod label;
 mod layout;
 mod limits;
+mod marks;
 mod measurement;
 mod pairs;
 mod raw;
 mod read;
 mod result_table;
+mod shape;
 mod sniff;
 mod statistic;
 mod suggest;
 mod told;
+mod unit_text;
+mod value;
+mod vocabulary;
+mod web_page;
 mod words;
 mod workbook;
 
@@ -34,7 +42,7 @@ pub use conditions::{
     BendingConditions, CompressionConditions, ShearConditions, StatedConditions, TensileConditions,
     standard_conditions,
 };
-pub use dialect::{DIALECT_FILES, Dialect, Key, Role, Statistic, TableColumn, dialects};
+pub use dialect::{BranchColumn, DIALECT_FILES, Dialect, Key, Role, Statistic, TableColumn, dialects};
 pub use error::{About, Problem, ReadError};
 pub(crate) use fabric_file::FabricFile;
 pub use fabric_file::read_dialect;

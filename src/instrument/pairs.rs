@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::dialect::{Key, Role, Statistic};
+use super::dialect::{BranchColumn, Key, Role, Statistic};
 use super::error::{Problem, ReadError};
-use super::layout::{Column, Pair, Scanner};
+use super::label::Label;
+use super::layout::{Column, Entry, Pair, Scanner};
 use super::statistic::{self, Kinds};
-use super::words::Vocabulary;
+use super::vocabulary::Vocabulary;
 
 /// Abscissa and ordinate, as far as they were met.
 type Halves = (Option<Column>, Option<Column>);
@@ -24,6 +25,55 @@ impl Pair {
 /// How a label over a curve sums up others: `Mean`, `経 平均`; with a number it is a specimen's.
 pub(super) fn of_label(label: &str, vocabulary: Vocabulary<'_>) -> Option<Statistic> {
     if label.contains(|c: char| c.is_ascii_digit()) { None } else { vocabulary.statistic_within(label) }
+}
+
+/// Pairs of a loading and an unloading branch are one curve.
+fn joined(pairs: Vec<Pair>) -> Vec<Pair> {
+    let mut out: Vec<Pair> = Vec::with_capacity(pairs.len());
+    let branch = |c: &Column| c.says.branch;
+    for pair in pairs {
+        let of = (pair.y.says.direction, pair.y.says.specimen);
+        let loading = out.last_mut().filter(|before| {
+            before.back.is_none()
+                && branch(&before.y) == Some(BranchColumn::Loading)
+                && branch(&pair.y) == Some(BranchColumn::Unloading)
+                && before.y.role == pair.y.role
+                && (before.y.says.direction, before.y.says.specimen) == of
+        });
+        match loading {
+            Some(before) => before.back = Some((pair.x, pair.y)),
+            None => out.push(pair),
+        }
+    }
+    out
+}
+
+/// Gives every curve the label that stands over its columns, or to the left of them where heads are merged.
+fn label(pairs: &mut [Pair], labels: &[(usize, Label, Entry)], vocabulary: Vocabulary<'_>) {
+    let each = labels.len() == pairs.len();
+    // A mean is left out, whatever its direction.
+    let any = labels.iter().find_map(|(_, l, _)| l.direction);
+    for (i, pair) in pairs.iter_mut().enumerate() {
+        let left = pair.x.index.min(pair.y.index);
+        let at = if each { Some(i) } else { labels.iter().rposition(|(index, ..)| *index <= left.max(pair.y.index.min(left + 1))) };
+        let Some((_, l, entry)) = at.and_then(|i| labels.get(i)) else { continue };
+        let with = |text: String| Entry { text, ..entry.clone() };
+        let is_mean = of_label(&entry.text, vocabulary).is_some();
+        let number = l.specimen.map(|n| n.to_string()).or_else(|| is_mean.then(|| entry.text.clone()));
+        pair.header.known.extend(number.map(|t| (Key::Specimen, with(t))));
+        let direction = l.direction.or(any.filter(|_| is_mean)).map(|d| d.to_string());
+        pair.header.known.extend(direction.map(|t| (Key::Direction, with(t))));
+    }
+}
+
+/// Direction and specimen that the names of the columns state.
+fn named_in_heads(pair: &mut Pair) {
+    let (x, y) = (&pair.x.says, &pair.y.says);
+    let entry = |text: String| Entry { text, line: pair.y.line, column: pair.y.column };
+    let direction = y.direction.or(x.direction).map(|d| entry(d.to_string()));
+    let specimen = y.specimen.or(x.specimen).map(|n| entry(n.to_string()));
+    pair.header.known.extend(direction.map(|e| (Key::Direction, e)));
+    pair.header.known.extend(specimen.map(|e| (Key::Specimen, e)));
 }
 
 impl Scanner<'_, '_> {
@@ -47,12 +97,13 @@ impl Scanner<'_, '_> {
             self.leave_out_halves(&mut halves);
         }
         let pair = |(x, y): Halves| match (x.or(first.clone()), y) {
-            (Some(x), Some(y)) => Ok(Pair { x, y, header: self.header.clone() }),
+            (Some(x), Some(y)) => Ok(Pair { x, y, back: None, header: self.header.clone() }),
             (Some(c), None) => Err(self.lacks(&c, "an ordinate (force, moment or pressure)")),
             (None, Some(c)) => Err(self.lacks(&c, "an abscissa (strain, angle, curvature or thickness)")),
             (None, None) => Err(self.context.error(0, 0, Problem::Empty)),
         };
-        halves.into_iter().map(pair).collect()
+        let pairs: Vec<Pair> = halves.into_iter().map(pair).collect::<Result<_, _>>()?;
+        Ok(joined(pairs))
     }
 
     /// Leaves out a mean beside whole pairs that has no abscissa, or no ordinate, of its own.
@@ -89,6 +140,10 @@ impl Scanner<'_, '_> {
                 pair.header.known.insert(key, entry);
             }
         }
+        for labels in std::mem::take(&mut self.labels) {
+            label(pairs, &labels, self.context.vocabulary);
+        }
+        pairs.iter_mut().for_each(named_in_heads);
         Ok(())
     }
 

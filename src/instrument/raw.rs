@@ -2,9 +2,13 @@
 
 use std::borrow::Cow;
 
-use encoding_rs::{Encoding, SHIFT_JIS, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
+use encoding_rs::{
+    BIG5, EUC_JP, EUC_KR, Encoding, GB18030, ISO_2022_JP, SHIFT_JIS, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1250, WINDOWS_1252,
+    WINDOWS_1254,
+};
 
 use super::error::Problem;
+use super::vocabulary::known_letters;
 
 /// Decoded text and the name of the encoding that was decided.
 pub(super) struct Text {
@@ -101,12 +105,55 @@ fn guess(bytes: &[u8]) -> (&'static Encoding, &'static str) {
     const NULS: &str = "every second byte is NUL";
     let nuls = |offset: usize| bytes.iter().skip(offset).step_by(2).take(2000).filter(|&&b| b == 0).count();
     match (std::str::from_utf8(bytes).is_ok(), nuls(0), nuls(1)) {
+        (true, 0, 0) if bytes.is_ascii() && has_escapes(bytes) => (ISO_2022_JP, "its escape sequences"),
         (true, 0, 0) if bytes.is_ascii() => (UTF_8, "plain ASCII"),
         (true, 0, 0) => (UTF_8, "the bytes are valid UTF-8"),
         // ASCII characters of UTF-16 have a NUL in every second byte, always on the same side.
         (_, even, odd) if odd > 10 * even && odd > 3 => (UTF_16LE, NULS),
         (_, even, odd) if even > 10 * odd && even > 3 => (UTF_16BE, NULS),
         (true, ..) => (UTF_8, "the bytes are valid UTF-8"),
+        _ => by_words(bytes),
+    }
+}
+
+/// The escapes by which ISO-2022-JP changes its character set.
+fn has_escapes(bytes: &[u8]) -> bool {
+    bytes.windows(3).any(|w| matches!(w, b"\x1b$B" | b"\x1b$@" | b"\x1b(J"))
+}
+
+/// Encodings that laboratories have besides Unicode, and what they are called in messages.
+const OLD: [(&Encoding, &str); 8] = [
+    (SHIFT_JIS, "not UTF-8, and its words are known in Japanese"),
+    (WINDOWS_1252, "not UTF-8, and its words are known in this Western encoding"),
+    (EUC_JP, "not UTF-8, and its words are known in Japanese"),
+    (GB18030, "not UTF-8, and its words are known in Chinese"),
+    (BIG5, "not UTF-8, and its words are known in traditional Chinese"),
+    (EUC_KR, "not UTF-8, and its words are known in Korean"),
+    (WINDOWS_1250, "not UTF-8, and its words are known in this Central European encoding"),
+    (WINDOWS_1254, "not UTF-8, and its words are known in Turkish"),
+];
+/// Bytes of lines that are looked at for words.
+const SAMPLE: usize = 16_384;
+
+/// The encoding in which most letters belong to known words; without any, by the byte pairs.
+fn by_words(bytes: &[u8]) -> (&'static Encoding, &'static str) {
+    let mut lines: Vec<u8> = Vec::new();
+    // A line end is the same byte in all of them.
+    for line in bytes.split_inclusive(|b| *b == b'\n').filter(|l| !l.is_ascii()) {
+        lines.extend(line);
+        if lines.len() > SAMPLE {
+            break;
+        }
+    }
+    let known = |encoding: &'static Encoding| {
+        let whole = encoding.decode_without_bom_handling_and_without_replacement(bytes);
+        whole.and_then(|_| encoding.decode_without_bom_handling_and_without_replacement(&lines).map(|t| known_letters(&t)))
+    };
+    let scores = OLD.iter().map(|(e, why)| (known(e).unwrap_or(0), *e, *why));
+    // Among equals the first.
+    let best = scores.reduce(|a, b| if b.0 > a.0 { b } else { a });
+    match best {
+        Some((score, encoding, why)) if score > 0 => (encoding, why),
         _ if looks_japanese(bytes) => (SHIFT_JIS, "not UTF-8, and the byte pairs are Japanese"),
         _ => (WINDOWS_1252, "not UTF-8 and not Japanese"),
     }
@@ -154,7 +201,7 @@ pub(super) fn rows(text: &str, delimiter: char) -> Vec<Row<'_>> {
         .collect()
 }
 
-fn cells(line: &str, delimiter: char) -> Vec<Cell<'_>> {
+pub(super) fn cells(line: &str, delimiter: char) -> Vec<Cell<'_>> {
     let mut out = Vec::new();
     let (mut rest, mut column) = (line, 1);
     let plain = !line.contains('"');

@@ -15,8 +15,10 @@ use super::layout::{self, Block, Context, Header};
 use super::raw::{self, Row};
 use super::result_table::{self, Values};
 use super::sniff::{Sniffed, sniff};
-use super::words::{Label, Vocabulary};
-use super::workbook;
+use super::label::Label;
+use super::vocabulary::Vocabulary;
+use super::workbook::{self, Archive};
+use super::{limits, web_page};
 use super::{Measurement, Parameter, ResultValue, Source};
 use crate::finding::{Fact, Finding, Place, ReadFact};
 use crate::quantity::ArealDensity;
@@ -76,7 +78,11 @@ pub fn parse(path: &Path, bytes: &[u8], settings: &ReadSettings) -> Result<FileC
         ..Source::default()
     };
     let mut content = FileContent { source, ..FileContent::default() };
-    let reader = if workbook::is_workbook(bytes) { sheets } else { text };
+    let reader = match workbook::archive(bytes) {
+        Some(Archive::Files) => archive,
+        _ if workbook::is_workbook(bytes) => sheets,
+        _ => text,
+    };
     if let Err(mut error) = reader(path, bytes, settings, &mut content) {
         content.inference.append(&mut error.about.inference);
         error.about.inference = content.inference;
@@ -116,6 +122,12 @@ fn text(
         (content.fab, content.findings) = (Some(file), findings);
         return Ok(());
     }
+    if web_page::is_page(&text) {
+        content.inference.push("a web page or XML workbook: its tables are read".to_string());
+        let rows = web_page::rows(&text).map_err(|p| error((0, 0, p)))?;
+        let decimal = settings.decimal.or(dialect.and_then(|d| d.decimal)).unwrap_or_else(|| workbook::mark(&rows));
+        return table(&rows, &context(path, settings, dialect, '\t', decimal), true, content);
+    }
     let delimiter = settings.delimiter.or(dialect.and_then(|d| d.delimiter));
     let decimal = settings.decimal.or(dialect.and_then(|d| d.decimal));
     let mut sniffed = sniff(&text, delimiter, decimal);
@@ -152,8 +164,16 @@ fn context<'a>(
         decimal,
         kes_units: settings.kes_units || dialect.is_some_and(|d| d.kes_units),
         conditions: settings.conditions.or(&of_dialect),
-        label: path.file_stem().map(|s| Label::parse(&s.to_string_lossy(), vocabulary)).unwrap_or_default(),
+        label: label(path, vocabulary),
     }
+}
+
+/// What the name of a file says; of `lab.zip[warp/FB2_1.csv]` that of the file within.
+fn label(path: &Path, vocabulary: Vocabulary<'_>) -> Label {
+    let name = path.to_string_lossy();
+    let within = name.strip_suffix(']').and_then(|n| n.split_once('[')).map(|(_, inner)| PathBuf::from(inner));
+    let stem = within.as_deref().unwrap_or(path).file_stem().map(|s| s.to_string_lossy().into_owned());
+    stem.map(|s| Label::parse(&s, vocabulary)).unwrap_or_default()
 }
 
 /// A workbook: every sheet is a table, and its name may carry metadata as a file name does.
@@ -165,7 +185,10 @@ fn sheets(
 ) -> Result<(), ReadError> {
     let error = |problem| ReadError::new(Place::file(path), problem);
     let decimal = settings.decimal.or_else(|| settings.dialects.iter().find_map(|d| d.decimal));
-    let (sheets, decimal) = workbook::sheets(bytes, decimal).map_err(error)?;
+    let workbook::Book { sheets, decimal, hidden } = workbook::sheets(bytes, decimal).map_err(error)?;
+    if !hidden.is_empty() {
+        content.findings.push(Finding::new(ReadFact::HiddenCells { hidden }).at(Place::file(path)));
+    }
     let several = sheets.len() > 1;
     for sheet in &sheets {
         // The place of a cell needs its sheet: `book.xlsx[sheet]:line:column`.
@@ -185,6 +208,36 @@ fn sheets(
     }
     if content.measurements.is_empty() && content.results.is_empty() {
         return Err(error(Problem::Empty));
+    }
+    Ok(())
+}
+
+/// An archive of files: each is read by itself, and a bad one costs itself only.
+fn archive(
+    path: &Path,
+    bytes: &[u8],
+    settings: &ReadSettings,
+    content: &mut FileContent,
+) -> Result<(), ReadError> {
+    let error = |problem| ReadError::new(Place::file(path), problem);
+    limits::archive(bytes).map_err(error)?;
+    for (name, inner) in workbook::files(bytes).map_err(error)? {
+        let at = PathBuf::from(format!("{}[{name}]", path.display()));
+        match parse(&at, &inner, settings) {
+            Ok(file) => {
+                content.inference.push(format!("{name} in the archive:"));
+                content.inference.extend(file.inference);
+                content.measurements.extend(file.measurements);
+                content.results.extend(file.results);
+                content.findings.extend(file.findings);
+                content.failures.extend(file.failures);
+                content.fab = content.fab.take().or(file.fab);
+            }
+            Err(e) => content.failures.push(e),
+        }
+    }
+    if content.measurements.is_empty() && content.results.is_empty() && content.fab.is_none() {
+        return Err(content.failures.drain(..).next().unwrap_or_else(|| error(Problem::Empty)));
     }
     Ok(())
 }
@@ -225,8 +278,8 @@ fn table(
                     return Err(context.error(line, column, Problem::Empty));
                 }
             }
-            Block::Table { header, heading, rows } => {
-                let read = result_table::read(&header, heading, &rows, context, &mut content.inference)?;
+            Block::Table { header, region } => {
+                let read = result_table::read(&header, &region, context, &mut content.inference)?;
                 content.results.extend(read.values);
                 content.findings.extend(read.findings);
                 content.failures.extend(read.failures);

@@ -1,27 +1,31 @@
-//! Result tables: the KES symbols as columns (wide) or as rows (long).
+//! Result tables: KES symbols across or down, with directions, specimens, units and statistics in any cell.
 //!
-//! `fabric,direction,B (gf·cm²/cm),2HB (gf·cm/cm)`, `id,B_warp_uN_m,EMT_weft_percent_inferred`,
-//! `parameter,unit,warp,weft` and `fabric,parameter,direction,mean,sd,n,unit` are all read.
+//! Every cell of words is read for what it says ([`Facets`]); a value is then what its column, its row, the title of its
+//! section and the lines above the table say together. So `fabric,direction,B (gf·cm²/cm)`, `id,B_warp_uN_m`, two rows of
+//! heads, `parameter,unit,warp,weft`, `1 2 3 AVE` under WARP and WEFT and one row for each value are one kind of table.
 
 mod fast_cells;
+mod layout;
+mod repeats;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use fast_cells::FastCell;
+use layout::{Column, Layout};
 
-use super::curves::finite;
-use super::dialect::{Statistic, TableColumn};
+use super::dialect::{Key, Statistic, TableColumn};
 use super::error::{Problem, ReadError};
-use super::fast;
-use super::heading::{self, Column, ParameterColumn, columns, parameter_column};
+use super::facets::Facets;
 use super::layout::{Context, Header};
 use super::raw::Row;
+use super::shape::{self, Region};
 use super::sniff::{Number, folded, number};
-use super::statistic::{self, RowLabel, summing_up};
-use super::words::{known_unit, normalised, unit};
+use super::unit_text::known_unit;
+use super::value::{is_gap, value};
+use super::words::normalised;
 use super::{Direction, Parameter, ResultValue};
 use crate::finding::{Finding, Place, ReadFact};
-use crate::quantity::{Estimate, Unit};
+use crate::quantity::{Unit, divides_by_length};
 
 /// Values with the fabric that each belongs to.
 pub(super) type Values = Vec<(Option<String>, ResultValue)>;
@@ -35,58 +39,88 @@ pub(super) struct Contents {
     pub failures: Vec<ReadError>,
 }
 
-/// Reads the rows of a table. In a table of several fabrics a bad row leaves out its own fabric only.
+/// One number of the table, SI, with all that is said of it.
+#[derive(Clone, Debug)]
+struct Datum {
+    fabric: Option<String>,
+    parameter: Parameter,
+    direction: Option<Direction>,
+    /// Number of the specimen, where it has one.
+    index: Option<usize>,
+    /// How it sums up others, and the words that say so.
+    statistic: Option<(Statistic, bool, String)>,
+    /// Whether the row, and not the column, sums up others.
+    by_row: bool,
+    /// The direction of the row, also where the parameter has none.
+    row_direction: Option<Direction>,
+    mean: f64,
+    sd: Option<f64>,
+    n: usize,
+    inferred: bool,
+    line: usize,
+    column: usize,
+}
+
+/// What a row says of its values.
+#[derive(Clone, Debug, Default)]
+struct RowFacts {
+    fabric: Option<String>,
+    facets: Facets,
+    /// The text of the label, for messages.
+    label: String,
+    n: usize,
+    unit_at: usize,
+    /// Whether the row sums up fabrics: it belongs to none.
+    summary_of_fabrics: bool,
+}
+
+/// Reads a table. In one of several fabrics a bad row leaves out its own fabric only.
 ///
 /// # Errors
 /// `R004`, `R008`, `R009`, `R010`, `R017`, `R018`.
 pub(super) fn read(
     header: &Header,
-    heading: &Row<'_>,
-    rows: &[&Row<'_>],
+    region: &Region<'_>,
     context: &Context<'_>,
     log: &mut Vec<String>,
 ) -> Result<Contents, ReadError> {
-    let columns = columns(heading, context.vocabulary);
+    let layout = Layout::of(region, context);
+    log.push(layout.described());
     let mut table = Table {
         header,
-        heading,
-        columns,
         context,
-        values: Vec::new(),
+        layout,
+        data: Vec::new(),
         fast: Vec::new(),
         ignored: Vec::new(),
         findings: Vec::new(),
         failures: BTreeMap::new(),
         derived: Vec::new(),
         several: false,
+        section: region.section,
+        above: None,
     };
-    let long = table.meta(TableColumn::Parameter).is_some();
-    log.push(table.told(long));
-    let rows = if long { rows } else { table.unit_row(rows) };
-    let rows = &table.specimens(rows, long)[..];
-    let names: BTreeSet<Option<String>> = rows.iter().map(|row| table.fabric(row)).collect();
-    table.several = names.len() > 1;
-    for row in rows {
-        let read = if long { table.long_row(row) } else { table.wide_row(row) };
+    let rows = table.facts(region)?;
+    let names: BTreeSet<&Option<String>> = rows.iter().map(|(_, facts)| &facts.fabric).collect();
+    table.several = names.len() > 1 || table.layout.names_fabrics();
+    for (row, facts) in &rows {
+        let read = table.values_of(row, facts);
         // An error in the heading is every row's.
-        read.or_else(
-            |e| if e.place.line == row.line { table.leave_out(table.fabric(row), e) } else { Err(e) },
-        )?;
+        read.or_else(|e| {
+            if e.place.line == row.line { table.leave_out(facts.fabric.clone(), e) } else { Err(e) }
+        })?;
     }
-    let unused = table.unused(rows);
-    // In a table with a row for each parameter other numbers are expected, but not those of a direction.
-    let of_direction = |heading: &String| !long || heading::sums_up(heading, context.vocabulary);
-    table.ignored.extend(unused.into_iter().filter(of_direction));
-    table.derive_from_fast();
+    let unused = table.layout.unused(region, context);
+    table.ignored.extend(unused);
+    table.directions_of_numbers();
     table.finish()
 }
 
 struct Table<'t, 'a> {
     header: &'t Header,
-    heading: &'t Row<'t>,
-    columns: Vec<Option<Column>>,
     context: &'a Context<'a>,
-    values: Values,
+    layout: Layout,
+    data: Vec<Datum>,
     fast: Vec<FastCell>,
     /// Texts that name no KES parameter.
     ignored: Vec<String>,
@@ -97,9 +131,13 @@ struct Table<'t, 'a> {
     derived: Vec<(Option<String>, Finding)>,
     /// Whether the rows name more than one fabric.
     several: bool,
+    /// The direction that a title of a section states.
+    section: Option<Direction>,
+    /// The fabric of the row above: a name often stands in the first of its rows only.
+    above: Option<String>,
 }
 
-impl Table<'_, '_> {
+impl<'t> Table<'t, '_> {
     /// Leaves out the fabric of a bad row, for the first thing that is wrong with it; the error of a table that is
     /// all of one fabric is that of the table.
     fn leave_out(&mut self, fabric: Option<String>, error: ReadError) -> Result<(), ReadError> {
@@ -118,91 +156,93 @@ impl Table<'_, '_> {
         fabric.as_ref().is_some_and(|name| self.failures.contains_key(name))
     }
 
-    /// The form of the table and what its columns hold, for people.
-    fn told(&self, long: bool) -> String {
-        let form = if long { "one row a parameter" } else { "one column a parameter" };
-        let named = self.columns.iter().zip(&self.heading.cells).filter_map(|(column, cell)| {
-            let meaning = match column.as_ref()? {
-                Column::Meta(meta) => format!("{meta:?}").to_lowercase(),
-                Column::Parameter(p) => match p.direction {
-                    Some(direction) => format!("{} {direction}", p.parameter),
-                    None => p.parameter.to_string(),
-                },
-                Column::Of(direction) => format!("values of {direction}"),
-                Column::Fast(value, ..) => format!("FAST {}", value.symbol()),
-            };
-            Some(format!("{:?} is {meaning}", cell.text))
-        });
-        let named = named.collect::<Vec<_>>().join(", ");
-        format!("result table with its headings in line {}, {form}: {named}", self.heading.line)
-    }
-
-    fn meta(&self, meta: TableColumn) -> Option<usize> {
-        self.columns.iter().position(|c| *c == Some(Column::Meta(meta)))
-    }
-
-    fn text<'r>(&self, row: &'r Row<'_>, meta: TableColumn) -> Option<&'r str> {
-        self.meta(meta).and_then(|i| row.get(i))
-    }
-
-    /// Takes a row of units below a heading that has none.
-    fn unit_row<'r, 's>(&mut self, rows: &'r [&'s Row<'s>]) -> &'r [&'s Row<'s>] {
-        let Some((first, rest)) = rows.split_first() else { return rows };
-        let bare = |i: usize| first.get(i).map(|t| folded(t).trim_matches(['(', ')', '[', ']']).to_string());
-        let is_unit = |t: &str| t == "-" || (!matches!(number(t, '.'), Number::Value(_)) && unit(t).is_ok());
-        let parameters = |c: &Option<Column>| matches!(c, Some(Column::Parameter(_) | Column::Fast(..)));
-        let indices = || self.columns.iter().enumerate().filter(|(_, c)| parameters(c)).map(|(i, _)| i);
-        let any = indices().any(|i| bare(i).is_some_and(|t| is_unit(&t) && t != "-"));
-        if !any || !indices().all(|i| bare(i).is_none_or(|t| is_unit(&t))) {
-            return rows;
-        }
-        for (i, column) in self.columns.iter_mut().enumerate() {
-            if let Some(Column::Parameter(ParameterColumn { unit, .. }) | Column::Fast(_, _, unit)) = column {
-                *unit = unit.take().or_else(|| bare(i));
+    /// The rows of values with what each says; titles of sections hold for those below them.
+    fn facts<'r>(&mut self, region: &Region<'r>) -> Result<Vec<(&'r Row<'r>, RowFacts)>, ReadError> {
+        let mut out = Vec::new();
+        for row in &region.rows {
+            let is_remark = row.get(0).is_some_and(|t| t.starts_with('#')) && row.filled().count() == 1;
+            if is_remark {
+                continue;
+            }
+            if let Some(direction) = shape::section(row, self.context) {
+                self.section = Some(direction);
+                continue;
+            }
+            match self.row_facts(row) {
+                Ok(facts) => out.push((*row, facts)),
+                Err(error) => {
+                    let fabric = self.above.clone();
+                    self.leave_out(fabric, error)?;
+                }
             }
         }
-        rest
+        self.sort_out_summaries(&mut out);
+        Ok(out)
     }
 
-    /// The rows without those of means, deviations and extremes of others, which are told.
-    fn specimens<'r>(&mut self, rows: &[&'r Row<'r>], long: bool) -> Vec<&'r Row<'r>> {
-        let label = |row: &&'r Row<'r>| RowLabel {
-            fabric: [self.text(row, TableColumn::Id), self.text(row, TableColumn::Fabric)],
-            specimen: self.text(row, TableColumn::Specimen),
-            parameter: self.text(row, TableColumn::Parameter).filter(|_| long),
-        };
-        let labels: Vec<RowLabel<'_>> = rows.iter().map(label).collect();
-        let words = summing_up(&labels, self.context.vocabulary);
-        let left_out: Vec<(usize, &str)> =
-            rows.iter().zip(&words).filter_map(|(row, word)| Some((row.line, (*word)?))).collect();
-        let finding = statistic::finding("rows", &left_out, self.context.path);
-        self.findings.extend(finding);
-        rows.iter().zip(words).filter(|(_, word)| word.is_none()).map(|(row, _)| *row).collect()
+    fn row_facts(&mut self, row: &Row<'_>) -> Result<RowFacts, ReadError> {
+        let mut facts = RowFacts { n: 1, ..RowFacts::default() };
+        let (mut id, mut fabric) = (None, None);
+        let labels = self.layout.labels.clone();
+        for label in &labels {
+            let Some(text) = row.get(label.index) else { continue };
+            let f = Facets::of(text, self.context.vocabulary);
+            match label.meta {
+                Some(TableColumn::Id | TableColumn::Fabric) => {
+                    // `Warp-1` under "Sample" is no fabric; `B-2` is.
+                    let is_name = !f.is_clear() || f.parameter.is_some() || f.statistic.is_some() || f.direction.is_none();
+                    if !is_name {
+                        facts.take(&f, text);
+                    } else {
+                        let slot = if label.meta == Some(TableColumn::Id) { &mut id } else { &mut fabric };
+                        *slot = slot.take().or_else(|| Some(folded(text).into_owned()));
+                    }
+                }
+                Some(TableColumn::Direction) => {
+                    facts.facets.direction = self.direction(row, label.index, text, &f)?;
+                    facts.facets.index = facts.facets.index.or(f.index);
+                }
+                Some(TableColumn::N) => facts.n = self.repeats(row, label.index, text)?,
+                Some(TableColumn::Unit) => {
+                    facts.facets.unit = Some(folded(text).into_owned());
+                    facts.unit_at = label.index;
+                }
+                Some(TableColumn::Status) => facts.facets.inferred |= normalised(text) == "inferred",
+                Some(TableColumn::Parameter) | None if self.layout.down => {
+                    facts.take_label(&f, text, label.index);
+                }
+                _ => facts.take(&f, text),
+            }
+        }
+        let of_header = self.header.known.get(&Key::Sample).map(|e| folded(&e.text).into_owned());
+        let named = id.or(fabric);
+        facts.fabric = named.or_else(|| self.above.clone()).or(of_header);
+        self.above.clone_from(&facts.fabric);
+        facts.facets.direction = facts.facets.direction.or(self.section);
+        Ok(facts)
     }
 
-    fn fabric(&self, row: &Row<'_>) -> Option<String> {
-        let of_row = self.text(row, TableColumn::Id).or_else(|| self.text(row, TableColumn::Fabric));
-        let of_header = self.header.known.get(&super::dialect::Key::Sample).map(|e| e.text.as_str());
-        of_row.or(of_header).map(|t| folded(t).into_owned())
-    }
-
-    fn direction(&self, row: &Row<'_>) -> Result<Option<Direction>, ReadError> {
-        let Some(text) = self.text(row, TableColumn::Direction) else { return Ok(None) };
-        let of_both = self.context.vocabulary.statistic(text) == Some(Statistic::Mean);
-        if of_both || matches!(normalised(text).as_str(), "" | "all" | "none") {
+    fn direction(
+        &self,
+        row: &Row<'_>,
+        index: usize,
+        text: &str,
+        f: &Facets,
+    ) -> Result<Option<Direction>, ReadError> {
+        let v = self.context.vocabulary;
+        let of_both = v.statistic(text) == Some(Statistic::Mean);
+        if of_both || is_gap(text) || matches!(normalised(text).as_str(), "" | "all" | "none") {
             return Ok(None);
         }
-        self.context.vocabulary.direction(text).map(Some).ok_or_else(|| {
-            let column = self.meta(TableColumn::Direction).map_or(0, |i| row.column(i));
+        let conflict = f.unknown.then(|| v.direction(text)).flatten();
+        f.direction.filter(|_| !f.unknown).or(conflict).map(Some).ok_or_else(|| {
             let found = format!("{text:?} is not a direction (warp, weft, bias or mean)");
-            self.context.error(row.line, column, Problem::BadTable { found })
+            self.context.error(row.line, row.column(index), Problem::BadTable { found })
         })
     }
 
-    fn repeats(&self, row: &Row<'_>) -> Result<usize, ReadError> {
-        let Some(index) = self.meta(TableColumn::N) else { return Ok(1) };
-        let Some(cell) = row.get(index) else { return Ok(1) };
-        let n = finite(row, index, cell, self.context)?;
+    fn repeats(&self, row: &Row<'_>, index: usize, cell: &str) -> Result<usize, ReadError> {
+        let n = self.finite(row, index, cell)?.0;
         if n >= 1.0 && n.fract() == 0.0 && n < 1e6 {
             // The range was just checked.
             return Ok(n as usize);
@@ -211,90 +251,120 @@ impl Table<'_, '_> {
         Err(self.context.error(row.line, row.column(index), Problem::BadTable { found }))
     }
 
-    /// Heading texts of columns with numbers that name no parameter; words describe and need no remark.
-    fn unused(&self, rows: &[&Row<'_>]) -> Vec<String> {
-        let is_number = |t: &str| matches!(number(t, self.context.decimal), Number::Value(_));
-        let numeric = |i: usize| rows.iter().any(|r| r.get(i).is_some_and(is_number));
-        let unknown = |i: usize| self.columns.get(i).is_none_or(Option::is_none);
-        let unused = self.heading.filled().filter(|(i, _)| unknown(*i) && numeric(*i));
-        unused.map(|(_, c)| c.text.to_string()).collect()
-    }
-
-    fn wide_row(&mut self, row: &Row<'_>) -> Result<(), ReadError> {
-        let (fabric, direction, n) = (self.fabric(row), self.direction(row)?, self.repeats(row)?);
-        let columns = self.columns.clone();
-        let mut spreads = Vec::new();
-        for (i, column) in columns.iter().enumerate() {
-            let Some(cell) = row.get(i).filter(|c| !is_gap(c)) else { continue };
-            let heading = (self.heading.line, self.heading.column(i));
-            match column {
-                Some(Column::Parameter(p)) => {
-                    let unit = self.unit(p.parameter, p.unit.as_deref(), heading)?;
-                    let value = finite(row, i, cell, self.context)? * unit.factor;
-                    let of = p.direction.or(direction).filter(|_| p.parameter.is_directional());
-                    if p.sd {
-                        spreads.push((p.parameter, of, value));
-                    } else {
-                        self.push(fabric.clone(), p, of, value, n, (row.line, row.column(i)));
-                    }
-                }
-                Some(Column::Fast(value, of, unit)) => {
-                    let factor = self.fast_unit(*value, unit.as_deref(), heading)?.factor;
-                    let si = finite(row, i, cell, self.context)? * factor;
-                    let (fabric, direction) = (fabric.clone(), of.or(direction));
-                    self.fast.push(FastCell {
-                        fabric,
-                        value: *value,
-                        direction,
-                        si,
-                        line: row.line,
-                        column: row.column(i),
-                    });
-                }
-                _ => {}
-            }
-        }
-        for (parameter, of, sd) in spreads {
-            self.spread(&fabric, parameter, of, sd);
-        }
-        Ok(())
-    }
-
-    fn long_row(&mut self, row: &Row<'_>) -> Result<(), ReadError> {
-        let Some(index) = self.meta(TableColumn::Parameter) else { return Ok(()) };
-        let Some(name) = row.get(index) else { return Ok(()) };
-        let Some(mut p) = parameter_column(name, self.context.vocabulary) else {
-            return match fast::heading(name) {
-                Some(heading) => self.long_fast(row, heading),
-                None => {
-                    self.ignored.push(name.to_string());
-                    Ok(())
-                }
-            };
+    /// A cell as a finite number with the deviation that may stand beside it.
+    fn finite(&self, row: &Row<'_>, index: usize, cell: &str) -> Result<(f64, Option<f64>), ReadError> {
+        let problem = match value(cell, self.context.decimal) {
+            (Number::Value(v), sd) => return Ok((v, sd)),
+            (Number::NotFinite, _) => Problem::NotFinite { found: cell.to_string() },
+            _ => Problem::NotANumber { found: cell.to_string(), decimal: self.context.decimal },
         };
-        p.inferred |= self.text(row, TableColumn::Status).is_some_and(|t| normalised(t) == "inferred");
-        let (fabric, direction, n) = (self.fabric(row), self.direction(row)?, self.repeats(row)?);
-        let unit_at = self.meta(TableColumn::Unit).unwrap_or(index);
-        let text = self.text(row, TableColumn::Unit).or(p.unit.as_deref());
-        let unit = self.unit(p.parameter, text, (row.line, row.column(unit_at)))?;
-        for (i, column) in self.columns.clone().iter().enumerate() {
-            let of = match column {
-                Some(Column::Meta(TableColumn::Value)) => p.direction.or(direction),
-                Some(Column::Of(d)) => Some(*d),
-                _ => continue,
+        Err(self.context.error(row.line, row.column(index), problem))
+    }
+
+    /// The values of a row.
+    fn values_of(&mut self, row: &Row<'_>, facts: &RowFacts) -> Result<(), ReadError> {
+        if self.layout.down && !facts.facets.names_value() {
+            let any = self.layout.values.iter().any(|c| row.get(c.index).is_some());
+            if any && !facts.label.is_empty() {
+                self.ignored.push(facts.label.clone());
+            }
+            return Ok(());
+        }
+        let columns = self.layout.values.clone();
+        let mut deviations = Vec::new();
+        let first = self.data.len();
+        for column in &columns {
+            let Some(cell) = row.get(column.index).filter(|c| !is_gap(c)) else { continue };
+            let all = column.facets.or(&facts.facets);
+            let unit_place = self.unit_place(row, column, facts);
+            let fabric = column.fabric.clone().or_else(|| facts.fabric.clone()).filter(|_| !facts.summary_of_fabrics);
+            let of_row = facts.facets.statistic.is_some();
+            if let Some(fast) = all.fast.filter(|_| all.parameter.is_none()) {
+                let factor = self.fast_unit(fast, all.unit.as_deref(), unit_place)?.factor;
+                let si = self.finite(row, column.index, cell)?.0 * factor;
+                let (line, column) = (row.line, row.column(column.index));
+                self.fast.push(FastCell { fabric, value: fast, direction: all.direction, index: all.index, si, line, column });
+                continue;
+            }
+            let Some(parameter) = all.parameter else { continue };
+            let summary = all.statistic.map(|s| (s, all.sd, if of_row { facts.label.clone() } else { column.name.clone() }));
+            // A deviation in per cent is no value of the parameter, and its unit is its own.
+            let own_unit = matches!(summary, Some((Statistic::Spread | Statistic::Other, false, _)));
+            if own_unit {
+                self.summary_only(facts, column, of_row, row.line);
+                continue;
+            }
+            let unit = self.unit(parameter, all.unit.as_deref(), unit_place)?;
+            let (mean, sd) = self.finite(row, column.index, cell)?;
+            let direction = all.direction.filter(|_| parameter.is_directional());
+            let datum = Datum {
+                fabric,
+                parameter,
+                direction,
+                index: all.index,
+                statistic: summary,
+                by_row: of_row,
+                row_direction: facts.facets.direction,
+                mean: mean * unit.factor,
+                sd: sd.map(|s| s * unit.factor),
+                n: facts.n,
+                inferred: all.inferred,
+                line: row.line,
+                column: row.column(column.index),
             };
-            let Some(cell) = row.get(i).filter(|c| !is_gap(c)) else { continue };
-            let value = finite(row, i, cell, self.context)? * unit.factor;
-            let of = of.filter(|_| p.parameter.is_directional());
-            self.push(fabric.clone(), &p, of, value, n, (row.line, row.column(i)));
-            if let Some(at) = self.meta(TableColumn::Sd)
-                && let Some(cell) = row.get(at)
-            {
-                let sd = finite(row, at, cell, self.context)? * unit.factor;
-                self.spread(&fabric, p.parameter, of, sd);
+            if all.sd && !of_row && !self.layout.down {
+                deviations.push(datum);
+            } else {
+                self.data.push(datum);
             }
         }
+        self.attach(first, deviations);
+        self.attach_own(row, facts, first)
+    }
+
+    /// Gives the standard deviations of a row to its values.
+    fn attach(&mut self, first: usize, deviations: Vec<Datum>) {
+        for sd in deviations {
+            let same = |d: &&mut Datum| d.parameter == sd.parameter && d.direction == sd.direction && d.fabric == sd.fabric;
+            if let Some(datum) = self.data[first..].iter_mut().find(same) {
+                datum.sd = Some(sd.mean);
+            }
+        }
+    }
+
+    /// The column of standard deviations beside one of values.
+    fn attach_own(&mut self, row: &Row<'_>, facts: &RowFacts, first: usize) -> Result<(), ReadError> {
+        let Some(at) = self.layout.sd_column else { return Ok(()) };
+        let (Some(cell), Some(last)) = (row.get(at).filter(|c| !is_gap(c)), self.data[first..].last()) else { return Ok(()) };
+        let (parameter, count) = (last.parameter, self.data.len() - first);
+        if count != 1 {
+            return Ok(());
+        }
+        let place = (row.line, row.column(at));
+        let factor = self.unit(parameter, facts.facets.unit.as_deref(), place)?.factor;
+        let sd = self.finite(row, at, cell)?.0 * factor;
+        if let Some(datum) = self.data.last_mut() {
+            datum.sd = Some(sd);
+        }
         Ok(())
+    }
+
+    /// A column or row of coefficients of variation, extremes and the like.
+    fn summary_only(&mut self, facts: &RowFacts, column: &Column, of_row: bool, line: usize) {
+        let label = if of_row { &facts.label } else { &column.name };
+        if of_row {
+            self.layout.left_out_rows.insert(line, label.clone());
+        } else {
+            self.ignored.push(label.clone());
+        }
+    }
+
+    /// Where the unit of a value stands: in its row, else in the heads.
+    fn unit_place(&self, row: &Row<'_>, column: &Column, facts: &RowFacts) -> (usize, usize) {
+        if column.facets.unit.is_some() || !self.layout.down {
+            return column.place;
+        }
+        (row.line, row.column(facts.unit_at))
     }
 
     /// The unit of a value; dimensionless parameters need none.
@@ -318,8 +388,9 @@ impl Table<'_, '_> {
         // G in gf/cm could be per degree or per radian, a factor 57: only SI is clear without deg.
         let per_angle = p == Parameter::G
             && text.contains("gf")
-            && !(text.contains("deg") || text.contains("rad") || text.contains('°'));
-        if unit.dimension != expected.dimension || per_angle {
+            && !(text.contains("deg") || text.contains("rad") || text.contains('°') || text.contains('度'));
+        let undivided = p == Parameter::W && !divides_by_length(text);
+        if unit.dimension != expected.dimension || per_angle || undivided {
             let of = p.symbol().to_string();
             let expected = p.kes_unit();
             return Err(error(Problem::UnitWrong { found: text.to_string(), of, expected }));
@@ -327,101 +398,71 @@ impl Table<'_, '_> {
         Ok(unit)
     }
 
-    fn push(
-        &mut self,
-        fabric: Option<String>,
-        p: &ParameterColumn,
-        direction: Option<Direction>,
-        mean: f64,
-        n: usize,
-        (line, column): (usize, usize),
-    ) {
-        let place = Place::at(self.context.path, line, column);
-        let value = ResultValue {
-            parameter: p.parameter,
-            direction,
-            mean,
-            sd: None,
-            n,
-            values: Vec::new(),
-            lines: Vec::new(),
-            inferred: p.inferred,
-            place,
+    /// `B1, B2` and `LT-1, LT-2` of the literature: 1 is warp and 2 is weft, where no direction is stated and the numbers
+    /// are these two.
+    fn directions_of_numbers(&mut self) {
+        let numbered = self.layout.numbers_of_symbols();
+        if numbered != BTreeSet::from([1, 2]) {
+            return;
+        }
+        let of = |d: Option<Direction>, p: Option<Parameter>| d.is_some() && p.is_none_or(Parameter::is_directional);
+        let stated = self.data.iter().any(|d| of(d.direction, Some(d.parameter)))
+            || self.fast.iter().any(|f| f.direction.is_some());
+        if stated {
+            return;
+        }
+        let direction = |index: Option<usize>| match index {
+            Some(1) => Some(Direction::Warp),
+            Some(2) => Some(Direction::Weft),
+            _ => None,
         };
-        self.values.push((fabric, value));
-    }
-
-    /// Adds a standard deviation to the value that was read last for the same thing.
-    fn spread(
-        &mut self,
-        fabric: &Option<String>,
-        parameter: Parameter,
-        direction: Option<Direction>,
-        sd: f64,
-    ) {
-        let same = |(f, v): &&mut (Option<String>, ResultValue)| {
-            f == fabric && v.parameter == parameter && v.direction == direction
-        };
-        if let Some((_, value)) = self.values.iter_mut().rev().find(same) {
-            value.sd = Some(sd);
+        for d in self.data.iter_mut().filter(|d| d.parameter.is_directional()) {
+            (d.direction, d.index) = (direction(d.index), None);
         }
-    }
-
-    /// Averages repeated rows, refuses contradictions, and says what was left out.
-    fn finish(mut self) -> Result<Contents, ReadError> {
-        let repeats = self.meta(TableColumn::Specimen).is_some();
-        let mut out: Vec<(Option<String>, ResultValue, Vec<f64>)> = Vec::new();
-        let mut known: BTreeMap<_, usize> = BTreeMap::new();
-        for (fabric, value) in std::mem::take(&mut self.values) {
-            let key = (fabric.clone(), value.parameter, value.direction);
-            let Some(&at) = known.get(&key) else {
-                known.insert(key, out.len());
-                let (mean, line) = (value.mean, value.place.line);
-                out.push((fabric, ResultValue { lines: vec![line], ..value }, vec![mean]));
-                continue;
-            };
-            let means = &mut out[at].2;
-            if repeats {
-                means.push(value.mean);
-                out[at].1.lines.push(value.place.line);
-            } else if value.parameter.is_directional() {
-                let found =
-                    format!("{} is given twice (first in line {})", value.parameter, out[at].1.place.line);
-                self.leave_out(fabric, ReadError::new(value.place, Problem::BadTable { found }))?;
-            } else if !means.contains(&value.mean) {
-                // A thickness in each direction's row: the fabric has one.
-                means.push(value.mean);
-            }
+        for f in &mut self.fast {
+            f.direction = direction(f.index);
         }
-        out.retain(|(fabric, ..)| !self.is_left_out(fabric));
-        if out.is_empty() && self.failures.is_empty() {
-            let found = "the table has no value of a KES parameter".to_string();
-            return Err(self.context.error(self.heading.line, 0, Problem::BadTable { found }));
+        let is_fast = self.fast.iter().any(|f| f.direction.is_some());
+        if !is_fast {
+            let place = Place::at(self.context.path, self.layout.line, 0);
+            self.findings.push(Finding::new(ReadFact::NumbersAsDirections {}).at(place));
         }
-        let averaged = |(fabric, mut value, means): (Option<String>, ResultValue, Vec<f64>)| {
-            if let Some(e) = Estimate::of(&means).filter(|e| e.n > 1) {
-                (value.mean, value.sd, value.n, value.values) = (e.mean, e.sd, e.n, e.values);
-            }
-            (fabric, value)
-        };
-        for (fabric, finding) in std::mem::take(&mut self.derived) {
-            if !self.is_left_out(&fabric) {
-                self.findings.push(finding);
-            }
-        }
-        self.ignored.dedup();
-        if !self.ignored.is_empty() {
-            let fact = ReadFact::Unusable { names: self.ignored, reason: None };
-            let place = Place::at(self.context.path, self.heading.line, 0);
-            self.findings.push(Finding::new(fact).at(place));
-        }
-        let values = out.into_iter().map(averaged).collect();
-        let failures = self.failures.into_values().collect();
-        Ok(Contents { values, findings: self.findings, failures })
     }
 }
 
-/// A cell that stands for "not measured".
-fn is_gap(cell: &str) -> bool {
-    matches!(cell, "-" | "–" | "—")
+impl RowFacts {
+    /// Takes what a label says: direction, number, statistic.
+    fn take(&mut self, f: &Facets, text: &str) {
+        if f.parameter.is_some() || f.unknown {
+            if self.label.is_empty() {
+                self.label = text.to_string();
+            }
+            return;
+        }
+        if f.statistic.is_some() || self.label.is_empty() {
+            self.label = text.to_string();
+        }
+        let plain = Facets { unit: None, meta: None, ..f.clone() };
+        self.facets = self.facets.or(&plain);
+    }
+
+    /// Takes the label of a row that is a parameter.
+    fn take_label(&mut self, f: &Facets, text: &str, index: usize) {
+        if self.label.is_empty() {
+            self.label = text.to_string();
+        }
+        let bare = text.trim_matches(['(', ')', '[', ']']);
+        if !f.is_clear() || (f.parameter.is_none() && f.direction.is_none() && f.fast.is_none()) {
+            let is_unit = super::unit_text::unit(bare).is_ok() && self.facets.names_value() && number(bare, '.') == Number::Text;
+            if is_unit && self.facets.unit.is_none() {
+                (self.facets.unit, self.unit_at) = (Some(folded(bare).into_owned()), index);
+            }
+            return;
+        }
+        if f.unit.is_some() {
+            self.unit_at = index;
+        }
+        let plain = Facets { meta: None, ..f.clone() };
+        self.facets = self.facets.or(&plain);
+    }
 }

@@ -105,7 +105,9 @@ pub(super) fn sniff(text: &str, delimiter: Option<char>, decimal: Option<char>) 
     for d in if delimiters.is_empty() { vec!['\t'] } else { delimiters } {
         for m in ['.', ','].into_iter().filter(|m| decimal.is_none_or(|known| known == *m)) {
             let used = m == '.' || decimal.is_some() || occurs(',');
-            if d != m && used {
+            // Decimal commas within quotes leave the comma free for a delimiter.
+            let quoted = d == ',' && occurs('"');
+            if (d != m || quoted) && used {
                 best.push((score(text, d, m), Format { delimiter: d, decimal: m }));
             }
         }
@@ -141,12 +143,15 @@ pub(super) fn sniff(text: &str, delimiter: Option<char>, decimal: Option<char>) 
 fn score(text: &str, delimiter: char, decimal: char) -> i64 {
     let mut score = 0;
     for line in text.lines().filter(|l| l.contains(delimiter)) {
-        for cell in line.split(delimiter) {
-            match number(cell, decimal) {
-                Number::Value(_) | Number::NotFinite => score += 1,
-                Number::Broken => score -= 10,
-                Number::Text => {}
-            }
+        let mut count = |cell: &str| match number(cell, decimal) {
+            Number::Value(_) | Number::NotFinite => score += 1,
+            Number::Broken => score -= 10,
+            Number::Text => {}
+        };
+        if line.contains('"') {
+            raw::cells(line, delimiter).iter().for_each(|c| count(&c.text));
+        } else {
+            line.split(delimiter).for_each(count);
         }
     }
     score

@@ -1,7 +1,7 @@
 //! What a laboratory could write so that an unknown layout becomes known.
 
 use super::dialect::Role;
-use super::words::{split_unit, unit};
+use super::unit_text::{split_unit, unit};
 use crate::quantity::{Dimension, divides_by_length};
 
 /// What every dialect knows of a heading row, and the lines of a dialect file that would name the

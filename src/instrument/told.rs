@@ -5,7 +5,7 @@ use super::conditions::standard_conditions;
 use super::curves::driven;
 use super::dialect::Key;
 use super::layout::{Column, Context, Header, Pair};
-use super::words::unit as unit_of;
+use super::unit_text::unit as unit_of;
 use super::{Conditions, Direction, Test};
 use crate::quantity::without_rounding;
 

@@ -2,12 +2,13 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::io::Cursor;
+use std::io::{Cursor, Read};
 
-use calamine::{Data, DataRef, Reader, Xls, Xlsx};
+use calamine::{Data, DataRef, Ods, Range, Reader, SheetVisible, Xls, Xlsx};
 
 use super::error::Problem;
 use super::limits;
+use super::marks::{self, Marks};
 use super::raw::{Cell, Row};
 use super::sniff::{Number, number};
 
@@ -28,18 +29,55 @@ enum Value {
 
 type Cells = BTreeMap<(u32, u32), Value>;
 
+/// What a workbook holds that is visible.
+pub(super) struct Book {
+    pub sheets: Vec<Sheet>,
+    /// Decimal mark of numbers that are kept as text.
+    pub decimal: char,
+    /// What was left out because it is hidden, for people.
+    pub hidden: Vec<String>,
+}
+
+/// Kinds of archives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Archive {
+    Xlsx,
+    Ods,
+    /// Files of any kind.
+    Files,
+}
+
+/// What an archive is, by the names in it.
+pub(super) fn archive(bytes: &[u8]) -> Option<Archive> {
+    if !bytes.starts_with(b"PK\x03\x04") {
+        return None;
+    }
+    let Ok(zip) = zip::ZipArchive::new(Cursor::new(bytes)) else { return Some(Archive::Xlsx) };
+    let has = |name: &str| zip.index_for_name(name).is_some();
+    Some(match () {
+        () if has("content.xml") && has("META-INF/manifest.xml") => Archive::Ods,
+        () if has("[Content_Types].xml") || has("_rels/.rels") || has("xl/workbook.xml") => Archive::Xlsx,
+        () => Archive::Files,
+    })
+}
+
 /// Whether the bytes begin like a workbook: a zip archive, or a compound document.
 pub(super) fn is_workbook(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"\xd0\xcf\x11\xe0")
 }
 
-/// The worksheets that hold anything, and the decimal mark of numbers that are kept as text:
+/// The visible cells of the worksheets that hold anything. The decimal mark of numbers that are kept as text is
 /// the stated one, else `,` if only that makes them numbers.
 ///
 /// # Errors
 /// `R021`.
-pub(super) fn sheets(bytes: &[u8], decimal: Option<char>) -> Result<(Vec<Sheet>, char), Problem> {
-    let cells = if bytes.starts_with(b"PK") { xlsx(bytes)? } else { xls(bytes)? };
+pub(super) fn sheets(bytes: &[u8], decimal: Option<char>) -> Result<Book, Problem> {
+    let mut hidden = Vec::new();
+    let cells = match archive(bytes) {
+        Some(Archive::Ods) => ods(bytes, &mut hidden)?,
+        Some(_) => xlsx(bytes, &mut hidden)?,
+        None => xls(bytes, &mut hidden)?,
+    };
     if cells.iter().map(|(_, c)| places(c)).sum::<usize>() > limits::CELLS {
         return Err(limits::too_many_cells());
     }
@@ -53,7 +91,38 @@ pub(super) fn sheets(bytes: &[u8], decimal: Option<char>) -> Result<(Vec<Sheet>,
     let comma = text().any(|t| is(t, ',') && !is(t, '.')) && !text().any(|t| is(t, '.') && !is(t, ','));
     let decimal = decimal.unwrap_or(if comma { ',' } else { '.' });
     let sheet = |(name, cells): (String, Cells)| Sheet { name, rows: rows(cells, decimal) };
-    Ok((cells.into_iter().filter(|(_, c)| !c.is_empty()).map(sheet).collect(), decimal))
+    let sheets = cells.into_iter().filter(|(_, c)| !c.is_empty()).map(sheet).collect();
+    Ok(Book { sheets, decimal, hidden })
+}
+
+/// The decimal mark of rows of texts: `,` if only that makes numbers of them.
+pub(super) fn mark(rows: &[Row<'_>]) -> char {
+    let texts = || rows.iter().flat_map(|r| r.filled().map(|(_, c)| c.text.as_ref()));
+    let is = |t: &str, mark| matches!(number(t, mark), Number::Value(_));
+    let comma = texts().any(|t| is(t, ',') && !is(t, '.')) && !texts().any(|t| is(t, '.') && !is(t, ','));
+    if comma { ',' } else { '.' }
+}
+
+/// Names and bytes of the files in an archive that may hold measurements, in name order.
+///
+/// # Errors
+/// `R021`.
+pub(super) fn files(bytes: &[u8]) -> Result<Vec<(String, Vec<u8>)>, Problem> {
+    let mut zip = zip::ZipArchive::new(Cursor::new(bytes)).map_err(bad)?;
+    let mut out = Vec::new();
+    for i in 0..zip.len() {
+        let mut entry = zip.by_index(i).map_err(bad)?;
+        let name = entry.name().map_err(bad)?.into_owned();
+        // An archive within an archive is none of a laboratory's.
+        if entry.is_dir() || !super::folder::is_data_name(&name) || name.to_lowercase().ends_with(".zip") {
+            continue;
+        }
+        let mut inner = Vec::new();
+        entry.read_to_end(&mut inner).map_err(bad)?;
+        out.push((name, inner));
+    }
+    out.sort();
+    Ok(out)
 }
 
 fn rows(cells: Cells, decimal: char) -> Vec<Row<'static>> {
@@ -118,46 +187,98 @@ fn places(cells: &Cells) -> usize {
     rows.values().sum()
 }
 
-fn xlsx(bytes: &[u8]) -> Result<Vec<(String, Cells)>, Problem> {
+/// Names of the visible sheets; the others are told.
+fn visible(sheets: &[calamine::Sheet], hidden: &mut Vec<String>) -> Vec<String> {
+    let (shown, rest): (Vec<_>, Vec<_>) = sheets.iter().partition(|s| s.visible == SheetVisible::Visible);
+    hidden.extend(rest.iter().map(|s| format!("sheet {:?}", s.name)));
+    shown.into_iter().map(|s| s.name.clone()).collect()
+}
+
+/// Leaves out hidden cells and makes numbers that show per cent what they show.
+fn apply(name: &str, cells: &mut Cells, marks: &Marks, hidden: &mut Vec<String>) {
+    let is_hidden = |(r, c): &(u32, u32)| marks.hidden_rows.contains(r) || marks.hidden_columns.contains(c);
+    let rows: std::collections::BTreeSet<u32> =
+        cells.keys().filter(|(r, _)| marks.hidden_rows.contains(r)).map(|(r, _)| r + 1).collect();
+    let columns: std::collections::BTreeSet<u32> =
+        cells.keys().filter(|(_, c)| marks.hidden_columns.contains(c)).map(|(_, c)| c + 1).collect();
+    let list = |numbers: &std::collections::BTreeSet<u32>| numbers.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
+    for (what, numbers) in [("row", &rows), ("column", &columns)] {
+        if !numbers.is_empty() {
+            let s = if numbers.len() > 1 { "s" } else { "" };
+            hidden.push(format!("{what}{s} {} of sheet {name:?}", list(numbers)));
+        }
+    }
+    cells.retain(|at, _| !is_hidden(at));
+    for at in &marks.percent {
+        if let Some(Value::Number(n)) = cells.get_mut(at) {
+            // 0.062 shows as 6.2 %; the product must not show the binary fraction.
+            let shown = format!("{:.12e}", *n * 100.0).parse().unwrap_or(*n * 100.0);
+            *n = shown;
+        }
+    }
+}
+
+fn xlsx(bytes: &[u8], hidden: &mut Vec<String>) -> Result<Vec<(String, Cells)>, Problem> {
     limits::archive(bytes)?;
     let mut book = Xlsx::new(Cursor::new(bytes)).map_err(bad)?;
+    let mut marks = marks::xlsx(bytes)?;
     let mut out = Vec::new();
-    for name in book.sheet_names() {
+    for name in visible(book.sheets_metadata(), hidden) {
         let mut cells = Cells::new();
         // Cell by cell: a range would allocate the whole rectangle up to a stray last cell.
         let mut reader = book.worksheet_cells_reader(&name).map_err(bad)?;
         while let Some(cell) = reader.next_cell().map_err(bad)? {
             insert(&mut cells, cell.get_position(), cell.get_value().clone())?;
         }
+        apply(&name, &mut cells, &marks.remove(&name).unwrap_or_default(), hidden);
         out.push((name, cells));
     }
     Ok(out)
 }
 
-fn xls(bytes: &[u8]) -> Result<Vec<(String, Cells)>, Problem> {
-    limits::compound(bytes)?;
-    let mut book = Xls::new(Cursor::new(bytes)).map_err(bad)?;
+fn ods(bytes: &[u8], hidden: &mut Vec<String>) -> Result<Vec<(String, Cells)>, Problem> {
+    limits::archive(bytes)?;
+    let mut book = Ods::new(Cursor::new(bytes)).map_err(bad)?;
+    let mut marks = marks::ods(bytes)?;
     let mut out = Vec::new();
-    for name in book.sheet_names() {
-        let mut cells = Cells::new();
+    for name in visible(book.sheets_metadata(), hidden) {
         let range = book.worksheet_range(&name).map_err(bad)?;
-        let (row, column) = range.start().unwrap_or_default();
-        for (r, c, value) in range.used_cells() {
-            let value = match value {
-                Data::Int(n) => DataRef::Int(*n),
-                Data::Float(n) => DataRef::Float(*n),
-                Data::String(text) => DataRef::SharedString(text),
-                Data::Bool(b) => DataRef::Bool(*b),
-                Data::DateTime(d) => DataRef::DateTime(*d),
-                Data::DateTimeIso(t) => DataRef::DateTimeIso(t.clone()),
-                Data::DurationIso(t) => DataRef::DurationIso(t.clone()),
-                Data::Error(e) => DataRef::Error(e.clone()),
-                Data::Empty => continue,
-            };
-            // A sheet of this format has 65 536 rows and 256 columns.
-            insert(&mut cells, (row + r as u32, column + c as u32), value)?;
-        }
+        let mut cells = used(&range)?;
+        apply(&name, &mut cells, &marks.remove(&name).unwrap_or_default(), hidden);
         out.push((name, cells));
     }
     Ok(out)
+}
+
+fn xls(bytes: &[u8], hidden: &mut Vec<String>) -> Result<Vec<(String, Cells)>, Problem> {
+    limits::compound(bytes)?;
+    let mut book = Xls::new(Cursor::new(bytes)).map_err(bad)?;
+    let mut out = Vec::new();
+    for name in visible(book.sheets_metadata(), hidden) {
+        let range = book.worksheet_range(&name).map_err(bad)?;
+        out.push((name, used(&range)?));
+    }
+    Ok(out)
+}
+
+/// The cells of a range that hold anything.
+fn used(range: &Range<Data>) -> Result<Cells, Problem> {
+    let mut cells = Cells::new();
+    let (row, column) = range.start().unwrap_or_default();
+    for (r, c, value) in range.used_cells() {
+        let value = match value {
+            Data::Int(n) => DataRef::Int(*n),
+            Data::Float(n) => DataRef::Float(*n),
+            Data::String(text) => DataRef::SharedString(text),
+            Data::Bool(b) => DataRef::Bool(*b),
+            Data::DateTime(d) => DataRef::DateTime(*d),
+            Data::DateTimeIso(t) => DataRef::DateTimeIso(t.clone()),
+            Data::DurationIso(t) => DataRef::DurationIso(t.clone()),
+            Data::Error(e) => DataRef::Error(e.clone()),
+            Data::Empty => continue,
+        };
+        // Sheets of these formats have fewer rows and columns than a u32.
+        insert(&mut cells, (row + r as u32, column + c as u32), value)?;
+    }
+    Ok(cells)
 }

@@ -14,7 +14,7 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
     (
         "instrument",
         &["platform", "quantity", "kes", "finding"],
-        &["csv", "calamine", "cfb", "encoding_rs", "toml", "zip"],
+        &["csv", "calamine", "cfb", "encoding_rs", "quick_xml", "toml", "zip"],
     ),
     ("characterise", &["platform", "quantity", "kes", "finding", "law", "instrument"], &["faer"]),
     ("section", &["finding", "quantity", "law"], &[]),

@@ -58,7 +58,9 @@ super::facts! {
             value: f64,
             /// The test of a gauge, which is stated for each test of its own; none of the others.
             test: Option<Test>,
-        } = "{}", assumed(*dimension, *value, *test);
+            /// Lines of the header that may state it in words which are not known.
+            not_understood: Vec<String>,
+        } = "{}", assumed(*dimension, *value, *test, not_understood);
         /// Rows, columns or curves that sum up others.
         "R110" SummingUp {
             /// `rows`, `columns` or `curves`.
@@ -66,6 +68,41 @@ super::facts! {
             /// Which ones.
             left_out: Vec<LeftOutLine>,
         } = "{what} that sum up others are left out: {}", lines(left_out);
+        /// `LT-1` and `LT-2`, as the literature writes them.
+        "R111" NumbersAsDirections {} =
+            "the numbers behind the symbols are taken as the literature uses them: 1 is warp, 2 is weft";
+        /// Rows of one fabric and direction without numbers of specimens.
+        "R112" RowsAsRepeats {
+            /// The parameter.
+            parameter: Parameter,
+            /// Its direction.
+            direction: Option<Direction>,
+            /// The fabric, where the table names it.
+            fabric: Option<String>,
+            /// How many other values were had in the same manner.
+            others: usize,
+        } = "several rows without a number of their specimen give {parameter}{}{}{}: they are taken as repeats and averaged",
+            direction.map_or(String::new(), |d| format!(" {d}")),
+            fabric.as_ref().map_or(String::new(), |f| format!(" of {f:?}")),
+            if *others > 0 { format!(" and {others} more") } else { String::new() };
+        /// Hidden sheets, rows and columns of a workbook.
+        "R113" HiddenCells {
+            /// Which ones.
+            hidden: Vec<String>,
+        } = "what the workbook hides is left out: {}", hidden.join("; ");
+        /// Headings that stand again where a curve is closed.
+        "R114" HeadingsAgain {} =
+            "the headings stand again where the curve is back at its start: what follows is taken as another specimen";
+        /// A direction that no header states.
+        "R115" DirectionFromName {} =
+            "the direction comes from the name of the file, sheet or archive only: state it in the header";
+        /// An ordinate that is counted the other way round.
+        "R116" SignTurned {
+            /// Its column.
+            ordinate: String,
+            /// The column of the abscissa.
+            abscissa: String,
+        } = "{ordinate:?} has the opposite sign of {abscissa:?}: it was turned";
     }
 }
 
@@ -77,18 +114,24 @@ fn unusable(names: &[String], reason: Option<&str>) -> String {
     }
 }
 
-fn assumed(dimension: Divisor, value: f64, test: Option<Test>) -> String {
+fn assumed(dimension: Divisor, value: f64, test: Option<Test>, not_understood: &[String]) -> String {
+    let quoted: Vec<String> = not_understood.iter().map(|line| format!("{line:?}")).collect();
+    // What was not understood is not denied.
+    let stated = match quoted.is_empty() {
+        true => "stated".to_string(),
+        false => format!("understood (the header says {})", quoted.join(", ")),
+    };
     let [cm, cm2] = [value * 1e2, value * 1e4].map(without_rounding);
     match dimension {
         Divisor::Area => format!(
-            "no foot area is stated: force was divided by the standard {cm2} cm²; state `area` in the header"
+            "no foot area is {stated}: force was divided by the standard {cm2} cm²; state `area` in the header"
         ),
         Divisor::Gauge => format!(
-            "no gauge is stated: travel was divided by the standard {cm} cm; state `gauge` in the header or in [conditions{}] of fabric.toml",
+            "no gauge is {stated}: travel was divided by the standard {cm} cm; state `gauge` in the header or in [conditions{}] of fabric.toml",
             test.map_or(String::new(), |test| format!(".{}", test.name()))
         ),
         Divisor::Width => format!(
-            "no width is stated: force or moment was divided by the standard {cm} cm; state `width` in the header or in [conditions] of fabric.toml"
+            "no width is {stated}: force or moment was divided by the standard {cm} cm; state `width` in the header or in [conditions] of fabric.toml"
         ),
     }
 }

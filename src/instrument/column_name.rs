@@ -1,0 +1,90 @@
+//! The name of a curve's column: its role, and the direction, specimen and branch that stand in it.
+//!
+//! `Warp-1 K`, `K_warp`, `曲率 経 2`, `force (unloading)`: what is left when these are taken out names the role.
+
+use super::dialect::{BranchColumn, Role};
+use super::label::SPECIMENS;
+use super::vocabulary::{HEADING, Vocabulary};
+use super::Direction;
+
+/// What the name of a column says.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct ColumnName {
+    pub role: Option<Role>,
+    pub direction: Option<Direction>,
+    pub specimen: Option<usize>,
+    pub branch: Option<BranchColumn>,
+}
+
+impl ColumnName {
+    /// Reads a name without its unit.
+    pub fn of(name: &str, vocabulary: Vocabulary<'_>) -> Self {
+        if name.chars().count() > HEADING {
+            return Self::default();
+        }
+        if let Some(role) = vocabulary.role_exactly(name) {
+            return Self { role: Some(role), ..Self::default() };
+        }
+        let words: Vec<&str> = name.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).collect();
+        let mut found = Self::default();
+        let mut rest: Vec<&str> = Vec::new();
+        let mut i = 0;
+        while i < words.len() {
+            let pair = words.get(i..i + 2).map(|w| w.join(" "));
+            if let Some(branch) = pair.and_then(|p| vocabulary.branch(&p)) {
+                found.branch = Some(branch);
+                i += 2;
+                continue;
+            }
+            if !found.take(words[i], vocabulary) {
+                rest.push(words[i]);
+            }
+            i += 1;
+        }
+        let rest = rest.join(" ");
+        found.role = vocabulary.role(&rest).or_else(|| vocabulary.role(name));
+        found
+    }
+
+    fn take(&mut self, word: &str, vocabulary: Vocabulary<'_>) -> bool {
+        let number = |t: &str| t.parse().ok().filter(|n| (1..SPECIMENS).contains(n));
+        let stem = word.trim_end_matches(|c: char| c.is_ascii_digit());
+        let digits = &word[stem.len()..];
+        if stem.is_empty() {
+            let new = self.specimen.is_none();
+            self.specimen = self.specimen.or(number(digits));
+            return new && self.specimen.is_some();
+        }
+        if let Some(direction) = vocabulary.direction_exactly(stem).filter(|_| self.direction.is_none()) {
+            self.direction = Some(direction);
+            self.specimen = self.specimen.or(number(digits));
+            return true;
+        }
+        if let Some(branch) = vocabulary.branch(word).filter(|_| self.branch.is_none()) {
+            // `load` may be the force itself: then nothing else names the role.
+            self.branch = Some(branch);
+            return vocabulary.role_exactly(word).is_none();
+        }
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_with_everything_in_them() {
+        let of = |t| ColumnName::of(t, Vocabulary::new(&[]));
+        let warp = Some(Direction::Warp);
+        assert_eq!(of("Warp-1 K"), ColumnName { role: Some(Role::Curvature), direction: warp, specimen: Some(1), branch: None });
+        assert_eq!(of("K_warp"), ColumnName { role: Some(Role::Curvature), direction: warp, specimen: None, branch: None });
+        assert_eq!(of("曲率 経 2"), ColumnName { role: Some(Role::Curvature), direction: warp, specimen: Some(2), branch: None });
+        assert_eq!(of("moment 2").specimen, Some(2));
+        let unload = of("Tensile force unloading");
+        assert_eq!((unload.role, unload.branch), (Some(Role::Force), Some(BranchColumn::Unloading)));
+        assert_eq!(of("load").role, Some(Role::Force));
+        assert_eq!(of("Biegemoment").role, Some(Role::Moment));
+        assert_eq!(of("foo").role, None);
+    }
+}

@@ -1,0 +1,305 @@
+//! What a cell of words in a result table says: a parameter, a direction, a number, a statistic, a unit.
+//!
+//! Laboratories put these in any order and into any cell (`B warp (gf·cm²/cm)`, `Warp-1`, `2HG5_2`, `Weft mean`), so that
+//! all cells of words are read alike; where they stand decides later what a value is.
+
+use super::dialect::{Statistic, TableColumn};
+use super::fast::{self, FastValue};
+use super::sniff::folded;
+use super::unit_text::{matching_open, split_unit, unit};
+use super::vocabulary::{HEADING, Vocabulary};
+use super::words::normalised;
+use super::{Direction, Parameter};
+
+/// The most words of a name that are looked up together.
+const PHRASE: usize = 6;
+/// Numbers behind a symbol or a direction count specimens up to here.
+const COUNTED: usize = 99;
+
+/// What a cell says.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Facets {
+    pub parameter: Option<Parameter>,
+    /// A FAST value that is no KES parameter.
+    pub fast: Option<FastValue>,
+    /// What the column holds, apart from parameters.
+    pub meta: Option<TableColumn>,
+    pub direction: Option<Direction>,
+    pub statistic: Option<Statistic>,
+    /// Whether the statistic is the standard deviation.
+    pub sd: bool,
+    /// A number behind a symbol, a direction or a word for specimens.
+    pub index: Option<usize>,
+    pub unit: Option<String>,
+    pub inferred: bool,
+    /// Words that mean nothing here: a name, or prose.
+    pub unknown: bool,
+}
+
+impl Facets {
+    /// Reads a cell.
+    pub fn of(cell: &str, vocabulary: Vocabulary<'_>) -> Self {
+        let text = folded(cell).replace(['[', '【'], "(").replace([']', '】'], ")");
+        let mut facets = Self::default();
+        if text.is_empty() {
+            return facets;
+        }
+        if text.chars().count() > HEADING || text.matches('(').count() != text.matches(')').count() {
+            facets.unknown = true;
+            return facets;
+        }
+        let mut name = text.as_str();
+        while let Some((before, inner)) = bracket(name) {
+            if !facets.take_bracket(inner, vocabulary) {
+                break;
+            }
+            name = before;
+        }
+        let (stem, own) = split_unit(name);
+        let is_value = |n: &str| vocabulary.parameter(n).is_some() || fast::heading(n).is_some();
+        // One letter behind words is part of a name: `Sample N`.
+        let long = own.as_ref().is_some_and(|u| u == "%" || u.chars().count() > 1);
+        if facets.unit.is_none() && own.is_some() && (long || is_value(&stem)) {
+            facets.unit = own;
+            name = &stem;
+        }
+        if !facets.take_whole(name, vocabulary) {
+            facets.take_words(name, vocabulary);
+        }
+        facets
+    }
+
+    /// Whether anything at all was understood, and nothing was not.
+    pub fn is_clear(&self) -> bool {
+        !self.unknown && *self != Self::default()
+    }
+
+    /// Whether a value belongs to it.
+    pub fn names_value(&self) -> bool {
+        !self.unknown && (self.parameter.is_some() || self.fast.is_some())
+    }
+
+    /// `self`, completed by what `other` says.
+    pub fn or(&self, other: &Self) -> Self {
+        Self {
+            parameter: self.parameter.or(other.parameter),
+            fast: self.fast.or(other.fast),
+            meta: self.meta.or(other.meta),
+            direction: self.direction.or(other.direction),
+            statistic: self.statistic.or(other.statistic),
+            sd: self.sd || (self.statistic.is_none() && other.sd),
+            index: self.index.or(other.index),
+            unit: self.unit.clone().or_else(|| other.unit.clone()),
+            inferred: self.inferred || other.inferred,
+            unknown: self.unknown || other.unknown,
+        }
+    }
+
+    /// A bracket behind a name: a direction, a statistic, a symbol, else a unit, known or not.
+    fn take_bracket(&mut self, inner: &str, vocabulary: Vocabulary<'_>) -> bool {
+        if let Some(direction) = vocabulary.direction_exactly(inner) {
+            self.direction = self.direction.or(Some(direction));
+        } else if unit(inner).is_err() && self.take_statistic(inner, vocabulary) {
+        } else if let Some(parameter) = vocabulary.parameter(inner).filter(|_| unit(inner).is_err()) {
+            self.parameter = self.parameter.or(Some(parameter));
+        } else if self.unit.is_none() {
+            self.unit = Some(inner.to_string());
+        } else {
+            return false;
+        }
+        true
+    }
+
+    fn take_statistic(&mut self, text: &str, vocabulary: Vocabulary<'_>) -> bool {
+        let Some(statistic) = vocabulary.statistic(text) else { return false };
+        self.sd |= self.statistic.is_none()
+            && statistic == Statistic::Spread
+            && vocabulary.table_column(text) == Some(TableColumn::Sd);
+        self.statistic = self.statistic.or(Some(statistic));
+        true
+    }
+
+    /// The whole name as one word.
+    fn take_whole(&mut self, name: &str, vocabulary: Vocabulary<'_>) -> bool {
+        let name = name.trim();
+        if name.is_empty() {
+            return true;
+        }
+        // `T 40` and `2HG5`: a symbol goes before everything that it contains.
+        self.meta = vocabulary.table_column(name);
+        if self.take_statistic(name, vocabulary) {
+            return true;
+        }
+        if let Some(parameter) = vocabulary.parameter(name) {
+            self.parameter = Some(parameter);
+            return true;
+        }
+        if let Some((value, direction, own)) = fast::heading(name).filter(|_| self.meta.is_none()) {
+            self.fast = Some(value);
+            self.direction = self.direction.or(direction);
+            self.unit = self.unit.take().or(own);
+            return true;
+        }
+        if let Some(direction) = vocabulary.direction_exactly(name) {
+            self.direction = self.direction.or(Some(direction));
+            return true;
+        }
+        self.meta.is_some()
+    }
+
+    /// Word by word, the longest phrases first.
+    fn take_words(&mut self, name: &str, vocabulary: Vocabulary<'_>) {
+        let separators = ['_', ' ', '(', ')', '-', ',', ':', '#', '=', '\'', '"'];
+        let words: Vec<&str> = name.split(separators).filter(|p| !p.is_empty()).collect();
+        let mut rest: Vec<&str> = Vec::new();
+        let mut i = 0;
+        while i < words.len() {
+            let longest = PHRASE.min(words.len() - i);
+            let taken = (1..=longest).rev().find(|n| self.take_phrase(&words[i..i + n], vocabulary));
+            if taken.is_none() {
+                rest.push(words[i]);
+            }
+            i += taken.unwrap_or(1);
+        }
+        if rest.is_empty() {
+            return;
+        }
+        let spelt = spelt_out(&rest);
+        let joined = rest.join(" ");
+        // One letter is no unit of its own, unless it stands where one is looked for: behind a symbol.
+        let is_unit = unit(&spelt).is_ok() || unit(&joined).is_ok();
+        if self.parameter.is_some() && self.unit.is_none() && is_unit {
+            self.unit = Some(if unit(&spelt).is_ok() { spelt } else { joined });
+        } else {
+            self.unknown = true;
+        }
+    }
+
+    fn take_phrase(&mut self, words: &[&str], vocabulary: Vocabulary<'_>) -> bool {
+        let phrase = words.join(" ");
+        if let Some(parameter) = vocabulary.parameter(&phrase)
+            && self.parameter.is_none_or(|p| p == parameter)
+        {
+            self.parameter = Some(parameter);
+            return true;
+        }
+        if let Some(direction) = vocabulary.direction_exactly(&phrase).filter(|_| !is_number(&phrase)) {
+            let first = self.direction.is_none_or(|d| d == direction);
+            self.direction = Some(direction);
+            return first;
+        }
+        if self.statistic.is_none() && phrase.chars().count() > 1 && self.take_statistic(&phrase, vocabulary) {
+            return true;
+        }
+        words.len() == 1 && self.take_word(words[0], vocabulary)
+    }
+
+    fn take_word(&mut self, word: &str, vocabulary: Vocabulary<'_>) -> bool {
+        let counted = |digits: &str| digits.parse().ok().filter(|n| (1..=COUNTED).contains(n));
+        if is_number(word) {
+            let new = self.index.is_none();
+            self.index = self.index.or(counted(word));
+            return new && self.index.is_some();
+        }
+        if normalised(word) == "inferred" {
+            self.inferred = true;
+            return true;
+        }
+        if vocabulary.table_column(word) == Some(TableColumn::Specimen) {
+            return true;
+        }
+        // `経1`, `B2`, `No.3`.
+        let stem = word.trim_end_matches(|c: char| c.is_ascii_digit());
+        let digits = &word[stem.len()..];
+        let Some(n) = (if stem.is_empty() { None } else { counted(digits) }) else { return false };
+        let stem = stem.trim_end_matches('.');
+        let known = match (vocabulary.direction_exactly(stem), vocabulary.parameter(stem)) {
+            (Some(direction), _) => {
+                self.direction = self.direction.or(Some(direction));
+                true
+            }
+            (_, Some(parameter)) if self.parameter.is_none() => {
+                self.parameter = Some(parameter);
+                true
+            }
+            _ => vocabulary.table_column(stem) == Some(TableColumn::Specimen),
+        };
+        if known && self.index.is_none() {
+            self.index = Some(n);
+        }
+        known
+    }
+}
+
+fn is_number(word: &str) -> bool {
+    !word.is_empty() && word.bytes().all(|b| b.is_ascii_digit())
+}
+
+/// The text before the last bracket, and what stands in it.
+fn bracket(text: &str) -> Option<(&str, &str)> {
+    let text = text.trim_end();
+    let open = text.ends_with(')').then(|| matching_open(text)).flatten()?;
+    let (before, inner) = (text[..open].trim_end(), text[open + 1..text.len() - 1].trim());
+    // "1/(cm)": the bracket belongs to the unit, not to a name.
+    (!inner.is_empty() && !before.ends_with(['/', '·', '.'])).then_some((before, inner))
+}
+
+/// `gf cm2 per cm` as a unit: `gf·cm2/cm`; several divisors go in brackets.
+fn spelt_out(parts: &[&str]) -> String {
+    let at = parts.iter().position(|p| *p == "per").unwrap_or(parts.len());
+    let symbols =
+        |p: &[&str]| p.iter().map(|s| if *s == "percent" { "%" } else { s }).collect::<Vec<_>>().join("·");
+    let above = if at == 0 { "1".to_string() } else { symbols(&parts[..at]) };
+    if at >= parts.len() { above } else { format!("{above}/({})", symbols(&parts[at + 1..])) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> Facets {
+        Facets::of(text, Vocabulary::new(&[]))
+    }
+
+    fn parameter(text: &str) -> (Parameter, Option<Direction>, Option<String>, bool, bool) {
+        let f = of(text);
+        assert!(!f.unknown, "{text}: {f:?}");
+        (f.parameter.unwrap(), f.direction, f.unit, f.sd, f.inferred)
+    }
+
+    #[test]
+    fn symbols_with_everything_that_print_puts_beside_them() {
+        use Direction::{Warp, Weft};
+        use Parameter::{B, Emt, G, Hb, Hg5, T0};
+        let unit = |u: &str| Some(u.to_string());
+        assert_eq!(parameter("B_gf_cm2_per_cm"), (B, None, unit("gf·cm2/(cm)"), false, false));
+        assert_eq!(parameter("B_warp_uN_m"), (B, Some(Warp), unit("uN·m"), false, false));
+        assert_eq!(parameter("EMT_weft_percent_inferred"), (Emt, Some(Weft), unit("%"), false, true));
+        assert_eq!(parameter("G [gf/(cm·deg)]"), (G, None, unit("gf/(cm·deg)"), false, false));
+        assert_eq!(parameter("2HB warp (gf·cm/cm)"), (Hb, Some(Warp), unit("gf·cm/cm"), false, false));
+        assert_eq!(parameter("2HG5 sd"), (Hg5, None, None, true, false));
+        assert_eq!(parameter("T_mm"), (T0, None, unit("mm"), false, false));
+        assert_eq!(parameter("G_gf_per_cm_deg").2, unit("gf/(cm·deg)"));
+        assert_eq!(parameter("2HB desvio padrão (gf·cm/cm)"), (Hb, None, unit("gf·cm/cm"), true, false));
+        assert!(parameter("B standard deviation").3);
+        assert_eq!(parameter("B Mittelwert (gf·cm²/cm)").2, unit("gf·cm2/cm"));
+        assert_eq!(parameter("Warp B, gf·cm²/cm"), (B, Some(Warp), unit("gf·cm2/cm"), false, false));
+        assert_eq!(parameter("B (経) [gf·cm²/cm]"), (B, Some(Warp), unit("gf·cm2/cm"), false, false));
+        assert_eq!(parameter("Bending rigidity B warp"), (B, Some(Warp), None, false, false));
+        assert!(of("drape_nodes").unknown);
+        assert_eq!(of("LT CV (%)").statistic, Some(Statistic::Spread));
+        assert_eq!(of("EMT warp max (%)").statistic, Some(Statistic::Other));
+    }
+
+    #[test]
+    fn numbers_behind_symbols_and_directions() {
+        let index = |t| (of(t).parameter, of(t).direction, of(t).index, of(t).unknown);
+        assert_eq!(index("LT-2"), (Some(Parameter::Lt), None, Some(2), false));
+        assert_eq!(index("B1"), (Some(Parameter::B), None, Some(1), false));
+        assert_eq!(index("2HG5-1"), (Some(Parameter::Hg5), None, Some(1), false));
+        assert_eq!(index("2HB_2"), (Some(Parameter::Hb), None, Some(2), false));
+        assert_eq!(index("Warp-3"), (None, Some(Direction::Warp), Some(3), false));
+        assert_eq!(index("No. 3"), (None, None, Some(3), false));
+        assert!(of("W-17 poplin").unknown && of("Denim A").unknown && of("course wale").unknown);
+    }
+}

@@ -1,0 +1,135 @@
+//! Metadata in the name of a file or over a block of columns: `F01_warp_FB2_1`, `経-1`, `タテ`.
+
+use super::dialect::Key;
+use super::sniff::folded;
+use super::vocabulary::Vocabulary;
+use super::words::normalised;
+use super::{Direction, Test};
+
+/// A number from here on does not count specimens.
+pub(super) const SPECIMENS: usize = 10_000;
+
+/// What a name says.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Label {
+    pub sample: Option<String>,
+    pub test: Option<Test>,
+    pub direction: Option<Direction>,
+    pub specimen: Option<usize>,
+    /// Two words of directions that differ: then none is taken.
+    pub conflict: Option<[Direction; 2]>,
+    /// Words that mean nothing here.
+    pub unknown: bool,
+}
+
+impl Label {
+    /// Reads what the parts of a text mean; unknown parts before the first known one are the sample.
+    pub fn parse(text: &str, vocabulary: Vocabulary<'_>) -> Self {
+        let mut label = Self::default();
+        let mut sample: Vec<&str> = Vec::new();
+        let mut begun = false;
+        let text = folded(text).replace('°', "deg");
+        for part in text.split(|c: char| !c.is_alphanumeric()).filter(|p| !p.is_empty()) {
+            let known = label.take(part, vocabulary) || label.take_with_number(part, vocabulary);
+            if !known && !begun {
+                sample.push(part);
+            }
+            label.unknown |= !known;
+            begun |= label.test.is_some() || label.direction.is_some() || label.specimen.is_some();
+        }
+        if label.conflict.is_some() {
+            label.direction = None;
+        }
+        label.sample = (!sample.is_empty()).then(|| sample.join("-"));
+        label
+    }
+
+    /// `self` where it says something, else `other`; the sample is a file name's, not a sheet's.
+    pub fn or(self, other: Self) -> Self {
+        Self {
+            sample: other.sample,
+            test: self.test.or(other.test),
+            direction: self.direction.or(other.direction),
+            specimen: self.specimen.or(other.specimen),
+            conflict: if self.direction.is_some() { None } else { self.conflict.or(other.conflict) },
+            unknown: self.unknown || other.unknown,
+        }
+    }
+
+    /// Whether it is nothing but direction, test and number.
+    pub fn is_plain(&self) -> bool {
+        !self.unknown && self.conflict.is_none() && (self.direction.is_some() || self.specimen.is_some())
+    }
+
+    fn turn(&mut self, direction: Direction) {
+        match self.direction {
+            Some(other) if other != direction => self.conflict = self.conflict.or(Some([other, direction])),
+            _ => self.direction = Some(direction),
+        }
+    }
+
+    fn take(&mut self, part: &str, vocabulary: Vocabulary<'_>) -> bool {
+        let number = part.bytes().all(|b| b.is_ascii_digit());
+        if number && !part.is_empty() {
+            // A longer number is a date or an order; and a number alone is no angle.
+            self.specimen = part.parse().ok().filter(|n| *n < SPECIMENS).or(self.specimen);
+        } else if let Some(direction) = vocabulary.direction_exactly(part) {
+            self.turn(direction);
+        } else if let Some(test) = vocabulary.test_exactly(part) {
+            self.test = self.test.or(Some(test));
+        } else {
+            let word = normalised(part);
+            return matches!(word.as_str(), "kes" | "kesf" | "fb1" | "no")
+                || vocabulary.key(part) == Some(Key::Specimen);
+        }
+        true
+    }
+
+    /// `経1`, `warp2`: a direction or "specimen" with a number behind it.
+    fn take_with_number(&mut self, part: &str, vocabulary: Vocabulary<'_>) -> bool {
+        let word = part.trim_end_matches(|c: char| c.is_ascii_digit());
+        let known = word != part
+            && (vocabulary.direction_exactly(word).is_some() || vocabulary.key(word) == Some(Key::Specimen));
+        known && self.take(word, vocabulary) && self.take(&part[word.len()..], vocabulary)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn file_names_carry_metadata() {
+        let label = |t| Label::parse(t, Vocabulary::new(&[]));
+        let l = label("F01_warp_FB2_1");
+        assert_eq!(l.sample.as_deref(), Some("F01"));
+        assert_eq!((l.test, l.direction, l.specimen), (Some(Test::Bending), Some(Direction::Warp), Some(1)));
+        assert_eq!((label("経-1").direction, label("経-1").specimen), (Some(Direction::Warp), Some(1)));
+        assert_eq!((label("タテ2").direction, label("タテ2").specimen), (Some(Direction::Warp), Some(2)));
+        assert_eq!(label("試料番号 3").specimen, Some(3));
+        assert_eq!(label("fb1-shear-weft-2").test, Some(Test::Shear));
+        assert_eq!(label("poplin_20240105_warp").specimen, None);
+        assert_eq!(label("poplin_20240105_warp").sample.as_deref(), Some("poplin"));
+        assert_eq!(label("経方向-3").direction, Some(Direction::Warp));
+    }
+
+    /// A number is an angle only when it is said to be one, and two directions are none.
+    #[test]
+    fn numbers_are_no_angles_and_two_directions_are_none() {
+        let direction = |t| Label::parse(t, Vocabulary::new(&[])).direction;
+        for (name, expected) in [
+            ("45_warp_FB2_1", Some(Direction::Warp)),
+            ("sample 45", None),
+            ("Ne40-45_FB2", None),
+            ("T 45 FB2", None),
+            ("course_warp", None),
+            ("warp_weft_FB2", None),
+            ("poplin_45deg_FB2", Some(Direction::Bias)),
+            ("poplin 45° FB2", Some(Direction::Bias)),
+            ("poplin_bias45_FB2", Some(Direction::Bias)),
+            ("bias 45 FB2", Some(Direction::Bias)),
+        ] {
+            assert_eq!(direction(name), expected, "{name}");
+        }
+    }
+}

@@ -1,0 +1,336 @@
+//! The columns of a table: which hold values, which label them, and what their heads say together.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::instrument::dialect::{Statistic, TableColumn};
+use crate::instrument::facets::Facets;
+use crate::instrument::layout::Context;
+use crate::instrument::raw::Row;
+use crate::instrument::shape::{self, Region};
+use crate::instrument::sniff::{Number, folded, number};
+use crate::instrument::unit_text::unit;
+
+/// A column of values.
+#[derive(Clone, Debug)]
+pub(super) struct Column {
+    pub index: usize,
+    pub facets: Facets,
+    /// The fabric that its head names.
+    pub fabric: Option<String>,
+    /// The texts of its heads.
+    pub name: String,
+    /// Line and column of the head that names it or its unit.
+    pub place: (usize, usize),
+}
+
+/// A column of words about rows.
+#[derive(Clone, Debug)]
+pub(super) struct LabelColumn {
+    pub index: usize,
+    pub meta: Option<TableColumn>,
+}
+
+/// The columns of a table.
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    pub down: bool,
+    pub labels: Vec<LabelColumn>,
+    pub values: Vec<Column>,
+    /// Standard deviations of the only column of values.
+    pub sd_column: Option<usize>,
+    /// Line of the lowest heads.
+    pub line: usize,
+    /// Rows of statistics that have no value of the parameter, with their labels.
+    pub left_out_rows: BTreeMap<usize, String>,
+    /// Numbers behind symbols, in heads or in labels of rows.
+    numbers: BTreeSet<usize>,
+    /// What each column holds, for people.
+    told: Vec<String>,
+}
+
+impl Layout {
+    pub fn of(region: &Region<'_>, context: &Context<'_>) -> Self {
+        let width = region.heads.iter().chain(&region.rows).map(|r| r.cells.len()).max().unwrap_or(0);
+        let heads = Heads::of(region, context);
+        let mut layout = Self {
+            down: region.down,
+            labels: Vec::new(),
+            values: Vec::new(),
+            sd_column: None,
+            line: region.heads.last().or(region.rows.first()).map_or(0, |r| r.line),
+            left_out_rows: BTreeMap::new(),
+            numbers: BTreeSet::new(),
+            told: Vec::new(),
+        };
+        let labels: Vec<(&Row<'_>, usize)> = region
+            .rows
+            .iter()
+            .filter(|_| region.down)
+            .filter_map(|r| shape::row_label(r, context).map(|(i, _)| (*r, i)))
+            .collect();
+        for index in 0..width {
+            layout.add(index, &heads, region, &labels, context);
+        }
+        layout.settle(region, context);
+        layout
+    }
+
+    fn add(
+        &mut self,
+        index: usize,
+        heads: &Heads,
+        region: &Region<'_>,
+        labelled: &[(&Row<'_>, usize)],
+        context: &Context<'_>,
+    ) {
+        let (facets, name, place) = heads.column(index, region);
+        let meta = facets.meta;
+        let has_values =
+            region.rows.iter().any(|r| r.get(index).is_some_and(|c| shape::is_value(c, context)));
+        let column = |facets: Facets, fabric| Column { index, facets, fabric, name: name.clone(), place };
+        if !self.down {
+            if facets.names_value() {
+                self.told.push(described(&name, &facets));
+                self.values.push(column(facets, None));
+            } else if meta.is_some() || has_values || region.rows.iter().any(|r| r.get(index).is_some()) {
+                self.told.extend(meta.map(|m| format!("{name:?} is {}", format!("{m:?}").to_lowercase())));
+                self.labels.push(LabelColumn { index, meta });
+            }
+            return;
+        }
+        let is_value = labelled.iter().any(|(_, at)| index > *at) || !self.labels.is_empty();
+        let numeric = labelled.iter().any(|(r, _)| r.get(index).is_some_and(|c| shape::is_value(c, context)));
+        match meta {
+            Some(TableColumn::Sd) if numeric => {
+                self.sd_column = Some(index);
+                self.values.push(column(Facets { meta: None, sd: true, statistic: Some(Statistic::Spread), ..facets }, None));
+            }
+            // The number of repeats is no value; a column of the second specimen may be headed by a number.
+            Some(TableColumn::Value) if numeric => {
+                self.values.push(column(Facets { meta: None, ..facets }, None));
+            }
+            Some(m) if !numeric || matches!(m, TableColumn::N | TableColumn::Unit | TableColumn::Specimen | TableColumn::Id | TableColumn::Fabric) => {
+                self.labels.push(LabelColumn { index, meta: Some(m) });
+            }
+            _ if numeric && is_value => {
+                // A name may look like a symbol: `G-1`, `T 40`. What labels the rows decides.
+                let is_name = facets.unknown || facets.parameter.is_some() || facets.fast.is_some();
+                let fabric = (is_name && !name.is_empty()).then(|| name.clone());
+                let facets = if is_name { Facets::default() } else { facets };
+                self.values.push(column(facets, fabric));
+            }
+            _ => self.labels.push(LabelColumn { index, meta }),
+        }
+        if let Some(m) = meta {
+            self.told.push(format!("{name:?} is {}", format!("{m:?}").to_lowercase()));
+        } else if let Some(c) = self.values.last().filter(|c| c.index == index) {
+            self.told.push(described(&name, &c.facets));
+        }
+    }
+
+    /// What can be said only when all columns are known.
+    fn settle(&mut self, region: &Region<'_>, context: &Context<'_>) {
+        if self.down {
+            // Numbered columns are specimens: an unknown word among them is no fabric.
+            let numbered = self.values.iter().filter(|c| c.facets.index.is_some()).count();
+            for c in self.values.iter_mut().filter(|c| numbered >= 2 && c.fabric.is_some()) {
+                c.fabric = None;
+                c.facets.statistic = Some(Statistic::Other);
+            }
+            // A number among names is a name as well: `No. 12`.
+            let named = self.values.iter().filter(|c| c.fabric.is_some()).count();
+            for c in self.values.iter_mut().filter(|c| numbered == 1 && named > 0 && c.facets.index.is_some()) {
+                c.fabric = Some(c.name.clone());
+                c.facets.index = None;
+            }
+            let singles = self.values.iter().filter(|c| c.facets.statistic.is_none()).count();
+            let means = self.values.iter().filter(|c| c.facets.statistic == Some(Statistic::Mean)).count();
+            let deviations = self.values.iter().filter(|c| c.facets.sd).count();
+            // One deviation beside one value is that of the value; among specimens it sums them up.
+            let own = deviations == 1 && singles + means == 1;
+            if own {
+                self.sd_column = self.values.iter().find(|c| c.facets.sd).map(|c| c.index);
+                self.values.retain(|c| !c.facets.sd);
+            } else {
+                self.sd_column = None;
+            }
+            let labels: Vec<Facets> =
+                region.rows.iter().filter_map(|r| shape::row_label(r, context)).map(|(_, f)| f).collect();
+            self.numbers = labels.iter().filter_map(|f| f.index).collect();
+            return;
+        }
+        self.numbers = self.values.iter().filter_map(|c| c.facets.index).collect();
+        self.counters(region, context);
+    }
+
+    /// Columns that count: `N` over 1, 2, 3, and the first column where its head is empty or strange.
+    fn counters(&mut self, region: &Region<'_>, context: &Context<'_>) {
+        let has = |l: &[LabelColumn], m: TableColumn| l.iter().any(|l| l.meta == Some(m));
+        let named = has(&self.labels, TableColumn::Fabric) || has(&self.labels, TableColumn::Id);
+        let has_specimen = has(&self.labels, TableColumn::Specimen);
+        let first = self.labels.first().map(|l| l.index);
+        for label in &mut self.labels {
+            let cells: Vec<&str> = region.rows.iter().filter_map(|r| r.get(label.index)).collect();
+            let counts = counts(&cells);
+            let is_first = Some(label.index) == first;
+            let is_label = |c: &&&str| {
+                let f = Facets::of(c, context.vocabulary);
+                f.is_clear() && (f.direction.is_some() || f.statistic.is_some()) && f.parameter.is_none()
+            };
+            // `Warp-1`, `Warp-2`, `Mean` label specimens.
+            let labelled = 2 * cells.iter().filter(is_label).count() >= cells.len().max(1);
+            match label.meta {
+                Some(TableColumn::N) if (counts || labelled) && !has_specimen => label.meta = Some(TableColumn::Specimen),
+                None if is_first && counts && !has_specimen => label.meta = Some(TableColumn::Specimen),
+                None if is_first && !named => {
+                    // Anything else names fabrics.
+                    label.meta = Some(if labelled { TableColumn::Specimen } else { TableColumn::Fabric });
+                }
+                _ => {}
+            }
+        }
+    }
+
+    pub fn names_fabrics(&self) -> bool {
+        self.values.iter().filter(|c| c.fabric.is_some()).count() > 1
+    }
+
+    pub fn numbers_of_symbols(&self) -> BTreeSet<usize> {
+        self.numbers.clone()
+    }
+
+    pub fn meta(&self, meta: TableColumn) -> bool {
+        self.labels.iter().any(|l| l.meta == Some(meta))
+    }
+
+    /// Heading texts of columns with numbers that name no parameter; words describe and need no remark.
+    pub fn unused(&self, region: &Region<'_>, context: &Context<'_>) -> Vec<String> {
+        let is_number = |t: &str| matches!(number(t, context.decimal), Number::Value(_));
+        let numeric = |i: usize| region.rows.iter().any(|r| r.get(i).is_some_and(is_number));
+        let Some(head) = region.heads.iter().rev().find(|h| !is_units(h)) else { return Vec::new() };
+        let unknown = |i: usize| !self.values.iter().any(|c| c.index == i) && !self.labels.iter().any(|l| l.index == i && l.meta.is_some()) && self.sd_column != Some(i);
+        let unused = head.filled().filter(|(i, _)| !self.down && unknown(*i) && numeric(*i));
+        unused.map(|(_, c)| c.text.to_string()).collect()
+    }
+
+    /// The form of the table and what its columns hold, for people.
+    pub fn described(&self) -> String {
+        let form = if self.down { "one row a parameter" } else { "one column a parameter" };
+        format!("result table with its headings in line {}, {form}: {}", self.line, self.told.join(", "))
+    }
+}
+
+fn described(name: &str, f: &Facets) -> String {
+    let what = match (f.parameter, f.fast) {
+        (Some(p), _) => p.to_string(),
+        (None, Some(fast)) => format!("FAST {}", fast.symbol()),
+        (None, None) => "values".to_string(),
+    };
+    let direction = match (f.direction, f.parameter) {
+        (Some(d), Some(_)) => format!(" {d}"),
+        (Some(d), None) => format!(" of {d}"),
+        (None, _) => String::new(),
+    };
+    format!("{name:?} is {what}{direction}")
+}
+
+/// Whether cells count from 1, again and again; labels of statistics may stand between.
+fn counts(cells: &[&str]) -> bool {
+    let mut last = 0usize;
+    let (mut numbers, mut most) = (0, 0);
+    for cell in cells {
+        let Ok(n) = cell.parse::<usize>() else { continue };
+        if n != last + 1 && n != 1 {
+            return false;
+        }
+        (last, numbers, most) = (n, numbers + 1, most.max(n));
+    }
+    numbers > 1 && most > 1
+}
+
+fn is_units(row: &Row<'_>) -> bool {
+    let bare = |t: &str| folded(t).trim_matches(['(', ')', '[', ']']).trim().to_string();
+    let mut any = false;
+    for (_, c) in row.filled() {
+        let text = bare(&c.text);
+        if text != "-" && (number(&text, '.') != Number::Text || unit(&text).is_err()) {
+            return false;
+        }
+        any |= text != "-";
+    }
+    any
+}
+
+/// What the heads say over a column, their text, and where it stands.
+type Head = (Facets, String, (usize, usize));
+
+/// What the heads say of each column.
+struct Heads {
+    /// From the lowest row up: facets, and whether the text was spread over the columns to the right.
+    rows: Vec<Vec<Head>>,
+    units: Option<Vec<(String, (usize, usize))>>,
+}
+
+impl Heads {
+    fn of(region: &Region<'_>, context: &Context<'_>) -> Self {
+        let width = region.heads.iter().chain(&region.rows).map(|r| r.cells.len()).max().unwrap_or(0);
+        let mut units = None;
+        let mut rows = Vec::new();
+        let words: Vec<&&Row<'_>> = region.heads.iter().filter(|h| !is_units(h)).collect();
+        for head in region.heads.iter().filter(|h| is_units(h)) {
+            let bare = |i| {
+                let text = head.get(i).map(|t| folded(t).trim_matches(['(', ')', '[', ']']).trim().to_string());
+                (text.unwrap_or_default(), (head.line, head.column(i)))
+            };
+            units = Some((0..width).map(bare).collect());
+        }
+        for (k, head) in words.iter().enumerate() {
+            let lowest = k + 1 == words.len();
+            let mut cells: Vec<Head> = Vec::with_capacity(width);
+            for i in 0..width {
+                let at = (head.line, head.column(i));
+                let cell = head.get(i).map(|t| (Facets::of(t, context.vocabulary), folded(t).into_owned(), at));
+                let spread = || {
+                    let below = |j: usize| words[k + 1..].iter().any(|r| r.get(j).is_some());
+                    let before = cells.last().filter(|_| !lowest && below(i))?;
+                    (before.0.meta.is_none() && !before.1.is_empty()).then(|| before.clone())
+                };
+                let empty = || (Facets::default(), String::new(), at);
+                let cell = cell.or_else(spread).unwrap_or_else(empty);
+                cells.push(cell);
+            }
+            rows.insert(0, cells);
+        }
+        Self { rows, units }
+    }
+
+    /// What stands over a column: facets, text, and the place of the head that names it.
+    fn column(&self, index: usize, region: &Region<'_>) -> Head {
+        let mut all = Facets::default();
+        let mut names: Vec<String> = Vec::new();
+        let mut place = None;
+        for row in &self.rows {
+            let Some((f, text, at)) = row.get(index) else { continue };
+            if text.is_empty() {
+                continue;
+            }
+            if f.parameter.is_some() || place.is_none() {
+                place = Some(*at);
+            }
+            // A title above the heads means nothing for the column.
+            let prose = f.unknown && (all.is_clear() || region.down && all != Facets::default());
+            if !prose {
+                all = if all == Facets::default() { f.clone() } else { all.or(f) };
+                names.insert(0, text.clone());
+            }
+        }
+        if let Some((text, at)) = self.units.as_ref().and_then(|u| u.get(index)).filter(|(t, _)| !t.is_empty())
+            && all.unit.is_none()
+        {
+            all.unit = Some(text.clone());
+            place = Some(*at);
+        }
+        let default = region.heads.last().map_or((0, 0), |h| (h.line, h.column(index)));
+        (all, names.join(" "), place.unwrap_or(default))
+    }
+}

@@ -1,0 +1,323 @@
+//! Where a result table begins and ends, and which way it lies: parameters across, or down.
+
+use std::collections::BTreeSet;
+
+use super::dialect::TableColumn;
+use super::facets::Facets;
+use super::layout::Context;
+use super::raw::Row;
+use super::sniff::{Number, folded};
+use super::unit_text::unit;
+use super::value::{is_gap, value};
+use super::{Direction, Parameter};
+
+/// The most rows of heads.
+const HEADS: usize = 5;
+
+/// A result table: its heads and the rows below them.
+pub(super) struct Region<'t> {
+    /// Rows of heads, from above; one row of units may be the last.
+    pub heads: Vec<&'t Row<'t>>,
+    /// Rows below the heads: values, and titles of sections.
+    pub rows: Vec<&'t Row<'t>>,
+    /// Whether each row is a parameter; else each column is.
+    pub down: bool,
+    /// The direction that stands above the heads.
+    pub section: Option<Direction>,
+}
+
+/// What a row is, seen alone.
+#[derive(Debug, PartialEq)]
+enum Kind {
+    /// Words that head columns.
+    Head,
+    /// Units under heads.
+    Units,
+    /// A direction alone.
+    Section(Direction),
+    /// Values, with or without a label.
+    Values,
+    /// Anything else: header lines, remarks, prose.
+    Other,
+}
+
+/// A cell that holds a number, and perhaps its deviation.
+pub(super) fn is_value(cell: &str, context: &Context<'_>) -> bool {
+    matches!(value(cell, context.decimal), (Number::Value(_) | Number::NotFinite | Number::Broken, _))
+}
+
+/// Whether a cell stands for a unit; a dash does only among others.
+fn is_unit(cell: &str) -> bool {
+    let bare = folded(cell);
+    let bare = bare.trim_matches(['(', ')', '[', ']']).trim();
+    !bare.starts_with(|c: char| c.is_ascii_digit() && !bare.starts_with("1/")) && unit(bare).is_ok()
+}
+
+/// The section that a row opens: a direction and nothing else, also `[WARP]`, `Direction: warp`.
+pub(super) fn section(row: &Row<'_>, context: &Context<'_>) -> Option<Direction> {
+    let mut filled = row.filled();
+    let (_, first) = filled.next()?;
+    let direction = |text: &str| {
+        let bare = folded(text);
+        let bare = bare.trim_matches(['(', ')', '[', ']', '<', '>', '【', '】', '*', '=', '-', ':', ' ']);
+        let f = Facets::of(bare, context.vocabulary);
+        let alone = f.direction.filter(|_| {
+            !f.unknown && f.parameter.is_none() && f.index.is_none() && f.statistic.is_none() && f.meta.is_none()
+        });
+        alone.or_else(|| context.vocabulary.direction(bare).filter(|_| bare.chars().count() < 16 && !f.unknown))
+    };
+    match (filled.next(), filled.next()) {
+        (None, _) => match first.text.split_once([':', '=']) {
+            Some((key, of)) if is_direction_key(key, context) => direction(of),
+            _ => direction(&first.text),
+        },
+        (Some((_, second)), None) if is_direction_key(&first.text, context) => direction(&second.text),
+        _ => None,
+    }
+}
+
+fn is_direction_key(text: &str, context: &Context<'_>) -> bool {
+    let v = context.vocabulary;
+    let name = text.trim_end_matches([':', '=', ' ']);
+    v.key(name) == Some(super::dialect::Key::Direction) || v.table_column(name) == Some(TableColumn::Direction)
+}
+
+fn kind(row: &Row<'_>, context: &Context<'_>) -> Kind {
+    if let Some(direction) = section(row, context) {
+        return Kind::Section(direction);
+    }
+    if states_name(row, context) {
+        return Kind::Other;
+    }
+    let (mut words, mut numbers, mut units, mut unknown, mut dashes) = (0, 0, 0, 0, 0);
+    let mut counting = true;
+    for (_, cell) in row.filled() {
+        let f = Facets::of(&cell.text, context.vocabulary);
+        if is_gap(&cell.text) {
+            dashes += 1;
+        } else if is_value(&cell.text, context) {
+            numbers += 1;
+            counting &= cell.text.trim().parse() == Ok(numbers);
+        } else if is_unit(&cell.text) && !f.is_clear() {
+            units += 1;
+        } else if f.unknown {
+            unknown += 1;
+        } else {
+            words += 1;
+        }
+    }
+    match (words, numbers, units, unknown) {
+        (0, 0, 1.., 0) => Kind::Units,
+        // `1 2 3 AVE` over columns.
+        (1.., 2.., 0, _) if counting && dashes == 0 && words + unknown <= 6 => Kind::Head,
+        (_, 1.., ..) => Kind::Values,
+        (1.., 0, ..) => Kind::Head,
+        _ => Kind::Other,
+    }
+}
+
+/// Whether a row of words is the heading of a result table by its symbols.
+pub(super) fn has_symbols(row: &Row<'_>, context: &Context<'_>) -> bool {
+    if row.filled().any(|(_, c)| is_value(&c.text, context)) {
+        return false;
+    }
+    // A curve may have one column that is a parameter's namesake: thickness, elongation.
+    let of = |f: &Facets| (f.parameter, f.direction, f.index, f.fast.map(|v| v.symbol()));
+    let named: Vec<Facets> = facets(row, context).into_iter().filter(Facets::names_value).collect();
+    named.iter().map(of).collect::<BTreeSet<_>>().len() > 1 && across(&[row], context)
+}
+
+/// Whether a row names the sample: a key and a name, and no heading of two columns.
+fn states_name(row: &Row<'_>, context: &Context<'_>) -> bool {
+    let mut filled = row.filled();
+    let (Some((_, first)), second, None) = (filled.next(), filled.next(), filled.next()) else { return false };
+    let key = |t: &str| context.vocabulary.key(t) == Some(super::dialect::Key::Sample);
+    match (first.text.split_once([':', '=']), second) {
+        (Some((name, value)), None) => key(name) && !value.trim().is_empty(),
+        (_, Some((_, cell))) => {
+            let f = Facets::of(&cell.text, context.vocabulary);
+            key(first.text.trim_end_matches([':', '=', ' '])) && f.unit.is_none() && f.direction.is_none()
+        }
+        _ => false,
+    }
+}
+
+/// The facets of every cell of a row.
+pub(super) fn facets(row: &Row<'_>, context: &Context<'_>) -> Vec<Facets> {
+    row.cells.iter().map(|c| Facets::of(&c.text, context.vocabulary)).collect()
+}
+
+/// The parameter or FAST value that labels a row: one of the cells before its first number.
+pub(super) fn row_label(row: &Row<'_>, context: &Context<'_>) -> Option<(usize, Facets)> {
+    let labels = row.filled().take_while(|(_, c)| !is_value(&c.text, context) && !is_gap(&c.text));
+    labels.map(|(i, c)| (i, Facets::of(&c.text, context.vocabulary))).find(|(_, f)| f.names_value())
+}
+
+fn is_labelled(row: &Row<'_>, context: &Context<'_>) -> bool {
+    let label = row_label(row, context).filter(|(_, f)| f.statistic.is_none());
+    label.is_some() && row.filled().any(|(_, c)| is_value(&c.text, context))
+}
+
+/// What the heads from a row on are, if a table begins there.
+struct Heads {
+    end: usize,
+    down: bool,
+    section: Option<Direction>,
+    first: usize,
+}
+
+/// Whether heads of parameters make a table: several, or one with a column of names or a unit.
+fn across(heads: &[&Row<'_>], context: &Context<'_>) -> bool {
+    let all: Vec<Facets> = heads.iter().flat_map(|r| facets(r, context)).collect();
+    let parameters: Vec<&Facets> = all.iter().filter(|f| f.names_value() && f.statistic.is_none()).collect();
+    let named = all.iter().any(|f| {
+        matches!(
+            f.meta,
+            Some(TableColumn::Id | TableColumn::Fabric | TableColumn::Direction | TableColumn::Specimen | TableColumn::N)
+        )
+    });
+    let filled: usize = heads.iter().map(|r| r.filled().count()).max().unwrap_or(0);
+    let has_unit = parameters.iter().any(|f| f.unit.is_some())
+        || heads.iter().any(|r| kind(r, context) == Kind::Units);
+    let distinct: BTreeSet<_> = parameters.iter().map(|f| (f.parameter, f.direction, f.index, f.fast.map(|v| v.symbol()))).collect();
+    match distinct.len() {
+        0 => false,
+        1 => named && (filled > 2 || has_unit),
+        // `sample,B` is a header line of a fabric called B, and so is `weight,15 mg/cm²`.
+        _ => true,
+    }
+}
+
+fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
+    let (mut end, mut first, mut section) = (at, at, None);
+    let mut found: Vec<&Row<'_>> = Vec::new();
+    while let Some(row) = rows.get(end).filter(|_| found.len() < HEADS) {
+        if row.is_blank() {
+            // A title of a section may stand apart from its heads.
+            if !found.is_empty() {
+                break;
+            }
+            end += 1;
+            continue;
+        }
+        match kind(row, context) {
+            Kind::Head | Kind::Units => {
+                if found.is_empty() {
+                    first = end;
+                }
+                found.push(row);
+            }
+            Kind::Section(direction) if found.is_empty() => section = Some(direction),
+            _ => break,
+        }
+        end += 1;
+    }
+    let next = || rows[end..].iter().filter(|r| !r.is_blank());
+    let labelled = next().take(3).take_while(|r| is_labelled(r, context)).count();
+    let several = found.iter().flat_map(|r| facets(r, context)).filter(Facets::names_value).count() > 1;
+    let parameter_column =
+        found.iter().flat_map(|r| facets(r, context)).any(|f| f.meta == Some(TableColumn::Parameter));
+    if found.is_empty() {
+        // Rows of parameters without heads: the values stand behind them.
+        let own = |r: &&Row<'_>| {
+            row_label(r, context).is_some_and(|(_, f)| !matches!(f.parameter, Some(Parameter::T0 | Parameter::W)))
+        };
+        let bare = rows.get(end).is_some_and(|r| is_labelled(r, context)) && labelled >= 2 && next().take(2).any(|r| own(&r));
+        return bare.then_some(Heads { end, down: true, section, first: end });
+    }
+    if parameter_column || (labelled > 0 && !several) {
+        let enough = labelled > 0 || parameter_column && next().next().is_some_and(|r| kind(r, context) == Kind::Values);
+        return enough.then_some(Heads { end, down: true, section, first });
+    }
+    if !across(&found, context) {
+        return None;
+    }
+    // Heads without anything below are a list of words.
+    next().next().is_some().then_some(Heads { end, down: false, section, first })
+}
+
+/// The table that begins at a row, and the row behind it.
+pub(super) fn region<'t>(rows: &'t [Row<'t>], at: usize, context: &Context<'_>) -> Option<(Region<'t>, usize)> {
+    let row = rows.get(at)?;
+    // Long records are numbers nearly everywhere.
+    let first = row.filled().next()?.1;
+    if first.text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '+' | '.'))
+        && kind(row, context) != Kind::Head
+        && !is_labelled(row, context)
+    {
+        return None;
+    }
+    let found = heads(rows, at, context)?;
+    let head_rows: Vec<&Row<'_>> = rows[found.first..found.end].iter().filter(|r| !r.is_blank()).collect();
+    let mut region = Region { heads: head_rows, rows: Vec::new(), down: found.down, section: found.section };
+    let mut i = found.end;
+    let mut end = i;
+    while let Some(row) = rows.get(i) {
+        let after_blank = i > end;
+        if row.is_blank() {
+            i += 1;
+            continue;
+        }
+        if is_head_again(&rows[i..], &region.heads) {
+            i += region.heads.len();
+            end = i;
+            continue;
+        }
+        if !belongs(rows, i, &region, after_blank, context) {
+            break;
+        }
+        region.rows.push(row);
+        i += 1;
+        end = i;
+    }
+    Some((region, end))
+}
+
+/// Whether the heads stand here once more, as at the top of a new page.
+fn is_head_again(rows: &[Row<'_>], heads: &[&Row<'_>]) -> bool {
+    !heads.is_empty()
+        && rows.len() >= heads.len()
+        && heads.iter().zip(rows).all(|(a, b)| a.cells.iter().map(|c| &c.text).eq(b.cells.iter().map(|c| &c.text)))
+}
+
+/// Whether a row below the heads is part of the table.
+fn belongs(rows: &[Row<'_>], at: usize, region: &Region<'_>, after_blank: bool, context: &Context<'_>) -> bool {
+    let row = &rows[at];
+    let is_remark = row.get(0).is_some_and(|t| t.starts_with('#')) && row.filled().count() == 1;
+    if is_remark {
+        return !after_blank;
+    }
+    match kind(row, context) {
+        // Heads of their own may follow the title of a section: then it is another table.
+        Kind::Section(_) => heads(rows, at, context).is_none_or(|h| h.first == h.end),
+        Kind::Values if region.down => {
+            is_labelled(row, context) || (!after_blank && !is_counting(row, context))
+        }
+        Kind::Values => !after_blank || fits(row, region, context),
+        Kind::Head => !after_blank && heads(rows, at, context).is_none() && !is_header_line(row, context),
+        Kind::Units | Kind::Other => !after_blank && !is_header_line(row, context),
+    }
+}
+
+fn is_counting(row: &Row<'_>, context: &Context<'_>) -> bool {
+    kind(row, context) == Kind::Head
+}
+
+/// A key that header lines have, with a value.
+fn is_header_line(row: &Row<'_>, context: &Context<'_>) -> bool {
+    let mut filled = row.filled();
+    let Some((_, first)) = filled.next() else { return false };
+    let key = first.text.split([':', '=']).next().unwrap_or_default();
+    context.vocabulary.key(key).is_some()
+        && row.filled().count() <= 2
+        && !row.filled().any(|(_, c)| is_value(&c.text, context))
+}
+
+/// Whether a row behind a blank one has values where the table has them.
+fn fits(row: &Row<'_>, region: &Region<'_>, context: &Context<'_>) -> bool {
+    let columns = |r: &Row<'_>| -> Vec<usize> {
+        r.filled().filter(|(_, c)| is_value(&c.text, context) || is_gap(&c.text)).map(|(i, _)| i).collect()
+    };
+    let own = columns(row);
+    region.rows.iter().rev().find(|r| !columns(r).is_empty()).is_some_and(|r| columns(r) == own)
+}

@@ -1,0 +1,180 @@
+//! Units as headings print them, and headings split into name and unit.
+
+use std::borrow::Cow;
+
+use super::error::Problem;
+use super::sniff::folded;
+use crate::quantity::{QuantityError, UNITS, Unit};
+
+/// Characters of the longest text that is tried as a unit.
+const LONGEST: usize = 40;
+
+/// A heading split into its name and the unit text, if it has one: `name (unit)`, `name [unit]`,
+/// `name/unit`, `name, unit` or `name unit`.
+pub(super) fn split_unit(cell: &str) -> (String, Option<String>) {
+    let text = folded(cell).replace(['[', '【'], "(").replace([']', '】'], ")");
+    if let Some(open) = text.ends_with(')').then(|| matching_open(&text)).flatten() {
+        let inner = text[open + 1..text.len() - 1].trim().to_string();
+        // "1/(cm)": the bracket belongs to the unit, not to a name.
+        if !inner.is_empty() && open > 0 && !text[..open].trim_end().ends_with(['/', '·', '.']) {
+            return (text[..open].trim().to_string(), Some(inner));
+        }
+    }
+    // A bracket that was lost took something with it: "moment (gf·cm/N" is no moment in N.
+    if text.matches('(').count() != text.matches(')').count() {
+        return (text, None);
+    }
+    // A unit is short, and stands at the end.
+    let from = text.char_indices().rev().nth(LONGEST).map_or(0, |(i, _)| i);
+    for (i, c) in text[from..].char_indices().filter(|(_, c)| matches!(c, ' ' | '/' | ',' | ':' | '_')) {
+        let i = from + i;
+        let rest = text[i + c.len_utf8()..].trim();
+        let name = text[..i].trim();
+        if !name.is_empty()
+            && !rest.starts_with(|c: char| c.is_ascii_digit())
+            && (is_volt(rest) || unit(rest).is_ok())
+        {
+            return (name.to_string(), Some(rest.to_string()));
+        }
+    }
+    (text, None)
+}
+
+/// Where the bracket opens that the text ends with.
+pub(super) fn matching_open(text: &str) -> Option<usize> {
+    let mut depth = 0;
+    for (i, c) in text.char_indices().rev() {
+        match c {
+            ')' => depth += 1,
+            '(' => depth -= 1,
+            _ => {}
+        }
+        if depth == 0 {
+            return Some(i);
+        }
+    }
+    None
+}
+
+/// Names of units that are written out, in headings only; longer ones before those within them.
+const NAMES: &[(&str, &str)] = &[
+    ("degrees", "deg"),
+    ("degree", "deg"),
+    ("deg.", "deg"),
+    ("°", "deg"),
+    ("度", "deg"),
+    ("percent", "%"),
+    ("microns", "um"),
+    ("micron", "um"),
+    ("gsm", "g/m2"),
+];
+
+/// The unit of a heading: the unit table, and the spellings that print uses.
+pub(super) fn unit(text: &str) -> Result<Unit, QuantityError> {
+    Unit::parse(text).or_else(|error| {
+        if text.chars().count() > LONGEST {
+            return Err(error);
+        }
+        spellings(text).iter().find_map(|s| Unit::parse(s).ok()).ok_or(error)
+    })
+}
+
+/// What else a unit text may stand for; each has one reading only.
+fn spellings(text: &str) -> Vec<String> {
+    let mut plain = folded(text).replace(['*', '⋅', '・', ' ', '×'], "·");
+    if matches!(plain.as_str(), "-" | "—") {
+        return vec!["1".to_string()];
+    }
+    // Instrument programs shout: no unit of theirs is lost in lower case.
+    if plain.chars().filter(|c| c.is_alphabetic()).count() > 1 && !plain.chars().any(char::is_lowercase) {
+        plain = plain.to_lowercase();
+    }
+    for (name, symbol) in NAMES {
+        plain = plain.replace(name, symbol);
+    }
+    let glued = unglued(&plain).into_owned();
+    let per_angle = [per_angle(&plain), per_angle(&glued)];
+    [plain, glued].into_iter().chain(per_angle.into_iter().flatten()).collect()
+}
+
+/// `gf/cm·deg` as `gf/(cm·deg)`: a force per length and per angle is a stiffness in shear; times an angle it is nothing.
+fn per_angle(text: &str) -> Option<String> {
+    let (above, below) = text.split_once('/')?;
+    let length = below.strip_suffix("deg")?.trim_end_matches(['·', '.', '-']);
+    let simple = !length.is_empty() && length.chars().all(|c| c.is_ascii_alphabetic());
+    simple.then(|| format!("{above}/({length}·deg)"))
+}
+
+/// `gfcm²/cm` as `gf·cm²/cm`: symbols that were set without a mark between them, where they come apart in one way only.
+fn unglued(text: &str) -> Cow<'_, str> {
+    let known = |s: &str| UNITS.iter().any(|u| u.0 == s);
+    let mut out = String::new();
+    let mut changed = false;
+    let mut rest = text;
+    while let Some(c) = rest.chars().next() {
+        let end = rest.find(|c: char| !c.is_alphabetic()).unwrap_or(rest.len());
+        if end == 0 {
+            out.push(c);
+            rest = &rest[c.len_utf8()..];
+            continue;
+        }
+        let word = &rest[..end];
+        rest = &rest[end..];
+        let mut parts = word.char_indices().skip(1).map(|(i, _)| word.split_at(i)).filter(|(a, b)| known(a) && known(b));
+        match (known(word), parts.next(), parts.next()) {
+            (false, Some((a, b)), None) => {
+                changed = true;
+                out += a;
+                out.push('·');
+                out += b;
+            }
+            _ => out += word,
+        }
+    }
+    if changed { Cow::Owned(out) } else { Cow::Borrowed(text) }
+}
+
+/// [`unit`] with the error of the readers.
+pub(super) fn known_unit(text: &str) -> Result<Unit, Problem> {
+    unit(text).map_err(|e| Problem::UnitUnknown { reason: e.to_string() })
+}
+
+/// Volts of an analogue output; not in the unit table, since they only mean something with a range.
+pub(super) fn is_volt(text: &str) -> bool {
+    matches!(text, "V" | "mV")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headings_are_split_from_their_units() {
+        let split = |t| split_unit(t);
+        let pair = |n: &str, u: &str| (n.to_string(), Some(u.to_string()));
+        assert_eq!(split("curvature (1/cm)"), pair("curvature", "1/cm"));
+        assert_eq!(split("荷重(ｇｆ/㎝)"), pair("荷重", "gf/cm"));
+        assert_eq!(split("G [gf/(cm·deg)]"), pair("G", "gf/(cm·deg)"));
+        assert_eq!(split("force gf/cm"), pair("force", "gf/cm"));
+        assert_eq!(split("strain/%"), pair("strain", "%"));
+        assert_eq!(split("bending moment"), ("bending moment".to_string(), None));
+        assert_eq!(split("moment (gf·cm/N").1, None);
+        assert_eq!(split("force (front) gf/cm"), pair("force (front)", "gf/cm"));
+    }
+
+    #[test]
+    fn units_as_print_spells_them() {
+        for text in ["gf/cm·deg", "gf/cm*deg", "gf/cm.degree", "gf/cm degree", "gf/cm·°", "gf/cm°", "gf/(cm.degree)", "GF/CM.DEG", "gf/cm/deg"] {
+            assert!((unit(text).unwrap().factor - 56.187_965_62).abs() < 1e-8, "{text}");
+        }
+        for text in ["gfcm²/cm", "gf.cm2/cm", "gf cm^2/cm", "GF.CM2/CM"] {
+            assert!((unit(text).unwrap().factor - 9.80665e-5).abs() < 1e-15, "{text}");
+        }
+        assert!((unit("uNm").unwrap().factor - 1e-6).abs() < 1e-18);
+        assert!((unit("gsm").unwrap().factor - 1e-3).abs() < 1e-15);
+        // Two readings, or none.
+        for text in ["gf/cm·cm", "gf·cm/N·deg2", "gfm2x"] {
+            assert!(unit(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,325 @@
+//! The words of all languages, found by their normalised form.
+
+use std::collections::{BTreeMap, HashMap};
+use std::hash::Hash;
+use std::sync::OnceLock;
+
+use super::dialect::{BranchColumn, Dialect, Key, Role, Statistic, TableColumn, dialects};
+use super::sniff::folded;
+use super::unit_text::split_unit;
+use super::words::normalised;
+use super::{Direction, Parameter, Test};
+
+/// Characters of the longest heading that is looked through for words; longer texts are prose.
+pub(super) const HEADING: usize = 160;
+/// Characters of the longest word that is looked for within another.
+const WITHIN: usize = 32;
+
+/// The words of the built-in dialects; where two languages share a word, the first file's meaning holds.
+struct Index {
+    columns: HashMap<&'static str, Role>,
+    keys: HashMap<&'static str, Key>,
+    directions: HashMap<&'static str, Direction>,
+    tests: HashMap<&'static str, Test>,
+    branches: HashMap<&'static str, BranchColumn>,
+    table: HashMap<&'static str, TableColumn>,
+    statistics: HashMap<&'static str, Statistic>,
+    symbols: HashMap<&'static str, Parameter>,
+}
+
+fn collect<K: 'static, V>(
+    map: impl Fn(&'static Dialect) -> &'static BTreeMap<K, Vec<String>>,
+    meaning: impl Fn(&K) -> Option<V>,
+) -> HashMap<&'static str, V> {
+    let mut out = HashMap::new();
+    for (key, words) in dialects().iter().flat_map(map) {
+        for word in words.iter().filter(|w| !w.is_empty()) {
+            if let Some(value) = meaning(key) {
+                out.entry(word.as_str()).or_insert(value);
+            }
+        }
+    }
+    out
+}
+
+fn index() -> &'static Index {
+    static INDEX: OnceLock<Index> = OnceLock::new();
+    INDEX.get_or_init(|| Index {
+        columns: collect(|d| &d.columns, |k| Some(*k)),
+        keys: collect(|d| &d.keys, |k| Some(*k)),
+        directions: collect(|d| &d.directions, |k| Some(*k)),
+        tests: collect(|d| &d.tests, |k| Some(*k)),
+        branches: collect(|d| &d.branches, |k| Some(*k)),
+        table: collect(|d| &d.table, |k| Some(*k)),
+        statistics: collect(|d| &d.statistics, |k| Some(*k)),
+        symbols: collect(|d| &d.symbols, |k| Parameter::from_symbol(k)),
+    })
+}
+
+/// The words of the user's dialects, then of the built-in ones.
+#[derive(Clone, Copy)]
+pub(super) struct Vocabulary<'a> {
+    user: &'a [Dialect],
+}
+
+/// Whether a word may be looked for within another: short ones stand in many words of other meaning.
+fn long_enough(word: &str) -> bool {
+    word.chars().any(|c| c >= '\u{1100}') || word.chars().nth(3).is_some()
+}
+
+impl<'a> Vocabulary<'a> {
+    pub fn new(user: &'a [Dialect]) -> Self {
+        Self { user }
+    }
+
+    pub fn dialects(self) -> impl Iterator<Item = &'a Dialect> {
+        self.user.iter().chain(dialects())
+    }
+
+    /// The meaning of a normalised word.
+    fn exact<K: 'a, V: Copy>(
+        self,
+        word: &str,
+        map: impl Fn(&'a Dialect) -> &'a BTreeMap<K, Vec<String>>,
+        meaning: impl Fn(&K) -> Option<V>,
+        built_in: &HashMap<&'static str, V>,
+    ) -> Option<V> {
+        if word.is_empty() {
+            return None;
+        }
+        let own = self.user.iter().flat_map(map).find(|(_, words)| words.iter().any(|w| w == word));
+        own.and_then(|(key, _)| meaning(key)).or_else(|| built_in.get(word).copied())
+    }
+
+    /// The meaning of a text: exactly, else that of the longest known word within it.
+    fn find<K: 'a + Copy + Eq + Hash>(
+        self,
+        text: &str,
+        inside: bool,
+        map: impl Fn(&'a Dialect) -> &'a BTreeMap<K, Vec<String>> + Copy,
+        built_in: &HashMap<&'static str, K>,
+    ) -> Option<K> {
+        let word = normalised(text);
+        if let Some(key) = self.exact(&word, map, |k| Some(*k), built_in) {
+            return Some(key);
+        }
+        if !inside {
+            return None;
+        }
+        let starts: Vec<usize> = word.char_indices().map(|(i, _)| i).chain([word.len()]).collect();
+        let n = starts.len() - 1;
+        if n > HEADING {
+            return None;
+        }
+        for length in (1..=n.min(WITHIN)).rev() {
+            for i in 0..=n - length {
+                let part = &word[starts[i]..starts[i + length]];
+                if let Some(key) = long_enough(part).then(|| self.exact(part, map, |k| Some(*k), built_in)).flatten() {
+                    return Some(key);
+                }
+            }
+        }
+        None
+    }
+
+    pub fn role(self, name: &str) -> Option<Role> {
+        self.find(name, true, |d| &d.columns, &index().columns)
+    }
+
+    /// The role that a whole word names.
+    pub fn role_exactly(self, name: &str) -> Option<Role> {
+        self.find(name, false, |d| &d.columns, &index().columns)
+    }
+
+    pub fn key(self, name: &str) -> Option<Key> {
+        self.find(name, false, |d| &d.keys, &index().keys)
+    }
+
+    pub fn direction(self, text: &str) -> Option<Direction> {
+        self.find(text, true, |d| &d.directions, &index().directions)
+    }
+
+    /// The direction that a whole word names.
+    pub fn direction_exactly(self, text: &str) -> Option<Direction> {
+        self.find(text, false, |d| &d.directions, &index().directions)
+    }
+
+    pub fn test(self, text: &str) -> Option<Test> {
+        // "KES-FB1 せん断": the longest word decides, and FB1 alone decides nothing.
+        let word = normalised(text);
+        self.find(&word, true, |d| &d.tests, &index().tests).or_else(|| {
+            let instrument = [("fb2", Test::Bending), ("fb3", Test::Compression)];
+            instrument.into_iter().find(|(w, _)| word.contains(w)).map(|(_, t)| t)
+        })
+    }
+
+    /// The test that a whole word names.
+    pub fn test_exactly(self, text: &str) -> Option<Test> {
+        self.find(text, false, |d| &d.tests, &index().tests)
+    }
+
+    pub fn branch(self, text: &str) -> Option<BranchColumn> {
+        self.find(text, false, |d| &d.branches, &index().branches)
+    }
+
+    pub fn table_column(self, name: &str) -> Option<TableColumn> {
+        self.find(name, false, |d| &d.table, &index().table)
+    }
+
+    /// How a label says that a row or column sums up others: the whole label, and no word within it.
+    pub fn statistic(self, label: &str) -> Option<Statistic> {
+        // Most labels are numbers.
+        if label.trim_start().starts_with(|c: char| c.is_ascii_digit()) {
+            return None;
+        }
+        self.find(label, false, |d| &d.statistics, &index().statistics)
+    }
+
+    /// The same for a heading, in which the word stands among others: `mean moment`, `曲げモーメント平均`.
+    pub fn statistic_within(self, heading: &str) -> Option<Statistic> {
+        let text = folded(heading).into_owned();
+        if text.chars().count() > HEADING {
+            return None;
+        }
+        let parts: Vec<&str> = text.split(|c: char| !c.is_alphanumeric()).filter(|p| !p.is_empty()).collect();
+        // `standard deviation` and `coefficient of variation`; one letter is a unit or a number.
+        let windows = (1..=3).flat_map(|n| parts.windows(n)).map(|w| w.join(" "));
+        let mut named = windows.filter(|w| w.chars().count() > 1).filter_map(|w| self.statistic(&w));
+        if let Some(statistic) = named.next() {
+            return Some(statistic);
+        }
+        if text.is_ascii() {
+            return None;
+        }
+        // Chinese and Japanese have no blanks between words.
+        let word = normalised(&text);
+        let within = |w: &str| w.chars().all(|c| c >= '\u{1100}') && w.chars().count() > 1 && word.contains(w);
+        let mut own = self.user.iter().flat_map(|d| &d.statistics);
+        let found = own.find(|(_, words)| words.iter().any(|w| within(w))).map(|(statistic, _)| *statistic);
+        let mut built_in: Vec<(&str, Statistic)> =
+            index().statistics.iter().filter(|(w, _)| within(w)).map(|(w, s)| (*w, *s)).collect();
+        // The longest word decides; the order of a hash table must not.
+        built_in.sort_by_key(|(w, s)| (std::cmp::Reverse(w.len()), *w, *s));
+        found.or_else(|| built_in.first().map(|(_, statistic)| *statistic))
+    }
+
+    pub fn parameter(self, name: &str) -> Option<Parameter> {
+        Parameter::from_symbol(name).or_else(|| {
+            self.exact(&normalised(name), |d| &d.symbols, |k| Parameter::from_symbol(k), &index().symbols)
+        })
+    }
+
+    /// Every dialect with those of the words that it does not know, the closest first.
+    pub fn closest(self, words: &[String]) -> Vec<(String, Vec<String>)> {
+        let words: Vec<(&String, String)> = words.iter().map(|w| (w, normalised(&split_unit(w).0))).collect();
+        let unknown = |d: &Dialect| -> Vec<String> {
+            let knows = |word: &str| d.vocabulary().any(|v| v == word);
+            words.iter().filter(|(_, word)| !knows(word)).map(|(w, _)| (*w).clone()).collect()
+        };
+        let mut found: Vec<_> = self.dialects().map(|d| (d.name.clone(), unknown(d))).collect();
+        // A stable sort: among equals the user's, then the first built-in one.
+        found.sort_by_key(|(_, unknown)| unknown.len());
+        found
+    }
+}
+
+/// How much of a text is known words with letters beyond ASCII: the squares of their lengths, since a chance meeting of
+/// one or two characters says little.
+pub(super) fn known_letters(text: &str) -> usize {
+    let mut sum = 0;
+    for line in text.lines() {
+        let words: Vec<&str> = line.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).collect();
+        // Many words are known as parts of phrases only.
+        let phrases = words.windows(2).filter(|w| w.iter().any(|w| !w.is_ascii())).map(|w| w.join(" "));
+        sum += phrases.map(|p| weight(&normalised(&p), &p)).sum::<usize>();
+        // One letter means nothing, unless it is a whole word of Chinese or Japanese.
+        let one = |w: &str| w.chars().nth(1).is_none() && w.chars().all(|c| c < '\u{2e80}' || c >= '\u{ff00}');
+        let words = words.iter().filter(|w| !w.is_ascii() && !one(w));
+        sum += words.map(|w| weight(&normalised(w), w)).sum::<usize>();
+    }
+    sum
+}
+
+fn weight(word: &str, written: &str) -> usize {
+    let i = index();
+    let known = |w: &str| {
+        i.columns.contains_key(w)
+            || i.keys.contains_key(w)
+            || i.directions.contains_key(w)
+            || i.tests.contains_key(w)
+            || i.table.contains_key(w)
+            || i.statistics.contains_key(w)
+            || i.symbols.contains_key(w)
+    };
+    if known(word) {
+        return written.chars().count().pow(2);
+    }
+    // No blanks stand between words of Chinese and Japanese; a single character of them says nothing within others.
+    let starts: Vec<usize> = word.char_indices().map(|(i, _)| i).chain([word.len()]).collect();
+    let n = starts.len() - 1;
+    let (mut at, mut sum) = (0, 0);
+    while at < n {
+        let longest = (2..=WITHIN.min(n - at)).rev().find(|k| {
+            let part = &word[starts[at]..starts[at + k]];
+            known(part) && part.chars().all(|c| c >= '\u{1100}')
+        });
+        sum += longest.map_or(0, |k| k * k);
+        at += longest.unwrap_or(1);
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WORDS: Vocabulary<'static> = Vocabulary { user: &[] };
+
+    #[test]
+    fn words_of_many_languages_have_meanings() {
+        assert_eq!(WORDS.role("曲げモーメント"), Some(Role::Moment));
+        assert_eq!(WORDS.role("Bending moment per width"), Some(Role::Moment));
+        assert_eq!(WORDS.role("força"), Some(Role::Force));
+        assert_eq!(WORDS.role("せん断力"), Some(Role::ShearForce));
+        assert_eq!(WORDS.test("KES-FB1 せん断"), Some(Test::Shear));
+        assert_eq!(WORDS.test("KES-FB2"), Some(Test::Bending));
+        assert_eq!(WORDS.test("KES-FB1"), None);
+        assert_eq!(WORDS.direction("経方向"), Some(Direction::Warp));
+        assert_eq!(WORDS.direction("kierunek osnowy"), Some(Direction::Warp));
+        assert_eq!(WORDS.parameter("2hb"), Some(Parameter::Hb));
+        assert_eq!(WORDS.parameter("目付"), Some(Parameter::W));
+        assert_eq!(WORDS.parameter("弯曲刚度"), Some(Parameter::B));
+    }
+
+    #[test]
+    fn labels_and_headings_of_statistics() {
+        use Statistic::{Mean, Other, Spread};
+        for (label, expected) in [
+            ("Mean:", Some(Mean)),
+            ("ＡＶＧ．", Some(Mean)),
+            ("média", Some(Mean)),
+            ("Std. Dev.", Some(Spread)),
+            ("CV %", Some(Spread)),
+            ("écart-type", Some(Spread)),
+            ("最大値", Some(Other)),
+            ("n", Some(Other)),
+            ("Mean of Anna", None),
+            ("12", None),
+            ("", None),
+        ] {
+            assert_eq!(WORDS.statistic(label), expected, "{label}");
+        }
+        for (heading, expected) in [
+            ("mean moment", Some(Mean)),
+            ("moment_avg", Some(Mean)),
+            ("standard deviation of the moment", Some(Spread)),
+            ("曲げモーメント平均", Some(Mean)),
+            ("moment 1", None),
+            ("momentum", None),
+            ("force n", None),
+            ("maxwell force", None),
+        ] {
+            assert_eq!(WORDS.statistic_within(heading), expected, "{heading}");
+        }
+    }
+}
