@@ -250,8 +250,13 @@ mod tests {
         let key = Key { parameter: Parameter::T0, direction: None };
         let facts: [Fact; 6] = [
             ReadFact::NoFabricFile {}.into(),
-            ReadFact::AssumedDimension { dimension: Divisor::Gauge, value: 0.05, test: Some(Test::Shear), not_understood: Vec::new() }
-                .into(),
+            ReadFact::AssumedDimension {
+                dimension: Divisor::Gauge,
+                value: 0.05,
+                test: Some(Test::Shear),
+                not_understood: Vec::new(),
+            }
+            .into(),
             EvaluationFact::Implausible { key, value: 5e-3, range: Some([0.1, 2.0]) }.into(),
             SectionFact::OneRigidity { fabric: "poplin".into(), known: None }.into(),
             StudyFact::NotJoined { nodes: 2, at: [0.1, 0.2, 0.0] }.into(),

@@ -128,7 +128,9 @@ impl Axes<'_> {
     pub fn assumed(&self, column: &Column, axis: Axis) -> Option<Finding> {
         let by = axis.by.filter(|key| {
             let by_size = *key != Key::Area && size(self.header, self.context).is_some();
-            !by_size && !self.header.known.contains_key(key) && !self.context.conditions.states(self.test, *key)
+            !by_size
+                && !self.header.known.contains_key(key)
+                && !self.context.conditions.states(self.test, *key)
         })?;
         // The same for all columns of a kind: one finding a file.
         let (dimension, value, test) = match by {

@@ -33,7 +33,8 @@ pub(super) fn tabbed(text: &str) -> Option<String> {
 fn by_gaps(text: &str) -> Option<String> {
     let cells = |line: &str| line.trim().split("  ").filter(|c| !c.trim().is_empty()).count();
     let has_number = |line: &str| line.split_whitespace().any(|c| matches!(number(c, '.'), Number::Value(_)));
-    let mut counts: Vec<usize> = text.lines().filter(|l| has_number(l)).map(cells).filter(|n| *n > 1).collect();
+    let mut counts: Vec<usize> =
+        text.lines().filter(|l| has_number(l)).map(cells).filter(|n| *n > 1).collect();
     counts.sort_unstable();
     let usual = *counts.get(counts.len() / 2)?;
     // A hole in a row of values would shift the cells behind it; header lines hold two cells.

@@ -2,10 +2,10 @@
 //!
 //! `Warp-1 K`, `K_warp`, `曲率 経 2`, `force (unloading)`: what is left when these are taken out names the role.
 
+use super::Direction;
 use super::dialect::{BranchColumn, Role};
 use super::label::SPECIMENS;
 use super::vocabulary::{HEADING, Vocabulary};
-use super::Direction;
 
 /// What the name of a column says.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -77,9 +77,18 @@ mod tests {
     fn names_with_everything_in_them() {
         let of = |t| ColumnName::of(t, Vocabulary::new(&[]));
         let warp = Some(Direction::Warp);
-        assert_eq!(of("Warp-1 K"), ColumnName { role: Some(Role::Curvature), direction: warp, specimen: Some(1), branch: None });
-        assert_eq!(of("K_warp"), ColumnName { role: Some(Role::Curvature), direction: warp, specimen: None, branch: None });
-        assert_eq!(of("曲率 経 2"), ColumnName { role: Some(Role::Curvature), direction: warp, specimen: Some(2), branch: None });
+        assert_eq!(
+            of("Warp-1 K"),
+            ColumnName { role: Some(Role::Curvature), direction: warp, specimen: Some(1), branch: None }
+        );
+        assert_eq!(
+            of("K_warp"),
+            ColumnName { role: Some(Role::Curvature), direction: warp, specimen: None, branch: None }
+        );
+        assert_eq!(
+            of("曲率 経 2"),
+            ColumnName { role: Some(Role::Curvature), direction: warp, specimen: Some(2), branch: None }
+        );
         assert_eq!(of("moment 2").specimen, Some(2));
         let unload = of("Tensile force unloading");
         assert_eq!((unload.role, unload.branch), (Some(Role::Force), Some(BranchColumn::Unloading)));

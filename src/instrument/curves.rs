@@ -5,11 +5,11 @@ use std::str::FromStr;
 use super::axis::Axes;
 use super::dialect::{Key, Role};
 use super::error::{Problem, ReadError};
+use super::label::SPECIMENS;
 use super::layout::{Context, Entry, Header, Pair};
 use super::raw::Row;
 use super::sniff::{Number, folded, number};
 use super::told;
-use super::label::SPECIMENS;
 use super::{Conditions, Direction, Measurement, Source, Test};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::quantity::{Angle, Curvature, Curve, Length, LineForce, Pressure, QuantityError};
@@ -260,7 +260,8 @@ pub(super) fn size(header: &Header, context: &Context<'_>) -> Option<(f64, f64)>
     let (first, second) = text.split_once('x')?;
     let mark = |t: &str| if context.decimal == ',' { t.replace(',', ".") } else { t.to_string() };
     let second = mark(second.trim());
-    let unit: String = second.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.' || c == ' ').to_string();
+    let unit: String =
+        second.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.' || c == ' ').to_string();
     let first = mark(first.trim());
     let first = if first.ends_with(|c: char| c.is_ascii_digit()) { format!("{first} {unit}") } else { first };
     let length = |t: &str| t.parse::<Length>().ok().map(Length::si).filter(|v| *v > f64::MIN_POSITIVE);

@@ -224,7 +224,14 @@ fn warnings(value: &Value, at: &str, out: &mut Vec<String>) {
                 let text = w.as_str().map_or_else(|| w.to_string(), str::to_string);
                 format!("{at}: {text}")
             })),
-            _ => {}
+            // A warning for each test, by its name.
+            Value::Object(named) => out.extend(named.iter().map(|(name, w)| {
+                let text = w.as_str().map_or_else(|| w.to_string(), str::to_string);
+                format!("{at}.{name}: {text}")
+            })),
+            Value::Null | Value::Bool(false) => {}
+            Value::String(text) if text.is_empty() => {}
+            other => out.push(format!("{at}: {other}")),
         }
     }
 }

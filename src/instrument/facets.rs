@@ -188,7 +188,8 @@ impl Facets {
             self.direction = Some(direction);
             return first;
         }
-        if self.statistic.is_none() && phrase.chars().count() > 1 && self.take_statistic(&phrase, vocabulary) {
+        if self.statistic.is_none() && phrase.chars().count() > 1 && self.take_statistic(&phrase, vocabulary)
+        {
             return true;
         }
         words.len() == 1 && self.take_word(words[0], vocabulary)
@@ -256,6 +257,7 @@ fn spelt_out(parts: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::instrument::column_name::ColumnName;
 
     fn of(text: &str) -> Facets {
         Facets::of(text, Vocabulary::new(&[]))
@@ -289,6 +291,15 @@ mod tests {
         assert!(of("drape_nodes").unknown);
         assert_eq!(of("LT CV (%)").statistic, Some(Statistic::Spread));
         assert_eq!(of("EMT warp max (%)").statistic, Some(Statistic::Other));
+    }
+
+    /// Long lines are prose: no heading is looked for in them, whatever they cost.
+    #[test]
+    fn prose_is_not_looked_through() {
+        let line = "lorem ipsum dolor sit ".repeat(5000);
+        assert_eq!(of(&line), Facets { unknown: true, ..Facets::default() });
+        assert_eq!(ColumnName::of(&line, Vocabulary::new(&[])), ColumnName::default());
+        assert_eq!(split_unit(&line), (line.trim().to_string(), None));
     }
 
     #[test]

@@ -213,9 +213,12 @@ fn is_hidden(path: &Path) -> bool {
 /// Whether a name in an archive is that of a file that may hold measurements.
 pub(super) fn is_data_name(name: &str) -> bool {
     let path = Path::new(name);
-    let lower = |part: Option<&std::ffi::OsStr>| part.map(|p| p.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let lower =
+        |part: Option<&std::ffi::OsStr>| part.map(|p| p.to_string_lossy().to_lowercase()).unwrap_or_default();
     let hidden = name.split('/').any(|part| part.starts_with(['.', '~']) || part == "__MACOSX");
-    !hidden && EXTENSIONS.contains(&lower(path.extension()).as_str()) && !ABOUT.contains(&lower(path.file_stem()).as_str())
+    !hidden
+        && EXTENSIONS.contains(&lower(path.extension()).as_str())
+        && !ABOUT.contains(&lower(path.file_stem()).as_str())
 }
 
 fn is_data(path: &Path) -> bool {

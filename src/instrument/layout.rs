@@ -10,12 +10,12 @@ use super::column_name::ColumnName;
 use super::conditions::StatedConditions;
 use super::dialect::{Dialect, Key, Role};
 use super::error::{Problem, ReadError};
+use super::label::Label;
 use super::pairs;
 use super::raw::Row;
-use super::sniff::{Number, folded, number};
 use super::shape::{self, Region};
+use super::sniff::{Number, folded, number};
 use super::suggest;
-use super::label::Label;
 use super::unit_text::{is_volt, split_unit, unit};
 use super::vocabulary::Vocabulary;
 use crate::finding::{Finding, Place, ReadFact};
@@ -221,13 +221,17 @@ impl<'t> Scanner<'t, '_> {
         while self.rows.get(at)?.is_blank() {
             at += 1;
         }
-        let same = |a: &Row<'_>, b: &Row<'_>| a.cells.iter().map(|c| &c.text).eq(b.cells.iter().map(|c| &c.text));
+        let same =
+            |a: &Row<'_>, b: &Row<'_>| a.cells.iter().map(|c| &c.text).eq(b.cells.iter().map(|c| &c.text));
         if is_numeric(heading, self.context.decimal) || !same(heading, self.rows.get(at)?) {
             return None;
         }
         // A row of units below the headings stands again, too.
         let first = self.rows.iter().position(|r| r.line == heading.line)?;
-        let units = self.rows.get(first + 1).filter(|r| rows.first().is_some_and(|d| d.line > r.line) && !r.is_blank());
+        let units = self
+            .rows
+            .get(first + 1)
+            .filter(|r| rows.first().is_some_and(|d| d.line > r.line) && !r.is_blank());
         at += 1;
         if let (Some(units), Some(row)) = (units, self.rows.get(at)) {
             at += usize::from(same(units, row));

@@ -63,7 +63,9 @@ pub(super) fn xlsx(bytes: &[u8]) -> Result<BTreeMap<String, Marks>, Problem> {
     let mut targets = BTreeMap::new();
     if let Some(xml) = part(&mut archive, "xl/_rels/workbook.xml.rels") {
         elements(&xml, |name, e| {
-            if let ("Relationship", Some(id), Some(target)) = (name, attribute(e, "Id"), attribute(e, "Target")) {
+            if let ("Relationship", Some(id), Some(target)) =
+                (name, attribute(e, "Id"), attribute(e, "Target"))
+            {
                 let path = target.strip_prefix('/').map_or_else(|| format!("xl/{target}"), str::to_string);
                 targets.insert(id, path);
             }
@@ -164,7 +166,8 @@ pub(super) fn ods(bytes: &[u8]) -> Result<BTreeMap<String, Marks>, Problem> {
     let (mut table, mut row, mut column, mut end) = (String::new(), 0u32, 0u32, 0u32);
     elements(&xml, |name, e| {
         let hidden = attribute(e, "visibility").is_some_and(|v| v != "visible");
-        let times = |attr| attribute(e, attr).and_then(|t| t.parse::<u32>().ok()).unwrap_or(1).clamp(1, REPEATED);
+        let times =
+            |attr| attribute(e, attr).and_then(|t| t.parse::<u32>().ok()).unwrap_or(1).clamp(1, REPEATED);
         match name {
             "table" => {
                 table = attribute(e, "name").unwrap_or_default();

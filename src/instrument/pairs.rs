@@ -55,7 +55,11 @@ fn label(pairs: &mut [Pair], labels: &[(usize, Label, Entry)], vocabulary: Vocab
     let any = labels.iter().find_map(|(_, l, _)| l.direction);
     for (i, pair) in pairs.iter_mut().enumerate() {
         let left = pair.x.index.min(pair.y.index);
-        let at = if each { Some(i) } else { labels.iter().rposition(|(index, ..)| *index <= left.max(pair.y.index.min(left + 1))) };
+        let at = if each {
+            Some(i)
+        } else {
+            labels.iter().rposition(|(index, ..)| *index <= left.max(pair.y.index.min(left + 1)))
+        };
         let Some((_, l, entry)) = at.and_then(|i| labels.get(i)) else { continue };
         let with = |text: String| Entry { text, ..entry.clone() };
         let is_mean = of_label(&entry.text, vocabulary).is_some();

@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 
 use encoding_rs::{
-    BIG5, EUC_JP, EUC_KR, Encoding, GB18030, ISO_2022_JP, SHIFT_JIS, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1250, WINDOWS_1252,
-    WINDOWS_1254,
+    BIG5, EUC_JP, EUC_KR, Encoding, GB18030, ISO_2022_JP, SHIFT_JIS, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1250,
+    WINDOWS_1252, WINDOWS_1254,
 };
 
 use super::error::Problem;
@@ -147,7 +147,9 @@ fn by_words(bytes: &[u8]) -> (&'static Encoding, &'static str) {
     }
     let known = |encoding: &'static Encoding| {
         let whole = encoding.decode_without_bom_handling_and_without_replacement(bytes);
-        whole.and_then(|_| encoding.decode_without_bom_handling_and_without_replacement(&lines).map(|t| known_letters(&t)))
+        whole.and_then(|_| {
+            encoding.decode_without_bom_handling_and_without_replacement(&lines).map(|t| known_letters(&t))
+        })
     };
     let scores = OLD.iter().map(|(e, why)| (known(e).unwrap_or(0), *e, *why));
     // Among equals the first.

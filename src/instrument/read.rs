@@ -11,15 +11,15 @@ use super::curves;
 use super::dialect::{Dialect, Key};
 use super::error::{Problem, ReadError};
 use super::fab::{self, FabFile};
+use super::label::Label;
 use super::layout::{self, Block, Context, Header};
 use super::raw::{self, Row};
 use super::result_table::{self, Values};
 use super::sniff::{Sniffed, sniff};
-use super::label::Label;
 use super::vocabulary::Vocabulary;
 use super::workbook::{self, Archive};
-use super::{limits, web_page};
 use super::{Measurement, Parameter, ResultValue, Source};
+use super::{limits, web_page};
 use crate::finding::{Fact, Finding, Place, ReadFact};
 use crate::quantity::ArealDensity;
 
@@ -125,7 +125,8 @@ fn text(
     if web_page::is_page(&text) {
         content.inference.push("a web page or XML workbook: its tables are read".to_string());
         let rows = web_page::rows(&text).map_err(|p| error((0, 0, p)))?;
-        let decimal = settings.decimal.or(dialect.and_then(|d| d.decimal)).unwrap_or_else(|| workbook::mark(&rows));
+        let decimal =
+            settings.decimal.or(dialect.and_then(|d| d.decimal)).unwrap_or_else(|| workbook::mark(&rows));
         return table(&rows, &context(path, settings, dialect, '\t', decimal), true, content);
     }
     let delimiter = settings.delimiter.or(dialect.and_then(|d| d.delimiter));
@@ -171,7 +172,8 @@ fn context<'a>(
 /// What the name of a file says; of `lab.zip[warp/FB2_1.csv]` that of the file within.
 fn label(path: &Path, vocabulary: Vocabulary<'_>) -> Label {
     let name = path.to_string_lossy();
-    let within = name.strip_suffix(']').and_then(|n| n.split_once('[')).map(|(_, inner)| PathBuf::from(inner));
+    let within =
+        name.strip_suffix(']').and_then(|n| n.split_once('[')).map(|(_, inner)| PathBuf::from(inner));
     let stem = within.as_deref().unwrap_or(path).file_stem().map(|s| s.to_string_lossy().into_owned());
     stem.map(|s| Label::parse(&s, vocabulary)).unwrap_or_default()
 }
@@ -326,7 +328,8 @@ fn dialect_name(rows: &[Row<'_>], context: &Context<'_>, log: &mut Vec<String>) 
         .collect();
     let dialects = context.vocabulary.closest(&words);
     let known = |(name, unknown): &(String, Vec<String>)| format!("{name} {}", words.len() - unknown.len());
-    let counts: Vec<String> = dialects.iter().map(known).collect();
+    let knowing = dialects.iter().filter(|(_, unknown)| unknown.len() < words.len());
+    let counts: Vec<String> = knowing.map(known).collect();
     log.push(format!("words that dialects know, of {} texts: {}", words.len(), counts.join(", ")));
     dialects.into_iter().next().unwrap_or_default().0
 }

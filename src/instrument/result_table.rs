@@ -190,7 +190,10 @@ impl<'t> Table<'t, '_> {
             match label.meta {
                 Some(TableColumn::Id | TableColumn::Fabric) => {
                     // `Warp-1` under "Sample" is no fabric; `B-2` is.
-                    let is_name = !f.is_clear() || f.parameter.is_some() || f.statistic.is_some() || f.direction.is_none();
+                    let is_name = !f.is_clear()
+                        || f.parameter.is_some()
+                        || f.statistic.is_some()
+                        || f.direction.is_none();
                     if !is_name {
                         facts.take(&f, text);
                     } else {
@@ -277,17 +280,28 @@ impl<'t> Table<'t, '_> {
             let Some(cell) = row.get(column.index).filter(|c| !is_gap(c)) else { continue };
             let all = column.facets.or(&facts.facets);
             let unit_place = self.unit_place(row, column, facts);
-            let fabric = column.fabric.clone().or_else(|| facts.fabric.clone()).filter(|_| !facts.summary_of_fabrics);
+            let fabric =
+                column.fabric.clone().or_else(|| facts.fabric.clone()).filter(|_| !facts.summary_of_fabrics);
             let of_row = facts.facets.statistic.is_some();
             if let Some(fast) = all.fast.filter(|_| all.parameter.is_none()) {
                 let factor = self.fast_unit(fast, all.unit.as_deref(), unit_place)?.factor;
                 let si = self.finite(row, column.index, cell)?.0 * factor;
                 let (line, column) = (row.line, row.column(column.index));
-                self.fast.push(FastCell { fabric, value: fast, direction: all.direction, index: all.index, si, line, column });
+                self.fast.push(FastCell {
+                    fabric,
+                    value: fast,
+                    direction: all.direction,
+                    index: all.index,
+                    si,
+                    line,
+                    column,
+                });
                 continue;
             }
             let Some(parameter) = all.parameter else { continue };
-            let summary = all.statistic.map(|s| (s, all.sd, if of_row { facts.label.clone() } else { column.name.clone() }));
+            let summary = all
+                .statistic
+                .map(|s| (s, all.sd, if of_row { facts.label.clone() } else { column.name.clone() }));
             // A deviation in per cent is no value of the parameter, and its unit is its own.
             let own_unit = matches!(summary, Some((Statistic::Spread | Statistic::Other, false, _)));
             if own_unit {
@@ -325,7 +339,9 @@ impl<'t> Table<'t, '_> {
     /// Gives the standard deviations of a row to its values.
     fn attach(&mut self, first: usize, deviations: Vec<Datum>) {
         for sd in deviations {
-            let same = |d: &&mut Datum| d.parameter == sd.parameter && d.direction == sd.direction && d.fabric == sd.fabric;
+            let same = |d: &&mut Datum| {
+                d.parameter == sd.parameter && d.direction == sd.direction && d.fabric == sd.fabric
+            };
             if let Some(datum) = self.data[first..].iter_mut().find(same) {
                 datum.sd = Some(sd.mean);
             }
@@ -335,7 +351,9 @@ impl<'t> Table<'t, '_> {
     /// The column of standard deviations beside one of values.
     fn attach_own(&mut self, row: &Row<'_>, facts: &RowFacts, first: usize) -> Result<(), ReadError> {
         let Some(at) = self.layout.sd_column else { return Ok(()) };
-        let (Some(cell), Some(last)) = (row.get(at).filter(|c| !is_gap(c)), self.data[first..].last()) else { return Ok(()) };
+        let (Some(cell), Some(last)) = (row.get(at).filter(|c| !is_gap(c)), self.data[first..].last()) else {
+            return Ok(());
+        };
         let (parameter, count) = (last.parameter, self.data.len() - first);
         if count != 1 {
             return Ok(());
@@ -405,7 +423,9 @@ impl<'t> Table<'t, '_> {
         if numbered != BTreeSet::from([1, 2]) {
             return;
         }
-        let of = |d: Option<Direction>, p: Option<Parameter>| d.is_some() && p.is_none_or(Parameter::is_directional);
+        let of = |d: Option<Direction>, p: Option<Parameter>| {
+            d.is_some() && p.is_none_or(Parameter::is_directional)
+        };
         let stated = self.data.iter().any(|d| of(d.direction, Some(d.parameter)))
             || self.fast.iter().any(|f| f.direction.is_some());
         if stated {
@@ -453,7 +473,9 @@ impl RowFacts {
         }
         let bare = text.trim_matches(['(', ')', '[', ']']);
         if !f.is_clear() || (f.parameter.is_none() && f.direction.is_none() && f.fast.is_none()) {
-            let is_unit = super::unit_text::unit(bare).is_ok() && self.facets.names_value() && number(bare, '.') == Number::Text;
+            let is_unit = super::unit_text::unit(bare).is_ok()
+                && self.facets.names_value()
+                && number(bare, '.') == Number::Text;
             if is_unit && self.facets.unit.is_none() {
                 (self.facets.unit, self.unit_at) = (Some(folded(bare).into_owned()), index);
             }

@@ -62,9 +62,15 @@ pub(super) fn section(row: &Row<'_>, context: &Context<'_>) -> Option<Direction>
         let bare = bare.trim_matches(['(', ')', '[', ']', '<', '>', '【', '】', '*', '=', '-', ':', ' ']);
         let f = Facets::of(bare, context.vocabulary);
         let alone = f.direction.filter(|_| {
-            !f.unknown && f.parameter.is_none() && f.index.is_none() && f.statistic.is_none() && f.meta.is_none()
+            !f.unknown
+                && f.parameter.is_none()
+                && f.index.is_none()
+                && f.statistic.is_none()
+                && f.meta.is_none()
         });
-        alone.or_else(|| context.vocabulary.direction(bare).filter(|_| bare.chars().count() < 16 && !f.unknown))
+        alone.or_else(|| {
+            context.vocabulary.direction(bare).filter(|_| bare.chars().count() < 16 && !f.unknown)
+        })
     };
     match (filled.next(), filled.next()) {
         (None, _) => match first.text.split_once([':', '=']) {
@@ -79,7 +85,8 @@ pub(super) fn section(row: &Row<'_>, context: &Context<'_>) -> Option<Direction>
 fn is_direction_key(text: &str, context: &Context<'_>) -> bool {
     let v = context.vocabulary;
     let name = text.trim_end_matches([':', '=', ' ']);
-    v.key(name) == Some(super::dialect::Key::Direction) || v.table_column(name) == Some(TableColumn::Direction)
+    v.key(name) == Some(super::dialect::Key::Direction)
+        || v.table_column(name) == Some(TableColumn::Direction)
 }
 
 fn kind(row: &Row<'_>, context: &Context<'_>) -> Kind {
@@ -130,7 +137,9 @@ pub(super) fn has_symbols(row: &Row<'_>, context: &Context<'_>) -> bool {
 /// Whether a row names the sample: a key and a name, and no heading of two columns.
 fn states_name(row: &Row<'_>, context: &Context<'_>) -> bool {
     let mut filled = row.filled();
-    let (Some((_, first)), second, None) = (filled.next(), filled.next(), filled.next()) else { return false };
+    let (Some((_, first)), second, None) = (filled.next(), filled.next(), filled.next()) else {
+        return false;
+    };
     let key = |t: &str| context.vocabulary.key(t) == Some(super::dialect::Key::Sample);
     match (first.text.split_once([':', '=']), second) {
         (Some((name, value)), None) => key(name) && !value.trim().is_empty(),
@@ -173,13 +182,20 @@ fn across(heads: &[&Row<'_>], context: &Context<'_>) -> bool {
     let named = all.iter().any(|f| {
         matches!(
             f.meta,
-            Some(TableColumn::Id | TableColumn::Fabric | TableColumn::Direction | TableColumn::Specimen | TableColumn::N)
+            Some(
+                TableColumn::Id
+                    | TableColumn::Fabric
+                    | TableColumn::Direction
+                    | TableColumn::Specimen
+                    | TableColumn::N
+            )
         )
     });
     let filled: usize = heads.iter().map(|r| r.filled().count()).max().unwrap_or(0);
-    let has_unit = parameters.iter().any(|f| f.unit.is_some())
-        || heads.iter().any(|r| kind(r, context) == Kind::Units);
-    let distinct: BTreeSet<_> = parameters.iter().map(|f| (f.parameter, f.direction, f.index, f.fast.map(|v| v.symbol()))).collect();
+    let has_unit =
+        parameters.iter().any(|f| f.unit.is_some()) || heads.iter().any(|r| kind(r, context) == Kind::Units);
+    let distinct: BTreeSet<_> =
+        parameters.iter().map(|f| (f.parameter, f.direction, f.index, f.fast.map(|v| v.symbol()))).collect();
     match distinct.len() {
         0 => false,
         1 => named && (filled > 2 || has_unit),
@@ -220,13 +236,17 @@ fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
     if found.is_empty() {
         // Rows of parameters without heads: the values stand behind them.
         let own = |r: &&Row<'_>| {
-            row_label(r, context).is_some_and(|(_, f)| !matches!(f.parameter, Some(Parameter::T0 | Parameter::W)))
+            row_label(r, context)
+                .is_some_and(|(_, f)| !matches!(f.parameter, Some(Parameter::T0 | Parameter::W)))
         };
-        let bare = rows.get(end).is_some_and(|r| is_labelled(r, context)) && labelled >= 2 && next().take(2).any(|r| own(&r));
+        let bare = rows.get(end).is_some_and(|r| is_labelled(r, context))
+            && labelled >= 2
+            && next().take(2).any(|r| own(&r));
         return bare.then_some(Heads { end, down: true, section, first: end });
     }
     if parameter_column || (labelled > 0 && !several) {
-        let enough = labelled > 0 || parameter_column && next().next().is_some_and(|r| kind(r, context) == Kind::Values);
+        let enough = labelled > 0
+            || parameter_column && next().next().is_some_and(|r| kind(r, context) == Kind::Values);
         return enough.then_some(Heads { end, down: true, section, first });
     }
     if !across(&found, context) {
@@ -237,7 +257,11 @@ fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
 }
 
 /// The table that begins at a row, and the row behind it.
-pub(super) fn region<'t>(rows: &'t [Row<'t>], at: usize, context: &Context<'_>) -> Option<(Region<'t>, usize)> {
+pub(super) fn region<'t>(
+    rows: &'t [Row<'t>],
+    at: usize,
+    context: &Context<'_>,
+) -> Option<(Region<'t>, usize)> {
     let row = rows.get(at)?;
     // Long records are numbers nearly everywhere.
     let first = row.filled().next()?.1;
@@ -277,11 +301,20 @@ pub(super) fn region<'t>(rows: &'t [Row<'t>], at: usize, context: &Context<'_>) 
 fn is_head_again(rows: &[Row<'_>], heads: &[&Row<'_>]) -> bool {
     !heads.is_empty()
         && rows.len() >= heads.len()
-        && heads.iter().zip(rows).all(|(a, b)| a.cells.iter().map(|c| &c.text).eq(b.cells.iter().map(|c| &c.text)))
+        && heads
+            .iter()
+            .zip(rows)
+            .all(|(a, b)| a.cells.iter().map(|c| &c.text).eq(b.cells.iter().map(|c| &c.text)))
 }
 
 /// Whether a row below the heads is part of the table.
-fn belongs(rows: &[Row<'_>], at: usize, region: &Region<'_>, after_blank: bool, context: &Context<'_>) -> bool {
+fn belongs(
+    rows: &[Row<'_>],
+    at: usize,
+    region: &Region<'_>,
+    after_blank: bool,
+    context: &Context<'_>,
+) -> bool {
     let row = &rows[at];
     let is_remark = row.get(0).is_some_and(|t| t.starts_with('#')) && row.filled().count() == 1;
     if is_remark {

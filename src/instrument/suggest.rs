@@ -1,43 +1,49 @@
 //! What a laboratory could write so that an unknown layout becomes known.
 
+use std::collections::BTreeMap;
+
 use super::dialect::Role;
 use super::unit_text::{split_unit, unit};
 use crate::quantity::{Dimension, divides_by_length};
 
-/// What every dialect knows of a heading row, and the lines of a dialect file that would name the
-/// rest: the unit of a column often tells what it holds.
+/// What the dialects know of a heading row, and a dialect file that names the rest, ready to be saved: the unit of a
+/// column often tells what it holds; where it does not, the line is left as a remark.
 pub(super) fn layout(words: &[String], closest: &[(String, Vec<String>)]) -> Vec<String> {
     if words.is_empty() {
         return vec!["a dialect file that names columns without headings: column_order = [\"curvature\", \"moment\"], and [units]".into()];
     }
     let mut lines = vec![format!("headings {}", words.join(" | "))];
-    for (name, unknown) in closest {
+    for (name, unknown) in closest.iter().filter(|(_, unknown)| unknown.len() < words.len()) {
         let known: Vec<&str> = words.iter().filter(|w| !unknown.contains(w)).map(String::as_str).collect();
-        let known = if known.is_empty() { "nothing".to_string() } else { known.join(", ") };
-        lines.push(format!("dialect {name}: knows {known}; does not know {}", unknown.join(", ")));
+        let missing = if unknown.is_empty() { "nothing".to_string() } else { unknown.join(", ") };
+        lines.push(format!("dialect {name}: knows {}; does not know {missing}", known.join(", ")));
     }
     let unknown = closest.first().map(|(_, unknown)| unknown.as_slice()).unwrap_or_default();
-    let named: Vec<String> = unknown.iter().filter_map(|heading| entry(heading)).collect();
-    if named.is_empty() {
-        let names = unknown.iter().map(|w| format!("... = [{:?}]", split_unit(w).0)).collect::<Vec<_>>();
-        lines.push(format!(
-            "no unit tells what the unknown columns hold; a dialect file names them: [columns] {}",
-            names.join(", ")
-        ));
-    } else {
-        lines.push(format!(
-            "a dialect file may say, if the units guess right: [columns] {}",
-            named.join(", ")
-        ));
-    }
+    lines.push("a dialect file, to be saved as dialect.toml beside the data and completed:".to_string());
+    lines.extend(dialect_file(unknown).lines().map(|line| format!("    {line}")));
     lines
 }
 
-/// `curvature = ["foo"]` for the heading `foo (1/cm)`.
-fn entry(heading: &str) -> Option<String> {
-    let (name, unit) = split_unit(heading);
-    let role = role(&unit?)?;
-    Some(format!("{role} = [{name:?}]"))
+/// A dialect file with a line for every unknown heading.
+fn dialect_file(unknown: &[String]) -> String {
+    let mut roles: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    let mut open = Vec::new();
+    for heading in unknown {
+        let (name, text) = split_unit(heading);
+        match text.and_then(|t| role(&t)) {
+            Some(role) => roles.entry(role).or_default().push(name),
+            None => open.push(name),
+        }
+    }
+    let mut out = "name = \"laboratory\"\n\n[columns]\n".to_string();
+    for (role, names) in roles {
+        out += &format!("{role} = {names:?}\n");
+    }
+    for name in open {
+        let choice = "strain, angle, curvature, thickness, force, shear_force, moment, pressure or ignored";
+        out += &format!("# {choice} = [{name:?}]\n");
+    }
+    out
 }
 
 /// The column that has such a unit, in the spelling of dialect files.
@@ -66,24 +72,29 @@ fn role(text: &str) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::instrument::Dialect;
 
     #[test]
     fn a_unit_tells_what_a_column_holds() {
         for (heading, expected) in [
-            ("foo (1/cm)", "curvature = [\"foo\"]"),
-            ("bar (gf·cm/cm)", "moment = [\"bar\"]"),
-            ("M [mN·m]", "moment = [\"M\"]"),
-            ("F (gf)", "force = [\"F\"]"),
-            ("F (gf/cm)", "force = [\"F\"]"),
-            ("phi2 (deg)", "angle = [\"phi2\"]"),
-            ("e (%)", "strain = [\"e\"]"),
-            ("s (mm)", "displacement = [\"s\"]"),
-            ("p (gf/cm²)", "pressure = [\"p\"]"),
+            ("foo (1/cm)", "curvature"),
+            ("bar (gf·cm/cm)", "moment"),
+            ("M [mN·m]", "moment"),
+            ("F (gf)", "force"),
+            ("F (gf/cm)", "force"),
+            ("phi2 (deg)", "angle"),
+            ("e (%)", "strain"),
+            ("s (mm)", "displacement"),
+            ("p (gf/cm²)", "pressure"),
         ] {
-            assert_eq!(entry(heading).as_deref(), Some(expected), "{heading}");
+            let text = dialect_file(&[heading.to_string()]);
+            let dialect = Dialect::from_toml(&text).unwrap();
+            let role = format!("{:?}", dialect.columns.keys().next().unwrap()).to_lowercase();
+            assert_eq!(role, expected, "{heading}");
         }
-        assert_eq!(entry("foo"), None);
-        assert_eq!(entry("foo (kg)"), None);
-        assert_eq!(entry("foo (gf·cm²/cm)"), None);
+        for heading in ["foo", "foo (kg)", "foo (gf·cm²/cm)"] {
+            let dialect = Dialect::from_toml(&dialect_file(&[heading.to_string()])).unwrap();
+            assert!(dialect.columns.is_empty(), "{heading}");
+        }
     }
 }

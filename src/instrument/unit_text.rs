@@ -120,7 +120,8 @@ fn unglued(text: &str) -> Cow<'_, str> {
         }
         let word = &rest[..end];
         rest = &rest[end..];
-        let mut parts = word.char_indices().skip(1).map(|(i, _)| word.split_at(i)).filter(|(a, b)| known(a) && known(b));
+        let mut parts =
+            word.char_indices().skip(1).map(|(i, _)| word.split_at(i)).filter(|(a, b)| known(a) && known(b));
         match (known(word), parts.next(), parts.next()) {
             (false, Some((a, b)), None) => {
                 changed = true;
@@ -164,7 +165,17 @@ mod tests {
 
     #[test]
     fn units_as_print_spells_them() {
-        for text in ["gf/cm·deg", "gf/cm*deg", "gf/cm.degree", "gf/cm degree", "gf/cm·°", "gf/cm°", "gf/(cm.degree)", "GF/CM.DEG", "gf/cm/deg"] {
+        for text in [
+            "gf/cm·deg",
+            "gf/cm*deg",
+            "gf/cm.degree",
+            "gf/cm degree",
+            "gf/cm·°",
+            "gf/cm°",
+            "gf/(cm.degree)",
+            "GF/CM.DEG",
+            "gf/cm/deg",
+        ] {
             assert!((unit(text).unwrap().factor - 56.187_965_62).abs() < 1e-8, "{text}");
         }
         for text in ["gfcm²/cm", "gf.cm2/cm", "gf cm^2/cm", "GF.CM2/CM"] {

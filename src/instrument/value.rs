@@ -14,7 +14,8 @@ pub(super) fn value(cell: &str, decimal: char) -> (Number, Option<f64>) {
     let parts = parts.or_else(|| text.strip_suffix(')').and_then(|t| t.split_once('(')));
     if let Some((mean, sd)) = parts {
         let sd = number(sd.trim().trim_end_matches('%'), decimal);
-        if let (Number::Value(m), Number::Value(s)) = (number(mean.trim().trim_end_matches('%'), decimal), sd) {
+        if let (Number::Value(m), Number::Value(s)) = (number(mean.trim().trim_end_matches('%'), decimal), sd)
+        {
             return (Number::Value(m), Some(s));
         }
     }

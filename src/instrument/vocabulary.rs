@@ -114,7 +114,9 @@ impl<'a> Vocabulary<'a> {
         for length in (1..=n.min(WITHIN)).rev() {
             for i in 0..=n - length {
                 let part = &word[starts[i]..starts[i + length]];
-                if let Some(key) = long_enough(part).then(|| self.exact(part, map, |k| Some(*k), built_in)).flatten() {
+                if let Some(key) =
+                    long_enough(part).then(|| self.exact(part, map, |k| Some(*k), built_in)).flatten()
+                {
                     return Some(key);
                 }
             }
@@ -193,7 +195,8 @@ impl<'a> Vocabulary<'a> {
         }
         // Chinese and Japanese have no blanks between words.
         let word = normalised(&text);
-        let within = |w: &str| w.chars().all(|c| c >= '\u{1100}') && w.chars().count() > 1 && word.contains(w);
+        let within =
+            |w: &str| w.chars().all(|c| c >= '\u{1100}') && w.chars().count() > 1 && word.contains(w);
         let mut own = self.user.iter().flat_map(|d| &d.statistics);
         let found = own.find(|(_, words)| words.iter().any(|w| within(w))).map(|(statistic, _)| *statistic);
         let mut built_in: Vec<(&str, Statistic)> =
@@ -233,7 +236,8 @@ pub(super) fn known_letters(text: &str) -> usize {
         let phrases = words.windows(2).filter(|w| w.iter().any(|w| !w.is_ascii())).map(|w| w.join(" "));
         sum += phrases.map(|p| weight(&normalised(&p), &p)).sum::<usize>();
         // One letter means nothing, unless it is a whole word of Chinese or Japanese.
-        let one = |w: &str| w.chars().nth(1).is_none() && w.chars().all(|c| c < '\u{2e80}' || c >= '\u{ff00}');
+        let one =
+            |w: &str| w.chars().nth(1).is_none() && w.chars().all(|c| !('\u{2e80}'..'\u{ff00}').contains(&c));
         let words = words.iter().filter(|w| !w.is_ascii() && !one(w));
         sum += words.map(|w| weight(&normalised(w), w)).sum::<usize>();
     }

@@ -18,7 +18,10 @@ pub(super) fn is_page(text: &str) -> bool {
     let end = start.char_indices().nth(4096).map_or(start.len(), |(i, _)| i);
     let head = start[..end].to_ascii_lowercase();
     start.starts_with('<')
-        && (head.contains("<html") || head.contains("<table") || head.contains("<workbook") || head.contains(":workbook"))
+        && (head.contains("<html")
+            || head.contains("<table")
+            || head.contains("<workbook")
+            || head.contains(":workbook"))
 }
 
 /// The rows of all tables of a page; a blank row stands between two tables.
@@ -151,7 +154,8 @@ mod tests {
         let page = "<HTML><body><TABLE border=1><tr><td colspan=2>Warp<td>a &amp; b<tr><th>K&nbsp;(1/cm)<th>M<td>1<br>2</TABLE><table><tr><td>x</td></tr></table>";
         assert!(is_page(page) && !is_page("a,b\n<1,2"));
         let rows = rows(page).unwrap();
-        let texts: Vec<Vec<&str>> = rows.iter().map(|r| r.cells.iter().map(|c| c.text.as_ref()).collect()).collect();
+        let texts: Vec<Vec<&str>> =
+            rows.iter().map(|r| r.cells.iter().map(|c| c.text.as_ref()).collect()).collect();
         assert_eq!(texts, [vec!["Warp", "", "a & b"], vec!["K (1/cm)", "M", "1 2"], vec![], vec!["x"]]);
     }
 

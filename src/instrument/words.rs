@@ -6,7 +6,8 @@ use unicode_normalization::char::is_combining_mark;
 /// A word as it is compared: NFKC, lower case, without Latin accents, blanks and punctuation.
 pub(super) fn normalised(text: &str) -> String {
     if text.is_ascii() {
-        let plain: String = text.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect();
+        let plain: String =
+            text.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect();
         // The sign that stands for "number".
         return if plain.is_empty() && text.contains('#') { "no".to_string() } else { plain };
     }

@@ -201,7 +201,9 @@ fn apply(name: &str, cells: &mut Cells, marks: &Marks, hidden: &mut Vec<String>)
         cells.keys().filter(|(r, _)| marks.hidden_rows.contains(r)).map(|(r, _)| r + 1).collect();
     let columns: std::collections::BTreeSet<u32> =
         cells.keys().filter(|(_, c)| marks.hidden_columns.contains(c)).map(|(_, c)| c + 1).collect();
-    let list = |numbers: &std::collections::BTreeSet<u32>| numbers.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
+    let list = |numbers: &std::collections::BTreeSet<u32>| {
+        numbers.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")
+    };
     for (what, numbers) in [("row", &rows), ("column", &columns)] {
         if !numbers.is_empty() {
             let s = if numbers.len() > 1 { "s" } else { "" };

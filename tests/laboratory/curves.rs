@@ -27,16 +27,24 @@ fn units(test: Test) -> [&'static [Printed]; 2] {
     match test {
         Test::Bending => [
             &[("1/cm", 100.0), ("cm-1", 100.0), ("cm^-1", 100.0), ("cm⁻¹", 100.0)],
-            &[("gf·cm/cm", GF), ("gf.cm/cm", GF), ("gf cm/cm", GF), ("gf*cm/cm", GF), ("gfcm/cm", GF), ("mN", 1e-3)],
+            &[
+                ("gf·cm/cm", GF),
+                ("gf.cm/cm", GF),
+                ("gf cm/cm", GF),
+                ("gf*cm/cm", GF),
+                ("gfcm/cm", GF),
+                ("mN", 1e-3),
+            ],
         ],
         Test::Shear => [
             &[("deg", DEG), ("°", DEG), ("degree", DEG), ("degrees", DEG)],
             &[("gf/cm", GF / 1e-2), ("N/m", 1.0), ("cN/cm", 1.0)],
         ],
         Test::Tensile => [&[("%", 0.01)], &[("gf/cm", GF / 1e-2), ("N/m", 1.0), ("cN/cm", 1.0)]],
-        Test::Compression => {
-            [&[("mm", 1e-3), ("µm", 1e-6)], &[("gf/cm²", GF / 1e-4), ("gf/cm2", GF / 1e-4), ("kPa", 1e3), ("Pa", 1.0)]]
-        }
+        Test::Compression => [
+            &[("mm", 1e-3), ("µm", 1e-6)],
+            &[("gf/cm²", GF / 1e-4), ("gf/cm2", GF / 1e-4), ("kPa", 1e3), ("Pa", 1.0)],
+        ],
     }
 }
 
@@ -68,7 +76,8 @@ fn record(rng: &mut Pcg64, test: Test, direction: Option<Direction>, [x, y]: [Pr
         Test::Tensile => {
             let top = 6.0 * stiff;
             let up = ramp(0.0, top).map(|e| (e, 500.0 * (e / top).powf(1.6)));
-            let down = ramp(top, 0.3 * top).map(|e| (e, 500.0 * ((e - 0.3 * top) / (0.7 * top)).max(0.0).powf(2.2)));
+            let down =
+                ramp(top, 0.3 * top).map(|e| (e, 500.0 * ((e - 0.3 * top) / (0.7 * top)).max(0.0).powf(2.2)));
             std::iter::once((0.0, 0.0)).chain(up).chain(down).collect()
         }
         Test::Compression => {
@@ -79,7 +88,8 @@ fn record(rng: &mut Pcg64, test: Test, direction: Option<Direction>, [x, y]: [Pr
         }
     };
     let customary = units(test);
-    let decimals = |unit: Printed, span: f64| (4 - (span / unit.1).log10().floor() as i32).clamp(0, 7) as usize;
+    let decimals =
+        |unit: Printed, span: f64| (4 - (span / unit.1).log10().floor() as i32).clamp(0, 7) as usize;
     let span = |f: fn(&(f64, f64)) -> f64| cycle.iter().map(f).fold(0.0f64, |m, v| m.max(v.abs()));
     let (sx, sy) = (span(|p| p.0) * customary[0][0].1, span(|p| p.1) * customary[1][0].1);
     let (dx, dy) = (decimals(x, sx), decimals(y, sy));
@@ -280,7 +290,8 @@ fn by_direction(rng: &mut Pcg64, heads: &Heads<'_>) -> Records {
         return single(rng, heads);
     }
     let each = rng.random_range(1..3);
-    let ds: Vec<Direction> = [Direction::Warp, Direction::Weft].into_iter().flat_map(|d| vec![d; each]).collect();
+    let ds: Vec<Direction> =
+        [Direction::Warp, Direction::Weft].into_iter().flat_map(|d| vec![d; each]).collect();
     let all: Vec<Record> = ds.iter().map(|d| record(rng, heads.test, Some(*d), heads.units)).collect();
     let mut grid = Grid::default();
     lines(&mut grid, rng, heads, None);
@@ -297,7 +308,11 @@ fn by_direction(rng: &mut Pcg64, heads: &Heads<'_>) -> Records {
             top.push(if first { Cell::text(text) } else { Cell::Empty });
         } else {
             grid.over(at, top.len(), 2);
-            top.push(if each > 1 { Cell::text(format!("{text}-{}", i % each + 1)) } else { Cell::text(text) });
+            top.push(if each > 1 {
+                Cell::text(format!("{text}-{}", i % each + 1))
+            } else {
+                Cell::text(text)
+            });
         }
         top.push(Cell::Empty);
     }
@@ -316,7 +331,8 @@ fn in_heads(rng: &mut Pcg64, heads: &Heads<'_>) -> Records {
     }
     let form = rng.random_range(0..3);
     let each = if form == 1 { 1 } else { rng.random_range(1..3) };
-    let ds: Vec<Direction> = [Direction::Warp, Direction::Weft].into_iter().flat_map(|d| vec![d; each]).collect();
+    let ds: Vec<Direction> =
+        [Direction::Warp, Direction::Weft].into_iter().flat_map(|d| vec![d; each]).collect();
     let all: Vec<Record> = ds.iter().map(|d| record(rng, heads.test, Some(*d), heads.units)).collect();
     let mut grid = Grid::default();
     lines(&mut grid, rng, heads, None);
@@ -382,11 +398,16 @@ fn two_branches(rng: &mut Pcg64, l: &Language) -> Records {
         "cs" => ["zatěžování", "odlehčování"],
         "nl" => ["belasten", "ontlasten"],
         "tr" => ["yükleme", "boşaltma"],
-        _ => pick(rng, &[["loading", "unloading"], ["load", "unload"], ["going", "returning"], ["up", "down"]]),
+        _ => {
+            pick(rng, &[["loading", "unloading"], ["load", "unload"], ["going", "returning"], ["up", "down"]])
+        }
     };
     let name = heads.names[1];
-    let heads_row =
-        vec![heads.head(0, heads.names[0]), heads.head(1, &format!("{name} {}", words[0])), heads.head(1, &format!("{name} {}", words[1]))];
+    let heads_row = vec![
+        heads.head(0, heads.names[0]),
+        heads.head(1, &format!("{name} {}", words[0])),
+        heads.head(1, &format!("{name} {}", words[1])),
+    ];
     grid.row(heads_row);
     let [x, y] = heads.factors();
     let (mut out, mut back) = (Vec::new(), Vec::new());
@@ -431,7 +452,8 @@ fn raw_geometry(rng: &mut Pcg64, l: &Language) -> Records {
     let width = pick(rng, &[5.0, 10.0, 20.0, 2.5]);
     let gauge = pick(rng, &[2.0, 5.0, 10.0]);
     let d = pick(rng, &[Direction::Warp, Direction::Weft]);
-    let heads = Heads { units: [("mm", 1e-3), ("gf", GF)], own_row: false, ..Heads::any(rng, l, Test::Tensile) };
+    let heads =
+        Heads { units: [("mm", 1e-3), ("gf", GF)], own_row: false, ..Heads::any(rng, l, Test::Tensile) };
     let mut grid = Grid::default();
     lines(&mut grid, rng, &heads, Some(d));
     let size = l.name == "en" && chance(rng, 0.3);
@@ -440,7 +462,8 @@ fn raw_geometry(rng: &mut Pcg64, l: &Language) -> Records {
         let at = if grid.rows.last().is_some_and(Vec::is_empty) { at } else { grid.rows.len() };
         grid.rows.insert(at, vec![Cell::text("Specimen size"), Cell::text(format!("{width} x {gauge} cm"))]);
     } else {
-        let at = if grid.rows.last().is_some_and(Vec::is_empty) { grid.rows.len() - 1 } else { grid.rows.len() };
+        let at =
+            if grid.rows.last().is_some_and(Vec::is_empty) { grid.rows.len() - 1 } else { grid.rows.len() };
         let form = rng.random_range(0..3);
         let line = |name: &str, v: f64| match form {
             0 => vec![Cell::text(name), Cell::text(format!("{v} cm"))],

@@ -29,8 +29,17 @@ use words::LANGUAGES;
 /// What a file says.
 #[derive(Clone, Debug)]
 pub enum Expected {
-    Value { fabric: Option<String>, parameter: Parameter, direction: Option<Direction>, si: f64 },
-    Curve { test: Test, direction: Option<Direction>, points: Vec<(f64, f64)> },
+    Value {
+        fabric: Option<String>,
+        parameter: Parameter,
+        direction: Option<Direction>,
+        si: f64,
+    },
+    Curve {
+        test: Test,
+        direction: Option<Direction>,
+        points: Vec<(f64, f64)>,
+    },
     /// It leaves open what must be known: nothing may be read.
     Refusal,
 }
@@ -87,7 +96,9 @@ fn wrong(content: &FileContent, expected: &[Expected]) -> Option<String> {
         match e {
             Expected::Value { fabric, parameter, direction, si } => {
                 let same = |(name, v): &(Option<String>, kesf::instrument::ResultValue)| {
-                    (fabric.is_none() || name == fabric) && v.parameter == *parameter && v.direction == *direction
+                    (fabric.is_none() || name == fabric)
+                        && v.parameter == *parameter
+                        && v.direction == *direction
                 };
                 let Some(at) = content.results.iter().position(same) else {
                     let found: Vec<String> = content
@@ -106,7 +117,9 @@ fn wrong(content: &FileContent, expected: &[Expected]) -> Option<String> {
             }
             Expected::Curve { test, direction, points } => {
                 let same = |(i, m): &(usize, &kesf::instrument::Measurement)| {
-                    !curves[*i] && (m.test, m.direction) == (*test, *direction) && m.curve.len() == points.len()
+                    !curves[*i]
+                        && (m.test, m.direction) == (*test, *direction)
+                        && m.curve.len() == points.len()
                 };
                 let at = content.measurements.iter().enumerate().find(same);
                 let Some((i, m)) = at else {
@@ -115,22 +128,29 @@ fn wrong(content: &FileContent, expected: &[Expected]) -> Option<String> {
                         .iter()
                         .map(|m| format!("{:?} {:?} {} points", m.test, m.direction, m.curve.len()))
                         .collect();
-                    return Some(format!("no {test:?} {direction:?} of {} points; there are {found:?}", points.len()));
+                    return Some(format!(
+                        "no {test:?} {direction:?} of {} points; there are {found:?}",
+                        points.len()
+                    ));
                 };
                 curves[i] = true;
-                let bad = m.curve.points().zip(points).find(|((x, y), (a, b))| !close(*x, *a) || !close(*y, *b));
+                let bad =
+                    m.curve.points().zip(points).find(|((x, y), (a, b))| !close(*x, *a) || !close(*y, *b));
                 if let Some((found, truth)) = bad {
                     return Some(format!("a point of {test:?} {direction:?} is {found:?}, not {truth:?}"));
                 }
             }
-            Expected::Refusal => return Some(format!("{} curves of what nobody can tell", content.measurements.len())),
+            Expected::Refusal => {
+                return Some(format!("{} curves of what nobody can tell", content.measurements.len()));
+            }
         }
     }
     if let Some(i) = curves.iter().position(|u| !u) {
         let m = &content.measurements[i];
         return Some(format!("a curve too many: {:?} {:?}", m.test, m.direction));
     }
-    let extra = content.results.iter().zip(&used).find(|((_, v), used)| !*used && v.parameter != Parameter::W);
+    let extra =
+        content.results.iter().zip(&used).find(|((_, v), used)| !*used && v.parameter != Parameter::W);
     extra.map(|((n, v), _)| format!("a value too many: {n:?} {} {:?} {}", v.parameter, v.direction, v.mean))
 }
 
@@ -193,7 +213,8 @@ fn nothing_is_wrong_in_silence_and_nearly_all_is_right() {
         let trial = trial(seed);
         let result = parse(Path::new(&trial.name), &trial.bytes, &ReadSettings::default());
         let (outcome, what) = judge(&trial, &result);
-        let described = format!("{seed} {} | {} | {} | {}", trial.layout, trial.paper, trial.language, trial.name);
+        let described =
+            format!("{seed} {} | {} | {} | {}", trial.layout, trial.paper, trial.language, trial.name);
         if outcome != Outcome::Right && show.as_ref().is_some_and(|s| described.contains(s.as_str())) {
             println!("{outcome:?} {described}\n   {what}");
             if let Some(folder) = &keep {
@@ -215,6 +236,11 @@ fn nothing_is_wrong_in_silence_and_nearly_all_is_right() {
     languages.print("language");
     all.print("");
     let right = totals.get(&Outcome::Right).copied().unwrap_or(0);
-    assert!(silent.is_empty(), "{} of {count} wrong in silence, such as\n{}", silent.len(), silent[..silent.len().min(20)].join("\n"));
+    assert!(
+        silent.is_empty(),
+        "{} of {count} wrong in silence, such as\n{}",
+        silent.len(),
+        silent[..silent.len().min(20)].join("\n")
+    );
     assert!(20 * right >= 19 * count, "{right} of {count} are right");
 }

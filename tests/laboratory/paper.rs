@@ -78,7 +78,9 @@ impl Paper {
     /// The bytes; `None` if the sheet cannot be saved so (a character that the encoding lacks).
     pub fn bytes(&self, grid: &Grid) -> Option<Vec<u8>> {
         match self {
-            Self::Text { delimiter, comma, encoding } => encoded(&delimited(grid, *delimiter, *comma), encoding),
+            Self::Text { delimiter, comma, encoding } => {
+                encoded(&delimited(grid, *delimiter, *comma), encoding)
+            }
             Self::Fixed { encoding } => encoded(&fixed(grid)?, encoding),
             Self::Xlsx => xlsx(grid),
             Self::Ods => Some(ods(grid)),
@@ -140,7 +142,9 @@ fn fixed(grid: &Grid) -> Option<String> {
     let text = |c: &Cell| shown(c, false);
     let width = grid.width();
     let widths: Vec<usize> = (0..width)
-        .map(|i| grid.rows.iter().filter_map(|r| r.get(i)).map(|c| text(c).chars().count()).max().unwrap_or(0) + 3)
+        .map(|i| {
+            grid.rows.iter().filter_map(|r| r.get(i)).map(|c| text(c).chars().count()).max().unwrap_or(0) + 3
+        })
         .collect();
     for row in &grid.rows {
         let last = row.iter().rposition(|c| *c != Cell::Empty).unwrap_or(0);
@@ -171,7 +175,9 @@ fn xlsx(grid: &Grid) -> Option<Vec<u8>> {
                 Cell::Empty => {}
                 Cell::Text(t) => drop(sheet.write_string(i, j, t).ok()?),
                 Cell::Number(n) => drop(sheet.write_number(i, j, n.value).ok()?),
-                Cell::Percent(n) => drop(sheet.write_number_with_format(i, j, n.value / 100.0, &percent).ok()?),
+                Cell::Percent(n) => {
+                    drop(sheet.write_number_with_format(i, j, n.value / 100.0, &percent).ok()?)
+                }
             }
         }
     }
@@ -198,7 +204,10 @@ fn ods(grid: &Grid) -> Vec<u8> {
     let cell = |c: &Cell| match c {
         Cell::Empty => "<table:table-cell/>".to_string(),
         Cell::Text(t) => {
-            format!("<table:table-cell office:value-type=\"string\"><text:p>{}</text:p></table:table-cell>", escaped(t))
+            format!(
+                "<table:table-cell office:value-type=\"string\"><text:p>{}</text:p></table:table-cell>",
+                escaped(t)
+            )
         }
         Cell::Number(n) => format!(
             "<table:table-cell office:value-type=\"float\" office:value=\"{}\"><text:p>{}</text:p></table:table-cell>",
@@ -212,7 +221,8 @@ fn ods(grid: &Grid) -> Vec<u8> {
         ),
     };
     let row = |r: &Vec<Cell>| {
-        let cells: String = if r.is_empty() { "<table:table-cell/>".into() } else { r.iter().map(cell).collect() };
+        let cells: String =
+            if r.is_empty() { "<table:table-cell/>".into() } else { r.iter().map(cell).collect() };
         format!("<table:table-row>{cells}</table:table-row>")
     };
     let rows: String = grid.rows.iter().map(row).collect();

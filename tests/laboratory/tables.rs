@@ -4,10 +4,10 @@ use kesf::instrument::{Direction, Parameter};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
+use super::Expected;
 use super::grid::{Cell, Grid};
 use super::truth::{Fabric, GROUPS, Printed, Printing, Quantity, chance, fabrics, pick};
 use super::words::Language;
-use super::Expected;
 
 use Parameter as P;
 
@@ -142,7 +142,9 @@ fn statistics(rng: &mut Pcg64, l: &Language, quantities: &[&Quantity]) -> Vec<(S
         out.push((pick(rng, l.cv).to_string(), cvs));
     }
     if chance(rng, 0.15) {
-        let most = |q: &&Quantity| q.repeats.iter().copied().max_by(|a, b| a.value.total_cmp(&b.value)).expect("one");
+        let most = |q: &&Quantity| {
+            q.repeats.iter().copied().max_by(|a, b| a.value.total_cmp(&b.value)).expect("one")
+        };
         out.push((pick(rng, l.max).to_string(), quantities.iter().map(|q| number(most(q))).collect()));
     }
     out
@@ -154,7 +156,10 @@ pub fn any(rng: &mut Pcg64, l: &Language) -> Table {
     let si = chance(rng, 0.5);
     let style = Style {
         language: l,
-        unit: pick(rng, &[UnitPlace::Round, UnitPlace::Round, UnitPlace::Square, UnitPlace::Comma, UnitPlace::Own]),
+        unit: pick(
+            rng,
+            &[UnitPlace::Round, UnitPlace::Round, UnitPlace::Square, UnitPlace::Comma, UnitPlace::Own],
+        ),
         warp: pick(rng, l.warp),
         weft: pick(rng, l.weft),
         names: pick(rng, &[Names::Symbol, Names::Symbol, Names::Symbol, Names::Both, Names::Full]),
@@ -212,8 +217,7 @@ fn wide(rng: &mut Pcg64, style: &Style<'_>, all: &[Fabric]) -> Table {
     let mut parameters: Vec<P> = parameters;
     parameters.dedup();
     let directional = parameters.iter().any(|p| p.is_directional());
-    let first: Vec<&Quantity> =
-        parameters.iter().map(|p| all[0].get(*p, Some(Direction::Warp))).collect();
+    let first: Vec<&Quantity> = parameters.iter().map(|p| all[0].get(*p, Some(Direction::Warp))).collect();
     let lead = if directional { 2 } else { 1 };
     let (sample, direction) = (pick(rng, l.sample), pick(rng, l.direction));
     let head = |grid: &mut Grid| {
@@ -295,13 +299,18 @@ fn two_rows(rng: &mut Pcg64, style: &Style<'_>, all: &[Fabric], parameters_first
     let at = grid.rows.len();
     let mut last = None;
     for (i, q) in quantities.iter().enumerate() {
-        let upper = if parameters_first { format!("{:?}", q.parameter) } else { format!("{:?}", q.direction) };
+        let upper =
+            if parameters_first { format!("{:?}", q.parameter) } else { format!("{:?}", q.direction) };
         let new = last.as_ref() != Some(&upper);
         if new {
             let width = quantities[i..]
                 .iter()
                 .take_while(|k| {
-                    let same = if parameters_first { k.parameter == q.parameter } else { k.direction == q.direction };
+                    let same = if parameters_first {
+                        k.parameter == q.parameter
+                    } else {
+                        k.direction == q.direction
+                    };
                     same
                 })
                 .count();
@@ -322,7 +331,11 @@ fn two_rows(rng: &mut Pcg64, style: &Style<'_>, all: &[Fabric], parameters_first
         grid.row(cells);
     }
     let expected = all.iter().flat_map(|f| printed_means(f, true)).collect();
-    let layout = if parameters_first { "two head rows, parameter over direction" } else { "two head rows, direction over parameter" };
+    let layout = if parameters_first {
+        "two head rows, parameter over direction"
+    } else {
+        "two head rows, direction over parameter"
+    };
     Table { layout, grid, expected, workbook: false }
 }
 
@@ -551,7 +564,8 @@ fn numbered_rows(rng: &mut Pcg64, style: &Style<'_>, fabric: &Fabric) -> Table {
         let quantities: Vec<&Quantity> = fabric.quantities.iter().filter(|q| q.direction == *d).collect();
         let word = d.map(|d| style.direction(d)).unwrap_or_default();
         for i in 0..quantities[0].repeats.len() {
-            let label = if word.is_empty() { format!("{}", i + 1) } else { format!("{word}{separator}{}", i + 1) };
+            let label =
+                if word.is_empty() { format!("{}", i + 1) } else { format!("{word}{separator}{}", i + 1) };
             let mut cells = vec![Cell::text(label)];
             cells.extend(quantities.iter().map(|q| number(q.repeats[i])));
             grid.row(cells);
@@ -613,7 +627,13 @@ fn tidy(rng: &mut Pcg64, style: &Style<'_>, all: &[Fabric]) -> Table {
 fn long(rng: &mut Pcg64, style: &Style<'_>, all: &[Fabric]) -> Table {
     let l = style.language;
     let mut grid = Grid::default();
-    grid.texts(&[pick(rng, l.sample), pick(rng, l.parameter), pick(rng, l.direction), pick(rng, l.value), pick(rng, l.unit)]);
+    grid.texts(&[
+        pick(rng, l.sample),
+        pick(rng, l.parameter),
+        pick(rng, l.direction),
+        pick(rng, l.value),
+        pick(rng, l.unit),
+    ]);
     for f in all {
         for q in &f.quantities {
             let word = q.direction.map(|d| style.direction(d)).unwrap_or_default();
@@ -640,7 +660,11 @@ fn literature(rng: &mut Pcg64, style: &Style<'_>, all: &[Fabric]) -> Table {
     let name = |q: &Quantity| {
         let symbol = style.symbol(q.parameter);
         // 2HG5 and 2HG51 would be misread by people, too.
-        let separator = if symbol.ends_with(|c: char| c.is_ascii_digit()) && separator.is_empty() { "-" } else { separator };
+        let separator = if symbol.ends_with(|c: char| c.is_ascii_digit()) && separator.is_empty() {
+            "-"
+        } else {
+            separator
+        };
         let suffix = match q.direction {
             Some(Direction::Warp) => format!("{separator}1"),
             Some(_) => format!("{separator}2"),
@@ -656,7 +680,8 @@ fn literature(rng: &mut Pcg64, style: &Style<'_>, all: &[Fabric]) -> Table {
         for q in &quantities {
             let full = name(q);
             let symbol = full.split(['(', '[', ',']).next().unwrap_or_default().trim().to_string();
-            let mut cells = vec![Cell::text(symbol), Cell::text(if q.unit.0.is_empty() { "-" } else { q.unit.0 })];
+            let mut cells =
+                vec![Cell::text(symbol), Cell::text(if q.unit.0.is_empty() { "-" } else { q.unit.0 })];
             cells.extend(all.iter().map(|f| number(mean(f.get(q.parameter, q.direction)))));
             grid.row(cells);
         }
@@ -709,7 +734,13 @@ fn plus_minus(rng: &mut Pcg64, style: &Style<'_>, all: &[Fabric]) -> Table {
         }
     }
     let expected = all.iter().flat_map(|f| printed_means(f, true)).collect();
-    let layout = if percent { "percent cells" } else if form < 3 { "mean and deviation in a cell" } else { "wide" };
+    let layout = if percent {
+        "percent cells"
+    } else if form < 3 {
+        "mean and deviation in a cell"
+    } else {
+        "wide"
+    };
     Table { layout, grid, expected, workbook: percent }
 }
 
@@ -723,7 +754,9 @@ fn side_by_side(rng: &mut Pcg64, style: &Style<'_>, fabric: &Fabric) -> Table {
     }
     let directions: Vec<Option<Direction>> =
         if fabric.quantities[0].direction.is_some() { BOTH.map(Some).to_vec() } else { vec![None] };
-    let of = |d: &Option<Direction>| -> Vec<&Quantity> { fabric.quantities.iter().filter(|q| q.direction == *d).collect() };
+    let of = |d: &Option<Direction>| -> Vec<&Quantity> {
+        fabric.quantities.iter().filter(|q| q.direction == *d).collect()
+    };
     let all: Vec<&Quantity> = directions.iter().flat_map(of).collect();
     if directions.len() > 1 {
         let at = grid.rows.len();

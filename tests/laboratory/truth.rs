@@ -36,8 +36,14 @@ pub fn units(p: Parameter) -> &'static [Printed] {
         ("uN.m", 1e-6),
         ("cN·cm²/cm", 1e-4),
     ];
-    const HB: &[Printed] =
-        &[("gf·cm/cm", GF), ("gf.cm/cm", GF), ("gf cm/cm", GF), ("gfcm/cm", GF), ("mN", 1e-3), ("cN·cm/cm", 1e-2)];
+    const HB: &[Printed] = &[
+        ("gf·cm/cm", GF),
+        ("gf.cm/cm", GF),
+        ("gf cm/cm", GF),
+        ("gfcm/cm", GF),
+        ("mN", 1e-3),
+        ("cN·cm/cm", 1e-2),
+    ];
     const G: &[Printed] = &[
         ("gf/(cm·deg)", GF / 1e-2 / DEG),
         ("gf/cm·deg", GF / 1e-2 / DEG),
@@ -114,8 +120,23 @@ pub const GROUPS: &[&[Parameter]] = &[
     &[P::B, P::Hb, P::G, P::Hg, P::Hg5],
     &[P::Lt, P::Wt, P::Rt, P::Emt, P::B, P::Hb, P::G, P::Hg, P::Hg5],
     &[
-        P::Lt, P::Wt, P::Rt, P::Emt, P::B, P::Hb, P::G, P::Hg, P::Hg5, P::Lc, P::Wc, P::Rc, P::T0, P::W, P::Miu,
-        P::Mmd, P::Smd,
+        P::Lt,
+        P::Wt,
+        P::Rt,
+        P::Emt,
+        P::B,
+        P::Hb,
+        P::G,
+        P::Hg,
+        P::Hg5,
+        P::Lc,
+        P::Wc,
+        P::Rc,
+        P::T0,
+        P::W,
+        P::Miu,
+        P::Mmd,
+        P::Smd,
     ],
 ];
 
@@ -172,18 +193,45 @@ pub struct Fabric {
 impl Fabric {
     pub fn get(&self, p: Parameter, d: Option<Direction>) -> &Quantity {
         let d = d.filter(|_| p.is_directional());
-        self.quantities.iter().find(|q| q.parameter == p && q.direction == d).expect("a quantity of the fabric")
+        self.quantities
+            .iter()
+            .find(|q| q.parameter == p && q.direction == d)
+            .expect("a quantity of the fabric")
     }
 }
 
 /// Names and codes that laboratories give to samples.
 const NAMES: &[&str] = &[
-    "Poplin", "Twill 2/1", "Denim A", "S1", "F01", "Sample 3", "cotton broadcloth", "W-17", "B-2", "T 40", "G-1", "LT-1",
-    "PES 01", "Wool tropical", "JF-203", "No. 12", "K12", "C-03", "M3", "N 21",
+    "Poplin",
+    "Twill 2/1",
+    "Denim A",
+    "S1",
+    "F01",
+    "Sample 3",
+    "cotton broadcloth",
+    "W-17",
+    "B-2",
+    "T 40",
+    "G-1",
+    "LT-1",
+    "PES 01",
+    "Wool tropical",
+    "JF-203",
+    "No. 12",
+    "K12",
+    "C-03",
+    "M3",
+    "N 21",
 ];
 
 /// Fabrics with these parameters, each with so many repeats.
-pub fn fabrics(rng: &mut Pcg64, parameters: &[Parameter], count: usize, repeats: usize, si: bool) -> Vec<Fabric> {
+pub fn fabrics(
+    rng: &mut Pcg64,
+    parameters: &[Parameter],
+    count: usize,
+    repeats: usize,
+    si: bool,
+) -> Vec<Fabric> {
     let of: Vec<(Parameter, Printed)> = parameters
         .iter()
         .map(|p| {
@@ -197,11 +245,15 @@ pub fn fabrics(rng: &mut Pcg64, parameters: &[Parameter], count: usize, repeats:
             let name = NAMES[(first + 7 * i) % NAMES.len()].to_string();
             let mut quantities = Vec::new();
             for (p, unit) in &of {
-                let directions: &[Option<Direction>] =
-                    if p.is_directional() { &[Some(Direction::Warp), Some(Direction::Weft)] } else { &[None] };
+                let directions: &[Option<Direction>] = if p.is_directional() {
+                    &[Some(Direction::Warp), Some(Direction::Weft)]
+                } else {
+                    &[None]
+                };
                 let shape = 0.6 + 0.8 * rng.random::<f64>();
                 for d in directions {
-                    let of_direction = if *d == Some(Direction::Weft) { 0.55 + 0.3 * rng.random::<f64>() } else { 1.0 };
+                    let of_direction =
+                        if *d == Some(Direction::Weft) { 0.55 + 0.3 * rng.random::<f64>() } else { 1.0 };
                     let centre = usual(*p) * units(*p)[0].1 * shape * of_direction / unit.1;
                     let one = |rng: &mut Pcg64| Printing::of(centre * (0.94 + 0.12 * rng.random::<f64>()));
                     let repeats = (0..repeats).map(|_| one(rng)).collect();

@@ -103,13 +103,26 @@ impl Layout {
         match meta {
             Some(TableColumn::Sd) if numeric => {
                 self.sd_column = Some(index);
-                self.values.push(column(Facets { meta: None, sd: true, statistic: Some(Statistic::Spread), ..facets }, None));
+                self.values.push(column(
+                    Facets { meta: None, sd: true, statistic: Some(Statistic::Spread), ..facets },
+                    None,
+                ));
             }
             // The number of repeats is no value; a column of the second specimen may be headed by a number.
             Some(TableColumn::Value) if numeric => {
                 self.values.push(column(Facets { meta: None, ..facets }, None));
             }
-            Some(m) if !numeric || matches!(m, TableColumn::N | TableColumn::Unit | TableColumn::Specimen | TableColumn::Id | TableColumn::Fabric) => {
+            Some(m)
+                if !numeric
+                    || matches!(
+                        m,
+                        TableColumn::N
+                            | TableColumn::Unit
+                            | TableColumn::Specimen
+                            | TableColumn::Id
+                            | TableColumn::Fabric
+                    ) =>
+            {
                 self.labels.push(LabelColumn { index, meta: Some(m) });
             }
             _ if numeric && is_value => {
@@ -139,7 +152,8 @@ impl Layout {
             }
             // A number among names is a name as well: `No. 12`.
             let named = self.values.iter().filter(|c| c.fabric.is_some()).count();
-            for c in self.values.iter_mut().filter(|c| numbered == 1 && named > 0 && c.facets.index.is_some()) {
+            for c in self.values.iter_mut().filter(|c| numbered == 1 && named > 0 && c.facets.index.is_some())
+            {
                 c.fabric = Some(c.name.clone());
                 c.facets.index = None;
             }
@@ -180,7 +194,9 @@ impl Layout {
             // `Warp-1`, `Warp-2`, `Mean` label specimens.
             let labelled = 2 * cells.iter().filter(is_label).count() >= cells.len().max(1);
             match label.meta {
-                Some(TableColumn::N) if (counts || labelled) && !has_specimen => label.meta = Some(TableColumn::Specimen),
+                Some(TableColumn::N) if (counts || labelled) && !has_specimen => {
+                    label.meta = Some(TableColumn::Specimen)
+                }
                 None if is_first && counts && !has_specimen => label.meta = Some(TableColumn::Specimen),
                 None if is_first && !named => {
                     // Anything else names fabrics.
@@ -208,7 +224,11 @@ impl Layout {
         let is_number = |t: &str| matches!(number(t, context.decimal), Number::Value(_));
         let numeric = |i: usize| region.rows.iter().any(|r| r.get(i).is_some_and(is_number));
         let Some(head) = region.heads.iter().rev().find(|h| !is_units(h)) else { return Vec::new() };
-        let unknown = |i: usize| !self.values.iter().any(|c| c.index == i) && !self.labels.iter().any(|l| l.index == i && l.meta.is_some()) && self.sd_column != Some(i);
+        let unknown = |i: usize| {
+            !self.values.iter().any(|c| c.index == i)
+                && !self.labels.iter().any(|l| l.index == i && l.meta.is_some())
+                && self.sd_column != Some(i)
+        };
         let unused = head.filled().filter(|(i, _)| !self.down && unknown(*i) && numeric(*i));
         unused.map(|(_, c)| c.text.to_string()).collect()
     }
@@ -279,7 +299,8 @@ impl Heads {
         let words: Vec<&&Row<'_>> = region.heads.iter().filter(|h| !is_units(h)).collect();
         for head in region.heads.iter().filter(|h| is_units(h)) {
             let bare = |i| {
-                let text = head.get(i).map(|t| folded(t).trim_matches(['(', ')', '[', ']']).trim().to_string());
+                let text =
+                    head.get(i).map(|t| folded(t).trim_matches(['(', ')', '[', ']']).trim().to_string());
                 (text.unwrap_or_default(), (head.line, head.column(i)))
             };
             units = Some((0..width).map(bare).collect());
@@ -289,7 +310,8 @@ impl Heads {
             let mut cells: Vec<Head> = Vec::with_capacity(width);
             for i in 0..width {
                 let at = (head.line, head.column(i));
-                let cell = head.get(i).map(|t| (Facets::of(t, context.vocabulary), folded(t).into_owned(), at));
+                let cell =
+                    head.get(i).map(|t| (Facets::of(t, context.vocabulary), folded(t).into_owned(), at));
                 let spread = || {
                     let below = |j: usize| words[k + 1..].iter().any(|r| r.get(j).is_some());
                     let before = cells.last().filter(|_| !lowest && below(i))?;
@@ -324,7 +346,8 @@ impl Heads {
                 names.insert(0, text.clone());
             }
         }
-        if let Some((text, at)) = self.units.as_ref().and_then(|u| u.get(index)).filter(|(t, _)| !t.is_empty())
+        if let Some((text, at)) =
+            self.units.as_ref().and_then(|u| u.get(index)).filter(|(t, _)| !t.is_empty())
             && all.unit.is_none()
         {
             all.unit = Some(text.clone());

@@ -7,9 +7,9 @@ use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::dialect::{Statistic, TableColumn};
 use crate::instrument::error::{Problem, ReadError};
 use crate::instrument::raw::Row;
+use crate::instrument::sniff::{Number, folded};
 use crate::instrument::statistic::{finding, names_statistics};
 use crate::instrument::value::value;
-use crate::instrument::sniff::{Number, folded};
 use crate::instrument::{Direction, Parameter, ResultValue};
 use crate::quantity::Estimate;
 
@@ -123,11 +123,8 @@ impl<'t> Table<'t, '_> {
     /// Averages repeats, leaves out what sums up others, refuses contradictions, and says so.
     pub(super) fn finish(mut self) -> Result<Contents, ReadError> {
         let groups = self.groups();
-        let both: BTreeSet<(Option<String>, Parameter)> = groups
-            .iter()
-            .filter(|g| g.key.2.is_some())
-            .map(|g| (g.key.0.clone(), g.key.1))
-            .collect();
+        let both: BTreeSet<(Option<String>, Parameter)> =
+            groups.iter().filter(|g| g.key.2.is_some()).map(|g| (g.key.0.clone(), g.key.1)).collect();
         let mut left_out: BTreeMap<(bool, usize, usize), String> =
             self.layout.left_out_rows.iter().map(|(line, t)| ((true, *line, 0), t.clone())).collect();
         let mut out: Vec<(Option<String>, ResultValue)> = Vec::new();
@@ -174,14 +171,21 @@ impl<'t> Table<'t, '_> {
         repeated: &mut Vec<(Key, Place)>,
     ) -> Result<Option<Named>, ReadError> {
         let (fabric, parameter, direction) = group.key;
-        let (summaries, singles): (Vec<Datum>, Vec<Datum>) = group.members.into_iter().partition(|d| d.statistic.is_some());
+        let (summaries, singles): (Vec<Datum>, Vec<Datum>) =
+            group.members.into_iter().partition(|d| d.statistic.is_some());
         let is = |d: &Datum, s: Statistic| d.statistic.as_ref().is_some_and(|t| t.0 == s);
-        let mean = summaries.iter().find(|d| is(d, Statistic::Mean) && !beside && !d.of_fabrics(self)).cloned();
+        let mean =
+            summaries.iter().find(|d| is(d, Statistic::Mean) && !beside && !d.of_fabrics(self)).cloned();
         let taken = if singles.is_empty() { mean } else { None };
         let sd = summaries.iter().find(|d| d.statistic.as_ref().is_some_and(|t| t.1)).map(|d| d.mean);
         for d in &summaries {
             let is_taken = taken.as_ref().is_some_and(|t| (t.line, t.column) == (d.line, d.column));
-            if !is_taken && let Some((_, _, label)) = &d.statistic {
+            // The deviation of the only value, or of the mean, is used.
+            let is_used = singles.len() < 2 && !d.by_row && d.statistic.as_ref().is_some_and(|t| t.1);
+            if !is_taken
+                && !is_used
+                && let Some((_, _, label)) = &d.statistic
+            {
                 let at = if d.by_row { (true, d.line, 0) } else { (false, self.layout.line, d.column) };
                 left_out.insert(at, label.clone());
             }
@@ -214,7 +218,10 @@ impl<'t> Table<'t, '_> {
             if !parameter.is_directional() && d.index.is_none() && kept.iter().any(stated_again) {
                 continue;
             }
-            if d.index.is_some() && !numbers.insert((d.index, self.several_directions(d))) && direction.is_some() {
+            if d.index.is_some()
+                && !numbers.insert((d.index, self.several_directions(d)))
+                && direction.is_some()
+            {
                 return Err(twice(d));
             }
             kept.push(d.clone());
@@ -224,6 +231,9 @@ impl<'t> Table<'t, '_> {
             repeated.push(((fabric.clone(), parameter, direction), place(&kept[1])));
         }
         let repeats = kept.len() > 1;
+        if let ([only], Some(sd)) = (&mut kept[..], sd) {
+            only.sd = only.sd.or(Some(sd));
+        }
         Ok(Some(self.result(fabric, &kept, repeats)))
     }
 
@@ -232,7 +242,12 @@ impl<'t> Table<'t, '_> {
         if d.parameter.is_directional() { 0 } else { d.line }
     }
 
-    fn result(&self, fabric: Option<String>, members: &[Datum], repeats: bool) -> (Option<String>, ResultValue) {
+    fn result(
+        &self,
+        fabric: Option<String>,
+        members: &[Datum],
+        repeats: bool,
+    ) -> (Option<String>, ResultValue) {
         let first = &members[0];
         let mut value = ResultValue {
             parameter: first.parameter,
@@ -259,8 +274,11 @@ impl<'t> Table<'t, '_> {
             }
         }
         for (by_row, what) in [(true, "rows"), (false, "columns")] {
-            let named: Vec<(usize, &String)> =
-                left_out.iter().filter(|((r, ..), _)| *r == by_row).map(|((_, line, _), t)| (*line, t)).collect();
+            let named: Vec<(usize, &String)> = left_out
+                .iter()
+                .filter(|((r, ..), _)| *r == by_row)
+                .map(|((_, line, _), t)| (*line, t))
+                .collect();
             self.findings.extend(finding(what, &named, self.context.path));
         }
         if let Some((first, place)) = repeated.first() {
@@ -301,7 +319,8 @@ fn sums_up(row: &[Option<(f64, f64)>], above: &[&Vec<Option<(f64, f64)>>]) -> bo
     }
     let of = |statistic: fn(&[f64]) -> f64| {
         row.iter().enumerate().filter_map(|(i, cell)| cell.map(|c| (i, c))).all(|(i, (v, half))| {
-            let column: Vec<f64> = above.iter().filter_map(|r| r.get(i).copied().flatten()).map(|c| c.0).collect();
+            let column: Vec<f64> =
+                above.iter().filter_map(|r| r.get(i).copied().flatten()).map(|c| c.0).collect();
             column.len() == above.len() && (statistic(&column) - v).abs() <= half
         })
     };
