@@ -130,7 +130,7 @@ pub enum Statistic {
 }
 
 /// Which way the drive goes in a column that holds one branch of a curve.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BranchColumn {
     /// Loading.

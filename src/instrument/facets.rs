@@ -59,7 +59,7 @@ impl Facets {
         let is_value = |n: &str| vocabulary.parameter(n).is_some() || fast::heading(n).is_some();
         // One letter behind words is part of a name: `Sample N`.
         let long = own.as_ref().is_some_and(|u| u == "%" || u.chars().count() > 1);
-        if facets.unit.is_none() && own.is_some() && (long || is_value(&stem)) {
+        if facets.unit.is_none() && own.is_some() && !name.contains('_') && (long || is_value(&stem)) {
             facets.unit = own;
             name = &stem;
         }

@@ -362,7 +362,10 @@ impl<'t> Scanner<'t, '_> {
         let labels: Vec<(usize, Label, Entry)> = row.filled().map(label).collect();
         let is_mean = |e: &Entry| pairs::of_label(&e.text, self.context.vocabulary).is_some();
         // Specimens and directions come first: `maximum,2.5 1/cm` is a header line, and so is `direction,warp`.
-        let complete = labels.first().is_some_and(|(_, l, _)| l.is_plain())
+        let is_key = labels.first().is_some_and(|(_, _, e)| self.context.vocabulary.key(&e.text).is_some());
+        // `width,20`: a key, and not the direction of that name.
+        let complete = !is_key
+            && labels.first().is_some_and(|(_, l, _)| l.is_plain())
             && labels.iter().all(|(_, l, e)| l.is_plain() || is_mean(e));
         let below = || self.rows[self.at + 1..].iter().filter(|r| !r.is_blank()).take(2);
         if labels.len() < 2 || !complete || !below().any(|r| self.headings(r).is_some()) {

@@ -175,7 +175,9 @@ fn looks_japanese(bytes: &[u8]) -> bool {
             0xe0..=0xfc => (latin, i) = (latin + 1, i + 2),
             0xa1..=0xdf => {
                 let run = bytes[i..].iter().take_while(|b| (0xa1..=0xdf).contains(*b)).count();
-                if run > 1 {
+                // ° ± ² ³ µ · stand together in units: `gf/cm·°`.
+                let signs = bytes[i..i + run].iter().all(|b| matches!(b, 0xb0..=0xb3 | 0xb5 | 0xb7));
+                if run > 1 && !signs {
                     japanese += run;
                 } else {
                     latin += 1;

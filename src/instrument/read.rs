@@ -169,13 +169,17 @@ fn context<'a>(
     }
 }
 
-/// What the name of a file says; of `lab.zip[warp/FB2_1.csv]` that of the file within.
+/// What the name of a file says; of `lab.zip[warp/FB2_1.csv]` that of the file within, and then that of the archive.
 fn label(path: &Path, vocabulary: Vocabulary<'_>) -> Label {
     let name = path.to_string_lossy();
-    let within =
-        name.strip_suffix(']').and_then(|n| n.split_once('[')).map(|(_, inner)| PathBuf::from(inner));
-    let stem = within.as_deref().unwrap_or(path).file_stem().map(|s| s.to_string_lossy().into_owned());
-    stem.map(|s| Label::parse(&s, vocabulary)).unwrap_or_default()
+    let stem = |path: &Path| {
+        let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
+        stem.map(|s| Label::parse(&s, vocabulary)).unwrap_or_default()
+    };
+    match name.strip_suffix(']').and_then(|n| n.split_once('[')) {
+        Some((archive, within)) => stem(Path::new(within)).or(stem(Path::new(archive))),
+        None => stem(path),
+    }
 }
 
 /// A workbook: every sheet is a table, and its name may carry metadata as a file name does.
