@@ -46,7 +46,7 @@ const CASES: &[(&str, &str, &str)] = &[
     ("R109", "r109-no-width.csv", "r109-no-width.csv:4"),
     ("R110", "r110-means.csv", "r110-means.csv:5"),
     ("R111", "r111-numbers.csv", "r111-numbers.csv:1"),
-    ("R112", "r112-repeats.csv", "r112-repeats.csv:3:12"),
+    ("R112", "r112-repeats.csv", "r112-repeats.csv:3:8"),
     ("R113", "r113-hidden.xlsx", "r113-hidden.xlsx"),
     ("R114", "r114-headings.csv", "r114-headings.csv:14"),
     ("R115", "r115_warp_FB2_1.csv", "r115_warp_FB2_1.csv:1"),

@@ -8,8 +8,9 @@ use super::error::{Problem, ReadError};
 use super::label::SPECIMENS;
 use super::layout::{Context, Entry, Header, Pair};
 use super::raw::Row;
-use super::sniff::{Number, folded, number};
+use super::sniff::{Number, number};
 use super::told;
+use super::words::folded;
 use super::{Conditions, Direction, Measurement, Source, Test};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::quantity::{Angle, Curvature, Curve, Length, LineForce, Pressure, QuantityError};
@@ -169,6 +170,11 @@ fn direction(pair: &Pair, context: &Context<'_>) -> Result<Direction, ReadError>
     }
 }
 
+/// Points from which the sign of a slope is told.
+const SLOPE_POINTS: usize = 16;
+/// Correlation of ordinate and abscissa from which it is told. Loops of cloth reach 0.9 unless friction is most of them.
+const SLOPE: f64 = 0.9;
+
 /// Whether the ordinate is counted the other way round: cloth resists, so that moment and shear force rise with curvature
 /// and angle, and tension and pressure are not negative throughout.
 fn is_opposite(test: Test, curve: &Curve) -> bool {
@@ -178,8 +184,8 @@ fn is_opposite(test: Test, curve: &Curve) -> bool {
             let (mx, my) = (curve.x.iter().sum::<f64>() / n, curve.y.iter().sum::<f64>() / n);
             let sum = |f: fn(f64, f64) -> f64| curve.points().map(|(x, y)| f(x - mx, y - my)).sum::<f64>();
             let (xy, xx, yy) = (sum(|a, b| a * b), sum(|a, _| a * a), sum(|_, b| b * b));
-            // A loop that is all hysteresis has no slope to tell.
-            xy < -0.5 * (xx * yy).sqrt()
+            // A loop that is all hysteresis has no slope to tell, and neither have a few points.
+            curve.len() >= SLOPE_POINTS && xy < -SLOPE * (xx * yy).sqrt()
         }
         Test::Tensile | Test::Compression => {
             let low = curve.y.iter().copied().fold(f64::INFINITY, f64::min);

@@ -252,3 +252,8 @@ problems! {
     } = "{reason}",
         "only the FAB raw data of a U3M file are read (raw_data.L|W|B.S1 ...); remove other JSON files from the folder";
 }
+
+/// `R021`, in the words of a reader.
+pub(super) fn bad_workbook(reason: impl std::fmt::Display) -> Problem {
+    Problem::BadWorkbook { reason: reason.to_string() }
+}

@@ -5,10 +5,9 @@
 
 use super::dialect::{Statistic, TableColumn};
 use super::fast::{self, FastValue};
-use super::sniff::folded;
 use super::unit_text::{matching_open, split_unit, unit};
 use super::vocabulary::{HEADING, Vocabulary};
-use super::words::normalised;
+use super::words::{folded, normalised};
 use super::{Direction, Parameter};
 
 /// The most words of a name that are looked up together.

@@ -5,9 +5,8 @@
 //! G = 123/EB5 (EB5 in %, G in N/m), the formulae of the FAST manual. Extensions at 5, 20 and
 //! 100 gf/cm and thickness at 2 and 100 gf/cm² are taken at other loads than EMT, T0 and Tm.
 
-use super::sniff::folded;
 use super::unit_text::split_unit;
-use super::words::normalised;
+use super::words::{folded, normalised};
 use super::{Direction, Parameter};
 
 /// A FAST value from which a KES parameter follows.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::{Problem, ReadError};
 use super::fabric_file::{read_dialect, read_fabric_file};
+use super::file_name::{ABOUT, EXTENSIONS};
 use super::read::{FileContent, ReadSettings, read};
 use super::{FabricInfo, FabricInput, Inference, ResultValue};
 use crate::finding::{Finding, Place, ReadFact};
@@ -19,11 +20,6 @@ pub struct Batch {
     pub failures: Vec<ReadError>,
 }
 
-/// File names that hold measurements; a folder's other files are none of ours.
-const EXTENSIONS: &[&str] = &[
-    "csv", "tsv", "txt", "dat", "asc", "prn", "kes", "fb1", "fb2", "fb3", "xlsx", "xlsm", "xls", "ods",
-    "htm", "html", "zip", "json", "u3m",
-];
 /// Files that are read by one thread: starting more takes longer.
 const FEW: usize = 16;
 
@@ -31,9 +27,6 @@ const FEW: usize = 16;
 pub const MANIFEST: &str = ".kesf-manifest.json";
 /// What stands for it as long as a run is writing, or where one was killed.
 pub const JOURNAL: &str = ".kesf-journal";
-
-/// Text files that are about the data.
-const ABOUT: &[&str] = &["readme", "license", "licence", "notes", "changelog", "citation", "copying"];
 
 /// What is to be read as one fabric.
 struct Group {
@@ -208,17 +201,6 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>, ReadError> {
 fn is_hidden(path: &Path) -> bool {
     // `~$` is the lock file of an open workbook.
     path.file_name().is_none_or(|n| n.to_string_lossy().starts_with(['.', '~']))
-}
-
-/// Whether a name in an archive is that of a file that may hold measurements.
-pub(super) fn is_data_name(name: &str) -> bool {
-    let path = Path::new(name);
-    let lower =
-        |part: Option<&std::ffi::OsStr>| part.map(|p| p.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let hidden = name.split('/').any(|part| part.starts_with(['.', '~']) || part == "__MACOSX");
-    !hidden
-        && EXTENSIONS.contains(&lower(path.extension()).as_str())
-        && !ABOUT.contains(&lower(path.file_stem()).as_str())
 }
 
 fn is_data(path: &Path) -> bool {

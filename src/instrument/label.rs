@@ -1,9 +1,8 @@
 //! Metadata in the name of a file or over a block of columns: `F01_warp_FB2_1`, `経-1`, `タテ`.
 
 use super::dialect::Key;
-use super::sniff::folded;
 use super::vocabulary::Vocabulary;
-use super::words::normalised;
+use super::words::{folded, normalised};
 use super::{Direction, Test};
 
 /// A number from here on does not count specimens.

@@ -14,10 +14,11 @@ use super::label::Label;
 use super::pairs;
 use super::raw::Row;
 use super::shape::{self, Region};
-use super::sniff::{Number, folded, number};
+use super::sniff::{Number, number};
 use super::suggest;
 use super::unit_text::{is_volt, split_unit, unit};
 use super::vocabulary::Vocabulary;
+use super::words::folded;
 use crate::finding::{Finding, Place, ReadFact};
 
 /// What is known of a file before its rows are read.

@@ -7,8 +7,7 @@
 use std::collections::BTreeSet;
 use std::io::{Cursor, Read};
 
-use super::error::Problem;
-use super::workbook::bad;
+use super::error::{Problem, bad_workbook as bad};
 
 /// More cells than any workbook of measurements has.
 pub(super) const CELLS: usize = 4_000_000;

@@ -10,8 +10,7 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use zip::ZipArchive;
 
-use super::error::Problem;
-use super::workbook::bad;
+use super::error::{Problem, bad_workbook as bad};
 
 /// Repeated rows and columns of .ods beyond this are the empty rest of the sheet.
 const REPEATED: u32 = 70_000;

@@ -15,6 +15,7 @@ pub mod fab;
 mod fabric_file;
 mod facets;
 mod fast;
+mod file_name;
 mod folder;
 mod label;
 mod layout;

@@ -123,7 +123,7 @@ fn has_escapes(bytes: &[u8]) -> bool {
 
 /// Encodings that laboratories have besides Unicode, and what they are called in messages.
 const OLD: [(&Encoding, &str); 8] = [
-    (SHIFT_JIS, "not UTF-8, and its words are known in Japanese"),
+    (SHIFT_JIS, "not UTF-8, and the byte pairs are Japanese"),
     (WINDOWS_1252, "not UTF-8, and its words are known in this Western encoding"),
     (EUC_JP, "not UTF-8, and its words are known in Japanese"),
     (GB18030, "not UTF-8, and its words are known in Chinese"),

@@ -2,13 +2,15 @@
 
 use std::collections::BTreeSet;
 
-use super::dialect::TableColumn;
+use super::column_name::ColumnName;
+use super::dialect::{Role, TableColumn};
 use super::facets::Facets;
 use super::layout::Context;
 use super::raw::Row;
-use super::sniff::{Number, folded};
-use super::unit_text::unit;
+use super::sniff::Number;
+use super::unit_text::{split_unit, unit};
 use super::value::{is_gap, value};
+use super::words::folded;
 use super::{Direction, Parameter};
 
 /// The most rows of heads.
@@ -134,6 +136,13 @@ pub(super) fn has_symbols(row: &Row<'_>, context: &Context<'_>) -> bool {
     named.iter().map(of).collect::<BTreeSet<_>>().len() > 1 && across(&[row], context)
 }
 
+/// Whether a row heads the columns of curves: an abscissa and an ordinate.
+fn is_curve(row: &Row<'_>, context: &Context<'_>) -> bool {
+    let role = |cell: &str| ColumnName::of(&split_unit(cell).0, context.vocabulary).role;
+    let roles: Vec<Role> = row.filled().filter_map(|(_, c)| role(&c.text)).collect();
+    roles.iter().any(|r| r.is_abscissa()) && roles.iter().any(|r| !r.is_abscissa() && *r != Role::Ignored)
+}
+
 /// Whether a row names the sample: a key and a name, and no heading of two columns.
 fn states_name(row: &Row<'_>, context: &Context<'_>) -> bool {
     let mut filled = row.filled();
@@ -217,6 +226,8 @@ fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
             continue;
         }
         match kind(row, context) {
+            // Columns of curves that share a name with a parameter: thickness, elongation.
+            Kind::Head if is_curve(row, context) && !has_symbols(row, context) => return None,
             Kind::Head | Kind::Units => {
                 if found.is_empty() {
                     first = end;

@@ -1,11 +1,8 @@
 //! Delimiter and decimal mark, decided together over all rows.
 
-use std::borrow::Cow;
-
-use unicode_normalization::UnicodeNormalization;
-
 use super::error::Problem;
 use super::raw;
+use super::words::folded;
 
 /// How a text table is to be split and its numbers read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,15 +36,6 @@ pub(super) enum Number {
 
 /// From here on a number is none that was measured, and sums and units could make it infinite.
 const BEYOND: f64 = 1e100;
-
-/// NFKC and one kind of minus: full-width digits and signs become ASCII.
-pub(super) fn folded(cell: &str) -> Cow<'_, str> {
-    if cell.is_ascii() {
-        return Cow::Borrowed(cell.trim());
-    }
-    let text: String = cell.nfkc().map(|c| if matches!(c, '−' | '‐' | '–') { '-' } else { c }).collect();
-    Cow::Owned(text.trim().to_string())
-}
 
 /// Reads a cell as a number.
 pub(super) fn number(cell: &str, decimal: char) -> Number {

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::error::Problem;
-use super::sniff::folded;
+use super::words::folded;
 use crate::quantity::{QuantityError, UNITS, Unit};
 
 /// Characters of the longest text that is tried as a unit.

@@ -1,6 +1,7 @@
 //! Values of result tables as print writes them: `0.081 ± 0.003`, `0.081 (0.003)`, `6.2 %`, `1,234.5`.
 
-use super::sniff::{Number, folded, number};
+use super::sniff::{Number, number};
+use super::words::folded;
 
 /// A number, and the deviation that stands with it.
 pub(super) fn value(cell: &str, decimal: char) -> (Number, Option<f64>) {

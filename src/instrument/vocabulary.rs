@@ -5,9 +5,8 @@ use std::hash::Hash;
 use std::sync::OnceLock;
 
 use super::dialect::{BranchColumn, Dialect, Key, Role, Statistic, TableColumn, dialects};
-use super::sniff::folded;
 use super::unit_text::split_unit;
-use super::words::normalised;
+use super::words::{folded, normalised};
 use super::{Direction, Parameter, Test};
 
 /// Characters of the longest heading that is looked through for words; longer texts are prose.

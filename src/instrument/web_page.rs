@@ -5,9 +5,8 @@ use std::borrow::Cow;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
-use super::error::Problem;
+use super::error::{Problem, bad_workbook as bad};
 use super::raw::{Cell, Row};
-use super::workbook::bad;
 
 /// Columns over which one cell of a head may stand.
 const SPAN: usize = 1024;

@@ -1,7 +1,18 @@
 //! Words as they are compared.
 
+use std::borrow::Cow;
+
 use unicode_normalization::UnicodeNormalization;
 use unicode_normalization::char::is_combining_mark;
+
+/// NFKC and one kind of minus: full-width digits and signs become ASCII.
+pub(super) fn folded(cell: &str) -> Cow<'_, str> {
+    if cell.is_ascii() {
+        return Cow::Borrowed(cell.trim());
+    }
+    let text: String = cell.nfkc().map(|c| if matches!(c, '−' | '‐' | '–') { '-' } else { c }).collect();
+    Cow::Owned(text.trim().to_string())
+}
 
 /// A word as it is compared: NFKC, lower case, without Latin accents, blanks and punctuation.
 pub(super) fn normalised(text: &str) -> String {

@@ -6,7 +6,7 @@ use std::io::{Cursor, Read};
 
 use calamine::{Data, DataRef, Ods, Range, Reader, SheetVisible, Xls, Xlsx};
 
-use super::error::Problem;
+use super::error::{Problem, bad_workbook as bad};
 use super::limits;
 use super::marks::{self, Marks};
 use super::raw::{Cell, Row};
@@ -114,7 +114,7 @@ pub(super) fn files(bytes: &[u8]) -> Result<Vec<(String, Vec<u8>)>, Problem> {
         let mut entry = zip.by_index(i).map_err(bad)?;
         let name = entry.name().map_err(bad)?.into_owned();
         // An archive within an archive is none of a laboratory's.
-        if entry.is_dir() || !super::folder::is_data_name(&name) || name.to_lowercase().ends_with(".zip") {
+        if entry.is_dir() || !super::file_name::is_data_name(&name) || name.to_lowercase().ends_with(".zip") {
             continue;
         }
         let mut inner = Vec::new();
@@ -151,10 +151,6 @@ fn rows(cells: Cells, decimal: char) -> Vec<Row<'static>> {
         }
     }
     rows
-}
-
-pub(super) fn bad(reason: impl std::fmt::Display) -> Problem {
-    Problem::BadWorkbook { reason: reason.to_string() }
 }
 
 /// Adds a cell that holds something.

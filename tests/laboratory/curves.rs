@@ -173,7 +173,7 @@ fn directions(rng: &mut Pcg64, test: Test, n: usize) -> Vec<Option<Direction>> {
     }
 }
 
-fn word<'l>(l: &'l Language, d: Direction) -> &'l str {
+fn word(l: &Language, d: Direction) -> &str {
     if d == Direction::Warp { l.warp[0] } else { l.weft[0] }
 }
 

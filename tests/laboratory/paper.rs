@@ -173,10 +173,14 @@ fn xlsx(grid: &Grid) -> Option<Vec<u8>> {
             let (i, j) = at(r, c);
             match cell {
                 Cell::Empty => {}
-                Cell::Text(t) => drop(sheet.write_string(i, j, t).ok()?),
-                Cell::Number(n) => drop(sheet.write_number(i, j, n.value).ok()?),
+                Cell::Text(t) => {
+                    sheet.write_string(i, j, t).ok()?;
+                }
+                Cell::Number(n) => {
+                    sheet.write_number(i, j, n.value).ok()?;
+                }
                 Cell::Percent(n) => {
-                    drop(sheet.write_number_with_format(i, j, n.value / 100.0, &percent).ok()?)
+                    sheet.write_number_with_format(i, j, n.value / 100.0, &percent).ok()?;
                 }
             }
         }

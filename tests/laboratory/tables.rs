@@ -306,12 +306,7 @@ fn two_rows(rng: &mut Pcg64, style: &Style<'_>, all: &[Fabric], parameters_first
             let width = quantities[i..]
                 .iter()
                 .take_while(|k| {
-                    let same = if parameters_first {
-                        k.parameter == q.parameter
-                    } else {
-                        k.direction == q.direction
-                    };
-                    same
+                    if parameters_first { k.parameter == q.parameter } else { k.direction == q.direction }
                 })
                 .count();
             grid.over(at, 1 + i, width);
@@ -612,7 +607,7 @@ fn tidy(rng: &mut Pcg64, style: &Style<'_>, all: &[Fabric]) -> Table {
     if chance(rng, 0.15) {
         let mut cells = vec![Cell::text(&all[0].name)];
         cells.extend(directional.then(|| Cell::text(style.warp)));
-        cells.extend(numbered.then(|| Cell::Number(Printing { value: 9.0, decimals: 0 })));
+        cells.extend(numbered.then_some(Cell::Number(Printing { value: 9.0, decimals: 0 })));
         cells.extend(heads.iter().map(|q| number(Printing::of(3.0 * q.mean()))));
         let at = grid.row(cells);
         grid.hidden.push(at);

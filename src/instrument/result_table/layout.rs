@@ -7,8 +7,9 @@ use crate::instrument::facets::Facets;
 use crate::instrument::layout::Context;
 use crate::instrument::raw::Row;
 use crate::instrument::shape::{self, Region};
-use crate::instrument::sniff::{Number, folded, number};
+use crate::instrument::sniff::{Number, number};
 use crate::instrument::unit_text::unit;
+use crate::instrument::words::folded;
 
 /// A column of values.
 #[derive(Clone, Debug)]

@@ -7,9 +7,10 @@ use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::dialect::{Statistic, TableColumn};
 use crate::instrument::error::{Problem, ReadError};
 use crate::instrument::raw::Row;
-use crate::instrument::sniff::{Number, folded};
+use crate::instrument::sniff::Number;
 use crate::instrument::statistic::{finding, names_statistics};
 use crate::instrument::value::value;
+use crate::instrument::words::folded;
 use crate::instrument::{Direction, Parameter, ResultValue};
 use crate::quantity::Estimate;
 
