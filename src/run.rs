@@ -26,6 +26,8 @@ use crate::platform::map_several;
 use crate::report::chart;
 use crate::report::html::{Figure, html};
 use crate::report::table::{FabricRow, PredictionRow, ProblemRow, problem_row};
+#[cfg(feature = "tables")]
+use crate::report::workbook::{Tables, workbook};
 use crate::results::{
     Benchmark, Columns, Fabric, FabricReport, Failure, FileEntry, Folder, Job, Observer, Outcome,
     ReadingEntry, Sink, Task, Work, bracket, checks, overview, page, readable, simulate, unread,
@@ -42,13 +44,26 @@ pub struct RunSettings {
     pub drape: bool,
     /// Date and time for `run.json`; without it the same input gives the same bytes.
     pub stamp: Option<String>,
+    /// Whether CSV tables begin with the mark (BOM) by which Excel knows UTF-8.
+    pub bom: bool,
+    /// Whether all tables are written as a workbook too (`results.xlsx`).
+    #[cfg(feature = "tables")]
+    pub workbook: bool,
     /// Whether the caller takes a finding for a failure; noted in `run.json`.
     pub strict: bool,
 }
 
 impl Default for RunSettings {
     fn default() -> Self {
-        Self { charts: true, drape: false, stamp: None, strict: false }
+        Self {
+            charts: true,
+            drape: false,
+            stamp: None,
+            bom: false,
+            #[cfg(feature = "tables")]
+            workbook: false,
+            strict: false,
+        }
     }
 }
 
@@ -117,7 +132,7 @@ pub fn write(
     without_law.iter().for_each(|finding| observer.found(None, finding));
     leave_out_unsuitable(&mut work);
     let (tasks, mut failures) = work.tasks();
-    let folder = Folder::new(sink, settings.charts);
+    let folder = Folder::new(sink, settings.charts).with_bom(settings.bom);
     let mut reports = fabrics(&work, &tasks, &folder, observer)?;
     let own = own_cases(&tasks, &folder, observer)?;
 
@@ -133,7 +148,13 @@ pub fn write(
     predictions.extend(own.iter().flat_map(Own::rows));
     folder.table("fabrics", &rows)?;
     folder.table("predictions", &predictions)?;
-    folder.csv("problems.csv", &problems(&failures, &without_law, &reports, &own))?;
+    let problems = problems(&failures, &without_law, &reports, &own);
+    folder.csv("problems.csv", &problems)?;
+    #[cfg(feature = "tables")]
+    if settings.workbook {
+        let tables = Tables { fabrics: &rows, predictions: &predictions, problems: &problems };
+        folder.write("results.xlsx", &workbook(&tables)?)?;
+    }
     let figures = parity_charts(&reports, &folder)?;
     folder.json("run.json", &RunDocument::new(job, settings, &work))?;
     let benchmarks: Vec<Benchmark> = own.iter().filter_map(Own::benchmark).collect();

@@ -156,6 +156,10 @@ fn a_real_fab_record() {
     }
     let w = sheet.get(Parameter::W, None).unwrap();
     assert!((w.mean - 0.1056).abs() < 1e-6);
+    // The instrument's own program gives 0.1046418 mm in the same file.
+    let t0 = sheet.get(Parameter::T0, None).unwrap();
+    assert!((t0.mean / 1.046418e-4 - 1.0).abs() < 1e-3 && t0.n == 3, "{t0:?}");
+    assert!(!sheet.findings.iter().any(|f| f.code() == "K048"));
     for (direction, reference) in [(Direction::Warp, 4.7e-6), (Direction::Weft, 7.6e-6)] {
         let b = sheet.get(Parameter::B, Some(direction)).unwrap();
         println!("B {direction}: {:.2} ± {:.2} µN·m", 1e6 * b.mean, 1e6 * b.ci95().unwrap());

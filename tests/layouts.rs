@@ -5,7 +5,10 @@
 use std::path::Path;
 
 use approx::assert_relative_eq;
-use kesf::instrument::{Dialect, Direction, FileContent, Parameter, ReadError, ReadSettings, Test, parse};
+use kesf::characterise::{FabricSheet, Settings, characterise};
+use kesf::instrument::{
+    Dialect, Direction, FabricInput, FileContent, Parameter, ReadError, ReadSettings, Test, parse,
+};
 
 fn read_as(name: &str, text: &str, settings: &ReadSettings) -> Result<FileContent, ReadError> {
     parse(Path::new(name), text.as_bytes(), settings)
@@ -525,4 +528,28 @@ fn warnings_of_a_fab_file_are_told_in_any_form() {
         messages(&content, "R108"),
         ["the instrument's program warned: raw_data.BendRigidityWarp: low-force"]
     );
+}
+
+/// A knit of wale and course, whose foot presses it together: T0 is taken where the foot first touches, as the instrument's
+/// program does, and not from the ends of branches. The second loading branch begins at another force.
+#[test]
+fn the_thickness_of_a_fab_file_is_that_of_the_first_contact() {
+    let file = |program: f64| {
+        format!(
+            r#"{{"raw_data": {{"L": {{"S1": {{"length": 2.08, "width": 5, "samplesTree": [[1.9, 0.1, 2.0, 5.5, 2.1, 20]]}}}},
+            "T": {{"samplesTree": [[0.0202, -560, 0.0105, -1200], [0.0106, -1190, 0.0150, -570], [0.0180, -800, 0.0104, -1300]]}}}},
+            "custom": {{"browzwear": {{"category": "Knits", "thickness": {program}}}}}}}"#
+        )
+    };
+    let sheet = |program: f64| {
+        let content = read("knit.u3m", &file(program));
+        assert_eq!(messages(&content, "R117").len(), 1);
+        let input = FabricInput { fab: content.fab.into_iter().collect(), ..FabricInput::default() };
+        characterise(&input, &Settings::default())
+    };
+    let t0 = sheet(0.2020);
+    assert_relative_eq!(t0.get(Parameter::T0, None).unwrap().mean, 2.02e-4, max_relative = 1e-12);
+    let codes = |sheet: &FabricSheet| sheet.findings.iter().map(|f| f.code()).collect::<Vec<_>>();
+    assert!(!codes(&t0).contains(&"K048"));
+    assert!(codes(&sheet(0.1156)).contains(&"K048"));
 }

@@ -99,9 +99,12 @@ fn the_real_fab_record_is_read() {
     assert_eq!(fab.tests.len(), 15, "5 tests in 3 directions");
     assert_eq!(fab.name.as_deref(), Some("SU-1098 Cupro"));
     assert_relative_eq!(fab.areal_density.unwrap(), 0.1055999984741211, max_relative = 1e-12);
-    assert_eq!(fab.thickness.len(), 10);
-    // The first contact is 0.010464... cm thick.
-    assert_relative_eq!(fab.thickness[0], 1.0464174672961237e-4, max_relative = 1e-12);
+    assert_eq!(fab.contacts.len(), 5, "every other of ten branches is loading");
+    // The first contact is 0.010464... cm thick, at 558.999... gf.
+    assert_relative_eq!(fab.contacts[0].thickness, 1.0464174672961237e-4, max_relative = 1e-12);
+    assert_relative_eq!(fab.contacts[0].force, 558.9993896484375 * 9.80665e-3, max_relative = 1e-12);
+    assert_relative_eq!(fab.program_thickness.unwrap(), 1.0464175045490265e-4, max_relative = 1e-12);
+    assert!(!fab.is_knit);
     let s1 = fab.tests.iter().find(|t| t.direction == Direction::Warp && t.kind == FabKind::S1).unwrap();
     assert_eq!(s1.branches.len(), 8);
     assert_eq!(s1.branches[0].len(), 78);

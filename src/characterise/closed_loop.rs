@@ -5,7 +5,7 @@ use super::specimen::{Evaluation, Notes};
 use super::tensile::shift;
 use super::{Branch, CycleChoice, Settings, Window, branch};
 use crate::finding::{EvaluationFact, RecordAxis};
-use crate::instrument::Parameter;
+use crate::instrument::{Parameter, Test, standard_conditions};
 use crate::quantity::{Curve, in_unit};
 
 /// Part of the abscissa where the drive turned up to which a width is read: nearer to the turn the yarns have not slid
@@ -145,9 +145,23 @@ fn slopes(
     let mut found = Vec::new();
     for (side, (parameter, name)) in sides.iter().zip(readings.sides) {
         let Some(side) = side else { continue };
-        let ends = readings.slope.map(|x| side.sign * x);
-        let (from, to) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-        let Some(fit) = side.out.fit(name, from, to) else {
+        let ordered = |slope: [f64; 2]| {
+            let ends = slope.map(|x| side.sign * x);
+            [ends[0].min(ends[1]), ends[0].max(ends[1])]
+        };
+        let [mut from, mut to] = ordered(readings.slope);
+        let mut fit = side.out.fit(name, from, to);
+        if fit.is_none()
+            && let Some(fitted) = narrowed(readings.slope, side, notes.measurement.test)
+        {
+            [from, to] = ordered(fitted);
+            fit = side.out.fit(name, from, to);
+            if fit.is_some() {
+                let (record, slope, window) = (notes.record(), name.to_string(), readings.slope);
+                notes.add(EvaluationFact::NarrowedWindow { record, slope, window, fitted });
+            }
+        }
+        let Some(fit) = fit else {
             notes.missing(name, "the outgoing branch does not cover its window");
             continue;
         };
@@ -164,6 +178,14 @@ fn slopes(
     if !found.is_empty() {
         e.values.insert(readings.mean, found.iter().sum::<f64>() / found.len() as f64);
     }
+}
+
+/// The same part of what a record reaches as the window is of the customary maximum, for a record that ends before the
+/// window does; abscissae are absolute.
+fn narrowed(window: [f64; 2], side: &Side, test: Test) -> Option<[f64; 2]> {
+    let turn = side.out.x.iter().fold(0.0f64, |far, x| far.max(x.abs()));
+    let customary = standard_conditions(test).maximum;
+    (turn < window[1] && customary > window[1]).then(|| window.map(|x| x / customary * turn))
 }
 
 fn width(

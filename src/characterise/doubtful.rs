@@ -183,6 +183,30 @@ fn dropouts_and_lost_samples_are_told_with_their_lines() {
     assert!(messages(&evaluate(unknown), "K045")[0].contains("sample 41"));
 }
 
+/// Near the turn and near the start as well: the values are those of the record without the spike.
+#[test]
+fn spikes_beside_a_turn_are_told_and_left_out() {
+    let values = |points: Vec<(f64, f64)>, at: usize| {
+        let sheet = evaluate(measurement(Test::Tensile, FM, points));
+        let told = messages(&sheet, "K045");
+        assert!(
+            at == 0 && told.is_empty() || told.len() == 1 && told[0].contains(&format!("line {}", at + 1)),
+            "{at}: {told:?}"
+        );
+        [P::Rt, P::Lt, P::Emt].map(|p| sheet.get(p, Some(Direction::Warp)).unwrap().mean)
+    };
+    let clean = values(stretched(0.0), 0);
+    for at in [1, 2, 3, 494, 495, 496, 497, 498, 499, 500, 501, 502, 503, 504, 505, 506] {
+        for spike in [10.0 * FM, -FM, 0.3 * FM] {
+            let mut points = stretched(0.0);
+            points[at].1 += spike;
+            for (found, clean) in values(points, at).into_iter().zip(clean) {
+                assert!((found / clean - 1.0).abs() < 0.01, "{at} {spike}: {found} instead of {clean}");
+            }
+        }
+    }
+}
+
 /// Clean records of all kinds: dense and coarse, with noise and jitter, repeated and quantised samples, steps that
 /// grow, sharp and rounded turns, holds at the maximum and long rests. None is accused of anything.
 #[test]

@@ -22,6 +22,7 @@ mod simulated;
 mod specimen;
 mod spread;
 mod statistics;
+mod status;
 mod strip;
 mod tables;
 mod tensile;
@@ -37,6 +38,7 @@ pub use settings::{CycleChoice, Modulus, Settings};
 pub use sheet::{Branch, FabricSheet, RunTo, SpecimenResult, Window};
 pub use simulated::parameters;
 pub use spread::{MeanBranch, mean_branches};
+pub use status::ValueStatus;
 pub use strip::{Strip, StripCycle};
 
 use crate::finding::Place;
@@ -54,8 +56,9 @@ pub fn characterise(input: &FabricInput, settings: &Settings) -> FabricSheet {
     findings.extend(copies);
     measurements.sort_by_key(|m| (m.test, m.direction, m.specimen));
     let evaluated = |m: &Measurement| {
-        recording::check(settings, &mut specimen::Notes { measurement: m, findings: &mut findings });
-        specimen::evaluate(m, settings, &mut findings)
+        let dropouts =
+            recording::check(settings, &mut specimen::Notes { measurement: m, findings: &mut findings });
+        specimen::evaluate(m, &dropouts, settings, &mut findings)
     };
     let specimens = measurements.into_iter().filter_map(evaluated).collect();
     let mut sheet = FabricSheet {
@@ -85,6 +88,7 @@ pub fn characterise(input: &FabricInput, settings: &Settings) -> FabricSheet {
     let mut found = checks::plausibility(&sheet, input);
     found.extend(checks::shear_directions(&sheet, settings));
     sheet.findings.append(&mut found);
+    status::assign(&mut sheet);
     // What concerns the fabric as a whole is found in its folder.
     for finding in sheet.findings.iter_mut().filter(|f| f.place.is_none() && *input.path != *"") {
         finding.place = Some(Place::file(&input.path));

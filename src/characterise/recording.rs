@@ -1,5 +1,6 @@
 //! What the samples say about how a record was made: samples that dropped out or were lost, an
-//! amplifier at the end of its range, several cycles. The record itself is left as it is.
+//! amplifier at the end of its range, several cycles. Samples that jump away and back are left out of the
+//! evaluation; the record itself stays as it is.
 
 use std::ops::Range;
 
@@ -32,30 +33,32 @@ const FLAT: usize = 4;
 /// A cycle counts if it goes over this part of the longest way at least; less is the drive that settles at the end.
 const WHOLE: f64 = 0.2;
 
-/// K043 to K046: what the record of one specimen says about how it was made.
-pub(super) fn check(settings: &Settings, notes: &mut Notes<'_>) {
+/// K043 to K046: what the record of one specimen says about how it was made. Returns the samples that jump away and
+/// back, in rising order, which no evaluation is to use.
+pub(super) fn check(settings: &Settings, notes: &mut Notes<'_>) -> Vec<usize> {
     let m = notes.measurement;
     let finite = |i: &usize| m.curve.x[*i].is_finite() && m.curve.y[*i].is_finite();
     let mut kept: Vec<usize> = (0..m.curve.len()).filter(finite).collect();
     // Shorter ones are not evaluated.
     if kept.len() < 8 {
-        return;
+        return Vec::new();
     }
-    drop_outs(&mut kept, notes);
+    let dropouts = drop_outs(&mut kept, notes);
     // What follows would take each dropout for two jumps and another cycle.
     let curve = samples(m, &kept);
     let usual = usual_step(&curve.x);
     lost(&curve, usual, &kept, notes);
     clipped(&curve, usual, &kept, notes);
     cycles(&curve, &kept, settings, notes);
+    dropouts
 }
 
 fn samples(m: &Measurement, kept: &[usize]) -> Curve {
     Curve::from_points(kept.iter().map(|&i| (m.curve.x[i], m.curve.y[i])))
 }
 
-/// K045: takes the dropouts out of the samples that are looked at further, not out of the record.
-fn drop_outs(kept: &mut Vec<usize>, notes: &mut Notes<'_>) {
+/// K045: takes the dropouts out of the samples that are looked at further, and returns them.
+fn drop_outs(kept: &mut Vec<usize>, notes: &mut Notes<'_>) -> Vec<usize> {
     let m = notes.measurement;
     let curve = samples(m, kept);
     // Dropouts may be so many that they make most of the way: the median of the steps does not see them.
@@ -66,10 +69,10 @@ fn drop_outs(kept: &mut Vec<usize>, notes: &mut Notes<'_>) {
     let curve = samples(m, kept);
     let usual = usual_step(&curve.x);
     let mut spikes = away_and_back(&curve.y, smallest_jump(&curve.y) / JUMP);
-    spikes.retain(|run| runs_on(&curve.x, run.start - 1, run.end, usual));
+    spikes.retain(|run| runs_on(&curve.x, run.start - 1, run.end, usual) || turns_once(&curve.x, run, usual));
     found.extend(take(kept, &spikes));
     found.sort_unstable();
-    let Some(&first) = found.first() else { return };
+    let Some(&first) = found.first() else { return found };
     let fact = EvaluationFact::Dropout {
         record: notes.record(),
         samples: named(m, &found),
@@ -77,6 +80,7 @@ fn drop_outs(kept: &mut Vec<usize>, notes: &mut Notes<'_>) {
         ordinate: m.curve.y[first],
     };
     notes.add_at(first, fact);
+    found
 }
 
 /// Takes runs of samples out of the list, and returns them.
@@ -136,6 +140,17 @@ fn runs_on(x: &[f64], before: usize, after: usize, usual: f64) -> bool {
     let came = x[before] - x[before.saturating_sub(RUN)];
     let goes = x[(after + RUN).min(x.len() - 1)] - x[after];
     came * goes > 0.0 && came.abs().min(goes.abs()) >= usual
+}
+
+/// Whether the drive moves by a usual step from each sample to the next around a run of samples, and turns there once
+/// at most. A drive that rests or jitters where it turns lets yarns slide back and forth, and the ordinate follows them.
+fn turns_once(x: &[f64], run: &Range<usize>, usual: f64) -> bool {
+    let around = run.start.saturating_sub(1 + NEIGHBOURS)..(run.end + 1 + NEIGHBOURS).min(x.len());
+    let steps: Vec<f64> = x[around].windows(2).map(|w| w[1] - w[0]).collect();
+    let turns = steps.windows(2).filter(|w| w[0] * w[1] < 0.0).count();
+    // Where it turns between two samples, the two steps next to the turn may be any part of the usual one.
+    let short = steps.iter().filter(|s| s.abs() < 0.5 * usual).count();
+    turns <= 1 && short <= 2 * turns
 }
 
 /// K046: the abscissa or the ordinate goes on elsewhere.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{CycleChoice, FrictionLaw, Key, LineFit, Settings, Strip};
+use super::{CycleChoice, FrictionLaw, Key, LineFit, Settings, Strip, ValueStatus};
 use crate::finding::Finding;
 use crate::instrument::fab::FabTest;
 use crate::instrument::{
@@ -68,6 +68,10 @@ pub struct FabricSheet {
     pub values: BTreeMap<Key, Estimate>,
     /// Tensile moduli by name and direction (N/m): `tangent_low`, `secant`, `energy`.
     pub moduli: BTreeMap<(String, Direction), Estimate>,
+    /// How each of the values was had; measured where nothing is said.
+    pub statuses: BTreeMap<Key, ValueStatus>,
+    /// How each of the moduli was had.
+    pub modulus_statuses: BTreeMap<(String, Direction), ValueStatus>,
     /// Specimens in order of test, direction, number; empty for fabrics known from tables only.
     pub specimens: Vec<SpecimenResult>,
     /// Stretch tests of FAB strips, in file order.

@@ -30,5 +30,5 @@ pub fn parameters(
     };
     let settings = Settings { correct_zero: false, tension_correction: false, ..settings.clone() };
     // What there is to say about noise or windows is said of the measured record.
-    specimen::evaluate(&measurement, &settings, &mut Vec::new()).map(|s| s.values).unwrap_or_default()
+    specimen::evaluate(&measurement, &[], &settings, &mut Vec::new()).map(|s| s.values).unwrap_or_default()
 }

@@ -106,14 +106,16 @@ impl Notes<'_> {
     }
 }
 
-/// The evaluated specimen; `None`, with a finding, if nothing can be evaluated.
+/// The evaluated specimen; `None`, with a finding, if nothing can be evaluated. Samples that dropped out, in rising
+/// order, are left out.
 pub(super) fn evaluate(
     measurement: &Measurement,
+    dropouts: &[usize],
     settings: &Settings,
     findings: &mut Vec<Finding>,
 ) -> Option<SpecimenResult> {
     let mut notes = Notes { measurement, findings };
-    let curve = finite(&measurement.curve, &mut notes);
+    let curve = finite(&measurement.curve, dropouts, &mut notes);
     let outcome = if curve.len() < 8 {
         Err(format!("the record has {} usable samples, at least 8 are needed", curve.len()))
     } else {
@@ -152,14 +154,16 @@ pub(super) fn evaluate(
     }
 }
 
-/// The curve without samples that are not numbers.
-fn finite(curve: &Curve, notes: &mut Notes<'_>) -> Curve {
-    let clean = Curve::from_points(curve.points().filter(|(x, y)| x.is_finite() && y.is_finite()));
-    if clean.len() < curve.len() {
-        let (record, samples) = (notes.record(), curve.len() - clean.len());
-        notes.add(EvaluationFact::NotNumbers { record, samples });
+/// The curve without samples that are not numbers and without those that dropped out.
+fn finite(curve: &Curve, dropouts: &[usize], notes: &mut Notes<'_>) -> Curve {
+    let is_finite = |(x, y): (f64, f64)| x.is_finite() && y.is_finite();
+    let samples = curve.points().filter(|p| !is_finite(*p)).count();
+    if samples > 0 {
+        notes.add(EvaluationFact::NotNumbers { record: notes.record(), samples });
     }
-    clean
+    let kept =
+        curve.points().enumerate().filter(|(i, p)| is_finite(*p) && dropouts.binary_search(i).is_err());
+    Curve::from_points(kept.map(|(_, p)| p))
 }
 
 /// K009: the noise of the ordinate, from the median second difference, against its range.

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::graph::{Graph, LineFit};
 use super::{Branch, FabricSheet, Key, Modulus, Settings};
 use crate::finding::{EvaluationFact, Finding, Place, StripLength, Subject};
-use crate::instrument::fab::{FabFile, FabKind, FabTest};
+use crate::instrument::fab::{Contact, FabFile, FabKind, FabTest};
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::{Curve, Estimate};
 
@@ -73,12 +73,35 @@ pub(super) fn add(sheet: &mut FabricSheet, files: &[FabFile], settings: &Setting
     if let Some(w) = Estimate::of(&masses) {
         sheet.values.entry(whole(Parameter::W)).or_insert(w);
     }
-    let contacts: Vec<f64> = files.iter().flat_map(|f| &f.thickness).copied().collect();
-    if let (Some(t), false) = (Estimate::of(&contacts), sheet.values.contains_key(&whole(Parameter::T0))) {
-        let fact = EvaluationFact::FabThickness { thickness: t.mean, contacts: t.n };
-        sheet.findings.push(Finding::new(fact).at(place));
-        sheet.values.insert(whole(Parameter::T0), t);
+    // A thickness that the user states goes before it.
+    if !sheet.values.contains_key(&whole(Parameter::T0)) && sheet.info.thickness.is_none() {
+        thickness(sheet, files);
     }
+}
+
+/// Part of the force of the first contact within which another is its repeat.
+const SAME_FORCE: f64 = 0.05;
+
+/// Difference from which the thickness of the instrument's program is another one.
+const SAME_THICKNESS: f64 = 0.05;
+
+/// T0 where the foot first touches on loading, at the force of the first contact: branches that begin at another force are
+/// no repeats of it, and on unloading the cloth is still compressed.
+fn thickness(sheet: &mut FabricSheet, files: &[FabFile]) {
+    let contacts = files.iter().flat_map(|f| &f.contacts);
+    let Some(force) = contacts.clone().next().map(|c| c.force) else { return };
+    let is_repeat = |c: &&Contact| (c.force - force).abs() <= SAME_FORCE * force.abs();
+    let repeats: Vec<f64> = contacts.filter(is_repeat).map(|c| c.thickness).collect();
+    let Some(t) = Estimate::of(&repeats) else { return };
+    let place = files.first().map(|f| Place::file(&f.source.path));
+    let mut found =
+        |fact: EvaluationFact| sheet.findings.push(Finding { place: place.clone(), fact: fact.into() });
+    found(EvaluationFact::FabThickness { thickness: t.mean, contacts: t.n, force });
+    let program = files.iter().find_map(|f| f.program_thickness);
+    if let Some(program) = program.filter(|p| (p / t.mean - 1.0).abs() > SAME_THICKNESS) {
+        found(EvaluationFact::OtherThickness { thickness: t.mean, program });
+    }
+    sheet.values.insert(Key { parameter: Parameter::T0, direction: None }, t);
 }
 
 /// The cycles of a stretch test; `None` if the first never carries load.

@@ -9,7 +9,8 @@ use super::inputs::{EvaluateArgs, Units, inputs};
 use super::output::{Format, OutputArgs};
 use super::ui::Ui;
 use crate::report::json::sheet_document;
-use crate::report::table::{FabricRow, csv, fabric_rows, parquet};
+use crate::report::table::{FabricRow, ProblemRow, fabric_rows, parquet, problem_row};
+use crate::report::workbook::{Tables, workbook};
 use crate::results::{
     Curves, Event, Fabric, Failure, Found, evaluation_text, nothing_to_read, parameters_text,
     paths_of_several, statistics_text, unread,
@@ -57,11 +58,24 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
             parts.collect::<Vec<_>>().join("\n").into_bytes()
         }
         Format::Json => ui.with_failures(sheet_document(sheets(), Some(&settings)))?.into_bytes(),
-        Format::Csv => csv(&rows())?,
+        Format::Csv => options.output.csv(&rows())?,
         Format::Parquet => parquet(&rows())?,
+        Format::Xlsx => {
+            let problems = problems(&fabrics, &failures);
+            workbook(&Tables { fabrics: &rows(), problems: &problems, ..Tables::default() })?
+        }
     };
     options.output.emit(&bytes)?;
     Ok(Exit::of_batch(sheets().filter(|s| s.has_values()).count(), &failures))
+}
+
+/// The failures and the findings of the fabrics, as rows of a table.
+fn problems(fabrics: &[Fabric], failures: &[Failure]) -> Vec<ProblemRow> {
+    let found = fabrics.iter().flat_map(|fabric| {
+        let row = |finding| problem_row(finding, &fabric.path.to_string_lossy());
+        fabric.sheet.findings.iter().map(row)
+    });
+    failures.iter().map(Failure::row).chain(found).collect()
 }
 
 /// A finding names its fabric where its path stands for several.

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::report::OutputFolder;
+use crate::report::table::{Row, csv, marked};
 use crate::report::write::write_file;
 use crate::results::Failure;
 
@@ -18,6 +19,9 @@ pub struct OutputArgs {
     /// Overwrite a file that this tool did not write
     #[arg(long)]
     force: bool,
+    /// Begin a CSV file with the mark (BOM) by which Excel knows UTF-8
+    #[arg(long)]
+    bom: bool,
 }
 
 /// Formats of a single result.
@@ -31,6 +35,8 @@ pub enum Format {
     Csv,
     /// Apache Parquet.
     Parquet,
+    /// A workbook.
+    Xlsx,
 }
 
 impl OutputArgs {
@@ -43,8 +49,15 @@ impl OutputArgs {
             "json" => Ok(Format::Json),
             "csv" => Ok(Format::Csv),
             "parquet" => Ok(Format::Parquet),
-            _ => Err(self.no_such_format(".txt, .json, .csv or .parquet")),
+            "xlsx" => Ok(Format::Xlsx),
+            _ => Err(self.no_such_format(".txt, .json, .csv, .parquet or .xlsx")),
         }
+    }
+
+    /// A table as it goes out, with the mark that was asked for.
+    pub fn csv<R: Row>(&self, rows: &[R]) -> Result<Vec<u8>, Failure> {
+        let bytes = csv(rows)?;
+        Ok(if self.bom { marked(bytes) } else { bytes })
     }
 
     /// The error for an ending that the command has no format for.

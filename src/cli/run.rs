@@ -29,6 +29,12 @@ pub struct Options {
     /// Put the date into run.json; without it the same input gives the same bytes
     #[arg(long)]
     stamp: bool,
+    /// Write all tables into one workbook too (results.xlsx)
+    #[arg(long)]
+    xlsx: bool,
+    /// Begin CSV files with the mark (BOM) by which Excel knows UTF-8
+    #[arg(long)]
+    bom: bool,
     #[command(flatten)]
     task: TaskArgs,
 }
@@ -47,6 +53,8 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         charts: !options.task.no_charts,
         drape: options.drape,
         stamp: options.stamp.then(now),
+        bom: options.bom,
+        workbook: options.xlsx,
         strict: options.task.strict,
     };
     let work = ui.observe(|observer| run::read(&job, &settings, observer))?;

@@ -29,7 +29,7 @@ pub struct Options {
 
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let format = options.output.format(ui.json)?;
-    if matches!(format, Format::Csv | Format::Parquet) {
+    if matches!(format, Format::Csv | Format::Parquet | Format::Xlsx) {
         return Err(options.output.no_such_format(".txt or .json"));
     }
     let (inputs, reading) = (inputs(&options.inputs)?, options.evaluate.reading());

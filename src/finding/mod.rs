@@ -232,7 +232,7 @@ mod tests {
         assert_eq!(
             finding.to_string(),
             "a.csv:57: K045 bending warp, specimen 3: samples jump away and back in lines 57, 91, 92 ..., first to \
-             2.500 1/cm and 0 gf·cm/cm: a dropout? Nothing is taken out, and what is read there is wrong"
+             2.500 1/cm and 0 gf·cm/cm: a dropout? No evaluation uses them"
         );
         assert_eq!(
             serde_json::to_value(&finding).unwrap()["fields"],

@@ -75,6 +75,15 @@ impl FabTest {
     }
 }
 
+/// A contact of the foot with the cloth in the thickness test.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Contact {
+    /// Thickness (m).
+    pub thickness: f64,
+    /// Force on the foot (N), compression positive. The file does not state the area of the foot.
+    pub force: f64,
+}
+
 /// The raw data of a FAB measurement.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FabFile {
@@ -82,8 +91,12 @@ pub struct FabFile {
     pub name: Option<String>,
     /// Strip tests, by direction (warp, weft, bias) and kind.
     pub tests: Vec<FabTest>,
-    /// Thickness of each contact of the thickness test (m), in recorded order.
-    pub thickness: Vec<f64>,
+    /// The first contact of each loading branch of the thickness test, in recorded order.
+    pub contacts: Vec<Contact>,
+    /// Thickness that the instrument's own program gives (m).
+    pub program_thickness: Option<f64>,
+    /// Whether the file calls the fabric a knit: then length is wale and width is course.
+    pub is_knit: bool,
     /// Areal density (kg/m²).
     pub areal_density: Option<f64>,
     /// Warnings of the instrument's own program, each with the test that it speaks of.
@@ -108,9 +121,9 @@ impl FabFile {
         };
         let mass = if self.areal_density.is_some() { "its mass" } else { "no mass" };
         format!(
-            "a FAB record of {}; {} thickness contacts, {mass}, {warnings}",
+            "a FAB record of {}; {} loading branches of the thickness test, {mass}, {warnings}",
             tests.join(", "),
-            self.thickness.len()
+            self.contacts.len()
         )
     }
 }
@@ -136,9 +149,9 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<(FabFile, Vec<Finding>), 
         }
     }
     if let Some(test) = raw.get("T") {
-        // A contact is one sample: thickness (cm), force (gf).
-        let contacts = branches(test, path, "raw_data.T")?;
-        file.thickness = contacts.iter().filter_map(|c| c.x.last().copied()).collect();
+        // Thickness (cm) and force (gf, compression negative); every other branch unloads.
+        let loading = branches(test, path, "raw_data.T")?.into_iter().step_by(2);
+        file.contacts = loading.filter_map(|branch| contact(&branch)).collect();
     }
     if let Some(mass) = raw.get("M") {
         file.areal_density = Some(number(mass, path, "raw_data.M")? * 1e-3);
@@ -146,11 +159,29 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<(FabFile, Vec<Finding>), 
     if file.tests.is_empty() {
         return Err(bad(path, "`raw_data` has no test of L, W or B".into()));
     }
-    file.name = document.pointer("/custom/browzwear/name").and_then(Value::as_str).map(str::to_string);
+    program_values(&document, &mut file);
     warnings(raw, "raw_data", &mut file.warnings);
     let warned = file.warnings.iter().map(|w| ReadFact::InstrumentWarning { warning: w.clone() });
-    let findings = warned.map(|fact| Finding::new(fact).at(Place::file(path))).collect();
+    let knit = file.is_knit.then_some(ReadFact::KnitDirections {});
+    let findings = warned.chain(knit).map(|fact| Finding::new(fact).at(Place::file(path))).collect();
     Ok((file, findings))
+}
+
+/// What the instrument's own program says of the fabric.
+fn program_values(document: &Value, file: &mut FabFile) {
+    let Some(program) = document.pointer("/custom/browzwear") else { return };
+    let text = |key: &str| program.get(key).and_then(Value::as_str);
+    file.name = text("name").map(str::to_string);
+    file.is_knit = text("category").is_some_and(|category| category.to_lowercase().contains("knit"));
+    let thickness = program.get("thickness").and_then(Value::as_f64);
+    // In mm, as the standard has it.
+    file.program_thickness = thickness.filter(|t| t.is_finite() && *t > 0.0).map(|t| 1e-3 * t);
+}
+
+/// Where the foot first touches on a loading branch.
+fn contact(branch: &Curve) -> Option<Contact> {
+    let (thickness, force) = branch.points().next()?;
+    (thickness > 0.0).then_some(Contact { thickness, force: -force })
 }
 
 fn bad(path: &Path, reason: String) -> ReadError {

@@ -8,7 +8,7 @@ use nalgebra::{Matrix2, Matrix3};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use crate::characterise::{FabricSheet, FrictionLaw, LawBand, MeanBranch, Settings};
+use crate::characterise::{FabricSheet, FrictionLaw, LawBand, MeanBranch, Settings, ValueStatus};
 use crate::constitutive::{Entry, Input, Used, entries};
 use crate::finding::{Fields, Finding};
 use crate::instrument::Parameter;
@@ -55,7 +55,7 @@ pub struct SheetEntry {
     /// `thickness` (m), as numbers.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub stated: BTreeMap<&'static str, f64>,
-    /// By symbol: `{"mean","sd","n","unit"}`, or one such object each for `warp`, `weft`, `bias` and
+    /// By symbol: `{"mean","sd","n","unit","cv","ci95","status"}`, or one such object each for `warp`, `weft`, `bias` and
     /// `fabric` (a directional parameter known for the fabric as a whole only).
     pub parameters: Map<String, Value>,
     /// Tensile moduli (N/m) by name and direction.
@@ -239,11 +239,16 @@ fn parameters(sheet: &FabricSheet) -> Map<String, Value> {
         }
         let unit = parameter.si_unit();
         if !parameter.is_directional() {
-            found.for_each(|(_, e)| drop(all.insert(parameter.symbol().into(), estimate(e, unit))));
+            found.for_each(|(key, e)| {
+                all.insert(parameter.symbol().into(), value(e, unit, sheet.status(*key)));
+            });
             continue;
         }
         let directions: Map<String, Value> = found
-            .map(|(key, e)| (key.direction.map_or("fabric", |d| d.name()).to_string(), estimate(e, unit)))
+            .map(|(key, e)| {
+                let direction = key.direction.map_or("fabric", |d| d.name());
+                (direction.to_string(), value(e, unit, sheet.status(*key)))
+            })
             .collect();
         all.insert(parameter.symbol().into(), directions.into());
     }
@@ -255,7 +260,8 @@ fn moduli(sheet: &FabricSheet) -> Map<String, Value> {
     for ((name, direction), e) in &sheet.moduli {
         let entry = all.entry(name.clone()).or_insert_with(|| Map::new().into());
         if let Value::Object(directions) = entry {
-            directions.insert(direction.name().into(), estimate(e, "N/m"));
+            let status = sheet.modulus_status(name, *direction);
+            directions.insert(direction.name().into(), value(e, "N/m", status));
         }
     }
     all
@@ -277,6 +283,13 @@ fn re_extracted(sheet: &FabricSheet) -> Map<String, Value> {
         }
     }
     all
+}
+
+/// A value of the sheet, with its status.
+fn value(e: &Estimate, unit: &str, status: ValueStatus) -> Value {
+    let mut value = estimate(e, unit);
+    value["status"] = status.name().into();
+    value
 }
 
 fn estimate(e: &Estimate, unit: &str) -> Value {

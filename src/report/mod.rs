@@ -9,6 +9,8 @@ pub mod json;
 pub mod read_back;
 pub mod table;
 pub mod vtu;
+#[cfg(feature = "tables")]
+pub mod workbook;
 pub mod write;
 
 #[cfg(feature = "charts")]

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Matrix2, Matrix3};
 use serde::Deserialize;
 
-use crate::characterise::{FabricSheet, Key};
+use crate::characterise::{FabricSheet, Key, ValueStatus};
 use crate::constitutive::{Constitutive, Used};
 use crate::finding::errors;
 use crate::instrument::{Direction, FabricInfo, Origin, Parameter};
@@ -116,6 +116,8 @@ struct Mean {
     sd: Option<f64>,
     n: usize,
     unit: String,
+    #[serde(default)]
+    status: ValueStatus,
 }
 
 impl Mean {
@@ -150,14 +152,16 @@ impl Sheet {
                             unknown(format!("{symbol} of `{of}`, which is not a direction"))
                         })?),
                     };
-                let estimate = mean.read(parameter.si_unit(), &name, &symbol)?;
-                sheet.values.insert(Key { parameter, direction }, estimate);
+                let (key, status) = (Key { parameter, direction }, mean.status);
+                sheet.values.insert(key, mean.read(parameter.si_unit(), &name, &symbol)?);
+                sheet.statuses.insert(key, status);
             }
         }
         for (modulus, means) in self.moduli {
             for (direction, mean) in means {
-                let estimate = mean.read("N/m", &name, &modulus)?;
-                sheet.moduli.insert((modulus.clone(), direction), estimate);
+                let (key, status) = ((modulus.clone(), direction), mean.status);
+                sheet.moduli.insert(key.clone(), mean.read("N/m", &name, &modulus)?);
+                sheet.modulus_statuses.insert(key, status);
             }
         }
         Ok(sheet)

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::characterise::FabricSheet;
+use crate::characterise::{FabricSheet, ValueStatus};
 use crate::finding::{Finding, errors};
 use crate::instrument::{Direction, FabricInput, Measurement, Parameter, Test};
 use crate::quantity::Estimate;
@@ -73,7 +73,8 @@ row! {
         n: u64,
         /// Unit of mean and sd.
         unit: String,
-        /// `ok`, or the code of what went wrong.
+        /// `measured`, `inferred`, `assumed` or `doubtful`, as the findings of the fabric tell; the code of what went
+        /// wrong in the row of a fabric that could not be read.
         status: String,
         /// Coefficient of variation, SD / |mean|.
         cv: Option<f64>,
@@ -208,7 +209,11 @@ pub fn relative_error(simulated: f64, measured: f64) -> Option<f64> {
 
 /// The rows of a sheet, in the order of its parameters and directions; then its moduli (`E secant`).
 pub fn fabric_rows(sheet: &FabricSheet, units: UnitSystem) -> Vec<FabricRow> {
-    let row = |name: String, direction: Option<Direction>, e: &Estimate, (unit, factor): (&str, f64)| {
+    let row = |name: String,
+               direction: Option<Direction>,
+               e: &Estimate,
+               (unit, factor): (&str, f64),
+               status: ValueStatus| {
         let shown = |value: f64| in_unit(value, factor);
         FabricRow {
             fabric: sheet.name.clone(),
@@ -218,19 +223,19 @@ pub fn fabric_rows(sheet: &FabricSheet, units: UnitSystem) -> Vec<FabricRow> {
             sd: e.sd.map(shown),
             n: e.n as u64,
             unit: unit.into(),
-            status: "ok".into(),
+            status: status.name().into(),
             cv: e.cv(),
             ci95: e.ci95().map(shown),
         }
     };
-    let values = sheet
-        .values
-        .iter()
-        .map(|(key, e)| row(key.parameter.symbol().into(), key.direction, e, units.of(key.parameter)));
-    let moduli = sheet
-        .moduli
-        .iter()
-        .map(|((name, direction), e)| row(format!("E {name}"), Some(*direction), e, units.of_modulus()));
+    let values = sheet.values.iter().map(|(key, e)| {
+        let name = key.parameter.symbol().into();
+        row(name, key.direction, e, units.of(key.parameter), sheet.status(*key))
+    });
+    let moduli = sheet.moduli.iter().map(|((name, direction), e)| {
+        let status = sheet.modulus_status(name, *direction);
+        row(format!("E {name}"), Some(*direction), e, units.of_modulus(), status)
+    });
     values.chain(moduli).collect()
 }
 
@@ -336,6 +341,11 @@ pub fn csv<R: Row>(rows: &[R]) -> Result<Vec<u8>, TableError> {
         writer.serialize(row).map_err(|e| failed(&e))?;
     }
     writer.into_inner().map_err(|e| failed(&e))
+}
+
+/// A CSV table with the mark (BOM) by which Excel knows UTF-8, in front of it.
+pub fn marked(csv: Vec<u8>) -> Vec<u8> {
+    ["\u{feff}".as_bytes(), &csv].concat()
 }
 
 /// A table as Parquet: UTF-8 and 64-bit columns, absent values are null.

@@ -6,12 +6,19 @@ use crate::report::html::Block;
 #[derive(Clone, Debug)]
 pub struct Columns {
     rows: Vec<Vec<String>>,
+    note: String,
 }
 
 impl Columns {
     /// Columns with these headings.
     pub fn new<S: Into<String>>(headings: impl IntoIterator<Item = S>) -> Self {
-        Self { rows: vec![headings.into_iter().map(Into::into).collect()] }
+        Self { rows: vec![headings.into_iter().map(Into::into).collect()], note: String::new() }
+    }
+
+    /// The same with a line below its text.
+    pub fn with_note(mut self, note: &str) -> Self {
+        self.note = note.to_string();
+        self
     }
 
     /// Adds a row; missing cells are empty.
@@ -49,6 +56,10 @@ impl Columns {
                 line += "  ";
             }
             text += line.trim_end();
+            text.push('\n');
+        }
+        if !self.note.is_empty() {
+            text += &self.note;
             text.push('\n');
         }
         text

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::failure::Failure;
 use crate::report::chart::ChartError;
 use crate::report::json::text;
-use crate::report::table::{Row, csv};
+use crate::report::table::{Row, csv, marked};
 use crate::report::{OutputError, OutputFolder};
 
 /// Takes the files of results. Several threads may write.
@@ -52,12 +52,18 @@ impl Sink for MemorySink {
 pub struct Folder<'s> {
     sink: &'s dyn Sink,
     charts: bool,
+    bom: bool,
 }
 
 impl<'s> Folder<'s> {
     /// A folder with or without charts.
     pub fn new(sink: &'s dyn Sink, charts: bool) -> Self {
-        Self { sink, charts }
+        Self { sink, charts, bom: false }
+    }
+
+    /// The same, whose CSV tables begin with the mark by which Excel knows UTF-8 if `bom` is true.
+    pub fn with_bom(self, bom: bool) -> Self {
+        Self { bom, ..self }
     }
 
     /// Whether charts are wanted.
@@ -80,7 +86,8 @@ impl<'s> Folder<'s> {
 
     /// Writes a CSV table.
     pub(crate) fn csv<R: Row>(&self, name: &str, rows: &[R]) -> Result<(), Failure> {
-        self.write(name, &csv(rows)?)
+        let table = csv(rows)?;
+        self.write(name, &if self.bom { marked(table) } else { table })
     }
 
     /// Writes a table as CSV, and as Parquet with the feature `tables`.

@@ -2,8 +2,9 @@
 
 use super::columns::Columns;
 use super::fabric::FabricReport;
+use super::sheet_text::mark;
 use crate::case::Case;
-use crate::characterise::FabricSheet;
+use crate::characterise::{FabricSheet, Key};
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::significant;
 
@@ -21,7 +22,7 @@ pub(super) const HEADINGS: [&str; 9] = [
 ];
 
 /// Units of the columns that do not name theirs.
-pub(super) const CAPTION: &str = "B in gf·cm²/cm, G in gf/(cm·deg)";
+pub(super) const CAPTION: &str = "B in gf·cm²/cm, G in gf/(cm·deg); E is the tangent at low load, or the secant where that is written; ? is doubtful, * rests on an assumption, ~ is inferred";
 
 /// B, G, E, T, W: KES units, except E in N/m.
 pub(super) fn cells(sheet: &FabricSheet) -> Vec<String> {
@@ -39,13 +40,20 @@ pub(super) fn cells(sheet: &FabricSheet) -> Vec<String> {
 }
 
 fn parameter(sheet: &FabricSheet, parameter: Parameter, direction: Option<Direction>) -> String {
-    let estimate = sheet.get(parameter, direction).or_else(|| sheet.get(parameter, None));
-    estimate.map_or("-".into(), |e| significant(e.mean / parameter.kes_factor()))
+    let keys = [direction, None].map(|direction| Key { parameter, direction });
+    let found = keys.into_iter().find_map(|key| Some((key, sheet.values.get(&key)?)));
+    found.map_or("-".into(), |(key, e)| {
+        format!("{}{}", significant(e.mean / parameter.kes_factor()), mark(sheet.status(key)))
+    })
 }
 
+/// The tangent at low load; where only a table is known the secant, and it says so.
 fn modulus(sheet: &FabricSheet, direction: Direction) -> String {
-    let named = |name: &str| sheet.moduli.get(&(name.to_string(), direction));
-    named("tangent_low").or_else(|| named("secant")).map_or("-".into(), |e| significant(e.mean))
+    let found = [("tangent_low", ""), ("secant", " secant")].into_iter().find_map(|(name, kind)| {
+        let mean = sheet.moduli.get(&(name.to_string(), direction))?.mean;
+        Some(format!("{}{kind}{}", significant(mean), mark(sheet.modulus_status(name, direction))))
+    });
+    found.unwrap_or("-".into())
 }
 
 /// One line a fabric, one column of deflections a case.
@@ -65,7 +73,7 @@ pub(crate) fn table(reports: &[FabricReport], cases: &[Case]) -> Columns {
         row.push(report.status.clone());
         table.row(row);
     }
-    table
+    table.with_note(CAPTION)
 }
 
 fn deflection(report: &FabricReport, case: &str) -> String {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::columns::Columns;
 use super::friction;
-use crate::characterise::{FabricSheet, Settings};
+use crate::characterise::{FabricSheet, Key, Settings, ValueStatus};
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::{Estimate, significant};
 use crate::report::table::{UnitSystem, fabric_rows};
@@ -17,7 +17,10 @@ pub fn parameters_text(sheet: &FabricSheet, units: UnitSystem) -> String {
         let (unit, factor) = units.of(parameter);
         let cells: Vec<String> = directions
             .clone()
-            .map(|d| sheet.get(parameter, d).map(|e| estimate(e, factor)).unwrap_or_default())
+            .map(|direction| {
+                let status = sheet.status(Key { parameter, direction });
+                sheet.get(parameter, direction).map(|e| estimate(e, factor, status)).unwrap_or_default()
+            })
             .collect();
         if cells.iter().any(|c| !c.is_empty()) {
             columns.row([vec![parameter.symbol().to_string()], cells, vec![unit.to_string()]].concat());
@@ -26,12 +29,16 @@ pub fn parameters_text(sheet: &FabricSheet, units: UnitSystem) -> String {
     let (unit, factor) = units.of_modulus();
     for name in modulus_names(sheet) {
         let modulus = |d| sheet.moduli.get(&(name.clone(), d));
-        let cells =
-            Direction::ALL.map(|d| modulus(d).map(|e| estimate(e, factor)).unwrap_or_default()).to_vec();
+        let cells = Direction::ALL.map(|d| {
+            let status = sheet.modulus_status(name, d);
+            modulus(d).map(|e| estimate(e, factor, status)).unwrap_or_default()
+        });
+        let cells = cells.to_vec();
         columns.row([vec![format!("E {name}")], cells, vec![String::new(), unit.to_string()]].concat());
     }
     let head = format!("{} ({}), mean ± SD (n)", sheet.name, sheet.info.origin.name());
-    format!("{head}\n{}{}", columns.text(), friction::text(sheet, units))
+    let (text, legend) = (columns.text(), legend(sheet));
+    format!("{head}\n{text}{legend}{}", friction::text(sheet, units))
 }
 
 fn modulus_names(sheet: &FabricSheet) -> BTreeSet<&String> {
@@ -40,8 +47,17 @@ fn modulus_names(sheet: &FabricSheet) -> BTreeSet<&String> {
 
 /// One line a value with all of its statistics (`-v`).
 pub fn statistics_text(sheet: &FabricSheet, units: UnitSystem) -> String {
-    let mut columns =
-        Columns::new(["", "direction", "mean", "SD", "CV %", "95 % interval of the mean", "n", "unit"]);
+    let mut columns = Columns::new([
+        "",
+        "direction",
+        "mean",
+        "SD",
+        "CV %",
+        "95 % interval of the mean",
+        "n",
+        "unit",
+        "status",
+    ]);
     let number = |value: Option<f64>| value.map(significant).unwrap_or_default();
     for row in fabric_rows(sheet, units) {
         let ends = row.mean.zip(row.ci95).map(|(mean, half)| [mean - half, mean + half].map(significant));
@@ -54,6 +70,7 @@ pub fn statistics_text(sheet: &FabricSheet, units: UnitSystem) -> String {
             ends.map(|[low, high]| format!("{low} to {high}")).unwrap_or_default(),
             row.n.to_string(),
             row.unit,
+            row.status,
         ]);
     }
     format!("{} ({})\n{}", sheet.name, sheet.info.origin.name(), columns.text())
@@ -65,7 +82,30 @@ pub fn evaluation_text(settings: &Settings) -> String {
     format!("evaluated with\n{}", lines.collect::<String>())
 }
 
-fn estimate(e: &Estimate, factor: f64) -> String {
+fn estimate(e: &Estimate, factor: f64, status: ValueStatus) -> String {
     let spread = e.sd.map(|sd| format!(" ± {}", significant(sd / factor))).unwrap_or_default();
-    format!("{}{spread} ({})", significant(e.mean / factor), e.n)
+    format!("{}{spread} ({}){}", significant(e.mean / factor), e.n, mark(status))
+}
+
+/// What stands behind a value that is not plainly measured.
+pub(super) fn mark(status: ValueStatus) -> &'static str {
+    match status {
+        ValueStatus::Measured => "",
+        ValueStatus::Inferred => " ~",
+        ValueStatus::Assumed => " *",
+        ValueStatus::Doubtful => " ?",
+    }
+}
+
+/// What the marks mean, in the order in which they prevail.
+pub(super) const MARKS: &str = "? doubtful (see its findings), * rests on an assumption, ~ inferred";
+
+/// The meaning of the marks, where there are any.
+fn legend(sheet: &FabricSheet) -> String {
+    let values = sheet.values.keys().map(|key| sheet.status(*key));
+    let moduli = sheet.moduli.keys().map(|(name, direction)| sheet.modulus_status(name, *direction));
+    match values.chain(moduli).all(|status| status == ValueStatus::Measured) {
+        true => String::new(),
+        false => format!("{MARKS}\n"),
+    }
 }

@@ -96,7 +96,17 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
             "constitutive",
             "study",
         ],
-        &["base64", "csv", "dejavu", "percent_encoding", "plotters", "png", "polars", "quick_xml"],
+        &[
+            "base64",
+            "csv",
+            "dejavu",
+            "percent_encoding",
+            "plotters",
+            "png",
+            "polars",
+            "quick_xml",
+            "rust_xlsxwriter",
+        ],
     ),
     ("schema", &["quantity", "instrument", "characterise", "case"], &[]),
     (

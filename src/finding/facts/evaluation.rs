@@ -206,8 +206,31 @@ super::facts! {
             thickness: f64,
             /// Contacts behind it.
             contacts: usize,
-        } = "T0 is the thickness of the FAB instrument, {} mm over {contacts} contacts, whose pressure is not that of FB3",
-            significant(1e3 * thickness);
+            /// Force on the foot at these contacts (N).
+            force: f64,
+        } = "T0 is the thickness of the FAB instrument, {} mm where its foot first touches on loading, at {} gf in {contacts} \
+             contacts; the area of the foot is not stated, and its pressure is not that of FB3",
+            significant(1e3 * thickness), significant(force / (1e-3 * STANDARD_GRAVITY));
+        /// A slope of a record that ends before its window does.
+        "K049" NarrowedWindow {
+            /// The record.
+            record: RecordName,
+            /// Which slope.
+            slope: String,
+            /// The window of the settings (absolute abscissae, SI).
+            window: [f64; 2],
+            /// Where it was fitted instead.
+            fitted: [f64; 2],
+        } = "{record}: the record ends before the window of {slope}, {}; it was fitted over the same part of what is there, {}",
+            range_in(*window, record.test.kes_axes()[0]), range_in(*fitted, record.test.kes_axes()[0]);
+        /// The program of the FAB instrument gives another thickness than its record.
+        "K048" OtherThickness {
+            /// Thickness of the record (m).
+            thickness: f64,
+            /// Thickness that the program gives (m).
+            program: f64,
+        } = "the thickness of the record is {} mm, and the instrument's own program gives {} mm in the same file",
+            significant(1e3 * thickness), significant(1e3 * program);
         /// G from a FAB strip on the bias.
         "K033" BiasStrip {
             /// The force per width at which it is taken (N/m).
@@ -301,11 +324,11 @@ super::facts! {
             abscissa: f64,
             /// Ordinate of the first (SI).
             ordinate: f64,
-        } = "{record}: {} away and back in {samples}, first to {} and {}: a dropout? Nothing is taken out, and what is read \
-             there is wrong",
+        } = "{record}: {} away and back in {samples}, first to {} and {}: a dropout? No evaluation uses {}",
             if samples.numbers.len() == 1 { "a sample jumps" } else { "samples jump" },
             in_unit(*abscissa, record.test.kes_axes()[0]),
-            in_unit(*ordinate, record.test.kes_axes()[1]);
+            in_unit(*ordinate, record.test.kes_axes()[1]),
+            if samples.numbers.len() == 1 { "it" } else { "them" };
         /// The record goes on elsewhere.
         "K046" Jump {
             /// The record.
@@ -330,6 +353,12 @@ super::facts! {
         } = "{}: specimen {} is left out: its samples are those of specimen {original} ({place}), number by number, so that it is \
              a copy and no repeat", record.series(), record.specimen;
     }
+}
+
+/// A range in the unit of an axis.
+fn range_in(range: [f64; 2], unit: &str) -> String {
+    let [from, to] = range.map(|x| in_unit(x, unit));
+    format!("{from} to {to}")
 }
 
 fn repeat_name(repeat: usize, in_table: bool) -> String {

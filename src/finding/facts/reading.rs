@@ -103,6 +103,9 @@ super::facts! {
             /// The column of the abscissa.
             abscissa: String,
         } = "{ordinate:?} has the opposite sign of {abscissa:?}: it was turned";
+        /// A fabric that the file calls a knit.
+        "R117" KnitDirections {} =
+            "the fabric is a knit: warp stands for wale and weft for course in all that follows";
     }
 }
 

@@ -1,0 +1,199 @@
+//! How far a value of the sheet can be relied on, as its findings tell.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::FabricSheet;
+use crate::finding::{EvaluationFact, Fact, Finding, Place, ReadFact};
+use crate::instrument::Test;
+use crate::kes::{Direction, Key, Parameter, RecordName};
+
+/// How a value was had. The later a status stands, the more it prevails.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ValueStatus {
+    /// Measured, or published as measured; no finding speaks against it.
+    #[default]
+    Measured,
+    /// Calculated from another quantity or test, by its source or here.
+    Inferred,
+    /// It rests on a dimension or a condition that nobody stated.
+    Assumed,
+    /// A finding speaks against it.
+    Doubtful,
+}
+
+impl ValueStatus {
+    /// `measured`, `inferred`, `assumed` or `doubtful`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Measured => "measured",
+            Self::Inferred => "inferred",
+            Self::Assumed => "assumed",
+            Self::Doubtful => "doubtful",
+        }
+    }
+}
+
+/// What a finding speaks of.
+enum Scope<'a> {
+    /// One value.
+    Value(Key),
+    /// Every value of a record's test and direction.
+    Record(&'a RecordName),
+    /// One parameter of a record.
+    OfRecord(&'a RecordName, Parameter),
+    /// A slope of a record by the name of its fit.
+    Slope(&'a RecordName, &'a str),
+    /// Every value of a test.
+    Test(Test),
+    /// Every value that a file gave.
+    File(&'a Path),
+    /// The tensile moduli.
+    Moduli,
+}
+
+/// Says of each value how it was had. The findings must be complete, and the specimens still there.
+pub(super) fn assign(sheet: &mut FabricSheet) {
+    let of_values = |key: &Key| (*key, sheet.status_of_value(*key));
+    let statuses = sheet.values.keys().map(of_values).collect();
+    let of_moduli = |key: &(String, Direction)| (key.clone(), sheet.status_of_modulus(&key.0, key.1));
+    let modulus_statuses = sheet.moduli.keys().map(of_moduli).collect();
+    (sheet.statuses, sheet.modulus_statuses) = (statuses, modulus_statuses);
+}
+
+impl FabricSheet {
+    /// How the value of a parameter was had.
+    pub fn status(&self, key: Key) -> ValueStatus {
+        self.statuses.get(&key).copied().unwrap_or_default()
+    }
+
+    /// How a tensile modulus was had.
+    pub fn modulus_status(&self, name: &str, direction: Direction) -> ValueStatus {
+        self.modulus_statuses.get(&(name.to_string(), direction)).copied().unwrap_or_default()
+    }
+
+    fn status_of_value(&self, key: Key) -> ValueStatus {
+        self.prevailing(|scope| match scope {
+            Scope::Value(of) => *of == key,
+            Scope::Record(record) => is_of_record(key, record),
+            Scope::OfRecord(record, parameter) => key.parameter == *parameter && is_of_record(key, record),
+            Scope::Slope(record, name) => is_of_record(key, record) && is_slope(key.parameter, name),
+            Scope::Test(test) => key.parameter.test() == Some(*test),
+            Scope::File(path) => self.is_of_file(key.parameter.test(), key.direction, path),
+            Scope::Moduli => false,
+        })
+    }
+
+    fn status_of_modulus(&self, name: &str, direction: Direction) -> ValueStatus {
+        let is_tensile = |record: &RecordName| {
+            record.test == Test::Tensile && record.direction.is_none_or(|of| of == direction)
+        };
+        self.prevailing(|scope| match scope {
+            // Secant and energy modulus follow from them.
+            Scope::Value(of) => {
+                matches!(of.parameter, Parameter::Emt | Parameter::Lt | Parameter::Wt)
+                    && of.direction.is_none_or(|of| of == direction)
+                    && !self.specimens.iter().any(|s| s.measurement.test == Test::Tensile)
+            }
+            Scope::Record(record) => is_tensile(record),
+            Scope::OfRecord(..) => false,
+            Scope::Slope(record, slope) => is_tensile(record) && *slope == name,
+            Scope::Test(test) => *test == Test::Tensile,
+            Scope::File(path) => self.is_of_file(Some(Test::Tensile), Some(direction), path),
+            Scope::Moduli => true,
+        })
+    }
+
+    fn prevailing(&self, concerns: impl Fn(&Scope<'_>) -> bool) -> ValueStatus {
+        let statuses = self.findings.iter().filter_map(told);
+        statuses.filter(|(scope, _)| concerns(scope)).map(|(_, status)| status).max().unwrap_or_default()
+    }
+
+    fn is_of_file(&self, test: Option<Test>, direction: Option<Direction>, path: &Path) -> bool {
+        self.specimens.iter().map(|s| &s.measurement).any(|m| {
+            m.source.path == path
+                && Some(m.test) == test
+                && (direction.is_none() || m.direction.is_none() || m.direction == direction)
+        })
+    }
+}
+
+fn is_of_record(key: Key, record: &RecordName) -> bool {
+    let same = |of| key.direction.is_none_or(|direction| direction == of);
+    key.parameter.test() == Some(record.test) && record.direction.is_none_or(same)
+}
+
+/// Whether a parameter is the slope of a name, or the mean of slopes.
+fn is_slope(parameter: Parameter, name: &str) -> bool {
+    match parameter {
+        Parameter::B => matches!(name, "Bf" | "Bb"),
+        Parameter::G => matches!(name, "G+" | "G-"),
+        other => other.symbol() == name,
+    }
+}
+
+/// What a finding says of values; nothing where it concerns none.
+fn told(finding: &Finding) -> Option<(Scope<'_>, ValueStatus)> {
+    match &finding.fact {
+        Fact::Evaluation(fact) => of_evaluation(fact),
+        Fact::Reading(fact) => of_reading(fact, finding.place.as_ref()),
+        _ => None,
+    }
+}
+
+fn of_evaluation(fact: &EvaluationFact) -> Option<(Scope<'_>, ValueStatus)> {
+    use EvaluationFact as F;
+    use ValueStatus::{Assumed, Doubtful, Inferred};
+    let value = |parameter, direction| Scope::Value(Key { parameter, direction });
+    Some(match fact {
+        F::SlopesDiffer { record, slope, .. } | F::FewSamples { record, slope, .. } => {
+            (Scope::Slope(record, slope), Doubtful)
+        }
+        F::NarrowedWindow { record, slope, .. } => (Scope::Slope(record, slope), Inferred),
+        F::OneSide { record, parameter } => (Scope::OfRecord(record, *parameter), Doubtful),
+        F::ShortOfMaximum { record, .. }
+        | F::BeyondMaximum { record, .. }
+        | F::LargeCorrection { record, .. }
+        | F::Noise { record, .. }
+        | F::SeveralCycles { record, .. }
+        | F::Clipped { record, .. }
+        | F::Jump { record, .. } => (Scope::Record(record), Doubtful),
+        F::ConditionsDiffer { test, .. } => (Scope::Test(*test), Doubtful),
+        F::StandsApart { key, .. } | F::Implausible { key, .. } | F::TableDiffers { key, .. } => {
+            (Scope::Value(*key), Doubtful)
+        }
+        F::OtherDirection { parameter, own, .. } => (value(*parameter, Some(*own)), Doubtful),
+        F::ShearDiffers { .. } => (Scope::Test(Test::Shear), Doubtful),
+        F::OtherThickness { .. } => (value(Parameter::T0, None), Doubtful),
+        F::Inferred { key } => (Scope::Value(*key), Inferred),
+        F::BuckledStrips { direction, .. } => (value(Parameter::B, Some(*direction)), Inferred),
+        F::LowLoad { direction, .. } => (value(Parameter::B, Some(*direction)), Doubtful),
+        F::BiasStrip { .. } => (value(Parameter::G, None), Inferred),
+        F::FabThickness { .. } => (value(Parameter::T0, None), Inferred),
+        F::ModuliOfTable { .. } => (Scope::Moduli, Inferred),
+        F::StatedThickness {} => (value(Parameter::T0, None), Assumed),
+        F::NotEvaluated { .. }
+        | F::Missing { .. }
+        | F::NoDirection { .. }
+        | F::NoArealDensity {}
+        | F::NumberTwice { .. }
+        | F::NotNumbers { .. }
+        | F::ModuliOfStrips { .. }
+        | F::AssumedSpectrum { .. }
+        | F::NoLaw { .. }
+        | F::NoLoopOfValues { .. }
+        | F::Dropout { .. }
+        | F::Copy { .. } => return None,
+    })
+}
+
+fn of_reading<'a>(fact: &'a ReadFact, place: Option<&'a Place>) -> Option<(Scope<'a>, ValueStatus)> {
+    let file = || place.map(|place| Scope::File(&place.path));
+    match fact {
+        ReadFact::AssumedDimension { .. } => Some((file()?, ValueStatus::Assumed)),
+        ReadFact::TwoDirections { .. } => Some((file()?, ValueStatus::Doubtful)),
+        _ => None,
+    }
+}
