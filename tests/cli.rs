@@ -488,8 +488,11 @@ fn check_explains_what_it_inferred() {
     let output = run(&["-v", "check", file.to_str().unwrap()]);
     assert_eq!(code(&output), 2);
     let told = stdout(&output);
-    assert!(told.contains("dialect kesf: knows nothing; does not know kappa (1/cm), bar"), "{told}");
-    assert!(told.contains("[columns] curvature = [\"kappa\"]"), "{told}");
+    assert!(
+        told.contains("a dialect file, to be saved as dialect.toml beside the data and completed"),
+        "{told}"
+    );
+    assert!(told.contains("[columns]\n      curvature = [\"kappa\"]"), "{told}");
     let document = json(&run(&["--json", "check", file.to_str().unwrap()]));
     assert!(document["inference"][0]["decisions"].as_array().unwrap().len() > 3);
     let examples = stdout(&run(&["-v", "list", "dialects"]));

@@ -51,6 +51,7 @@ const CASES: &[(&str, &str, &str)] = &[
     ("R114", "r114-headings.csv", "r114-headings.csv:14"),
     ("R115", "r115_warp_FB2_1.csv", "r115_warp_FB2_1.csv:1"),
     ("R116", "r116-opposite.csv", "r116-opposite.csv:3"),
+    ("R117", "k048-knit.json", "k048-knit.json"),
     ("K001", "k001-five-samples.csv", "k001-five-samples.csv:6"),
     ("K002", "k002-two-degrees.csv", "k002-two-degrees.csv:6"),
     ("K003", "k003-kink.csv", "k003-kink.csv:6"),
@@ -76,13 +77,15 @@ const CASES: &[(&str, &str, &str)] = &[
     ("K033", "k030-fab.json", "k030-fab.json"),
     ("K034", "k030-fab.json", "k030-fab.json"),
     ("K040", "k021-thickness", "k021-thickness"),
-    ("K041", "k041-falling-loop.csv", "k041-falling-loop.csv"),
+    ("K041", "k041-clockwise.csv", "k041-clockwise.csv"),
     ("K042", "k042-widths", "k042-widths"),
     ("K043", "k043-two-cycles.csv", "k043-two-cycles.csv:108"),
     ("K044", "k044-clipped.csv", "k044-clipped.csv:24"),
     ("K045", "k045-row-of-zeros.csv", "k045-row-of-zeros.csv:26"),
     ("K046", "k046-lost-rows.csv", "k046-lost-rows.csv:36"),
     ("K047", "k047-copy.csv", "k047-copy.csv:113"),
+    ("K048", "k048-knit.json", "k048-knit.json"),
+    ("K049", "k002-two-degrees.csv", "k002-two-degrees.csv:6"),
 ];
 
 /// Codes that no file can trigger, because reading refuses it or sets it right before; programs

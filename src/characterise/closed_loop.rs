@@ -3,7 +3,7 @@
 use super::graph::Graph;
 use super::specimen::{Evaluation, Notes};
 use super::tensile::shift;
-use super::{Branch, CycleChoice, Settings, Window, branch};
+use super::{Branch, CycleChoice, Settings, Sides, SlopeMethod, Window, branch};
 use crate::finding::{EvaluationFact, RecordAxis};
 use crate::instrument::{Parameter, Test, standard_conditions};
 use crate::quantity::{Curve, in_unit};
@@ -81,7 +81,7 @@ fn evaluate(
     }
     slopes(&mut e, &sides, readings, settings, notes);
     for &(parameter, at) in &readings.widths {
-        width(&mut e, &sides, (parameter, at), notes);
+        width(&mut e, &sides, (parameter, at), settings, notes);
     }
     for side in sides.iter().flatten() {
         let observed = side.out.x.iter().copied().map(f64::abs).fold(0.0, f64::max);
@@ -166,15 +166,22 @@ fn slopes(
             continue;
         };
         notes.judge(&fit, settings);
+        let slope = settings.slope_method.slope(&fit);
         let line = |x: f64| fit.intercept + fit.slope * x;
-        e.windows.push(Window { parameter, from, to, ordinates: [line(from), line(to)] });
+        let ordinates = match settings.slope_method {
+            SlopeMethod::Regression => [from, to].map(line),
+            SlopeMethod::TwoPoint => [from, to].map(|x| side.out.at(x).unwrap_or_else(|| line(x))),
+        };
+        e.windows.push(Window { parameter, from, to, ordinates });
         if parameter != readings.mean {
-            e.values.insert(parameter, fit.slope);
+            e.values.insert(parameter, slope);
         }
-        found.push(fit.slope);
+        if settings.sides.has(side.sign) {
+            found.push(slope);
+        }
         e.fits.push(fit);
     }
-    one_side_only(found.len(), readings.mean, notes);
+    one_side_only(found.len(), readings.mean, settings, notes);
     if !found.is_empty() {
         e.values.insert(readings.mean, found.iter().sum::<f64>() / found.len() as f64);
     }
@@ -192,11 +199,12 @@ fn width(
     e: &mut Evaluation,
     sides: &[Option<Side>; 2],
     (parameter, at): (Parameter, f64),
+    settings: &Settings,
     notes: &mut Notes<'_>,
 ) {
     let mut found = Vec::new();
     let [unit, _] = notes.measurement.test.kes_axes();
-    for side in sides.iter().flatten() {
+    for side in sides.iter().flatten().filter(|side| settings.sides.has(side.sign)) {
         let x = side.sign * at;
         let place = if side.sign > 0.0 { "positive" } else { "negative" };
         let mut missing = |why: &str| notes.missing(&format!("{parameter} on the {place} side"), why);
@@ -215,14 +223,15 @@ fn width(
         found.push(side.sign * (out - back));
         e.windows.push(Window { parameter, from: x, to: x, ordinates: [out.min(back), out.max(back)] });
     }
-    one_side_only(found.len(), parameter, notes);
+    one_side_only(found.len(), parameter, settings, notes);
     if !found.is_empty() {
         e.values.insert(parameter, found.iter().sum::<f64>() / found.len() as f64);
     }
 }
 
-fn one_side_only(sides: usize, parameter: Parameter, notes: &mut Notes<'_>) {
-    if sides == 1 {
+/// K018, unless one side was asked for.
+fn one_side_only(sides: usize, parameter: Parameter, settings: &Settings, notes: &mut Notes<'_>) {
+    if sides == 1 && settings.sides == Sides::Both {
         notes.add(EvaluationFact::OneSide { record: notes.record(), parameter });
     }
 }

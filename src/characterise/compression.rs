@@ -45,7 +45,9 @@ pub(super) fn evaluate(
     let work = load.area(tm, t0).ok_or("the loading branch has no area")?;
     e.values.insert(Parameter::Wc, work);
     e.values.insert(Parameter::Lc, work / (0.5 * pm * (t0 - tm)));
-    if let Some(regained) = notes.regained("RC", recovered(back, tm, t0), work) {
+    if !notes.unloads_from_beyond("RC", peak, settings)
+        && let Some(regained) = notes.regained("RC", recovered(back, tm, t0), work)
+    {
         e.values.insert(Parameter::Rc, regained / work);
     }
     Ok(e)

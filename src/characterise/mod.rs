@@ -26,6 +26,7 @@ mod status;
 mod strip;
 mod tables;
 mod tensile;
+mod value_status;
 
 pub use crate::kes::Key;
 pub(crate) use friction::nnls::nnls;
@@ -34,12 +35,12 @@ pub use friction::{
     bending_law, cycle, extract,
 };
 pub use graph::LineFit;
-pub use settings::{CycleChoice, Modulus, Settings};
+pub use settings::{CycleChoice, Modulus, Settings, Sides, SlopeMethod};
 pub use sheet::{Branch, FabricSheet, RunTo, SpecimenResult, Window};
 pub use simulated::parameters;
 pub use spread::{MeanBranch, mean_branches};
-pub use status::ValueStatus;
 pub use strip::{Strip, StripCycle};
+pub use value_status::ValueStatus;
 
 use crate::finding::Place;
 use crate::instrument::{FabricInput, Measurement};
@@ -56,9 +57,11 @@ pub fn characterise(input: &FabricInput, settings: &Settings) -> FabricSheet {
     findings.extend(copies);
     measurements.sort_by_key(|m| (m.test, m.direction, m.specimen));
     let evaluated = |m: &Measurement| {
+        let mut m = m.clone();
+        m.conditions.maximum = settings.maximum(m.test).unwrap_or(m.conditions.maximum);
         let dropouts =
-            recording::check(settings, &mut specimen::Notes { measurement: m, findings: &mut findings });
-        specimen::evaluate(m, &dropouts, settings, &mut findings)
+            recording::check(settings, &mut specimen::Notes { measurement: &m, findings: &mut findings });
+        specimen::evaluate(&m, &dropouts, settings, &mut findings)
     };
     let specimens = measurements.into_iter().filter_map(evaluated).collect();
     let mut sheet = FabricSheet {

@@ -6,7 +6,9 @@
 use approx::assert_relative_eq;
 use proptest::prelude::*;
 
-use super::{CycleChoice, FabricSheet, Modulus, Settings, characterise};
+use super::{
+    CycleChoice, FabricSheet, Key, Modulus, Settings, Sides, SlopeMethod, ValueStatus, characterise,
+};
 use crate::instrument::{Conditions, Direction, FabricInput, Measurement, Parameter, Source, Test};
 use crate::quantity::{Angle, Curve, LineForce};
 use Parameter as P;
@@ -224,16 +226,24 @@ fn records_that_cannot_be_evaluated_are_left_out_and_told() {
 
 #[test]
 fn what_a_record_does_not_cover_is_told() {
-    // Only the face side, up to 1.2 1/cm: B is not covered, 2HB is read on one side.
+    // Only the face side, up to 1.2 1/cm: B is fitted over less, 2HB is read on one side.
     let up = ramp(-1.2, 120.0, 60).map(|k| (k, 8e-6 * k + 3e-4));
     let down = ramp(120.0, 0.0, 60).map(|k| (k, 8e-6 * k - 3e-4));
     let sheet = evaluate(measurement(Test::Bending, 250.0, up.chain(down).collect()));
     let codes = codes(&sheet);
-    for code in ["K002", "K005", "K018"] {
+    for code in ["K005", "K018", "K049"] {
         assert!(codes.contains(&code), "{code} not in {:?}", sheet.findings);
     }
-    assert_eq!(sheet.get(P::B, Some(Direction::Warp)), None);
+    assert_relative_eq!(value(&sheet, P::B), 8e-6, max_relative = 1e-10);
     assert_relative_eq!(value(&sheet, P::Hb), 6e-4, max_relative = 1e-10);
+    // 0.5 to 1.5 of 2.5 1/cm, of what is there.
+    let fit = &sheet.specimens[0].fits[0];
+    assert_relative_eq!(fit.window[0], 24.0, max_relative = 1e-12);
+    assert_relative_eq!(fit.window[1], 72.0, max_relative = 1e-12);
+    assert_eq!(
+        sheet.status(Key { parameter: P::B, direction: Some(Direction::Warp) }),
+        ValueStatus::Doubtful
+    );
 }
 
 #[test]
@@ -439,4 +449,38 @@ fn noise_and_few_samples_are_told() {
     let mut gaps = cycle(250.0, 60, |k, s| 8e-6 * k + 3e-4 * s);
     gaps[30].1 = f64::NAN;
     assert_eq!(codes(&evaluate(measurement(Test::Bending, 250.0, gaps))), ["K022"]);
+}
+
+/// Definitions that laboratories vary: one side, two points, another maximum. M = Bf K up to 1.2 1/cm and stiffer beyond.
+#[test]
+fn definitions_that_laboratories_vary() {
+    let moment = |k: f64| if k > 0.0 { 9e-6 * k + 2e-6 * (k - 120.0).max(0.0) } else { 7e-6 * k };
+    let m = measurement(Test::Bending, 250.0, cycle(250.0, 500, |k, s| moment(k) + 3e-4 * s));
+    let b = |settings: Settings| {
+        let sheet = sheet_of(vec![m.clone()], &settings);
+        (value(&sheet, P::B), value(&sheet, P::Bf), value(&sheet, P::Bb), codes(&sheet).contains(&"K018"))
+    };
+    let (both, bf, bb, _) = b(Settings::default());
+    assert_relative_eq!(both, 0.5 * (bf + bb), max_relative = 1e-12);
+    assert_relative_eq!(bb, 7e-6, max_relative = 1e-9);
+    let (positive, same, _, alone) = b(Settings { sides: Sides::Positive, ..Settings::default() });
+    assert!(positive == bf && same == bf && !alone);
+    assert_relative_eq!(
+        b(Settings { sides: Sides::Negative, ..Settings::default() }).0,
+        7e-6,
+        max_relative = 1e-9
+    );
+    // From 0.5 to 1.5 1/cm: 30 1/m of 100 are stiffer by 2 µN·m.
+    let (_, ends, _, _) = b(Settings { slope_method: SlopeMethod::TwoPoint, ..Settings::default() });
+    assert_relative_eq!(ends, 9.6e-6, max_relative = 1e-6);
+    assert!((bf / ends - 1.0).abs() > 1e-3);
+    // F = Fm (e/em)^1.5: half of the force is reached at 0.5^(2/3) of the strain; LT stays.
+    let half = Settings { tensile_maximum: Some(LineForce(0.5 * FM)), ..Settings::default() };
+    let sheet = sheet_of(vec![power_law(0.06, 1.5, 2.5, 2000, 0, 0.0)], &half);
+    assert_relative_eq!(value(&sheet, P::Emt), 0.06 * 0.5f64.powf(2.0 / 3.0), max_relative = 1e-4);
+    assert_relative_eq!(value(&sheet, P::Lt), 0.8, max_relative = 1e-4);
+    // The work regained is that after the full force.
+    assert!(sheet.get(P::Rt, Some(Direction::Warp)).is_none());
+    assert_eq!(codes(&sheet), ["K002"]);
+    assert_relative_eq!(sheet.conditions(Test::Tensile, Some(Direction::Warp)).maximum, 0.5 * FM);
 }

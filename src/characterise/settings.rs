@@ -9,6 +9,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize, Serializer, de};
 use thiserror::Error;
 
+use super::LineFit;
 use crate::finding::{Place, TomlError, TomlFile};
 use crate::kes::Test;
 use crate::kes::specimen::{
@@ -115,6 +116,51 @@ pub enum CycleChoice {
     Last,
 }
 
+/// Which sides of a loop the mean slopes and widths are taken from. Bf and Bb are always those of their own side.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Sides {
+    /// The mean of both.
+    #[default]
+    Both,
+    /// The positive side only.
+    Positive,
+    /// The negative side only.
+    Negative,
+}
+
+impl Sides {
+    /// Whether the side of this sign counts.
+    pub(super) fn has(self, sign: f64) -> bool {
+        match self {
+            Self::Both => true,
+            Self::Positive => sign > 0.0,
+            Self::Negative => sign < 0.0,
+        }
+    }
+}
+
+/// How the slope over a window is taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SlopeMethod {
+    /// The least-squares line over the samples of the window.
+    #[default]
+    Regression,
+    /// The line between the interpolated ends of the window.
+    TwoPoint,
+}
+
+impl SlopeMethod {
+    /// The slope of a fit by this method (SI).
+    pub(super) fn slope(self, fit: &LineFit) -> f64 {
+        match self {
+            Self::Regression => fit.slope,
+            Self::TwoPoint => fit.two_point,
+        }
+    }
+}
+
 /// Why settings cannot be used.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{place}: the settings cannot be used: {reason}")]
@@ -138,6 +184,15 @@ impl From<TomlError> for SettingsError {
 pub struct Settings {
     /// Angles between which G is fitted, on both sides (0.5 to 2.5 deg; the literature also uses 0.5 to 5 deg).
     pub shear_slope: [Angle; 2],
+    /// How the slopes of G, B and the tensile tangents are taken over their windows.
+    pub slope_method: SlopeMethod,
+    /// Sides of the loop that G, B and the loop widths are taken from (the mean of both).
+    pub sides: Sides,
+    /// Force at which the tensile parameters are read, in the place of the set maximum of the records (500 gf/cm).
+    pub tensile_maximum: Option<LineForce>,
+    /// Pressure at which Tm and the compression parameters are read, in the place of the set maximum of the records
+    /// (50 gf/cm²).
+    pub compression_maximum: Option<Pressure>,
     /// Angles at which 2HG and 2HG5 are read (0.5 and 5 deg).
     pub shear_readings: [Angle; 2],
     /// Whether the part of the constant tension, W tan φ, is taken off the shear force (off: published G contain it).
@@ -189,6 +244,10 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             shear_slope: SHEAR_SLOPE.map(Angle),
+            slope_method: SlopeMethod::Regression,
+            sides: Sides::Both,
+            tensile_maximum: None,
+            compression_maximum: None,
             shear_readings: SHEAR_READINGS.map(Angle),
             tension_correction: false,
             bending_slope: BENDING_SLOPE.map(Curvature),
@@ -248,6 +307,8 @@ impl Settings {
             above("shear_readings", &self.shear_readings.map(Angle::si)),
             above("bending_readings", &self.bending_readings.map(Curvature::si)),
             above("table_maximum", &[self.table_maximum.si()]),
+            above("tensile_maximum", &self.tensile_maximum.map_or(vec![], |f| vec![f.si()])),
+            above("compression_maximum", &self.compression_maximum.map_or(vec![], |p| vec![p.si()])),
             above("compression_start", &[self.compression_start.si()]),
             above("strip_onset", &[self.strip_onset.si()]),
             above("strip_secant", &[self.strip_secant.si()]),
@@ -269,6 +330,15 @@ impl Settings {
         Some((key, why))
     }
 
+    /// The maximum of a test that stands in the place of what its records state (SI).
+    pub(super) fn maximum(&self, test: Test) -> Option<f64> {
+        match test {
+            Test::Tensile => self.tensile_maximum.map(LineForce::si),
+            Test::Compression => self.compression_maximum.map(Pressure::si),
+            Test::Shear | Test::Bending => None,
+        }
+    }
+
     /// The abscissae (SI) between which the slope of a test is taken: G of shear, B of bending; none of the others.
     pub fn slope_window(&self, test: Test) -> Option<[f64; 2]> {
         match test {
@@ -288,6 +358,17 @@ impl Settings {
         let [b0, b1] = self.bending_slope.map(per_cm);
         let [r0, r1] = self.bending_readings.map(per_cm);
         let [t0, t1] = self.tangent_low.map(in_gf_per_cm);
+        let per_cm2 = |p: Pressure| format!("{} gf/cm²", round(p.si() / (STANDARD_GRAVITY * 10.0)));
+        let stated = || "the set maximum of the record".to_string();
+        let sides = match self.sides {
+            Sides::Both => "mean of both sides",
+            Sides::Positive => "positive side only",
+            Sides::Negative => "negative side only",
+        };
+        let method = match self.slope_method {
+            SlopeMethod::Regression => "regression over the window",
+            SlopeMethod::TwoPoint => "the ends of the window",
+        };
         vec![
             ("G fitted over", range(g0, g1)),
             ("2HG, 2HG5 read at", format!("{h0}, {h1}")),
@@ -295,10 +376,11 @@ impl Settings {
             ("B fitted over", range(b0, b1)),
             ("2HB, 2HB05 read at", format!("{r0}, {r1}")),
             ("tangent_low fitted over", range(t0, t1)),
-            (
-                "T0 read at",
-                format!("{} gf/cm²", round(self.compression_start.si() / (STANDARD_GRAVITY * 10.0))),
-            ),
+            ("slopes by", method.to_string()),
+            ("G, B and loop widths from", sides.to_string()),
+            ("tensile parameters read at", self.tensile_maximum.map_or_else(stated, in_gf_per_cm)),
+            ("T0 read at", per_cm2(self.compression_start)),
+            ("Tm read at", self.compression_maximum.map_or_else(stated, per_cm2)),
             ("cycle", if self.cycle == CycleChoice::First { "first" } else { "last" }.to_string()),
             ("zero, offset and slack corrected", yes_no(self.correct_zero)),
             (

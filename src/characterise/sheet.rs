@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{CycleChoice, FrictionLaw, Key, LineFit, Settings, Strip, ValueStatus};
+use super::value_status::ValueStatus;
+use super::{CycleChoice, FrictionLaw, Key, LineFit, Settings, Strip};
 use crate::finding::Finding;
 use crate::instrument::fab::FabTest;
 use crate::instrument::{

@@ -86,10 +86,22 @@ impl Notes<'_> {
         }
         if observed < (1.0 - allowed) * set {
             self.add(EvaluationFact::ShortOfMaximum { record, reached, maximum });
-        } else if observed > (1.0 + 5.0 * allowed) * set {
+        } else if observed > (1.0 + 5.0 * allowed) * set && settings.maximum(record.test).is_none() {
             self.add(EvaluationFact::BeyondMaximum { record, reached, maximum });
         }
         set.min(observed)
+    }
+
+    /// Whether the record goes on beyond the maximum that was asked for, so that it unloads from a greater load than the
+    /// parameters are read at (K002 for `what`).
+    pub fn unloads_from_beyond(&mut self, what: &str, observed: f64, settings: &Settings) -> bool {
+        let asked = settings.maximum(self.measurement.test);
+        let is_beyond =
+            asked.is_some_and(|asked| observed > (1.0 + settings.maximum_difference.si()) * asked);
+        if is_beyond {
+            self.missing(what, "the record unloads from beyond the maximum that the settings ask for");
+        }
+        is_beyond
     }
 
     /// K003, K004: how far a fitted slope can be trusted.

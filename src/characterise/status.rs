@@ -2,39 +2,11 @@
 
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
-
 use super::FabricSheet;
+use super::value_status::ValueStatus;
 use crate::finding::{EvaluationFact, Fact, Finding, Place, ReadFact};
 use crate::instrument::Test;
 use crate::kes::{Direction, Key, Parameter, RecordName};
-
-/// How a value was had. The later a status stands, the more it prevails.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum ValueStatus {
-    /// Measured, or published as measured; no finding speaks against it.
-    #[default]
-    Measured,
-    /// Calculated from another quantity or test, by its source or here.
-    Inferred,
-    /// It rests on a dimension or a condition that nobody stated.
-    Assumed,
-    /// A finding speaks against it.
-    Doubtful,
-}
-
-impl ValueStatus {
-    /// `measured`, `inferred`, `assumed` or `doubtful`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Measured => "measured",
-            Self::Inferred => "inferred",
-            Self::Assumed => "assumed",
-            Self::Doubtful => "doubtful",
-        }
-    }
-}
 
 /// What a finding speaks of.
 enum Scope<'a> {

@@ -33,7 +33,9 @@ pub(super) fn evaluate(
     e.values.insert(Parameter::Emt, strain);
     e.values.insert(Parameter::Wt, work);
     e.values.insert(Parameter::Lt, work / (0.5 * fm * strain));
-    if let Some(regained) = notes.regained("RT", recovered(&back, start, strain), work) {
+    if !notes.unloads_from_beyond("RT", peak, settings)
+        && let Some(regained) = notes.regained("RT", recovered(&back, start, strain), work)
+    {
         e.values.insert(Parameter::Rt, regained / work);
     }
     e.windows.push(Window { parameter: Parameter::Emt, from: strain, to: strain, ordinates: [0.0, fm] });
@@ -53,7 +55,7 @@ pub(super) fn evaluate(
         match load.fit_between_ordinates(&modulus.name(), low.si(), high.si()) {
             Some(fit) => {
                 notes.judge(&fit, settings);
-                e.moduli.insert(modulus.name(), fit.slope);
+                e.moduli.insert(modulus.name(), settings.slope_method.slope(&fit));
                 e.fits.push(fit);
             }
             None => notes.missing(&modulus.name(), "the loading branch does not cover its window"),

@@ -5,8 +5,8 @@ use clap::{Parser, Subcommand};
 use super::global::Global;
 
 use super::{
-    characterise, check, compare, completions, explain, export, list, man, read, report, run, section, solve,
-    verify,
+    characterise, check, compare, completions, explain, export, init, list, man, read, report, run, section,
+    solve, verify,
 };
 
 /// Kawabata (KES-F) measurements in; fabric parameters, shell sections, predictions and charts out.
@@ -35,6 +35,7 @@ pub enum Command {
     Export(export::Options),
     Report(report::Options),
     Verify(verify::Options),
+    Init(init::Options),
     Check(check::Options),
     List(list::Options),
     Explain(explain::Options),

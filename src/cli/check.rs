@@ -1,13 +1,16 @@
 //! `kesf check`: reads everything, computes nothing.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::exit::Exit;
 use super::inputs::{ReadArgs, inputs};
 use super::ui::Ui;
-use crate::results::{Failure, check};
+use crate::instrument::anonymise::bundle;
+use crate::report::OutputError;
+use crate::report::write::write_file;
+use crate::results::{Checked, Failure, check};
 
 /// Validate measurement files and cases, compute nothing
 #[derive(Debug, Args)]
@@ -21,6 +24,9 @@ pub struct Options {
     /// Exit with 1 if there is a finding
     #[arg(long)]
     strict: bool,
+    /// Write samples of the files that can be given away: layout and headings as they are, numbers and names replaced
+    #[arg(long, value_name = "OUT.zip")]
+    bundle: Option<PathBuf>,
     #[command(flatten)]
     reading: ReadArgs,
 }
@@ -28,6 +34,9 @@ pub struct Options {
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let (inputs, reading) = (inputs(&options.inputs)?, options.reading.reading());
     let checked = ui.observe(|observer| check(&inputs, &reading, observer))?;
+    if let Some(path) = &options.bundle {
+        write_bundle(&checked, path, ui)?;
+    }
     if ui.json {
         ui.document(checked.document())?;
     } else {
@@ -35,4 +44,28 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     }
     let useful = checked.fabrics.len() + checked.cases.len();
     Ok(Exit::of_batch(useful, &checked.failures).unless(options.strict && ui.findings() > 0))
+}
+
+fn write_bundle(checked: &Checked, path: &Path, ui: &Ui) -> Result<(), Failure> {
+    let mut files = Vec::new();
+    for file in checked.files() {
+        let bytes =
+            std::fs::read(&file).map_err(|source| OutputError::Write { path: file.clone(), source })?;
+        files.push((file, bytes));
+    }
+    let bundle = bundle(&files)?;
+    write_file(path, &bundle.bytes, false)?;
+    for error in bundle.failures {
+        ui.error(&error.into());
+    }
+    for (file, name) in &bundle.names {
+        ui.note(&format!("{}: {} is {name}", path.display(), file.display()));
+    }
+    let unknown: Vec<&str> = bundle.unknown.iter().map(String::as_str).collect();
+    ui.note(&format!(
+        "{}: look at it before you send it; these texts were kept as headings or keys: {}",
+        path.display(),
+        if unknown.is_empty() { "none".to_string() } else { unknown.join(" | ") }
+    ));
+    Ok(())
 }

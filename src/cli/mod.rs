@@ -14,6 +14,7 @@ mod exit;
 mod explain;
 mod export;
 mod global;
+mod init;
 mod inputs;
 mod interrupt;
 mod list;
@@ -69,6 +70,7 @@ fn dispatch(command: &Command, ui: &Ui) -> Result<Exit, Failure> {
         Command::Export(options) => export::run(options, ui),
         Command::Report(options) => report::run(options, ui),
         Command::Verify(options) => verify::run(options, ui),
+        Command::Init(options) => init::run(options, ui),
         Command::Check(options) => check::run(options, ui),
         Command::List(options) => list::run(options, ui),
         Command::Explain(options) => explain::run(options, ui),

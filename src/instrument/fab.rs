@@ -80,7 +80,7 @@ impl FabTest {
 pub struct Contact {
     /// Thickness (m).
     pub thickness: f64,
-    /// Force on the foot (N), compression positive. The file does not state the area of the foot.
+    /// Force on the foot (N), whatever sign the file gives it. The file does not state the area of the foot.
     pub force: f64,
 }
 
@@ -173,15 +173,15 @@ fn program_values(document: &Value, file: &mut FabFile) {
     let text = |key: &str| program.get(key).and_then(Value::as_str);
     file.name = text("name").map(str::to_string);
     file.is_knit = text("category").is_some_and(|category| category.to_lowercase().contains("knit"));
-    let thickness = program.get("thickness").and_then(Value::as_f64);
+    let thickness = program.get("thickness").and_then(as_number);
     // In mm, as the standard has it.
-    file.program_thickness = thickness.filter(|t| t.is_finite() && *t > 0.0).map(|t| 1e-3 * t);
+    file.program_thickness = thickness.filter(|t| *t > 0.0).map(|t| 1e-3 * t);
 }
 
 /// Where the foot first touches on a loading branch.
 fn contact(branch: &Curve) -> Option<Contact> {
     let (thickness, force) = branch.points().next()?;
-    (thickness > 0.0).then_some(Contact { thickness, force: -force })
+    (thickness > 0.0).then_some(Contact { thickness, force: force.abs() })
 }
 
 fn bad(path: &Path, reason: String) -> ReadError {
@@ -235,10 +235,15 @@ fn branches(test: &Value, path: &Path, at: &str) -> Result<Vec<Curve>, ReadError
     tree.iter().enumerate().map(branch).collect()
 }
 
-/// A JSON number, or a string that holds one.
-fn number(value: &Value, path: &Path, at: &str) -> Result<f64, ReadError> {
+/// A JSON number, or a string that holds one; finite.
+fn as_number(value: &Value) -> Option<f64> {
     let number = value.as_f64().or_else(|| value.as_str().and_then(|s| s.trim().parse().ok()));
-    number.filter(|v| v.is_finite()).ok_or_else(|| bad(path, format!("{at} is not a number: {value}")))
+    number.filter(|v| v.is_finite())
+}
+
+/// The same of what has to be one.
+fn number(value: &Value, path: &Path, at: &str) -> Result<f64, ReadError> {
+    as_number(value).ok_or_else(|| bad(path, format!("{at} is not a number: {value}")))
 }
 
 /// Texts under any key that begins with `warning`, wherever they stand.

@@ -4,6 +4,7 @@
 //! and `result_table` turn cells into [`Measurement`]s and [`ResultValue`]s. Nothing here computes a
 //! parameter, and raw data are never altered beyond their units.
 
+pub mod anonymise;
 mod axis;
 mod blanks;
 mod column_name;

@@ -389,11 +389,11 @@ mod tests {
         let b = lines.next().unwrap();
         // t(0.975, 2) = 4.30265272991 (tables): 0.001 t / √3.
         let (values, half) = b.rsplit_once(',').unwrap();
-        assert_eq!(values, "\"poplin, \"\"A\"\"\",B,warp,0.1,0.001,3,gf·cm²/cm,ok,0.01");
+        assert_eq!(values, "\"poplin, \"\"A\"\"\",B,warp,0.1,0.001,3,gf·cm²/cm,measured,0.01");
         assert!((half.parse::<f64>().unwrap() / 0.002_484_137_711_8 - 1.0).abs() < 1e-10);
-        assert!(lines.next().unwrap().ends_with(",T0,,0.4,,1,mm,ok,,"));
+        assert!(lines.next().unwrap().ends_with(",T0,,0.4,,1,mm,measured,,"));
         let si = String::from_utf8(csv(&fabric_rows(&sheet(), UnitSystem::Si)).unwrap()).unwrap();
-        assert!(si.contains(",B,warp,9.80665e-6,9.80665e-8,3,N·m,ok"), "{si}");
+        assert!(si.contains(",B,warp,9.80665e-6,9.80665e-8,3,N·m,measured"), "{si}");
     }
 
     #[test]

@@ -40,15 +40,24 @@ fn build(tables: &Tables<'_>) -> Result<Vec<u8>, XlsxError> {
     book.save_to_buffer()
 }
 
+/// A fabric in one line.
+#[derive(Default)]
+struct Line<'a> {
+    fabric: &'a str,
+    /// Column, from 0 behind the name, and value.
+    cells: Vec<(usize, f64)>,
+    remarks: Vec<String>,
+}
+
 /// One line a fabric, one column a parameter and direction; the last column names the values that are not measured.
 fn side_by_side(sheet: &mut Worksheet, rows: &[FabricRow]) -> Result<(), XlsxError> {
     let mut columns: Vec<String> = Vec::new();
-    let mut fabrics: Vec<(&str, Vec<(usize, f64)>, Vec<String>)> = Vec::new();
+    let mut lines: Vec<Line> = Vec::new();
     for row in rows {
-        if fabrics.last().is_none_or(|f| f.0 != row.fabric) {
-            fabrics.push((&row.fabric, Vec::new(), Vec::new()));
+        if lines.last().is_none_or(|line| line.fabric != row.fabric) {
+            lines.push(Line { fabric: &row.fabric, ..Line::default() });
         }
-        let Some((_, cells, remarks)) = fabrics.last_mut() else { continue };
+        let Some(Line { cells, remarks, .. }) = lines.last_mut() else { continue };
         let Some(mean) = row.mean else {
             remarks.push(row.status.clone());
             continue;
@@ -67,14 +76,14 @@ fn side_by_side(sheet: &mut Worksheet, rows: &[FabricRow]) -> Result<(), XlsxErr
     }
     let headings = ["fabric"].into_iter().chain(columns.iter().map(String::as_str)).chain(["remarks"]);
     head(sheet, headings)?;
-    for (line, (fabric, cells, remarks)) in (1u32..).zip(&fabrics) {
+    for (line, Line { fabric, cells, remarks }) in (1u32..).zip(&lines) {
         sheet.write_string(line, 0, *fabric)?;
         for (at, mean) in cells {
             sheet.write_number(line, column(at + 1)?, *mean)?;
         }
         sheet.write_string(line, column(columns.len() + 1)?, remarks.join("; "))?;
     }
-    finish(sheet, fabrics.len(), columns.len() + 2)
+    finish(sheet, lines.len(), columns.len() + 2)
 }
 
 /// The rows as they stand in the other files.

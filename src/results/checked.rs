@@ -1,5 +1,8 @@
 //! Inputs that were read and checked, and nothing more.
 
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
 use serde::Serialize;
 
 use super::columns::Columns;
@@ -89,6 +92,14 @@ fn located(case: &Case, error: StudyError) -> Failure {
 impl Checked {
     fn inference(&self) -> impl Iterator<Item = &Inference> {
         self.fabrics.iter().flat_map(|f| &f.inference).chain(&self.inference_of_failures)
+    }
+
+    /// The files behind what was read and what could not be, in name order.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let unread =
+            self.failures.iter().filter(|f| f.code.starts_with('R')).filter_map(|f| f.place.as_ref());
+        let paths = self.inference().map(|i| i.path.clone()).chain(unread.map(|place| place.path.clone()));
+        paths.filter(|path| path.is_file()).collect::<BTreeSet<_>>().into_iter().collect()
     }
 
     /// The document.

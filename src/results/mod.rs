@@ -17,6 +17,7 @@ mod fabric;
 mod failure;
 mod folder;
 mod friction;
+mod init;
 mod inputs;
 pub mod list;
 mod names;
@@ -43,6 +44,7 @@ pub use draped::{DrapeEntry, DrapePoint};
 pub use fabric::FabricReport;
 pub use failure::{Failure, FailureEntry};
 pub use folder::{Folder, MemorySink, Sink};
+pub use init::{Begun, init};
 pub use inputs::{
     Curves, Fabric, FileEntry, Input, Read, Reading, ReadingEntry, cases, nothing_to_read, paths_of_several,
     readable, unread, without_cases,

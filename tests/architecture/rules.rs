@@ -183,6 +183,7 @@ const FILES: &[&str] = &[
     "src/case/mod.rs",
     "src/report/write.rs",
     "src/results/inputs.rs",
+    "src/results/init/",
     "src/results/section.rs",
     "src/results/solved/effort.rs",
     "src/run.rs",
