@@ -72,8 +72,12 @@ impl Default for RunSettings {
 pub struct RunReport {
     /// One a fabric, in name order.
     pub fabrics: Vec<FabricReport>,
+    /// Every row of `fabrics.csv`.
+    pub parameters: Vec<FabricRow>,
     /// Every row of `predictions.csv`.
     pub predictions: Vec<PredictionRow>,
+    /// Every row of `problems.csv`.
+    pub problems: Vec<ProblemRow>,
     /// What failed, of inputs and of tasks.
     pub failures: Vec<Failure>,
     /// How many fabrics and cases with constants of their own gave something.
@@ -169,7 +173,9 @@ pub fn write(
         fails_a_check: reports.iter().any(|r| r.fails_a_check) || own.iter().any(Own::fails_a_check),
         tables: tables.into_iter().flatten().collect(),
         fabrics: reports,
+        parameters: rows,
         predictions,
+        problems,
         failures,
     })
 }

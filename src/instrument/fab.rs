@@ -8,7 +8,7 @@
 
 use std::path::Path;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::error::{Problem, ReadError};
@@ -17,7 +17,7 @@ use crate::finding::{Finding, Place, ReadFact};
 use crate::quantity::{Curve, STANDARD_GRAVITY};
 
 /// What a FAB test does to the strip.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FabKind {
     /// Stretch at the short clamp distance (about 2 cm).
@@ -54,7 +54,7 @@ impl FabKind {
 }
 
 /// One strip test: clamp distance against force.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FabTest {
     /// Direction of the strip: length is warp, width is weft.
     pub direction: Direction,
@@ -85,7 +85,7 @@ pub struct Contact {
 }
 
 /// The raw data of a FAB measurement.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FabFile {
     /// Name of the fabric, where the file has one.
     pub name: Option<String>,

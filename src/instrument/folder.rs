@@ -116,6 +116,12 @@ impl Library {
         self.groups.iter().map(|g| g.files.len()).sum()
     }
 
+    /// The folder or file of each fabric, with the measurement files that belong to it: what can be divided among
+    /// several machines. A file may turn out to hold several fabrics.
+    pub fn fabrics(&self) -> impl Iterator<Item = (&Path, &[PathBuf])> {
+        self.groups.iter().map(|group| (group.path.as_path(), group.files.as_slice()))
+    }
+
     /// Reads fabric by fabric, in parallel, and gives each to `work`; only what `work` returns is
     /// kept, so that memory does not grow with the library. Results are in name order, whatever
     /// the order of work, and so are the errors: one for each file that was not read.

@@ -37,7 +37,7 @@ impl Origin {
 }
 
 /// A file that was read: its path as given, its hash, and how its text was understood.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Source {
     /// Path as it was named to us.
     #[serde(serialize_with = "crate::finding::path_as_text")]
@@ -51,7 +51,7 @@ pub struct Source {
 }
 
 /// Test conditions in SI, from the file, else `fabric.toml`, else the standard set.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Conditions {
     /// Specimen width (m); 0.20 by default.
     pub width: f64,
@@ -65,7 +65,7 @@ pub struct Conditions {
 }
 
 /// One specimen in one test: the raw curve in SI, in recorded order, untouched otherwise.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measurement {
     /// Which test, and so what the axes are.
     pub test: Test,
@@ -100,7 +100,7 @@ impl Measurement {
 }
 
 /// One value of a result table, SI.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ResultValue {
     /// Which parameter.
     pub parameter: Parameter,
@@ -137,7 +137,7 @@ pub struct MeasuredResult {
 }
 
 /// What `fabric.toml` says of a fabric.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FabricInfo {
     /// Name for people; the folder's name identifies the fabric.
     pub title: String,
@@ -162,7 +162,7 @@ pub struct FabricInfo {
 }
 
 /// Everything that was read about one fabric.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FabricInput {
     /// Identifier: the folder's name, or the file's stem.
     pub name: String,
@@ -187,7 +187,7 @@ pub struct FabricInput {
 }
 
 /// What was inferred from a file and why, for people (`kesf check -v`).
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inference {
     /// Path as it was named to us.
     #[serde(serialize_with = "crate::finding::path_as_text")]

@@ -1,11 +1,11 @@
 //! A measured or simulated curve.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Points (x, y) in the order in which they were taken; `x` and `y` have equal length.
 ///
 /// What the axes are, and that they are SI, is said by whoever holds the curve.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
     /// Abscissae.
     pub x: Vec<f64>,

@@ -22,10 +22,49 @@ errors! {
     }
 }
 
+/// The values of a column, one a row.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// Text.
+    Text(Vec<Option<String>>),
+    /// Numbers.
+    Number(Vec<Option<f64>>),
+    /// Counts.
+    Count(Vec<Option<u64>>),
+}
+
+/// What a cell of a row can be.
+trait Cell: Sized {
+    fn column(cells: impl Iterator<Item = Self>) -> Values;
+}
+
+macro_rules! cell {
+    ($($type:ty, $variant:ident, $of:expr;)*) => {
+        $(impl Cell for $type {
+            fn column(cells: impl Iterator<Item = Self>) -> Values {
+                Values::$variant(cells.map($of).collect())
+            }
+        })*
+    };
+}
+
+cell! {
+    String, Text, Some;
+    Option<String>, Text, |cell| cell;
+    f64, Number, Some;
+    Option<f64>, Number, |cell| cell;
+    u64, Count, Some;
+}
+
 /// A row of a table: a plain struct whose field names are the column names.
 pub trait Row: Serialize {
     /// Column names in order.
     const HEADER: &'static [&'static str];
+
+    /// The columns of the rows, in the order of [`HEADER`](Self::HEADER): for encoders that take columns.
+    fn values(rows: &[Self]) -> Vec<Values>
+    where
+        Self: Sized;
 
     /// The columns of the rows.
     #[cfg(feature = "tables")]
@@ -44,6 +83,10 @@ macro_rules! row {
 
         impl Row for $name {
             const HEADER: &'static [&'static str] = &[$(stringify!($field)),*];
+
+            fn values(rows: &[Self]) -> Vec<Values> {
+                vec![$(<$type as Cell>::column(rows.iter().map(|row| row.$field.clone()))),*]
+            }
 
             #[cfg(feature = "tables")]
             fn columns(rows: &[Self]) -> Vec<polars::prelude::Column> {
@@ -394,6 +437,18 @@ mod tests {
         assert!(lines.next().unwrap().ends_with(",T0,,0.4,,1,mm,measured,,"));
         let si = String::from_utf8(csv(&fabric_rows(&sheet(), UnitSystem::Si)).unwrap()).unwrap();
         assert!(si.contains(",B,warp,9.80665e-6,9.80665e-8,3,N·m,measured"), "{si}");
+    }
+
+    #[test]
+    fn the_columns_of_rows_are_their_cells() {
+        let mut rows = fabric_rows(&sheet(), UnitSystem::Si);
+        rows.push(failed_fabric_row("bad", "R004"));
+        let columns: Vec<_> = FabricRow::HEADER.iter().copied().zip(FabricRow::values(&rows)).collect();
+        assert_eq!(columns[1].0, "parameter");
+        assert_eq!(columns[1].1, Values::Text(["B", "T0", ""].map(|t| Some(t.to_string())).to_vec()));
+        assert_eq!(columns[3], ("mean", Values::Number(vec![Some(9.80665e-6), Some(4e-4), None])));
+        assert_eq!(columns[5], ("n", Values::Count(vec![Some(3), Some(1), Some(0)])));
+        assert_eq!(FabricRow::values(&[])[2], Values::Text(Vec::new()), "an empty column keeps its type");
     }
 
     #[test]

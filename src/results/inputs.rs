@@ -148,7 +148,15 @@ impl Reading {
         let Some(path) = &self.settings else { return Ok(Settings::default()) };
         let text =
             std::fs::read_to_string(path).map_err(|e| bad_settings(Place::file(path), &e.to_string()))?;
-        Settings::parse(path, &text).map_err(|e| bad_settings(e.place, &e.reason))
+        Self::evaluation_of(path, &text)
+    }
+
+    /// How curves are evaluated by the text of a settings file, which `path` names in messages.
+    ///
+    /// # Errors
+    /// O050 with the place in the text.
+    pub fn evaluation_of(path: &Path, text: &str) -> Result<Settings, Failure> {
+        Settings::parse(path, text).map_err(|e| bad_settings(e.place, &e.reason))
     }
 
     /// The entry of a document.

@@ -49,6 +49,7 @@ pub use inputs::{
     Curves, Fabric, FileEntry, Input, Read, Reading, ReadingEntry, cases, nothing_to_read, paths_of_several,
     readable, unread, without_cases,
 };
+pub use names::distinguish_fabrics;
 pub use observer::{Event, Found, Observer};
 pub use outcome::{ComparisonEntry, Document, Outcome, Solution};
 pub use sampled::{InputEntry, SamplingEntry};

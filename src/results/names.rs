@@ -69,8 +69,9 @@ pub(super) fn distinguish_cases(cases: &mut [Case]) -> Vec<Finding> {
     findings
 }
 
-/// Numbers fabrics that share a name, so that none hides another: the invented names are nobody else's.
-pub(super) fn distinguish_fabrics(fabrics: &mut [Fabric]) {
+/// Numbers fabrics that share a name, so that none hides another: the invented names are nobody else's. A name that
+/// no folder can have is changed too. Each sheet has a finding of its new name.
+pub fn distinguish_fabrics(fabrics: &mut [Fabric]) {
     for Fabric { path, sheet } in fabrics.iter_mut() {
         let name = folder_name(&sheet.name);
         if name != sheet.name {

@@ -7,7 +7,6 @@ use super::task::Task;
 use super::tested::Tested;
 use crate::case::{BendingTest, InstrumentTest, Problem, ShellSpecimen};
 use crate::characterise::FabricSheet;
-use crate::constitutive;
 use crate::instrument::Direction;
 use crate::solve::Options as SolveOptions;
 use crate::study::bending::{BendingResult, simulate_cantilever, simulate_heart_loop, simulate_records};
@@ -34,9 +33,10 @@ pub fn simulate(task: &Task, observer: &Observer) -> Result<Outcome, Failure> {
 fn sample(task: &Task, observer: &Observer) -> Result<(), Failure> {
     let Some(sheet) = task.fabric.filter(|_| task.case.sampling().is_some()) else { return Ok(()) };
     let stage = || observer.step();
-    let sampled = constitutive::section(sheet, &task.assumptions())
-        .map_err(Failure::from)
-        .and_then(|made| Ok(study::sample(task.case, sheet, &made, observer.watch(&stage))?));
+    let sampled = task.section().and_then(|(_, made)| match made {
+        Some(made) => Ok(study::sample(task.case, sheet, &made, observer.watch(&stage))?),
+        None => Ok(None),
+    });
     let sampling = sampled.map_err(|failure| task.located(failure))?;
     task.keep_sampling(sampling);
     Ok(())

@@ -25,6 +25,8 @@ pub struct Task<'a> {
     /// Folder or file of its fabric.
     pub path: Option<&'a Path>,
     shared: Arc<Shared<'a>>,
+    /// A section that the caller brings, instead of the one that the case would make.
+    given: Option<Arc<Constitutive>>,
     /// Its bands, once they are sampled.
     sampling: Arc<OnceLock<Option<Sampling>>>,
 }
@@ -65,7 +67,20 @@ impl<'a> Task<'a> {
 
     pub(super) fn new(case: &'a Case, fabric: Option<&'a Fabric>, shared: Arc<Shared<'a>>) -> Self {
         let path = fabric.map(|f| f.path.as_path());
-        Self { case, fabric: fabric.map(|f| &f.sheet), path, shared, sampling: Arc::default() }
+        let fabric = fabric.map(|f| &f.sheet);
+        Self { case, fabric, path, shared, given: None, sampling: Arc::default() }
+    }
+
+    /// A task that shares nothing with others: a case with a fabric of the caller's choice, whatever fabric the case
+    /// names, or with its own section. `threads` are those inside one solve; 0 is one.
+    pub fn alone(case: &'a Case, fabric: Option<&'a Fabric>, threads: usize) -> Self {
+        let options = SolveOptions { threads: threads.max(1), ..SolveOptions::default() };
+        Self::new(case, fabric, Arc::new(Shared::new(options)))
+    }
+
+    /// The same with a section that was made of the fabric before: its assumptions stand, not those of the case.
+    pub fn with_section(self, made: Constitutive) -> Self {
+        Self { given: Some(Arc::new(made)), ..self }
     }
 
     /// Whether it is a task of this fabric, and not only of one that is alike.
@@ -124,6 +139,9 @@ impl Task<'_> {
     /// # Errors
     /// Why there is none.
     pub fn section(&self) -> Result<(ShellSection, Option<Constitutive>), Failure> {
+        if let Some(made) = &self.given {
+            return Ok((made.section.clone(), Some((**made).clone())));
+        }
         match (self.fabric, self.case.problem.section()) {
             (Some(sheet), _) => {
                 let made = constitutive::section(sheet, &self.assumptions())?;
