@@ -24,7 +24,7 @@ pub fn simulate(task: &Task, observer: &Observer) -> Result<Outcome, Failure> {
             bend(task, spec).map(|(result, failures)| Outcome::Bent(result, failures))
         }
         Problem::Drape(_) => drape(task, observer).map(|drape| Outcome::Draped(Box::new(drape))),
-        Problem::Sheet(_) => solve(task).map(|result| Outcome::Solved(Box::new(result))),
+        Problem::Sheet(_) => solve(task, observer).map(|result| Outcome::Solved(Box::new(result))),
     };
     outcome.map_err(|failure| task.located(failure))
 }
@@ -43,12 +43,13 @@ fn sample(task: &Task, observer: &Observer) -> Result<(), Failure> {
 }
 
 /// A case with a `[sheet]`.
-fn solve(task: &Task) -> Result<CaseResult, Failure> {
+fn solve(task: &Task, observer: &Observer) -> Result<CaseResult, Failure> {
     let (section, made) = task.section()?;
     let prepared = task.prepared_case()?;
+    let watch = observer.watch(&|| ());
     Ok(match made {
-        Some(made) => prepared.solve_fabric(&made)?,
-        None => prepared.solve(section)?,
+        Some(made) => prepared.solve_watched(&made, watch)?,
+        None => prepared.solve_section_watched(section, watch)?,
     })
 }
 

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::limits::largest_displacement;
 use super::nonlinear::largest_w;
 use super::result::Outcome;
-use super::{Case, PreparedCase, StudyError, refused};
+use super::{Case, PreparedCase, StudyError, Watch, refused};
 use crate::case::Rotations;
 use crate::element::Mass;
 use crate::fields::Locator;
@@ -84,6 +84,7 @@ struct Record<'a> {
     locators: &'a [Locator],
     history: History,
     solution: Solution,
+    watch: Watch<'a>,
 }
 
 impl Record<'_> {
@@ -102,7 +103,7 @@ impl Record<'_> {
             history.displacement_max.max(largest_displacement(self.mesh, at.displacement));
         self.solution.displacement.copy_from_slice(at.displacement);
         self.solution.strain_energy = at.energy.strain;
-        ControlFlow::Continue(())
+        self.watch.go_on()
     }
 }
 
@@ -118,6 +119,7 @@ pub(super) fn dynamics(
     model: &Model,
     settings: &newmark::Settings,
     rotations: Rotations,
+    watch: Watch<'_>,
 ) -> Result<Outcome, StudyError> {
     let case = prepared.case;
     let mut record = Record {
@@ -129,6 +131,7 @@ pub(super) fn dynamics(
             ..History::default()
         },
         solution: Solution { dofs: prepared.plan.rows(model), ..Solution::at_rest(model) },
+        watch,
     };
     let state = if let Rotations::Large { spectral_radius } = rotations {
         let newmark::Settings { duration, step, tolerance, damping, load, mass } = *settings;
@@ -138,6 +141,7 @@ pub(super) fn dynamics(
         newmark::newmark_with(model, &prepared.plan, settings, &prepared.options, |at| record.see(at))?;
         None
     };
+    watch.not_stopped()?;
     let Record { mut history, solution, .. } = record;
     let work = history.energy.iter().map(|e| e.work.abs()).fold(f64::MIN_POSITIVE, f64::max);
     history.imbalance = history.energy.iter().map(|e| e.imbalance().abs()).fold(0.0, f64::max) / work;

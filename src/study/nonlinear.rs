@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use serde::Serialize;
 
 use super::result::Outcome;
-use super::{PreparedCase, StudyError, refused};
+use super::{PreparedCase, StudyError, Watch, refused};
 use crate::case::{MethodChoice, Nonlinear};
 use crate::fields::Locator;
 use crate::finding::{Finding, Place, StudyFact};
@@ -70,6 +70,7 @@ struct Record<'a> {
     path: LoadPath,
     state: State,
     solution: Solution,
+    watch: Watch<'a>,
 }
 
 impl Record<'_> {
@@ -93,7 +94,7 @@ impl Record<'_> {
         self.solution.reaction = step.reaction.to_vec();
         self.solution.strain_energy = step.energy;
         self.solution.residual = step.residual;
-        ControlFlow::Continue(())
+        self.watch.go_on()
     }
 }
 
@@ -109,6 +110,7 @@ pub(super) fn equilibrium(
     model: &Model,
     law: Option<&SheetLaw>,
     analysis: &Nonlinear,
+    watch: Watch<'_>,
 ) -> Result<Outcome, StudyError> {
     let (case, options) = (prepared.case, &prepared.options);
     let Nonlinear { settings, method, perturbation, .. } = analysis;
@@ -134,8 +136,10 @@ pub(super) fn equilibrium(
         },
         state: State::rest(&model.mesh),
         solution: Solution::at_rest(model),
+        watch,
     };
     let found = nonlinear::search(model, &prepared.plan, &settings, method, options, |step| record.see(step));
+    watch.not_stopped()?;
     let mut findings = conclude(found, MethodChoice::of(method), &mut record.path)?;
     findings.extend(turned_about_more(model, &record.state));
     let findings = findings.into_iter().map(|f| f.at(Place::file(&case.path))).collect();

@@ -9,7 +9,7 @@ use super::limits::{Beyond, buckles, findings, is_compressed};
 use super::nonlinear::{equilibrium, largest_w};
 use super::result::{CaseResult, Kept, Outcome, Probe, Status};
 use super::uncertainty::{linear_uncertainty, modal_uncertainty};
-use super::{Case, PreparedCase, StudyError, build};
+use super::{Case, PreparedCase, StudyError, Watch, build};
 use crate::case::{Analysis, ProbePoint};
 use crate::constitutive::{Constitutive, Input};
 use crate::fields::{Locator, Recovery};
@@ -43,7 +43,7 @@ impl PreparedCase<'_> {
     /// # Errors
     /// See [`StudyError`].
     pub fn solve_measured(&self, section: ShellSection, inputs: &[Input]) -> Result<CaseResult, StudyError> {
-        self.solve_with_law(section, None, inputs)
+        self.solve_with_law(section, None, inputs, Watch::default())
     }
 
     /// Solves the case for what was made of a fabric: its section, its friction and the spread of its
@@ -52,7 +52,27 @@ impl PreparedCase<'_> {
     /// # Errors
     /// See [`StudyError`].
     pub fn solve_fabric(&self, made: &Constitutive) -> Result<CaseResult, StudyError> {
-        self.solve_with_law(made.section.clone(), made.law.as_ref(), &made.inputs)
+        self.solve_watched(made, Watch::default())
+    }
+
+    /// The same, watched: it may be stopped between the steps of a search and between two instants. It has no stages.
+    ///
+    /// # Errors
+    /// See [`StudyError`]; O054 if it was stopped.
+    pub fn solve_watched(&self, made: &Constitutive, watch: Watch<'_>) -> Result<CaseResult, StudyError> {
+        self.solve_with_law(made.section.clone(), made.law.as_ref(), &made.inputs, watch)
+    }
+
+    /// [`solve`](Self::solve), watched like [`solve_watched`](Self::solve_watched).
+    ///
+    /// # Errors
+    /// See [`StudyError`]; O054 if it was stopped.
+    pub fn solve_section_watched(
+        &self,
+        section: ShellSection,
+        watch: Watch<'_>,
+    ) -> Result<CaseResult, StudyError> {
+        self.solve_with_law(section, None, &[], watch)
     }
 
     fn solve_with_law(
@@ -60,9 +80,10 @@ impl PreparedCase<'_> {
         section: ShellSection,
         law: Option<&SheetLaw>,
         inputs: &[Input],
+        watch: Watch<'_>,
     ) -> Result<CaseResult, StudyError> {
         let case = self.case;
-        let mut result = self.results(section, law, inputs)?;
+        let mut result = self.results(section, law, inputs, watch)?;
         // A mesh that is too large to factorise is not examined, and the result stands where that cannot be done.
         let examined = matches!(self.problem.analysis, Analysis::Linear(_)) && !self.plan.iterates();
         if result.status == Status::Ok && examined && is_compressed(&result, &self.extent)? {
@@ -74,7 +95,7 @@ impl PreparedCase<'_> {
         }
         if !self.coarser.is_empty() {
             let section = &result.model.section;
-            let on = |coarser: &Self| coarser.results(section.clone(), law, &[]);
+            let on = |coarser: &Self| coarser.results(section.clone(), law, &[], watch);
             let coarser = self.coarser.iter().map(on).collect::<Result<Vec<_>, _>>()?;
             let meshes: Vec<&CaseResult> = coarser.iter().chain([&result]).collect();
             let convergence = Convergence::of(self.problem, &meshes)?;
@@ -98,12 +119,13 @@ impl PreparedCase<'_> {
         section: ShellSection,
         law: Option<&SheetLaw>,
         inputs: &[Input],
+        watch: Watch<'_>,
     ) -> Result<CaseResult, StudyError> {
         let case = self.case;
         let model = self.model(section);
         build::weighed(&model)?;
         let Outcome { solution, frequencies, modes: shapes, history, path, state, kept, findings: own } =
-            analyse(self, &model, law)?;
+            analyse(self, &model, law, watch)?;
         let uncertainty = match kept {
             _ if inputs.is_empty() => None,
             Kept::Nothing => None,
@@ -169,6 +191,7 @@ fn analyse(
     prepared: &PreparedCase<'_>,
     model: &Model,
     law: Option<&SheetLaw>,
+    watch: Watch<'_>,
 ) -> Result<Outcome, StudyError> {
     let (case, options) = (prepared.case, &prepared.options);
     match &prepared.problem.analysis {
@@ -202,9 +225,9 @@ fn analyse(
                 load: newmark.history,
                 mass: newmark.mass,
             };
-            dynamics(prepared, model, &settings, newmark.rotations)
+            dynamics(prepared, model, &settings, newmark.rotations, watch)
         }
-        Analysis::Nonlinear(nonlinear) => equilibrium(prepared, model, law, nonlinear),
+        Analysis::Nonlinear(nonlinear) => equilibrium(prepared, model, law, nonlinear, watch),
     }
 }
 
