@@ -1,0 +1,61 @@
+//! The native half of the Python package `kesf`: the library's objects and functions, with plain data at the border.
+//!
+//! Python code in `python/kesf` makes of them what its users see. What crosses is text (JSON documents of the
+//! library), bytes (arrays) and Arrow tables; nothing is computed here.
+//!
+//! | file | what crosses |
+//! |---|---|
+//! | `error.rs` | failures of the library, as `KesfError` |
+//! | `work.rs` | long work: threads, signals, progress |
+//! | `told.rs` | findings and failures as JSON |
+//! | `table.rs` | tables, as Arrow streams |
+//! | `fabric.rs` | measurements |
+//! | `sheet.rs` | parameters of fabrics |
+//! | `section.rs` | shell sections and material cards |
+//! | `simulate.rs` | cases and their outcomes |
+//! | `run.rs` | a folder of results; the verification suite |
+// Not `forbid`: what PyO3 generates allows it again.
+#![deny(unsafe_code)]
+
+mod error;
+mod fabric;
+mod run;
+mod section;
+mod sheet;
+mod simulate;
+mod table;
+mod told;
+mod work;
+
+use pyo3::prelude::*;
+
+/// The native half of kesf; use the package `kesf`.
+#[pymodule]
+mod _kesf {
+    #[pymodule_export]
+    use crate::fabric::{Fabric, find, read};
+    #[pymodule_export]
+    use crate::run::{run, verify};
+    #[pymodule_export]
+    use crate::section::{Section, export, targets};
+    #[pymodule_export]
+    use crate::sheet::{Sheet, characterise};
+    #[pymodule_export]
+    use crate::simulate::{case_text, simulate};
+    #[pymodule_export]
+    use crate::table::Table;
+    #[pymodule_export]
+    use crate::{explain, version};
+}
+
+/// Version of the library.
+#[pyfunction]
+fn version() -> &'static str {
+    env!("CARGO_PKG_VERSION")
+}
+
+/// The explanation of a code as JSON (`code`, `kind`, `title`, `cause`, `example`, `cure`), or None.
+#[pyfunction]
+fn explain(code: &str) -> PyResult<Option<String>> {
+    kesf::finding::explain(code).map(|explanation| told::json(explanation)).transpose()
+}

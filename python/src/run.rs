@@ -1,0 +1,147 @@
+//! A folder of results, and the verification suite.
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use kesf::case::SolverChoice;
+use kesf::report::table::ProblemRow;
+use kesf::report::{OutputError, OutputFolder};
+use kesf::results::{Event, Failure, Job, MemorySink, Sink};
+use kesf::run::{RunReport, RunSettings, read, write};
+use kesf::verify::{document, run as check_all, suite};
+use pyo3::prelude::*;
+
+use crate::fabric::{Options, inputs};
+use crate::table::Table;
+use crate::told;
+use crate::work::{Follower, follow, threads as count};
+
+/// How results are made and where they go.
+#[derive(FromPyObject)]
+pub struct Making {
+    out: Option<PathBuf>,
+    /// Whether files are kept where there is no folder.
+    keep: bool,
+    charts: bool,
+    drape: bool,
+    stamp: Option<String>,
+    force: bool,
+    solver: Option<String>,
+    settings: Option<PathBuf>,
+}
+
+impl Making {
+    fn solver(&self) -> Result<Option<SolverChoice>, Failure> {
+        match self.solver.as_deref() {
+            None => Ok(None),
+            Some("auto") => Ok(Some(SolverChoice::Auto)),
+            Some("direct") => Ok(Some(SolverChoice::Direct)),
+            Some("iterative") => Ok(Some(SolverChoice::Iterative)),
+            Some(other) => Err(Failure::new("O050", format!("`{other}` is no solver"))
+                .hint("take auto, direct or iterative")),
+        }
+    }
+}
+
+/// Where files go that nobody wants.
+struct Nowhere;
+
+impl Sink for Nowhere {
+    fn write(&self, _: &str, _: &[u8]) -> Result<(), OutputError> {
+        Ok(())
+    }
+}
+
+/// Files by their names, without a folder.
+type Files = Vec<(String, Vec<u8>)>;
+
+/// Tables of parameters, predictions and problems; files; findings, failures and notes as JSON; whether a check fails.
+type Ran = (Table, Table, Table, Files, (String, String, String), bool);
+
+/// Does what `kesf run` does.
+#[pyfunction]
+#[pyo3(signature = (paths, memory, options, making, threads=None, progress=None))]
+pub fn run(
+    py: Python<'_>,
+    paths: Vec<PathBuf>,
+    memory: Vec<(PathBuf, Vec<u8>)>,
+    options: Options,
+    making: Making,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Ran> {
+    let inputs = inputs(paths, memory);
+    let follower = Follower { progress, threads };
+    let ((report, files), told) = follow(py, &follower, move |observer| {
+        let job = Job {
+            inputs,
+            solver: making.solver()?,
+            reading: options.reading(making.settings.clone()),
+            threads: count(threads),
+        };
+        let Making { charts, drape, stamp, out, force, keep, .. } = making;
+        let settings = RunSettings { charts, drape, stamp, strict: false };
+        let work = read(&job, &settings, observer)?;
+        if work.is_empty() {
+            let problems: Vec<ProblemRow> = work.failures.iter().map(Failure::row).collect();
+            let report = RunReport { failures: work.failures, problems, ..RunReport::default() };
+            return Ok((report, Files::new()));
+        }
+        if !keep {
+            return Ok((write(&job, &settings, work, &Nowhere, observer)?, Files::new()));
+        }
+        let Some(out) = out else {
+            let sink = MemorySink::default();
+            let report = write(&job, &settings, work, &sink, observer)?;
+            return Ok((report, sink.into_files().into_iter().collect()));
+        };
+        let folder = OutputFolder::open(&out, force)?;
+        let report = write(&job, &settings, work, &folder, observer)?;
+        let remaining = folder.finish()?;
+        if let Some(first) = remaining.first() {
+            let (out, count) = (out.display(), remaining.len());
+            let text = format!("{out}: {count} files of earlier runs are still there, {first} among them");
+            (observer.event)(Event::Note(&text));
+        }
+        Ok((report, Files::new()))
+    })?;
+    let tables =
+        (Table::of(&report.parameters)?, Table::of(&report.predictions)?, Table::of(&report.problems)?);
+    let (findings, _, notes) = told.json()?;
+    let said = (findings, told::failures(&report.failures)?, notes);
+    Ok((tables.0, tables.1, tables.2, files, said, report.fails_a_check))
+}
+
+/// Checks the lines of the suite whose id contains a text: the document `kesf.verify/1`.
+#[pyfunction]
+#[pyo3(signature = (filter=None, threads=None, progress=None))]
+pub fn verify(
+    py: Python<'_>,
+    filter: Option<String>,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<String> {
+    let follower = Follower { progress, threads };
+    let (text, _) = follow(py, &follower, move |observer| {
+        let mut lines = suite();
+        if let Some(part) = filter {
+            lines.retain(|line| line.id.contains(&part));
+            if lines.is_empty() {
+                return Err(Failure::new("O050", format!("no line of the suite has an id with `{part}`"))
+                    .hint("kesf.verify() alone runs every line"));
+            }
+        }
+        let start = Instant::now();
+        (observer.event)(Event::Started("verify", lines.len()));
+        let outcomes = check_all(&lines, |_| {
+            (observer.event)(Event::Step);
+            if (observer.cancelled)() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        (observer.event)(Event::Finished);
+        let outcomes = outcomes.ok_or_else(Failure::interrupted)?;
+        let all: Vec<_> = lines.iter().zip(&outcomes).collect();
+        Ok(serde_json::to_string(&document(&all, start.elapsed().as_secs_f64()))?)
+    })?;
+    Ok(text)
+}

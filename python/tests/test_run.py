@@ -1,0 +1,152 @@
+"""Runs and the suite: the same digits as the command."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import pickle
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import kesf
+
+ROOT = Path(__file__).resolve().parents[2]
+
+#: What the order of summation may change on a machine with other vector instructions (tests/recorded.rs).
+ROUNDING = 1e-7
+
+#: The value of a line of the suite may itself be a rounding error.
+NOISE = 1e-8
+
+
+def recorded(name: str) -> list[dict[str, str]]:
+    with open(ROOT / "tests" / "recorded" / name, encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def is_same(expected: str, found: object) -> bool:
+    if found is None:
+        return expected == ""
+    if isinstance(found, (int, float)):
+        number = float(expected)
+        return number == found or abs(number - found) <= ROUNDING * max(abs(number), abs(found))
+    return expected == found
+
+
+@pytest.fixture(scope="module")
+def shipped() -> kesf.Run:
+    """A run of all shipped data."""
+    before = os.getcwd()
+    os.chdir(ROOT)
+    try:
+        return kesf.run("kesf_data", "cases", charts=False)
+    finally:
+        os.chdir(before)
+
+
+@pytest.mark.parametrize("name", ["fabrics.csv", "predictions.csv"])
+def test_every_number_is_the_recorded_one(shipped: kesf.Run, name: str) -> None:
+    table = shipped.parameters if name == "fabrics.csv" else shipped.predictions
+    expected, found = recorded(name), table.rows()
+    assert len(expected) == len(found)
+    for row, other in zip(expected, found, strict=True):
+        assert list(row) == list(other)
+        for column in row:
+            assert is_same(row[column], other[column]), (row, column, other[column])
+
+
+def test_every_file_is_that_of_the_command(shipped: kesf.Run, tmp_path: Path) -> None:
+    command = os.environ.get("KESF_COMMAND") or str(ROOT / "target" / "release" / "kesf")
+    if not Path(command).exists():
+        pytest.skip("there is no command `kesf` to compare with; cargo build --release makes it")
+    version = subprocess.run([command, "--version"], capture_output=True, text=True, check=True)
+    assert version.stdout.split()[1] == kesf.__version__
+    out = tmp_path / "results"
+    done = subprocess.run(
+        [command, "run", "kesf_data", "cases", "--no-charts", "-o", str(out)], capture_output=True, cwd=ROOT
+    )
+    assert done.returncode == 0, done.stderr
+    written = {str(p.relative_to(out)): p.read_bytes() for p in out.rglob("*") if p.is_file()}
+    # The wheel has no Parquet writer; the list of files that the command keeps is its own.
+    compared = [name for name in written if name in shipped.files]
+    assert set(written) - set(compared) == {n for n in written if n.endswith(".parquet") or n.startswith(".")}
+    assert set(shipped.files) <= set(written) and len(compared) > 100
+    for name in compared:
+        own, theirs = shipped.files[name], written[name]
+        if name == "index.html":
+            own, theirs = (b"\n".join(x for x in page.splitlines() if b"parquet" not in x) for page in (own, theirs))
+        assert own == theirs, name
+
+
+def test_single_calls_give_the_numbers_of_the_run(shipped: kesf.Run, sheets: kesf.Sheets) -> None:
+    rows = shipped.predictions.rows()
+    for case in ("seed_clamped", "virtual_shear", "cantilever", "cantilever_strip"):
+        for name in ("poplin", "petrak_m1"):
+            function = kesf.solve if case in ("seed_clamped", "cantilever_strip") else kesf.compare
+            own = function(f"cases/{case}.toml", sheets[name]).predictions.rows()
+            assert own == [row for row in rows if (row["case"], row["fabric"]) == (case, name)]
+    assert sheets.parameters() == shipped.parameters
+
+
+def test_a_folder_is_written_like_the_files_in_memory(tmp_path: Path) -> None:
+    inputs = ("kesf_data/petrak_m1", "cases/virtual_bending.toml")
+    in_memory = kesf.run(*inputs)
+    on_disk = kesf.run(*inputs, out=tmp_path / "out")
+    assert on_disk.files == {} and on_disk.predictions == in_memory.predictions
+    for name, data in in_memory.files.items():
+        assert (tmp_path / "out" / name).read_bytes() == data, name
+    assert any(name.endswith(".png") for name in in_memory.files)
+    assert pickle.loads(pickle.dumps(in_memory)) == in_memory
+    assert "1 fabrics" in repr(on_disk) and "B warp" in on_disk._repr_html_()
+    rows = list(csv.DictReader(io.StringIO(in_memory.files["predictions.csv"].decode())))
+    assert [row["quantity"] for row in rows] == in_memory.predictions["quantity"]
+
+
+def test_files_of_others_are_not_overwritten(tmp_path: Path) -> None:
+    (tmp_path / "index.html").write_text("mine")
+    with pytest.raises(kesf.KesfError) as refused:
+        kesf.run("kesf_data/petrak_m1", "cases/virtual_bending.toml", out=tmp_path, charts=False)
+    assert refused.value.code.startswith("O") and (tmp_path / "index.html").read_text() == "mine"
+    kesf.run("kesf_data/petrak_m1", "cases/virtual_bending.toml", out=tmp_path, charts=False, force=True)
+    assert (tmp_path / "index.html").read_text() != "mine"
+
+
+def test_one_bad_input_costs_the_others_nothing(tmp_path: Path) -> None:
+    broken = tmp_path / "broken.csv"
+    broken.write_text("")
+    report = kesf.run(["kesf_data/petrak_m1", broken], "cases/virtual_bending.toml", charts=False)
+    assert "petrak_m1" in report.fabrics and len(report.predictions) == 2
+    assert [failure.code for failure in report.failures] == ["R002"]
+    assert "R002" in report.problems["code"]
+    with pytest.raises(kesf.KesfError) as nothing:
+        kesf.run([])
+    assert nothing.value.code == "O055"
+    with pytest.raises(kesf.KesfError, match="`magic` is no solver"):
+        kesf.run("kesf_data/petrak_m1", solver="magic")
+
+
+def test_nothing_but_bad_inputs_is_told(tmp_path: Path) -> None:
+    broken = tmp_path / "broken.csv"
+    broken.write_text("")
+    report = kesf.run(broken)
+    assert [failure.code for failure in report.failures] == report.problems["code"] == ["R002"]
+
+
+def test_drapes_are_left_out_and_it_is_said() -> None:
+    report = kesf.run("kesf_data/petrak_m1", ["cases/drape.toml", "cases/virtual_bending.toml"], charts=False)
+    assert len(report.predictions) == 2 and any("drape" in note for note in report.notes)
+
+
+def test_the_suite_gives_the_recorded_numbers() -> None:
+    suite = kesf.verify("patch")
+    assert suite.passed and len(suite) > 10 and "lines hold" in repr(suite)
+    values = {row["id"]: float(row["value"]) for row in recorded("verify.csv")}
+    for line in suite:
+        expected, found = values[line["id"]], line["value"]
+        both_noise = abs(expected) < NOISE and abs(found) < NOISE
+        assert both_noise or is_same(repr(expected), found), line
+    with pytest.raises(kesf.KesfError, match="no line of the suite"):
+        kesf.verify("nothing like it")
