@@ -1,0 +1,263 @@
+"""A library on a cluster: the same tables whatever the shards, whatever happens to the workers."""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import kesf
+
+pyarrow = pytest.importorskip("pyarrow")
+parquet = pytest.importorskip("pyarrow.parquet")
+pytest.importorskip("fsspec")
+distributed = pytest.importorskip("distributed")
+
+from kesf import dask, parts  # noqa: E402
+
+ROOT = Path(__file__).resolve().parents[2]
+CASE = "cases/virtual_bending.toml"
+
+
+@pytest.fixture(scope="session")
+def library(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """300 fabrics: the published ones under other names, some in a lot of their own, and a file that is broken."""
+    root = tmp_path_factory.mktemp("library")
+    published = sorted(p for p in (ROOT / "kesf_data").iterdir() if (p / "results.csv").exists())
+    for number in range(300):
+        source = published[number % len(published)]
+        folder = root / f"lot{number % 3}" / f"{source.name}_{number:03d}"
+        shutil.copytree(source, folder)
+    # Of one name: told apart the same way, whatever the shards.
+    for lot in ("lot1", "lot2"):
+        shutil.copytree(published[0], root / lot / "twin")
+    (root / "lot0" / "broken").mkdir()
+    (root / "lot0" / "broken" / "broken.csv").write_text("a;b\n1;x\n")
+    return root
+
+
+@pytest.fixture(scope="session")
+def client() -> Iterator[Any]:
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0") as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        yield client
+
+
+def merged(out: Path) -> list[Any]:
+    return [parts.merge(str(out), table) for table in parts.TABLES]
+
+
+def as_bytes(out: Path) -> list[bytes]:
+    return [parts.parquet(table, {}) for table in merged(out)]
+
+
+def test_an_evaluation_is_what_a_run_gives() -> None:
+    done = kesf.evaluate("kesf_data", CASE)
+    report = kesf.run("kesf_data", CASE, charts=False)
+    predicted = [row for row in done.results.rows() if row["case"]]
+    assert [row["value"] for row in predicted] == report.predictions["simulated"]
+    assert [row["measured"] for row in predicted] == report.predictions["measured"]
+    measured = [row for row in done.results.rows() if not row["case"]]
+    assert [row["value"] for row in measured] == report.parameters["mean"]
+    assert len(done.findings) + len(done.failures) == len(report.problems)
+    assert pyarrow.table(done).num_rows == len(done)
+
+
+def test_a_table_of_files_is_evaluated(tmp_path: Path) -> None:
+    path = Path("kesf_data/petrak_m1/results.csv")
+    by_path = kesf.evaluate(pyarrow.table({"path": ["kesf_data/petrak_m1"]}), CASE)
+    assert by_path == kesf.evaluate(["kesf_data/petrak_m1"], CASE)
+    files = pyarrow.table({"path": ["petrak_m1.csv"], "content": [path.read_bytes()]})
+    in_memory = kesf.evaluate(files)
+    values = [row["value"] for row in by_path.results.rows() if not row["case"]]
+    assert [v for v in in_memory.results["value"] if v not in values] == []
+    polars = pytest.importorskip("polars")
+    assert kesf.evaluate(polars.DataFrame({"path": ["kesf_data/petrak_m1"]}), CASE) == by_path
+    with pytest.raises(kesf.KesfError, match="no column `path`; it has file"):
+        kesf.evaluate(pyarrow.table({"file": ["a"]}))
+
+
+def test_any_number_of_shards_gives_the_same_bytes(library: Path, client: Any, tmp_path: Path) -> None:
+    found = []
+    for shards in (1, 2, 7):
+        out = tmp_path / str(shards)
+        done = dask.run(library, CASE, out, client, shards=shards)
+        assert [one.shard.number for one in done] == list(range(1, shards + 1))
+        assert sum(one.fabrics for one in done) == 303 and not any(one.kept for one in done)
+        found.append(as_bytes(out))
+    assert found[0] == found[1] == found[2]
+    results, findings, failures = (parts.merge(str(tmp_path / "7"), t) for t in ("results", "findings", "failures"))
+    names = set(results.column("fabric").to_pylist())
+    assert len(names) == 302 and {"twin", "twin-2"} <= names
+    assert findings.num_rows and any("broken.csv" in place for place in failures.column("place").to_pylist())
+    # The numbers are those of a plain run over the whole folder.
+    whole = kesf.evaluate([library], CASE, threads=2)
+    assert sorted(map(str, whole.results.rows())) == sorted(map(str, results.to_pylist()))
+
+
+def test_a_killed_worker_costs_nothing(library: Path, tmp_path: Path) -> None:
+    expected = tmp_path / "expected"
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0") as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        dask.run(library, CASE, expected, client, shards=7)
+        out = tmp_path / "out"
+        victim = next(iter(client.run(os.getpid).values()))
+
+        def kill_half_way() -> None:
+            while len(list(out.glob("part-*.parquet"))) < 3:
+                time.sleep(0.002)
+            os.kill(victim, signal.SIGKILL)
+
+        killer = threading.Thread(target=kill_half_way)
+        killer.start()
+        done = dask.run(library, CASE, out, client, shards=7)
+        killer.join()
+        with pytest.raises(ProcessLookupError):
+            os.kill(victim, 0)
+    assert len(done) == 7 and as_bytes(out) == as_bytes(expected)
+    assert not list(out.rglob("*.half"))
+
+
+def test_finished_shards_are_not_done_again(library: Path, client: Any, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    copy = tmp_path / "library"
+    shutil.copytree(library / "lot2", copy)
+    assert not any(one.kept for one in dask.run(copy, CASE, out, client, shards=3))
+    before = {path: path.stat().st_mtime_ns for path in out.glob("part-*.parquet")}
+    assert all(one.kept for one in dask.run(copy, CASE, out, client, shards=3))
+    assert before == {path: path.stat().st_mtime_ns for path in out.glob("part-*.parquet")}
+    # A file that has changed belongs to one shard; a part that is broken is made again.
+    changed = sorted(copy.rglob("results.csv"))[0]
+    changed.write_bytes(changed.read_bytes() + b"\n")
+    again = dask.run(copy, CASE, out, client, shards=3)
+    assert sum(not one.kept for one in again) == 1
+    whole = as_bytes(out)
+    broken = out / again[0].shard.file
+    broken.write_bytes(broken.read_bytes()[:100])
+    with pytest.raises(kesf.KesfError, match="cannot be read") as refused:
+        parts.merge(str(out))
+    assert refused.value.code == "O042" and refused.value.path == str(broken)
+    assert [one.kept for one in dask.run(copy, CASE, out, client, shards=3)] == [False, True, True]
+    assert as_bytes(out) == whole
+    # Another case is another run.
+    assert not any(one.kept for one in dask.run(copy, "cases/virtual_shear.toml", out, client, shards=3))
+
+
+def test_parts_that_do_not_belong_together_are_told(client: Any, tmp_path: Path) -> None:
+    out = str(tmp_path / "out")
+    with pytest.raises(kesf.KesfError, match="there is no part"):
+        parts.merge(out)
+    dask.run("kesf_data/petrak_m1", (), out, client, shards=3)
+    with pytest.raises(kesf.KesfError, match="a run with 3 shards, and this one has 2"):
+        dask.run("kesf_data/petrak_m1", (), out, client, shards=2)
+    os.remove(tmp_path / "out" / "part-0002-of-0003.parquet")
+    with pytest.raises(kesf.KesfError, match="1 of 3 parts are missing, number 2 first"):
+        parts.merge(out)
+    with pytest.raises(kesf.KesfError, match="no table of a part"):
+        parts.merge(out, "numbers")
+    with pytest.raises(kesf.KesfError, match="no shard 4 of 3"):
+        parts.Shard(4, 3)
+
+
+def test_one_name_in_two_parts_is_refused(tmp_path: Path) -> None:
+    out = str(tmp_path)
+    for number in (1, 2):
+        parts.write(kesf.evaluate("kesf_data/petrak_m1"), out, parts.Shard(number, 2), "key")
+    with pytest.raises(kesf.KesfError, match="petrak_m1 is in part-0001-of-0002") as refused:
+        parts.merge(out)
+    assert refused.value.code == "O056"
+
+
+def test_what_cannot_be_opened_is_told(client: Any, tmp_path: Path) -> None:
+    wrong: list[tuple[Any, str]] = [
+        (tmp_path / "nowhere", "no such file"),
+        ("gopher://fabrics", "cannot be opened"),
+        (f"zip://*::{tmp_path}/nowhere.zip", "cannot be"),
+    ]
+    for inputs, what in wrong:
+        with pytest.raises(kesf.KesfError, match=what) as refused:
+            dask.run(inputs, (), tmp_path / "out", client)
+        assert refused.value.code == "R001", refused.value
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(kesf.KesfError, match="no measurement in the inputs"):
+        dask.run(tmp_path / "empty", (), tmp_path / "out", client)
+    with pytest.raises(kesf.KesfError, match="cannot be read"):
+        dask.run("kesf_data", tmp_path / "case.toml", tmp_path / "out", client)
+    with pytest.raises(kesf.KesfError, match="the settings cannot be used") as settings:
+        (tmp_path / "settings.toml").write_text("bending_slop = 1\n")
+        dask.run("kesf_data/petrak_m1", (), tmp_path / "out", client, settings=tmp_path / "settings.toml", retries=0)
+    assert settings.value.code == "O050" and "1 of 1 shards failed" in settings.value.message
+
+
+def test_a_full_disk_leaves_nothing_half_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (task,) = dask.plan("kesf_data/petrak_m1", CASE, tmp_path)
+    synchronise = os.fsync
+
+    def full(file: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(kesf.KesfError, match="No space left") as refused:
+        dask.work(task)
+    assert refused.value.code == "O001" and not [p for p in tmp_path.rglob("*") if p.is_file()]
+    monkeypatch.setattr(os, "fsync", synchronise)
+    assert not dask.work(task).kept and dask.work(task).kept
+
+
+def test_a_zip_is_read_like_a_folder(library: Path, client: Any, tmp_path: Path) -> None:
+    archive = shutil.make_archive(str(tmp_path / "fabrics"), "zip", library / "lot1")
+    dask.run(f"zip://::{archive}", CASE, tmp_path / "zip", client, shards=2)
+    dask.run(library / "lot1", CASE, tmp_path / "folder", client, shards=2)
+    assert parts.merge(str(tmp_path / "zip")).equals(parts.merge(str(tmp_path / "folder")))
+
+
+def test_a_store_of_objects_is_read_and_written(library: Path, client: Any, tmp_path: Path) -> None:
+    pytest.importorskip("s3fs")
+    server = pytest.importorskip("moto.server")
+    store = server.ThreadedMotoServer(ip_address="127.0.0.1", port=0)
+    store.start()
+    try:
+        host, port = store.get_host_and_port()
+        options = {
+            "key": "test",
+            "secret": "test",
+            "client_kwargs": {"endpoint_url": f"http://{host}:{port}", "region_name": "us-east-1"},
+        }
+        system, _ = parts.filesystem("s3://fabrics", options)
+        system.call_s3("create_bucket", Bucket="fabrics")
+        system.put(str(library / "lot1") + "/", "fabrics/lot1/", recursive=True)
+        (tmp_path / "lot1").symlink_to(library / "lot1")
+        done = dask.run("s3://fabrics/lot1", CASE, "s3://fabrics/out", client, shards=2, storage_options=options)
+        assert sum(one.fabrics for one in done) == 101
+        dask.run(library / "lot1", CASE, tmp_path / "out", client, shards=2)
+        assert parts.merge("s3://fabrics/out", options=options).equals(parts.merge(str(tmp_path / "out")))
+        kept = dask.run("s3://fabrics/lot1", CASE, "s3://fabrics/out", client, shards=2, storage_options=options)
+        assert all(one.kept for one in kept)
+    finally:
+        store.stop()
+
+
+def test_other_programs_read_the_parts(client: Any, tmp_path: Path) -> None:
+    polars, duckdb = pytest.importorskip("polars"), pytest.importorskip("duckdb")
+    dask.run("kesf_data", CASE, tmp_path, client, shards=3)
+    whole = parts.merge(str(tmp_path))
+    lazily = polars.scan_parquet(tmp_path / "part-*.parquet").filter(polars.col("quantity") == "B warp").collect()
+    assert lazily.height == 13
+    (count,) = duckdb.sql(f"select count(*) from '{tmp_path}/part-*.parquet'").fetchall()[0]
+    assert count == whole.num_rows
+    for path in tmp_path.glob("part-*.parquet"):
+        file = parquet.ParquetFile(path)
+        assert file.num_row_groups == 1
+        assert file.schema_arrow.field("value").metadata == {b"unit_column": b"unit"}
