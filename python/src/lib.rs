@@ -27,6 +27,8 @@ mod table;
 mod told;
 mod work;
 
+use kesf::instrument::Parameter;
+use kesf::report::table::UnitSystem;
 use pyo3::prelude::*;
 
 /// The native half of kesf; use the package `kesf`.
@@ -45,13 +47,21 @@ mod _kesf {
     #[pymodule_export]
     use crate::table::Table;
     #[pymodule_export]
-    use crate::{explain, version};
+    use crate::{explain, units_of_parameters, version};
 }
 
 /// Version of the library.
 #[pyfunction]
 fn version() -> &'static str {
     env!("CARGO_PKG_VERSION")
+}
+
+/// Symbol, customary unit and its SI value of every parameter, and of tensile moduli as `E`.
+#[pyfunction]
+fn units_of_parameters() -> Vec<(&'static str, &'static str, f64)> {
+    let (unit, factor) = UnitSystem::Kes.of_modulus();
+    let parameters = Parameter::ALL.iter().map(|p| (p.symbol(), p.kes_unit(), p.kes_factor()));
+    parameters.chain([("E", unit, factor)]).collect()
 }
 
 /// The explanation of a code as JSON (`code`, `kind`, `title`, `cause`, `example`, `cure`), or None.

@@ -168,9 +168,11 @@ def plan(
         )
     texts = _cases(cases)
     how = _read(settings) if settings is not None else None
+    divided: list[list[str]] = [[] for _ in range(count)]
+    for path in sorted(stamps):
+        divided[parts.shard_of(path, count) - 1].append(path)
     tasks = []
-    for number in range(1, count + 1):
-        mine = sorted(path for path in stamps if parts.shard_of(path, count) == number)
+    for number, mine in enumerate(divided, 1):
         told = [f"{path}\n{stamps[path]}" for path in mine]
         of_cases = [part for name, text in texts for part in (name, text)]
         key = parts.key_of(f"{number}/{count} {drape}", how or b"", *of_cases, *told)
@@ -198,8 +200,8 @@ def _read(path: Path) -> bytes:
 
 
 def fabrics(inputs: Sequence[str], options: dict[str, Any] | None = None) -> dict[str, str]:
-    """The folder or file of each fabric below paths and URLs, with what says whether it has changed: sizes and times
-    of its files, or what a store tells of its objects."""
+    """The folder or file of each fabric below paths and URLs, with a hash that changes with it: of the sizes and
+    times of its files, or of what a store tells of its objects."""
     found: dict[str, str] = {}
     for url in inputs:
         if "://" in url or "::" in url:
@@ -217,11 +219,11 @@ def fabrics(inputs: Sequence[str], options: dict[str, Any] | None = None) -> dic
 
 
 def _stamp(path: str) -> str:
-    """What says whether a file, or anything in a folder, has changed."""
+    """A hash that changes with a file, or with anything in a folder."""
     folders = os.walk(path) if os.path.isdir(path) else [("", [], [path])]
     files = sorted(os.path.join(folder, name) for folder, _, names in folders for name in names)
     told = [(file, os.stat(file)) for file in files]
-    return "\n".join(f"{file} {stat.st_size} {stat.st_mtime_ns}" for file, stat in told)
+    return parts.key_of(*(f"{file} {stat.st_size} {stat.st_mtime_ns}" for file, stat in told))
 
 
 def _remote(url: str, options: dict[str, Any]) -> dict[str, str]:
@@ -237,7 +239,7 @@ def _remote(url: str, options: dict[str, Any]) -> dict[str, str]:
     for path in sorted(files):
         folder = path.rsplit("/", 1)[0] if "/" in path and path != root else path
         found.setdefault(_url(system, folder, chain), []).append(f"{path} {system.ukey(path)}")
-    return {name: "\n".join(told) for name, told in found.items()}
+    return {name: parts.key_of(*told) for name, told in found.items()}
 
 
 def _url(system: Any, path: str, chain: str | None) -> str:
@@ -247,8 +249,9 @@ def _url(system: Any, path: str, chain: str | None) -> str:
     return f"{protocol}://{path}::{chain}"
 
 
-def work(task: Task) -> Done:
-    """Makes the part of a task, unless it is there: on a worker, or anywhere."""
+def work(task: Task, threads: int | None = None) -> Done:
+    """Makes the part of a task, unless it is there: on a worker of dask with its threads, or anywhere, with all threads
+    of the machine unless their number is given."""
     count = len(task.fabrics)
     if parts.key_in(task.out, task.shard, task.options) == task.key:
         return Done(task.shard, count, None, None, kept=True)
@@ -256,7 +259,7 @@ def work(task: Task) -> Done:
         evaluation = nothing()
     else:
         with tempfile.TemporaryDirectory(prefix="kesf-") as scratch:
-            evaluation = _evaluate(task, scratch)
+            evaluation = _evaluate(task, scratch, threads or _threads())
     parts.write(evaluation, task.out, task.shard, task.key, task.options)
     return Done(task.shard, count, len(evaluation), len(evaluation.failures), kept=False)
 
@@ -268,7 +271,7 @@ def nothing() -> Evaluation:
     return Evaluation(table_of(RESULTS, []), table_of(_PROBLEMS, []), table_of(_PROBLEMS, []))
 
 
-def _evaluate(task: Task, scratch: str) -> Evaluation:
+def _evaluate(task: Task, scratch: str, threads: int | None) -> Evaluation:
     settings = None
     if task.settings is not None:
         settings = os.path.join(scratch, "settings.toml")
@@ -276,7 +279,7 @@ def _evaluate(task: Task, scratch: str) -> Evaluation:
             file.write(task.settings)
     paths, names = _fetched(task, scratch)
     try:
-        evaluation = evaluate(paths, task.cases, settings, drape=task.drape, threads=_threads())
+        evaluation = evaluate(paths, task.cases, settings, drape=task.drape, threads=threads)
     except KesfError as error:
         # A folder of a store may turn out to hold no measurement.
         if error.code != "O055":
@@ -328,11 +331,11 @@ def _renamed(table: Any, names: dict[str, str]) -> Any:
     return table_of(_PROBLEMS, rows)
 
 
-def _threads() -> int:
-    """Threads of this worker; one elsewhere."""
+def _threads() -> int | None:
+    """Threads of this worker of dask; None elsewhere."""
     try:
         from distributed import get_worker
 
         return int(get_worker().state.nthreads)
     except (ImportError, ValueError):
-        return 1
+        return None

@@ -94,25 +94,33 @@ def filesystem(url: str, options: dict[str, Any] | None = None) -> tuple[Any, st
     return system, path
 
 
+def write_file(path: str, data: bytes, options: dict[str, Any] | None = None) -> None:
+    """Writes a file, a path or URL, whole or not at all.
+
+    Raises:
+        KesfError: O001 if it cannot be written; what was half written is removed.
+    """
+    system, place = filesystem(path if "://" in path else os.path.abspath(path), options)
+    try:
+        _write_whole(system, place, data)
+    except OSError as error:
+        raise KesfError(
+            f"the file cannot be written: {error}",
+            code="O001",
+            path=path,
+            cure="make room or correct the place, and run again: finished parts are kept",
+        ) from error
+
+
 def write(evaluation: Evaluation, out: str, shard: Shard, key: str, options: dict[str, Any] | None = None) -> None:
     """Writes the three files of a part, each whole or not at all, the results last.
 
     Raises:
         KesfError: O001 if a file cannot be written; what was half written is removed.
     """
-    system, root = filesystem(out, options)
     for name, folder in TABLES.items():
         data = parquet(getattr(evaluation, name), {"kesf.key": key, "kesf.shard": f"{shard.number}/{shard.count}"})
-        path = f"{root}/{folder}{shard.file}"
-        try:
-            _write_whole(system, path, data)
-        except OSError as error:
-            raise KesfError(
-                f"the file cannot be written: {error}",
-                code="O001",
-                path=path,
-                cure="make room or correct the place, and run again: finished parts are kept",
-            ) from error
+        write_file(f"{out.rstrip('/')}/{folder}{shard.file}", data, options)
 
 
 def parquet(table: Any, metadata: dict[str, str]) -> bytes:

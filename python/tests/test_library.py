@@ -1,0 +1,155 @@
+"""A library that answers, and the commands for a scheduler of jobs."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import kesf
+
+polars = pytest.importorskip("polars")
+pytest.importorskip("pyarrow")
+pytest.importorskip("fsspec")
+
+from kesf import library  # noqa: E402
+
+
+@pytest.fixture()
+def shipped(sheets: kesf.Sheets, tmp_path: Path) -> Path:
+    path = tmp_path / "library.parquet"
+    assert library.build(path, sheets) == 13
+    return path
+
+
+def test_a_library_has_a_row_a_fabric_in_kes_units(shipped: Path, sheets: kesf.Sheets) -> None:
+    import pyarrow.parquet
+
+    schema = pyarrow.parquet.read_schema(shipped)
+    assert schema.field("B_warp").metadata == {b"unit": "gf·cm²/cm".encode()}
+    assert schema.field("thickness").metadata == {b"unit": b"mm"}
+    frame = polars.read_parquet(shipped)
+    expected = polars.DataFrame(sheets.parameters("kes", wide=True)).sort("fabric")
+    for name in expected.columns[1:]:
+        for found, value in zip(frame[name], expected[name], strict=True):
+            assert (found is None) == (value is None)
+            assert found is None or found == pytest.approx(value, rel=1e-11), name
+
+
+def test_results_of_all_kinds_make_the_same_library(shipped: Path, sheets: kesf.Sheets, tmp_path: Path) -> None:
+    expected = polars.read_parquet(shipped)
+    kesf.run("kesf_data", (), tmp_path / "run", charts=False)
+    from kesf import dask
+
+    for task in dask.plan("kesf_data", (), tmp_path / "parts", 3):
+        dask.work(task)
+    kinds: list[Any] = [tmp_path / "run", tmp_path / "parts", kesf.evaluate("kesf_data")]
+    for number, results in enumerate(kinds):
+        path = tmp_path / f"{number}.parquet"
+        assert library.build(path, results) == 13
+        found = polars.read_parquet(path).select(expected.columns)
+        assert found.equals(expected), results
+    with pytest.raises(kesf.KesfError, match="is in two of the results"):
+        library.build(tmp_path / "two.parquet", sheets, sheets[:1])
+    with pytest.raises(kesf.KesfError, match="there are no results") as nothing:
+        library.build(tmp_path / "none.parquet", tmp_path / "nowhere")
+    assert nothing.value.code == "O059"
+    with pytest.raises(kesf.KesfError, match="there is no fabric"):
+        library.build(tmp_path / "none.parquet")
+
+
+def test_bounds_are_sql_in_kes_units(shipped: Path) -> None:
+    frame = polars.read_parquet(shipped)
+    wanted = (frame["thickness"] < 0.6) & (frame["B_warp"] < 0.12)
+    names = frame.filter(wanted)["fabric"].to_list()
+    assert 0 < len(names) < 13
+    assert library.find(shipped, where="thickness < 0.6 and B_warp < 0.12")["fabric"].to_list() == names
+    assert library.find(shipped, where='"2HB_warp" < 0.05', n=1).height <= 1
+    for wrong in ("thickness <", "tickness < 0.4"):
+        with pytest.raises(kesf.KesfError, match="the bounds cannot be used") as refused:
+            library.find(shipped, where=wrong)
+        assert "thickness" in str(refused.value.cure)
+    with pytest.raises(kesf.KesfError, match="the library cannot be read"):
+        library.find(shipped.with_name("nowhere.parquet"))
+
+
+def by_hand(frame: Any, a: str, b: str) -> tuple[float, int]:
+    """The distance of two fabrics, written out once more."""
+
+    def coordinate(row: dict[str, Any], symbol: str, logarithm: bool) -> float | None:
+        values = [v for v in (row.get(f"{symbol}_warp"), row.get(f"{symbol}_weft")) if v is not None]
+        value = sum(values) / len(values) if values else row.get(symbol)
+        if value is None or (logarithm and value <= 0.0):
+            return None
+        return math.log10(value) if logarithm else float(value)
+
+    rows = {row["fabric"]: row for row in frame.to_dicts()}
+    squares = []
+    for symbol, logarithm in library.SPACE.items():
+        known = [c for c in (coordinate(row, symbol, logarithm) for row in rows.values()) if c is not None]
+        x, y = (coordinate(rows[name], symbol, logarithm) for name in (a, b))
+        if x is None or y is None or len(known) < 2:
+            continue
+        mean = sum(known) / len(known)
+        deviation = math.sqrt(sum((k - mean) ** 2 for k in known) / (len(known) - 1))
+        squares.append(((x - y) / deviation) ** 2)
+    return math.sqrt(sum(squares) / len(squares)), len(squares)
+
+
+def test_the_nearest_fabrics_come_first(shipped: Path, sheets: kesf.Sheets) -> None:
+    found = library.find(shipped, like="poplin", n=20)
+    names = found["fabric"].to_list()
+    assert "poplin" not in names and found["distance"].is_sorted()
+    frame = polars.read_parquet(shipped)
+    for row in found.to_dicts():
+        distance, count = by_hand(frame, "poplin", row["fabric"])
+        assert row["distance"] == pytest.approx(distance, rel=1e-12) and row["parameters"] == count
+    # The same fabric by its sheet or path is itself the nearest.
+    for like in (sheets["poplin"], "kesf_data/poplin", kesf.read("kesf_data/poplin")[0]):
+        nearest = library.find(shipped, like=like, n=1).to_dicts()[0]
+        assert nearest["fabric"] == "poplin" and nearest["distance"] == pytest.approx(0.0, abs=1e-9)
+    bounded = library.find(shipped, like="poplin", where="thickness < 0.6")
+    assert set(bounded["fabric"]) <= set(names) and (bounded["thickness"] < 0.6).all()
+    # What is asked for does not change what is usual in the library.
+    kept = dict(zip(names, found["distance"], strict=True))
+    assert all(kept[row["fabric"]] == row["distance"] for row in bounded.to_dicts())
+    with pytest.raises(kesf.KesfError, match="no fabric `denim` in the library"):
+        library.find(shipped, like="denim")
+
+
+def command(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, "-m", "kesf", *arguments], capture_output=True, text=True, check=False)
+
+
+def test_shards_are_made_merged_and_asked_from_a_shell(tmp_path: Path) -> None:
+    out, case = str(tmp_path / "out"), "cases/virtual_bending.toml"
+    for shard in ("1/3", "2/3", "3/3"):
+        done = command("evaluate", "kesf_data", "--cases", case, "--shard", shard, "-o", out)
+        assert done.returncode == 0 and f"shard {shard}" in done.stderr, done.stderr
+    again = command("evaluate", "kesf_data", "--cases", case, "--shard", "2/3", "-o", out)
+    assert "is there already" in again.stderr
+    whole = tmp_path / "whole.parquet"
+    assert command("merge", out, "-o", str(whole)).returncode == 0
+    one = str(tmp_path / "one")
+    assert command("evaluate", "kesf_data", "--cases", case, "-o", one).returncode == 0
+    single = tmp_path / "single.parquet"
+    assert command("merge", one, "-o", str(single)).returncode == 0
+    assert whole.read_bytes() == single.read_bytes()
+    fabrics = str(tmp_path / "library.parquet")
+    assert "13 fabrics" in command("library", "build", fabrics, out).stderr
+    found = command("library", "find", fabrics, "--like", "poplin", "--where", "thickness < 0.6", "-n", "2")
+    lines = found.stdout.splitlines()
+    assert lines[0].startswith("fabric,distance,parameters") and len(lines) == 3
+
+
+def test_a_wrong_command_says_what_is_wrong(tmp_path: Path) -> None:
+    out = str(tmp_path / "out")
+    wrong = command("evaluate", "kesf_data", "--shard", "4/3", "-o", out)
+    assert wrong.returncode == 2 and "`4/3` is no shard; the third of seven is 3/7" in wrong.stderr
+    missing = command("evaluate", "nowhere", "-o", out)
+    assert missing.returncode == 2 and "nowhere: R001" in missing.stderr
+    assert command("merge", out, "-o", "x.parquet").returncode == 2
