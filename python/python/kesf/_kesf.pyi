@@ -2,6 +2,25 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, final
 
+__all__ = [
+    "Fabric",
+    "Section",
+    "Sheet",
+    "Table",
+    "case_text",
+    "characterise",
+    "explain",
+    "export",
+    "find",
+    "read",
+    "run",
+    "simulate",
+    "targets",
+    "units_of_parameters",
+    "verify",
+    "version",
+]
+
 _Progress = Callable[[str, int, int], object] | None
 _Memory = list[tuple[str, bytes]]
 _Options = tuple[Any, ...]
