@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use super::error::{Problem, ReadError};
 use super::fabric_file::{read_dialect, read_fabric_file};
 use super::file_name::{ABOUT, EXTENSIONS};
+use super::own_results::{JOURNAL, MANIFEST, OwnResults};
 use super::read::{FileContent, ReadSettings, read};
 use super::{FabricInfo, FabricInput, Inference, ResultValue};
-use crate::finding::{Finding, Place, ReadFact};
+use crate::finding::{Finding, Place, ReadFact, UsageFact};
 use crate::platform;
 
 /// The fabrics of a batch, and what could not be read.
@@ -18,15 +19,12 @@ pub struct Batch {
     pub fabrics: Vec<FabricInput>,
     /// One for each file that was not read; the rest of its fabric is there.
     pub failures: Vec<ReadError>,
+    /// What belongs to no fabric: results of this program that were passed by, links that lead nowhere.
+    pub findings: Vec<Finding>,
 }
 
 /// Files that are read by one thread: starting more takes longer.
 const FEW: usize = 16;
-
-/// The list of files that this program wrote into a folder: results, and no measurements.
-pub const MANIFEST: &str = ".kesf-manifest.json";
-/// What stands for it as long as a run is writing, or where one was killed.
-pub const JOURNAL: &str = ".kesf-journal";
 
 /// What is to be read as one fabric.
 struct Group {
@@ -48,10 +46,12 @@ struct Group {
 /// results of this program. A single file belongs to the fabric of its folder or of one above it, if
 /// there is a fabric.toml, and is read as that fabric with the others that are named; else it is a
 /// fabric named by its sample or its stem. A result table of several fabrics makes several.
-/// `dialect.toml` in a folder is tried first for its files.
+/// `dialect.toml` in a folder is tried first for its files. What this program wrote is never read.
 pub struct Library {
     groups: Vec<Group>,
     failures: Vec<ReadError>,
+    findings: Vec<Finding>,
+    own: OwnResults,
     /// True paths of the folders that are being searched, each below the one before.
     above: Vec<PathBuf>,
 }
@@ -59,11 +59,21 @@ pub struct Library {
 impl Library {
     /// Finds the measurement files among the inputs and below them.
     pub fn find(inputs: &[PathBuf], settings: &ReadSettings) -> Self {
-        let mut library = Self { groups: Vec::new(), failures: Vec::new(), above: Vec::new() };
+        let mut library = Self {
+            groups: Vec::new(),
+            failures: Vec::new(),
+            findings: Vec::new(),
+            own: OwnResults::default(),
+            above: Vec::new(),
+        };
         let mut known = BTreeMap::new();
         for input in inputs {
             if input.is_dir() {
                 walk(input, settings, &mut library);
+            } else if library.own.wrote(input) {
+                library
+                    .findings
+                    .push(Finding::new(UsageFact::OwnResults { files: 1 }).at(Place::file(input)));
             } else if let Some(folder) = fabric_folder(input) {
                 library.add_to(folder, input, settings, &mut known);
             } else {
@@ -109,6 +119,11 @@ impl Library {
                 }
             }
         }
+    }
+
+    /// What belongs to no fabric: results of this program that were passed by, links that lead nowhere.
+    pub fn findings(&self) -> &[Finding] {
+        &self.findings
     }
 
     /// Number of files that are to be read.
@@ -169,8 +184,10 @@ impl Library {
 /// Reads folders and files as fabrics, in parallel, and keeps them all: see [`Library`].
 /// `progress` is called after each file.
 pub fn read_fabrics(inputs: &[PathBuf], settings: &ReadSettings, progress: &(dyn Fn(&Path) + Sync)) -> Batch {
-    let (fabrics, failures) = Library::find(inputs, settings).each(progress, |fabric| fabric);
-    Batch { fabrics, failures }
+    let mut library = Library::find(inputs, settings);
+    let findings = std::mem::take(&mut library.findings);
+    let (fabrics, failures) = library.each(progress, |fabric| fabric);
+    Batch { fabrics, failures, findings }
 }
 
 /// The folder in which a file lies, or one above it, that has a fabric.toml; on the path as it is given.
@@ -241,6 +258,26 @@ fn is_results(folder: &Path) -> bool {
     entries(folder).is_ok_and(|all| all.iter().filter(|p| to_read(p)).all(is_ours))
 }
 
+impl Library {
+    /// Takes what this program wrote out of the files of a folder, and says so.
+    fn pass_by_own(&mut self, folder: &Path, files: &mut Vec<PathBuf>) {
+        let before = files.len();
+        files.retain(|file| !self.own.wrote(file));
+        let left_out = before - files.len();
+        if left_out > 0 {
+            let fact = UsageFact::OwnResults { files: left_out };
+            self.findings.push(Finding::new(fact).at(Place::file(folder)));
+        }
+    }
+
+    /// Says which links lead nowhere: they are neither files nor folders.
+    fn tell_dangling(&mut self, paths: &[PathBuf]) {
+        let dangles = |path: &&PathBuf| !is_hidden(path) && path.is_symlink() && !path.exists();
+        let told = |path: &PathBuf| Finding::new(UsageFact::DanglingLink {}).at(Place::file(path));
+        self.findings.extend(paths.iter().filter(dangles).map(told));
+    }
+}
+
 fn walk(folder: &Path, settings: &ReadSettings, library: &mut Library) {
     // A link to a folder above would be followed without end.
     let Ok(real) = std::fs::canonicalize(folder).map(|real| (!library.above.contains(&real)).then_some(real))
@@ -258,6 +295,7 @@ fn search(folder: &Path, settings: &ReadSettings, library: &mut Library) {
         Ok(paths) => paths,
         Err(error) => return library.failures.push(error),
     };
+    library.tell_dangling(&paths);
     let visible = || paths.iter().filter(|p| !is_hidden(p));
     let mut files: Vec<PathBuf> = visible().filter(|p| is_data(p)).cloned().collect();
     let stated = folder.join("fabric.toml");
@@ -273,6 +311,7 @@ fn search(folder: &Path, settings: &ReadSettings, library: &mut Library) {
             }
             match entries(&folder) {
                 Ok(inner) => {
+                    library.tell_dangling(&inner);
                     files.extend(inner.iter().filter(|p| !is_hidden(p) && is_data(p)).cloned());
                     folders.extend(inner.into_iter().filter(is_inner));
                 }
@@ -281,6 +320,7 @@ fn search(folder: &Path, settings: &ReadSettings, library: &mut Library) {
         }
         files.sort();
     }
+    library.pass_by_own(folder, &mut files);
     if has_fabric_file || !files.is_empty() {
         match group(folder, files, has_fabric_file, settings) {
             Ok(group) => library.groups.push(group),

@@ -23,6 +23,7 @@ mod layout;
 mod limits;
 mod marks;
 mod measurement;
+mod own_results;
 mod pairs;
 mod raw;
 mod read;
@@ -48,8 +49,9 @@ pub use dialect::{BranchColumn, DIALECT_FILES, Dialect, Key, Role, Statistic, Ta
 pub use error::{About, Problem, ReadError};
 pub(crate) use fabric_file::FabricFile;
 pub use fabric_file::read_dialect;
-pub use folder::{Batch, JOURNAL, Library, MANIFEST, read_fabrics};
+pub use folder::{Batch, Library, read_fabrics};
 pub use measurement::{
     Conditions, FabricInfo, FabricInput, Inference, MeasuredResult, Measurement, Origin, ResultValue, Source,
 };
+pub use own_results::{JOURNAL, MANIFEST};
 pub use read::{FileContent, ReadSettings, parse, read};

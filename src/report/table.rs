@@ -57,7 +57,7 @@ cell! {
 }
 
 /// A row of a table: a plain struct whose field names are the column names.
-pub trait Row: Serialize {
+pub trait Row: Clone + Serialize {
     /// Column names in order.
     const HEADER: &'static [&'static str];
 
@@ -66,12 +66,48 @@ pub trait Row: Serialize {
     where
         Self: Sized;
 
+    /// The row with no text that a spreadsheet would take for a formula; see [`csv`].
+    #[must_use]
+    fn harmless(self) -> Self;
+
     /// The columns of the rows.
     #[cfg(feature = "tables")]
     fn columns(rows: &[Self]) -> Vec<polars::prelude::Column>
     where
         Self: Sized;
 }
+
+/// A cell of a table.
+trait Harmless {
+    /// Text that a spreadsheet would take for a formula gets an apostrophe before it; numbers stay as they are.
+    fn harmless(self) -> Self;
+}
+
+/// What a spreadsheet takes for the beginning of a formula.
+const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
+
+impl Harmless for String {
+    fn harmless(self) -> Self {
+        if self.starts_with(FORMULA) { format!("'{self}") } else { self }
+    }
+}
+
+impl Harmless for Option<String> {
+    fn harmless(self) -> Self {
+        self.map(Harmless::harmless)
+    }
+}
+
+macro_rules! numbers {
+    ($($number:ty),*) => {$(
+        impl Harmless for $number {
+            fn harmless(self) -> Self {
+                self
+            }
+        }
+    )*};
+}
+numbers!(f64, u64, Option<f64>);
 
 macro_rules! row {
     ($(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident: $type:ty,)* }) => {
@@ -86,6 +122,10 @@ macro_rules! row {
 
             fn values(rows: &[Self]) -> Vec<Values> {
                 vec![$(<$type as Cell>::column(rows.iter().map(|row| row.$field.clone()))),*]
+            }
+
+            fn harmless(self) -> Self {
+                Self { $($field: Harmless::harmless(self.$field)),* }
             }
 
             #[cfg(feature = "tables")]
@@ -374,6 +414,10 @@ pub fn curve_units(test: Test, units: UnitSystem) -> [(&'static str, f64); 2] {
 
 /// A table as CSV: UTF-8, comma, point, LF, with a header even if there are no rows.
 ///
+/// Names come from folders and files of others. A text that begins with `=`, `+`, `-`, `@`, a tab or a carriage return
+/// would be a formula to a spreadsheet and gets an apostrophe before it, as the Open Worldwide Application Security
+/// Project advises (*CSV Injection*); numbers are untouched, and so are Parquet and JSON.
+///
 /// # Errors
 /// [`TableError::Encode`].
 pub fn csv<R: Row>(rows: &[R]) -> Result<Vec<u8>, TableError> {
@@ -381,7 +425,7 @@ pub fn csv<R: Row>(rows: &[R]) -> Result<Vec<u8>, TableError> {
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     writer.write_record(R::HEADER).map_err(|e| failed(&e))?;
     for row in rows {
-        writer.serialize(row).map_err(|e| failed(&e))?;
+        writer.serialize(row.clone().harmless()).map_err(|e| failed(&e))?;
     }
     writer.into_inner().map_err(|e| failed(&e))
 }
@@ -449,6 +493,19 @@ mod tests {
         assert_eq!(columns[3], ("mean", Values::Number(vec![Some(9.80665e-6), Some(4e-4), None])));
         assert_eq!(columns[5], ("n", Values::Count(vec![Some(3), Some(1), Some(0)])));
         assert_eq!(FabricRow::values(&[])[2], Values::Text(Vec::new()), "an empty column keeps its type");
+    }
+
+    #[test]
+    fn no_text_is_a_formula_and_numbers_stay_numbers() {
+        for name in ["=cmd|' /C calc'!A0", "+1", "-1", "@SUM(A1)", "\t=1", "\r=1"] {
+            let row = FabricRow { fabric: name.into(), mean: Some(-1.5), ..FabricRow::default() };
+            let bytes = csv(&[row]).unwrap();
+            let mut reader = csv::ReaderBuilder::new().from_reader(&bytes[..]);
+            let cells = reader.records().next().unwrap().unwrap();
+            assert_eq!((&cells[0], &cells[3]), (format!("'{name}").as_str(), "-1.5"));
+        }
+        let plain = FabricRow { fabric: "a=b".into(), ..FabricRow::default() };
+        assert!(String::from_utf8(csv(&[plain]).unwrap()).unwrap().contains("\na=b,"));
     }
 
     #[test]

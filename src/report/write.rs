@@ -1,7 +1,7 @@
 //! Putting files in place: whole or not at all, and never over somebody else's work.
 
 use crate::finding::{Place, as_text, errors, path_as_text};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Read as _, Write as _};
 use std::path::{Component, Path, PathBuf};
@@ -61,7 +61,12 @@ errors! {
     }
 }
 
-/// Writes a file under a temporary name beside it and renames it: readers see the old bytes or the new.
+/// What the names of temporary files begin with; [`LETTERS`] random ones follow.
+const TEMPORARY: &str = ".kesf-";
+const LETTERS: usize = 6;
+
+/// Writes a file under a temporary name beside it, lets the system put its bytes on the disk, and renames it: readers
+/// see the old bytes or the new, also after the power has failed.
 ///
 /// # Errors
 /// [`OutputError::Write`], with nothing changed.
@@ -69,12 +74,13 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     let failed = |source: io::Error| OutputError::Write { path: path.to_path_buf(), source };
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".kesf-");
+    builder.prefix(TEMPORARY).rand_bytes(LETTERS);
     // A temporary file is private by default; a result is as readable as any new file (less the umask).
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let mut file = builder.tempfile_in(folder).map_err(failed)?;
     file.write_all(bytes).map_err(failed)?;
+    file.as_file().sync_data().map_err(failed)?;
     file.persist(path).map_err(|e| failed(e.error))?;
     Ok(())
 }
@@ -170,7 +176,7 @@ impl OutputFolder {
     pub fn open(root: &Path, force: bool) -> Result<Self, OutputError> {
         let failed = |source: io::Error| OutputError::Write { path: root.to_path_buf(), source };
         fs::create_dir_all(root).map_err(failed)?;
-        tempfile::Builder::new().prefix(".kesf-").tempfile_in(root).map_err(failed)?;
+        tempfile::Builder::new().prefix(TEMPORARY).tempfile_in(root).map_err(failed)?;
         let path = root.join(MANIFEST);
         let files = match existing(&path)? {
             None => BTreeMap::new(),
@@ -182,12 +188,15 @@ impl OutputFolder {
         };
         let mut earlier: BTreeMap<String, Vec<String>> =
             files.into_iter().map(|(name, hash)| (name, vec![hash])).collect();
-        let (journal, lines) = open_journal(root)?;
+        let (journal, lines, is_alone) = open_journal(root)?;
         // The last line may have been cut short.
         for (name, hash) in
             lines.lines().filter_map(|line| serde_json::from_str::<(String, String)>(line).ok())
         {
             earlier.entry(name).or_default().push(hash);
+        }
+        if is_alone {
+            remove_orphans(root, earlier.keys());
         }
         let written = Mutex::new(Written { files: BTreeMap::new(), journal });
         Ok(Self { root: root.to_path_buf(), force, earlier, written, finished: false })
@@ -297,18 +306,43 @@ impl Drop for OutputFolder {
     }
 }
 
-/// The journal, locked for this run, and what is in it.
-fn open_journal(root: &Path) -> Result<(File, String), OutputError> {
+/// The journal, locked for this run, what is in it, and whether the lock says that no other run writes here.
+fn open_journal(root: &Path) -> Result<(File, String, bool), OutputError> {
     let path = root.join(JOURNAL);
     let failed = |source: io::Error| OutputError::Write { path: path.clone(), source };
     let mut journal = File::options().create(true).read(true).append(true).open(&path).map_err(failed)?;
     // Some network folders know no locks: two runs at once are then not noticed.
-    if let Err(TryLockError::WouldBlock) = journal.try_lock() {
-        return Err(OutputError::Busy { path: root.to_path_buf() });
-    }
+    let is_alone = match journal.try_lock() {
+        Ok(()) => true,
+        Err(TryLockError::WouldBlock) => return Err(OutputError::Busy { path: root.to_path_buf() }),
+        Err(TryLockError::Error(_)) => false,
+    };
     let mut lines = Vec::new();
     journal.read_to_end(&mut lines).map_err(failed)?;
-    Ok((journal, String::from_utf8_lossy(&lines).into_owned()))
+    if lines.last().is_some_and(|last| *last != b'\n') {
+        // The run before was killed within a line: the next one is not to become a part of it.
+        journal.write_all(b"\n").map_err(failed)?;
+    }
+    Ok((journal, String::from_utf8_lossy(&lines).into_owned(), is_alone))
+}
+
+/// Removes the temporary files that runs left which were killed: in the folder, and in those of their files.
+fn remove_orphans<'a>(root: &Path, names: impl Iterator<Item = &'a String>) {
+    let inner =
+        names.filter(|name| inside(name)).filter_map(|name| root.join(name).parent().map(Path::to_path_buf));
+    let folders: BTreeSet<PathBuf> = inner.chain([root.to_path_buf()]).collect();
+    for folder in folders {
+        let Ok(entries) = fs::read_dir(&folder) else { continue };
+        for entry in entries.flatten().filter(|entry| is_temporary(&entry.file_name().to_string_lossy())) {
+            // One that cannot be removed does no harm.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+fn is_temporary(name: &str) -> bool {
+    let letters = name.strip_prefix(TEMPORARY);
+    letters.is_some_and(|l| l.len() == LETTERS && l.bytes().all(|b| b.is_ascii_alphanumeric()))
 }
 
 fn read_manifest(bytes: &[u8]) -> Result<BTreeMap<String, String>, String> {
@@ -383,6 +417,37 @@ mod tests {
         assert!(matches!(out.write("mine.csv", b"3"), Err(OutputError::NotOurs { .. })));
         out.finish().unwrap();
         assert_eq!(names(folder.path()), [MANIFEST, "a.csv", "b.csv", "mine.csv"]);
+    }
+
+    #[test]
+    fn runs_that_were_killed_one_after_the_other_can_be_repeated() {
+        let folder = tempfile::tempdir().unwrap();
+        // The first was killed within a line of its journal, the second at once after a file.
+        fs::write(folder.path().join(JOURNAL), "[\"a.c").unwrap();
+        let out = OutputFolder::open(folder.path(), false).unwrap();
+        out.write("b.csv", b"1").unwrap();
+        std::mem::forget(out);
+        // In one process the lock would outlive the run: the journal alone is what a kill leaves.
+        let journal = fs::read(folder.path().join(JOURNAL)).unwrap();
+        fs::remove_file(folder.path().join(JOURNAL)).unwrap();
+        fs::write(folder.path().join(JOURNAL), journal).unwrap();
+        let out = OutputFolder::open(folder.path(), false).unwrap();
+        out.write("b.csv", b"2").unwrap();
+    }
+
+    #[test]
+    fn temporary_files_of_a_run_that_was_killed_are_removed_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::create_dir(folder.path().join("poplin")).unwrap();
+        let orphans = [".kesf-a1B2c3", "poplin/.kesf-Zz9Zz9"];
+        let others = [".kesf-notes.txt", "poplin/.kesf-mine", "poplin/a1B2c3"];
+        for name in orphans.into_iter().chain(others) {
+            fs::write(folder.path().join(name), "").unwrap();
+        }
+        fs::write(folder.path().join(JOURNAL), "[\"poplin/sheet.json\",\"00\"]\n").unwrap();
+        OutputFolder::open(folder.path(), false).unwrap().finish().unwrap();
+        assert!(orphans.iter().all(|name| !folder.path().join(name).exists()));
+        assert!(others.iter().all(|name| folder.path().join(name).exists()));
     }
 
     #[test]

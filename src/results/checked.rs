@@ -70,7 +70,7 @@ pub fn check(inputs: &[Input], reading: &Reading, observer: &Observer) -> Result
     failures.extend(cases.iter().filter(without_fabric).map(no_such_fabric));
     failures.iter().for_each(|failure| observer.failed(failure));
     let others = inputs::without_cases(inputs);
-    let Read { done: fabrics, failures: unread, inference_of_failures } =
+    let Read { done: fabrics, failures: unread, inference_of_failures, .. } =
         reading.each(&others, "reading", |fabric| fabric, observer)?;
     failures.extend(unread);
     fabrics.iter().flat_map(|f| &f.findings).for_each(|finding| observer.found(None, finding));

@@ -10,7 +10,7 @@ use super::failure::Failure;
 use super::names::distinguish_fabrics;
 use super::observer::Observer;
 use crate::characterise::{FabricSheet, Modulus, Settings, characterise};
-use crate::finding::Place;
+use crate::finding::{Finding, Place};
 use crate::instrument::{
     FabricInput, Inference, Library, ReadError, ReadSettings, ResultValue, parse, read_dialect,
 };
@@ -103,6 +103,8 @@ pub struct Read<T> {
     pub done: Vec<T>,
     /// What could not be read. The observer has it already.
     pub failures: Vec<Failure>,
+    /// What belongs to no fabric. The observer has it already.
+    pub findings: Vec<Finding>,
     /// What had been inferred from the files that could not be read.
     pub inference_of_failures: Vec<Inference>,
 }
@@ -189,6 +191,8 @@ impl Reading {
             .map(|input| input.path().to_path_buf())
             .collect();
         let library = Library::find(&paths, &settings);
+        let findings = library.findings().to_vec();
+        findings.iter().for_each(|finding| observer.found(None, finding));
         let (mut done, mut errors) =
             observer.part(what, library.files(), || library.each(&|_| observer.step(), &work))?;
         for input in inputs {
@@ -208,7 +212,7 @@ impl Reading {
             .collect();
         let failures: Vec<Failure> = errors.into_iter().map(Failure::from).collect();
         failures.iter().for_each(|failure| observer.failed(failure));
-        Ok(Read { done, failures, inference_of_failures })
+        Ok(Read { done, failures, findings, inference_of_failures })
     }
 
     /// The sheets of all fabrics below the inputs, in name order, each with a name of its own, and what could not be

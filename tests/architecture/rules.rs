@@ -178,6 +178,7 @@ const PLACES: &[(&str, &[&str])] = &[
 const FILES: &[&str] = &[
     "src/instrument/fabric_file.rs",
     "src/instrument/folder.rs",
+    "src/instrument/own_results.rs",
     "src/instrument/read.rs",
     "src/study/build.rs",
     "src/case/mod.rs",

@@ -23,7 +23,21 @@ super::facts! {
             /// The other one.
             other: String,
         } = "`{fabric}` is here and beside the case; this one is taken: {taken}, not {other}";
+        /// Results of this program among the inputs.
+        "O061" OwnResults {
+            /// How many files.
+            files: usize,
+        } = "{}", own_results(*files);
+        /// A link among the inputs leads nowhere.
+        "O062" DanglingLink {} = "this link leads nowhere, and nothing was read: restore what it leads to, or remove it";
     }
+}
+
+fn own_results(files: usize) -> String {
+    let what = if files == 1 { "a file".into() } else { format!("{files} files") };
+    format!(
+        "{what} here are results of this program and were not read as measurements: write results elsewhere with -o"
+    )
 }
 
 fn renamed_because(name: &str, renamed: &str, because: Renaming) -> String {

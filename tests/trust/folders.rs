@@ -1,0 +1,92 @@
+//! Folders of results and folders of inputs in one place, and names that are more than names.
+
+use std::fs;
+
+use crate::{code, first_cells, run, stderr, table, write};
+
+const CASE: &str = "cases/cantilever_strip.toml";
+
+/// A second run into the folder of its measurements sees no fabric that the first did not see.
+#[test]
+fn results_among_the_inputs_are_no_measurements() {
+    // Output within input, equal to it, and input within output.
+    for (input, output) in [("lab", "lab/out"), ("lab", "lab"), ("out/lab", "out")] {
+        let folder = tempfile::tempdir().unwrap();
+        let [input, output] = [input, output].map(|name| folder.path().join(name));
+        write(&input, "t.csv", &table(&["A", "B"]));
+        let tables = |time: &str| {
+            let done =
+                run(&["run", "--no-charts", input.to_str().unwrap(), CASE, "-o", output.to_str().unwrap()]);
+            assert_eq!(code(&done), 0, "{time}: {}", stderr(&done));
+            let tables =
+                ["fabrics.csv", "predictions.csv"].map(|name| fs::read_to_string(output.join(name)).unwrap());
+            (tables, stderr(&done))
+        };
+        let (first, _) = tables("first");
+        let (second, told) = tables("second");
+        assert_eq!(first, second, "{input:?} into {output:?}");
+        assert_eq!(first_cells(&output.join("fabrics.csv")), ["A", "B"]);
+        let said = told.contains("O061") && told.contains("results of this program");
+        assert_eq!(
+            said,
+            input == output,
+            "results beside measurements are told, a folder of results is passed by: {told}"
+        );
+    }
+}
+
+/// Results that are named as inputs, by their folder or one by one, give nothing and are told.
+#[test]
+fn results_that_are_named_are_no_measurements() {
+    let folder = tempfile::tempdir().unwrap();
+    let [lab, out, copy] = ["lab", "out", "copy"].map(|name| folder.path().join(name));
+    write(&lab, "t.csv", &table(&["A"]));
+    run(&["run", "--no-charts", lab.to_str().unwrap(), "-o", out.to_str().unwrap()]);
+    let tables = out.join("fabrics.csv");
+    // As `cp results/*` leaves them, without the hidden list.
+    fs::create_dir(&copy).unwrap();
+    for name in ["fabrics.csv", "run.json"] {
+        fs::copy(out.join(name), copy.join(name)).unwrap();
+    }
+    for input in [&out, &tables, &copy] {
+        let done = run(&["characterise", input.to_str().unwrap()]);
+        assert_eq!(code(&done), 2, "{}", stderr(&done));
+        assert!(stderr(&done).contains("O061"), "{}", stderr(&done));
+    }
+}
+
+/// A name that a spreadsheet would run is text in every table.
+#[test]
+fn names_are_no_formulas() {
+    let folder = tempfile::tempdir().unwrap();
+    let [lab, out] = ["lab", "out"].map(|name| folder.path().join(name));
+    let names = ["=cmd|calc!A0", "+1", "-2", "@SUM(A1)"];
+    for name in names {
+        write(&lab.join(name), "fabric.toml", "areal_density = \"100 g/m²\"\n");
+        write(&lab.join(name), "t.csv", "parameter,unit,warp,weft\nB,gf·cm²/cm,0.1,0.1\n");
+    }
+    let done = run(&["run", "--no-charts", lab.to_str().unwrap(), CASE, "-o", out.to_str().unwrap()]);
+    assert!([0, 1].contains(&code(&done)), "{}", stderr(&done));
+    for name in ["fabrics.csv", "predictions.csv", "problems.csv"] {
+        let mut reader = csv::ReaderBuilder::new().from_path(out.join(name)).unwrap();
+        for row in reader.records() {
+            for cell in row.unwrap().iter().filter(|cell| cell.parse::<f64>().is_err()) {
+                assert!(!cell.starts_with(['=', '+', '-', '@', '\t', '\r']), "{name}: {cell}");
+            }
+        }
+    }
+    let told = first_cells(&out.join("fabrics.csv"));
+    assert!(names.iter().all(|name| told.contains(&format!("'{name}"))), "{told:?}");
+}
+
+/// What a link no longer leads to is missing, and is told.
+#[cfg(unix)]
+#[test]
+fn links_that_lead_nowhere_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "t.csv", &table(&["A"]));
+    std::os::unix::fs::symlink("/nowhere/weft.csv", folder.path().join("weft.csv")).unwrap();
+    let done = run(&["characterise", folder.path().to_str().unwrap()]);
+    assert_eq!(code(&done), 0, "{}", stderr(&done));
+    assert!(stderr(&done).contains("weft.csv: O062"), "{}", stderr(&done));
+}
