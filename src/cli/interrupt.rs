@@ -1,29 +1,38 @@
-//! Ctrl-C: the first ends the work at the next item, the second at once.
+//! Ctrl-C and SIGTERM: the work in hand has a moment to end, then the program ends without it.
+//!
+//! Nothing is lost by that: files are whole or not there, a run that was ended knows by its journal what it wrote, and the
+//! next one goes on from there.
 
 use std::io::Write as _;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use super::exit::Exit;
 use crate::results::Failure;
 
-/// Set by Ctrl-C, read between items of work.
+/// Set by the signal, read between items of work.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// Whether Ctrl-C was pressed.
+/// What the work in hand has to end by itself.
+const MOMENT: Duration = Duration::from_millis(100);
+
+/// Whether the user wants the work to end.
 pub fn is_set() -> bool {
     INTERRUPTED.load(Ordering::Relaxed)
 }
 
-/// Catches Ctrl-C from now on; says so on standard error unless `silent`.
+/// Catches Ctrl-C and SIGTERM from now on; says so on standard error unless `silent`.
 pub fn catch(silent: bool) -> Result<(), Failure> {
     ctrlc::set_handler(move || {
-        if INTERRUPTED.swap(true, Ordering::Relaxed) {
-            std::process::exit(Exit::Interrupted as i32);
+        if !INTERRUPTED.swap(true, Ordering::Relaxed) {
+            if !silent {
+                let text = "interrupted: what is written stays, and the same run goes on from there";
+                let _ = writeln!(std::io::stderr(), "{text}");
+            }
+            // A step of a solver may take minutes, and the user has waited already.
+            std::thread::sleep(MOMENT);
         }
-        if !silent {
-            let text = "interrupted: the work in hand ends; Ctrl-C again stops at once";
-            let _ = writeln!(std::io::stderr(), "{text}");
-        }
+        std::process::exit(Exit::Interrupted as i32);
     })
     .map_err(|e| Failure::new("O053", format!("Ctrl-C cannot be caught: {e}")))
 }

@@ -19,6 +19,7 @@ mod inputs;
 mod interrupt;
 mod list;
 mod man;
+mod memory;
 mod output;
 mod read;
 mod report;

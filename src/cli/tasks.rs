@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::inputs::{EvaluateArgs, inputs};
+use super::memory;
 use super::ui::Ui;
-use crate::case::SolverChoice;
-use crate::results::{Failure, Job};
+use crate::case::{Bytes, SolverChoice};
+use crate::quantity::Time;
+use crate::results::{Failure, Job, Limits};
 
 /// Cases and fabrics on the command line.
 #[derive(Debug, Args)]
@@ -24,6 +26,12 @@ pub struct TaskArgs {
     /// How linear cases are solved, whatever their [solver] says
     #[arg(long, value_enum, value_name = "METHOD")]
     solver: Option<SolverArg>,
+    /// Longest that a case may take with a fabric; what it has reached by then is kept where it means something
+    #[arg(long, value_name = "TIME", default_value = "60 min", value_parser = time)]
+    time_limit: f64,
+    /// Most memory that a case may need, estimated before it begins [default: what the machine has free, else 16 GB]
+    #[arg(long, value_name = "SIZE")]
+    memory_limit: Option<Bytes>,
     #[command(flatten)]
     evaluate: EvaluateArgs,
 }
@@ -49,6 +57,11 @@ impl From<SolverArg> for SolverChoice {
     }
 }
 
+fn time(text: &str) -> Result<f64, String> {
+    let seconds = text.parse::<Time>().map_err(|e| e.to_string())?.si();
+    if seconds > 0.0 { Ok(seconds) } else { Err(format!("{seconds} s is no time to compute in")) }
+}
+
 impl TaskArgs {
     pub fn job(&self, paths: &[PathBuf], ui: &Ui) -> Result<Job, Failure> {
         Ok(Job {
@@ -56,6 +69,12 @@ impl TaskArgs {
             reading: self.evaluate.reading(),
             solver: self.solver.map(Into::into),
             threads: ui.threads,
+            limits: self.limits(),
         })
+    }
+
+    fn limits(&self) -> Limits {
+        let bytes = self.memory_limit.map(|typed| typed.0).or_else(memory::available);
+        Limits { seconds: self.time_limit, bytes: bytes.unwrap_or(Limits::default().bytes) }
     }
 }

@@ -21,7 +21,7 @@ pub enum FailureKind {
 }
 
 /// Codes that mean that numerics failed, rather than the input, or that a search did not reach its end.
-const NUMERIC: [&str; 8] = ["N001", "N002", "N003", "N005", "N006", "N007", "S004", "S112"];
+const NUMERIC: [&str; 10] = ["N001", "N002", "N003", "N005", "N006", "N007", "N010", "N012", "S004", "S112"];
 
 /// The code of an interruption.
 const INTERRUPTED: &str = "O054";

@@ -5,7 +5,9 @@
 //! WebAssembly without a system a [`Stopwatch`] measures nothing.
 
 mod clock;
+mod deadline;
 mod parallel;
 
 pub use clock::Stopwatch;
+pub use deadline::{over, within};
 pub use parallel::{Items, map, map_several, run_all, try_map};

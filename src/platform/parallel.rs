@@ -4,6 +4,9 @@
 #[cfg(feature = "threads")]
 use rayon::prelude::*;
 
+#[cfg(feature = "threads")]
+use super::deadline;
+
 /// What work can be shared over: slices, vectors, arrays and ranges.
 #[cfg(feature = "threads")]
 pub trait Items<T>: IntoParallelIterator<Item = T, Iter: IndexedParallelIterator> {}
@@ -21,7 +24,14 @@ impl<T, I: IntoIterator<Item = T>> Items<T> for I {}
 /// `function` of every item.
 #[cfg(feature = "threads")]
 pub fn map<T: Send, R: Send>(items: impl Items<T>, function: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
-    items.into_par_iter().map(function).collect()
+    items.into_par_iter().map(carrying(function)).collect()
+}
+
+/// The function under the deadline of the work that shares it out.
+#[cfg(feature = "threads")]
+fn carrying<T, R>(function: impl Fn(T) -> R + Sync + Send) -> impl Fn(T) -> R + Sync + Send {
+    let deadline = deadline::current();
+    move |item| deadline::under(deadline, || function(item))
 }
 
 /// `function` of every item.
@@ -42,7 +52,7 @@ pub fn try_map<T: Send, R: Send>(
     items: impl Items<T>,
     function: impl Fn(T) -> Option<R> + Sync + Send,
 ) -> Option<Vec<R>> {
-    items.into_par_iter().with_max_len(1).map(function).collect()
+    items.into_par_iter().with_max_len(1).map(carrying(function)).collect()
 }
 
 /// `function` of every item; `None` as soon as one gives `None`, and then the rest is not looked at.
@@ -58,6 +68,7 @@ pub fn try_map<T: Send, R: Send>(
 /// pool is used where it has no more threads than that.
 #[cfg(feature = "threads")]
 pub fn run_all(threads: usize, items: impl Iterator<Item = usize> + Send, task: &(dyn Fn(usize) + Sync)) {
+    let task = &carrying(task);
     let run = || {
         rayon::scope(|scope| {
             for item in items {

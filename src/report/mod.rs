@@ -6,6 +6,7 @@
 pub mod cards;
 pub mod html;
 pub mod json;
+mod output_folder;
 pub mod read_back;
 pub mod table;
 pub mod vtu;
@@ -19,4 +20,5 @@ mod number;
 #[cfg(feature = "charts")]
 pub mod chart;
 
-pub use write::{OutputError, OutputFolder};
+pub use output_folder::{OutputFolder, Pending};
+pub use write::OutputError;

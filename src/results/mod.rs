@@ -57,7 +57,7 @@ pub use section::{Sectioned, section_text, sections};
 pub use sheet_text::{evaluation_text, parameters_text, statistics_text};
 pub use simulate::simulate;
 pub use solved::{ModelEntry, QuantityEntry, SolutionEntry, SolverEntry, TimingsEntry};
-pub use task::Task;
+pub use task::{Limits, Task};
 pub use tested::{Stiffness, TestEntry, Tested};
 pub use work::{Job, Work, named_fabric, no_such_fabric};
 

@@ -8,7 +8,8 @@ use super::tested::Tested;
 use crate::case::{BendingTest, InstrumentTest, Problem, ShellSpecimen};
 use crate::characterise::FabricSheet;
 use crate::instrument::Direction;
-use crate::solve::Options as SolveOptions;
+use crate::platform::within;
+use crate::solve::SolveError;
 use crate::study::bending::{BendingResult, simulate_cantilever, simulate_heart_loop, simulate_records};
 use crate::study::{self, CaseResult, Drape, StudyError};
 
@@ -17,6 +18,19 @@ use crate::study::{self, CaseResult, Drape, StudyError};
 /// # Errors
 /// Why there is no result, at the place in the case file.
 pub fn simulate(task: &Task, observer: &Observer) -> Result<Outcome, Failure> {
+    let outcome = within(task.limits().seconds, || compute(task, observer))?;
+    // Whatever its kind: what is no number is no result.
+    let rows = outcome.rows(task);
+    let endless = rows.iter().find(|row| row.simulated.is_some_and(|value| !value.is_finite()));
+    if let Some(row) = endless {
+        let error = SolveError::NotFinite { quantity: row.quantity.clone() };
+        return Err(task.located(error.into()));
+    }
+    Ok(outcome)
+}
+
+fn compute(task: &Task, observer: &Observer) -> Result<Outcome, Failure> {
+    study::within_limits(task.case, task.options()).map_err(|error| task.located(error.into()))?;
     sample(task, observer)?;
     let outcome = match &task.case.problem {
         Problem::InstrumentTest(spec) => test(task, spec).map(Outcome::Tested),
@@ -59,7 +73,7 @@ fn drape(task: &Task, observer: &Observer) -> Result<Drape, Failure> {
     let law = made.as_ref().and_then(|m| m.law.as_ref());
     let stage = || observer.step();
     let watch = observer.watch(&stage);
-    Ok(study::drape(task.case, &section, law, &SolveOptions::default(), watch)?)
+    Ok(study::drape(task.case, &section, law, &task.options().single(), watch)?)
 }
 
 /// A `[bending_test]`; with the result, the directions that failed.
@@ -108,7 +122,7 @@ fn test_specimen(task: &Task, specimen: &ShellSpecimen, sheet: &FabricSheet) -> 
     for direction in [Direction::Warp, Direction::Weft] {
         let mut curve = prepared.simulate_measured(direction, &section, &sheet.settings, &inputs)?;
         if let Some(made) = &made {
-            let options = SolveOptions::default();
+            let options = task.options().single();
             curve.cycle = study::simulate_cycle(specimen, direction, sheet, made, &options)?;
         }
         tested.push(Tested::new(task.case, sheet, curve));

@@ -12,7 +12,7 @@ use crate::finding::Place;
 use crate::instrument::{Direction, Parameter};
 use crate::report::table::PredictionRow;
 use crate::section::ShellSection;
-use crate::solve::Options as SolveOptions;
+use crate::solve::{MEMORY_LIMIT, Options as SolveOptions};
 use crate::study::{self, PreparedCase, PreparedTest, Sampling, drape_stages, sampling_stages};
 
 /// A case and its fabric; none for a case with constants of its own.
@@ -31,19 +31,37 @@ pub struct Task<'a> {
     sampling: Arc<OnceLock<Option<Sampling>>>,
 }
 
+/// What one task may take; beyond it, it is an error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Seconds of the clock.
+    pub seconds: f64,
+    /// Bytes of memory, estimated before it begins.
+    pub bytes: u64,
+}
+
+impl Default for Limits {
+    /// An hour, and 16 GB.
+    fn default() -> Self {
+        Self { seconds: 3600.0, bytes: MEMORY_LIMIT }
+    }
+}
+
 /// What the tasks of one case share, made by the first that needs it. Nothing in the making waits for
 /// other threads' work, so those that wait for it cannot lock each other out.
 #[derive(Default)]
 pub(super) struct Shared<'a> {
     options: SolveOptions,
+    limits: Limits,
     case: OnceLock<Result<PreparedCase<'a>, Failure>>,
     test: OnceLock<Result<PreparedTest, Failure>>,
 }
 
 impl Shared<'_> {
-    /// Nothing is made yet; every task solves with these options.
-    pub fn new(options: SolveOptions) -> Self {
-        Self { options, ..Self::default() }
+    /// Nothing is made yet; every task solves with so many threads and within these limits.
+    pub fn new(threads: usize, limits: Limits) -> Self {
+        let options = SolveOptions { threads, memory_limit: limits.bytes, ..SolveOptions::default() };
+        Self { options, limits, ..Self::default() }
     }
 }
 
@@ -58,6 +76,16 @@ impl<'a> Task<'a> {
     pub(super) fn prepared_test(&self, specimen: &ShellSpecimen) -> Result<&PreparedTest, Failure> {
         let prepare = || Ok(PreparedTest::new(self.case, specimen, &self.shared.options)?);
         self.shared.test.get_or_init(prepare).as_ref().map_err(Clone::clone)
+    }
+
+    /// How it is solved.
+    pub(super) fn options(&self) -> &SolveOptions {
+        &self.shared.options
+    }
+
+    /// What it may take.
+    pub(super) fn limits(&self) -> Limits {
+        self.shared.limits
     }
 
     /// Keeps the bands that were sampled.

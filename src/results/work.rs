@@ -8,10 +8,9 @@ use super::failure::Failure;
 use super::inputs::{self, Curves, Fabric, Input, Reading};
 use super::names::distinguish_cases;
 use super::observer::Observer;
-use super::task::{Shared, Task};
+use super::task::{Limits, Shared, Task};
 use crate::case::{Case, FabricMaterial, SolverChoice};
 use crate::finding::{Finding, Place, StudyFact, UsageFact};
-use crate::solve::Options as SolveOptions;
 
 /// Inputs and how they are to be used.
 #[derive(Clone, Debug, Default)]
@@ -24,6 +23,8 @@ pub struct Job {
     pub solver: Option<SolverChoice>,
     /// Threads for all tasks together; results do not depend on it. 0 is one thread.
     pub threads: usize,
+    /// What each task may take.
+    pub limits: Limits,
 }
 
 /// The cases and fabrics that inputs name, and what could not be read.
@@ -35,6 +36,7 @@ pub struct Work {
     /// What could not be read. The observer has it already.
     pub failures: Vec<Failure>,
     threads: usize,
+    limits: Limits,
 }
 
 impl Job {
@@ -68,7 +70,7 @@ impl Job {
         let moduli: Vec<_> = cases.iter().filter_map(|c| c.assumptions()).map(|a| a.modulus).collect();
         let (fabrics, unread) = self.reading.sheets(&fabrics, &moduli, Curves::Kept, observer)?;
         failures.extend(unread);
-        Ok(Work { cases, fabrics, failures, threads: self.threads.max(1) })
+        Ok(Work { cases, fabrics, failures, threads: self.threads.max(1), limits: self.limits })
     }
 }
 
@@ -140,8 +142,7 @@ impl Work {
         let alone = self.cases.len() == 1 && self.fabrics.len() < 2;
         let threads = if alone { self.threads } else { 1 };
         for case in &self.cases {
-            let options = SolveOptions { threads, ..SolveOptions::default() };
-            let shared = Arc::new(Shared::new(options));
+            let shared = Arc::new(Shared::new(threads, self.limits));
             if case.section().is_some() {
                 tasks.push(Task::new(case, None, shared));
                 continue;

@@ -3,6 +3,8 @@
 use super::factor::FactorError;
 use crate::finding::errors;
 use crate::model::{DofGroup, Model, ModelError};
+use crate::platform::over;
+use crate::quantity::significant;
 
 errors! {
     /// Why there is no solution.
@@ -62,6 +64,25 @@ errors! {
             history: Vec<f64>,
         } = "the residual is {residual:.1e} after {iterations} iterations, above {tolerance:e}: take method = \"direct\", \
              or more iterations, or shear_stabilisation = 0.05 for a very thin sheet; a missing support does the same";
+        /// N010: the work took longer than it may.
+        "N010" OutOfTime {
+            /// What it may take (s).
+            seconds: f64,
+        } = "it has taken longer than the {seconds} s that it may take: allow more (`--time-limit`), or take a coarser mesh or \
+             fewer steps";
+        /// N011: the work needs more memory than it may have; nothing was begun.
+        "N011" TooLarge {
+            /// What it needs, about (bytes).
+            bytes: f64,
+            /// What it may have (bytes).
+            limit: u64,
+        } = "it needs about {} of memory, and may have {}: take fewer cells or steps, or allow more (`--memory-limit`)",
+            gigabytes(*bytes), gigabytes(*limit as f64);
+        /// N012: a result is no number.
+        "N012" NotFinite {
+            /// Which.
+            quantity: String,
+        } = "{quantity} is beyond the range of numbers: look for a load, size or stiffness of a wrong order of magnitude";
         /// N004: the subspace iteration did not settle.
         "N004" ModesNotSettled {
             /// Rounds done.
@@ -78,7 +99,26 @@ errors! {
     }
 }
 
+/// `8.5 GB`.
+fn gigabytes(bytes: f64) -> String {
+    if bytes.is_finite() {
+        format!("{} GB", significant(bytes / 1e9))
+    } else {
+        "more than any machine has".into()
+    }
+}
+
 impl SolveError {
+    /// N010 if the work has taken longer than it may.
+    pub(crate) fn in_time() -> Result<(), Self> {
+        over().map_or(Ok(()), |seconds| Err(Self::OutOfTime { seconds }))
+    }
+
+    /// N011 if so many bytes are more than a limit.
+    pub(crate) fn in_memory(bytes: f64, limit: u64) -> Result<(), Self> {
+        if bytes <= limit as f64 { Ok(()) } else { Err(Self::TooLarge { bytes, limit }) }
+    }
+
     /// What a failed factorisation means for a model.
     pub(super) fn of(error: FactorError, model: &Model, group: DofGroup) -> Self {
         let FactorError::NotPositiveDefinite { node, dof, .. } = error else { return Self::Factor(error) };

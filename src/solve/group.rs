@@ -97,6 +97,9 @@ impl GroupSolver {
 }
 
 fn stalled(history: Vec<f64>, tolerance: f64) -> SolveError {
+    if let Err(out_of_time) = SolveError::in_time() {
+        return out_of_time;
+    }
     let residual = history.last().copied().unwrap_or(1.0);
     SolveError::Stalled { iterations: history.len().saturating_sub(1), residual, tolerance, history }
 }
@@ -241,6 +244,9 @@ impl<'a> Equations<'a> {
         let internal = if moved { self.internal(compensated, &u, &low)? } else { low.clone() };
         // A support that moves without straining the sheet leaves no other forces than the rounding of these.
         let push = ROUNDING * ROUNDING * internal.iter().map(|f| f * f).sum::<f64>();
+        if !(push + self.load.iter().map(|f| f * f).sum::<f64>()).is_finite() {
+            return Err(SolveError::NotFinite { quantity: "the square of the forces".into() });
+        }
         let mut best = Refined { u, low, internal, residual: f64::INFINITY };
         let mut reduced = 1.0;
         for _ in 0..ROUNDS {

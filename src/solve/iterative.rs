@@ -16,6 +16,7 @@ mod level;
 use self::cycle::Hierarchy;
 use super::factor::FactorError;
 use super::sparse::BlockMatrix;
+use crate::platform::over;
 
 /// When the iteration ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -149,7 +150,7 @@ fn conjugate_gradients(
         if norm <= settings.tolerance {
             return Ok(history);
         }
-        if !norm.is_finite() {
+        if !norm.is_finite() || over().is_some() {
             break;
         }
         p.iter_mut().zip(&z).for_each(|(p, z)| *p = z + next / rz * *p);

@@ -21,6 +21,8 @@ pub struct Options {
     pub method: Method,
     /// Where [`Method::Auto`] draws the line: bytes of a factor.
     pub factor_limit: u64,
+    /// Bytes that a solve may need, above which it is not begun.
+    pub memory_limit: u64,
     /// When the iteration ends.
     pub iteration: iterative::Settings,
 }
@@ -41,6 +43,9 @@ pub enum Method {
 /// depend on the machine. The 6-dof shell of 640 x 640 elements stays below it.
 pub const FACTOR_LIMIT: u64 = 8_000_000_000;
 
+/// Bytes that a solve may need where nobody says otherwise: what machines for such work have.
+pub const MEMORY_LIMIT: u64 = 16_000_000_000;
+
 impl Default for Options {
     fn default() -> Self {
         Self {
@@ -49,8 +54,17 @@ impl Default for Options {
             coupled: false,
             method: Method::Auto,
             factor_limit: FACTOR_LIMIT,
+            memory_limit: MEMORY_LIMIT,
             iteration: iterative::Settings::default(),
         }
+    }
+}
+
+impl Options {
+    /// The same with one thread.
+    #[must_use]
+    pub fn single(&self) -> Self {
+        Self { threads: 1, ..*self }
     }
 }
 

@@ -16,6 +16,8 @@ pub mod plan;
 pub mod sparse;
 
 pub use error::SolveError;
-pub use linear::{Factors, Method, Options, Solution, System, Timings, solve, solve_keeping, solve_with};
+pub use linear::{
+    Factors, MEMORY_LIMIT, Method, Options, Solution, System, Timings, solve, solve_keeping, solve_with,
+};
 pub use modal::{Mode, modes, modes_with};
 pub use plan::Plan;

@@ -93,11 +93,15 @@ fn group_modes(
     unit_rows(&mut stiffness, &held);
     let threads = analysis.worth(options.threads);
     let factor = analysis.factorise(&stiffness, threads).map_err(|e| SolveError::of(e, model, group))?;
-    let (columns, with_mass) = ((2 * count).max(count + 8), massive_dofs(&mass, &held));
+    let (columns, with_mass) =
+        (count.saturating_mul(2).max(count.saturating_add(8)), massive_dofs(&mass, &held));
     if with_mass == 0 {
         return Ok(Vec::new());
     }
-    let (values, vectors) = if 2 * columns > with_mass {
+    let (values, vectors) = if columns.saturating_mul(2) > with_mass {
+        // Stiffness, mass, their roots and the vectors, all dense.
+        let entries = (with_mass as f64).powi(2);
+        SolveError::in_memory(5.0 * entries * size_of::<f64>() as f64, options.memory_limit)?;
         // Iterating on most of the space costs more than all of it at once, and cannot end well: columns
         // that hold all modes but few become dependent in the first round.
         dense::eigen(&stiffness, &mass, &held).map_err(|e| SolveError::of(e, model, group))?
@@ -127,6 +131,7 @@ fn subspace(
         DMatrix::from_fn(n, columns, |i, _| if held[i] { 0.0 } else { random.random_range(-1.0..1.0) });
     let mut previous = vec![f64::INFINITY; count];
     for round in 1..=ROUNDS {
+        SolveError::in_time()?;
         let y = times(mass, &x);
         let mut z = y.clone();
         factor.solve(z.as_mut_slice(), columns);

@@ -201,13 +201,23 @@ struct Progress {
     iterations: usize,
     /// Failed attempts since the last step.
     cut_backs: usize,
+    /// Failed attempts of the whole search.
+    failed: usize,
 }
 
+/// Attempts of a search that may fail: one that converges has failed a few times, or a few dozen.
+const MOST_FAILED: usize = 10_000;
+
 impl Progress {
-    /// Counts an attempt that failed.
-    fn cut_back(&mut self, failure: &Failure) {
+    /// Counts an attempt that failed; the last that a search may have says so.
+    fn cut_back(&mut self, failure: Failure) -> Failure {
         self.iterations += failure.iterations;
         self.cut_backs += 1;
+        self.failed += 1;
+        if self.failed < MOST_FAILED || failure.is_final() {
+            return failure;
+        }
+        Failure { obstacle: Obstacle::CutBacks(self.failed), ..failure }
     }
 
     /// Counts a step and shows it.
@@ -267,7 +277,7 @@ pub fn solve(
 /// # Errors
 /// M009, M010 for supports and bodies; N002 for memory.
 pub fn plan(model: &Model, options: &Options) -> Result<Plan, NonlinearError> {
-    Ok(Plan::new(model, &[DofGroup::Shell], options.path)?)
+    Ok(Plan::direct(model, &[DofGroup::Shell], options)?)
 }
 
 /// [`solve`], [`follow`] or [`relax`] with a plan that was made before by [`plan`], for a model with the
@@ -334,9 +344,9 @@ fn grow(
                 }
             }
             Err(failure) => {
-                progress.cut_back(&failure);
+                let failure = progress.cut_back(failure);
                 step = 0.5 * (factor - state.factor).abs();
-                if step < settings.smallest_step {
+                if step < settings.smallest_step || failure.is_final() {
                     return Err(failure.ends(progress.steps + 1, settings, state));
                 }
             }

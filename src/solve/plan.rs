@@ -34,8 +34,15 @@ impl Plan {
     /// # Errors
     /// M009 and M010 for hard supports and bodies that cannot be; N002 when the ordering or symbolic phase fails (out of memory).
     pub fn new(model: &Model, groups: &[DofGroup], path: Path) -> Result<Self, SolveError> {
-        let options = Options { path, method: Method::Direct, ..Options::default() };
-        Self::chosen(model, groups, &options)
+        Self::direct(model, groups, &Options { path, ..Options::default() })
+    }
+
+    /// The same with all that `options` say but the method.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new), and N011 for a factor that is too large.
+    pub fn direct(model: &Model, groups: &[DofGroup], options: &Options) -> Result<Self, SolveError> {
+        Self::chosen(model, groups, &Options { method: Method::Direct, ..*options })
     }
 
     /// Analyses a model for linear statics: [`groups`](Self::groups), each solved as `options` ask.
@@ -65,6 +72,7 @@ impl Plan {
             if options.method == Method::Auto && analysis.counts().bytes as u64 > options.factor_limit {
                 plan.iterated.push(group);
             } else {
+                SolveError::in_memory(analysis.counts().bytes as f64, options.memory_limit)?;
                 plan.groups.push((group, analysis));
             }
         }

@@ -12,9 +12,10 @@ use super::{Case, PreparedCase, StudyError, Watch, refused};
 use crate::case::Rotations;
 use crate::element::Mass;
 use crate::fields::Locator;
-use crate::finding::{Finding, Located, Place, StudyFact};
+use crate::finding::{Fact, Finding, Located, Place, StudyFact};
 use crate::mesh::QuadMesh;
 use crate::model::Model;
+use crate::platform;
 use crate::solve::newmark::{self, Energy, Instant, Rayleigh};
 use crate::solve::nonlinear::dynamics::{Dynamics, integrate_with};
 use crate::solve::{self, Solution};
@@ -85,6 +86,8 @@ struct Record<'a> {
     history: History,
     solution: Solution,
     watch: Watch<'a>,
+    /// What the motion may take (s), once it has taken more.
+    over: Option<f64>,
 }
 
 impl Record<'_> {
@@ -103,7 +106,8 @@ impl Record<'_> {
             history.displacement_max.max(largest_displacement(self.mesh, at.displacement));
         self.solution.displacement.copy_from_slice(at.displacement);
         self.solution.strain_energy = at.energy.strain;
-        self.watch.go_on()
+        self.over = platform::over();
+        if self.over.is_some() { ControlFlow::Break(()) } else { self.watch.go_on() }
     }
 }
 
@@ -111,6 +115,11 @@ impl Record<'_> {
 fn unbalanced(case: &Case, imbalance: f64, given: f64) -> Option<Finding> {
     (imbalance.max(given) > IMBALANCE_LIMIT)
         .then(|| Finding::new(StudyFact::Unbalanced { imbalance, given }).at(Place::file(&case.path)))
+}
+
+/// Whether a finding says that a motion was not computed to its end.
+pub(super) fn is_out_of_time(finding: &Finding) -> bool {
+    matches!(finding.fact, Fact::Study(StudyFact::OutOfTime { .. }))
 }
 
 /// Integrates in time and keeps the history.
@@ -132,6 +141,7 @@ pub(super) fn dynamics(
         },
         solution: Solution { dofs: prepared.plan.rows(model), ..Solution::at_rest(model) },
         watch,
+        over: None,
     };
     let state = if let Rotations::Large { spectral_radius } = rotations {
         let newmark::Settings { duration, step, tolerance, damping, load, mass } = *settings;
@@ -142,10 +152,15 @@ pub(super) fn dynamics(
         None
     };
     watch.not_stopped()?;
-    let Record { mut history, solution, .. } = record;
+    let Record { mut history, solution, over, .. } = record;
     let work = history.energy.iter().map(|e| e.work.abs()).fold(f64::MIN_POSITIVE, f64::max);
     history.imbalance = history.energy.iter().map(|e| e.imbalance().abs()).fold(0.0, f64::max) / work;
     let given = history.energy.iter().map(|e| -e.dissipated / work).fold(0.0, f64::max);
-    let findings = unbalanced(case, history.imbalance, given).into_iter().collect();
+    let mut findings: Vec<Finding> = unbalanced(case, history.imbalance, given).into_iter().collect();
+    let reached = history.time.last().copied().unwrap_or_default();
+    if let Some(seconds) = over.filter(|_| reached < settings.duration) {
+        let fact = StudyFact::OutOfTime { seconds, reached, duration: settings.duration };
+        findings.push(Finding::new(fact).at(Place::file(&case.path)));
+    }
     Ok(Outcome { history: Some(history), state, findings, ..Outcome::of(solution) })
 }

@@ -208,6 +208,7 @@ fn turned_about_more(model: &Model, state: &State) -> Option<Finding> {
 /// What to change in the case.
 fn cure(method: MethodChoice, obstacle: &Obstacle) -> &'static str {
     match (obstacle, method) {
+        (Obstacle::OutOfTime(_), _) => "allow more (`--time-limit`), or in [sheet] take fewer cells",
         (Obstacle::Folded, _) => "in [sheet] take more cells, so that a fold goes over several of them",
         (Obstacle::Moving | Obstacle::Unstable, MethodChoice::Flow) => {
             "in [analysis] try more steps, and in [sheet] more cells"

@@ -4,6 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::{Matrix2, Matrix3, Point3};
 
+use super::effort::within_limits;
 use super::limits::Extent;
 use super::{Case, StudyError, build, placed, refused, sheet_problem};
 use crate::case::{Analysis, Newmark, Outline, ProbePoint, Problem, Sheet, SheetProblem};
@@ -50,6 +51,7 @@ impl<'a> PreparedCase<'a> {
     pub fn new(case: &'a Case, options: &Options) -> Result<Self, StudyError> {
         let problem = sheet_problem(case)?;
         let options = &case.options(options)?;
+        within_limits(case, options)?;
         let own = Self::on(case, problem, &problem.sheet, options)?;
         let coarser = problem.analysis.coarser().into_iter().flat_map(|meshes| {
             let on = |sheet| Self::on(case, problem, sheet, options);
@@ -76,12 +78,12 @@ impl<'a> PreparedCase<'a> {
         let plan = match &problem.analysis {
             Analysis::Linear(_) => Plan::of(&model, options)?,
             Analysis::Modal(_) | Analysis::Newmark(_) | Analysis::Nonlinear(_) => {
-                Plan::new(&model, &groups, options.path)?
+                Plan::direct(&model, &groups, options)?
             }
         };
         let damped = matches!(&problem.analysis, Analysis::Newmark(Newmark { damping: Some(_), .. }));
         let all_groups =
-            (damped && all != groups).then(|| Plan::new(&model, &all, options.path)).transpose()?;
+            (damped && all != groups).then(|| Plan::direct(&model, &all, options)).transpose()?;
         let probes = locators(case, problem, &model.mesh)?;
         let [from, to] = middle_line(&model.mesh);
         let middle = Line::new(&model.mesh, &from, &to, STEPS);
@@ -116,7 +118,7 @@ pub fn validate(case: &Case) -> Result<(), StudyError> {
     let section = case.problem.section();
     let section = section.map(|table| placed(case, table, build::section(&table.value))).transpose()?;
     let section = section.unwrap_or_else(stand_in);
-    case.options(&Options::default())?;
+    within_limits(case, &case.options(&Options::default())?)?;
     match &case.problem {
         Problem::Sheet(problem) => {
             let model = build::model_on(case, problem, &problem.sheet, section)?;

@@ -4,7 +4,8 @@ use std::sync::{Arc, OnceLock};
 
 use super::checked::check;
 use super::convergence::Convergence;
-use super::dynamics::{dynamics, rayleigh};
+use super::dynamics::{dynamics, is_out_of_time, rayleigh};
+use super::finite::finite;
 use super::limits::{Beyond, buckles, findings, is_compressed};
 use super::nonlinear::{equilibrium, largest_w};
 use super::result::{CaseResult, Kept, Outcome, Probe, Status};
@@ -102,6 +103,7 @@ impl PreparedCase<'_> {
             result.findings.extend(convergence.finding(case));
             result.convergence = Some(convergence);
         }
+        finite(&result)?;
         let checks = &self.problem.checks;
         result.checks = checks.iter().map(|c| check(case, c, &result)).collect::<Result<_, _>>()?;
         let failed = result.checks.iter().zip(checks).filter(|(result, _)| !result.passed);
@@ -155,6 +157,7 @@ impl PreparedCase<'_> {
         findings.extend(own);
         let status = match &path {
             Some(path) if !path.converged => Status::NotConverged,
+            _ if findings.iter().any(is_out_of_time) => Status::NotConverged,
             _ if beyond.is_some() => Status::BeyondLinear,
             _ => Status::Ok,
         };

@@ -10,6 +10,7 @@
 
 use nalgebra::Vector3;
 
+use super::effort::within_limits;
 use super::prepared::stand_in;
 use super::uncertainty::{Prediction, energy_derivative};
 use super::virtual_large::LargeTest;
@@ -203,6 +204,7 @@ impl PreparedTest {
         let (spec, formulation, test) = (&specimen.test, specimen.formulation, specimen.test.kind());
         let TestSpec { gauge, width, .. } = *spec.test().spec();
         let [cells_along, cells_across] = spec.cells.unwrap_or([10, 20]);
+        within_limits(case, options)?;
         let mesh = mesh::rectangle(gauge, width, cells_along, cells_across)?;
         let (left, right) = (mesh.set("left")?.to_vec(), mesh.set("right")?.to_vec());
         // A small unit of the abscissa; the solution is scaled, so its size is free.

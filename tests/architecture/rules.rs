@@ -182,6 +182,7 @@ const FILES: &[&str] = &[
     "src/instrument/read.rs",
     "src/study/build.rs",
     "src/case/mod.rs",
+    "src/report/output_folder.rs",
     "src/report/write.rs",
     "src/results/inputs.rs",
     "src/results/init/",

@@ -5,6 +5,7 @@
 //! understood is told, and that every computation ends.
 
 mod folders;
+mod limits;
 
 use std::fs;
 use std::path::Path;

@@ -23,6 +23,17 @@ super::facts! {
             /// What to change in the case.
             cure: String,
         } = "step {step} from {factor:.4} of the load: {obstacle}; {cure}; the results are the last state that was reached";
+        /// A motion was not computed to its end.
+        "N010" OutOfTime {
+            /// What it may take (s of the clock).
+            seconds: f64,
+            /// Time reached (s).
+            reached: f64,
+            /// Time that was asked for (s).
+            duration: f64,
+        } = "the motion was computed up to t = {} of {} s when it had taken the {seconds} s that it may take: allow more \
+             (`--time-limit`), or take fewer cells or steps; the results end there",
+            significant(*reached), significant(*duration);
         /// A linear result beyond its meaning.
         "S101" BeyondLinear {
             /// What is too large.

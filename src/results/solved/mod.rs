@@ -23,7 +23,12 @@ use crate::study::CaseResult;
 
 /// Whether a finding says that a search found no equilibrium, or none at the whole load.
 fn is_unconverged(finding: &Finding) -> bool {
-    matches!(finding.fact, Fact::Study(StudyFact::NotConverged { .. } | StudyFact::Unfinished { .. }))
+    matches!(
+        finding.fact,
+        Fact::Study(
+            StudyFact::NotConverged { .. } | StudyFact::Unfinished { .. } | StudyFact::OutOfTime { .. }
+        )
+    )
 }
 
 /// What a reader of the result must know; a search without an end is a failure instead.

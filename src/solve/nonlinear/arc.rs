@@ -84,7 +84,7 @@ pub(super) fn follow_path(
                 }
             }
             Err(failure) => {
-                progress.cut_back(&failure);
+                let failure = progress.cut_back(failure);
                 length *= 0.5;
                 start *= 0.5;
                 let spent = if first.is_some() {
@@ -92,7 +92,7 @@ pub(super) fn follow_path(
                 } else {
                     start.abs() <= HALVINGS * arc.first.abs()
                 };
-                if spent {
+                if spent || failure.is_final() {
                     return Err(failure.ends(progress.steps + 1, settings, state));
                 }
             }
@@ -117,6 +117,9 @@ fn advance(
     let mut forces = balance.forces();
     for iterations in 1..=settings.iterations {
         let failure = |residual, obstacle| Failure { iterations, residual, obstacle };
+        if let Some(failure) = Failure::out_of_time(iterations, balance.relative_residual()) {
+            return Err(failure);
+        }
         let (matrix, push) = system.tangent(&state, &balance, &forces, 0.0);
         let tangent = system
             .factorise(&matrix)

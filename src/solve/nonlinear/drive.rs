@@ -88,9 +88,9 @@ pub fn drive(
                     }
                 }
                 Err(failure) => {
-                    progress.cut_back(&failure);
+                    let failure = progress.cut_back(failure);
                     part = 0.5 * (next - done);
-                    if part < settings.smallest_step * whole {
+                    if part < settings.smallest_step * whole || failure.is_final() {
                         return Err(failure.ends(progress.steps + 1, settings, state));
                     }
                 }

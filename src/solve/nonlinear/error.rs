@@ -55,6 +55,10 @@ pub enum Obstacle {
     TooFar,
     /// All steps of a flow were taken, and the sheet still moves.
     Moving,
+    /// The search took longer than it may (s).
+    OutOfTime(f64),
+    /// So many attempts have failed that the search is given up.
+    CutBacks(usize),
 }
 
 impl Obstacle {
@@ -62,6 +66,7 @@ impl Obstacle {
     fn cure(&self) -> &'static str {
         match self {
             Self::Moving => "give the flow more steps",
+            Self::OutOfTime(_) => "allow more (`--time-limit`), or take a coarser mesh",
             Self::Folded => "take a finer mesh, so that a fold goes over several elements",
             _ => "take smaller steps, a finer mesh or a smaller load",
         }
@@ -83,6 +88,8 @@ impl Obstacle {
             Self::Unstable => "the equilibrium that was found is unstable".into(),
             Self::Folded => "elements bend by more than 90 degrees, which the mesh cannot show".into(),
             Self::Uphill => "the sheet is unstable there, and no drag brings it away".into(),
+            Self::OutOfTime(seconds) => format!("it has taken longer than the {seconds} s that it may take"),
+            Self::CutBacks(failed) => format!("{failed} attempts have failed"),
             Self::TooFar => "the path cannot be followed so far in one step".into(),
         }
     }

@@ -106,9 +106,9 @@ pub(super) fn relax_system(
         let step = match newton(system, &state, factor, &inner, &drag) {
             Ok(step) => step,
             Err(failure) => {
-                progress.cut_back(&failure);
+                let failure = progress.cut_back(failure);
                 pace.slow();
-                if pace.rate > LARGEST_RISE * first {
+                if pace.rate > LARGEST_RISE * first || failure.is_final() {
                     return Err(failure.ends(progress.steps + 1, settings, state));
                 }
                 continue;
@@ -178,7 +178,7 @@ pub(super) fn settle(
             Err(failure) => {
                 iterations += failure.iterations;
                 pace.slow();
-                if pace.rate > LARGEST_RISE * first {
+                if pace.rate > LARGEST_RISE * first || failure.is_final() {
                     return Err(Failure { iterations, ..failure });
                 }
             }

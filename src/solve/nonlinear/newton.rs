@@ -2,6 +2,7 @@
 
 use super::system::{Balance, System};
 use super::{NonlinearError, Obstacle, Settings, State};
+use crate::platform::over;
 use crate::solve::SolveError;
 use crate::solve::factor::FactorError;
 
@@ -52,6 +53,16 @@ impl Failure {
     /// An equilibrium that is not good enough.
     pub fn of(step: &Converged, obstacle: Obstacle) -> Self {
         Self { iterations: step.iterations, residual: step.balance.relative_residual(), obstacle }
+    }
+
+    /// What ends every search, however small its steps may become.
+    pub fn out_of_time(iterations: usize, residual: f64) -> Option<Self> {
+        over().map(|seconds| Self { iterations, residual, obstacle: Obstacle::OutOfTime(seconds) })
+    }
+
+    /// Whether no shorter step is worth trying.
+    pub fn is_final(&self) -> bool {
+        matches!(self.obstacle, Obstacle::OutOfTime(_) | Obstacle::CutBacks(_))
     }
 
     /// The error when no smaller step is left.
@@ -117,6 +128,9 @@ pub(super) fn newton_with(
     let mut forces = balance.forces();
     for iterations in 1..=settings.iterations {
         let failure = |residual, obstacle| Failure { iterations, residual, obstacle };
+        if let Some(failure) = Failure::out_of_time(iterations, balance.relative_residual()) {
+            return Err(failure);
+        }
         let (matrix, push) = system.tangent(&state, &balance, &forces, drag.rate);
         let tangent = system
             .factorise(&matrix)

@@ -53,7 +53,11 @@ pub(super) fn check(
     // The iteration goes to the eigenvalue nearest to minus the shift: below all of them.
     let mut shift = 0.0;
     while factor.negative_pivots() > 0 {
+        SolveError::in_time()?;
         shift = if shift == 0.0 { 1e-12 * system.stiffest() } else { 4.0 * shift };
+        if !shift.is_finite() {
+            return Err(SolveError::NotFinite { quantity: "the tangent of the equilibrium".into() }.into());
+        }
         factor = tangent(shift).map_err(SolveError::Factor)?.1;
     }
     let (lowest_eigenvalue, shape) = inverse_iteration(system, &matrix, &factor);

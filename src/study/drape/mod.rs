@@ -22,6 +22,7 @@ use rand_pcg::Pcg64Mcg;
 
 pub use rim::Folds;
 
+use super::effort::within_limits;
 use super::{Case, StudyError, Watch, build, refused};
 use crate::case::{Annulus, DrapeProblem, Outline, Problem, Sheet};
 use crate::characterise::FabricSheet;
@@ -126,6 +127,7 @@ pub fn drape(
         return Err(refused(case, &Located::from(()), message));
     };
     let DrapeProblem { folds, refinements, .. } = problem;
+    within_limits(case, &case.options(options)?)?;
     let ring = Ring::of(problem);
     let model = ring.model(case, problem, section)?;
     build::weighed(&model)?;

@@ -1,0 +1,479 @@
+//! A folder of results on disk: what this program wrote there, and nobody else's work.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, File, TryLockError};
+use std::io::{self, BufWriter, Read as _, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use sha2::{Digest, Sha256};
+use tempfile::NamedTempFile;
+
+use super::write::{
+    Bytes, Digest32, Hashes, MANIFEST, OutputError, digest, existing, from_hexadecimal, hexadecimal, inside,
+    is_temporary, manifest, place, temporary, write_manifest,
+};
+
+/// What a run is writing, until its manifest is there: a line for each file, ahead of it, so that a run that was
+/// killed can be repeated.
+const JOURNAL: &str = crate::instrument::JOURNAL;
+
+/// A folder of results. It may be written to from several threads.
+///
+/// A file is overwritten only if it is as this program left it (the manifest or the journal of a run that was killed
+/// knows its hash) or holds the same bytes already. What was written is noted in the manifest by
+/// [`finish`](Self::finish), or when the folder is dropped.
+#[derive(Debug)]
+pub struct OutputFolder {
+    root: PathBuf,
+    force: bool,
+    /// What earlier runs wrote; several hashes where one of them was killed.
+    earlier: BTreeMap<Box<str>, Vec<Digest32>>,
+    written: Mutex<Written>,
+    finished: bool,
+}
+
+/// What this run wrote.
+#[derive(Debug)]
+struct Written {
+    files: Hashes,
+    /// Locked as long as this run lasts.
+    journal: File,
+}
+
+/// A file that is being written: under a temporary name until [`commit`](Self::commit).
+#[derive(Debug)]
+pub struct Pending<'f> {
+    folder: &'f OutputFolder,
+    name: String,
+    path: PathBuf,
+    file: BufWriter<NamedTempFile>,
+    hasher: Sha256,
+}
+
+impl OutputFolder {
+    /// Opens a folder, making it if needed, and tries that it can be written to, before the long run. Temporary files
+    /// of runs that were killed are removed.
+    ///
+    /// # Errors
+    /// [`OutputError::Write`] if it cannot be made or is read-only, [`OutputError::Manifest`] if its manifest
+    /// is not one (unless `force`), [`OutputError::Busy`] if another run is writing into it.
+    pub fn open(root: &Path, force: bool) -> Result<Self, OutputError> {
+        fs::create_dir_all(root).map_err(|source| OutputError::Write { path: root.to_path_buf(), source })?;
+        drop(temporary(&root.join(MANIFEST))?);
+        let files = match manifest(root) {
+            Err(OutputError::Manifest { .. }) if force => Hashes::new(),
+            files => files?,
+        };
+        let mut earlier: BTreeMap<Box<str>, Vec<Digest32>> =
+            files.into_iter().map(|(name, hash)| (name, vec![hash])).collect();
+        let (journal, lines, is_alone) = open_journal(root)?;
+        // The last line may have been cut short.
+        for (name, hash) in
+            lines.lines().filter_map(|line| serde_json::from_str::<(Box<str>, String)>(line).ok())
+        {
+            earlier.entry(name).or_default().extend(from_hexadecimal(&hash));
+        }
+        if is_alone {
+            remove_orphans(root, earlier.keys());
+        }
+        let written = Mutex::new(Written { files: Hashes::new(), journal });
+        Ok(Self { root: root.to_path_buf(), force, earlier, written, finished: false })
+    }
+
+    /// The folder.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// Writes a file at `name`, a path relative to the folder with `/` between its parts.
+    ///
+    /// # Errors
+    /// [`OutputError::Name`], [`OutputError::NotOurs`] or [`OutputError::Write`]; nothing is changed then.
+    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
+        let path = self.path(name)?;
+        let new = digest(bytes);
+        if self.is_new(name, &path, &new)? {
+            self.announce(name, &new)?;
+            let mut file = below(&path)?;
+            file.write_all(bytes).map_err(|source| OutputError::Write { path: path.clone(), source })?;
+            place(file, &path)?;
+        }
+        self.written().files.insert(name.into(), new);
+        Ok(())
+    }
+
+    /// Begins a file that is written piece by piece.
+    ///
+    /// # Errors
+    /// [`OutputError::Name`] or [`OutputError::Write`].
+    pub fn create(&self, name: &str) -> Result<Pending<'_>, OutputError> {
+        let path = self.path(name)?;
+        let file = BufWriter::new(below(&path)?);
+        Ok(Pending { folder: self, name: name.to_string(), path, file, hasher: Sha256::new() })
+    }
+
+    /// The bytes of a file, if this run or an earlier one wrote it and left it so.
+    ///
+    /// # Errors
+    /// [`OutputError::Write`] if it cannot be read.
+    pub fn read(&self, name: &str) -> Bytes {
+        if !inside(name) {
+            return Ok(None);
+        }
+        Ok(existing(&self.root.join(name))?.filter(|bytes| self.is_ours(name, &digest(bytes))))
+    }
+
+    /// Keeps a file of an earlier run as it is, if it is as that run left it: it then counts as written by this one.
+    ///
+    /// # Errors
+    /// [`OutputError::Write`] if it cannot be read.
+    pub fn keep(&self, name: &str) -> Result<bool, OutputError> {
+        let Some(bytes) = self.read(name)? else { return Ok(false) };
+        self.written().files.insert(name.into(), digest(&bytes));
+        Ok(true)
+    }
+
+    fn path(&self, name: &str) -> Result<PathBuf, OutputError> {
+        if !inside(name) || [MANIFEST, JOURNAL].contains(&name) || name.contains('\\') {
+            return Err(OutputError::Name { name: name.to_string() });
+        }
+        Ok(self.root.join(name))
+    }
+
+    /// Whether a file with these bytes is yet to be written.
+    fn is_new(&self, name: &str, path: &Path, new: &Digest32) -> Result<bool, OutputError> {
+        match existing(path)?.as_deref().map(digest) {
+            Some(old) if old == *new => Ok(false),
+            Some(old) if !self.force && !self.is_ours(name, &old) => {
+                Err(OutputError::NotOurs { path: path.to_path_buf() })
+            }
+            _ => Ok(true),
+        }
+    }
+
+    /// Whether a file is as an earlier run left it, or written by this one.
+    fn is_ours(&self, name: &str, hash: &Digest32) -> bool {
+        self.earlier.get(name).is_some_and(|hashes| hashes.contains(hash))
+            || self.written().files.get(name) == Some(hash)
+    }
+
+    fn written(&self) -> MutexGuard<'_, Written> {
+        self.written.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Notes in the journal what will be written.
+    fn announce(&self, name: &str, hash: &Digest32) -> Result<(), OutputError> {
+        let line = format!("{}\n", serde_json::json!([name, hexadecimal(hash)]));
+        self.written()
+            .journal
+            .write_all(line.as_bytes())
+            .map_err(|source| OutputError::Write { path: self.root.join(JOURNAL), source })
+    }
+
+    /// Whether this run wrote a file of that name.
+    pub fn wrote(&self, name: &str) -> bool {
+        self.written().files.contains_key(name)
+    }
+
+    /// Writes the manifest. Returns the names that earlier runs wrote, this one did not, and are still there:
+    /// left-overs that a reader of the folder should know of.
+    ///
+    /// # Errors
+    /// [`OutputError::Write`].
+    pub fn finish(mut self) -> Result<Vec<String>, OutputError> {
+        self.settle()
+    }
+
+    /// Writes the manifest and takes the journal away.
+    fn settle(&mut self) -> Result<Vec<String>, OutputError> {
+        self.finished = true;
+        let mut files = std::mem::take(&mut self.written().files);
+        let mut left_over = Vec::new();
+        for (name, hashes) in std::mem::take(&mut self.earlier) {
+            if files.contains_key(&name) {
+                continue;
+            }
+            // Of a run that was killed, the file may be as it was before or after.
+            let path = self.root.join(&*name);
+            let now = || existing(&path).ok().flatten().map(|bytes| digest(&bytes));
+            let left = match &hashes[..] {
+                [only] => path.exists().then_some(*only),
+                several => now().filter(|now| several.contains(now)),
+            };
+            if let Some(left) = left {
+                left_over.push(name.to_string());
+                files.insert(name, left);
+            }
+        }
+        write_manifest(&self.root, &files)?;
+        // What is left of it does no harm: the manifest knows the same.
+        let _ = fs::remove_file(self.root.join(JOURNAL));
+        Ok(left_over)
+    }
+}
+
+impl Drop for OutputFolder {
+    /// A run that ends early has left files as well.
+    fn drop(&mut self) {
+        if !self.finished {
+            let _ = self.settle();
+        }
+    }
+}
+
+impl Write for Pending<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.file.write(bytes)?;
+        self.hasher.update(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Pending<'_> {
+    /// Gives the file its name.
+    ///
+    /// # Errors
+    /// [`OutputError::NotOurs`] or [`OutputError::Write`]; nothing is changed then.
+    pub fn commit(self) -> Result<(), OutputError> {
+        let Self { folder, name, path, file, hasher } = self;
+        let new: Digest32 = hasher.finalize().into();
+        let failed = |e: io::IntoInnerError<BufWriter<NamedTempFile>>| OutputError::Write {
+            path: path.clone(),
+            source: e.into_error(),
+        };
+        let file = file.into_inner().map_err(failed)?;
+        if folder.is_new(&name, &path, &new)? {
+            folder.announce(&name, &new)?;
+            place(file, &path)?;
+        }
+        folder.written().files.insert(name.into(), new);
+        Ok(())
+    }
+}
+
+/// A temporary file beside a path, in its folder, which is made if needed.
+fn below(path: &Path) -> Result<NamedTempFile, OutputError> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)
+            .map_err(|source| OutputError::Write { path: folder.to_path_buf(), source })?;
+    }
+    temporary(path)
+}
+
+/// The journal, locked for this run, what is in it, and whether the lock says that no other run writes here.
+fn open_journal(root: &Path) -> Result<(File, String, bool), OutputError> {
+    let path = root.join(JOURNAL);
+    let failed = |source: io::Error| OutputError::Write { path: path.clone(), source };
+    let mut journal = File::options().create(true).read(true).append(true).open(&path).map_err(failed)?;
+    // Some network folders know no locks: two runs at once are then not noticed.
+    let is_alone = match journal.try_lock() {
+        Ok(()) => true,
+        Err(TryLockError::WouldBlock) => return Err(OutputError::Busy { path: root.to_path_buf() }),
+        Err(TryLockError::Error(_)) => false,
+    };
+    let mut lines = Vec::new();
+    journal.read_to_end(&mut lines).map_err(failed)?;
+    if lines.last().is_some_and(|last| *last != b'\n') {
+        // The run before was killed within a line: the next one is not to become a part of it.
+        journal.write_all(b"\n").map_err(failed)?;
+    }
+    Ok((journal, String::from_utf8_lossy(&lines).into_owned(), is_alone))
+}
+
+/// Removes the temporary files that runs left which were killed: in the folder, and in those of their files.
+fn remove_orphans<'a>(root: &Path, names: impl Iterator<Item = &'a Box<str>>) {
+    let inner = names
+        .filter(|name| inside(name))
+        .filter_map(|name| root.join(&**name).parent().map(Path::to_path_buf));
+    let folders: BTreeSet<PathBuf> = inner.chain([root.to_path_buf()]).collect();
+    for folder in folders {
+        let Ok(entries) = fs::read_dir(&folder) else { continue };
+        for entry in entries.flatten().filter(|entry| is_temporary(&entry.file_name().to_string_lossy())) {
+            // One that cannot be removed does no harm.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::write::{hash, write_atomic};
+    use super::*;
+
+    fn names(root: &Path) -> Vec<String> {
+        let mut names: Vec<String> =
+            fs::read_dir(root).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn our_own_files_are_replaced_and_others_are_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path().join("new/results");
+        let out = OutputFolder::open(&root, false).unwrap();
+        out.write("a.csv", b"1").unwrap();
+        out.write("poplin/sheet.json", b"{}").unwrap();
+        out.write("a.csv", b"2").unwrap();
+        assert!(out.finish().unwrap().is_empty());
+        assert_eq!(names(&root), [MANIFEST, "a.csv", "poplin"]);
+
+        fs::write(root.join("mine.csv"), b"mine").unwrap();
+        fs::write(root.join("poplin/sheet.json"), b"{ edited }").unwrap();
+        let out = OutputFolder::open(&root, false).unwrap();
+        out.write("a.csv", b"3").unwrap();
+        assert!(matches!(out.write("mine.csv", b"x"), Err(OutputError::NotOurs { .. })));
+        assert!(matches!(out.write("poplin/sheet.json", b"x"), Err(OutputError::NotOurs { .. })));
+        assert_eq!(fs::read(root.join("mine.csv")).unwrap(), b"mine");
+        assert_eq!(out.finish().unwrap(), ["poplin/sheet.json"], "left over from the first run");
+
+        let out = OutputFolder::open(&root, true).unwrap();
+        out.write("mine.csv", b"x").unwrap();
+        out.write("poplin/sheet.json", b"x").unwrap();
+        assert_eq!(fs::read(root.join("mine.csv")).unwrap(), b"x");
+    }
+
+    #[test]
+    fn a_run_that_ends_early_can_be_repeated_with_other_inputs() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = OutputFolder::open(folder.path(), false).unwrap();
+        out.write("a.csv", b"1").unwrap();
+        drop(out);
+        let out = OutputFolder::open(folder.path(), false).unwrap();
+        out.write("a.csv", b"2").unwrap();
+        out.finish().unwrap();
+        assert_eq!(names(folder.path()), [MANIFEST, "a.csv"]);
+    }
+
+    #[test]
+    fn a_run_that_was_killed_can_be_repeated_with_other_inputs() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text) in [("a.csv", "1"), ("b.csv", "1"), ("mine.csv", "mine")] {
+            fs::write(folder.path().join(name), text).unwrap();
+        }
+        // Before `a.csv` there was another; `b.csv` was announced and not written; the last line is cut short.
+        let lines = format!("{:?}\n{:?}\n[\"c.c", ["a.csv", &hash(b"1")], ["b.csv", &hash(b"2")]);
+        fs::write(folder.path().join(JOURNAL), lines).unwrap();
+        let out = OutputFolder::open(folder.path(), false).unwrap();
+        out.write("a.csv", b"3").unwrap();
+        assert!(matches!(out.write("b.csv", b"3"), Err(OutputError::NotOurs { .. })));
+        assert!(matches!(out.write("mine.csv", b"3"), Err(OutputError::NotOurs { .. })));
+        out.finish().unwrap();
+        assert_eq!(names(folder.path()), [MANIFEST, "a.csv", "b.csv", "mine.csv"]);
+    }
+
+    #[test]
+    fn runs_that_were_killed_one_after_the_other_can_be_repeated() {
+        let folder = tempfile::tempdir().unwrap();
+        // The first was killed within a line of its journal, the second at once after a file.
+        fs::write(folder.path().join(JOURNAL), "[\"a.c").unwrap();
+        let out = OutputFolder::open(folder.path(), false).unwrap();
+        out.write("b.csv", b"1").unwrap();
+        std::mem::forget(out);
+        // In one process the lock would outlive the run: the journal alone is what a kill leaves.
+        let journal = fs::read(folder.path().join(JOURNAL)).unwrap();
+        fs::remove_file(folder.path().join(JOURNAL)).unwrap();
+        fs::write(folder.path().join(JOURNAL), journal).unwrap();
+        let out = OutputFolder::open(folder.path(), false).unwrap();
+        out.write("b.csv", b"2").unwrap();
+    }
+
+    #[test]
+    fn temporary_files_of_a_run_that_was_killed_are_removed_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::create_dir(folder.path().join("poplin")).unwrap();
+        let orphans = [".kesf-a1B2c3", "poplin/.kesf-Zz9Zz9"];
+        let others = [".kesf-notes.txt", "poplin/.kesf-mine", "poplin/a1B2c3"];
+        for name in orphans.into_iter().chain(others) {
+            fs::write(folder.path().join(name), "").unwrap();
+        }
+        fs::write(folder.path().join(JOURNAL), "[\"poplin/sheet.json\",\"00\"]\n").unwrap();
+        OutputFolder::open(folder.path(), false).unwrap().finish().unwrap();
+        assert!(orphans.iter().all(|name| !folder.path().join(name).exists()));
+        assert!(others.iter().all(|name| folder.path().join(name).exists()));
+    }
+
+    #[test]
+    fn two_runs_at_once_are_kept_apart() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = OutputFolder::open(folder.path(), false).unwrap();
+        assert!(matches!(OutputFolder::open(folder.path(), true), Err(OutputError::Busy { .. })));
+        first.finish().unwrap();
+        assert!(OutputFolder::open(folder.path(), false).is_ok());
+    }
+
+    #[test]
+    fn the_manifest_is_the_same_for_the_same_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let manifest = || {
+            let out = OutputFolder::open(folder.path(), false).unwrap();
+            out.write("b", b"1").unwrap();
+            out.write("a", b"1").unwrap();
+            out.finish().unwrap();
+            fs::read_to_string(folder.path().join(MANIFEST)).unwrap()
+        };
+        let first = manifest();
+        assert_eq!(first, manifest());
+        // SHA-256 of "1" (FIPS 180-4; sha256sum).
+        assert!(first.contains("6b86b273ff34fce19d6b804eff5a3f5747ada4eaa22f1d49c01e52ddb7875b4b"));
+    }
+
+    #[test]
+    fn names_that_leave_the_folder_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = OutputFolder::open(folder.path(), false).unwrap();
+        for name in ["", "../x", "/etc/x", "a/../../x", "..\\x", MANIFEST] {
+            assert!(matches!(out.write(name, b"x"), Err(OutputError::Name { .. })), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_broken_manifest_and_a_file_in_place_of_the_folder_are_errors() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join(MANIFEST), b"not json").unwrap();
+        assert!(matches!(OutputFolder::open(folder.path(), false), Err(OutputError::Manifest { .. })));
+        assert!(OutputFolder::open(folder.path(), true).is_ok());
+        let file = folder.path().join("file");
+        fs::write(&file, b"").unwrap();
+        assert!(matches!(OutputFolder::open(&file, false), Err(OutputError::Write { .. })));
+        assert!(matches!(write_atomic(&file.join("x"), b""), Err(OutputError::Write { .. })));
+    }
+
+    #[test]
+    fn a_file_that_is_written_in_pieces_is_whole_or_not_there() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("mine.csv"), "mine").unwrap();
+        let out = OutputFolder::open(folder.path(), false).unwrap();
+        let mut pending = out.create("a/b.csv").unwrap();
+        pending.write_all(b"1,").unwrap();
+        assert!(!folder.path().join("a/b.csv").exists());
+        pending.write_all(b"2").unwrap();
+        pending.commit().unwrap();
+        assert_eq!(fs::read(folder.path().join("a/b.csv")).unwrap(), b"1,2");
+        out.create("c.csv").unwrap().write_all(b"1").unwrap();
+        let mut foreign = out.create("mine.csv").unwrap();
+        foreign.write_all(b"1").unwrap();
+        assert!(matches!(foreign.commit(), Err(OutputError::NotOurs { .. })));
+        out.finish().unwrap();
+        assert_eq!(names(folder.path()), [MANIFEST, "a", "mine.csv"]);
+    }
+
+    #[test]
+    fn files_of_an_earlier_run_are_read_and_kept_as_it_left_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = OutputFolder::open(folder.path(), false).unwrap();
+        ["a", "b"].iter().for_each(|name| out.write(name, b"1").unwrap());
+        assert_eq!(out.read("a").unwrap().as_deref(), Some(&b"1"[..]));
+        out.finish().unwrap();
+        fs::write(folder.path().join("b"), "edited").unwrap();
+        let out = OutputFolder::open(folder.path(), false).unwrap();
+        assert_eq!(["a", "b", "c"].map(|name| out.keep(name).unwrap()), [true, false, false]);
+        assert_eq!(out.read("b").unwrap(), None);
+        assert_eq!(out.finish().unwrap(), ["b"]);
+    }
+}
