@@ -53,6 +53,7 @@ const ITERATIVE: Options = Options {
     coupled: false,
     method: Method::Iterative,
     factor_limit: 0,
+    memory_limit: u64::MAX,
     iteration: Settings { tolerance: 1e-10, max_iterations: 1000 },
 };
 

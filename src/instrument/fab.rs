@@ -76,7 +76,7 @@ impl FabTest {
 }
 
 /// A contact of the foot with the cloth in the thickness test.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// Thickness (m).
     pub thickness: f64,

@@ -102,8 +102,7 @@ impl<'a> Task<'a> {
     /// A task that shares nothing with others: a case with a fabric of the caller's choice, whatever fabric the case
     /// names, or with its own section. `threads` are those inside one solve; 0 is one.
     pub fn alone(case: &'a Case, fabric: Option<&'a Fabric>, threads: usize) -> Self {
-        let options = SolveOptions { threads: threads.max(1), ..SolveOptions::default() };
-        Self::new(case, fabric, Arc::new(Shared::new(options)))
+        Self::new(case, fabric, Arc::new(Shared::new(threads.max(1), Limits::default())))
     }
 
     /// The same with a section that was made of the fabric before: its assumptions stand, not those of the case.
