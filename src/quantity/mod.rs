@@ -9,6 +9,7 @@ mod estimate;
 mod propagation;
 mod sobol;
 mod text;
+mod thinned;
 mod unit;
 
 pub use curve::Curve;
