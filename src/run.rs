@@ -162,7 +162,7 @@ pub fn write(
     let figures = parity_charts(&reports, &folder)?;
     folder.json("run.json", &RunDocument::new(job, settings, &work))?;
     let benchmarks: Vec<Benchmark> = own.iter().filter_map(Own::benchmark).collect();
-    let page = page(&reports, &benchmarks, figures, &failures);
+    let page = page(&reports, &benchmarks, figures, &rows, &problems);
     folder.write("index.html", html(&page).as_bytes())?;
 
     let draped: Vec<_> = reports.iter().flat_map(|r| r.drapes.clone()).collect();

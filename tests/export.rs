@@ -150,17 +150,24 @@ fn a_report_is_one_page_with_its_pictures() {
     let index = fs::read_to_string(results.join("index.html")).unwrap();
     let page = fs::read_to_string(results.join("report.html")).unwrap();
     let count = |text: &str, what: &str| text.matches(what).count();
+    // The loops are drawn from data; their pictures are links, those of friction laws are shown.
+    assert!(
+        index.contains("href=\"./poplin/bending.png\"") && !index.contains("src=\"./poplin/bending.png\"")
+    );
     assert!(count(&index, "<img") >= 4);
     assert_eq!(count(&page, "src=\"data:image/png;base64,"), count(&index, "<img"));
-    assert_eq!(count(&page, "\"./"), 0);
+    assert_eq!(count(&page, "=\"./"), 0);
+    assert!(page.len() <= 3_000_000, "{}", page.len());
+    let root = env!("CARGO_MANIFEST_DIR");
+    assert!(!page.contains(root) && !page.contains(text(folder.path())));
     // The folder is still one of ours: both commands can be repeated.
     assert_eq!(code(&kesf(&run)), 0);
     assert_eq!(code(&kesf(&["-q", "report", text(&results)])), 0);
     // Nothing is sent that `kesf run` did not write.
-    fs::write(results.join("poplin/bending.png"), "secret").unwrap();
+    fs::write(results.join("poplin/friction_bending.png"), "secret").unwrap();
     let torn = kesf(&["report", text(&results), "-o", "-"]);
     assert!(
-        code(&torn) == 2 && torn.stdout.is_empty() && stderr(&torn).contains("bending.png"),
+        code(&torn) == 2 && torn.stdout.is_empty() && stderr(&torn).contains("friction_bending.png"),
         "{}",
         stderr(&torn)
     );

@@ -11,14 +11,14 @@ use super::output::{is_folder, is_stdin};
 use super::ui::Ui;
 use crate::finding::Place;
 use crate::report::OutputFolder;
-use crate::report::html::self_contained;
+use crate::report::html::{LIMIT, OneFile, self_contained};
 use crate::report::write::{left, write_file};
 use crate::results::Failure;
 
 /// Name of the page within the folder.
 const PAGE: &str = "report.html";
 
-/// Make one self-contained HTML page of a folder of results, pictures included
+/// Make one self-contained HTML page of a folder of results, with as many pictures as can be sent
 #[derive(Debug, Args)]
 #[command(after_help = "Example: kesf report results")]
 pub struct Options {
@@ -28,6 +28,9 @@ pub struct Options {
     /// Write to this file, or into this folder; `-` for standard output [default: report.html in the folder]
     #[arg(short, long, value_name = "PATH")]
     output: Option<PathBuf>,
+    /// Put every picture into the page, however large it becomes; otherwise as many kinds of charts as 3 MB hold
+    #[arg(long)]
+    all_pictures: bool,
     /// Overwrite a file that this tool did not write
     #[arg(long)]
     force: bool,
@@ -61,8 +64,15 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         })
     };
     let index = String::from_utf8_lossy(&left("index.html")?).into_owned();
-    let page = self_contained(&index, left)?
+    let limit = if options.all_pictures { usize::MAX } else { LIMIT };
+    let OneFile { page, left_out } = self_contained(&index, limit, left)?
         .ok_or_else(|| Failure::new("O059", "index.html is none of `kesf run`").at(Place::file(folder)))?;
+    if !left_out.is_empty() {
+        let (count, folder) = (left_out.len(), folder.display());
+        ui.note(&format!(
+            "{count} pictures are not in it, they are in {folder}; --all-pictures puts them in"
+        ));
+    }
     let written = match &options.output {
         Some(output) if is_stdin(output) && ui.json => {
             return ui.document(Document { page: Some(page), ..Document::default() });

@@ -14,8 +14,10 @@ pub mod vtu;
 pub mod workbook;
 pub mod write;
 
-#[cfg(feature = "charts")]
-mod number;
+mod axes;
+// Charts need all of it, the page a part.
+#[cfg_attr(not(feature = "charts"), allow(dead_code))]
+pub(crate) mod number;
 
 #[cfg(feature = "charts")]
 pub mod chart;

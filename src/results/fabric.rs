@@ -10,12 +10,12 @@ use super::overview;
 use super::simulate::simulate;
 use super::task::Task;
 use super::tested::{self, Tested};
-use super::{friction, solved};
+use super::{friction, page_curves, solved};
 use crate::characterise::FabricSheet;
 use crate::constitutive::{Assumptions, section};
 use crate::finding::{Finding, Place};
 use crate::report::chart::ParityPoint;
-use crate::report::html::Figure;
+use crate::report::html::{Figure, TestCurves};
 use crate::report::json::{assumptions, section_document, sheet_document};
 use crate::report::table::{FabricRow, PredictionRow, ProblemRow, UnitSystem, fabric_rows, problem_row};
 use crate::study::{CaseResult, Status};
@@ -33,6 +33,12 @@ pub struct FabricReport {
     pub cells: Vec<String>,
     /// Case and largest deflection (m).
     pub deflections: Vec<(String, f64)>,
+    /// Case and largest deflection over the bending thickness, of linear solves.
+    pub relative_deflections: Vec<(String, f64)>,
+    /// Title, weave, composition and origin, for people.
+    pub about: String,
+    /// Curves of its tests, thinned for the page.
+    pub curves: Vec<TestCurves>,
     /// `ok`, or what is the matter.
     pub status: String,
     /// Rows of `fabrics.csv`.
@@ -66,6 +72,7 @@ impl FabricReport {
             status: "ok".into(),
             rows: fabric_rows(sheet, UnitSystem::Si),
             findings: sheet.findings.clone(),
+            about: about(sheet),
             ..Self::default()
         };
         report
@@ -129,6 +136,10 @@ impl FabricReport {
 
     fn add_deflection(&mut self, result: &CaseResult) {
         self.deflections.push((result.case.clone(), result.w_max));
+        let is_linear = !result.is_modal() && result.path.is_none() && result.history.is_none();
+        if is_linear && result.w_over_thickness.is_finite() {
+            self.relative_deflections.push((result.case.clone(), result.w_over_thickness));
+        }
         if result.status != Status::Ok && self.status == "ok" {
             self.status = solved::status(result.status).into();
         }
@@ -136,6 +147,7 @@ impl FabricReport {
 
     /// Charts of the tests and of the friction laws.
     fn draw(&mut self, sheet: &FabricSheet, simulated: &[Tested], folder: &Folder) {
+        self.curves = page_curves::curves(sheet, simulated);
         if !folder.charts() {
             return;
         }
@@ -172,4 +184,13 @@ impl FabricReport {
             });
         }
     }
+}
+
+/// What `fabric.toml` says of it in a line.
+fn about(sheet: &FabricSheet) -> String {
+    let info = &sheet.info;
+    let title = Some(info.title.clone()).filter(|title| !title.is_empty());
+    let origin = Some(format!("{} data", info.origin.name()));
+    let parts = [title, info.weave.clone(), info.composition.clone(), origin, info.source.clone()];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(" · ")
 }

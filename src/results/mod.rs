@@ -25,6 +25,8 @@ mod observer;
 mod outcome;
 mod overview;
 mod page;
+mod page_curves;
+mod page_values;
 mod sampled;
 mod section;
 mod sheet_text;

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::characterise::{FabricSheet, SpecimenResult, Window};
 use crate::instrument::{Direction, Parameter, Test};
-use crate::quantity::{Curve, Unit};
+use crate::quantity::Curve;
+use crate::report::axes::{Axis, axes};
 
 use super::axes::Label;
 
@@ -20,36 +21,22 @@ pub(super) struct TestAxes {
 
 impl TestAxes {
     pub(super) fn of(test: Test) -> Self {
-        // quantity, KES unit, SI unit and the SI value of that unit; for x and y.
-        let (x, y) = match test {
-            Test::Tensile => {
-                (("Strain ε", "%", Some(("m/m", 1.0))), ("Force per width F", "gf/cm", ("N/m", 1.0)))
-            }
-            Test::Shear => {
-                (("Shear angle φ", "deg", Some(("rad", 1.0))), ("Shear force F", "gf/cm", ("N/m", 1.0)))
-            }
-            Test::Bending => (
-                ("Curvature K", "1/cm", Some(("m⁻¹", 1.0))),
-                ("Moment per width M", "gf·cm/cm", ("mN·m/m", 1e-3)),
-            ),
-            Test::Compression => (("Thickness T", "mm", None), ("Pressure P", "gf/cm²", ("kPa", 1e3))),
-        };
-        let (x_factor, y_factor) = (factor(x.1), factor(y.1));
-        let second = |si: f64, text: &str, factor: f64| Some((si / factor, text.to_string()));
+        let [x, y] = axes(test);
+        let second = |axis: Axis| axis.si.map(|(text, factor)| (factor / axis.kes_factor, text.to_string()));
         Self {
-            x_factor,
-            y_factor,
-            y_unit: y.1,
+            x_factor: x.kes_factor,
+            y_factor: y.kes_factor,
+            y_unit: y.kes_unit,
             x: Label {
-                quantity: x.0.into(),
-                unit: match x.1 {
+                quantity: x.quantity.into(),
+                unit: match x.kes_unit {
                     "deg" => "°".into(),
                     "1/cm" => "cm⁻¹".into(),
                     unit => unit.into(),
                 },
-                second: x.2.and_then(|(text, si)| second(si, text, x_factor)),
+                second: second(x),
             },
-            y: Label { quantity: y.0.into(), unit: y.1.into(), second: second(y.2.1, y.2.0, y_factor) },
+            y: Label { quantity: y.quantity.into(), unit: y.kes_unit.into(), second: second(y) },
         }
     }
 
@@ -61,11 +48,6 @@ impl TestAxes {
             .filter(|(x, y)| x.is_finite() && y.is_finite())
             .collect()
     }
-}
-
-fn factor(unit: &str) -> f64 {
-    // The four tests name units of the table in `quantity`; the tests of this module read them all.
-    Unit::parse(unit).map_or(f64::NAN, |u| u.factor)
 }
 
 /// One specimen on the chart.
