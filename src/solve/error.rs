@@ -1,5 +1,7 @@
 //! Why there is no solution.
 
+use serde::Serialize;
+
 use super::factor::FactorError;
 use crate::finding::errors;
 use crate::model::{DofGroup, Model, ModelError};
@@ -88,11 +90,13 @@ errors! {
             /// Rounds done.
             rounds: usize,
         } = "the modes did not settle in {rounds} rounds: ask for more modes, so that a cluster is not cut in two";
-        /// N005: the adaptive time step went to nothing.
+        /// N005: the time step went to nothing, or was cut too often.
         "N005" StepVanished {
             /// Time reached (s).
             time: f64,
-        } = "the time step vanished at t = {time} s: loosen the tolerance, or ramp the load instead of a step";
+            /// What cut it.
+            limit: StepLimit,
+        } = "the time step vanished at t = {time} s: {}", limit.cure();
         /// N008: weight or motion in time without mass.
         "N008" NoMass = "the sheet has no mass: weight, frequencies and motion in time need an areal density above 0; give \
              `areal_density` in [section], or the fabric its weight W";
@@ -105,6 +109,35 @@ fn gigabytes(bytes: f64) -> String {
         format!("{} GB", significant(bytes / 1e9))
     } else {
         "more than any machine has".into()
+    }
+}
+
+/// What asks for a shorter time step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StepLimit {
+    /// The local error is above the tolerance.
+    Tolerance,
+    /// Newton's method does not converge.
+    Convergence,
+    /// The step creates energy.
+    Energy,
+}
+
+impl StepLimit {
+    /// What helps.
+    fn cure(self) -> &'static str {
+        match self {
+            Self::Tolerance => "loosen the tolerance, or ramp the load instead of a step",
+            Self::Convergence => {
+                "Newton's method does not converge in shorter ones either; take a smaller step from the start, damping, \
+                 or a smaller spectral_radius"
+            }
+            Self::Energy => {
+                "the motion gains energy from nowhere in shorter ones too; take a smaller step from the start, damping, \
+                 or a smaller spectral_radius"
+            }
+        }
     }
 }
 

@@ -15,7 +15,7 @@ pub mod ordering;
 pub mod plan;
 pub mod sparse;
 
-pub use error::SolveError;
+pub use error::{SolveError, StepLimit};
 pub use linear::{
     Factors, MEMORY_LIMIT, Method, Options, Solution, System, Timings, solve, solve_keeping, solve_with,
 };

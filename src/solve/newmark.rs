@@ -5,12 +5,12 @@ pub(super) mod adaptive;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use super::SolveError;
 use super::assemble::{Kind, Pattern, assemble, unit_rows};
 use super::factor::{Analysis, Factor};
 use super::linear::Options;
 use super::plan::Plan;
 use super::sparse::BlockMatrix;
+use super::{SolveError, StepLimit};
 use crate::element::Mass;
 use crate::model::{DofGroup, Links, Model, ModelError};
 
@@ -185,7 +185,7 @@ pub fn newmark_with(
         if above(1.0) == Some(true) {
             step = 0.5 * dt;
             if step < 1e-9 * settings.duration {
-                return Err(SolveError::StepVanished { time });
+                return Err(SolveError::StepVanished { time, limit: StepLimit::Tolerance });
             }
             continue;
         }

@@ -15,11 +15,13 @@
 //! small of the order of the turn in a step.
 
 mod adaptive;
+mod guard;
 mod inertia;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use self::guard::Guard;
 use self::inertia::Inertia;
 use super::newton::{is_rounding, limit};
 use super::sheet::Forces;
@@ -27,13 +29,13 @@ use super::system::{Balance, System};
 use super::{NonlinearError, Settings, State, plan};
 use crate::element::Mass;
 use crate::model::Model;
-use crate::solve::SolveError;
 use crate::solve::assemble::unit_rows;
 use crate::solve::factor::Factor;
 use crate::solve::linear::Options;
 use crate::solve::newmark::{Energy, Instant, LoadHistory, Rayleigh};
 use crate::solve::plan::Plan;
 use crate::solve::sparse::BlockMatrix;
+use crate::solve::{SolveError, StepLimit};
 
 /// What to integrate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +69,8 @@ const RESIDUAL: f64 = 1e-9;
 /// Held values other than zero are not part of a dynamic run: they count as zero.
 ///
 /// # Errors
-/// M008, M010 for the model; N002 for memory; N005 when the step vanishes.
+/// M008, M010 for the model; N002 for memory; N005 when the step vanishes or is cut too often: where Newton's method does not
+/// converge, the local error is above the tolerance, or more than a hundredth of the energy comes from nowhere.
 pub fn integrate(
     model: &Model,
     dynamics: &Dynamics,
@@ -97,7 +100,7 @@ pub fn integrate_with(
     let (mut time, mut step) = (0.0, dynamics.step.min(longest));
     // The largest displacement so far; at the start, what the load can cause.
     let mut largest = tolerance.map_or(Ok(0.0), |_| motion.reach(&now))?;
-    let mut energy = Energy::default();
+    let (mut energy, mut guard) = (Energy::default(), Guard::new(dynamics.duration, step));
     let show = |time, now: &Now, energy, observe: &mut dyn FnMut(&Instant<'_>) -> ControlFlow<()>| {
         observe(&Instant { time, displacement: &now.state.displacement(&model.mesh), energy })
     };
@@ -106,6 +109,7 @@ pub fn integrate_with(
     }
     // A remainder below a millionth of a step is rounding of the sum of steps.
     while dynamics.duration - time > 1e-6 * step {
+        guard.attempt(time)?;
         let dt = step.min(dynamics.duration - time);
         let next = motion.advance(&now, time + dt, dt);
         let reached = match (&next, tolerance) {
@@ -117,14 +121,18 @@ pub fn integrate_with(
         let above = |part: f64| Some(error? > part * tolerance? * reached);
         let kept = above(1.0) != Some(true);
         let (Some(next), true) = (next, kept) else {
-            step = 0.5 * dt;
-            if step < 1e-9 * dynamics.duration {
-                return Err(SolveError::StepVanished { time }.into());
-            }
+            let cause = if kept { StepLimit::Convergence } else { StepLimit::Tolerance };
+            step = guard.halve(dt, time, cause)?;
             continue;
         };
-        motion.account(&now, &next, &mut energy);
-        now = next;
+        let mut balance = energy;
+        motion.account(&now, &next, &mut balance);
+        if guard.creates(&energy, &balance) {
+            step = guard.halve(dt, time, StepLimit::Energy)?;
+            continue;
+        }
+        guard.keep(&balance);
+        (now, energy) = (next, balance);
         time += dt;
         largest = reached;
         // The error is of third order in the step: doubling it needs a margin of eight, and some.

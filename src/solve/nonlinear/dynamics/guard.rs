@@ -1,0 +1,115 @@
+//! When a step of a motion is taken back though Newton's method has converged, and when the motion is given up.
+//!
+//! The generalised-α method conserves the energy of linear systems. In large rotations a step that is too long for the
+//! stretching of the sheet creates energy, which the next steps turn into motion: without damping a falling strip then flies
+//! apart. Energy that comes from nowhere says so at once.
+
+use crate::solve::newmark::Energy;
+use crate::solve::{SolveError, StepLimit};
+
+/// Energy that may come from nowhere, relative to the largest that the sheet has had or was given.
+const CREATED: f64 = 0.01;
+
+/// A step this short, relative to the whole time, moves nothing.
+const SHORTEST: f64 = 1e-9;
+
+/// Attempts for each step that was asked for, and those that every motion may have.
+const ATTEMPTS: f64 = 100.0;
+const LEAST_ATTEMPTS: f64 = 10_000.0;
+
+/// What a motion has done so far.
+pub struct Guard {
+    duration: f64,
+    /// Attempts that are left.
+    left: usize,
+    /// Largest energy (J).
+    largest: f64,
+    /// Why the last attempt was taken back.
+    cause: StepLimit,
+}
+
+impl Guard {
+    pub fn new(duration: f64, step: f64) -> Self {
+        let left = (ATTEMPTS * duration / step).max(LEAST_ATTEMPTS) as usize;
+        Self { duration, left, largest: 0.0, cause: StepLimit::Tolerance }
+    }
+
+    /// Counts an attempt at a time.
+    ///
+    /// # Errors
+    /// N005 when there were too many.
+    pub fn attempt(&mut self, time: f64) -> Result<(), SolveError> {
+        if self.left == 0 {
+            return Err(SolveError::StepVanished { time, limit: self.cause });
+        }
+        self.left -= 1;
+        Ok(())
+    }
+
+    /// Whether a step creates more energy than is accepted.
+    pub fn creates(&self, now: &Energy, next: &Energy) -> bool {
+        let created = next.imbalance();
+        !created.is_finite() || (created > CREATED * self.with(next) && created > now.imbalance())
+    }
+
+    fn with(&self, energy: &Energy) -> f64 {
+        self.largest.max(energy.work.abs()).max(energy.kinetic + energy.strain)
+    }
+
+    /// A step was kept.
+    pub fn keep(&mut self, energy: &Energy) {
+        self.largest = self.with(energy);
+    }
+
+    /// The half of a step that was taken back.
+    ///
+    /// # Errors
+    /// N005 when it is too short.
+    pub fn halve(&mut self, step: f64, time: f64, cause: StepLimit) -> Result<f64, SolveError> {
+        self.cause = cause;
+        if 0.5 * step < SHORTEST * self.duration {
+            return Err(SolveError::StepVanished { time, limit: cause });
+        }
+        Ok(0.5 * step)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn energy(kinetic: f64, work: f64) -> Energy {
+        Energy { kinetic, work, ..Energy::default() }
+    }
+
+    #[test]
+    fn energy_from_nowhere_takes_a_step_back() {
+        let mut guard = Guard::new(1.0, 0.1);
+        let now = energy(1.0, 1.0);
+        guard.keep(&now);
+        assert!(!guard.creates(&now, &energy(1.509, 1.5)));
+        assert!(guard.creates(&now, &energy(1.52, 1.5)));
+        assert!(guard.creates(&now, &energy(f64::NAN, 1.5)));
+        // What was there before is not the fault of the step; what is lost is no gain.
+        assert!(!guard.creates(&energy(1.6, 1.5), &energy(1.55, 1.5)));
+        assert!(!guard.creates(&now, &energy(0.5, 1.5)));
+    }
+
+    #[test]
+    fn attempts_end() {
+        let mut guard = Guard::new(1.0, 0.1);
+        let kept = (0..).take_while(|_| guard.attempt(0.5).is_ok()).count();
+        assert_eq!(kept, 10_000);
+        let mut guard = Guard::new(1.0, 1e-3);
+        let mut step = Ok(1e-3);
+        let mut halvings = 0;
+        while let Ok(length) = step {
+            step = guard.halve(length, 0.25, StepLimit::Energy);
+            halvings += 1;
+        }
+        assert_eq!(halvings, 20);
+        let error = step.unwrap_err();
+        assert_eq!(error.code(), "N005");
+        assert!(error.to_string().contains("energy") && error.to_string().contains("0.25 s"), "{error}");
+    }
+}
