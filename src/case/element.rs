@@ -21,7 +21,7 @@ pub(super) struct ElementTable {
     /// Smoothing cells: a number (1, 2, 3, 4, 9, 16 ...) or `[along_xi, along_eta]`.
     #[schemars(extend("default" = 4))]
     subcells: Option<Subcells>,
-    /// Smoothing cells of the membrane: `cells` (as bending) or `one_cell`, which is the default of a drape.
+    /// The membrane: `cells` (smoothed as bending), `one_cell`, which is the default of a drape, or `assumed_stress`.
     #[schemars(extend("default" = "cells"))]
     membrane: Option<Membrane>,
     /// α of the transverse shear, 0 to 1; in the profile `seed` 0 when left out, and `fourth_order` has its own.

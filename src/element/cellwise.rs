@@ -93,10 +93,15 @@ impl Cellwise {
     }
 
     /// Rates of the strains of the cells with those of the local displacements; `excess` are the rows of the
-    /// excess.
-    pub fn strain_rates(&self, rates: &Vector24, excess: &Gradient) -> impl Iterator<Item = Strains> {
+    /// excess, `warp` the rates of a strain that all cells have besides.
+    pub fn strain_rates(
+        &self,
+        rates: &Vector24,
+        excess: &Gradient,
+        warp: Vector3<f64>,
+    ) -> impl Iterator<Item = Strains> {
         let plane = self.links.map_or(*rates, |links| links * rates);
-        self.strains(rates, excess * pick(&plane, &STRETCHING))
+        self.strains(rates, excess * pick(&plane, &STRETCHING) + warp)
     }
 
     /// Local stiffness of what stays linear.

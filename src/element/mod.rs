@@ -6,6 +6,8 @@
 //! right-hand rule.
 #![doc = include_str!("theory.md")]
 
+mod arcs;
+mod assumed;
 mod cellwise;
 pub mod corotational;
 mod drilling;
@@ -21,6 +23,7 @@ mod yarns;
 #[cfg(test)]
 mod wave_tests;
 
+pub use arcs::{Arcs, Bent};
 pub use cellwise::{Cellwise, Gradient, Strains};
 pub use load::{follower_pressure, follower_pressure_tangent, gravity_load, pressure_load, pressure_moments};
 pub use mass::{Mass, consistent_mass, lumped_mass};
@@ -51,10 +54,11 @@ pub struct Formulation {
 }
 
 /// How the membrane strain of an element is smoothed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Membrane {
     /// Over the cells of the formulation.
+    #[default]
     Cells,
     /// Over the whole element, as bending is not: for thin sheets that bend far across the mesh.
     ///
@@ -65,6 +69,16 @@ pub enum Membrane {
     /// stabilisation, `t_b² / (t_b² + A)` of their stiffness: about that of bending in a thin sheet
     /// (`A` is the element's area, `t_b² = 12 B / D_m`), and all of it in a thick one.
     OneCell,
+    /// Over the whole element, with the varying stresses of Pian and Sumihara beside: bending in the plane by one
+    /// element across is exact on parallelograms, and no hourglass is left.
+    ///
+    /// In large rotations the strains are those along the bent sheet, not those of its chords: a chord is shorter than
+    /// its arc, and where the curvature varies the difference would lock folds that are oblique to the mesh. Sides and
+    /// diagonals of the element count with the arcs that the rotations of their ends make.
+    ///
+    /// The penalty on θz holds it to the rotation that goes with in-plane bending, not to that of the bilinear
+    /// displacements, which is half of it.
+    AssumedStress,
 }
 
 /// How the curvature of an element is smoothed.

@@ -5,6 +5,8 @@ use std::fmt;
 use nalgebra::{Matrix2, Matrix3, Point3, SMatrix, SVector, Vector3};
 use serde::Serialize;
 
+use super::arcs::Arcs;
+use super::assumed::Assumed;
 use super::cellwise::Cellwise;
 use super::quad4::{Frame, GAUSS_2X2, gauss_point};
 use super::yarns::Yarns;
@@ -182,7 +184,7 @@ impl Prepared {
 
     /// Stiffness of membrane and drilling penalty in element axes, dofs `(u, v, θz)` node by node.
     pub fn membrane_stiffness(&self) -> Matrix12 {
-        let mut k = drilling::stiffness(&self.frame.xy, self.gamma);
+        let mut k = drilling::stiffness(&self.frame.xy, self.gamma, self.assumes_stress());
         let smoothed = |cells: Cells| {
             cells.over(&self.frame.xy).fold(Matrix12::zeros(), |k, cell| {
                 let b = membrane_matrix(&cell);
@@ -192,6 +194,7 @@ impl Prepared {
         let all = smoothed(self.formulation.cells);
         k += match self.formulation.membrane {
             Membrane::Cells => all,
+            Membrane::AssumedStress => smoothed(Cells::grid(1, 1)) + self.assumed().stiffness(),
             Membrane::OneCell => {
                 let one = smoothed(Cells::grid(1, 1));
                 one + (all - one) * self.stabilisation
@@ -223,7 +226,7 @@ impl Prepared {
         };
         let rest = [d_m, d_b].map(|d| t.transpose() * d * t);
         let one_cell =
-            [self.formulation.membrane == Membrane::OneCell, self.formulation.bending == Bending::OneCell];
+            [self.formulation.membrane != Membrane::Cells, self.formulation.bending == Bending::OneCell];
         let linear = if one_cell.contains(&true) {
             // What stabilises a single cell stays linear, whatever follows a law.
             bare(rest[0], rest[1]) + (self.local_stiffness() - bare(self.d_m, self.d_b))
@@ -246,6 +249,31 @@ impl Prepared {
     /// The mean displacement gradient along the material axes, for strains in the plane that are not small.
     pub fn yarns(&self) -> Yarns {
         Yarns::new(&Cell::whole(&self.frame.xy), self.angle, self.warp_links())
+    }
+
+    /// The strains of the membrane along the bent sheet, for large rotations; `None` of a formulation that measures
+    /// chords.
+    pub fn arcs(&self) -> Option<Arcs> {
+        let links = self.warp_links();
+        self.assumes_stress()
+            .then(|| Arcs::new(&self.frame, &self.to_material, &self.assumed(), links.as_ref()))
+    }
+
+    fn assumes_stress(&self) -> bool {
+        self.formulation.membrane == Membrane::AssumedStress
+    }
+
+    fn assumed(&self) -> Assumed {
+        Assumed::new(&self.frame.xy, &self.d_m)
+    }
+
+    /// Mean membrane strain, element axes, on `(u, v, θz)`, and what the assumed stresses add at a natural point to the
+    /// resultants that it causes, material axes; `None` of a membrane that does not assume them.
+    pub fn assumed_membrane(&self, natural: [f64; 2]) -> Option<(SMatrix<f64, 3, 12>, SMatrix<f64, 3, 12>)> {
+        let varying = self.assumes_stress().then(|| self.assumed().resultants(natural))?;
+        // N' = T⁻ᵀ N where ε' = T ε.
+        let back = strain_rotation(-self.angle);
+        Some((membrane_matrix(&Cell::whole(&self.frame.xy)), back.transpose() * varying))
     }
 
     /// Rigid links to the plane in its axes; `None` if the corners lie in it.

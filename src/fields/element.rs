@@ -1,11 +1,11 @@
 //! Resultants of one element as linear functions of its displacements: found once for all elements
 //! that are equal up to a translation.
 
-use nalgebra::{DMatrix, Matrix3, Point3, SMatrix};
+use nalgebra::{DMatrix, Matrix3, Point3, SMatrix, Vector3};
 
 use super::Resultants;
 use crate::element::corotational::{Motion, Reference};
-use crate::element::{Cells, Frame, Matrix24, Vector24, membrane_and_plate, strain_matrices};
+use crate::element::{Arcs, Cells, Frame, Matrix24, Vector24, membrane_and_plate, strain_matrices};
 use crate::law;
 use crate::mesh::is_translated;
 use crate::model::{Model, ModelError};
@@ -40,6 +40,8 @@ struct Operator {
     membrane: SMatrix<f64, { 3 * PLACES }, 12>,
     moment: SMatrix<f64, { 3 * PLACES }, 12>,
     shear: SMatrix<f64, { 2 * PLACES }, 12>,
+    /// Strains of a bent element, and the membrane stiffness that they meet; `None` where chords are measured.
+    arcs: Option<(Arcs, Matrix3<f64>)>,
     /// What the value of each cell counts at each place.
     weights: Vec<[f64; PLACES]>,
 }
@@ -79,11 +81,18 @@ impl Operator {
         }
         let mut shear: SMatrix<f64, { 2 * PLACES }, 12> = SMatrix::zeros();
         for (place, at) in CORNERS.into_iter().chain([[0.0, 0.0]]).enumerate() {
+            if let Some((mean, varying)) = element.assumed_membrane(at) {
+                // The mean of the element is that of its constant stresses.
+                let varying = if place < 4 { varying } else { SMatrix::zeros() };
+                membrane.fixed_rows_mut::<3>(3 * place).copy_from(&(of_strain * mean + varying));
+            }
             let q: SMatrix<f64, 2, 12> = vector * element.d_s * element.shear_strain_matrix(at);
             shear.fixed_rows_mut::<2>(2 * place).copy_from(&q);
         }
         let to_local = Some(element.to_local()).filter(|t| *t != Matrix24::identity());
-        Ok(Self { corners: model.mesh.corners(quad), to_local, membrane, moment, shear, weights })
+        // In the frame that the element is moved in, whatever the axes here.
+        let arcs = model.element(quad, false)?.arcs().map(|arcs| (arcs, d_m));
+        Ok(Self { corners: model.mesh.corners(quad), to_local, membrane, moment, shear, arcs, weights })
     }
 
     /// Adds the stresses that the cells of an element remember.
@@ -98,11 +107,15 @@ impl Operator {
         }
     }
 
-    fn apply(&self, u: &Vector24) -> [Resultants; PLACES] {
+    fn apply(&self, moved: &Displacement) -> [Resultants; PLACES] {
+        // Arcs know the corners themselves, not what rigid links bring to the plane.
+        let arcs = moved.in_frame.as_ref().zip(self.arcs.as_ref());
+        let added = arcs.map_or_else(Vector3::zeros, |(local, (arcs, d_m))| d_m * arcs.bent(local).strain);
+        let u = &moved.global;
         let (membrane, plate) = membrane_and_plate(&self.to_local.map_or(*u, |t| t * u));
         let (n, m, q) = (self.membrane * membrane, self.moment * plate, self.shear * plate);
         std::array::from_fn(|p| Resultants {
-            membrane: [0, 1, 2].map(|i| n[3 * p + i]),
+            membrane: [0, 1, 2].map(|i| n[3 * p + i] + added[i]),
             moment: [0, 1, 2].map(|i| m[3 * p + i]),
             shear: [0, 1].map(|i| q[2 * p + i]),
         })
@@ -110,15 +123,26 @@ impl Operator {
 }
 
 /// Displacements of the nodes of an element.
-pub fn small<'a>(model: &'a Model, displacement: &'a [f64]) -> impl Fn(usize) -> Vector24 + 'a {
-    |quad| {
-        let nodes = &model.mesh.quads[quad];
-        Vector24::from_fn(|k, _| displacement[6 * nodes[k / 6] as usize + k % 6])
-    }
+pub struct Displacement {
+    /// In global axes; of large ones the part that strains the element, turned back to where it rests.
+    global: Vector24,
+    /// The same in the axes of the frame, of large ones.
+    in_frame: Option<Vector24>,
+}
+
+/// Displacements of the nodes of an element, taken for small.
+pub fn small<'a>(model: &'a Model, displacement: &'a [f64]) -> impl Fn(usize) -> Displacement + 'a {
+    |quad| Displacement { global: of_element(model, displacement, quad), in_frame: None }
+}
+
+/// Six displacements of each node of an element.
+pub fn of_element(model: &Model, displacement: &[f64], quad: usize) -> Vector24 {
+    let nodes = &model.mesh.quads[quad];
+    Vector24::from_fn(|k, _| displacement[6 * nodes[k / 6] as usize + k % 6])
 }
 
 /// The part of the motion of an element's nodes that strains it, turned back to where the element rests.
-pub fn straining<'a>(model: &'a Model, state: &'a State) -> impl Fn(usize) -> Vector24 + 'a {
+pub fn straining<'a>(model: &'a Model, state: &'a State) -> impl Fn(usize) -> Displacement + 'a {
     |quad| {
         let nodes = model.mesh.quads[quad].map(|n| n as usize);
         let frame = Frame::of(&model.mesh.corners(quad));
@@ -129,18 +153,19 @@ pub fn straining<'a>(model: &'a Model, state: &'a State) -> impl Fn(usize) -> Ve
             let part = frame.rotation.transpose() * deformation.fixed_rows::<3>(3 * b);
             u.fixed_rows_mut::<3>(3 * b).copy_from(&part);
         }
-        u
+        Displacement { global: u, in_frame: Some(deformation) }
     }
 }
 
 /// Calls `visit` with each of some elements and its resultants: at the corners, N and M extrapolated from the
-/// cells and Q as MITC4 has it; then the mean over the cells, with Q at the centre.
+/// cells (N of assumed stresses as they are there) and Q as MITC4 has it; then the mean over the cells, with Q at the
+/// centre.
 pub fn for_each_element(
     model: &Model,
     flat: bool,
     remembered: Option<Remembered<'_>>,
     quads: impl Iterator<Item = usize>,
-    displacement: impl Fn(usize) -> Vector24,
+    displacement: impl Fn(usize) -> Displacement,
     mut visit: impl FnMut(usize, [Resultants; PLACES]),
 ) -> Result<(), ModelError> {
     let weights = extrapolation(model.formulation.cells);

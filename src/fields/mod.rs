@@ -17,12 +17,12 @@ pub use reactions::reaction_resultants;
 
 use nalgebra::Vector3;
 
-use crate::element::{Cell, Vector24, membrane_and_plate};
+use crate::element::{Cell, membrane_and_plate};
 use crate::mesh::{QuadMesh, normal};
 use crate::model::{Model, ModelError};
 use crate::section::SheetLaw;
 use crate::solve::nonlinear::State;
-use element::{Remembered, for_each_element, small, straining};
+use element::{Displacement, Remembered, for_each_element, of_element, small, straining};
 use recovery::Patches;
 
 /// Stress resultants in material axes.
@@ -68,22 +68,25 @@ impl Resultants {
 /// # Errors
 /// M008 if the warp direction is normal to an element.
 pub fn cells(model: &Model, displacement: &[f64]) -> Result<Vec<Vec<Resultants>>, ModelError> {
-    let (flat, displacement) = (model.mesh.is_flat(), small(model, displacement));
-    let of_element = |quad: usize| {
+    let flat = model.mesh.is_flat();
+    let cells_of = |quad: usize| {
         let element = model.element(quad, flat)?;
         let (to_material, vector) = (element.to_material(), element.vector_to_material());
-        let local = element.to_local() * displacement(quad);
-        let (_, plate) = membrane_and_plate(&local);
+        let local = element.to_local() * of_element(model, displacement, quad);
+        let (in_plane, plate) = membrane_and_plate(&local);
         let of_cell = |cell: Cell| {
             let (strain, curvature) = element.strains(&cell, &local);
-            let membrane = model.section.d_m * to_material * strain;
+            let membrane = match element.assumed_membrane(cell.middle) {
+                Some((mean, varying)) => (model.section.d_m * to_material * mean + varying) * in_plane,
+                None => model.section.d_m * to_material * strain,
+            };
             let moment = model.section.d_b * to_material * curvature;
             let shear = vector * element.d_s * element.shear_strain_matrix(cell.middle) * plate;
             Resultants { membrane: membrane.into(), moment: moment.into(), shear: shear.into() }
         };
         Ok(element.cells().map(of_cell).collect())
     };
-    (0..model.mesh.quads.len()).map(of_element).collect()
+    (0..model.mesh.quads.len()).map(cells_of).collect()
 }
 
 /// Resultants of each element: the mean over its smoothing cells, shear at its centre.
@@ -110,7 +113,7 @@ pub fn element_means_moved(
 fn means_of(
     model: &Model,
     remembered: Option<Remembered<'_>>,
-    displacement: impl Fn(usize) -> Vector24,
+    displacement: impl Fn(usize) -> Displacement,
 ) -> Result<Vec<Resultants>, ModelError> {
     let mut means = Vec::with_capacity(model.mesh.quads.len());
     let (flat, quads) = (model.mesh.is_flat(), 0..model.mesh.quads.len());
@@ -236,7 +239,7 @@ impl Recovery {
         &self,
         model: &Model,
         remembered: Option<Remembered<'_>>,
-        displacement: impl Fn(usize) -> Vector24,
+        displacement: impl Fn(usize) -> Displacement,
     ) -> Result<Vec<Resultants>, ModelError> {
         let mut means = Vec::with_capacity(model.mesh.quads.len());
         let mut sums = vec![(Resultants::default(), 0.0); model.mesh.nodes.len()];

@@ -6,7 +6,7 @@ use toml::{Table, Value};
 use super::line::{Kind, Line, Reference, Tolerance};
 use super::problem::Problem;
 
-const FILES: [&str; 11] = [
+const FILES: [&str; 12] = [
     include_str!("suite/element.toml"),
     include_str!("suite/patch.toml"),
     include_str!("suite/plates.toml"),
@@ -15,6 +15,7 @@ const FILES: [&str; 11] = [
     include_str!("suite/rectangles.toml"),
     include_str!("suite/skew.toml"),
     include_str!("suite/shells.toml"),
+    include_str!("suite/membrane.toml"),
     include_str!("suite/dynamics.toml"),
     include_str!("suite/fourth_order.toml"),
     include_str!("suite/large.toml"),

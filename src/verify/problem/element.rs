@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, Matrix3, Point3, Rotation3, SMatrix, Vector3};
 use serde::Deserialize;
 
 use super::setting::{DrillingChoice, Layout, default_alpha, formulation, isotropic};
-use crate::element::{Bending, Formulation, Prepared, Vector24};
+use crate::element::{Bending, Formulation, Membrane, Prepared, Vector24};
 use crate::section::ShellSection;
 use crate::verify::error::VerifyError;
 
@@ -17,6 +17,9 @@ pub struct ZeroModes {
     /// Smoothing of the curvature.
     #[serde(default)]
     bending: Bending,
+    /// The membrane.
+    #[serde(default)]
+    membrane: Membrane,
     /// Shape of the element.
     shape: Shape,
     /// Which of its matrices.
@@ -72,6 +75,7 @@ impl ZeroModes {
         }
         let formulation = Formulation {
             bending: self.bending,
+            membrane: self.membrane,
             ..formulation(self.cells, 0.0, DrillingChoice::HughesBrezzi)
         };
         let element = Prepared::from_corners(&self.shape.corners(), &section, formulation, &Vector3::x())?;

@@ -9,6 +9,7 @@ use serde::Deserialize;
 
 use super::setting::{DrillingChoice, Layout, default_alpha, formulation, isotropic, unit};
 use super::shell::mapped;
+use crate::element::{Formulation, Membrane};
 use crate::mesh::{MeshError, QuadMesh, rectangle};
 use crate::model::{Dof, Load, Model, Support};
 use crate::section::ShellSection;
@@ -38,6 +39,9 @@ pub struct LargeShell {
     /// Smoothing cells.
     #[serde(default)]
     cells: Layout,
+    /// The membrane of the element.
+    #[serde(default)]
+    membrane: Membrane,
     /// Shear stabilisation.
     #[serde(default = "default_alpha")]
     alpha: f64,
@@ -53,6 +57,10 @@ enum Shape {
     AnnulusA,
     /// W of B, on the outer rim.
     AnnulusB,
+    /// 3.4: hemisphere with an 18 degree hole, a quarter; V of A under the force inwards.
+    HemisphereA,
+    /// U of B under the force outwards.
+    HemisphereB,
     /// 3.5: cylinder pulled open, an eighth; W of A under the force.
     PulledA,
     /// U of B at the side in the middle, inwards.
@@ -89,6 +97,8 @@ impl LargeShell {
             Shape::Cantilever => cantilever(n, m),
             Shape::AnnulusA => annulus(n, m, "left"),
             Shape::AnnulusB => annulus(n, m, "right"),
+            Shape::HemisphereA => hemisphere(n, Dof::V),
+            Shape::HemisphereB => hemisphere(n, Dof::U),
             Shape::PulledA => pulled(n, m, ("bottom", "left", Dof::W)),
             Shape::PulledB => pulled(n, m, ("top", "left", Dof::U)),
             Shape::PulledC => pulled(n, m, ("top", "right", Dof::U)),
@@ -107,7 +117,10 @@ impl LargeShell {
         // Isotropic sections need no warp; this direction is normal to no element here.
         let warp =
             if matches!(self.shape, Shape::Cloth) { Vector3::x() } else { Vector3::new(0.6, 0.8, 0.1) };
-        let formulation = formulation(self.cells, self.alpha, DrillingChoice::Scaled);
+        let formulation = Formulation {
+            membrane: self.membrane,
+            ..formulation(self.cells, self.alpha, DrillingChoice::Scaled)
+        };
         let model = Model { mesh, section, warp, formulation, supports, loads, bodies: Vec::new() };
         if matches!(self.shape, Shape::RoofLimit | Shape::RoofValley) {
             return self.extreme(&model, node);
@@ -169,6 +182,25 @@ fn annulus(n: usize, m: usize, rim: &str) -> Result<Posed, VerifyError> {
     let (supports, loads) = (vec![Support::clamped(mesh.set("bottom")?)], lift(&mesh, "top", 0.8)?);
     let taken = (corner(&mesh, "top", rim)?, Dof::W);
     Ok(Posed { mesh, section: isotropic(21e6, 0.0, 0.03, 1.0), supports, loads, taken })
+}
+
+/// R = 10, t = 0.04, E = 6.825e7, ν = 0.3, force 400: x along the longitude from 0 to 90 degrees, y along the latitude from
+/// the free equator to 72 degrees. The equator is pulled out along x and pushed in along y.
+fn hemisphere(n: usize, taken: Dof) -> Result<Posed, VerifyError> {
+    let mesh = mapped(n, n, |x, y| {
+        let ((s, c), (up, out)) = ((FRAC_PI_2 * x).sin_cos(), (0.8 * FRAC_PI_2 * y).sin_cos());
+        Point3::new(10.0 * out * c, 10.0 * out * s, 10.0 * up)
+    })?;
+    let [b, a] = [corner(&mesh, "left", "bottom")?, corner(&mesh, "right", "bottom")?];
+    let supports = vec![
+        Support::symmetry_y(mesh.set("left")?),
+        Support::symmetry_x(mesh.set("right")?),
+        Support::fix(&[b], &[Dof::W]),
+    ];
+    let push = |node, force| Load::Point { nodes: vec![node], force, moment: Vector3::zeros() };
+    let loads = vec![push(b, Vector3::x() * 200.0), push(a, Vector3::y() * -200.0)];
+    let taken = (if taken == Dof::V { a } else { b }, taken);
+    Ok(Posed { mesh, section: isotropic(6.825e7, 0.3, 0.04, 1.0), supports, loads, taken })
 }
 
 /// R = 4.953, L = 10.35, t = 0.094, E = 10.5e6, ν = 0.3125, force 40e3; x along the axis from the middle to the

@@ -47,10 +47,14 @@ pub enum Problem {
     Skew(quad_plate::Skew),
     /// A triangular plate.
     Triangle(quad_plate::Triangle),
+    /// Sheets that bend in their plane.
+    InPlane(shell::InPlane),
     /// Curved shells.
     Shell(shell::Shell),
     /// Plates and shells in large rotations.
     LargeShell(large_shell::LargeShell),
+    /// A strip whose mesh is oblique to it.
+    ObliqueStrip(strip::ObliqueStrip),
     /// Strips in large rotations.
     Strip(strip::Strip),
     /// KES-FB2.
@@ -79,8 +83,10 @@ impl Problem {
             Self::Disc(p) => p.value(statics),
             Self::Skew(p) => p.value(statics),
             Self::Triangle(p) => p.value(statics),
+            Self::InPlane(p) => p.value(statics),
             Self::Shell(p) => p.value(statics),
             Self::LargeShell(p) => p.value(),
+            Self::ObliqueStrip(p) => p.value(),
             Self::Strip(p) => p.value(),
             Self::BendingTest(p) => p.value(),
             Self::Pendulum(p) => p.value(),
@@ -95,6 +101,7 @@ impl Problem {
         match self {
             Self::Plate(p) => p.exact(function, at),
             Self::Extrapolated(p) => p.exact(function, at),
+            Self::ObliqueStrip(p) => p.exact(function),
             Self::Strip(p) => p.exact(function),
             _ => None,
         }

@@ -6,7 +6,7 @@ use nalgebra::{Matrix2, Matrix3, Point3, Rotation3, Vector2, Vector3};
 use serde::Deserialize;
 
 use super::setting::{DrillingChoice, Layout, Statics, default_alpha, formulation, isotropic};
-use crate::element::{Bending, Formulation};
+use crate::element::{Bending, Formulation, Membrane};
 use crate::fields::{Resultants, element_means};
 use crate::mesh::{QuadMesh, distorted, rectangle};
 use crate::model::{Dof, Model, Support};
@@ -28,6 +28,9 @@ pub struct Patch {
     /// Smoothing of the curvature.
     #[serde(default)]
     bending: Bending,
+    /// The membrane.
+    #[serde(default)]
+    membrane: Membrane,
     /// Whether the sheet is turned in space.
     turned: bool,
     /// Shear stabilisation.
@@ -225,6 +228,7 @@ impl Patch {
             warp: turn * Vector3::new(angle.cos(), angle.sin(), 0.0),
             formulation: Formulation {
                 bending: self.bending,
+                membrane: self.membrane,
                 ..formulation(cells, self.alpha, DrillingChoice::Scaled)
             },
             supports,

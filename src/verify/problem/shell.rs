@@ -1,4 +1,4 @@
-//! Curved shells: rectangles whose nodes are mapped, so that their node sets survive.
+//! Curved shells, and sheets that bend in their plane: rectangles whose nodes are mapped, so that their node sets survive.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -6,6 +6,7 @@ use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
 use super::setting::{DrillingChoice, Layout, Statics, default_alpha, formulation, isotropic, unit};
+use crate::element::{Formulation, Membrane};
 use crate::mesh::{QuadMesh, rectangle};
 use crate::model::{Dof, Load, Model, Support};
 use crate::section::ShellSection;
@@ -174,4 +175,82 @@ fn twisted_beam(n: usize, m: usize, t: f64, (dof, force): (Dof, f64)) -> Result<
     let loads = vec![point_load(tip, Vector3::ith(dof as usize, force))];
     let section = isotropic(2.9e7, 0.22, t, 1.0);
     Ok(Posed { mesh, section, warp: Vector3::x(), supports, loads, taken: (tip, dof) })
+}
+
+/// A sheet clamped at its left edge under a shear force 1 on its right one.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct InPlane {
+    /// Which one.
+    shape: Sheet,
+    /// The membrane of the element.
+    membrane: Membrane,
+    /// Elements along a side of Cook's panel.
+    #[serde(default)]
+    n: usize,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Sheet {
+    /// Cook's panel: 48 long, 44 high at the clamp and 16 at the end, E = 1, ν = 1/3; deflection of the middle of
+    /// the end.
+    Cook,
+    /// MacNeal and Harder's beam of six rectangles: 6 x 0.2 x 0.1, E = 1e7, ν = 0.3; deflection of the end over 0.1081.
+    Rectangles,
+    /// The same of parallelograms, 45 degrees.
+    Parallelograms,
+    /// The same of trapezoids, 45 degrees.
+    Trapezoids,
+}
+
+impl InPlane {
+    /// The deflection.
+    pub fn value(&self, statics: &mut Statics) -> Result<f64, VerifyError> {
+        let (mesh, section, over) = match self.shape {
+            Sheet::Cook => (cook(self.n)?, isotropic(1.0, 1.0 / 3.0, 1.0, 1.0), 1.0),
+            _ => (self.beam()?, isotropic(1e7, 0.3, 0.1, 1.0), 0.1081),
+        };
+        let end = mesh.set("right")?.to_vec();
+        let height = mesh.nodes[end[end.len() - 1] as usize].y - mesh.nodes[end[0] as usize].y;
+        let force = Vector3::new(0.0, 1.0 / height, 0.0);
+        let model = Model {
+            supports: vec![
+                Support::clamped(mesh.set("left")?),
+                Support::fix(mesh.set("all")?, &[Dof::W, Dof::ThetaX, Dof::ThetaY]),
+            ],
+            loads: vec![Load::Edge { edges: mesh.set_edges("right")?, force, moment: Vector3::zeros() }],
+            section,
+            warp: Vector3::x(),
+            formulation: Formulation { membrane: self.membrane, ..Formulation::default() },
+            bodies: Vec::new(),
+            mesh,
+        };
+        let displacement = statics.solve(&model)?.displacement;
+        let v = |node: u32| displacement[6 * node as usize + 1];
+        // The middle is a node, or between two.
+        Ok(0.5 * (v(end[end.len() / 2]) + v(end[(end.len() - 1) / 2])) / over)
+    }
+
+    fn beam(&self) -> Result<QuadMesh, VerifyError> {
+        mapped(6, 1, |x, y| {
+            let line = (6.0 * x).round() as i32;
+            let lean = 0.2 * (y - 0.5);
+            let shift = match self.shape {
+                _ if line == 0 || line == 6 => 0.0,
+                Sheet::Parallelograms => lean,
+                Sheet::Trapezoids if line % 2 == 0 => -lean,
+                Sheet::Trapezoids => lean,
+                _ => 0.0,
+            };
+            Point3::new(6.0 * x + shift, 0.2 * y, 0.0)
+        })
+    }
+}
+
+fn cook(n: usize) -> Result<QuadMesh, VerifyError> {
+    mapped(n, n, |x, y| {
+        let (low, high) = (44.0 * x, 44.0 + 16.0 * x);
+        Point3::new(48.0 * x, low + (high - low) * y, 0.0)
+    })
 }

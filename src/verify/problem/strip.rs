@@ -3,11 +3,12 @@
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
-use nalgebra::{Matrix2, Matrix3, Vector3};
+use nalgebra::{Matrix2, Matrix3, Point3, Vector3};
 use serde::Deserialize;
 
+use super::shell::mapped;
 use crate::analytical::elastica::{heavy_elastica, tip_loaded};
-use crate::element::{Formulation, Mass};
+use crate::element::{Formulation, Mass, Membrane};
 use crate::mesh::rectangle;
 use crate::model::{Dof, Load, Model, RigidBody, Support};
 use crate::section::ShellSection;
@@ -234,4 +235,50 @@ fn swing(steps: usize, body: bool) -> Result<(f64, f64), VerifyError> {
         ControlFlow::Continue(())
     })?;
     Ok(((x / length).abs(), off / work))
+}
+
+/// w L³/B of the strip.
+const GAMMA: f64 = 20.0;
+
+/// Largest angle of the mesh lines (rad).
+const OBLIQUE: f64 = 0.5;
+
+/// A square cantilever of unit length and rigidity under its own weight, ν = 0, t = 1e-3; inside, its mesh is turned about
+/// the middle, less and less towards the edges.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObliqueStrip {
+    /// Elements along a side.
+    n: usize,
+    /// The membrane of the element.
+    membrane: Membrane,
+}
+
+impl ObliqueStrip {
+    /// The mean drop of the free end.
+    pub fn value(&self) -> Result<f64, VerifyError> {
+        let mesh = mapped(self.n, self.n, |x, y| {
+            let (a, b) = (2.0 * x - 1.0, 2.0 * y - 1.0);
+            let (s, c) = (OBLIQUE * (1.0 - a * a) * (1.0 - b * b)).sin_cos();
+            Point3::new(0.5 + 0.5 * (c * a - s * b), 0.5 + 0.5 * (s * a + c * b), 0.0)
+        })?;
+        let model = Model {
+            supports: vec![Support::clamped(mesh.set("left")?)],
+            loads: vec![Load::Gravity(Vector3::new(0.0, 0.0, -GAMMA))],
+            section: section(1.0, 1e-3),
+            warp: Vector3::x(),
+            formulation: Formulation { membrane: self.membrane, ..Formulation::default() },
+            bodies: Vec::new(),
+            mesh,
+        };
+        let solution =
+            solve(&model, &Settings::default(), &Options::default(), |_| ControlFlow::Continue(()))?;
+        let end = model.mesh.set("right")?;
+        Ok(-end.iter().map(|n| solution.state.position[*n as usize].z).sum::<f64>() / end.len() as f64)
+    }
+
+    /// The heavy elastica.
+    pub fn exact(&self, function: Function) -> Option<f64> {
+        (function == Function::Elastica).then(|| heavy_elastica(GAMMA).map(|end| end.drop))?
+    }
 }
