@@ -70,14 +70,14 @@ pub enum Membrane {
     /// (`A` is the element's area, `t_b² = 12 B / D_m`), and all of it in a thick one.
     OneCell,
     /// Over the whole element, with the varying stresses of Pian and Sumihara beside: bending in the plane by one
-    /// element across is exact on parallelograms, and no hourglass is left.
+    /// element across is exact on rectangles, on parallelograms but for the penalty on θz, and no hourglass is left.
     ///
     /// In large rotations the strains are those along the bent sheet, not those of its chords: a chord is shorter than
     /// its arc, and where the curvature varies the difference would lock folds that are oblique to the mesh. Sides and
     /// diagonals of the element count with the arcs that the rotations of their ends make.
     ///
     /// The penalty on θz holds it to the rotation that goes with in-plane bending, not to that of the bilinear
-    /// displacements, which is half of it.
+    /// displacements, which is half of it on rectangles.
     AssumedStress,
 }
 

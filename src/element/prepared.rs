@@ -220,9 +220,15 @@ impl Prepared {
     /// else stays linear.
     pub fn cellwise(&self, [d_m, d_b]: [Matrix3<f64>; 2]) -> Cellwise {
         let t = &self.to_material;
+        // Without the stresses that vary: they are no part of what a cell may leave to a law.
+        let membrane = match self.formulation.membrane {
+            Membrane::AssumedStress => Membrane::OneCell,
+            other => other,
+        };
+        let formulation = Formulation { membrane, ..self.formulation };
         let bare = |d_m, d_b| {
             let hourglass = Matrix2::zeros();
-            Self { d_m, d_b, stabilisation: 0.0, hourglass, ..*self }.local_stiffness()
+            Self { d_m, d_b, stabilisation: 0.0, hourglass, formulation, ..*self }.local_stiffness()
         };
         let rest = [d_m, d_b].map(|d| t.transpose() * d * t);
         let one_cell =
