@@ -10,6 +10,8 @@ use super::error::refused;
 use super::loads::{Prescribed, SheetLoad, SheetLoads};
 use super::nonlinear::NonlinearTable;
 use super::sheet::Sheet;
+use super::steps::SheetStep;
+use super::supports::SheetSupport;
 use crate::element::Mass;
 use crate::finding::{Located, Node, Place, TomlError};
 use crate::quantity::{Frequency, Time, counts_angles};
@@ -115,6 +117,8 @@ pub enum Analysis {
     Newmark(Newmark),
     /// Statics in large rotations.
     Nonlinear(Box<Nonlinear>),
+    /// Statics in large rotations in steps, each from where the one before has ended; one at least.
+    Steps(Vec<SheetStep>),
 }
 
 /// Small displacements, one solve.
@@ -187,9 +191,10 @@ pub struct Nonlinear {
 const SPECTRAL_RADIUS: f64 = 0.9;
 
 impl Analysis {
-    /// What acts; nothing in a modal analysis.
+    /// What acts, in the last of its steps; nothing in a modal analysis.
     pub fn loads(&self) -> &[SheetLoad] {
         match self {
+            Self::Steps(steps) => steps.last().map_or(&[], |step| &step.analysis.loads.acting),
             Self::Linear(linear) => &linear.loads.acting,
             Self::Nonlinear(nonlinear) => &nonlinear.loads.acting,
             Self::Newmark(newmark) => &newmark.loads,
@@ -197,12 +202,31 @@ impl Analysis {
         }
     }
 
-    /// What is prescribed; nothing in a modal analysis and in a motion.
+    /// What is prescribed, in the last of its steps; nothing in a modal analysis and in a motion.
     pub fn prescribed(&self) -> &[Prescribed] {
         match self {
+            Self::Steps(steps) => steps.last().map_or(&[], |step| &step.analysis.loads.prescribed),
             Self::Linear(linear) => &linear.loads.prescribed,
             Self::Nonlinear(nonlinear) => &nonlinear.loads.prescribed,
             Self::Modal(_) | Self::Newmark(_) => &[],
+        }
+    }
+
+    /// Where the sheet is held in the last of its steps, beside the supports of the case; nowhere without steps.
+    pub fn supports(&self) -> &[SheetSupport] {
+        match self {
+            Self::Steps(steps) => steps.last().map_or(&[], |step| &step.supports),
+            Self::Linear(_) | Self::Modal(_) | Self::Newmark(_) | Self::Nonlinear(_) => &[],
+        }
+    }
+
+    /// Everything that is prescribed, in any of its steps.
+    pub fn all_prescribed(&self) -> Vec<&Prescribed> {
+        match self {
+            Self::Steps(steps) => steps.iter().flat_map(|step| &step.analysis.loads.prescribed).collect(),
+            Self::Linear(_) | Self::Modal(_) | Self::Newmark(_) | Self::Nonlinear(_) => {
+                self.prescribed().iter().collect()
+            }
         }
     }
 
@@ -210,7 +234,7 @@ impl Analysis {
     pub fn coarser(&self) -> Option<&Located<Vec<Sheet>>> {
         match self {
             Self::Linear(Linear { coarser, .. }) | Self::Modal(Modal { coarser, .. }) => coarser.as_ref(),
-            Self::Newmark(_) | Self::Nonlinear(_) => None,
+            Self::Newmark(_) | Self::Nonlinear(_) | Self::Steps(_) => None,
         }
     }
 
@@ -219,7 +243,7 @@ impl Analysis {
         match self {
             Self::Modal(modal) => Some(modal.mass),
             Self::Newmark(newmark) => Some(newmark.mass),
-            Self::Linear(_) | Self::Nonlinear(_) => None,
+            Self::Linear(_) | Self::Nonlinear(_) | Self::Steps(_) => None,
         }
     }
 
@@ -228,7 +252,7 @@ impl Analysis {
         match self {
             Self::Linear(_) | Self::Modal(_) => false,
             Self::Newmark(newmark) => newmark.rotations != Rotations::Small,
-            Self::Nonlinear(_) => true,
+            Self::Nonlinear(_) | Self::Steps(_) => true,
         }
     }
 }

@@ -169,7 +169,7 @@ impl CheckTable {
 pub(crate) fn unit_of(quantity: &str, analysis: &Analysis, probes: &[ProbePoint]) -> Option<&'static str> {
     let modes = match analysis {
         Analysis::Modal(Modal { modes, .. }) => *modes,
-        Analysis::Linear(_) | Analysis::Newmark(_) | Analysis::Nonlinear(_) => 0,
+        Analysis::Linear(_) | Analysis::Newmark(_) | Analysis::Nonlinear(_) | Analysis::Steps(_) => 0,
     };
     match quantity {
         "w_max" => return Some("m"),

@@ -18,6 +18,7 @@ mod point;
 mod problem;
 mod sheet;
 mod solver;
+mod steps;
 mod supports;
 mod tables;
 #[cfg(test)]
@@ -49,6 +50,7 @@ pub use point::SheetPoint;
 pub use problem::{DrapeProblem, InstrumentTest, Mounting, Problem, SheetProblem, ShellSpecimen};
 pub use sheet::{Annulus, Layout, Outline, Sheet, Warp};
 pub use solver::{Bytes, Solver, SolverChoice};
+pub use steps::SheetStep;
 pub use supports::{Held, RigidSet, SheetSupport, SupportKind};
 pub use uncertainty::SamplingPlan;
 pub use virtual_test::{Drive, ShellTest, TestFormulation, VirtualTest};
@@ -100,6 +102,9 @@ pub(crate) struct CaseTable {
     #[serde(default, rename = "loads")]
     #[schemars(with = "Vec<loads::LoadTable>")]
     _loads: ReadLater,
+    /// What the sheet is taken through in large rotations, one step after the other.
+    #[serde(default)]
+    steps: Vec<steps::StepTable>,
     /// A test of an instrument instead of `sheet`, `supports` and `loads`.
     virtual_test: Option<virtual_test::VirtualTestTable>,
     /// A bending test of another instrument instead.

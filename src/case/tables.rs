@@ -11,6 +11,7 @@ use super::loads::{LoadTable, SheetLoad, SheetLoads};
 use super::material::{FabricMaterial, Material, SectionTable, check_assumptions};
 use super::problem::{DrapeProblem, InstrumentTest, Mounting, Problem, SheetProblem, ShellSpecimen};
 use super::sheet::{Sheet, SheetTable};
+use super::steps::steps;
 use super::virtual_test::VirtualTestTable;
 use super::{CaseError, CaseTable};
 use crate::element::Formulation;
@@ -54,6 +55,9 @@ impl CaseTable {
         at: &Node<'_>,
     ) -> Result<Problem, CaseError> {
         let analysis = AnalysisTable::read(case)?;
+        if !matches!(analysis, AnalysisTable::Nonlinear(_)) {
+            foreign(case, &["steps"], NO_STEPS)?;
+        }
         let abilities = Abilities {
             friction: analysis.can_have_friction(),
             against_sampling: (!analysis.can_be_sampled()).then_some(LINEAR_BANDS),
@@ -83,8 +87,11 @@ impl CaseTable {
             }
             AnalysisTable::Nonlinear(nonlinear) => {
                 foreign(case, &["convergence"], NO_CONVERGENCE)?;
-                let nonlinear = Box::new(nonlinear.checked(&at, loads(case)?)?);
-                (table.sheet(of_sheet)?, Analysis::Nonlinear(nonlinear))
+                let analysis = match steps(&self.steps, case, &nonlinear)? {
+                    Some(steps) => Analysis::Steps(steps),
+                    None => Analysis::Nonlinear(Box::new(nonlinear.checked(&at, loads(case)?)?)),
+                };
+                (table.sheet(of_sheet)?, analysis)
             }
         };
         let problem = self.sheet_problem(case, material, sheet, analysis)?;
@@ -312,6 +319,8 @@ impl CaseTable {
 const NO_CONVERGENCE: &str =
     "[convergence] is for linear and modal analyses: remove it (a drape has `refinements`)";
 
+const NO_STEPS: &str = "[[steps]] are for large rotations: write [analysis] kind = \"nonlinear\", or remove them";
+
 /// Refuses tables that a problem has no use for.
 fn foreign(case: &Node<'_>, keys: &[&str], message: &str) -> Result<(), CaseError> {
     match keys.iter().find(|key| case.has(key)) {
@@ -324,9 +333,9 @@ fn foreign(case: &Node<'_>, keys: &[&str], message: &str) -> Result<(), CaseErro
 fn without_analysis(case: &Node<'_>) -> Result<(), CaseError> {
     foreign(
         case,
-        &["analysis", "checks"],
+        &["analysis", "steps", "checks"],
         "a [virtual_test] or [bending_test] brings its own analysis and is compared with what was measured: \
-         remove [analysis] and [[checks]]",
+         remove [analysis], [[steps]] and [[checks]]",
     )?;
     foreign(case, &["convergence"], "[convergence] is for cases with a [sheet]: remove it")
 }

@@ -13,7 +13,8 @@
 //! 2. [`relax`]: the implicit gradient flow of the energy, which ends in a stable equilibrium;
 //! 3. [`follow`]: arc length, through limit points of the load.
 //!
-//! [`drive`] moves supports through a programme instead, as the clamps of a testing machine do.
+//! [`drive`] moves supports through a programme instead, as the clamps of a testing machine do, and
+//! [`continue_from`] takes the sheet on from one of these states to other loads and supports.
 //!
 //! The sheet is linear elastic in the frames of its elements, or its cells follow laws with friction
 //! ([`SheetLaw`]): each step is then the minimum of a convex potential of the cells, from a memory
@@ -31,6 +32,7 @@ mod drive;
 pub mod dynamics;
 mod error;
 mod flow;
+mod load_steps;
 mod newton;
 mod sheet;
 mod stability;
@@ -44,6 +46,7 @@ pub use arc::{ArcLength, follow};
 pub use drive::{Leg, drive};
 pub use error::{NonlinearError, Obstacle};
 pub use flow::{Flow, relax, relax_from};
+pub use load_steps::{Carried, LoadStep, continue_from};
 pub use stability::{Stability, lost_directions};
 
 use self::flow::noise;
@@ -293,23 +296,24 @@ pub fn search(
     options: &Options,
     observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    let system = System::new(model, plan, settings, options)?;
+    let (system, rest) = (System::new(model, plan, settings, options)?, State::rest(&model.mesh));
     match method {
-        Method::Newton(perturbation) => grow(&system, settings, *perturbation, observe),
-        Method::ArcLength(arc) => arc::follow_path(&system, settings, arc, observe),
-        Method::Flow(flow) => flow::relax_system(&system, State::rest(&model.mesh), settings, flow, observe),
+        Method::Newton(perturbation) => grow(&system, rest, settings, *perturbation, observe),
+        Method::ArcLength(arc) => arc::follow_path(&system, rest, settings, arc, observe),
+        Method::Flow(flow) => flow::relax_system(&system, rest, settings, flow, observe),
     }
 }
 
 fn grow(
     system: &System<'_>,
+    start: State,
     settings: &Settings,
     perturbation: Option<Perturbation>,
     mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
     let noise = perturbation.filter(|p| p.size > 0.0).map(|p| noise(system, &p));
     let mut extra = noise.as_deref();
-    let mut state = State::rest(&system.model.mesh);
+    let mut state = start;
     let mut balance = system.balance(&state, extra);
     let longest = settings.largest_step.min(longest_travel(system));
     let (mut step, mut progress) = (settings.first_step.min(longest), Progress::default());

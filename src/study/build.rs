@@ -6,8 +6,8 @@ use nalgebra::{Matrix2, Matrix3, Point3, Vector3};
 
 use super::{Case, StudyError, placed, refused};
 use crate::case::{
-    Held, Layout, Mounting, Outline, PointOfAction, Prescribed, RigidSet, SectionTable, Sheet, SheetLoad,
-    SheetPoint, SheetProblem, SheetSupport, SupportKind, Warp,
+    Analysis, Held, Layout, Mounting, Outline, PointOfAction, Prescribed, RigidSet, SectionTable, Sheet, SheetLoad,
+    SheetPoint, SheetProblem, SheetStep, SheetSupport, SupportKind, Warp,
 };
 use crate::fields::{Locator, nearest};
 use crate::finding::{Located, Place};
@@ -50,25 +50,50 @@ pub(super) fn model(
 ) -> Result<Model, StudyError> {
     let mut mesh = placed(case, &sheet.table, sheet_mesh(case, sheet))?;
     let bodies = bodies(case, &mut mesh, &mounting.bodies)?;
+    let supports: Vec<&SheetSupport> = mounting.supports.iter().collect();
+    let Actions { mut supports, moved, loads } = actions(case, &mesh, &supports, (loads, prescribed))?;
+    supports.extend(moved);
+    let formulation = mounting.formulation;
+    let warp = sheet.layout.warp.direction();
+    Ok(Model { mesh, section, warp, formulation, supports, loads, bodies })
+}
+
+/// What holds and moves a sheet, and what acts on it.
+#[derive(Clone, Debug)]
+pub(super) struct Actions {
+    /// What holds it.
+    pub supports: Vec<Support>,
+    /// What is held at a value: over a support, that is a support that moves.
+    pub moved: Vec<Support>,
+    /// What acts.
+    pub loads: Vec<Load>,
+}
+
+/// What the tables of a case say of a mesh.
+///
+/// # Errors
+/// S003 and M007 at the place of a table; M014 for two values of one dof, which contradict each other.
+pub(super) fn actions(
+    case: &Case,
+    mesh: &QuadMesh,
+    held: &[&SheetSupport],
+    (loads, prescribed): (&[SheetLoad], &[Prescribed]),
+) -> Result<Actions, StudyError> {
     let mut supports = Vec::new();
-    for held in &mounting.supports {
-        supports.extend(placed(case, &held.set, support(&mesh, held))?);
+    for held in held {
+        supports.extend(placed(case, &held.set, support(mesh, held))?);
     }
     let mut acting = Vec::new();
     for load in loads {
-        acting.extend(model_loads(case, &mesh, load)?);
+        acting.extend(model_loads(case, mesh, load)?);
     }
-    let mut given = Vec::new();
+    let mut moved = Vec::new();
     for Prescribed { set, dof, value, .. } in prescribed {
         let nodes = placed(case, set, mesh.set(&set.value))?;
-        given.push(Support::at(nodes.to_vec(), vec![(*dof, *value)]));
+        moved.push(Support::at(nodes.to_vec(), vec![(*dof, *value)]));
     }
-    // A value over a support is a support that moves; two values contradict each other.
-    Support::agree(&mesh, &given)?;
-    supports.extend(given);
-    let formulation = mounting.formulation;
-    let warp = sheet.layout.warp.direction();
-    Ok(Model { mesh, section, warp, formulation, supports, loads: acting, bodies })
+    Support::agree(mesh, &moved)?;
+    Ok(Actions { supports, moved, loads: acting })
 }
 
 /// The model of a sheet of a case that is solved, which may be coarser than its own.
@@ -82,7 +107,41 @@ pub(super) fn model_on(
     section: ShellSection,
 ) -> Result<Model, StudyError> {
     let loads = (problem.analysis.loads(), problem.analysis.prescribed());
-    model(case, sheet, &problem.mounting, loads, section)
+    let mut mounting = problem.mounting.clone();
+    mounting.supports.extend(problem.analysis.supports().iter().cloned());
+    model(case, sheet, &mounting, loads, section)
+}
+
+/// What each step of a case does to the sheet of its model; nothing without steps.
+///
+/// # Errors
+/// Those of [`actions`]; M009 where a support cannot be held in large rotations.
+pub(super) fn steps(case: &Case, problem: &SheetProblem, model: &Model) -> Result<Vec<Actions>, StudyError> {
+    let Analysis::Steps(steps) = &problem.analysis else { return Ok(Vec::new()) };
+    let of_step = |step: &SheetStep| {
+        let held: Vec<&SheetSupport> = problem.mounting.supports.iter().chain(&step.supports).collect();
+        let loads = &step.analysis.loads;
+        let actions = actions(case, &model.mesh, &held, (&loads.acting, &loads.prescribed))?;
+        let held = Model {
+            supports: actions.supports.iter().chain(&actions.moved).cloned().collect(),
+            loads: actions.loads.clone(),
+            ..model.clone()
+        };
+        placed(case, &step.name, check(&held, true))?;
+        Ok(actions)
+    };
+    steps.iter().map(of_step).collect()
+}
+
+/// Weight and supports of a model.
+pub(super) fn check(model: &Model, large_rotations: bool) -> Result<(), StudyError> {
+    weighed(model)?;
+    let links = model.links()?;
+    model.held(&links)?;
+    match links.first_own_axes() {
+        Some(own) if large_rotations => Err(own.in_large_rotations(model).into()),
+        _ => Ok(()),
+    }
 }
 
 /// Refuses a weight of nothing: gravity would leave the sheet at rest, without a word.

@@ -232,7 +232,7 @@ fn along_the_yarns(model: &Model, quad: usize) -> Option<[f64; 2]> {
 fn turned_in_plane(problem: &SheetProblem) -> Option<&str> {
     let of_body = |p: &Prescribed| problem.mounting.bodies.iter().any(|b| b.name.value == p.set.value);
     let turns = |p: &&Prescribed| p.dof == Dof::ThetaZ && p.value != 0.0 && !of_body(p);
-    problem.analysis.prescribed().iter().find(turns).map(|p| p.set.value.as_str())
+    problem.analysis.all_prescribed().into_iter().find(turns).map(|p| p.set.value.as_str())
 }
 
 /// Whether the sheet is pressed in its plane anywhere, beyond rounding.

@@ -1,11 +1,11 @@
 //! Statics in large rotations from a case.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 use serde::Serialize;
 
 use super::result::Outcome;
-use super::{PreparedCase, StudyError, Watch, refused};
+use super::{Case, PreparedCase, StudyError, Watch, refused};
 use crate::case::{MethodChoice, Nonlinear};
 use crate::fields::Locator;
 use crate::finding::{Finding, Place, StudyFact};
@@ -28,14 +28,37 @@ pub struct LoadPath {
     pub probes: Vec<Vec<[f64; 3]>>,
     /// Whether the last equilibrium is stable; unknown of one that did not converge.
     pub stability: Option<Stability>,
-    /// The largest |w| of a linear solve, with its sign (m); none if there is no linear solution.
+    /// The largest |w| of a linear solve, with its sign (m); none if there is no linear solution, or `[[steps]]`.
     pub linear_w_max: Option<f64>,
+    /// Where each of the `[[steps]]` of the case ended, as far as they were taken; nothing without.
+    pub load_steps: Vec<LoadStepEnd>,
+}
+
+/// Where one of the `[[steps]]` of a case ended.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LoadStepEnd {
+    /// Its name.
+    pub name: String,
+    /// The way to its equilibrium.
+    pub method: MethodChoice,
+    /// The steps of the path that belong to it.
+    pub steps: Range<usize>,
+    /// Whether it came to its end.
+    pub converged: bool,
+    /// Whether its last equilibrium is stable; unknown where it did not converge.
+    pub stability: Option<Stability>,
+    /// The sheet.
+    #[serde(skip)]
+    pub state: State,
+    /// Forces and moments of the supports, six a node.
+    #[serde(skip)]
+    pub reaction: Vec<f64>,
 }
 
 /// A step of a search: an equilibrium, or a state on the way of the flow.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PathStep {
-    /// Factor of loads and held values.
+    /// Factor of loads and held values; of a case with `[[steps]]` how many of them are done, with the part of the one under way.
     pub factor: f64,
     /// Iterations that it took.
     pub iterations: usize,
@@ -64,24 +87,53 @@ impl LoadPath {
 }
 
 /// What an observer keeps.
-struct Record<'a> {
+pub(super) struct Record<'a> {
     mesh: &'a QuadMesh,
     locators: &'a [Locator],
-    path: LoadPath,
-    state: State,
-    solution: Solution,
+    pub path: LoadPath,
+    pub state: State,
+    pub solution: Solution,
+    /// Load steps that are done.
+    pub done: usize,
     watch: Watch<'a>,
 }
 
-impl Record<'_> {
-    fn see(&mut self, step: &Step<'_>) -> ControlFlow<()> {
+impl<'a> Record<'a> {
+    /// Of a model at rest, before a search by a method.
+    pub fn new(
+        prepared: &'a PreparedCase<'_>,
+        model: &'a Model,
+        method: MethodChoice,
+        watch: Watch<'a>,
+    ) -> Self {
+        Self {
+            mesh: &model.mesh,
+            locators: &prepared.probes,
+            path: LoadPath {
+                method,
+                converged: true,
+                steps: Vec::new(),
+                probes: vec![Vec::new(); prepared.probes.len()],
+                stability: None,
+                linear_w_max: None,
+                load_steps: Vec::new(),
+            },
+            state: State::rest(&model.mesh),
+            solution: Solution::at_rest(model),
+            done: 0,
+            watch,
+        }
+    }
+
+    /// Keeps an equilibrium on the way.
+    pub fn see(&mut self, step: &Step<'_>) -> ControlFlow<()> {
         let displacement = step.state.displacement(self.mesh);
         let at = |locator: &Locator, k: usize| locator.interpolate(self.mesh, |n| displacement[6 * n + k]);
         for (locator, out) in self.locators.iter().zip(&mut self.path.probes) {
             out.push([0, 1, 2].map(|k| at(locator, k)));
         }
         self.path.steps.push(PathStep {
-            factor: step.state.factor,
+            factor: self.done as f64 + step.state.factor,
             iterations: step.iterations,
             cut_backs: step.cut_backs,
             residual: step.residual,
@@ -113,43 +165,42 @@ pub(super) fn equilibrium(
     watch: Watch<'_>,
 ) -> Result<Outcome, StudyError> {
     let (case, options) = (prepared.case, &prepared.options);
-    let Nonlinear { settings, method, perturbation, .. } = analysis;
+    let Nonlinear { settings, method, .. } = analysis;
     let settings = Settings { law: law.cloned(), ..settings.clone() };
-    let perturbs = matches!(method, Method::Newton(Some(_)));
-    let pushes = |node: &[f64]| node[..3].iter().any(|f| *f != 0.0);
-    if perturbs && !model.load_vector().chunks_exact(6).any(pushes) {
-        let message = "[analysis] perturbation is relative to the forces, and there are none here, only held values or moments: \
-                       add a small force across the sheet instead";
-        return Err(refused(case, perturbation, message));
-    }
+    check_perturbation(case, model, analysis)?;
     let linear = solve::solve(model, options).ok();
-    let mut record = Record {
-        mesh: &model.mesh,
-        locators: &prepared.probes,
-        path: LoadPath {
-            method: MethodChoice::of(method),
-            converged: true,
-            steps: Vec::new(),
-            probes: vec![Vec::new(); prepared.probes.len()],
-            stability: None,
-            linear_w_max: linear.map(|l| largest_w(&model.mesh, &l.displacement)),
-        },
-        state: State::rest(&model.mesh),
-        solution: Solution::at_rest(model),
-        watch,
-    };
+    let mut record = Record::new(prepared, model, MethodChoice::of(method), watch);
+    record.path.linear_w_max = linear.map(|l| largest_w(&model.mesh, &l.displacement));
     let found = nonlinear::search(model, &prepared.plan, &settings, method, options, |step| record.see(step));
     watch.not_stopped()?;
     let mut findings = conclude(found, MethodChoice::of(method), &mut record.path)?;
-    findings.extend(turned_about_more(model, &record.state));
+    let given: Vec<Option<f64>> = model.constraints();
+    let factor = record.state.factor;
+    let given = given.into_iter().map(|held| held.map(|value| factor * value));
+    findings.extend(turned_about_more(&given.collect::<Vec<_>>(), &record.state));
     let findings = findings.into_iter().map(|f| f.at(Place::file(&case.path))).collect();
     let mut solution = record.solution;
     solution.dofs = model.constraints().iter().filter(|c| c.is_none()).count();
     Ok(Outcome { path: Some(record.path), state: Some(record.state), findings, ..Outcome::of(solution) })
 }
 
+/// Refuses a perturbation where there is no force that it could be relative to.
+///
+/// # Errors
+/// S003.
+pub(super) fn check_perturbation(case: &Case, model: &Model, analysis: &Nonlinear) -> Result<(), StudyError> {
+    let perturbs = matches!(analysis.method, Method::Newton(Some(_)));
+    let pushes = |node: &[f64]| node[..3].iter().any(|f| *f != 0.0);
+    if perturbs && !model.load_vector().chunks_exact(6).any(pushes) {
+        let message = "[analysis] perturbation is relative to the forces, and there are none here, only held values or moments: \
+                       add a small force across the sheet instead";
+        return Err(refused(case, &analysis.perturbation, message));
+    }
+    Ok(())
+}
+
 /// What the end of a search means: stability, and what a reader must know.
-fn conclude(
+pub(super) fn conclude(
     found: Result<nonlinear::Solution, NonlinearError>,
     method: MethodChoice,
     path: &mut LoadPath,
@@ -189,16 +240,16 @@ fn conclude(
 const TURNED: f64 = 0.01;
 
 /// S121: nodes with one rotation held that have turned about its axis all the same. Held is the rotation of each step
-/// about an axis that stays in space: with others free the sum depends on the way.
-fn turned_about_more(model: &Model, state: &State) -> Option<Finding> {
-    let held = model.constraints();
-    let nodes = held.chunks_exact(6).zip(&state.rotation);
+/// about an axis that stays in space: with others free the sum depends on the way. `given` are the turns of held dofs, six
+/// a node.
+pub(super) fn turned_about_more(given: &[Option<f64>], state: &State) -> Option<Finding> {
+    let nodes = given.chunks_exact(6).zip(&state.rotation);
     let off = nodes.flat_map(|(held, rotation)| {
         (0..3).filter_map(move |axis| {
             let value = held[3 + axis]?;
             let turn = rotation.scaled_axis()[axis];
             // Beyond half a turn the rotation vector is another of the same rotation.
-            (value.abs() < 3.0).then_some((turn - state.factor * value).abs())
+            (value.abs() < 3.0).then_some((turn - value).abs())
         })
     });
     let largest = off.fold(0.0, f64::max);

@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::{Matrix2, Matrix3, Point3};
 
 use super::effort::within_limits;
+use super::build::Actions;
 use super::limits::Extent;
 use super::{Case, StudyError, build, placed, refused, sheet_problem};
 use crate::case::{Analysis, Newmark, Outline, ProbePoint, Problem, Sheet, SheetProblem};
@@ -25,6 +26,8 @@ pub struct PreparedCase<'a> {
     pub(super) options: Options,
     /// With a stand-in for the section.
     model: Model,
+    /// What each of its steps does; nothing without steps.
+    pub(super) steps: Vec<Actions>,
     /// Of the groups that the analysis solves for.
     pub(super) plan: Plan,
     /// Of every group: where the damping of a dynamic analysis needs frequencies of groups that the
@@ -68,16 +71,17 @@ impl<'a> PreparedCase<'a> {
         options: &Options,
     ) -> Result<Self, StudyError> {
         let model = build::model_on(case, problem, sheet, stand_in())?;
+        let steps = build::steps(case, problem, &model)?;
         let all = Plan::all_groups(&model, options);
         let groups = match &problem.analysis {
             Analysis::Modal(_) => all.clone(),
             Analysis::Linear(_) => Plan::groups(&model, options),
             Analysis::Newmark(_) if !problem.analysis.has_large_rotations() => Plan::groups(&model, options),
-            Analysis::Newmark(_) | Analysis::Nonlinear(_) => vec![DofGroup::Shell],
+            Analysis::Newmark(_) | Analysis::Nonlinear(_) | Analysis::Steps(_) => vec![DofGroup::Shell],
         };
         let plan = match &problem.analysis {
             Analysis::Linear(_) => Plan::of(&model, options)?,
-            Analysis::Modal(_) | Analysis::Newmark(_) | Analysis::Nonlinear(_) => {
+            Analysis::Modal(_) | Analysis::Newmark(_) | Analysis::Nonlinear(_) | Analysis::Steps(_) => {
                 Plan::direct(&model, &groups, options)?
             }
         };
@@ -93,6 +97,7 @@ impl<'a> PreparedCase<'a> {
             problem,
             options: *options,
             model,
+            steps,
             plan,
             all_groups,
             probes,
@@ -103,7 +108,7 @@ impl<'a> PreparedCase<'a> {
         })
     }
 
-    /// The model of the case with a section.
+    /// The model of the case with a section, as it is in the last of its steps.
     pub fn model(&self, section: ShellSection) -> Model {
         Model { section, ..self.model.clone() }
     }
@@ -122,7 +127,8 @@ pub fn validate(case: &Case) -> Result<(), StudyError> {
     match &case.problem {
         Problem::Sheet(problem) => {
             let model = build::model_on(case, problem, &problem.sheet, section)?;
-            check_model(&model, problem.analysis.has_large_rotations())?;
+            build::check(&model, problem.analysis.has_large_rotations())?;
+            build::steps(case, problem, &model)?;
             locators(case, problem, &model.mesh)?;
             for (meshes, sheet) in
                 problem.analysis.coarser().iter().flat_map(|m| m.value.iter().map(move |s| (m, s)))
@@ -136,20 +142,9 @@ pub fn validate(case: &Case) -> Result<(), StudyError> {
         Problem::Drape(problem) => {
             let loads = problem.loads();
             let model = build::model(case, &problem.sheet(), &problem.mounting, (&loads, &[]), section)?;
-            check_model(&model, true)
+            build::check(&model, true)
         }
         Problem::InstrumentTest(_) | Problem::BendingTest(_) => Ok(()),
-    }
-}
-
-/// Weight and supports of a model.
-fn check_model(model: &Model, large_rotations: bool) -> Result<(), StudyError> {
-    build::weighed(model)?;
-    let links = model.links()?;
-    model.held(&links)?;
-    match links.first_own_axes() {
-        Some(own) if large_rotations => Err(own.in_large_rotations(model).into()),
-        _ => Ok(()),
     }
 }
 

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::convergence::Convergence;
 use super::dynamics::History;
-use super::nonlinear::LoadPath;
+use super::nonlinear::{LoadPath, LoadStepEnd};
 use super::uncertainty::Uncertainty;
 use crate::case::Reference;
 use crate::element::Mass;
@@ -129,6 +129,15 @@ pub struct CaseResult {
 }
 
 impl CaseResult {
+    /// The sheet at the end of one of the `[[steps]]` of the case.
+    pub fn at_end_of(&self, step: &LoadStepEnd) -> Self {
+        let mut then =
+            Self { state: Some(step.state.clone()), nodal: OnceLock::new(), ..self.clone() };
+        then.solution.displacement = step.state.displacement(&self.model.mesh);
+        then.solution.reaction.clone_from(&step.reaction);
+        then
+    }
+
     /// Whether there are reactions: a motion in time and a natural mode have none here.
     pub fn has_reactions(&self) -> bool {
         self.history.is_none() && !self.is_modal()

@@ -7,6 +7,7 @@ use super::convergence::Convergence;
 use super::dynamics::{dynamics, is_out_of_time, rayleigh};
 use super::finite::finite;
 use super::limits::{Beyond, buckles, findings, is_compressed};
+use super::load_steps::load_steps;
 use super::nonlinear::{equilibrium, largest_w};
 use super::result::{CaseResult, Kept, Outcome, Probe, Status};
 use super::uncertainty::{linear_uncertainty, modal_uncertainty};
@@ -231,6 +232,7 @@ fn analyse(
             dynamics(prepared, model, &settings, newmark.rotations, watch)
         }
         Analysis::Nonlinear(nonlinear) => equilibrium(prepared, model, law, nonlinear, watch),
+        Analysis::Steps(steps) => load_steps(prepared, model, law, steps, watch),
     }
 }
 

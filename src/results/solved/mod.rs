@@ -67,7 +67,8 @@ fn row(task: &Task, result: &CaseResult, quantity: String, value: f64, unit: &st
     }
 }
 
-/// Writes `<stem>.vtu`, `<stem>.png`, and `<stem>.csv` of what there is of a history; whether there is a chart.
+/// Writes `<stem>.vtu`, `<stem>.png`, `<stem>.csv` of what there is of a history, and `<stem>-step-<k>.vtu` of each of its
+/// `[[steps]]`; whether there is a chart.
 pub(super) fn write(task: &Task, result: &CaseResult, folder: &Folder) -> Result<bool, Failure> {
     let stem = task.stem();
     let history = history_rows(result);
@@ -76,5 +77,9 @@ pub(super) fn write(task: &Task, result: &CaseResult, folder: &Folder) -> Result
     }
     let mesh = fields::Mesh::new(result);
     folder.write(&format!("{stem}.vtu"), &mesh.vtu(result)?)?;
+    for (k, step) in result.path.iter().flat_map(|path| path.load_steps.iter().enumerate()) {
+        let then = result.at_end_of(step);
+        folder.write(&format!("{stem}-step-{}.vtu", k + 1), &fields::Mesh::new(&then).vtu(&then)?)?;
+    }
     folder.chart(&format!("{stem}.png"), || chart::field(&mesh.plot(task, result)))
 }

@@ -8,7 +8,7 @@ use crate::quantity::significant;
 use crate::results::columns::Columns;
 use crate::results::task::Task;
 use crate::solve::nonlinear::Stability;
-use crate::study::{CaseResult, LoadPath, PathStep, Probe};
+use crate::study::{CaseResult, LoadPath, LoadStepEnd, PathStep, Probe};
 
 /// One line a search: how far it came, what it took, and the linear answer beside it.
 pub(super) fn searches(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
@@ -37,7 +37,7 @@ pub(super) fn searches(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
             path.iterations().to_string(),
             path.cut_backs().to_string(),
             last.map_or("-".into(), |s| format!("{:.1e}", s.residual)),
-            stable(path).into(),
+            stable(path.stability).into(),
             or_dash(path.linear_w_max.map(|w| 1e3 * w)),
         ]);
     }
@@ -66,6 +66,43 @@ pub(super) fn steps(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
     table.filled()
 }
 
+/// One line for each of the `[[steps]]` of a case: how it went, and what it left.
+pub(super) fn load_steps(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
+    let headings = [
+        "load step",
+        "case",
+        "fabric",
+        "steps",
+        "iterations",
+        "cut-backs",
+        "stable",
+        "w_max (mm)",
+        "stored (J)",
+        "lost (J)",
+    ];
+    let mut table = Columns::new(headings);
+    for (task, r) in solved {
+        let Some(path) = &r.path else { continue };
+        for end in &path.load_steps {
+            let steps = &path.steps[end.steps.clone()];
+            let last = steps.last();
+            table.row([
+                end.name.clone(),
+                r.case.clone(),
+                task.fabric_name().unwrap_or_default().into(),
+                steps.len().to_string(),
+                steps.iter().map(|s| s.iterations).sum::<usize>().to_string(),
+                steps.iter().map(|s| s.cut_backs).sum::<usize>().to_string(),
+                stable(end.stability).into(),
+                or_dash(last.map(|s| 1e3 * s.w_max)),
+                or_dash(last.map(|s| s.strain_energy)),
+                or_dash(last.map(|s| s.dissipated)),
+            ]);
+        }
+    }
+    table.filled()
+}
+
 /// `search` of an entry of `kesf.solution/1`.
 #[derive(Clone, Debug, Serialize)]
 pub struct SearchEntry {
@@ -75,6 +112,19 @@ pub struct SearchEntry {
     cut_backs: usize,
     stability: Option<Stability>,
     linear_w_max: Option<f64>,
+    /// Of the `[[steps]]` of the case.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    load_steps: Vec<LoadStepEntry>,
+}
+
+/// One of the `[[steps]]` of a case: its place in `steps`, from 0 and without the last, and how it ended.
+#[derive(Clone, Debug, Serialize)]
+pub struct LoadStepEntry {
+    name: String,
+    method: MethodChoice,
+    steps: [usize; 2],
+    converged: bool,
+    stability: Option<Stability>,
 }
 
 /// A step of `steps` (SI).
@@ -99,6 +149,19 @@ impl SearchEntry {
             cut_backs: path.cut_backs(),
             stability: path.stability,
             linear_w_max: path.linear_w_max,
+            load_steps: path.load_steps.iter().map(LoadStepEntry::new).collect(),
+        }
+    }
+}
+
+impl LoadStepEntry {
+    fn new(end: &LoadStepEnd) -> Self {
+        Self {
+            name: end.name.clone(),
+            method: end.method,
+            steps: [end.steps.start, end.steps.end],
+            converged: end.converged,
+            stability: end.stability,
         }
     }
 }
@@ -130,8 +193,8 @@ fn method_name(method: MethodChoice) -> &'static str {
     }
 }
 
-fn stable(path: &LoadPath) -> &'static str {
-    match &path.stability {
+fn stable(stability: Option<Stability>) -> &'static str {
+    match stability {
         Some(s) if s.is_stable() => "yes",
         Some(_) => "no",
         None => "-",

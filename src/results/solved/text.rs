@@ -52,6 +52,7 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
         convergence::table(solved),
         histories(solved),
         search::searches(solved),
+        search::load_steps(solved),
         steps,
         checks(solved.iter().map(|(_, r)| *r)),
     ];

@@ -53,11 +53,12 @@ pub fn follow(
 
 pub(super) fn follow_path(
     system: &System<'_>,
+    start: State,
     settings: &Settings,
     arc: &ArcLength,
     mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    let mut state = State::rest(&system.model.mesh);
+    let mut state = start;
     let mut balance = system.balance(&state, None);
     let mut progress = Progress::default();
     let (mut first, mut length, mut last) = (None, 0.0, Vec::new());

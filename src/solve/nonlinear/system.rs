@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector3};
 
+use super::load_steps::Before;
 use super::sheet::{Answer, Forces, Sheet};
 use super::{NonlinearError, Settings, State};
 use crate::element::corotational::Motion;
@@ -35,6 +36,8 @@ pub(super) struct System<'a> {
     load: Vec<f64>,
     /// Follower pressure at factor 1 (Pa).
     pressure: f64,
+    /// Loads at factor 0, where there are any.
+    pub before: Option<Before>,
     /// Whether a dof is held.
     pub held: Vec<bool>,
     /// Values of the held dofs at factor 1.
@@ -59,7 +62,7 @@ pub(super) struct Balance {
     pub energy: f64,
     /// Norm of what must vanish (N).
     pub residual: f64,
-    /// Norm of loads or reactions, whichever is larger (N).
+    /// Norm of loads or reactions, whichever is larger, now or at the start of a load step (N).
     pub scale: f64,
 }
 
@@ -86,6 +89,7 @@ impl<'a> System<'a> {
             links,
             load: model.dead_load_vector(),
             pressure: model.follower_pressure(),
+            before: None,
             held: held.iter().map(Option::is_some).collect(),
             values: held.iter().map(|c| c.unwrap_or(0.0)).collect(),
             metric: vec![0.0; 6 * nodes],
@@ -136,7 +140,7 @@ impl<'a> System<'a> {
             let force = answer.motion.force(&answer.forces.local);
             (answer, force, self.push_of(state, q))
         });
-        let mut external: Vec<f64> = self.load.iter().map(|f| f * state.factor).collect();
+        let mut external = self.dead_loads(state.factor);
         if let Some(extra) = extra {
             external.iter_mut().zip(extra).for_each(|(f, e)| *f += e);
         }
@@ -160,6 +164,7 @@ impl<'a> System<'a> {
         let residual = self.norm(&unbalanced, false);
         let loads = self.to_leads(state, &external);
         let scale = self.norm(&unbalanced, true).max(self.norm(&loads, false));
+        let scale = self.before.as_ref().map_or(scale, |before| scale.max(before.scale));
         Balance { answers, nodal, unbalanced, energy, residual, scale }
     }
 
@@ -188,7 +193,7 @@ impl<'a> System<'a> {
     /// Forces of the follower pressure on the nodes of an element, at the factor of the state; `None` without
     /// pressure.
     fn push_of(&self, state: &State, quad: usize) -> Option<[Vector3<f64>; 4]> {
-        let pressure = self.pressure * state.factor;
+        let pressure = self.pressure_at(state.factor);
         (pressure != 0.0).then(|| follower_pressure(&self.corners(state, quad), pressure))
     }
 
@@ -200,7 +205,7 @@ impl<'a> System<'a> {
     /// Takes the follower pressure from a tangent. The part that is not symmetric belongs to free edges; without
     /// it Newton's method is still quick, but no longer quadratic there.
     fn soften(&self, state: &State, quad: usize, k: &mut Matrix24) {
-        let pressure = self.pressure * state.factor;
+        let pressure = self.pressure_at(state.factor);
         if pressure == 0.0 {
             return;
         }
@@ -211,12 +216,30 @@ impl<'a> System<'a> {
         }
     }
 
-    /// The loads at factor 1, by dof.
+    /// Dead loads at a factor, six a node.
+    fn dead_loads(&self, factor: f64) -> Vec<f64> {
+        let mut loads: Vec<f64> = self.load.iter().map(|f| f * factor).collect();
+        if let Some(before) = &self.before {
+            loads.iter_mut().zip(&before.load).for_each(|(f, b)| *f += b * (1.0 - factor));
+        }
+        loads
+    }
+
+    /// Follower pressure at a factor (Pa).
+    fn pressure_at(&self, factor: f64) -> f64 {
+        self.pressure * factor + self.before.as_ref().map_or(0.0, |before| before.pressure * (1.0 - factor))
+    }
+
+    /// What the loads grow by from factor 0 to 1, by dof.
     pub fn reference_load(&self, state: &State) -> Vec<f64> {
-        let mut nodal = self.load.clone();
-        if self.pressure != 0.0 {
+        let (mut nodal, mut pressure) = (self.load.clone(), self.pressure);
+        if let Some(before) = &self.before {
+            nodal.iter_mut().zip(&before.load).for_each(|(f, b)| *f -= b);
+            pressure -= before.pressure;
+        }
+        if pressure != 0.0 {
             for (q, quad) in self.model.mesh.quads.iter().enumerate() {
-                let forces = follower_pressure(&self.corners(state, q), self.pressure);
+                let forces = follower_pressure(&self.corners(state, q), pressure);
                 for (node, force) in quad.iter().zip(forces) {
                     (0..3).for_each(|d| nodal[6 * *node as usize + d] += force[d]);
                 }
