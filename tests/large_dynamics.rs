@@ -55,7 +55,7 @@ fn settings(duration: f64, step: f64) -> Dynamics {
         duration,
         step,
         tolerance: None,
-        spectral_radius: 0.9,
+        spectral_radius: Some(0.9),
         damping: Rayleigh::default(),
         load: LoadHistory::Step,
         mass: Mass::Consistent,
@@ -64,7 +64,7 @@ fn settings(duration: f64, step: f64) -> Dynamics {
 
 /// After five quarters of a period the bar hangs straight down: x of its end over its length; and the largest
 /// imbalance of the energies over the largest work.
-fn pendulum(steps: usize, spectral_radius: f64) -> (f64, f64) {
+fn pendulum(steps: usize, spectral_radius: Option<f64>) -> (f64, f64) {
     let model = strip(2, 1.0, &[Dof::U, Dof::W], G);
     let end = 6 * model.mesh.set("right").unwrap()[0] as usize;
     let quarter = 1.854_074_677_301_37 / (1.5 * G / LENGTH).sqrt();
@@ -82,11 +82,15 @@ fn pendulum(steps: usize, spectral_radius: f64) -> (f64, f64) {
 
 #[test]
 fn a_rigid_strip_is_a_pendulum_of_second_order() {
-    for radius in [0.8, 0.9, 1.0] {
+    // The method that conserves the energy is so close that its error is that of the mesh.
+    let conserved = pendulum(200, None);
+    println!("{conserved:?}");
+    assert!(conserved.0.abs() < 3e-4 && conserved.1 < 1e-6, "{conserved:?}");
+    for radius in [Some(0.8), Some(0.9), Some(1.0)] {
         let (coarse, medium, fine) = (pendulum(200, radius), pendulum(400, radius), pendulum(800, radius));
-        println!("radius {radius}: {coarse:?} {medium:?} {fine:?}");
+        println!("radius {radius:?}: {coarse:?} {medium:?} {fine:?}");
         let slope = (medium.0 / fine.0).abs().log2();
-        assert!((slope - 2.0).abs() < 0.1, "radius {radius}: slope {slope}");
+        assert!((slope - 2.0).abs() < 0.1, "radius {radius:?}: slope {slope}");
         assert!(fine.0.abs() < 1e-3, "{}", fine.0);
         assert!(fine.1 < 1e-3, "energy {}", fine.1);
     }
@@ -114,7 +118,7 @@ fn small_motions_are_the_linear_ones() {
             ControlFlow::Continue(())
         })
         .unwrap();
-        let dynamics = Dynamics { spectral_radius: 1.0, damping, ..settings(duration, step) };
+        let dynamics = Dynamics { spectral_radius: Some(1.0), damping, ..settings(duration, step) };
         let mut imbalance = 0.0f64;
         integrate(&model, &dynamics, &Options::default(), |at| {
             turned.push(at.displacement[end]);
@@ -201,27 +205,60 @@ fn the_adaptive_step_follows_what_moves() {
     }
 }
 
-/// A strip of 10 cm that whips without damping, in steps from short to far too long: its energy balances to a hundredth from
-/// above whatever the step, or the run ends with the reason in a bounded number of steps. What the highest frequencies
-/// lose is no gain.
+/// A strip of 10 cm that whips without damping, in steps from short to far too long: its energies balance to a hundredth
+/// whatever the step, or the run ends with the reason in a bounded number of steps. The generalised-α method may lose what
+/// the highest frequencies hold, and gains nothing.
 #[test]
-fn no_motion_gains_energy_from_nowhere() {
-    let mut model = strip(20, 8e-6, &Dof::ALL, G);
+fn no_motion_gains_energy_from_nowhere_or_loses_it() {
+    let mut model = strip(10, 8e-6, &Dof::ALL, G);
     model.mesh.nodes.iter_mut().for_each(|p| p.coords *= 0.5);
-    for (step, spectral_radius) in [(2e-3, 0.9), (1e-2, 0.9), (3e-2, 0.9), (1e-2, 1.0)] {
-        let dynamics = Dynamics { spectral_radius, ..settings(1.0, step) };
-        let (mut created, mut largest, mut instants) = (0.0f64, 0.0f64, 0);
+    for (duration, step, spectral_radius) in [
+        (1.0, 2e-3, None),
+        (0.3, 1e-2, None),
+        (1.0, 2e-3, Some(0.9)),
+        (1.0, 3e-2, Some(0.9)),
+        (0.3, 1e-2, Some(1.0)),
+    ] {
+        let dynamics = Dynamics { spectral_radius, ..settings(duration, step) };
+        let (mut created, mut lost, mut largest, mut instants) = (0.0f64, 0.0f64, 0.0f64, 0);
         let end = integrate(&model, &dynamics, &Options::default(), |at| {
             largest = largest.max(at.energy.work.abs()).max(at.energy.kinetic + at.energy.strain);
             created = created.max(at.energy.imbalance() / largest.max(1e-30));
+            lost = lost.max(-at.energy.imbalance() / largest.max(1e-30));
             instants += 1;
             ControlFlow::Continue(())
         });
         println!(
-            "step {step}, radius {spectral_radius}: {instants} instants, created {created:.1e}, {end:?}",
+            "step {step}, radius {spectral_radius:?}: {instants} instants, created {created:.1e}, lost {lost:.1e}, {end:?}",
             end = end.as_ref().err()
         );
-        assert!(created <= 0.01, "step {step}, radius {spectral_radius}: {created}");
-        assert!(end.is_ok() || end.is_err_and(|e| e.code() == "N005"));
+        assert!(created <= 0.01, "step {step}, radius {spectral_radius:?}: {created}");
+        assert!(spectral_radius.is_some() || lost <= 0.01, "step {step}: {lost}");
+        // Where the energy is conserved the motion comes to its end.
+        assert!(end.is_ok() || (spectral_radius.is_some() && end.is_err_and(|e| e.code() == "N005")));
     }
+}
+
+/// A strip that swings a thousand times about the shape in which it hangs keeps its energy, and its period: that of small
+/// motions about the bent shape is not known here, so it is compared with itself.
+#[test]
+fn a_thousand_periods_keep_the_energy() {
+    let model = strip(3, 8e-6, &Dof::ALL, 0.5);
+    let end = 6 * model.mesh.set("right").unwrap()[0] as usize + 2;
+    let first = modes(&model, 1, Mass::Consistent, &Options::default()).unwrap()[0].frequency();
+    let dynamics = Dynamics { spectral_radius: None, ..settings(1000.0 / first, 1.0 / (12.0 * first)) };
+    let (mut off, mut work, mut lowest) = (0.0f64, 0.0f64, [0.0f64; 2]);
+    integrate(&model, &dynamics, &Options::default(), |at| {
+        off = off.max(at.energy.imbalance().abs());
+        work = work.max(at.energy.work.abs());
+        let w = at.displacement[end];
+        let late = usize::from(at.time > 900.0 / first);
+        lowest[late] = lowest[late].min(w);
+        ControlFlow::Continue(())
+    })
+    .unwrap();
+    println!("off {:.1e} of the work, lowest {lowest:?}", off / work);
+    assert!(off < 0.01 * work, "{off} {work}");
+    // It still swings as far.
+    assert!((lowest[1] / lowest[0] - 1.0).abs() < 0.1, "{lowest:?}");
 }

@@ -52,7 +52,7 @@ fn settings(duration: f64, steps: usize) -> Dynamics {
         duration,
         step: duration / steps as f64,
         tolerance: None,
-        spectral_radius: 0.9,
+        spectral_radius: Some(0.9),
         damping: Rayleigh::default(),
         load: LoadHistory::Step,
         mass: Mass::Consistent,
@@ -172,7 +172,7 @@ fn small_motions_with_a_body_are_the_linear_ones() {
             ControlFlow::Continue(())
         })
         .unwrap();
-        let dynamics = Dynamics { spectral_radius: 1.0, damping, ..settings(duration, steps) };
+        let dynamics = Dynamics { spectral_radius: Some(1.0), damping, ..settings(duration, steps) };
         integrate(&model, &dynamics, &Options::default(), |at| {
             turned.push(at.displacement[end]);
             ControlFlow::Continue(())

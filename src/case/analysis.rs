@@ -82,11 +82,12 @@ pub(super) struct NewmarkTable {
     mass: Option<Mass>,
     /// The older word: `true` is `mass = "lumped"`, `false` is `mass = "consistent"`.
     lumped: Option<bool>,
-    /// Rotations of any size (generalised-α method) instead of small displacements.
+    /// Rotations of any size instead of small displacements; the energies balance in every step.
     #[serde(default)]
     large_rotations: bool,
-    /// How much of the highest frequencies is left after a step, 0 to 1. With large rotations only.
-    #[schemars(extend("default" = 0.9))]
+    /// How much of the highest frequencies is left after a step, 0 to 1, and the method that damps them (generalised-α)
+    /// in the place of the one that keeps the energy. With large rotations only.
+    #[schemars(example = 0.9)]
     spectral_radius: Option<f64>,
 }
 
@@ -167,10 +168,11 @@ pub struct Newmark {
 pub enum Rotations {
     /// Small displacements (Newmark's method).
     Small,
-    /// Any size (generalised-α method).
+    /// Any size.
     Large {
-        /// How much of the highest frequencies is left after a step, 0 to 1.
-        spectral_radius: f64,
+        /// How much of the highest frequencies is left after a step of the generalised-α method, 0 to 1; without, the
+        /// energy is conserved.
+        spectral_radius: Option<f64>,
     },
 }
 
@@ -186,9 +188,6 @@ pub struct Nonlinear {
     /// Position of the perturbation, or else of the table, in the case file.
     pub perturbation: Located<()>,
 }
-
-/// Spectral radius of large rotations when left out: a tenth of the highest frequencies goes in a step.
-const SPECTRAL_RADIUS: f64 = 0.9;
 
 impl Analysis {
     /// What acts, in the last of its steps; nothing in a modal analysis.
@@ -343,7 +342,7 @@ impl NewmarkTable {
             (true, Some(radius)) if !(0.0..=1.0).contains(&radius) => {
                 refused(at.value_place("spectral_radius"), message)
             }
-            (true, radius) => Ok(Rotations::Large { spectral_radius: radius.unwrap_or(SPECTRAL_RADIUS) }),
+            (true, spectral_radius) => Ok(Rotations::Large { spectral_radius }),
         }
     }
 }

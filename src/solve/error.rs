@@ -120,7 +120,7 @@ pub enum StepLimit {
     Tolerance,
     /// Newton's method does not converge.
     Convergence,
-    /// The step creates energy.
+    /// The energies do not balance.
     Energy,
 }
 
@@ -131,11 +131,11 @@ impl StepLimit {
             Self::Tolerance => "loosen the tolerance, or ramp the load instead of a step",
             Self::Convergence => {
                 "Newton's method does not converge in shorter ones either; take a smaller step from the start, damping, \
-                 or a smaller spectral_radius"
+                 or a spectral_radius, such as 0.8"
             }
             Self::Energy => {
-                "the motion gains energy from nowhere in shorter ones too; take a smaller step from the start, damping, \
-                 or a smaller spectral_radius"
+                "the energies of the motion do not balance in shorter ones either; take a smaller step from the start, \
+                 damping, or a spectral_radius, such as 0.8"
             }
         }
     }

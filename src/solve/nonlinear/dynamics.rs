@@ -1,10 +1,11 @@
-//! Dynamics in large rotations: the generalised-α method (Chung and Hulbert 1993) in its form for
-//! rotations (Arnold and Brüls, *Multibody Syst. Dyn.* 18 (2007) 185), from rest.
+//! Dynamics in large rotations, from rest: `M q̈ + α M v + f_visc(q, v) + f_int(q) = λ(t) f_ext`. Rotations advance by
+//! `R_{n+1} = exp(Δθ) R_n` with spatial increments. Two methods, both of second order in the step:
 //!
-//! `M q̈ + α M v + f_visc(q, v) + f_int(q) = λ(t) f_ext` holds at the end of every step; rotations advance by
-//! `R_{n+1} = exp(Δθ) R_n` with spatial increments. Second order in the step. The spectral radius of the
-//! highest frequencies, 0 to 1, sets how quickly what the mesh cannot show dies away: 1 keeps all of it,
-//! which in large rotations of a sheet that hardly stretches may end in divergence.
+//! 1. the rule of the mean with a correction by which the energies balance in every step (the default; `conserving`);
+//! 2. the generalised-α method (Chung and Hulbert 1993) in its form for rotations (Arnold and Brüls, *Multibody Syst. Dyn.*
+//!    18 (2007) 185). The spectral radius of the highest frequencies, 0 to 1, sets how quickly what the mesh cannot show
+//!    dies away, and its energy with it: 1 keeps all of it, which in large rotations of a sheet that hardly stretches may
+//!    create energy.
 //!
 //! Rayleigh damping: `α M v`, and `β` times the rate of the element's own deformation, so that rigid
 //! motions are not damped by it. The rotary inertia of a node is `t²/12` of its mass about every axis, so
@@ -15,6 +16,8 @@
 //! small of the order of the turn in a step.
 
 mod adaptive;
+mod alpha;
+mod conserving;
 mod guard;
 mod inertia;
 
@@ -27,7 +30,7 @@ use super::newton::{is_rounding, limit};
 use super::sheet::Forces;
 use super::system::{Balance, System};
 use super::{NonlinearError, Settings, State, plan};
-use crate::element::Mass;
+use crate::element::{Mass, Vector24};
 use crate::model::Model;
 use crate::solve::assemble::unit_rows;
 use crate::solve::factor::Factor;
@@ -47,8 +50,8 @@ pub struct Dynamics {
     /// Local error of the displacement at which the step is halved or doubled, relative to the larger of what has
     /// been reached and what the greatest load can cause; `None` shortens it only where Newton's method fails.
     pub tolerance: Option<f64>,
-    /// Spectral radius of the highest frequencies, 0 to 1.
-    pub spectral_radius: f64,
+    /// Spectral radius of the highest frequencies, 0 to 1, of the generalised-α method; `None` conserves the energy.
+    pub spectral_radius: Option<f64>,
     /// Damping.
     pub damping: Rayleigh,
     /// The load in time.
@@ -70,7 +73,8 @@ const RESIDUAL: f64 = 1e-9;
 ///
 /// # Errors
 /// M008, M010 for the model; N002 for memory; N005 when the step vanishes or is cut too often: where Newton's method does not
-/// converge, the local error is above the tolerance, or more than a hundredth of the energy comes from nowhere.
+/// converge, the local error is above the tolerance, or more than a hundredth of the energy comes from nowhere (or goes
+/// there, in the method that conserves it).
 pub fn integrate(
     model: &Model,
     dynamics: &Dynamics,
@@ -111,7 +115,7 @@ pub fn integrate_with(
     while dynamics.duration - time > 1e-6 * step {
         guard.attempt(time)?;
         let dt = step.min(dynamics.duration - time);
-        let next = motion.advance(&now, time + dt, dt);
+        let next = motion.advance((&now, &energy), time + dt, dt);
         let reached = match (&next, tolerance) {
             (Some(next), Some(_)) => motion.moved(next).max(largest),
             _ => largest,
@@ -127,7 +131,7 @@ pub fn integrate_with(
         };
         let mut balance = energy;
         motion.account(&now, &next, &mut balance);
-        if guard.creates(&energy, &balance) {
+        if guard.refuses(&energy, &balance, motion.conserves()) {
             step = guard.halve(dt, time, StepLimit::Energy)?;
             continue;
         }
@@ -156,8 +160,8 @@ struct Now {
     balance: Balance,
     /// `α M v`, by dof.
     drag: Vec<f64>,
-    /// Forces of the elements' viscosity in their frames.
-    viscous: Vec<Forces>,
+    /// Forces of the elements' viscosity in their frames, that of a correction left out.
+    viscous: Vec<Vector24>,
     /// Loads at this instant.
     load: Vec<f64>,
     /// Displacements and rotations since the instant before.
@@ -179,7 +183,7 @@ struct Motion<'a> {
 
 impl<'a> Motion<'a> {
     fn new(system: &'a System<'a>, dynamics: &'a Dynamics) -> Self {
-        let rho = dynamics.spectral_radius;
+        let rho = dynamics.spectral_radius.unwrap_or(1.0);
         let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
         let gamma = 0.5 + alpha_f - alpha_m;
         let beta = 0.25 * (0.5 + gamma) * (0.5 + gamma);
@@ -204,7 +208,7 @@ impl<'a> Motion<'a> {
             acceleration,
             balance,
             drag: still.clone(),
-            viscous: vec![Forces::default(); self.system.model.mesh.quads.len()],
+            viscous: vec![Vector24::zeros(); self.system.model.mesh.quads.len()],
             load: self.load(&state),
             travelled: still,
             factor: None,
@@ -222,52 +226,53 @@ impl<'a> Motion<'a> {
     }
 
     /// A step to a time; `None` if Newton's method does not converge.
-    fn advance(&self, now: &Now, time: f64, dt: f64) -> Option<Now> {
-        let n = now.velocity.len();
-        let (beta, gamma) = (self.beta, self.gamma);
-        let mut travelled: Vec<f64> =
-            (0..n).map(|d| dt * now.velocity[d] + 0.5 * dt * dt * now.mean_acceleration[d]).collect();
+    fn advance(&self, (now, energy): (&Now, &Energy), time: f64, dt: f64) -> Option<Now> {
+        if self.conserves() {
+            return self.advance_conserving((now, energy), time, dt);
+        }
+        self.newton(now, self.straight_on(now, time, dt), dt, |travelled| {
+            self.alpha_rates(now, travelled, dt)
+        })
+    }
+
+    /// Where the velocities and accelerations of an instant lead until a time.
+    fn straight_on(&self, now: &Now, time: f64, dt: f64) -> Guess {
+        let by_dof = now.velocity.iter().zip(&now.mean_acceleration);
+        let travelled: Vec<f64> = by_dof.map(|(v, a)| dt * v + 0.5 * dt * dt * a).collect();
         let mut state = State { factor: self.dynamics.load.at(time), ..now.state.clone() };
         self.system.advance(&mut state, &travelled);
         // The straight prediction stretches a sheet that turns: its own forces say nothing.
-        let mut predicted: Option<Vec<Forces>> = Some(now.balance.forces());
+        Guess { state, travelled, forces: Some(now.balance.forces()) }
+    }
+
+    /// From a guess of the end of a step to the end itself; `None` if Newton's method does not converge.
+    fn newton(&self, now: &Now, guess: Guess, dt: f64, rates: impl Fn(&[f64]) -> Rates) -> Option<Now> {
+        let n = now.velocity.len();
+        let Guess { mut state, mut travelled, forces: mut predicted } = guess;
         let mut factor = None;
         for _ in 0..ITERATIONS {
-            let mean_acceleration: Vec<f64> = (0..n)
-                .map(|d| {
-                    let rest = dt * now.velocity[d] + (0.5 - beta) * dt * dt * now.mean_acceleration[d];
-                    (travelled[d] - rest) / (beta * dt * dt)
-                })
-                .collect();
-            let velocity: Vec<f64> = (0..n)
-                .map(|d| {
-                    let mean = (1.0 - gamma) * now.mean_acceleration[d] + gamma * mean_acceleration[d];
-                    now.velocity[d] + dt * mean
-                })
-                .collect();
-            let acceleration: Vec<f64> = (0..n)
-                .map(|d| {
-                    let mean =
-                        (1.0 - self.alpha_m) * mean_acceleration[d] + self.alpha_m * now.mean_acceleration[d];
-                    (mean - self.alpha_f * now.acceleration[d]) / (1.0 - self.alpha_f)
-                })
-                .collect();
+            let rates = rates(&travelled);
             let balance = self.system.balance(&state, None);
             let Resistance { inertia, drag, damping, nodal, viscous } =
-                self.resistance(&state, &balance, &velocity, &acceleration);
-            let mut force: Vec<f64> =
-                (0..n).map(|d| -(inertia[d] + damping[d] + balance.unbalanced[d])).collect();
+                self.resistance(&state, &balance, &rates);
+            let mut force: Vec<f64> = if self.conserves() {
+                // Means over the step, twice.
+                let forces = self.twice_the_mean(&now.balance, (&state, &balance));
+                (0..n).map(|d| -(2.0 * (inertia[d] + damping[d]) + forces[d])).collect()
+            } else {
+                (0..n).map(|d| -(inertia[d] + damping[d] + balance.unbalanced[d])).collect()
+            };
             self.free(&mut force);
             let (size, scale) =
                 (self.system.norm(&force, false), balance.scale.max(self.system.norm(&inertia, false)));
             let done = |state, balance, factor: Option<Factor>| Now {
                 load: self.load(&state),
-                velocity: velocity.clone(),
-                acceleration: acceleration.clone(),
-                mean_acceleration: mean_acceleration.clone(),
+                velocity: rates.velocity.clone(),
+                acceleration: rates.acceleration.clone(),
+                mean_acceleration: rates.mean_acceleration.clone(),
                 balance,
                 drag: drag.clone(),
-                viscous: viscous.clone(),
+                viscous: self.without_correction(&viscous, rates.correction),
                 travelled: travelled.clone(),
                 factor: factor.filter(|_| self.dynamics.tolerance.is_some()),
                 state,
@@ -281,7 +286,8 @@ impl<'a> Motion<'a> {
             let elastic = predicted.take().unwrap_or_else(|| balance.forces());
             let geometric: Vec<Forces> = elastic.iter().zip(&viscous).map(|(e, v)| e.plus(v)).collect();
             let mut step = force;
-            let tangent = self.tangent(&state, &balance, &nodal, &geometric, dt)?;
+            let beta = self.dynamics.damping.beta + rates.correction;
+            let tangent = self.tangent(&state, &balance, &nodal, (&geometric, beta), dt)?;
             tangent.solve(&mut step, 1);
             factor = Some(tangent);
             if limit(&mut step) == 1.0 && is_rounding(&step, self.system.size) {
@@ -297,17 +303,17 @@ impl<'a> Motion<'a> {
     }
 
     /// Factor of `(1-α_m)/((1-α_f) β Δt²) M + γ/(β Δt) C + K`; `nodal` are the forces of inertia and damping
-    /// on the nodes.
+    /// on the nodes, `beta` the damping by stiffness.
     fn tangent(
         &self,
         state: &State,
         balance: &Balance,
         nodal: &[f64],
-        forces: &[Forces],
+        (forces, beta): (&[Forces], f64),
         dt: f64,
     ) -> Option<Factor> {
         let by_velocity = self.gamma / (self.beta * dt);
-        let stiffening = 1.0 + self.dynamics.damping.beta * by_velocity;
+        let stiffening = 1.0 + beta * by_velocity;
         let (mut matrix, _) = self.system.tangent_of(state, balance, forces, 0.0, stiffening);
         let factor = self.by_acceleration(dt) + self.dynamics.damping.alpha * by_velocity;
         self.inertia.add(self.system, state, factor, &mut matrix);
@@ -321,23 +327,17 @@ impl<'a> Motion<'a> {
     }
 
     /// What a motion of the dofs costs besides the forces of the state.
-    fn resistance(
-        &self,
-        state: &State,
-        balance: &Balance,
-        velocity: &[f64],
-        acceleration: &[f64],
-    ) -> Resistance {
+    fn resistance(&self, state: &State, balance: &Balance, rates: &Rates) -> Resistance {
         let Rayleigh { alpha, beta } = self.dynamics.damping;
-        let velocities = self.system.node_velocities(state, velocity);
-        let (mut damping, viscous) = self.system.viscous(balance, &velocities, beta);
+        let velocities = self.system.node_velocities(state, &rates.acting);
+        let (mut damping, viscous) = self.system.viscous(balance, &velocities, beta + rates.correction);
         let mut drag = vec![0.0; damping.len()];
         if alpha > 0.0 {
             let momentum = self.inertia.times(self.system, &velocities);
             drag.iter_mut().zip(momentum).for_each(|(f, p)| *f = alpha * p);
             damping.iter_mut().zip(&drag).for_each(|(f, p)| *f += p);
         }
-        let accelerations = self.system.node_accelerations(state, velocity, acceleration);
+        let accelerations = self.system.node_accelerations(state, &rates.acting, &rates.acceleration);
         let inertia = self.inertia.times(self.system, &accelerations);
         Resistance {
             nodal: inertia.iter().zip(&damping).map(|(i, d)| i + d).collect(),
@@ -354,10 +354,12 @@ impl<'a> Motion<'a> {
         let mean = |a: &[f64], b: &[f64]| -> f64 {
             next.travelled.iter().zip(a.iter().zip(b)).map(|(u, (a, b))| 0.5 * (a + b) * u).sum()
         };
+        // Where the energy is conserved damping is a mean already.
+        let before = if self.conserves() { next } else { now };
         energy.work += mean(&now.load, &next.load);
-        energy.dissipated += mean(&now.drag, &next.drag);
+        energy.dissipated += mean(&before.drag, &next.drag);
         let strained = now.balance.deformations().zip(next.balance.deformations()).map(|(a, b)| b - a);
-        let viscous = now.viscous.iter().zip(&next.viscous).map(|(a, b)| 0.5 * (a.local + b.local));
+        let viscous = before.viscous.iter().zip(&next.viscous).map(|(a, b)| 0.5 * (a + b));
         energy.dissipated += viscous.zip(strained).map(|(force, strained)| force.dot(&strained)).sum::<f64>();
         energy.strain = next.balance.energy;
         let velocities = self.system.node_velocities(&next.state, &next.velocity);
@@ -376,6 +378,28 @@ fn travel(from: &State, to: &State) -> Vec<f64> {
             [u.x, u.y, u.z, turn.x, turn.y, turn.z]
         })
         .collect()
+}
+
+/// A guess of the end of a step.
+struct Guess {
+    state: State,
+    /// Displacements and rotations since the start of the step.
+    travelled: Vec<f64>,
+    /// Forces of the elements that stand for those of the state; its own without.
+    forces: Option<Vec<Forces>>,
+}
+
+/// How a motion goes on in a step.
+struct Rates {
+    /// Velocities at its end.
+    velocity: Vec<f64>,
+    /// Those that damping meets.
+    acting: Vec<f64>,
+    /// Accelerations that inertia resists.
+    acceleration: Vec<f64>,
+    mean_acceleration: Vec<f64>,
+    /// Damping by stiffness that is added to that of the model (s); it may be negative.
+    correction: f64,
 }
 
 /// Forces of a motion.

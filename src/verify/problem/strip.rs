@@ -222,7 +222,7 @@ fn swing(steps: usize, body: bool) -> Result<(f64, f64), VerifyError> {
         duration,
         step: duration / steps as f64,
         tolerance: None,
-        spectral_radius: 0.9,
+        spectral_radius: Some(0.9),
         damping: Rayleigh::default(),
         load: LoadHistory::Step,
         mass: Mass::Consistent,

@@ -51,6 +51,24 @@ impl System<'_> {
         })
     }
 
+    /// `(G1 - G0)ᵀ (n1 - n0)` of two states on the nodes: `n` are the forces of the elements in their frames and `G` the rates
+    /// of the deformations there.
+    pub fn crossed(&self, a: &Balance, b: &Balance) -> Vec<f64> {
+        let quads = &self.model.mesh.quads;
+        let parts = self.each(0..quads.len(), |q| {
+            let (a, b) = (&a.answers[q], &b.answers[q]);
+            let change = b.forces.local - a.forces.local;
+            b.motion.force(&change) - a.motion.force(&change)
+        });
+        let mut forces = vec![0.0; 6 * self.model.mesh.nodes.len()];
+        for (nodes, force) in quads.iter().zip(parts) {
+            for k in 0..24 {
+                forces[6 * nodes[k / 6] as usize + k % 6] += force[k];
+            }
+        }
+        forces
+    }
+
     /// Forces on the nodes of `beta` times the elements' stiffnesses at the rate of their deformation, and
     /// the same in their frames; `velocity` is that of all nodes. Rigid motions cost nothing.
     pub fn viscous(&self, balance: &Balance, velocity: &[f64], beta: f64) -> (Vec<f64>, Vec<Forces>) {
