@@ -6,6 +6,7 @@
 use std::path::Path;
 
 use kesf::analytical::elastica::heavy_elastica;
+use kesf::finding::{Fact, StudyFact};
 use kesf::section::ShellSection;
 use kesf::solve::Options;
 use kesf::study::{Case, CaseResult, PreparedCase, Status, StudyError, section, solve_case};
@@ -110,10 +111,22 @@ fn a_prepared_case_gives_the_same_for_every_fabric() {
 }
 
 #[test]
-fn the_straight_column_is_told_to_be_unstable_and_the_cures_work() {
-    let straight = solved(&strip("kind = \"nonlinear\"\nfirst_step = 0.1\nlargest_step = 0.1", THRUST));
+fn a_column_buckles_by_itself_and_every_method_ends_in_one_shape() {
+    let straight = solved(&strip("kind = \"nonlinear\"\nmethod = \"arc_length\"", THRUST));
     assert_eq!(codes(&straight), ["S111"]);
     assert!(straight.findings[0].message().contains("flow") && straight.w_max.abs() < 1e-12);
+    let buckled = solved(&strip("kind = \"nonlinear\"\nfirst_step = 0.1\nlargest_step = 0.1", THRUST));
+    assert_eq!(codes(&buckled), ["S124"]);
+    assert!(buckled.findings[0].message().contains("is unstable"), "{}", buckled.findings[0].message());
+    assert!(buckled.path.as_ref().unwrap().stability.unwrap().is_stable());
+    // Euler's load is 0.4935 of the thrust; the last stable step before it is a short one.
+    let Fact::Study(StudyFact::Buckled { factors, unstable_w_max }) = &buckled.findings[0].fact else {
+        panic!("{:?}", buckled.findings)
+    };
+    assert!((0.47..0.4945).contains(&factors[0]) && factors.iter().all(|f| *f < 0.52), "{factors:?}");
+    assert!(unstable_w_max.unwrap().abs() < 1e-12);
+    let asked = solved(&strip("kind = \"nonlinear\"\nmethod = \"stable\"", THRUST));
+    assert_eq!(codes(&asked), ["S124"]);
     let flow = solved(&strip("kind = \"nonlinear\"\nmethod = \"flow\"\nseed = 3", THRUST));
     assert_eq!(codes(&flow), [""; 0]);
     // The steps that it took are enough, one less is not.
@@ -129,8 +142,10 @@ fn the_straight_column_is_told_to_be_unstable_and_the_cures_work() {
         THRUST,
     ));
     assert_eq!(codes(&pushed), [""; 0]);
-    let [a, b] = [flow.w_max.abs(), pushed.w_max.abs()];
-    assert!(a > 0.01 && (a / b - 1.0).abs() < 1e-4, "{a} {b}");
+    let a = flow.w_max.abs();
+    for b in [pushed.w_max.abs(), buckled.w_max.abs(), asked.w_max.abs()] {
+        assert!(a > 0.01 && (a / b - 1.0).abs() < 1e-4, "{a} {b}");
+    }
     let arc = solved(&strip("kind = \"nonlinear\"\nmethod = \"arc_length\"", WEIGHT));
     assert_eq!(arc.path.as_ref().unwrap().steps.last().unwrap().factor, 1.0);
     let short =
@@ -204,7 +219,8 @@ fn a_strip_falls_and_the_linear_finding_names_the_cure() {
     println!("imbalance {:e}", history.imbalance);
     assert!(history.w_max < -0.15 && history.w_max > -0.2 && history.imbalance < 0.02);
     assert_eq!((large.status, codes(&large)), (Status::Ok, vec![]));
-    assert_eq!(history.time.len(), 51);
+    // The steps asked for, but for a few that are halved.
+    assert!((51..70).contains(&history.time.len()), "{}", history.time.len());
     // A rigid bar along an edge that plane strain keeps straight changes nothing.
     let bar = format!(
         "{WEIGHT}\n[[rigid]]\nname = \"bar\"\nset = \"right\"\n[[supports]]\nset = \"bar\"\n\

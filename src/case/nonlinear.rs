@@ -7,7 +7,8 @@ use super::CaseError;
 use super::analysis::Nonlinear;
 use super::error::refused;
 use super::loads::SheetLoads;
-use crate::finding::Node;
+use super::supports::SheetSupport;
+use crate::finding::{Located, Node};
 use crate::solve::nonlinear::{ArcLength, Flow, Method, Perturbation, Settings};
 
 /// `kind = "nonlinear"`: statics in large rotations; what is left out is chosen by the method.
@@ -19,16 +20,16 @@ pub(super) struct NonlinearTable {
     /// Unbalanced forces that are accepted, relative to loads or reactions, above 0 and at most 1.
     #[schemars(extend("default" = 1e-8))]
     tolerance: Option<f64>,
-    /// Iterations in a step before it counts as failed (`newton`, `arc_length`).
+    /// Iterations in a step before it counts as failed (`newton`, `arc_length`, `stable`).
     #[schemars(extend("default" = 25))]
     iterations: Option<usize>,
-    /// First step of the load factor: `newton` 1, `arc_length` 0.1.
+    /// First step of the load factor: `newton` 1, `arc_length` 0.1, `stable` 0.1 at most.
     #[schemars(example = 0.1)]
     first_step: Option<f64>,
-    /// Largest step of the load factor (`newton`).
+    /// Largest step of the load factor (`newton`, `stable`).
     #[schemars(extend("default" = 1.0))]
     largest_step: Option<f64>,
-    /// A step that has been halved below this one ends the search (`newton`).
+    /// A step that has been halved below this one ends the search (`newton`, `stable`).
     #[schemars(extend("default" = 1e-5))]
     smallest_step: Option<f64>,
     /// Steps before the search is given up: `arc_length` 100, `flow` 400.
@@ -53,6 +54,20 @@ pub enum MethodChoice {
     ArcLength,
     /// The implicit gradient flow of the energy, which ends in a stable equilibrium.
     Flow,
+    /// Newton's method along stable equilibria: a sheet that buckles goes on with the shape into which it buckles. This is
+    /// what `newton` does by itself where its own path ends unstable or nowhere, and it is told.
+    Stable,
+}
+
+/// One of the steps that a sheet is taken through.
+#[derive(Clone, Debug)]
+pub struct SheetStep {
+    /// Name used in results; no other step of the case has it.
+    pub name: Located<String>,
+    /// Where the sheet is held beside the supports of the case; each node stays where it is at the beginning.
+    pub supports: Vec<SheetSupport>,
+    /// What acts at its end, what is moved, and how the equilibrium is found; the loads of the case included.
+    pub analysis: Nonlinear,
 }
 
 impl MethodChoice {
@@ -62,6 +77,7 @@ impl MethodChoice {
             Method::Newton(_) => Self::Newton,
             Method::ArcLength(_) => Self::ArcLength,
             Method::Flow(_) => Self::Flow,
+            Method::Stable => Self::Stable,
         }
     }
 
@@ -70,16 +86,17 @@ impl MethodChoice {
             Self::Newton => "newton",
             Self::ArcLength => "arc_length",
             Self::Flow => "flow",
+            Self::Stable => "stable",
         }
     }
 
     /// The keys that belong to some methods only.
     const KEYS: [(&'static str, &'static [Self]); 7] = [
-        ("first_step", &[Self::Newton, Self::ArcLength]),
-        ("largest_step", &[Self::Newton]),
-        ("smallest_step", &[Self::Newton]),
+        ("first_step", &[Self::Newton, Self::ArcLength, Self::Stable]),
+        ("largest_step", &[Self::Newton, Self::Stable]),
+        ("smallest_step", &[Self::Newton, Self::Stable]),
         ("steps", &[Self::ArcLength, Self::Flow]),
-        ("iterations", &[Self::Newton, Self::ArcLength]),
+        ("iterations", &[Self::Newton, Self::ArcLength, Self::Stable]),
         ("perturbation", &[Self::Newton, Self::Flow]),
         ("seed", &[Self::Newton, Self::Flow]),
     ];
@@ -117,6 +134,7 @@ impl NonlinearTable {
                     ..default
                 })
             }
+            MethodChoice::Stable => Method::Stable,
             MethodChoice::Flow => {
                 let default = Flow::default();
                 let perturbation = self.perturbation.unwrap_or(default.perturbation);

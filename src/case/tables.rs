@@ -7,11 +7,11 @@ use super::bending_test::{BendingTest, BendingTestTable};
 use super::check::{checks, probes};
 use super::element::Purpose;
 use super::error::refused;
+use super::history::steps;
 use super::loads::{LoadTable, SheetLoad, SheetLoads};
 use super::material::{FabricMaterial, Material, SectionTable, check_assumptions};
 use super::problem::{DrapeProblem, InstrumentTest, Mounting, Problem, SheetProblem, ShellSpecimen};
 use super::sheet::{Sheet, SheetTable};
-use super::steps::steps;
 use super::virtual_test::VirtualTestTable;
 use super::{CaseError, CaseTable};
 use crate::element::Formulation;
@@ -319,7 +319,8 @@ impl CaseTable {
 const NO_CONVERGENCE: &str =
     "[convergence] is for linear and modal analyses: remove it (a drape has `refinements`)";
 
-const NO_STEPS: &str = "[[steps]] are for large rotations: write [analysis] kind = \"nonlinear\", or remove them";
+const NO_STEPS: &str =
+    "[[steps]] are for large rotations: write [analysis] kind = \"nonlinear\", or remove them";
 
 /// Refuses tables that a problem has no use for.
 fn foreign(case: &Node<'_>, keys: &[&str], message: &str) -> Result<(), CaseError> {

@@ -6,12 +6,13 @@
 //! from element forces that are predicted linearly by the last step, not from those of the new
 //! state (the mixed integration point of Magisano, Leonetti and Garcea, *Int. J. Numer. Methods
 //! Eng.* 109 (2017) 1237): sheets that hardly stretch then converge in a few iterations even when
-//! the whole load comes in one step. Three ways to an equilibrium, from quick to robust:
+//! the whole load comes in one step. Four ways to an equilibrium:
 //!
 //! 1. [`solve`]: loads and held values grow together by a factor from 0 to 1, or along another path,
 //!    in adaptive steps;
 //! 2. [`relax`]: the implicit gradient flow of the energy, which ends in a stable equilibrium;
-//! 3. [`follow`]: arc length, through limit points of the load.
+//! 3. [`follow`]: arc length, through limit points of the load;
+//! 4. [`Method::Stable`]: along stable equilibria only, through the points where a path loses its stability.
 //!
 //! [`drive`] moves supports through a programme instead, as the clamps of a testing machine do, and
 //! [`continue_from`] takes the sheet on from one of these states to other loads and supports.
@@ -148,6 +149,9 @@ pub enum Method {
     ArcLength(ArcLength),
     /// See [`relax`].
     Flow(Flow),
+    /// Newton's method along stable equilibria: one that becomes unstable is left along its lowest eigenvector, by the
+    /// bending thickness of the sheet, and where a sheet snaps it flows to where it comes to rest.
+    Stable,
 }
 
 /// Random loads that break the symmetry of a model; they are taken away before the end.
@@ -195,6 +199,8 @@ pub struct Solution {
     pub iterations: usize,
     /// Whether the equilibrium is stable.
     pub stability: Stability,
+    /// Factors of the last stable equilibria before those that were left because they were not; of [`Method::Stable`] only.
+    pub left: Vec<f64>,
 }
 
 /// What a search has done so far.
@@ -256,6 +262,7 @@ impl Progress {
             steps: self.steps,
             iterations: self.iterations,
             stability: stability::check(system, &state, balance)?.0,
+            left: Vec::new(),
             state,
         })
     }
@@ -301,6 +308,7 @@ pub fn search(
         Method::Newton(perturbation) => grow(&system, rest, settings, *perturbation, observe),
         Method::ArcLength(arc) => arc::follow_path(&system, rest, settings, arc, observe),
         Method::Flow(flow) => flow::relax_system(&system, rest, settings, flow, observe),
+        Method::Stable => flow::follow_stable(&system, rest, settings, observe),
     }
 }
 

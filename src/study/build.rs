@@ -6,8 +6,8 @@ use nalgebra::{Matrix2, Matrix3, Point3, Vector3};
 
 use super::{Case, StudyError, placed, refused};
 use crate::case::{
-    Analysis, Held, Layout, Mounting, Outline, PointOfAction, Prescribed, RigidSet, SectionTable, Sheet, SheetLoad,
-    SheetPoint, SheetProblem, SheetStep, SheetSupport, SupportKind, Warp,
+    Analysis, Held, Layout, Mounting, Outline, PointOfAction, Prescribed, RigidSet, SectionTable, Sheet,
+    SheetLoad, SheetPoint, SheetProblem, SheetStep, SheetSupport, SupportKind, Warp,
 };
 use crate::fields::{Locator, nearest};
 use crate::finding::{Located, Place};

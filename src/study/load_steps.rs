@@ -1,6 +1,6 @@
 //! The `[[steps]]` of a case, one after the other.
 
-use super::nonlinear::{LoadStepEnd, Record, check_perturbation, conclude, turned_about_more};
+use super::nonlinear::{LoadStepEnd, Record, check_perturbation, conclude, helped, turned_about_more};
 use super::result::Outcome;
 use super::{PreparedCase, StudyError, Watch};
 use crate::case::{MethodChoice, SheetStep};
@@ -24,26 +24,30 @@ pub(super) fn load_steps(
     // Rotations that were held in every step, and how far.
     let mut held: Vec<Option<f64>> = vec![Some(0.0); 6 * model.mesh.nodes.len()];
     for (step, actions) in steps.iter().zip(&prepared.steps) {
-        let model = Model {
-            supports: actions.supports.clone(),
-            loads: actions.loads.clone(),
-            ..model.clone()
-        };
+        let model =
+            Model { supports: actions.supports.clone(), loads: actions.loads.clone(), ..model.clone() };
         check_perturbation(prepared.case, &model, &step.analysis)?;
         let settings = Settings { law: law.cloned(), ..step.analysis.settings.clone() };
-        let way = LoadStep { model: &model, moved: &actions.moved, settings: &settings, method: &step.analysis.method };
+        let (moved, plan, options) = (&actions.moved, &prepared.plan, &prepared.options);
         let from = record.path.steps.len();
-        let found = continue_from(&carried, &way, &prepared.plan, &prepared.options, |at| record.see(at));
+        let found = helped(
+            &mut record,
+            &step.analysis.method,
+            |(solution, _)| solution,
+            |method, record| {
+                let way = LoadStep { model: &model, moved, settings: &settings, method };
+                continue_from(&carried, &way, plan, options, |at| record.see(at))
+            },
+        );
         watch.not_stopped()?;
         let (found, next) = match found {
             Ok((solution, next)) => (Ok(solution), Some(next)),
             Err(error) => (Err(error), None),
         };
-        let method = MethodChoice::of(&step.analysis.method);
-        let own = conclude(found, method, &mut record.path)?;
+        let own = conclude(found, &mut record)?;
         record.path.load_steps.push(LoadStepEnd {
             name: step.name.value.clone(),
-            method,
+            method: record.path.method,
             steps: from..record.path.steps.len(),
             converged: record.path.converged,
             stability: record.path.stability,
@@ -72,7 +76,10 @@ fn held_throughout(model: &Model, moved: &[crate::model::Support], turned: &[f64
     let mut now = model.constraints();
     for support in moved {
         for node in &support.nodes {
-            support.held.iter().for_each(|(dof, value)| now[6 * *node as usize + *dof as usize] = Some(*value));
+            support
+                .held
+                .iter()
+                .for_each(|(dof, value)| now[6 * *node as usize + *dof as usize] = Some(*value));
         }
     }
     for ((held, now), turned) in held.iter_mut().zip(now).zip(turned) {

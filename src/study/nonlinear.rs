@@ -87,6 +87,7 @@ impl LoadPath {
 }
 
 /// What an observer keeps.
+#[derive(Clone)]
 pub(super) struct Record<'a> {
     mesh: &'a QuadMesh,
     locators: &'a [Locator],
@@ -95,6 +96,8 @@ pub(super) struct Record<'a> {
     pub solution: Solution,
     /// Load steps that are done.
     pub done: usize,
+    /// The largest |w| of an unstable equilibrium that was found first (m).
+    unstable_w_max: Option<f64>,
     watch: Watch<'a>,
 }
 
@@ -121,6 +124,7 @@ impl<'a> Record<'a> {
             state: State::rest(&model.mesh),
             solution: Solution::at_rest(model),
             done: 0,
+            unstable_w_max: None,
             watch,
         }
     }
@@ -171,9 +175,16 @@ pub(super) fn equilibrium(
     let linear = solve::solve(model, options).ok();
     let mut record = Record::new(prepared, model, MethodChoice::of(method), watch);
     record.path.linear_w_max = linear.map(|l| largest_w(&model.mesh, &l.displacement));
-    let found = nonlinear::search(model, &prepared.plan, &settings, method, options, |step| record.see(step));
+    let found = helped(
+        &mut record,
+        method,
+        |end| end,
+        |method, record| {
+            nonlinear::search(model, &prepared.plan, &settings, method, options, |step| record.see(step))
+        },
+    );
     watch.not_stopped()?;
-    let mut findings = conclude(found, MethodChoice::of(method), &mut record.path)?;
+    let mut findings = conclude(found, &mut record)?;
     let given: Vec<Option<f64>> = model.constraints();
     let factor = record.state.factor;
     let given = given.into_iter().map(|held| held.map(|value| factor * value));
@@ -199,16 +210,50 @@ pub(super) fn check_perturbation(case: &Case, model: &Model, analysis: &Nonlinea
     Ok(())
 }
 
+/// A search by a method. Where the path of Newton's method ends in an unstable equilibrium or nowhere, the search is
+/// repeated along stable equilibria only, and its end is taken if it is stable.
+pub(super) fn helped<'a, T>(
+    record: &mut Record<'a>,
+    method: &Method,
+    solution: impl Fn(&T) -> &nonlinear::Solution,
+    mut search: impl FnMut(&Method, &mut Record<'a>) -> Result<T, NonlinearError>,
+) -> Result<T, NonlinearError> {
+    (record.path.method, record.unstable_w_max) = (MethodChoice::of(method), None);
+    let mut second = record.clone();
+    let found = search(method, record);
+    let ends_well = match &found {
+        Ok(end) => solution(end).stability.is_stable(),
+        Err(NonlinearError::NotConverged { .. }) => false,
+        Err(_) => true,
+    };
+    if ends_well || *method != Method::Newton(None) {
+        return found;
+    }
+    second.path.method = MethodChoice::Stable;
+    match search(&Method::Stable, &mut second) {
+        Ok(end) if solution(&end).stability.is_stable() => {
+            second.unstable_w_max = found.ok().and(record.path.steps.last()).map(|step| step.w_max);
+            *record = second;
+            Ok(end)
+        }
+        _ => found,
+    }
+}
+
 /// What the end of a search means: stability, and what a reader must know.
 pub(super) fn conclude(
     found: Result<nonlinear::Solution, NonlinearError>,
-    method: MethodChoice,
-    path: &mut LoadPath,
+    record: &mut Record<'_>,
 ) -> Result<Vec<Finding>, StudyError> {
     let mut findings = Vec::new();
+    let (path, unstable_w_max) = (&mut record.path, record.unstable_w_max);
+    let method = path.method;
     match found {
         Ok(solution) => {
             path.stability = Some(solution.stability);
+            if method == MethodChoice::Stable {
+                findings.extend(buckled(&solution, unstable_w_max));
+            }
             let negative = solution.stability.negative_pivots;
             if negative > 0 {
                 findings.push(Finding::new(StudyFact::Unstable { directions: negative }));
@@ -234,6 +279,12 @@ pub(super) fn conclude(
         Err(other) => return Err(other.into()),
     }
     Ok(findings)
+}
+
+/// S124 about a search along stable equilibria that left one, or that was the second after one that found less.
+fn buckled(solution: &nonlinear::Solution, unstable_w_max: Option<f64>) -> Option<Finding> {
+    let fact = StudyFact::Buckled { factors: solution.left.clone(), unstable_w_max };
+    (!solution.left.is_empty() || unstable_w_max.is_some()).then(|| Finding::new(fact))
 }
 
 /// Rotation (rad) about an axis that is held above which the free ones have brought it about.
@@ -270,6 +321,7 @@ fn cure(method: MethodChoice, obstacle: &Obstacle) -> &'static str {
         (_, MethodChoice::Newton) => {
             "in [analysis] try method = \"flow\" or \"arc_length\", or a smaller largest_step"
         }
+        (_, MethodChoice::Stable) => "in [analysis] try method = \"flow\", and in [sheet] more cells",
         (_, MethodChoice::ArcLength) => "in [analysis] try a smaller first_step, or method = \"flow\"",
         (_, MethodChoice::Flow) => "in [analysis] try another seed, and in [sheet] more cells",
     }

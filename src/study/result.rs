@@ -131,8 +131,7 @@ pub struct CaseResult {
 impl CaseResult {
     /// The sheet at the end of one of the `[[steps]]` of the case.
     pub fn at_end_of(&self, step: &LoadStepEnd) -> Self {
-        let mut then =
-            Self { state: Some(step.state.clone()), nodal: OnceLock::new(), ..self.clone() };
+        let mut then = Self { state: Some(step.state.clone()), nodal: OnceLock::new(), ..self.clone() };
         then.solution.displacement = step.state.displacement(&self.model.mesh);
         then.solution.reaction.clone_from(&step.reaction);
         then

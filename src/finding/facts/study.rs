@@ -116,6 +116,13 @@ super::facts! {
             directions: usize,
         } = "the equilibrium is unstable: its energy falls in {directions} direction(s), and a real sheet would leave it; \
              take [analysis] method = \"flow\", or perturbation = 1e-3 with method = \"newton\"";
+        /// A sheet that buckled on the way.
+        "S124" Buckled {
+            /// Factors of the load after which it did.
+            factors: Vec<f64>,
+            /// The largest |w| of the equilibrium that Newton's method found, with its sign (m); none if it found none.
+            unstable_w_max: Option<f64>,
+        } = "{}: the result is the stable shape into which it buckles or snaps, which may be one of several", buckled(factors, *unstable_w_max);
         /// A path that ended before the whole load.
         "S112" Unfinished {
             /// Part of the load at its end.
@@ -229,6 +236,19 @@ fn energies(imbalance: f64, given: f64) -> String {
         format!("the energies miss the work of the loads by up to {:.0} %", 100.0 * imbalance)
     } else {
         format!("the damping gives {:.0} % of the work of the loads instead of taking it", 100.0 * given)
+    }
+}
+
+fn buckled(factors: &[f64], unstable_w_max: Option<f64>) -> String {
+    let places: Vec<String> = factors.iter().map(|f| format!("{f:.4}")).collect();
+    let what = match unstable_w_max {
+        Some(w) => format!("an equilibrium with w_max = {:.4} mm is unstable", 1e3 * w),
+        None => "no path goes straight to the whole load".into(),
+    };
+    if places.is_empty() {
+        what
+    } else {
+        format!("{what}, the sheet leaves it after {} of the load", places.join(", "))
     }
 }
 

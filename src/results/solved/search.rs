@@ -190,6 +190,7 @@ fn method_name(method: MethodChoice) -> &'static str {
         MethodChoice::Newton => "newton",
         MethodChoice::ArcLength => "arc length",
         MethodChoice::Flow => "flow",
+        MethodChoice::Stable => "stable",
     }
 }
 

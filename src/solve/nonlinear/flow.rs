@@ -1,4 +1,12 @@
 //! Implicit gradient flow: a viscous sheet comes to rest in a stable equilibrium.
+//!
+//! [`follow_stable`] takes the load on along stable equilibria.
+//!
+//! A sheet that is pressed in its plane, shortened or twisted has an equilibrium in which it stays as flat as it was, and
+//! that a real sheet leaves. The load goes on in steps, and a step whose equilibrium is unstable is halved until it ends
+//! just beyond the point where the stability is lost. There the sheet is moved along its lowest eigenvector, by its
+//! bending thickness, and flows downhill to the equilibrium beside, from which the load goes on. Snaps through limit
+//! points are taken in the same way: where Newton's method finds nothing in short steps, the sheet flows.
 
 use std::ops::ControlFlow;
 
@@ -48,8 +56,21 @@ const LARGEST_RISE: f64 = 1e8;
 /// Steps after which [`settle`] gives up.
 const SETTLING_STEPS: usize = 1000;
 
-/// Unstable equilibria that may be left before the search is given up.
+/// Unstable equilibria that may be left, at one load, before the search is given up.
 const KICKS: usize = 20;
+
+/// The first step, at most.
+const FIRST_STEP: f64 = 0.1;
+
+/// A step that has been halved to this part of the first is short: it ends close to where the stability was lost.
+const SHORT_STEP: f64 = 1.0 / 16.0;
+
+/// Steps of one flow, and iterations of a search, before it is given up.
+const FLOWING_STEPS: usize = 100;
+const LARGEST_EFFORT: usize = 2000;
+
+/// A kick turns no node by more than this (rad).
+const LARGEST_TURN: f64 = 0.1;
 
 /// Lets the sheet flow under its full loads and held values until it is in a stable equilibrium.
 ///
@@ -155,14 +176,25 @@ pub(super) fn relax_system(
 pub(super) fn settle(
     system: &System<'_>,
     start: &State,
+    to: [f64; 2],
+    settings: &Settings,
+) -> Result<Converged, Failure> {
+    settle_within(system, start, to, settings, SETTLING_STEPS)
+}
+
+/// The same in a number of steps.
+pub(super) fn settle_within(
+    system: &System<'_>,
+    start: &State,
     [factor, travel]: [f64; 2],
     settings: &Settings,
+    steps: usize,
 ) -> Result<Converged, Failure> {
     let first = first_rate(system, system.model, &State::rest(&system.model.mesh));
     let (mut pace, mut state, mut travel) = (Pace::new(first), start.clone(), travel);
     let mut iterations = 0;
     let mut inner = Settings { iterations: INNER_ITERATIONS, ..settings.clone() };
-    for _ in 0..SETTLING_STEPS {
+    for _ in 0..steps {
         let drag = Drag { rate: pace.rate, extra: None };
         match newton_with(system, &state, [factor, travel], &inner, &drag) {
             Ok(step) => {
@@ -245,4 +277,94 @@ pub(super) fn noise(system: &System<'_>, perturbation: &Perturbation) -> Vec<f64
             if moves { perturbation.size * load * system.metric[d] * part } else { 0.0 }
         })
         .collect()
+}
+
+/// Takes the loads and held values along the path of the settings.
+pub(super) fn follow_stable(
+    system: &System<'_>,
+    start: State,
+    settings: &Settings,
+    mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
+) -> Result<Solution, NonlinearError> {
+    let mut state = start;
+    let mut balance = system.balance(&state, None);
+    let longest = settings.largest_step.min(longest_travel(system));
+    let first = settings.first_step.min(longest).min(FIRST_STEP);
+    let (mut progress, mut left) = (Progress::default(), Vec::new());
+    'path: for target in &settings.path {
+        let mut step = first;
+        while state.factor != *target {
+            let way = target - state.factor;
+            let factor = if way.abs() <= 1.001 * step { *target } else { state.factor + step.copysign(way) };
+            let short = step <= SHORT_STEP * first;
+            match stable_step(system, &state, factor, settings, short) {
+                Ok((converged, kicked)) => {
+                    if kicked {
+                        left.push(state.factor);
+                    }
+                    let flow = progress.show(system, &converged, &mut observe);
+                    if !kicked && converged.iterations <= settings.iterations / 3 {
+                        step = (1.5 * step).min(longest);
+                    }
+                    (state, balance) = (converged.state, converged.balance);
+                    if flow.is_break() {
+                        break 'path;
+                    }
+                }
+                Err(failure) => {
+                    progress.cut_back(&failure);
+                    step = 0.5 * (factor - state.factor).abs();
+                    if step < settings.smallest_step || progress.iterations > LARGEST_EFFORT {
+                        return Err(failure.ends(progress.steps + 1, settings, state));
+                    }
+                }
+            }
+        }
+    }
+    Ok(Solution { left, ..progress.finish(system, state, &balance)? })
+}
+
+/// The stable equilibrium at another factor, and whether an unstable one was left for it; only a `short` step may leave one.
+fn stable_step(
+    system: &System<'_>,
+    state: &State,
+    factor: f64,
+    settings: &Settings,
+    short: bool,
+) -> Result<(Converged, bool), Failure> {
+    let mut kicked = false;
+    let mut found = match newton(system, state, factor, settings, &Drag::default()) {
+        Ok(found) => found,
+        Err(_) if short => {
+            kicked = true;
+            settle_within(system, state, [factor, factor - state.factor], settings, FLOWING_STEPS)?
+        }
+        Err(failure) => return Err(failure),
+    };
+    let mut iterations = found.iterations;
+    for _ in 0..KICKS {
+        match found.is_stable(system) {
+            Ok(true) => return Ok((Converged { iterations, ..found }, kicked)),
+            Ok(false) if short => kicked = true,
+            Ok(false) => break,
+            Err(cause) => return Err(Failure::of(&found, Obstacle::Factor(cause))),
+        }
+        let (_, shape) = stability::check(system, &found.state, &found.balance)
+            .map_err(|_| Failure::of(&found, Obstacle::Unstable))?;
+        let mut beside = found.state.clone();
+        system.advance(&mut beside, &kick_by_thickness(system, &shape));
+        found = settle_within(system, &beside, [factor, 0.0], settings, FLOWING_STEPS)?;
+        iterations += found.iterations;
+    }
+    Err(Failure::of(&found, Obstacle::Unstable))
+}
+
+/// A step along a shape that moves the sheet by its bending thickness, and turns no node by much.
+fn kick_by_thickness(system: &System<'_>, shape: &[f64]) -> Vec<f64> {
+    let thickness = system.model.section.bending_thickness_squared().sqrt();
+    let largest = shape
+        .iter()
+        .enumerate()
+        .fold(0.0, |most: f64, (d, s)| most.max(s.abs() / if d % 6 < 3 { thickness } else { LARGEST_TURN }));
+    shape.iter().map(|s| s / largest).collect()
 }

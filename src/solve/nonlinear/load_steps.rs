@@ -6,7 +6,7 @@
 
 use std::ops::ControlFlow;
 
-use super::system::System;
+use super::system::{Before, System};
 use super::{Method, NonlinearError, Settings, Solution, State, Step, arc, flow, grow};
 use crate::model::{Model, Support};
 use crate::solve::linear::Options;
@@ -41,16 +41,6 @@ pub struct Carried {
     held: Vec<bool>,
     /// How far held rotations have been turned (rad), six a node.
     turned: Vec<f64>,
-}
-
-/// Loads at the start of a load step.
-pub(super) struct Before {
-    /// Dead ones, six a node.
-    pub load: Vec<f64>,
-    /// Follower pressure (Pa).
-    pub pressure: f64,
-    /// Norm of loads or reactions, whichever is larger (N): a step that takes them away ends with nothing to compare with.
-    pub scale: f64,
 }
 
 impl Carried {
@@ -102,6 +92,7 @@ pub fn continue_from(
         Method::Newton(perturbation) => grow(&system, start, step.settings, *perturbation, observe),
         Method::ArcLength(arc) => arc::follow_path(&system, start, step.settings, arc, observe),
         Method::Flow(flow) => flow::relax_system(&system, start, step.settings, flow, observe),
+        Method::Stable => flow::follow_stable(&system, start, step.settings, observe),
     }?;
     let next = Carried {
         state: State { factor: 0.0, ..found.state.clone() },
@@ -120,7 +111,9 @@ fn motion(carried: &Carried, step: &LoadStep<'_>, held: &[bool]) -> (Vec<f64>, V
     let kept = |d: usize| if held[d] && carried.held[d] { carried.turned[d] } else { 0.0 };
     let mut turned: Vec<f64> = (0..held.len()).map(kept).collect();
     for support in step.moved {
-        for (node, (dof, value)) in support.nodes.iter().flat_map(|n| support.held.iter().map(move |h| (n, h))) {
+        for (node, (dof, value)) in
+            support.nodes.iter().flat_map(|n| support.held.iter().map(move |h| (n, h)))
+        {
             let (n, d) = (*node as usize, 6 * *node as usize + *dof as usize);
             let axis = d % 6;
             if axis < 3 {

@@ -33,12 +33,17 @@ pub(super) struct Converged {
 impl Converged {
     /// The same if it is stable.
     pub fn stable(self, system: &System<'_>) -> Result<Self, Failure> {
-        let (matrix, _) = system.tangent(&self.state, &self.balance, &self.balance.forces(), 0.0);
-        match system.factorise(&matrix) {
-            Ok(tangent) if tangent.negative_pivots() == 0 => Ok(self),
-            Ok(_) => Err(Failure::of(&self, Obstacle::Unstable)),
+        match self.is_stable(system) {
+            Ok(true) => Ok(self),
+            Ok(false) => Err(Failure::of(&self, Obstacle::Unstable)),
             Err(cause) => Err(Failure::of(&self, Obstacle::Factor(cause))),
         }
+    }
+
+    /// Whether it is stable.
+    pub fn is_stable(&self, system: &System<'_>) -> Result<bool, FactorError> {
+        let (matrix, _) = system.tangent(&self.state, &self.balance, &self.balance.forces(), 0.0);
+        Ok(system.factorise(&matrix)?.negative_pivots() == 0)
     }
 }
 

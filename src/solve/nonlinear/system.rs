@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector3};
 
-use super::load_steps::Before;
 use super::sheet::{Answer, Forces, Sheet};
 use super::{NonlinearError, Settings, State};
 use crate::element::corotational::Motion;
@@ -49,6 +48,16 @@ pub(super) struct System<'a> {
     side: f64,
     /// Diagonal of the sheet at rest (m).
     pub size: f64,
+}
+
+/// Loads at the start of a load step.
+pub(super) struct Before {
+    /// Dead ones, six a node.
+    pub load: Vec<f64>,
+    /// Follower pressure (Pa).
+    pub pressure: f64,
+    /// Norm of loads or reactions, whichever is larger (N): a step that takes them away ends with nothing to compare with.
+    pub scale: f64,
 }
 
 /// The forces in a state.

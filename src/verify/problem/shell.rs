@@ -205,7 +205,11 @@ impl InPlane {
     pub fn value(&self, statics: &mut Statics) -> Result<f64, VerifyError> {
         let (mesh, section, over) = match self.shape {
             Sheet::Cook => (cook(self.n)?, isotropic(1.0, 1.0 / 3.0, 1.0, 1.0), 1.0),
-            Sheet::Rectangles => (mapped(6, 1, |x, y| Point3::new(6.0 * x, 0.2 * y, 0.0))?, isotropic(1e7, 0.3, 0.1, 1.0), 0.1081),
+            Sheet::Rectangles => (
+                mapped(6, 1, |x, y| Point3::new(6.0 * x, 0.2 * y, 0.0))?,
+                isotropic(1e7, 0.3, 0.1, 1.0),
+                0.1081,
+            ),
         };
         let end = mesh.set("right")?.to_vec();
         let height = mesh.nodes[end[end.len() - 1] as usize].y - mesh.nodes[end[0] as usize].y;
