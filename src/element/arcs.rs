@@ -191,10 +191,10 @@ fn quadratics(frame: &Frame, to_material: &Matrix3<f64>, assumed: &Assumed) -> [
     let across = to_material * mixed;
     std::array::from_fn(|i| {
         let mut q = Quadratic::zeros();
-        for direction in 0..2 {
+        for (direction, along) in along.iter().enumerate() {
             for end in 0..2 {
                 let side = 2 * direction + end;
-                let weight = if i < 3 { 0.5 * along[direction][i] } else { assumed.sides[(i - 3, side)] };
+                let weight = if i < 3 { 0.5 * along[i] } else { assumed.sides[(i - 3, side)] };
                 q[(0, 0)] += weight;
                 q[(side + 1, side + 1)] += weight / 3.0;
                 if i < 3 {

@@ -41,8 +41,7 @@ pub(super) fn leading(reports: &[FabricReport]) -> Option<Block> {
     };
     let key =
         |row: &PredictionRow| (!row.quantity.starts_with("drape_"), row.case.clone(), row.quantity.clone());
-    let mut columns: Vec<_> =
-        reports.iter().flat_map(|r| rows(r)).map(|row| (key(&row), unit(&row))).collect();
+    let mut columns: Vec<_> = reports.iter().flat_map(rows).map(|row| (key(&row), unit(&row))).collect();
     columns.sort_by(|a, b| (a.0.0, &a.0.1).cmp(&(b.0.0, &b.0.1)));
     let mut seen = Vec::new();
     columns.retain(|(key, _)| {

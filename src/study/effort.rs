@@ -101,7 +101,7 @@ fn of_sheet(problem: &SheetProblem, quads: f64, options: &Options) -> f64 {
             let instants = motion.duration.si() / motion.step.si();
             bytes += instants * (PER_INSTANT + PER_PROBE * problem.probes.len() as f64) * BYTES;
         }
-        Analysis::Linear(_) | Analysis::Newmark(_) | Analysis::Nonlinear(_) => {}
+        Analysis::Linear(_) | Analysis::Newmark(_) | Analysis::Nonlinear(_) | Analysis::Steps(_) => {}
     }
     bytes
 }

@@ -4,8 +4,8 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::{Matrix2, Matrix3, Point3};
 
-use super::effort::within_limits;
 use super::build::Actions;
+use super::effort::within_limits;
 use super::limits::Extent;
 use super::{Case, StudyError, build, placed, refused, sheet_problem};
 use crate::case::{Analysis, Newmark, Outline, ProbePoint, Problem, Sheet, SheetProblem};

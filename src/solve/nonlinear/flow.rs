@@ -312,9 +312,12 @@ pub(super) fn follow_stable(
                     }
                 }
                 Err(failure) => {
-                    progress.cut_back(&failure);
+                    let failure = progress.cut_back(failure);
                     step = 0.5 * (factor - state.factor).abs();
-                    if step < settings.smallest_step || progress.iterations > LARGEST_EFFORT {
+                    if failure.is_final()
+                        || step < settings.smallest_step
+                        || progress.iterations > LARGEST_EFFORT
+                    {
                         return Err(failure.ends(progress.steps + 1, settings, state));
                     }
                 }
