@@ -201,6 +201,19 @@ def test_what_cannot_be_opened_is_told(client: Any, tmp_path: Path) -> None:
     assert settings.value.code == "O050" and "1 of 1 shards failed" in settings.value.message
 
 
+def test_paths_are_those_of_the_caller(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    tasks = dask.plan("kesf_data/petrak_m1", CASE, "out")
+    assert tasks[0].fabrics == (str(ROOT / "kesf_data" / "petrak_m1"),) and tasks[0].out == str(ROOT / "out")
+    # A worker that does not see the folder says so: it does not take it for an empty one.
+    gone = tmp_path / "petrak"
+    shutil.copytree(ROOT / "kesf_data" / "petrak_m1", gone)
+    (task,) = dask.plan(gone, CASE, tmp_path / "out")
+    shutil.rmtree(gone)
+    with pytest.raises(kesf.KesfError, match="no such file or folder on this worker") as refused:
+        dask.work(task)
+    assert refused.value.path == str(gone) and not parts.listed(str(tmp_path / "out"))
+
+
 def test_a_full_disk_leaves_nothing_half_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (task,) = dask.plan("kesf_data/petrak_m1", CASE, tmp_path)
     synchronise = os.fsync
@@ -213,7 +226,10 @@ def test_a_full_disk_leaves_nothing_half_written(tmp_path: Path, monkeypatch: py
         dask.work(task)
     assert refused.value.code == "O001" and not [p for p in tmp_path.rglob("*") if p.is_file()]
     monkeypatch.setattr(os, "fsync", synchronise)
-    assert not dask.work(task).kept and dask.work(task).kept
+    # What a killed worker has left of this part goes, too.
+    left = tmp_path / "_findings" / f".{task.shard.file}.0123.half"
+    left.write_bytes(b"half")
+    assert not dask.work(task).kept and dask.work(task).kept and not left.exists()
 
 
 def test_a_zip_is_read_like_a_folder(library: Path, client: Any, tmp_path: Path) -> None:

@@ -153,11 +153,11 @@ def plan(
     """
     options = storage_options or {}
     given = [inputs] if isinstance(inputs, (str, os.PathLike)) else list(inputs)
-    stamps = fabrics([os.fspath(one) for one in given], options)
+    stamps = fabrics([_absolute(os.fspath(one)) for one in given], options)
     if not stamps:
         raise KesfError("there is no measurement in the inputs", code="O055", cure="name folders of fabrics")
     count = shards or max(1, -(-len(stamps) // PER_SHARD))
-    place = os.fspath(out)
+    place = _absolute(os.fspath(out))
     others = {shard.count for shard in parts.listed(place, options)} - {count}
     if others:
         raise KesfError(
@@ -179,6 +179,11 @@ def plan(
         shard = parts.Shard(number, count)
         tasks.append(Task(tuple(mine), texts, how, place, shard, key, drape, options))
     return tasks
+
+
+def _absolute(path: str) -> str:
+    """A path that is the same for workers, which have working folders of their own."""
+    return path if "://" in path or "::" in path else os.path.abspath(path)
 
 
 def _cases(cases: Readable | Iterable[Readable]) -> tuple[tuple[str, bytes], ...]:
@@ -281,8 +286,8 @@ def _evaluate(task: Task, scratch: str, threads: int | None) -> Evaluation:
     try:
         evaluation = evaluate(paths, task.cases, settings, drape=task.drape, threads=threads)
     except KesfError as error:
-        # A folder of a store may turn out to hold no measurement.
-        if error.code != "O055":
+        # A folder of a store may turn out to hold no measurement; of local ones it is known that they do.
+        if error.code != "O055" or len(names) < len(paths):
             raise
         return nothing()
     if not names:
@@ -296,6 +301,8 @@ def _fetched(task: Task, scratch: str) -> tuple[list[str], dict[str, str]]:
     names: dict[str, str] = {}
     for number, url in enumerate(task.fabrics):
         if "://" not in url and "::" not in url:
+            if not os.path.exists(url):
+                raise KesfError("there is no such file or folder on this worker", code="R001", path=url)
             paths.append(url)
             continue
         system, path = parts.filesystem(url, task.options)

@@ -13,6 +13,7 @@ duckdb read ``out/part-*.parquet`` as one table. Needs pyarrow and fsspec.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import io
 import os
@@ -145,7 +146,8 @@ def _write_whole(system: Any, path: str, data: bytes) -> None:
         return
     folder = os.path.dirname(path)
     os.makedirs(folder, exist_ok=True)
-    half = os.path.join(folder, f".{uuid.uuid4().hex}.half")
+    name = os.path.basename(path)
+    half = os.path.join(folder, f".{name}.{uuid.uuid4().hex}.half")
     try:
         with open(half, "wb") as file:
             file.write(data)
@@ -153,8 +155,11 @@ def _write_whole(system: Any, path: str, data: bytes) -> None:
             os.fsync(file.fileno())
         os.replace(half, path)
     finally:
-        if os.path.exists(half):
-            os.remove(half)
+        # This one if it failed, and what a worker left that was killed while it wrote the same part.
+        for left in os.listdir(folder):
+            if left.startswith(f".{name}.") and left.endswith(".half"):
+                with contextlib.suppress(FileNotFoundError):
+                    os.remove(os.path.join(folder, left))
 
 
 def key_in(out: str, shard: Shard, options: dict[str, Any] | None = None) -> str | None:
