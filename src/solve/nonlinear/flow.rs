@@ -66,8 +66,8 @@ const FIRST_STEP: f64 = 0.1;
 const SHORT_STEP: f64 = 1.0 / 16.0;
 
 /// Steps of one flow, and iterations of a search, before it is given up.
-const FLOWING_STEPS: usize = 100;
-const LARGEST_EFFORT: usize = 2000;
+const FLOWING_STEPS: usize = 400;
+const LARGEST_EFFORT: usize = 4000;
 
 /// A kick turns no node by more than this (rad).
 const LARGEST_TURN: f64 = 0.1;
@@ -346,20 +346,25 @@ fn stable_step(
     };
     let mut iterations = found.iterations;
     for _ in 0..KICKS {
+        let failed = |obstacle| Failure { iterations, ..Failure::of(&found, obstacle) };
         match found.is_stable(system) {
             Ok(true) => return Ok((Converged { iterations, ..found }, kicked)),
             Ok(false) if short => kicked = true,
-            Ok(false) => break,
-            Err(cause) => return Err(Failure::of(&found, Obstacle::Factor(cause))),
+            Ok(false) => return Err(failed(Obstacle::Unstable)),
+            Err(cause) => return Err(failed(Obstacle::Factor(cause))),
         }
-        let (_, shape) = stability::check(system, &found.state, &found.balance)
-            .map_err(|_| Failure::of(&found, Obstacle::Unstable))?;
+        let (_, shape) =
+            stability::check(system, &found.state, &found.balance).map_err(|_| failed(Obstacle::Unstable))?;
         let mut beside = found.state.clone();
         system.advance(&mut beside, &kick_by_thickness(system, &shape));
-        found = settle_within(system, &beside, [factor, 0.0], settings, FLOWING_STEPS)?;
+        let settled = settle_within(system, &beside, [factor, 0.0], settings, FLOWING_STEPS);
+        found = settled.map_err(|f| Failure { iterations: iterations + f.iterations, ..f })?;
         iterations += found.iterations;
+        if iterations > LARGEST_EFFORT {
+            break;
+        }
     }
-    Err(Failure::of(&found, Obstacle::Unstable))
+    Err(Failure { iterations, ..Failure::of(&found, Obstacle::Unstable) })
 }
 
 /// A step along a shape that moves the sheet by its bending thickness, and turns no node by much.
