@@ -28,6 +28,9 @@ pub(super) struct StepTable {
     _loads: ReadLater,
     /// How its equilibrium is found, of kind `nonlinear`; the `[analysis]` of the case when left out.
     #[serde(default, rename = "analysis")]
-    #[schemars(with = "Option<super::analysis::AnalysisTable>")]
+    #[schemars(
+        with = "Option<super::analysis::AnalysisTable>",
+        example = serde_json::json!({"kind": "nonlinear", "method": "stable"})
+    )]
     _analysis: ReadLater,
 }

@@ -157,8 +157,8 @@ fn fabric_block(place: usize, report: &FabricReport) -> Block {
     if !report.curves.is_empty() {
         blocks.push(Block::Curves(place));
         blocks.push(Block::Text(format!(
-            "Curves: corrected records, at most {POINTS} points a branch (Ramer-Douglas-Peucker), five digits; all \
-             samples are in the sheet and in the pictures for print."
+            "Curves: corrected records, at most {POINTS} points a branch (Ramer-Douglas-Peucker), five digits; \
+             parameters and pictures rest on all samples, which `kesf read` writes."
         )));
     }
     if !drawn.is_empty() {

@@ -55,7 +55,7 @@ mod tests {
             let prepared = PreparedCase::new(&case, &Options::default()).unwrap();
             let own = section(&case.problem.section().unwrap().value).unwrap();
             let asked = AtomicUsize::new(0);
-            let stopped = || asked.fetch_add(1, Ordering::Relaxed) >= 2;
+            let stopped = || asked.fetch_add(1, Ordering::Relaxed) >= 1;
             let watch = Watch { stopped: &stopped, ..Watch::default() };
             let error = prepared.solve_section_watched(own, watch).unwrap_err();
             assert!(matches!(error, StudyError::Stopped), "{analysis}: {error}");

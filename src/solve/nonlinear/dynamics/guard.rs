@@ -114,6 +114,6 @@ mod tests {
         assert_eq!(halvings, 20);
         let error = step.unwrap_err();
         assert_eq!(error.code(), "N005");
-        assert!(error.to_string().contains("energy") && error.to_string().contains("0.25 s"), "{error}");
+        assert!(error.to_string().contains("energies") && error.to_string().contains("0.25 s"), "{error}");
     }
 }
