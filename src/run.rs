@@ -90,10 +90,10 @@ pub struct RunReport {
 
 /// Reads the inputs, evaluates every fabric, simulates every case with every fabric that it is for, and writes sheets,
 /// sections, results, charts, tables and a page to the sink. What fails and what is found goes to the observer; one bad
-/// input costs the others nothing. This is [`read`] and [`write`] in one.
+/// input costs the others nothing. This is [`read`](fn@read) and [`write`](fn@write) in one.
 ///
 /// # Errors
-/// Those of [`read`] and [`write`].
+/// Those of [`read`](fn@read) and [`write`](fn@write).
 pub fn run(
     job: &Job,
     settings: &RunSettings,

@@ -79,9 +79,10 @@ pub fn run(
             solver: making.solver()?,
             reading: options.reading(making.settings.clone()),
             threads: count(threads),
+            ..Job::default()
         };
         let Making { charts, drape, stamp, out, force, keep, .. } = making;
-        let settings = RunSettings { charts, drape, stamp, strict: false };
+        let settings = RunSettings { charts, drape, stamp, ..RunSettings::default() };
         let work = read(&job, &settings, observer)?;
         if work.is_empty() {
             let problems: Vec<ProblemRow> = work.failures.iter().map(Failure::row).collect();

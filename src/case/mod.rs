@@ -1,6 +1,6 @@
 //! The case file: what is solved, in TOML, with units on every number that has one.
 //!
-//! The text is first read into tables, one for each table of the file ([`CaseTable`] and those below it), and then
+//! The text is first read into tables, one for each table of the file (`CaseTable` and those below it), and then
 //! turned into one [`Problem`], whose variants carry only what belongs to them: what is not refused here can be built.
 //! Every refusal stands at the key or value that it speaks of, and what can only fail later keeps its place
 //! ([`Located`]).

@@ -66,7 +66,7 @@ pub trait Row: Clone + Serialize {
     where
         Self: Sized;
 
-    /// The row with no text that a spreadsheet would take for a formula; see [`csv`].
+    /// The row with no text that a spreadsheet would take for a formula; see [`csv`](fn@csv).
     #[must_use]
     fn harmless(self) -> Self;
 

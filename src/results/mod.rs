@@ -1,7 +1,7 @@
 //! The application: inputs become tasks, tasks become outcomes, and outcomes become rows, documents, files and text.
 //!
 //! [`Job`] says what is to be read and how, [`Job::read`] gives the [`Work`], [`Work::tasks`] the cases with their
-//! fabrics, [`simulate`](fn@simulate) the [`Outcome`] of one. [`crate::run`] does it all for a folder of results. An
+//! fabrics, [`simulate`](fn@simulate) the [`Outcome`] of one. [`crate::run`](fn@crate::run) does it all for a folder of results. An
 //! [`Observer`] follows the work and may end it; nothing here prints.
 //!
 //! An outcome is of one of four kinds, each a file of its own with its rows, document, fields, charts and text; only

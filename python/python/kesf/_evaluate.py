@@ -145,7 +145,7 @@ def _files(batch: object) -> Iterable[Any]:
 
 def evaluation_of(run: Run) -> Evaluation:
     """The tables of a run as one."""
-    rows = [_parameter(row) for row in run.parameters.rows() if row["status"] == "ok"]
+    rows = [_parameter(row) for row in run.parameters.rows() if row["parameter"]]
     rows += [_prediction(row) for row in run.predictions.rows()]
     problems = run.problems.rows()
     # The failures come first; a table of problems has no other mark of them.
