@@ -17,6 +17,7 @@ use sha2::{Digest, Sha256};
 use crate::finding::{Finding, explain};
 
 pub use data::POINTS;
+#[cfg(feature = "charts")]
 pub(crate) use data::shortened;
 pub use data::{
     AxisEntry, Column, FabricValues, Line, PageData, SimulatedLine, SpecimenCurves, TestCurves, Value,
