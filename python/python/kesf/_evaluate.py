@@ -29,6 +29,7 @@ RESULTS = {
     "measured": "number",
     "low": "number",
     "high": "number",
+    "status": "text",
 }
 
 #: Columns of findings and failures.
@@ -41,8 +42,8 @@ class Evaluation(Result):
 
     It is a table for programs of data frames itself, as ``results`` is. Columns: fabric, case (null for a measured
     parameter), quantity (``B`` with its direction, ``E secant``, or what a case predicts, such as ``w_max``),
-    direction, value, unit, sd and n of a parameter, the measured value beside a prediction, and low and high, its 95 %
-    band.
+    direction, value, unit, sd and n of a parameter, the measured value beside a prediction, low and high, its
+    95 % band, and the status of a parameter as in ``fabrics.csv``: ``doubtful`` is one that a finding speaks of.
 
     Attributes:
         results: Parameters and predictions.
@@ -145,7 +146,8 @@ def _files(batch: object) -> Iterable[Any]:
 
 def evaluation_of(run: Run) -> Evaluation:
     """The tables of a run as one."""
-    rows = [_parameter(row) for row in run.parameters.rows() if row["parameter"]]
+    # A row without a value stands for a fabric that failed: it is among the failures.
+    rows = [_parameter(row) for row in run.parameters.rows() if row["mean"] is not None]
     rows += [_prediction(row) for row in run.predictions.rows()]
     problems = run.problems.rows()
     # The failures come first; a table of problems has no other mark of them.
@@ -166,6 +168,7 @@ def _parameter(row: dict[str, Any]) -> dict[str, Any]:
         "unit": row["unit"],
         "sd": row["sd"],
         "n": row["n"],
+        "status": row["status"],
     }
 
 

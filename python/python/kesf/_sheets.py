@@ -34,6 +34,7 @@ class Estimate:
         unit: SI unit.
         cv: Coefficient of variation, SD / |mean|.
         ci95: Half width of the 95 % Student t interval of the mean.
+        status: ``measured``, ``inferred``, ``assumed`` or ``doubtful``: a finding speaks of it.
     """
 
     mean: float | None
@@ -42,6 +43,7 @@ class Estimate:
     unit: str
     cv: float | None = None
     ci95: float | None = None
+    status: str | None = None
 
     def __str__(self) -> str:
         spread = f" ± {number(self.sd)}" if self.sd is not None else ""

@@ -116,7 +116,7 @@ def _stored(pl: Any, path: str) -> Any:
     table = os.path.join(path, "fabrics.csv")
     if os.path.exists(table):
         text = dict.fromkeys(("fabric", "parameter", "direction", "unit", "status"), pl.String)
-        return pl.read_csv(table, schema_overrides=text).filter(pl.col("parameter") != "").select(columns)
+        return pl.read_csv(table, schema_overrides=text).filter(pl.col("mean").is_not_null()).select(columns)
     parts = os.path.join(path, "part-*.parquet") if os.path.isdir(path) else path
     try:
         lazy = pl.scan_parquet(parts)
