@@ -54,10 +54,15 @@ fn write_bundle(checked: &Checked, path: &Path, ui: &Ui) -> Result<(), Failure> 
         files.push((file, bytes));
     }
     let bundle = bundle(&files)?;
-    write_file(path, &bundle.bytes, false)?;
     for error in bundle.failures {
         ui.error(&error.into());
     }
+    if bundle.names.is_empty() {
+        return Err(Failure::new("O055", "there is no file of which a sample can be made").hint(
+            "name a folder of measurements; those that cannot be understood are just what samples are for",
+        ));
+    }
+    write_file(path, &bundle.bytes, false)?;
     for (file, name) in &bundle.names {
         ui.note(&format!("{}: {} is {name}", path.display(), file.display()));
     }

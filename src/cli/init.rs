@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::exit::Exit;
 use super::inputs::ReadArgs;
 use super::ui::Ui;
-use crate::results::{Failure, init, readable};
+use crate::results::{FIRST_CASE as CASE, Failure, init, readable};
 
 /// Write a commented fabric.toml for each fabric of a folder, and a first case
 #[derive(Debug, Args)]
@@ -42,7 +42,11 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         let kept = begun.kept.iter().map(|path| line(path, "kept   "));
         ui.print(&written.chain(kept).collect::<String>())?;
         let folder = options.folder.display();
-        ui.note(&format!("next: state what you know in fabric.toml, then `kesf run {folder}`"));
+        let case = options.folder.join(CASE);
+        ui.note(&format!(
+            "next: state what you know in fabric.toml, then `kesf run {folder} {}`",
+            case.display()
+        ));
     }
     Ok(Exit::of_batch(1, &begun.failures))
 }

@@ -123,6 +123,18 @@ impl<'a> Vocabulary<'a> {
         None
     }
 
+    /// Whether a whole text is a word of any kind, or the symbol of a parameter.
+    pub fn knows(self, text: &str) -> bool {
+        self.role_exactly(text).is_some()
+            || self.key(text).is_some()
+            || self.direction_exactly(text).is_some()
+            || self.test_exactly(text).is_some()
+            || self.branch(text).is_some()
+            || self.table_column(text).is_some()
+            || self.statistic(text).is_some()
+            || self.parameter(text).is_some()
+    }
+
     pub fn role(self, name: &str) -> Option<Role> {
         self.find(name, true, |d| &d.columns, &index().columns)
     }

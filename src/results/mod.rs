@@ -46,7 +46,7 @@ pub use draped::{DrapeEntry, DrapePoint};
 pub use fabric::FabricReport;
 pub use failure::{Failure, FailureEntry};
 pub use folder::{Folder, MemorySink, Sink};
-pub use init::{Begun, init};
+pub use init::{Begun, FIRST_CASE, init};
 pub use inputs::{
     Curves, Fabric, FileEntry, Input, Read, Reading, ReadingEntry, cases, nothing_to_read, paths_of_several,
     readable, unread, without_cases,

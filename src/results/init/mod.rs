@@ -16,6 +16,8 @@ use crate::schema::schemas;
 const FABRIC: &str = include_str!("fabric.toml");
 /// A case that any fabric with B and an areal density can be taken through.
 const CASE: &str = include_str!("../../../cases/cantilever.toml");
+/// Where that case is put below the folder that is begun.
+pub const FIRST_CASE: &str = "cases/cantilever.toml";
 /// Folder of the schemas below the one that is begun.
 const SCHEMAS: &str = "schemas";
 
@@ -58,10 +60,11 @@ pub fn init(folder: &Path, reading: &Reading, observer: &Observer) -> Result<Beg
     // The first line of the case that is shipped names the schema of the repository.
     let case = CASE.split_once('\n').map_or(CASE, |(_, rest)| rest);
     begun.write(
-        &folder.join("cases/cantilever.toml"),
+        &folder.join(FIRST_CASE),
         &format!(
-            "#:schema ../{SCHEMAS}/case.json\n# `kesf run {}` solves it for every fabric.\n{case}",
-            folder.display()
+            "#:schema ../{SCHEMAS}/case.json\n# `kesf run {} {}` solves it for every fabric.\n{case}",
+            folder.display(),
+            folder.join(FIRST_CASE).display()
         ),
     )?;
     for schema in schemas().iter().filter(|schema| ["case", "fabric"].contains(&schema.name)) {
@@ -145,7 +148,7 @@ mod tests {
         let batch = read_fabrics(&[folder.path().to_path_buf()], &ReadSettings::default(), &|_: &Path| ());
         assert!(batch.failures.is_empty(), "{:?}", batch.failures);
         assert_eq!(batch.fabrics[0].info.title, "\"a\" = b");
-        Case::read(&folder.path().join("cases/cantilever.toml")).unwrap();
+        Case::read(&folder.path().join(FIRST_CASE)).unwrap();
         // Once more: nothing is written.
         let again = init(folder.path(), &Reading::default(), &observer).unwrap();
         assert_eq!((again.written.len(), again.kept.len()), (0, 5));
