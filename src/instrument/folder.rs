@@ -137,6 +137,26 @@ impl Library {
         self.groups.iter().map(|group| (group.path.as_path(), group.files.as_slice()))
     }
 
+    /// Number of the folders and files that are read together.
+    pub fn groups(&self) -> usize {
+        self.groups.len()
+    }
+
+    /// What could not even be looked at, and belongs to none of the groups.
+    pub fn failures(&self) -> &[ReadError] {
+        &self.failures
+    }
+
+    /// Reads one of the [`groups`](Self::groups) (several readings give the same): its fabrics in name order, and an
+    /// error for each file that was not read. `progress` is called after each file.
+    pub fn read(
+        &self,
+        group: usize,
+        progress: &(dyn Fn(&Path) + Sync),
+    ) -> (Vec<FabricInput>, Vec<ReadError>) {
+        self.groups.get(group).map_or_else(Default::default, |group| group.read(false, progress))
+    }
+
     /// Reads fabric by fabric, in parallel, and gives each to `work`; only what `work` returns is
     /// kept, so that memory does not grow with the library. Results are in name order, whatever
     /// the order of work, and so are the errors: one for each file that was not read.
@@ -147,37 +167,41 @@ impl Library {
         work: impl Fn(FabricInput) -> T + Sync,
     ) -> (Vec<T>, Vec<ReadError>) {
         let few = self.files() <= FEW;
-        let group = |group: Group| {
-            let file = |file: &PathBuf| {
-                let content = read(file, &group.settings);
-                progress(file);
-                content
-            };
-            let read: Vec<_> =
-                if few { group.files.iter().map(file).collect() } else { platform::map(&group.files, file) };
-            let (mut contents, mut failures) = (Vec::new(), Vec::new());
-            for content in read {
-                match content {
-                    Ok(content) => contents.push(content),
-                    Err(error) => failures.push(error),
-                }
-            }
-            failures.extend(contents.iter().flat_map(|c| c.failures.iter().cloned()));
-            let done: Vec<T> = fabrics(group, contents).into_iter().map(&work).collect();
-            (done, failures)
+        let group = |group: &Group| {
+            let (fabrics, failures) = group.read(few, progress);
+            (fabrics.into_iter().map(&work).collect::<Vec<T>>(), failures)
         };
         // A few files are read before threads have started.
-        let groups: Vec<_> = if few {
-            self.groups.into_iter().map(group).collect()
-        } else {
-            platform::map(self.groups, group)
-        };
+        let groups: Vec<_> =
+            if few { self.groups.iter().map(group).collect() } else { platform::map(&self.groups, group) };
         let (mut all, mut failures) = (Vec::new(), self.failures);
         for (done, unread) in groups {
             all.extend(done);
             failures.extend(unread);
         }
         (all, failures)
+    }
+}
+
+impl Group {
+    /// Its fabrics, and what could not be read; `few` files are not worth more than this thread.
+    fn read(&self, few: bool, progress: &(dyn Fn(&Path) + Sync)) -> (Vec<FabricInput>, Vec<ReadError>) {
+        let file = |file: &PathBuf| {
+            let content = read(file, &self.settings);
+            progress(file);
+            content
+        };
+        let read: Vec<_> =
+            if few { self.files.iter().map(file).collect() } else { platform::map(&self.files, file) };
+        let (mut contents, mut failures) = (Vec::new(), Vec::new());
+        for content in read {
+            match content {
+                Ok(content) => contents.push(content),
+                Err(error) => failures.push(error),
+            }
+        }
+        failures.extend(contents.iter().flat_map(|c| c.failures.iter().cloned()));
+        (fabrics(self, contents), failures)
     }
 }
 
@@ -379,7 +403,7 @@ fn about(group: &mut Group, folder: &Path, has_fabric_file: bool) -> Result<(), 
 }
 
 /// The fabrics of a group: one, or as many as its result tables name.
-fn fabrics(group: Group, contents: Vec<FileContent>) -> Vec<FabricInput> {
+fn fabrics(group: &Group, contents: Vec<FileContent>) -> Vec<FabricInput> {
     if contents.is_empty() && group.named {
         return Vec::new(); // the files failed, and the failures say so
     }
@@ -395,7 +419,7 @@ fn fabrics(group: Group, contents: Vec<FileContent>) -> Vec<FabricInput> {
     let name = group.name.clone().or(sample).or(only).or(of_fab).unwrap_or_else(stem);
     let mut out: BTreeMap<String, FabricInput> = BTreeMap::new();
     if !several {
-        out.insert(name.clone(), blank(&name, &group));
+        out.insert(name.clone(), blank(&name, group));
     }
     for content in contents {
         // Values without a name, and the values of a folder's only fabric, belong to the folder.
@@ -411,7 +435,7 @@ fn fabrics(group: Group, contents: Vec<FileContent>) -> Vec<FabricInput> {
         // A finding of a table goes to the fabric of its cell, and one of the file to the first.
         let (mut findings, first) = (content.findings, of.keys().next().cloned());
         for (fabric, results) in of {
-            let input = out.entry(fabric.clone()).or_insert_with(|| blank(&fabric, &group));
+            let input = out.entry(fabric.clone()).or_insert_with(|| blank(&fabric, group));
             let of_cell = |f: &Finding| results.iter().any(|r| f.place.as_ref() == Some(&r.place));
             let (own, others) = findings.into_iter().partition(of_cell);
             findings = others;

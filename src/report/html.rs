@@ -9,6 +9,8 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
 
+use serde::{Deserialize, Serialize};
+
 use crate::finding::{Finding, explain};
 
 /// The whole page.
@@ -68,7 +70,7 @@ pub enum Block {
 }
 
 /// A picture with its caption.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
     /// What it shows, for readers who do not see it, and as caption.
     pub caption: String,

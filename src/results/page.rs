@@ -1,6 +1,6 @@
 //! `index.html` of a folder of results.
 
-use super::draped;
+use super::draped::{self, DrapePoint};
 use super::fabric::FabricReport;
 use super::failure::Failure;
 use super::overview::{CAPTION, HEADINGS};
@@ -19,20 +19,32 @@ const FILES: [&str; 6] =
 
 /// A case with constants of its own, solved, with its charts.
 pub(crate) struct Benchmark<'a, 'w> {
-    pub task: &'a Task<'w>,
+    pub task: &'a Task<'w, 'w>,
     pub result: &'a CaseResult,
     pub figures: &'a [Figure],
 }
 
-/// The page of a batch; `figures` are those of all fabrics together.
-pub(crate) fn page(
-    reports: &[FabricReport],
-    benchmarks: &[Benchmark],
-    figures: Vec<Figure>,
-    failures: &[Failure],
-) -> Page {
-    let mut sections =
-        vec![Section { heading: "Overview".into(), blocks: overview(reports, figures, failures) }];
+/// Fabrics of a page: more of them have pages of their own.
+pub(crate) const FABRICS_OF_PAGE: usize = 200;
+
+/// Failures on a page; all of them are in `problems.csv`.
+const FAILURES_OF_PAGE: usize = 1000;
+
+/// What stands above the fabrics of a batch.
+pub(crate) struct Head<'a> {
+    /// Of all fabrics together.
+    pub figures: Vec<Figure>,
+    /// Of inputs and tasks.
+    pub failures: &'a [Failure],
+    /// Of all fabrics.
+    pub drapes: &'a [DrapePoint],
+    /// Pages with the fabrics, where there are too many for this one.
+    pub pages: &'a [String],
+}
+
+/// The page of a batch; `reports` are the fabrics, unless they have pages of their own.
+pub(crate) fn page(reports: &[FabricReport], benchmarks: &[Benchmark], head: Head) -> Page {
+    let mut sections = vec![Section { heading: "Overview".into(), blocks: overview(reports, head) }];
     sections.extend(reports.iter().map(fabric_section));
     let blocks: Vec<Block> = benchmarks.iter().flat_map(benchmark_blocks).collect();
     if !blocks.is_empty() {
@@ -42,6 +54,28 @@ pub(crate) fn page(
         title: "KES-F results".into(),
         lead: format!("kesf {}; inputs and their hashes are in run.json.", env!("CARGO_PKG_VERSION")),
         sections,
+    }
+}
+
+/// A page of some of the fabrics; `number` counts from 1.
+pub(crate) fn fabrics_page(reports: &[FabricReport], number: usize) -> Page {
+    let mut sections = vec![Section {
+        heading: "Overview".into(),
+        blocks: vec![Block::Files(vec!["index.html".into()]), overview_table(reports)],
+    }];
+    sections.extend(reports.iter().map(fabric_section));
+    Page {
+        title: format!("KES-F results, page {number}"),
+        lead: format!("kesf {}", env!("CARGO_PKG_VERSION")),
+        sections,
+    }
+}
+
+fn overview_table(reports: &[FabricReport]) -> Block {
+    Block::Table {
+        caption: CAPTION.into(),
+        header: HEADINGS.iter().copied().chain(["status"]).map(String::from).collect(),
+        rows: reports.iter().map(overview_row).collect(),
     }
 }
 
@@ -61,21 +95,25 @@ fn figures_block(figures: Vec<Figure>) -> Option<Block> {
     (!figures.is_empty()).then_some(Block::Figures(figures))
 }
 
-fn overview(reports: &[FabricReport], figures: Vec<Figure>, failures: &[Failure]) -> Vec<Block> {
+fn overview(reports: &[FabricReport], head: Head) -> Vec<Block> {
+    let Head { figures, failures, drapes, pages } = head;
     let written = FILES.into_iter().filter(|file| cfg!(feature = "tables") || !file.ends_with(".parquet"));
     let mut blocks = vec![Block::Files(written.map(String::from).collect())];
-    blocks.push(Block::Table {
-        caption: CAPTION.into(),
-        header: HEADINGS.iter().copied().chain(["status"]).map(String::from).collect(),
-        rows: reports.iter().map(overview_row).collect(),
-    });
-    let draped: Vec<_> = reports.iter().flat_map(|r| r.drapes.clone()).collect();
-    blocks.extend(draped::bracket(&draped).map(|table| table.block(BRACKET)));
+    if pages.is_empty() {
+        blocks.push(overview_table(reports));
+    } else {
+        blocks.push(Block::Text(format!("The fabrics are on pages of {FABRICS_OF_PAGE}, in name order:")));
+        blocks.push(Block::Files(pages.to_vec()));
+    }
+    blocks.extend(draped::bracket(drapes).map(|table| table.block(BRACKET)));
     blocks.extend(figures_block(figures));
-    blocks.extend(failures.iter().map(|failure| {
+    blocks.extend(failures.iter().take(FAILURES_OF_PAGE).map(|failure| {
         let row = failure.row();
         Block::Text(format!("{}: {} {}", row.place, row.code, row.message))
     }));
+    if let Some(more) = failures.len().checked_sub(FAILURES_OF_PAGE).filter(|more| *more > 0) {
+        blocks.push(Block::Text(format!("{more} more failures are in problems.csv.")));
+    }
     blocks
 }
 

@@ -75,6 +75,8 @@ pub(super) fn write(task: &Task, result: &CaseResult, folder: &Folder) -> Result
         folder.csv(&format!("{stem}.csv"), &history)?;
     }
     let mesh = fields::Mesh::new(result);
-    folder.write(&format!("{stem}.vtu"), &mesh.vtu(result)?)?;
+    if folder.fields() {
+        folder.write(&format!("{stem}.vtu"), &mesh.vtu(result)?)?;
+    }
     folder.chart(&format!("{stem}.png"), || chart::field(&mesh.plot(task, result)))
 }

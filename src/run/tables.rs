@@ -1,0 +1,219 @@
+//! Tables, pages and charts over all fabrics, from their records: one in memory at a time.
+
+use std::collections::BTreeMap;
+
+use super::document::document;
+use super::fabrics::Made;
+use super::own::Own;
+use super::{LISTED, RunSettings, RunWork};
+use crate::case::Case;
+use crate::finding::Finding;
+use crate::instrument::Source;
+use crate::report::CsvTable;
+use crate::report::chart::{self, ParityPoint};
+use crate::report::html::{Figure, html};
+use crate::report::table::{FabricRow, PredictionRow, ProblemRow, problem_row};
+use crate::results::{
+    Benchmark, Columns, DrapePoint, FABRICS_OF_PAGE, FabricReport, Failure, FileEntry, Folder, Head, Job,
+    Observer, Overview, Record, SinkFile, Table, bracket, checks, fabrics_page, page, unread_of,
+    write_drape_parity, write_friction_parity,
+};
+
+/// What there is to write about.
+pub(super) struct Results<'r, 'w> {
+    pub work: &'w RunWork,
+    pub folder: &'r Folder<'r>,
+    pub made: &'r [Made],
+    pub own: &'r [Own<'w>],
+    /// Of inputs and tasks.
+    pub failures: &'r [Failure],
+    pub without_law: &'r [Finding],
+    /// Cases that were not left out.
+    pub cases: &'r [&'w Case],
+}
+
+/// The files that get rows of every fabric.
+struct Tables<'s> {
+    fabrics: Table<'s, FabricRow>,
+    predictions: Table<'s, PredictionRow>,
+    problems: CsvTable<Box<dyn SinkFile + 's>>,
+}
+
+/// What is kept of all fabrics together.
+#[derive(Default)]
+struct Kept {
+    parity: Vec<ParityPoint>,
+    re_extracted: Vec<ParityPoint>,
+    drapes: Vec<DrapePoint>,
+    /// Reports for the page that is being filled.
+    reports: Vec<FabricReport>,
+    /// Names of the pages that are full.
+    pages: Vec<String>,
+}
+
+impl Results<'_, '_> {
+    /// Writes everything that is about all fabrics; the tables for people.
+    pub fn write(
+        &self,
+        job: &Job,
+        settings: &RunSettings,
+        observer: &Observer,
+    ) -> Result<Vec<Columns>, Failure> {
+        let lost = self.unread();
+        let mut tables = self.begin()?;
+        let mut overview = Overview::new(self.cases.iter().copied());
+        let mut kept = Kept::default();
+        for at in 0..self.made.len() {
+            observer.go_on()?;
+            let mut report = self.record(at)?.report;
+            report.findings.iter().for_each(|finding| observer.found_in_batch(finding));
+            tables.add(&report)?;
+            if let Some(status) = lost.get(report.name.as_str()).filter(|_| report.status == "ok") {
+                report.status.clone_from(status);
+            }
+            if at < LISTED {
+                overview.row(&report);
+            }
+            self.keep(report, &mut kept)?;
+        }
+        for own in self.own {
+            own.findings().into_iter().for_each(|finding| observer.found_in_batch(finding));
+        }
+        self.finish(tables)?;
+        self.write_document(job, settings)?;
+        let benchmarks: Vec<Benchmark> = self.own.iter().filter_map(Own::benchmark).collect();
+        let bracket = bracket(&kept.drapes);
+        self.write_pages(kept, &benchmarks)?;
+        let checks = checks(benchmarks.iter().map(|b| b.result));
+        Ok([Some(overview.table()), checks, bracket].into_iter().flatten().collect())
+    }
+
+    /// The record of a fabric.
+    fn record(&self, at: usize) -> Result<Record, Failure> {
+        record(self.folder, self.work, self.made, at)
+    }
+
+    /// Status of the fabrics of which a file could not be read.
+    fn unread(&self) -> BTreeMap<String, String> {
+        let rows = self.unread_rows().into_iter().rev();
+        rows.map(|row| (row.fabric, row.status)).collect()
+    }
+
+    fn unread_rows(&self) -> Vec<FabricRow> {
+        let fabrics = &self.work.catalogue;
+        let known: Vec<_> = (0..fabrics.len()).map(|at| (fabrics.path(at), fabrics.name(at))).collect();
+        unread_of(&known, &self.work.failures)
+    }
+
+    fn begin(&self) -> Result<Tables<'_>, Failure> {
+        let mut problems = self.folder.csv_table::<ProblemRow>("problems.csv")?;
+        for failure in self.failures {
+            problems.row(&failure.row())?;
+        }
+        for finding in self.work.catalogue.findings.iter().chain(self.without_law) {
+            problems.row(&problem_row(finding, ""))?;
+        }
+        Ok(Tables {
+            fabrics: self.folder.table("fabrics")?,
+            predictions: self.folder.table("predictions")?,
+            problems,
+        })
+    }
+
+    fn finish(&self, mut tables: Tables) -> Result<(), Failure> {
+        for row in self.unread_rows() {
+            tables.fabrics.row(&row)?;
+        }
+        for own in self.own {
+            own.rows().iter().try_for_each(|row| tables.predictions.row(row))?;
+            for finding in own.findings() {
+                tables.problems.row(&problem_row(finding, &own.task.case.name))?;
+            }
+        }
+        tables.fabrics.commit()?;
+        tables.predictions.commit()?;
+        Ok(tables.problems.finish()?.commit()?)
+    }
+
+    /// Keeps what charts and pages need of a fabric, and writes a page that is full.
+    fn keep(&self, report: FabricReport, kept: &mut Kept) -> Result<(), Failure> {
+        if self.folder.charts() {
+            kept.parity.extend(report.parity.iter().cloned());
+            kept.re_extracted.extend(report.re_extracted.iter().cloned());
+        }
+        kept.drapes.extend(report.drapes.iter().cloned());
+        kept.reports.push(report);
+        let is_full = kept.reports.len() == FABRICS_OF_PAGE && self.made.len() > FABRICS_OF_PAGE;
+        if is_full { self.write_page_of_fabrics(kept) } else { Ok(()) }
+    }
+
+    fn write_page_of_fabrics(&self, kept: &mut Kept) -> Result<(), Failure> {
+        let reports = std::mem::take(&mut kept.reports);
+        let number = kept.pages.len() + 1;
+        let name = format!("fabrics-{number}.html");
+        self.folder.write(&name, html(&fabrics_page(&reports, number)).as_bytes())?;
+        kept.pages.push(name);
+        Ok(())
+    }
+
+    fn write_pages(&self, mut kept: Kept, benchmarks: &[Benchmark]) -> Result<(), Failure> {
+        let figures = self.write_parity(&kept)?;
+        if !kept.pages.is_empty() && !kept.reports.is_empty() {
+            self.write_page_of_fabrics(&mut kept)?;
+        }
+        let Kept { drapes, reports, pages, .. } = kept;
+        let head = Head { figures, failures: self.failures, drapes: &drapes, pages: &pages };
+        self.folder.write("index.html", html(&page(&reports, benchmarks, head)).as_bytes())
+    }
+
+    /// Charts over all fabrics.
+    fn write_parity(&self, kept: &Kept) -> Result<Vec<Figure>, Failure> {
+        let (folder, mut figures) = (self.folder, Vec::new());
+        // The section is made of the measured value, so this is a closed loop and must say so.
+        let subtitle = "closed loop: the measured stiffness, seen again through a simulated test (clamps, edges, element)";
+        let draw = || chart::parity(&kept.parity, "Simulated against measured", subtitle);
+        if folder.chart("parity.png", draw)? {
+            figures.push(figure("Simulated against measured stiffness", "parity.png"));
+        }
+        figures.extend(write_friction_parity(folder, &kept.re_extracted)?);
+        if let Some(picture) = write_drape_parity(folder, &kept.drapes)? {
+            figures.push(figure("Simulated against measured drape", &picture));
+        }
+        Ok(figures)
+    }
+
+    fn write_document(&self, job: &Job, settings: &RunSettings) -> Result<(), Failure> {
+        let fabrics = &self.work.catalogue;
+        let sources = (0..self.made.len()).flat_map(|at| match self.record(at) {
+            Ok(record) => record.sources.into_iter().map(Ok::<Source, Failure>).collect(),
+            Err(failure) => vec![Err(failure)],
+        });
+        let stated = (0..fabrics.len()).map(|at| fabrics.path(at).join("fabric.toml"));
+        let stated = stated.filter(|path| path.is_file()).map(|path| Ok(FileEntry::of(&path)));
+        self.folder.stream("run.json", &document(job, settings, self.cases.iter().copied(), sources, stated))
+    }
+}
+
+/// The record of a fabric of a run.
+pub(super) fn record(folder: &Folder, work: &RunWork, made: &[Made], at: usize) -> Result<Record, Failure> {
+    if let Some(held) = &made[at].held {
+        return Ok((**held).clone());
+    }
+    let name = work.catalogue.name(at);
+    Record::read(folder.sink(), name)?.ok_or_else(|| {
+        Failure::new("O064", format!("the record of {name} was changed while the run was going on"))
+            .hint("run again when nothing else writes into the folder of results")
+    })
+}
+
+impl Tables<'_> {
+    fn add(&mut self, report: &FabricReport) -> Result<(), Failure> {
+        report.rows.iter().try_for_each(|row| self.fabrics.row(row))?;
+        report.predictions.iter().try_for_each(|row| self.predictions.row(row))?;
+        report.problems().try_for_each(|row| Ok(self.problems.row(&row)?))
+    }
+}
+
+fn figure(caption: &str, picture: &str) -> Figure {
+    Figure { caption: caption.into(), picture: picture.into() }
+}
