@@ -21,68 +21,22 @@
 mod document;
 mod fabrics;
 mod own;
+mod settings;
 mod tables;
+mod work;
 
 use crate::case::Case;
 use crate::report::table::PredictionRow;
 use crate::results::{
-    Catalogue, Columns, FabricReport, Failure, Folder, Job, JobInputs, Limits, Observer, Record, Sink,
+    Catalogue, Columns, FabricReport, Failure, Folder, Job, JobInputs, Observer, Record, Sink,
 };
+
+pub use settings::{FieldFiles, RunSettings};
+pub use work::RunWork;
 
 use fabrics::Workshop;
 use own::{Own, own_cases};
-use tables::Results;
-
-/// Fabrics that the overview for people lists; all of them are in `fabrics.csv`.
-const LISTED: usize = 200;
-
-/// Fabrics up to which fields are written where nobody says anything: they are nine tenths of a large folder.
-const WITH_FIELDS: usize = 100;
-
-/// When the fields of sheets are written for ParaView (`<case>.vtu`).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum FieldFiles {
-    /// In runs of up to 100 fabrics.
-    #[default]
-    Auto,
-    /// Of every fabric.
-    Always,
-    /// Of none.
-    Never,
-}
-
-/// What is made of the results.
-#[derive(Clone, Debug)]
-pub struct RunSettings {
-    /// Whether charts are drawn.
-    pub charts: bool,
-    /// When fields are written.
-    pub fields: FieldFiles,
-    /// Whether drape cases are solved too: a minute or so for each fabric.
-    pub drape: bool,
-    /// Whether every fabric is computed, also those that an earlier run has computed of the same inputs.
-    pub fresh: bool,
-    /// What else than the version tells this program from another that computes otherwise.
-    pub program: Option<String>,
-    /// Date and time for `run.json`; without it the same input gives the same bytes.
-    pub stamp: Option<String>,
-    /// Whether the caller takes a finding for a failure; noted in `run.json`.
-    pub strict: bool,
-}
-
-impl Default for RunSettings {
-    fn default() -> Self {
-        Self {
-            charts: true,
-            fields: FieldFiles::Auto,
-            drape: false,
-            fresh: false,
-            program: None,
-            stamp: None,
-            strict: false,
-        }
-    }
-}
+use tables::{LISTED, Results};
 
 /// What a run gave, beside its files. What belongs to a fabric is in the folder of results and is read from there, so
 /// that a run of many fabrics does not fill memory.
@@ -139,28 +93,6 @@ impl RunReport {
     }
 }
 
-/// What a run is to do: its cases, and its fabrics by name and hash.
-pub struct RunWork {
-    cases: Vec<Case>,
-    catalogue: Catalogue,
-    /// What could not be read. The observer has it already.
-    pub failures: Vec<Failure>,
-    threads: usize,
-    limits: Limits,
-}
-
-impl RunWork {
-    /// Whether there is neither a fabric nor a case.
-    pub fn is_empty(&self) -> bool {
-        self.catalogue.len() == 0 && self.cases.is_empty()
-    }
-
-    /// Tasks share the threads; one that is alone has them all.
-    fn threads_of_task(&self) -> usize {
-        if self.cases.len() == 1 && self.catalogue.len() < 2 { self.threads } else { 1 }
-    }
-}
-
 /// Reads the inputs, evaluates every fabric, simulates every case with every fabric that it is for, and writes sheets,
 /// sections, results, charts, tables and a page to the sink. What fails and what is found goes to the observer; one bad
 /// input costs the others nothing. This is [`read`] and [`write`] in one.
@@ -211,11 +143,7 @@ pub fn write(
     sink: &dyn Sink,
     observer: &Observer,
 ) -> Result<RunReport, Failure> {
-    let with_fields = match settings.fields {
-        FieldFiles::Auto => work.catalogue.len() <= WITH_FIELDS,
-        FieldFiles::Always => true,
-        FieldFiles::Never => false,
-    };
+    let with_fields = settings.fields.are_written(work.catalogue.len());
     let folder = Folder::new(sink, settings.charts).with_fields(with_fields);
     let shop = Workshop::new((job, settings), work, &folder, observer)?;
     let mut made = shop.run()?;

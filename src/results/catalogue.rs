@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use super::failure::Failure;
-use super::inputs::{Input, Reading, fabric_in_memory, without_memory};
+use super::inputs::{Fabric, Input, Reading, fabric_in_memory, without_memory};
 use super::names::{Named, distinguish};
 use super::observer::Observer;
 use super::record::hash_of;
-use crate::characterise::{FabricSheet, Modulus, Settings, characterise};
+use crate::characterise::{Modulus, Settings, characterise};
 use crate::finding::{Finding, Place};
 use crate::instrument::{FabricInput, Library, ReadError, ReadSettings};
 use crate::platform;
@@ -146,12 +146,12 @@ impl Catalogue {
         units
     }
 
-    /// The sheets of the fabrics of one of the [`units`](Self::units), or why one has none.
-    pub fn sheets(&self, unit: Range<usize>) -> Vec<Result<FabricSheet, Failure>> {
+    /// The fabrics of one of the [`units`](Self::units) with their sheets, or why one has none.
+    pub fn fabrics(&self, unit: Range<usize>) -> Vec<Result<Fabric, Failure>> {
         let kept = unit.clone().map(|at| self.entries[at].take()).collect::<Option<Vec<_>>>();
         let inputs = kept.unwrap_or_else(|| self.read_again(self.entries[unit.start].origin));
         let mut inputs = inputs.into_iter();
-        unit.map(|at| self.sheet(at, inputs.next())).collect()
+        unit.map(|at| self.fabric(at, inputs.next())).collect()
     }
 
     fn read_again(&self, origin: Origin) -> Vec<FabricInput> {
@@ -166,7 +166,7 @@ impl Catalogue {
         }
     }
 
-    fn sheet(&self, at: usize, input: Option<FabricInput>) -> Result<FabricSheet, Failure> {
+    fn fabric(&self, at: usize, input: Option<FabricInput>) -> Result<Fabric, Failure> {
         let changed = || {
             Failure::new("O063", format!("{} changed while the run was going on", self.name(at)))
                 .at(Place::file(self.path(at)))
@@ -180,7 +180,7 @@ impl Catalogue {
         let Named { name, findings } = self.names[at].clone();
         sheet.name = name;
         sheet.findings.extend(findings);
-        Ok(sheet)
+        Ok(Fabric { path: input.path, sheet })
     }
 }
 

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use serde::ser::SerializeSeq;
 use serde::{Serialize, Serializer};
 
-use super::RunSettings;
+use super::settings::RunSettings;
 use crate::case::{Case, SolverChoice};
 use crate::instrument::Source;
 use crate::results::{Failure, FileEntry, Job, ReadingEntry, readable};
@@ -43,7 +43,10 @@ struct CaseEntry {
 }
 
 /// A list whose entries are made while they are written; once.
-struct Streamed<'d, T>(RefCell<Option<Box<dyn Iterator<Item = Result<T, Failure>> + 'd>>>);
+struct Streamed<'d, T>(RefCell<Option<Entries<'d, T>>>);
+
+/// The entries of a list, one after the other.
+type Entries<'d, T> = Box<dyn Iterator<Item = Result<T, Failure>> + 'd>;
 
 impl<T: Serialize> Serialize for Streamed<'_, T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

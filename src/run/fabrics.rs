@@ -8,9 +8,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use serde_json::json;
 
-use super::{RunSettings, RunWork};
+use super::settings::RunSettings;
+use super::work::RunWork;
 use crate::case::{Case, Outline};
-use crate::characterise::FabricSheet;
 use crate::finding::Finding;
 use crate::platform::map_several;
 use crate::results::{
@@ -113,14 +113,14 @@ impl<'c> Workshop<'c> {
         if self.is_over() {
             return vec![Err(Failure::interrupted())];
         }
-        let sheets = self.work.catalogue.sheets(unit.clone()).into_iter();
-        let all = unit.zip(sheets).zip(finished).collect();
-        map_several(all, |((at, sheet), finished)| match finished {
+        let fabrics = self.work.catalogue.fabrics(unit.clone()).into_iter();
+        let all = unit.zip(fabrics).zip(finished).collect();
+        map_several(all, |((at, fabric), finished)| match finished {
             Ok(Some(made)) => Ok(made),
             Err(failure) => Err(failure),
             Ok(None) if self.is_over() => Err(Failure::interrupted()),
             Ok(None) => {
-                let made = self.make(at, sheet);
+                let made = self.make(at, fabric);
                 self.ended.fetch_or(made.is_err(), Ordering::Relaxed);
                 self.observer.step();
                 made
@@ -162,18 +162,17 @@ impl<'c> Workshop<'c> {
         }))
     }
 
-    fn make(&self, at: usize, sheet: Result<FabricSheet, Failure>) -> Result<Made, Failure> {
+    fn make(&self, at: usize, fabric: Result<Fabric, Failure>) -> Result<Made, Failure> {
         let fabrics = &self.work.catalogue;
-        let sheet = match sheet {
-            Ok(sheet) => sheet,
+        let fabric = match fabric {
+            Ok(fabric) => fabric,
             Err(failure) => {
                 let report = FabricReport::failed(fabrics.name(at), failure);
                 let record = Record::new("", Vec::new(), Vec::new(), Default::default(), report);
                 return Ok(Made { held: Some(Box::new(record.clone())), ..Made::of(&record) });
             }
         };
-        Record::begin(self.folder.sink(), &sheet.name)?;
-        let fabric = Fabric { path: fabrics.path(at).to_path_buf(), sheet };
+        Record::begin(self.folder.sink(), &fabric.sheet.name)?;
         let names = |wanted: &dyn Fn(&Case) -> bool| -> Vec<String> {
             self.jobs.iter().filter(|job| wanted(job.case)).map(|job| job.case.name.clone()).collect()
         };

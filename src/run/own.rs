@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::RunWork;
+use super::work::RunWork;
 use crate::finding::Finding;
 use crate::platform::map_several;
 use crate::report::html::Figure;

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use super::document::document;
 use super::fabrics::Made;
 use super::own::Own;
-use super::{LISTED, RunSettings, RunWork};
+use super::settings::RunSettings;
+use super::work::RunWork;
 use crate::case::Case;
 use crate::finding::Finding;
 use crate::instrument::Source;
@@ -18,6 +19,9 @@ use crate::results::{
     Observer, Overview, Record, SinkFile, Table, bracket, checks, fabrics_page, page, unread_of,
     write_drape_parity, write_friction_parity,
 };
+
+/// Fabrics that the overview for people lists; all of them are in `fabrics.csv`.
+pub(super) const LISTED: usize = 200;
 
 /// What there is to write about.
 pub(super) struct Results<'r, 'w> {

@@ -19,7 +19,8 @@ fn peak(process: u32) -> Option<u64> {
 #[cfg(target_os = "linux")]
 fn processor_seconds(process: u32) -> Option<f64> {
     let stat = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
-    let fields: Vec<f64> = stat.rsplit(')').next()?.split_whitespace().map(|f| f.parse().unwrap_or(0.0)).collect();
+    let fields: Vec<f64> =
+        stat.rsplit(')').next()?.split_whitespace().map(|f| f.parse().unwrap_or(0.0)).collect();
     Some(fields.get(11..13)?.iter().sum::<f64>() / 100.0)
 }
 
@@ -68,7 +69,8 @@ fn memory_does_not_grow_with_the_fabrics() {
         found.push(megabytes);
     }
     println!("{:.0} s", start.elapsed().as_secs_f64());
-    let (least, most) = (found.iter().copied().fold(f64::INFINITY, f64::min), found.iter().copied().fold(0.0, f64::max));
+    let (least, most) =
+        (found.iter().copied().fold(f64::INFINITY, f64::min), found.iter().copied().fold(0.0, f64::max));
     assert!(most < 150.0, "{found:?} MB");
     assert!(most < 1.2 * least, "{found:?} MB");
 }

@@ -27,7 +27,8 @@ impl Library {
         for k in 0..FABRICS {
             library.write_fabric(k, 0.1 + 0.01 * k as f64);
         }
-        let case = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/cantilever_strip.toml"));
+        let case =
+            fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/cantilever_strip.toml"));
         write(library.folder.path(), "case.toml", &case.unwrap());
         library
     }
@@ -76,7 +77,9 @@ fn assert_whole(folder: &Path, when: &str) {
         let text = String::from_utf8_lossy(&bytes);
         let whole = match name.rsplit('.').next().unwrap() {
             "json" => serde_json::from_slice::<serde_json::Value>(&bytes).is_ok(),
-            "csv" => text.ends_with('\n') && csv::Reader::from_reader(&bytes[..]).records().all(|row| row.is_ok()),
+            "csv" => {
+                text.ends_with('\n') && csv::Reader::from_reader(&bytes[..]).records().all(|row| row.is_ok())
+            }
             "parquet" => bytes.starts_with(b"PAR1") && bytes.ends_with(b"PAR1"),
             "vtu" => text.trim_end().ends_with("</VTKFile>"),
             "png" => bytes.ends_with(b"IEND\xaeB`\x82"),
@@ -106,12 +109,20 @@ fn a_second_run_computes_what_has_changed_and_nothing_else() {
     assert_eq!(resumed(&library.run("out", &[])), FABRICS - 1, "a file of one fabric is gone");
     assert_eq!(library.shown("out"), library.shown("anew"));
     let case = fs::read_to_string(library.out("case.toml")).unwrap();
-    write(library.folder.path(), "case.toml", &case.replace("width = \"20 mm\"", "width = \"21 mm\"").replace("[\"20 mm\"", "[\"21 mm\""));
+    write(
+        library.folder.path(),
+        "case.toml",
+        &case.replace("width = \"20 mm\"", "width = \"21 mm\"").replace("[\"20 mm\"", "[\"21 mm\""),
+    );
     assert_eq!(resumed(&library.run("out", &[])), 0, "another case");
     assert_ne!(library.shown("out"), library.shown("anew"));
     write(library.folder.path(), "settings.toml", "");
     let settings = library.out("settings.toml");
-    assert_eq!(resumed(&library.run("out", &["--settings", settings.to_str().unwrap()])), 0, "other settings");
+    assert_eq!(
+        resumed(&library.run("out", &["--settings", settings.to_str().unwrap()])),
+        0,
+        "other settings"
+    );
 }
 
 /// What somebody changed in the results of an earlier run is not taken for ours.
@@ -158,12 +169,18 @@ fn a_run_that_is_killed_goes_on_where_it_was() {
             let done = library.run("out", &["-j", "1"]);
             most = most.max(resumed(&done));
             assert_eq!(library.shown("out"), library.shown("undisturbed"), "after kill {kill}");
-            let left: Vec<String> = tree(&library.out("out")).into_keys().filter(|n| n.contains("/.kesf-") || n.starts_with(".kesf-")).collect();
+            let left: Vec<String> = tree(&library.out("out"))
+                .into_keys()
+                .filter(|n| n.contains("/.kesf-") || n.starts_with(".kesf-"))
+                .collect();
             let known = |name: &String| name.ends_with(".kesf-record.json") || name == ".kesf-manifest.json";
             assert!(left.iter().all(known), "temporary files are left: {left:?}");
         }
     }
-    println!("{kills} kills over {:.1} s; at most {most} of {FABRICS} fabrics were found done", whole.as_secs_f64());
+    println!(
+        "{kills} kills over {:.1} s; at most {most} of {FABRICS} fabrics were found done",
+        whole.as_secs_f64()
+    );
     assert!(most > 0, "what was done is known");
 }
 
@@ -171,7 +188,8 @@ fn a_run_that_is_killed_goes_on_where_it_was() {
 #[test]
 fn two_runs_into_one_folder_do_not_mix() {
     let library = Library::new();
-    let mut first = library.command("out", &["-j", "1"]).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let mut first =
+        library.command("out", &["-j", "1"]).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     let journal = library.out("out/.kesf-journal");
     let start = Instant::now();
     while !journal.exists() && start.elapsed() < Duration::from_secs(60) {
@@ -196,7 +214,8 @@ fn standard_output_that_takes_nothing_costs_no_result() {
     library.run("expected", &[]);
     for (out, redirection) in [("closed", ">&-"), ("full", ">/dev/full"), ("pipe", "| head -c 1")] {
         let command = library.command(out, &[]);
-        let quoted = command.get_args().map(|a| format!("'{}'", a.to_str().unwrap())).collect::<Vec<_>>().join(" ");
+        let quoted =
+            command.get_args().map(|a| format!("'{}'", a.to_str().unwrap())).collect::<Vec<_>>().join(" ");
         let line = format!("{} {quoted} {redirection}", env!("CARGO_BIN_EXE_kesf"));
         let done = Command::new("sh").args(["-c", &line]).output().unwrap();
         let full = out == "full";
@@ -214,7 +233,8 @@ fn a_full_disk_costs_no_whole_file() {
     let library = Library::new();
     library.run("expected", &[]);
     let command = library.command("disk/out", &[]);
-    let quoted = command.get_args().map(|a| format!("'{}'", a.to_str().unwrap())).collect::<Vec<_>>().join(" ");
+    let quoted =
+        command.get_args().map(|a| format!("'{}'", a.to_str().unwrap())).collect::<Vec<_>>().join(" ");
     let (kesf, disk) = (env!("CARGO_BIN_EXE_kesf"), library.out("disk"));
     fs::create_dir(&disk).unwrap();
     let (disk, kept) = (disk.display(), library.out("kept"));
@@ -235,8 +255,12 @@ fn a_full_disk_costs_no_whole_file() {
         "mount -t tmpfs -o ro none '{disk}' || exit 77\n{kesf} {quoted} >/dev/null 2>'{kept}.err'; echo \"$? $(grep -c O001 '{kept}.err')\"\n"
     );
     let done = Command::new("unshare").args(["-rm", "sh", "-c", &script]).output();
-    let Some(done) = done.ok().filter(|done| done.status.code() != Some(77) && !done.stdout.is_empty()) else {
-        return crate::common::skipped("a_full_disk_costs_no_whole_file", "no file system can be mounted here");
+    let Some(done) = done.ok().filter(|done| done.status.code() != Some(77) && !done.stdout.is_empty())
+    else {
+        return crate::common::skipped(
+            "a_full_disk_costs_no_whole_file",
+            "no file system can be mounted here",
+        );
     };
     let said = String::from_utf8_lossy(&done.stdout).into_owned();
     let mut lines = said.lines();

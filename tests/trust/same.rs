@@ -4,8 +4,13 @@ use std::collections::BTreeMap;
 
 use crate::{code, kesf, stderr, tree};
 
-const INPUTS: [&str; 5] =
-    ["kesf_data/poplin", "kesf_data/petrak_m1", "kesf_data/petrak_m2", "cases/cantilever_strip.toml", "cases/virtual_bending.toml"];
+const INPUTS: [&str; 5] = [
+    "kesf_data/poplin",
+    "kesf_data/petrak_m1",
+    "kesf_data/petrak_m2",
+    "cases/cantilever_strip.toml",
+    "cases/virtual_bending.toml",
+];
 
 /// Results of a run with options, inputs in an order, and variables of the environment.
 fn run(options: &[&str], inputs: &[&str], variables: &[(&str, &str)]) -> BTreeMap<String, Vec<u8>> {
