@@ -2,14 +2,14 @@
 //! thousands of them with one in memory at a time.
 
 use std::ops::Range;
-use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::failure::Failure;
 use super::inputs::{Fabric, Input, Reading, fabric_in_memory, without_memory};
 use super::names::{Named, distinguish};
 use super::observer::Observer;
-use super::record::hash_of;
+use super::record::digest_of;
 use crate::characterise::{Modulus, Settings, characterise};
 use crate::finding::{Finding, Place};
 use crate::instrument::{FabricInput, Library, ReadError, ReadSettings};
@@ -35,9 +35,9 @@ pub(crate) struct Catalogue {
 /// A fabric of the catalogue.
 struct Entry {
     origin: Origin,
-    path: PathBuf,
+    path: Arc<Path>,
     /// Hash of all that was read of it.
-    inputs: String,
+    inputs: [u8; 32],
     kept: Mutex<Option<Box<FabricInput>>>,
 }
 
@@ -101,7 +101,7 @@ impl Catalogue {
                 Err(error) => errors.push(error),
             }
         }
-        let paths: Vec<&Path> = catalogue.entries.iter().map(|entry| entry.path.as_path()).collect();
+        let paths: Vec<&Path> = catalogue.entries.iter().map(|entry| &*entry.path).collect();
         distinguish(&mut catalogue.names, |at| paths[at]);
         catalogue.failures = errors.into_iter().map(Failure::from).collect();
         catalogue.failures.iter().for_each(|failure| observer.failed(failure));
@@ -130,7 +130,7 @@ impl Catalogue {
     }
 
     /// Hash of all that was read of a fabric.
-    pub fn inputs(&self, at: usize) -> &str {
+    pub fn inputs(&self, at: usize) -> &[u8] {
         &self.entries[at].inputs
     }
 
@@ -173,7 +173,7 @@ impl Catalogue {
                 .hint("run again when nothing writes there")
         };
         let input = input.ok_or_else(changed)?;
-        if hash_of(&input)? != self.entries[at].inputs {
+        if digest_of(&input)? != self.entries[at].inputs {
             return Err(changed());
         }
         let mut sheet = characterise(&input, &self.evaluation);
@@ -187,7 +187,7 @@ impl Catalogue {
 impl Entry {
     fn new(origin: Origin, fabric: FabricInput, keep: bool) -> Result<(Self, Named), Failure> {
         let named = Named::new(fabric.name.as_str());
-        let (path, inputs) = (fabric.path.clone(), hash_of(&fabric)?);
+        let (path, inputs) = (Arc::from(fabric.path.as_path()), digest_of(&fabric)?);
         let kept = Mutex::new(keep.then(|| Box::new(fabric)));
         Ok((Self { origin, path, inputs, kept }, named))
     }

@@ -139,7 +139,7 @@ pub(crate) struct Table<'s, R: Row> {
     #[cfg(feature = "tables")]
     parquet: ParquetTable<Box<dyn SinkFile + 's>, R>,
     #[cfg(not(feature = "tables"))]
-    rows: std::marker::PhantomData<R>,
+    _rows: std::marker::PhantomData<R>,
 }
 
 impl<R: Row> Table<'_, R> {
@@ -257,7 +257,7 @@ impl<'s> Folder<'s> {
             #[cfg(feature = "tables")]
             parquet: ParquetTable::new(self.sink.create(&format!("{name}.parquet"))?)?,
             #[cfg(not(feature = "tables"))]
-            rows: std::marker::PhantomData,
+            _rows: std::marker::PhantomData,
         })
     }
 

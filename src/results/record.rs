@@ -109,9 +109,17 @@ fn name(fabric: &str) -> String {
 /// # Errors
 /// O057 for what JSON cannot hold.
 pub(crate) fn hash_of(document: &impl Serialize) -> Result<String, Failure> {
+    Ok(digest_of(document)?.iter().map(|b| format!("{b:02x}")).collect())
+}
+
+/// The same as bytes.
+///
+/// # Errors
+/// O057 for what JSON cannot hold.
+pub(super) fn digest_of(document: &impl Serialize) -> Result<[u8; 32], Failure> {
     let mut hasher = Hasher(Sha256::new());
     serde_json::to_writer(&mut hasher, document)?;
-    Ok(hasher.0.finalize().iter().map(|b| format!("{b:02x}")).collect())
+    Ok(hasher.0.finalize().into())
 }
 
 struct Hasher(Sha256);
