@@ -144,7 +144,7 @@ pub fn write(
     observer: &Observer,
 ) -> Result<RunReport, Failure> {
     let with_fields = settings.fields.are_written(work.catalogue.len());
-    let folder = Folder::new(sink, settings.charts).with_fields(with_fields);
+    let folder = Folder::new(sink, settings.charts).with_fields(with_fields).with_bom(settings.bom);
     let shop = Workshop::new((job, settings), work, &folder, observer)?;
     let mut made = shop.run()?;
     let without_law = shop.without_law();

@@ -79,6 +79,7 @@ impl<'c> Workshop<'c> {
             "record": 1,
             "program": settings.program.as_deref().unwrap_or(env!("CARGO_PKG_VERSION")),
             "charts": settings.charts,
+            "bom": settings.bom,
             "evaluation": job.reading.entry(),
         });
         Ok(Self {

@@ -41,6 +41,11 @@ pub struct RunSettings {
     pub program: Option<String>,
     /// Date and time for `run.json`; without it the same input gives the same bytes.
     pub stamp: Option<String>,
+    /// Whether CSV tables begin with the mark (BOM) by which Excel knows UTF-8.
+    pub bom: bool,
+    /// Whether all tables are written as a workbook too (`results.xlsx`); their rows are then all in memory.
+    #[cfg(feature = "tables")]
+    pub workbook: bool,
     /// Whether the caller takes a finding for a failure; noted in `run.json`.
     pub strict: bool,
 }
@@ -54,6 +59,9 @@ impl Default for RunSettings {
             fresh: false,
             program: None,
             stamp: None,
+            bom: false,
+            #[cfg(feature = "tables")]
+            workbook: false,
             strict: false,
         }
     }

@@ -14,6 +14,8 @@ use crate::report::CsvTable;
 use crate::report::chart::{self, ParityPoint};
 use crate::report::html::{Figure, html};
 use crate::report::table::{FabricRow, PredictionRow, ProblemRow, problem_row};
+#[cfg(feature = "tables")]
+use crate::report::workbook;
 use crate::results::{
     Benchmark, Columns, DrapePoint, FABRICS_OF_PAGE, FabricReport, Failure, FileEntry, Folder, Head, Job,
     Observer, Overview, Record, SinkFile, Table, bracket, checks, fabrics_page, page, unread_of,
@@ -41,6 +43,18 @@ struct Tables<'s> {
     fabrics: Table<'s, FabricRow>,
     predictions: Table<'s, PredictionRow>,
     problems: CsvTable<Box<dyn SinkFile + 's>>,
+    /// The rows once more, for a workbook.
+    #[cfg(feature = "tables")]
+    workbook: Option<Rows>,
+}
+
+/// The rows of a workbook.
+#[cfg(feature = "tables")]
+#[derive(Default)]
+struct Rows {
+    fabrics: Vec<FabricRow>,
+    predictions: Vec<PredictionRow>,
+    problems: Vec<ProblemRow>,
 }
 
 /// What is kept of all fabrics together.
@@ -64,7 +78,7 @@ impl Results<'_, '_> {
         observer: &Observer,
     ) -> Result<Vec<Columns>, Failure> {
         let lost = self.unread();
-        let mut tables = self.begin()?;
+        let mut tables = self.begin(settings)?;
         let mut overview = Overview::new(self.cases.iter().copied());
         let mut kept = Kept::default();
         for at in 0..self.made.len() {
@@ -109,30 +123,35 @@ impl Results<'_, '_> {
         unread_of(&known, &self.work.failures)
     }
 
-    fn begin(&self) -> Result<Tables<'_>, Failure> {
-        let mut problems = self.folder.csv_table::<ProblemRow>("problems.csv")?;
-        for failure in self.failures {
-            problems.row(&failure.row())?;
-        }
-        for finding in self.work.catalogue.findings.iter().chain(self.without_law) {
-            problems.row(&problem_row(finding, ""))?;
-        }
-        Ok(Tables {
+    fn begin(&self, settings: &RunSettings) -> Result<Tables<'_>, Failure> {
+        let mut tables = Tables {
             fabrics: self.folder.table("fabrics")?,
             predictions: self.folder.table("predictions")?,
-            problems,
-        })
+            problems: self.folder.csv_table::<ProblemRow>("problems.csv")?,
+            #[cfg(feature = "tables")]
+            workbook: settings.workbook.then(Rows::default),
+        };
+        for failure in self.failures {
+            tables.problem(failure.row())?;
+        }
+        for finding in self.work.catalogue.findings.iter().chain(self.without_law) {
+            tables.problem(problem_row(finding, ""))?;
+        }
+        Ok(tables)
     }
 
     fn finish(&self, mut tables: Tables) -> Result<(), Failure> {
-        for row in self.unread_rows() {
-            tables.fabrics.row(&row)?;
-        }
+        self.unread_rows().iter().try_for_each(|row| tables.fabric(row))?;
         for own in self.own {
-            own.rows().iter().try_for_each(|row| tables.predictions.row(row))?;
+            own.rows().iter().try_for_each(|row| tables.prediction(row))?;
             for finding in own.findings() {
-                tables.problems.row(&problem_row(finding, &own.task.case.name))?;
+                tables.problem(problem_row(finding, &own.task.case.name))?;
             }
+        }
+        #[cfg(feature = "tables")]
+        if let Some(Rows { fabrics, predictions, problems }) = &tables.workbook {
+            let sheets = workbook::Tables { fabrics, predictions, problems };
+            self.folder.write("results.xlsx", &workbook::workbook(&sheets)?)?;
         }
         tables.fabrics.commit()?;
         tables.predictions.commit()?;
@@ -212,9 +231,28 @@ pub(super) fn record(folder: &Folder, work: &RunWork, made: &[Made], at: usize) 
 
 impl Tables<'_> {
     fn add(&mut self, report: &FabricReport) -> Result<(), Failure> {
-        report.rows.iter().try_for_each(|row| self.fabrics.row(row))?;
-        report.predictions.iter().try_for_each(|row| self.predictions.row(row))?;
-        report.problems().try_for_each(|row| Ok(self.problems.row(&row)?))
+        report.rows.iter().try_for_each(|row| self.fabric(row))?;
+        report.predictions.iter().try_for_each(|row| self.prediction(row))?;
+        report.problems().try_for_each(|row| self.problem(row))
+    }
+
+    fn fabric(&mut self, row: &FabricRow) -> Result<(), Failure> {
+        #[cfg(feature = "tables")]
+        self.workbook.iter_mut().for_each(|rows| rows.fabrics.push(row.clone()));
+        self.fabrics.row(row)
+    }
+
+    fn prediction(&mut self, row: &PredictionRow) -> Result<(), Failure> {
+        #[cfg(feature = "tables")]
+        self.workbook.iter_mut().for_each(|rows| rows.predictions.push(row.clone()));
+        self.predictions.row(row)
+    }
+
+    fn problem(&mut self, row: ProblemRow) -> Result<(), Failure> {
+        self.problems.row(&row)?;
+        #[cfg(feature = "tables")]
+        self.workbook.iter_mut().for_each(|rows| rows.problems.push(row.clone()));
+        Ok(())
     }
 }
 
