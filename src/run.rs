@@ -26,7 +26,7 @@ mod tables;
 mod work;
 
 use crate::case::Case;
-use crate::report::table::PredictionRow;
+use crate::report::table::{FabricRow, PredictionRow, ProblemRow};
 use crate::results::{
     Catalogue, Columns, FabricReport, Failure, Folder, Job, JobInputs, Observer, Record, Sink,
 };
@@ -57,6 +57,11 @@ pub struct RunReport {
     /// Names of the fabrics, and those whose record could not be written.
     fabrics: Vec<(String, Option<Box<Record>>)>,
     own: Vec<PredictionRow>,
+    /// Rows of inputs that could not be read.
+    unread: Vec<FabricRow>,
+    /// Rows of findings that belong to no fabric, and of those of cases with constants of their own.
+    of_batch: Vec<ProblemRow>,
+    of_own: Vec<ProblemRow>,
 }
 
 impl RunReport {
@@ -77,6 +82,33 @@ impl RunReport {
                 None => Err(Failure::new("O064", format!("the record of {name} is not there any more"))),
             },
         })
+    }
+
+    /// Every row of `fabrics.csv`, from the folder of results that the run wrote to.
+    ///
+    /// # Errors
+    /// Those of [`predictions`](Self::predictions).
+    pub fn parameters(&self, sink: &dyn Sink) -> Result<Vec<FabricRow>, Failure> {
+        let mut rows = Vec::new();
+        for report in self.fabrics(sink) {
+            rows.extend(report?.rows);
+        }
+        rows.extend(self.unread.iter().cloned());
+        Ok(rows)
+    }
+
+    /// Every row of `problems.csv`, from the folder of results that the run wrote to.
+    ///
+    /// # Errors
+    /// Those of [`predictions`](Self::predictions).
+    pub fn problems(&self, sink: &dyn Sink) -> Result<Vec<ProblemRow>, Failure> {
+        let mut rows: Vec<ProblemRow> = self.failures.iter().map(Failure::row).collect();
+        rows.extend(self.of_batch.iter().cloned());
+        for report in self.fabrics(sink) {
+            rows.extend(report?.problems());
+        }
+        rows.extend(self.of_own.iter().cloned());
+        Ok(rows)
     }
 
     /// Every row of `predictions.csv`, from the folder of results that the run wrote to.
@@ -168,6 +200,8 @@ pub fn write(
         cases: &cases,
     };
     let tables = results.write(job, settings, observer)?;
+    let (unread, of_batch, of_own) =
+        (results.unread_rows(), results.problems_of_batch(), results.problems_of_own());
     Ok(RunReport {
         useful: made.iter().filter(|m| m.is_useful).count() + own.iter().filter(|o| o.is_useful()).count(),
         resumed: made.iter().filter(|m| m.resumed).count(),
@@ -179,6 +213,9 @@ pub fn write(
             .map(|(at, m)| (work.catalogue.name(at).to_string(), m.held.take()))
             .collect(),
         own: own.iter().flat_map(Own::rows).collect(),
+        unread,
+        of_batch,
+        of_own,
         tables,
         failures,
     })

@@ -117,10 +117,25 @@ impl Results<'_, '_> {
         rows.map(|row| (row.fabric, row.status)).collect()
     }
 
-    fn unread_rows(&self) -> Vec<FabricRow> {
+    /// Rows of inputs that could not be read.
+    pub fn unread_rows(&self) -> Vec<FabricRow> {
         let fabrics = &self.work.catalogue;
         let known: Vec<_> = (0..fabrics.len()).map(|at| (fabrics.path(at), fabrics.name(at))).collect();
         unread_of(&known, &self.work.failures)
+    }
+
+    /// Rows of findings that belong to no fabric.
+    pub fn problems_of_batch(&self) -> Vec<ProblemRow> {
+        let findings = self.work.catalogue.findings.iter().chain(self.without_law);
+        findings.map(|finding| problem_row(finding, "")).collect()
+    }
+
+    /// Rows of findings of cases with constants of their own.
+    pub fn problems_of_own(&self) -> Vec<ProblemRow> {
+        let rows = |own: &Own| -> Vec<ProblemRow> {
+            own.findings().into_iter().map(|finding| problem_row(finding, &own.task.case.name)).collect()
+        };
+        self.own.iter().flat_map(rows).collect()
     }
 
     fn begin(&self, settings: &RunSettings) -> Result<Tables<'_>, Failure> {
@@ -134,9 +149,7 @@ impl Results<'_, '_> {
         for failure in self.failures {
             tables.problem(failure.row())?;
         }
-        for finding in self.work.catalogue.findings.iter().chain(self.without_law) {
-            tables.problem(problem_row(finding, ""))?;
-        }
+        self.problems_of_batch().into_iter().try_for_each(|row| tables.problem(row))?;
         Ok(tables)
     }
 
@@ -144,10 +157,8 @@ impl Results<'_, '_> {
         self.unread_rows().iter().try_for_each(|row| tables.fabric(row))?;
         for own in self.own {
             own.rows().iter().try_for_each(|row| tables.prediction(row))?;
-            for finding in own.findings() {
-                tables.problem(problem_row(finding, &own.task.case.name))?;
-            }
         }
+        self.problems_of_own().into_iter().try_for_each(|row| tables.problem(row))?;
         #[cfg(feature = "tables")]
         if let Some(Rows { fabrics, predictions, problems }) = &tables.workbook {
             let sheets = workbook::Tables { fabrics, predictions, problems };
