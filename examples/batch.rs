@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // `kesf::report::OutputFolder` is the same on disk.
     let sink = MemorySink::default();
     let report = kesf::run(&job, &settings, &sink, &Observer { event: &event, cancelled: &|| false })?;
-    for row in &report.predictions {
+    for row in &report.predictions(&sink)? {
         if let (Some(simulated), Some(measured)) = (row.simulated, row.measured) {
             let (fabric, quantity, unit) = (&row.fabric, &row.quantity, &row.unit);
             println!(

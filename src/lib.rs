@@ -59,7 +59,7 @@ pub mod run;
 pub mod cli;
 
 #[cfg(feature = "charts")]
-pub use run::{RunReport, RunSettings, run};
+pub use run::{FieldFiles, RunReport, RunSettings, run};
 
 #[cfg(test)]
 #[path = "../tests/common/mod.rs"]

@@ -163,8 +163,10 @@ fn folders_of_results_are_no_fabrics() {
     );
     let fabrics = ["cotton", "wool", "poplin", "twill"].map(|name| (name.to_string(), 1));
     assert_eq!(names(&[root.to_path_buf()]), fabrics);
-    // What the program wrote is no measurement, wherever it is named.
+    // Named as an input they are none either, and told.
     assert_eq!(names(&[root.join("results")]), []);
+    let batch = read_fabrics(&[root.join("results")], &ReadSettings::default(), &|_: &Path| ());
+    assert_eq!(batch.findings.iter().map(|f| f.code()).collect::<Vec<_>>(), ["O061", "O061"]);
 }
 
 /// A fabric that is lost by its fabric.toml or dialect.toml is called like its folder.

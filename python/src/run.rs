@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use kesf::case::SolverChoice;
-use kesf::report::table::ProblemRow;
-use kesf::report::{OutputError, OutputFolder};
+use kesf::report::OutputFolder;
+use kesf::report::table::{FabricRow, PredictionRow, ProblemRow};
 use kesf::results::{Event, Failure, Job, MemorySink, Sink};
 use kesf::run::{RunReport, RunSettings, read, write};
 use kesf::verify::{document, run as check_all, suite};
@@ -44,20 +44,18 @@ impl Making {
     }
 }
 
-/// Where files go that nobody wants.
-struct Nowhere;
-
-impl Sink for Nowhere {
-    fn write(&self, _: &str, _: &[u8]) -> Result<(), OutputError> {
-        Ok(())
-    }
-}
-
 /// Files by their names, without a folder.
 type Files = Vec<(String, Vec<u8>)>;
 
 /// Tables of parameters, predictions and problems; files; findings, failures and notes as JSON; whether a check fails.
 type Ran = (Table, Table, Table, Files, (String, String, String), bool);
+
+/// Rows of the parameters, predictions and problems of a run, from where it wrote them.
+type Rows = (Vec<FabricRow>, Vec<PredictionRow>, Vec<ProblemRow>);
+
+fn rows(report: &RunReport, sink: &dyn Sink) -> Result<Rows, Failure> {
+    Ok((report.parameters(sink)?, report.predictions(sink)?, report.problems(sink)?))
+}
 
 /// Does what `kesf run` does.
 #[pyfunction]
@@ -73,7 +71,7 @@ pub fn run(
 ) -> PyResult<Ran> {
     let inputs = inputs(paths, memory);
     let follower = Follower { progress, threads };
-    let ((report, files), told) = follow(py, &follower, move |observer| {
+    let ((rows, report, files), told) = follow(py, &follower, move |observer| {
         let job = Job {
             inputs,
             solver: making.solver()?,
@@ -85,30 +83,29 @@ pub fn run(
         let settings = RunSettings { charts, drape, stamp, ..RunSettings::default() };
         let work = read(&job, &settings, observer)?;
         if work.is_empty() {
-            let problems: Vec<ProblemRow> = work.failures.iter().map(Failure::row).collect();
-            let report = RunReport { failures: work.failures, problems, ..RunReport::default() };
-            return Ok((report, Files::new()));
-        }
-        if !keep {
-            return Ok((write(&job, &settings, work, &Nowhere, observer)?, Files::new()));
-        }
-        let Some(out) = out else {
             let sink = MemorySink::default();
-            let report = write(&job, &settings, work, &sink, observer)?;
-            return Ok((report, sink.into_files().into_iter().collect()));
+            let report = RunReport { failures: work.failures, ..RunReport::default() };
+            return Ok((rows(&report, &sink)?, report, Files::new()));
+        }
+        let Some(out) = out.filter(|_| keep) else {
+            let sink = MemorySink::default();
+            let report = write(&job, &settings, &work, &sink, observer)?;
+            let rows = rows(&report, &sink)?;
+            let files = if keep { sink.into_files().into_iter().collect() } else { Files::new() };
+            return Ok((rows, report, files));
         };
         let folder = OutputFolder::open(&out, force)?;
-        let report = write(&job, &settings, work, &folder, observer)?;
+        let report = write(&job, &settings, &work, &folder, observer)?;
+        let rows = rows(&report, &folder)?;
         let remaining = folder.finish()?;
         if let Some(first) = remaining.first() {
             let (out, count) = (out.display(), remaining.len());
             let text = format!("{out}: {count} files of earlier runs are still there, {first} among them");
             (observer.event)(Event::Note(&text));
         }
-        Ok((report, Files::new()))
+        Ok((rows, report, Files::new()))
     })?;
-    let tables =
-        (Table::of(&report.parameters)?, Table::of(&report.predictions)?, Table::of(&report.problems)?);
+    let tables = (Table::of(&rows.0)?, Table::of(&rows.1)?, Table::of(&rows.2)?);
     let (findings, _, notes) = told.json()?;
     let said = (findings, told::failures(&report.failures)?, notes);
     Ok((tables.0, tables.1, tables.2, files, said, report.fails_a_check))

@@ -153,7 +153,7 @@ fn with_own(case: Case, threads: usize, observer: &Observer<'_>) -> Result<Simul
     }
 }
 
-fn one(task: &Task<'_>, observer: &Observer<'_>) -> Result<Simulated, Failure> {
+fn one(task: &Task<'_, '_>, observer: &Observer<'_>) -> Result<Simulated, Failure> {
     (observer.event)(Event::Started("simulating", task.stages() + 1));
     let outcome = solve(task, observer)?;
     let mut findings = Vec::new();

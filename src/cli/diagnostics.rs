@@ -2,10 +2,10 @@
 
 use std::io::{IsTerminal, Write};
 
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use super::global::Global;
+use super::progress::Progress;
 use crate::report::json::FindingEntry;
 use crate::results::{Event, Failure, FailureEntry, Found};
 
@@ -16,7 +16,7 @@ pub struct Diagnostics {
     quiet: bool,
     verbose: bool,
     color: bool,
-    bar: Option<ProgressBar>,
+    progress: Option<Progress>,
     /// Number of findings so far, shown or not.
     pub count: usize,
     /// Findings, for a document.
@@ -51,22 +51,19 @@ impl Diagnostics {
     pub fn event(&mut self, event: Event) {
         match event {
             Event::Started(what, steps) => self.start(what, steps),
-            Event::Step => self.bar.iter().for_each(|bar| bar.inc(1)),
-            Event::Finished => self.bar.take().iter().for_each(ProgressBar::finish_and_clear),
+            Event::Step => {
+                self.progress.as_mut().and_then(Progress::step).iter().for_each(|line| self.line(line));
+            }
+            Event::Finished => self.progress.take().into_iter().for_each(Progress::finish),
             Event::Failed(failure) => self.error(failure),
             Event::Found(found) => self.finding(found),
             Event::Note(text) => self.note(text),
         }
     }
 
-    /// A bar over steps on a terminal; nothing elsewhere.
     fn start(&mut self, what: &'static str, steps: usize) {
-        if self.quiet || self.json || !std::io::stderr().is_terminal() {
-            return;
-        }
-        let style = ProgressStyle::with_template("{msg} [{bar:40}] {pos}/{len} {eta}")
-            .unwrap_or(ProgressStyle::default_bar());
-        self.bar = Some(ProgressBar::new(steps as u64).with_style(style).with_message(what));
+        let is_wanted = !self.quiet && !self.json;
+        self.progress = is_wanted.then(|| Progress::new(what, steps, std::io::stderr().is_terminal()));
     }
 
     /// An error: always shown.
@@ -114,6 +111,9 @@ impl Diagnostics {
     fn line(&self, text: &str) {
         // When standard error is closed there is nobody left to tell.
         let write = || drop(writeln!(std::io::stderr(), "{text}"));
-        self.bar.as_ref().map_or_else(write, |bar| bar.suspend(write));
+        match &self.progress {
+            Some(progress) => progress.suspend(write),
+            None => write(),
+        }
     }
 }

@@ -97,6 +97,13 @@ pub fn now() -> String {
     chrono::Utc::now().to_rfc3339_opts(chrono::SecondsFormat::Secs, true)
 }
 
+/// What tells this program from another of its version: size and time of its file.
+pub fn program() -> Option<String> {
+    let file = std::env::current_exe().and_then(std::fs::metadata).ok()?;
+    let modified = file.modified().ok()?.duration_since(std::time::UNIX_EPOCH).ok()?;
+    Some(format!("{} {} {}", env!("CARGO_PKG_VERSION"), file.len(), modified.as_nanos()))
+}
+
 /// Whether an argument means standard input or output.
 pub fn is_stdin(path: &Path) -> bool {
     path.as_os_str() == "-"

@@ -6,7 +6,8 @@ use clap::Args;
 use serde::Serialize;
 
 use super::exit::Exit;
-use super::output::{now, open_folder};
+use super::fields::FieldsArg;
+use super::output::{now, open_folder, program};
 use super::tasks::TaskArgs;
 use super::ui::Ui;
 use crate::report::table::PredictionRow;
@@ -26,6 +27,12 @@ pub struct Options {
     /// Solve drape cases too: a minute or so for each fabric
     #[arg(long)]
     drape: bool,
+    /// Compute every fabric, also those that an earlier run into the folder has computed of the same inputs
+    #[arg(long)]
+    fresh: bool,
+    /// Write fields of sheets (VTU); auto: in runs of up to 100 fabrics
+    #[arg(long, value_enum, value_name = "WHEN", default_value_t)]
+    fields: FieldsArg,
     /// Put the date into run.json; without it the same input gives the same bytes
     #[arg(long)]
     stamp: bool,
@@ -51,7 +58,10 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let job = options.task.job(&options.inputs, ui)?;
     let settings = RunSettings {
         charts: !options.task.no_charts,
+        fields: options.fields.into(),
         drape: options.drape,
+        fresh: options.fresh,
+        program: program(),
         stamp: options.stamp.then(now),
         bom: options.bom,
         workbook: options.xlsx,
@@ -62,8 +72,9 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         return Ok(Exit::of_batch(0, &work.failures));
     }
     let folder = open_folder(&options.output, options.task.force)?;
-    let report = ui.observe(|observer| run::write(&job, &settings, work, &folder, observer))?;
+    let report = ui.observe(|observer| run::write(&job, &settings, &work, &folder, observer))?;
     let shown = options.output.display();
+    let predictions = if ui.json { report.predictions(&folder)? } else { Vec::new() };
     let remaining = folder.finish()?;
     if let Some(first) = remaining.first() {
         let count = remaining.len();
@@ -71,10 +82,19 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     }
     if ui.json {
         let output = options.output.to_string_lossy().into_owned();
-        ui.document(Document { schema: "kesf.results/1", output, predictions: &report.predictions })?;
+        ui.document(Document { schema: "kesf.results/1", output, predictions: &predictions })?;
     } else {
         let tables: Vec<String> = report.tables.iter().map(|table| table.text()).collect();
         ui.print(&tables.join("\n"))?;
+        if report.resumed > 0 {
+            let (resumed, all) = (report.resumed, report.names().len());
+            ui.note(&format!(
+                "{resumed} of {all} fabrics are as an earlier run left them; --fresh computes them anew"
+            ));
+        }
+        if report.unlisted > 0 {
+            ui.note(&format!("{} more fabrics are in fabrics.csv", report.unlisted));
+        }
         let charts = if settings.charts { ", charts" } else { "" };
         let findings = ui.findings();
         ui.note(&format!(

@@ -34,6 +34,10 @@ struct Group {
     files: Vec<PathBuf>,
     /// Whether the files were named one by one.
     named: bool,
+}
+
+/// What is known of a group before its files are read. A library of thousands of groups does not keep it.
+struct AboutGroup {
     info: FabricInfo,
     settings: ReadSettings,
     findings: Vec<Finding>,
@@ -49,6 +53,7 @@ struct Group {
 /// `dialect.toml` in a folder is tried first for its files. What this program wrote is never read.
 pub struct Library {
     groups: Vec<Group>,
+    settings: ReadSettings,
     failures: Vec<ReadError>,
     findings: Vec<Finding>,
     own: OwnResults,
@@ -61,6 +66,7 @@ impl Library {
     pub fn find(inputs: &[PathBuf], settings: &ReadSettings) -> Self {
         let mut library = Self {
             groups: Vec::new(),
+            settings: settings.clone(),
             failures: Vec::new(),
             findings: Vec::new(),
             own: OwnResults::default(),
@@ -82,9 +88,6 @@ impl Library {
                     name: None,
                     files: vec![input.clone()],
                     named: true,
-                    info: FabricInfo::default(),
-                    settings: settings.clone(),
-                    findings: vec![without_fabric_file(input)],
                 });
             }
         }
@@ -111,7 +114,7 @@ impl Library {
             }
             Some(None) => {}
             None => {
-                let group = group(folder, vec![file.to_path_buf()], true, settings);
+                let group = group(folder, vec![file.to_path_buf()], settings);
                 known.insert(folder.to_path_buf(), group.is_ok().then_some(self.groups.len()));
                 match group {
                     Ok(group) => self.groups.push(Group { path: file.to_path_buf(), named: true, ..group }),
@@ -137,6 +140,28 @@ impl Library {
         self.groups.iter().map(|group| (group.path.as_path(), group.files.as_slice()))
     }
 
+    /// Number of the folders and files that are read together.
+    pub fn groups(&self) -> usize {
+        self.groups.len()
+    }
+
+    /// What could not even be looked at, and belongs to none of the groups.
+    pub fn failures(&self) -> &[ReadError] {
+        &self.failures
+    }
+
+    /// Reads one of the [`groups`](Self::groups) (several readings give the same): its fabrics in name order, and an
+    /// error for each file that was not read. `progress` is called after each file.
+    pub fn read(
+        &self,
+        group: usize,
+        progress: &(dyn Fn(&Path) + Sync),
+    ) -> (Vec<FabricInput>, Vec<ReadError>) {
+        self.groups
+            .get(group)
+            .map_or_else(Default::default, |group| group.read(&self.settings, false, progress))
+    }
+
     /// Reads fabric by fabric, in parallel, and gives each to `work`; only what `work` returns is
     /// kept, so that memory does not grow with the library. Results are in name order, whatever
     /// the order of work, and so are the errors: one for each file that was not read.
@@ -147,37 +172,69 @@ impl Library {
         work: impl Fn(FabricInput) -> T + Sync,
     ) -> (Vec<T>, Vec<ReadError>) {
         let few = self.files() <= FEW;
-        let group = |group: Group| {
-            let file = |file: &PathBuf| {
-                let content = read(file, &group.settings);
-                progress(file);
-                content
-            };
-            let read: Vec<_> =
-                if few { group.files.iter().map(file).collect() } else { platform::map(&group.files, file) };
-            let (mut contents, mut failures) = (Vec::new(), Vec::new());
-            for content in read {
-                match content {
-                    Ok(content) => contents.push(content),
-                    Err(error) => failures.push(error),
-                }
-            }
-            failures.extend(contents.iter().flat_map(|c| c.failures.iter().cloned()));
-            let done: Vec<T> = fabrics(group, contents).into_iter().map(&work).collect();
-            (done, failures)
+        let group = |group: &Group| {
+            let (fabrics, failures) = group.read(&self.settings, few, progress);
+            (fabrics.into_iter().map(&work).collect::<Vec<T>>(), failures)
         };
         // A few files are read before threads have started.
-        let groups: Vec<_> = if few {
-            self.groups.into_iter().map(group).collect()
-        } else {
-            platform::map(self.groups, group)
-        };
+        let groups: Vec<_> =
+            if few { self.groups.iter().map(group).collect() } else { platform::map(&self.groups, group) };
         let (mut all, mut failures) = (Vec::new(), self.failures);
         for (done, unread) in groups {
             all.extend(done);
             failures.extend(unread);
         }
         (all, failures)
+    }
+}
+
+impl Group {
+    /// Its fabrics, and what could not be read; `few` files are not worth more than this thread.
+    fn read(
+        &self,
+        settings: &ReadSettings,
+        few: bool,
+        progress: &(dyn Fn(&Path) + Sync),
+    ) -> (Vec<FabricInput>, Vec<ReadError>) {
+        let about = match self.about(settings) {
+            Ok(about) => about,
+            Err(error) => return (Vec::new(), vec![error]),
+        };
+        let file = |file: &PathBuf| {
+            let content = read(file, &about.settings);
+            progress(file);
+            content
+        };
+        let read: Vec<_> =
+            if few { self.files.iter().map(file).collect() } else { platform::map(&self.files, file) };
+        let (mut contents, mut failures) = (Vec::new(), Vec::new());
+        for content in read {
+            match content {
+                Ok(content) => contents.push(content),
+                Err(error) => failures.push(error),
+            }
+        }
+        failures.extend(contents.iter().flat_map(|c| c.failures.iter().cloned()));
+        (fabrics(self, &about, contents), failures)
+    }
+
+    /// What the folder says of its data, or the one above a single file.
+    fn about(&self, settings: &ReadSettings) -> Result<AboutGroup, ReadError> {
+        let folder = if self.name.is_none() {
+            None
+        } else if self.path.is_file() {
+            fabric_folder(&self.path)
+        } else {
+            Some(self.path.as_path())
+        };
+        match folder {
+            Some(folder) => about(folder, settings),
+            None => Ok(AboutGroup {
+                info: FabricInfo::default(),
+                settings: settings.clone(),
+                findings: vec![without_fabric_file(&self.path)],
+            }),
+        }
     }
 }
 
@@ -322,7 +379,7 @@ fn search(folder: &Path, settings: &ReadSettings, library: &mut Library) {
     }
     library.pass_by_own(folder, &mut files);
     if has_fabric_file || !files.is_empty() {
-        match group(folder, files, has_fabric_file, settings) {
+        match group(folder, files, settings) {
             Ok(group) => library.groups.push(group),
             Err(error) => library.failures.push(error),
         }
@@ -335,26 +392,12 @@ fn search(folder: &Path, settings: &ReadSettings, library: &mut Library) {
 }
 
 /// The fabric of a folder; the error of its fabric.toml or dialect.toml names it.
-fn group(
-    folder: &Path,
-    files: Vec<PathBuf>,
-    has_fabric_file: bool,
-    settings: &ReadSettings,
-) -> Result<Group, ReadError> {
+fn group(folder: &Path, files: Vec<PathBuf>, settings: &ReadSettings) -> Result<Group, ReadError> {
     // "." and ".." have a name only on disk.
     let real = std::fs::canonicalize(folder_path(folder)).unwrap_or_else(|_| folder.to_path_buf());
     let name = real.file_name().map_or_else(|| "fabric".into(), |n| n.to_string_lossy().into_owned());
-    let mut group = Group {
-        path: folder_path(folder).to_path_buf(),
-        name: Some(name.clone()),
-        files,
-        named: false,
-        info: FabricInfo::default(),
-        settings: settings.clone(),
-        findings: Vec::new(),
-    };
-    match about(&mut group, folder, has_fabric_file) {
-        Ok(()) => Ok(group),
+    match about(folder, settings) {
+        Ok(_) => Ok(Group { path: folder_path(folder).to_path_buf(), name: Some(name), files, named: false }),
         Err(mut error) => {
             error.about.fabric = Some(name);
             Err(error)
@@ -363,23 +406,23 @@ fn group(
 }
 
 /// Reads what the folder says of its data.
-fn about(group: &mut Group, folder: &Path, has_fabric_file: bool) -> Result<(), ReadError> {
+fn about(folder: &Path, settings: &ReadSettings) -> Result<AboutGroup, ReadError> {
+    let mut settings = settings.clone();
     let dialect = folder.join("dialect.toml");
     if dialect.is_file() {
-        group.settings.dialects.insert(0, read_dialect(&dialect)?);
+        settings.dialects.insert(0, read_dialect(&dialect)?);
     }
-    if has_fabric_file {
-        let (info, conditions, findings) = read_fabric_file(folder)?;
-        group.settings.conditions = conditions.or(&group.settings.conditions);
-        (group.info, group.findings) = (info, findings);
-    } else {
-        group.findings.push(without_fabric_file(folder));
+    if !folder.join("fabric.toml").is_file() {
+        let findings = vec![without_fabric_file(folder)];
+        return Ok(AboutGroup { info: FabricInfo::default(), settings, findings });
     }
-    Ok(())
+    let (info, conditions, findings) = read_fabric_file(folder)?;
+    settings.conditions = conditions.or(&settings.conditions);
+    Ok(AboutGroup { info, settings, findings })
 }
 
 /// The fabrics of a group: one, or as many as its result tables name.
-fn fabrics(group: Group, contents: Vec<FileContent>) -> Vec<FabricInput> {
+fn fabrics(group: &Group, about: &AboutGroup, contents: Vec<FileContent>) -> Vec<FabricInput> {
     if contents.is_empty() && group.named {
         return Vec::new(); // the files failed, and the failures say so
     }
@@ -395,7 +438,7 @@ fn fabrics(group: Group, contents: Vec<FileContent>) -> Vec<FabricInput> {
     let name = group.name.clone().or(sample).or(only).or(of_fab).unwrap_or_else(stem);
     let mut out: BTreeMap<String, FabricInput> = BTreeMap::new();
     if !several {
-        out.insert(name.clone(), blank(&name, &group));
+        out.insert(name.clone(), blank(&name, group, about));
     }
     for content in contents {
         // Values without a name, and the values of a folder's only fabric, belong to the folder.
@@ -411,7 +454,7 @@ fn fabrics(group: Group, contents: Vec<FileContent>) -> Vec<FabricInput> {
         // A finding of a table goes to the fabric of its cell, and one of the file to the first.
         let (mut findings, first) = (content.findings, of.keys().next().cloned());
         for (fabric, results) in of {
-            let input = out.entry(fabric.clone()).or_insert_with(|| blank(&fabric, &group));
+            let input = out.entry(fabric.clone()).or_insert_with(|| blank(&fabric, group, about));
             let of_cell = |f: &Finding| results.iter().any(|r| f.place.as_ref() == Some(&r.place));
             let (own, others) = findings.into_iter().partition(of_cell);
             findings = others;
@@ -430,14 +473,14 @@ fn fabrics(group: Group, contents: Vec<FileContent>) -> Vec<FabricInput> {
     }
     // What is said of the table as a whole is said once.
     let once = |(i, mut fabric): (usize, FabricInput)| {
-        fabric.findings.retain(|f| i == 0 || !group.findings.contains(f));
+        fabric.findings.retain(|f| i == 0 || !about.findings.contains(f));
         finished(fabric)
     };
     out.into_values().enumerate().map(once).collect()
 }
 
-fn blank(name: &str, group: &Group) -> FabricInput {
-    let mut info = group.info.clone();
+fn blank(name: &str, group: &Group, about: &AboutGroup) -> FabricInput {
+    let mut info = about.info.clone();
     if group.name.as_deref() != Some(name) {
         // One of several in a table: the title is the folder's, not its own.
         info.title.clear();
@@ -446,7 +489,7 @@ fn blank(name: &str, group: &Group) -> FabricInput {
         name: name.to_string(),
         path: group.path.clone(),
         info,
-        findings: group.findings.clone(),
+        findings: about.findings.clone(),
         ..FabricInput::default()
     }
 }

@@ -9,6 +9,7 @@ pub mod json;
 mod output_folder;
 pub mod read_back;
 pub mod table;
+mod table_stream;
 pub mod vtu;
 #[cfg(feature = "tables")]
 pub mod workbook;
@@ -23,4 +24,7 @@ pub(crate) mod number;
 pub mod chart;
 
 pub use output_folder::{OutputFolder, Pending};
+pub use table_stream::CsvTable;
+#[cfg(feature = "tables")]
+pub use table_stream::ParquetTable;
 pub use write::OutputError;

@@ -202,7 +202,10 @@ impl OutputFolder {
                 several => now().filter(|now| several.contains(now)),
             };
             if let Some(left) = left {
-                left_over.push(name.to_string());
+                // What is ours alone is no left-over to anybody.
+                if !name.rsplit('/').next().is_some_and(|file| file.starts_with('.')) {
+                    left_over.push(name.to_string());
+                }
                 files.insert(name, left);
             }
         }

@@ -1,7 +1,8 @@
 //! Tidy tables: one observation a row, with its unit; as CSV, and as Parquet with the feature `tables`.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use super::CsvTable;
 use crate::characterise::{FabricSheet, ValueStatus};
 use crate::finding::{Finding, errors};
 use crate::instrument::{Direction, FabricInput, Measurement, Parameter, Test};
@@ -112,7 +113,7 @@ numbers!(f64, u64, Option<f64>);
 macro_rules! row {
     ($(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident: $type:ty,)* }) => {
         $(#[$doc])*
-        #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+        #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
         pub struct $name {
             $($(#[$field_doc])* pub $field: $type,)*
         }
@@ -421,13 +422,9 @@ pub fn curve_units(test: Test, units: UnitSystem) -> [(&'static str, f64); 2] {
 /// # Errors
 /// [`TableError::Encode`].
 pub fn csv<R: Row>(rows: &[R]) -> Result<Vec<u8>, TableError> {
-    let failed = |e: &dyn std::fmt::Display| TableError::Encode { format: "CSV", problem: e.to_string() };
-    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
-    writer.write_record(R::HEADER).map_err(|e| failed(&e))?;
-    for row in rows {
-        writer.serialize(row.clone().harmless()).map_err(|e| failed(&e))?;
-    }
-    writer.into_inner().map_err(|e| failed(&e))
+    let mut table = CsvTable::new::<R>(Vec::new())?;
+    rows.iter().try_for_each(|row| table.row(row))?;
+    table.finish()
 }
 
 /// A CSV table with the mark (BOM) by which Excel knows UTF-8, in front of it.
@@ -441,17 +438,9 @@ pub fn marked(csv: Vec<u8>) -> Vec<u8> {
 /// [`TableError::Encode`].
 #[cfg(feature = "tables")]
 pub fn parquet<R: Row>(rows: &[R]) -> Result<Vec<u8>, TableError> {
-    use polars::prelude::{DataFrame, ParquetCompression, ParquetWriter, PolarsError};
-    let failed = |e: PolarsError| TableError::Encode { format: "Parquet", problem: e.to_string() };
-    let mut frame = DataFrame::new(rows.len(), R::columns(rows)).map_err(failed)?;
-    let mut bytes = Vec::new();
-    ParquetWriter::new(&mut bytes)
-        // Snappy is what every reader of Parquet knows.
-        .with_compression(ParquetCompression::Snappy)
-        .set_parallel(false)
-        .finish(&mut frame)
-        .map_err(failed)?;
-    Ok(bytes)
+    let mut table = super::ParquetTable::new(Vec::new())?;
+    rows.iter().try_for_each(|row| table.row(row))?;
+    table.finish()
 }
 
 #[cfg(test)]

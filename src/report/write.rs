@@ -3,7 +3,7 @@
 use crate::finding::{Place, as_text, errors, path_as_text};
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{self, Write as _};
+use std::io::{self, BufWriter, Write as _};
 use std::path::{Component, Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -156,7 +156,7 @@ pub fn hash(bytes: &[u8]) -> String {
     hexadecimal(&digest(bytes))
 }
 
-#[derive(Deserialize, Serialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Manifest {
     schema: String,
@@ -176,15 +176,30 @@ pub(super) fn manifest(root: &Path) -> Result<Hashes, OutputError> {
     }
 }
 
-/// Writes the list of our files.
+/// Writes the list of our files; of a large folder it is long, and never in memory as a text.
 pub(super) fn write_manifest(root: &Path, files: &Hashes) -> Result<(), OutputError> {
     let path = root.join(MANIFEST);
-    let files = files.iter().map(|(name, digest)| (name.clone(), hexadecimal(digest))).collect();
-    let manifest = Manifest { schema: SCHEMA.into(), files };
-    let mut text = serde_json::to_string_pretty(&manifest)
-        .map_err(|e| OutputError::Manifest { path: path.clone(), problem: e.to_string() })?;
-    text.push('\n');
-    write_atomic(&path, text.as_bytes())
+    let failed = |source: io::Error| OutputError::Write { path: path.clone(), source };
+    let mut file = BufWriter::new(temporary(&path)?);
+    serde_json::to_writer_pretty(&mut file, &ManifestOut { schema: SCHEMA, files: Listed(files) })
+        .map_err(|e| failed(e.into()))?;
+    file.write_all(b"\n").map_err(failed)?;
+    place(file.into_inner().map_err(|e| failed(e.into_error()))?, &path)
+}
+
+/// [`Manifest`] as it is written.
+#[derive(Serialize)]
+struct ManifestOut<'f> {
+    schema: &'static str,
+    files: Listed<'f>,
+}
+
+struct Listed<'f>(&'f Hashes);
+
+impl Serialize for Listed<'_> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, digest)| (name, hexadecimal(digest))))
+    }
 }
 
 /// Bytes of a file, if it is there as it should be.

@@ -56,7 +56,7 @@ impl Kind {
 pub struct Batch<'w> {
     kind: Kind,
     /// Every task with what it gave.
-    pub tasks: Vec<(Task<'w>, Result<Outcome, Failure>)>,
+    pub tasks: Vec<(Task<'w, 'w>, Result<Outcome, Failure>)>,
     /// What failed, of inputs and of tasks.
     pub failures: Vec<Failure>,
 }
@@ -120,7 +120,7 @@ impl<'w> Batch<'w> {
     }
 
     /// The tasks that gave something.
-    pub fn outcomes(&self) -> impl Iterator<Item = (&Task<'w>, &Outcome)> {
+    pub fn outcomes(&self) -> impl Iterator<Item = (&Task<'w, 'w>, &Outcome)> {
         self.tasks.iter().filter_map(|(task, outcome)| Some((task, outcome.as_ref().ok()?)))
     }
 

@@ -1,6 +1,6 @@
 //! A drape: rows, document, charts and text.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::columns::Columns;
 use super::failure::Failure;
@@ -29,7 +29,9 @@ fn percent(ratio: f64) -> String {
 }
 
 /// One line a drape.
-pub(super) fn table<'a, 'w: 'a>(draped: impl Iterator<Item = (&'a Task<'w>, &'a Drape)>) -> Columns {
+pub(super) fn table<'a, 'f: 'a, 'c: 'a>(
+    draped: impl Iterator<Item = (&'a Task<'f, 'c>, &'a Drape)>,
+) -> Columns {
     let mut table = Columns::new([
         "drape",
         "fabric",
@@ -216,7 +218,7 @@ fn law(task: &Task) -> &'static str {
 }
 
 /// A drape beside its measured coefficient.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct DrapePoint {
     law: Mode,
     point: ParityPoint,
@@ -287,7 +289,9 @@ pub(super) fn write(task: &Task, d: &Drape, folder: &Folder) -> Result<Vec<Strin
         MeshField { name: "displacement", components: 3, values: &displacement },
         MeshField { name: "rotation", components: 3, values: &rotation },
     ];
-    folder.write(&format!("{stem}.vtu"), &vtu(&position, &d.model.mesh.quads, &fields, &[])?)?;
+    if folder.fields() {
+        folder.write(&format!("{stem}.vtu"), &vtu(&position, &d.model.mesh.quads, &fields, &[])?)?;
+    }
     let mut drawn = Vec::new();
     if folder.charts() {
         let plot = plot(task, d, &position);

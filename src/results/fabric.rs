@@ -1,5 +1,7 @@
 //! What a batch keeps of a fabric once its files are written.
 
+use serde::{Deserialize, Serialize};
+
 use super::draped::DrapePoint;
 use super::failure::Failure;
 use super::folder::Folder;
@@ -14,6 +16,7 @@ use super::{friction, page_curves, solved};
 use crate::characterise::FabricSheet;
 use crate::constitutive::{Assumptions, section};
 use crate::finding::{Finding, Place};
+use crate::platform::Stopwatch;
 use crate::report::chart::ParityPoint;
 use crate::report::html::{Figure, TestCurves};
 use crate::report::json::{assumptions, section_document, sheet_document};
@@ -21,7 +24,7 @@ use crate::report::table::{FabricRow, PredictionRow, ProblemRow, UnitSystem, fab
 use crate::study::{CaseResult, Status};
 
 /// What is left of a fabric.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct FabricReport {
     /// Its name.
     pub name: String,
@@ -45,8 +48,6 @@ pub struct FabricReport {
     pub rows: Vec<FabricRow>,
     /// Rows of `predictions.csv`.
     pub predictions: Vec<PredictionRow>,
-    /// Rows of `problems.csv`.
-    pub problems: Vec<ProblemRow>,
     /// Charts of tests and friction laws, then of cases.
     pub figures: Vec<Figure>,
     /// Points of the chart of simulated against measured stiffness.
@@ -59,7 +60,13 @@ pub struct FabricReport {
     pub findings: Vec<Finding>,
     /// What failed.
     pub failures: Vec<Failure>,
+    /// Whether a case took longer than it may.
+    #[serde(skip)]
+    pub(super) hurried: bool,
 }
+
+/// Failures that another run may not meet: for want of memory.
+const OF_MACHINE: [&str; 2] = ["N002", "N011"];
 
 impl FabricReport {
     /// Does all of the work for one fabric and writes its files.
@@ -96,6 +103,32 @@ impl FabricReport {
         report
     }
 
+    /// A fabric that gave nothing.
+    pub(crate) fn failed(name: &str, failure: Failure) -> Self {
+        let status = failure.code.to_string();
+        let row = FabricRow { fabric: name.into(), status: status.clone(), ..FabricRow::default() };
+        Self {
+            name: name.into(),
+            status,
+            rows: vec![row],
+            cells: vec!["-".into(); overview::HEADINGS.len() - 1],
+            failures: vec![failure],
+            ..Self::default()
+        }
+    }
+
+    /// Whether another run could not find more: nothing failed for want of time, memory or a place to write to.
+    pub(super) fn is_final(&self) -> bool {
+        let of_machine = |f: &Failure| f.code.starts_with('O') || OF_MACHINE.contains(&&*f.code);
+        !self.hurried && !self.failures.iter().any(of_machine)
+    }
+
+    /// Rows of `problems.csv`.
+    pub fn problems(&self) -> impl Iterator<Item = ProblemRow> {
+        let row = |f| ProblemRow { fabric: Some(self.name.clone()), ..problem_row(f, &self.name) };
+        self.findings.iter().map(row)
+    }
+
     fn keep_failure(&mut self, result: Result<(), Failure>) {
         self.failures.extend(result.err());
     }
@@ -104,7 +137,10 @@ impl FabricReport {
     fn simulate(&mut self, sheet: &FabricSheet, tasks: &[Task], folder: &Folder, observer: &Observer) {
         let mut simulated: Vec<Tested> = Vec::new();
         for task in tasks {
-            let written = simulate(task, observer).and_then(|outcome| {
+            let watch = Stopwatch::start();
+            let simulated_task = simulate(task, observer);
+            self.hurried |= watch.seconds() > task.limits().seconds;
+            let written = simulated_task.and_then(|outcome| {
                 let figures = outcome.write(task, folder)?;
                 Ok((outcome, figures))
             });
@@ -165,16 +201,11 @@ impl FabricReport {
         self.re_extracted = friction::parity_points(sheet);
     }
 
-    /// Places of findings, rows of problems and the status.
+    /// Places of findings, and the status.
     fn close(&mut self, fabric: &Fabric) {
         for finding in &mut self.findings {
             finding.place.get_or_insert_with(|| Place::file(&fabric.path));
         }
-        self.problems = self
-            .findings
-            .iter()
-            .map(|f| ProblemRow { fabric: Some(self.name.clone()), ..problem_row(f, &self.name) })
-            .collect();
         if let Some(failure) = self.failures.first() {
             self.status = failure.code.to_string();
             self.rows.push(FabricRow {

@@ -3,14 +3,14 @@
 use std::error::Error;
 use std::fmt;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::constitutive::ConstitutiveError;
 use crate::finding::{Coded, FailureKind, Fields, Finding, Place};
 use crate::report::table::ProblemRow;
 
 /// Why an input or the whole task failed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Failure {
     /// Stable code.
     pub code: Box<str>,

@@ -1,34 +1,89 @@
 //! A folder of results, on disk or in memory: what is written there, under which name.
 
 use std::collections::BTreeMap;
+use std::io::{self, BufWriter, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde::Serialize;
 
 use super::failure::Failure;
+#[cfg(feature = "tables")]
+use crate::report::ParquetTable;
 use crate::report::chart::ChartError;
 use crate::report::json::text;
 use crate::report::table::{Row, csv, marked};
-use crate::report::{OutputError, OutputFolder};
+use crate::report::{CsvTable, OutputError, OutputFolder, Pending};
 
-/// Takes the files of results. Several threads may write.
+/// Takes the files of results, and gives back what it has. Several threads may write.
 pub trait Sink: Sync {
     /// Takes a file at `name`, a path with `/` between its parts.
     ///
     /// # Errors
     /// See [`OutputError`].
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), OutputError>;
+
+    /// Begins a file that comes piece by piece.
+    ///
+    /// # Errors
+    /// See [`OutputError`].
+    fn create(&self, name: &str) -> Result<Box<dyn SinkFile + '_>, OutputError>;
+
+    /// The bytes of a file, if it is as this run or an earlier one left it.
+    ///
+    /// # Errors
+    /// See [`OutputError`].
+    fn read(&self, name: &str) -> Result<Option<Vec<u8>>, OutputError>;
+
+    /// Keeps a file of an earlier run, if it is as that run left it; whether it is.
+    ///
+    /// # Errors
+    /// See [`OutputError`].
+    fn keep(&self, name: &str) -> Result<bool, OutputError>;
+}
+
+/// A file that comes piece by piece; without [`commit`](Self::commit) there is none.
+pub trait SinkFile: Write {
+    /// Says that the file is complete.
+    ///
+    /// # Errors
+    /// See [`OutputError`].
+    fn commit(self: Box<Self>) -> Result<(), OutputError>;
 }
 
 impl Sink for OutputFolder {
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
         OutputFolder::write(self, name, bytes)
     }
+
+    fn create(&self, name: &str) -> Result<Box<dyn SinkFile + '_>, OutputError> {
+        Ok(Box::new(OutputFolder::create(self, name)?))
+    }
+
+    fn read(&self, name: &str) -> Result<Option<Vec<u8>>, OutputError> {
+        OutputFolder::read(self, name)
+    }
+
+    fn keep(&self, name: &str) -> Result<bool, OutputError> {
+        OutputFolder::keep(self, name)
+    }
+}
+
+impl SinkFile for Pending<'_> {
+    fn commit(self: Box<Self>) -> Result<(), OutputError> {
+        Pending::commit(*self)
+    }
 }
 
 /// Keeps the files by their names.
 #[derive(Debug, Default)]
 pub struct MemorySink(Mutex<BTreeMap<String, Vec<u8>>>);
+
+/// A file of a [`MemorySink`].
+struct MemoryFile<'s> {
+    sink: &'s MemorySink,
+    name: String,
+    bytes: Vec<u8>,
+}
 
 impl MemorySink {
     /// The files that were written.
@@ -46,29 +101,116 @@ impl Sink for MemorySink {
         self.files().insert(name.to_string(), bytes.to_vec());
         Ok(())
     }
+
+    fn create(&self, name: &str) -> Result<Box<dyn SinkFile + '_>, OutputError> {
+        Ok(Box::new(MemoryFile { sink: self, name: name.to_string(), bytes: Vec::new() }))
+    }
+
+    fn read(&self, name: &str) -> Result<Option<Vec<u8>>, OutputError> {
+        Ok(self.files().get(name).cloned())
+    }
+
+    fn keep(&self, name: &str) -> Result<bool, OutputError> {
+        Ok(self.files().contains_key(name))
+    }
 }
 
-/// Writes results to a sink, charts only where they are wanted.
+impl Write for MemoryFile<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.bytes.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl SinkFile for MemoryFile<'_> {
+    fn commit(self: Box<Self>) -> Result<(), OutputError> {
+        let Self { sink, name, bytes } = *self;
+        sink.files().insert(name, bytes);
+        Ok(())
+    }
+}
+
+/// A table that is written row by row, as CSV and with the feature `tables` as Parquet.
+pub(crate) struct Table<'s, R: Row> {
+    csv: CsvTable<Box<dyn SinkFile + 's>>,
+    #[cfg(feature = "tables")]
+    parquet: ParquetTable<Box<dyn SinkFile + 's>, R>,
+    #[cfg(not(feature = "tables"))]
+    _rows: std::marker::PhantomData<R>,
+}
+
+impl<R: Row> Table<'_, R> {
+    /// Writes a row.
+    pub fn row(&mut self, row: &R) -> Result<(), Failure> {
+        self.csv.row(row)?;
+        #[cfg(feature = "tables")]
+        self.parquet.row(row)?;
+        Ok(())
+    }
+
+    /// Says that the table is complete.
+    pub fn commit(self) -> Result<(), Failure> {
+        self.csv.finish()?.commit()?;
+        #[cfg(feature = "tables")]
+        self.parquet.finish()?.commit()?;
+        Ok(())
+    }
+}
+
+/// Writes results to a sink, charts and fields only where they are wanted.
 pub struct Folder<'s> {
     sink: &'s dyn Sink,
     charts: bool,
     bom: bool,
+    fields: bool,
+    /// Names of what was written, where somebody wants to know.
+    names: Option<Mutex<Vec<String>>>,
 }
 
 impl<'s> Folder<'s> {
-    /// A folder with or without charts.
+    /// A folder with or without charts; with fields.
     pub fn new(sink: &'s dyn Sink, charts: bool) -> Self {
-        Self { sink, charts, bom: false }
+        Self { sink, charts, bom: false, fields: true, names: None }
     }
 
     /// The same, whose CSV tables begin with the mark by which Excel knows UTF-8 if `bom` is true.
+    #[must_use]
     pub fn with_bom(self, bom: bool) -> Self {
         Self { bom, ..self }
     }
 
+    /// The same with or without the fields of sheets (VTU).
+    #[must_use]
+    pub fn with_fields(self, fields: bool) -> Self {
+        Self { fields, ..self }
+    }
+
+    /// The same folder, for files whose names are listed.
+    pub(crate) fn listing(&self) -> Self {
+        Self { names: Some(Mutex::default()), ..*self }
+    }
+
+    /// Names of the files of a [`listing`](Self::listing), in the order of writing.
+    pub(crate) fn into_names(self) -> Vec<String> {
+        self.names.map(|names| names.into_inner().unwrap_or_else(PoisonError::into_inner)).unwrap_or_default()
+    }
+
+    /// Where the files go.
+    pub(crate) fn sink(&self) -> &'s dyn Sink {
+        self.sink
+    }
+
     /// Whether charts are wanted.
-    pub(super) fn charts(&self) -> bool {
+    pub(crate) fn charts(&self) -> bool {
         self.charts
+    }
+
+    /// Whether fields are wanted.
+    pub(crate) fn fields(&self) -> bool {
+        self.fields
     }
 
     /// Writes one file.
@@ -76,7 +218,11 @@ impl<'s> Folder<'s> {
     /// # Errors
     /// Those of the sink.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
-        Ok(self.sink.write(name, bytes)?)
+        self.sink.write(name, bytes)?;
+        if let Some(names) = &self.names {
+            names.lock().unwrap_or_else(PoisonError::into_inner).push(name.to_string());
+        }
+        Ok(())
     }
 
     /// Writes a JSON document.
@@ -84,18 +230,41 @@ impl<'s> Folder<'s> {
         self.write(name, text(document)?.as_bytes())
     }
 
+    /// Writes a JSON document as it is made, without its text in memory.
+    pub(crate) fn stream(&self, name: &str, document: &impl Serialize) -> Result<(), Failure> {
+        let mut file = BufWriter::new(self.sink.create(name)?);
+        serde_json::to_writer_pretty(&mut file, document)?;
+        let refused =
+            |e: &dyn std::fmt::Display| Failure::new("O001", format!("{name} cannot be written: {e}"));
+        file.write_all(b"\n").map_err(|e| refused(&e))?;
+        Ok(file.into_inner().map_err(|e| refused(&e))?.commit()?)
+    }
+
+    /// Begins a CSV table, with the mark that was asked for.
+    pub(crate) fn csv_table<R: Row>(&self, name: &str) -> Result<CsvTable<Box<dyn SinkFile + 's>>, Failure> {
+        let mut file = self.sink.create(name)?;
+        if self.bom {
+            let refused = |e| Failure::new("O001", format!("{name} cannot be written: {e}"));
+            file.write_all(&marked(Vec::new())).map_err(refused)?;
+        }
+        Ok(CsvTable::new::<R>(file)?)
+    }
+
+    /// Begins a table: CSV, and Parquet with the feature `tables`.
+    pub(crate) fn table<R: Row>(&self, name: &str) -> Result<Table<'s, R>, Failure> {
+        Ok(Table {
+            csv: self.csv_table::<R>(&format!("{name}.csv"))?,
+            #[cfg(feature = "tables")]
+            parquet: ParquetTable::new(self.sink.create(&format!("{name}.parquet"))?)?,
+            #[cfg(not(feature = "tables"))]
+            _rows: std::marker::PhantomData,
+        })
+    }
+
     /// Writes a CSV table.
     pub(crate) fn csv<R: Row>(&self, name: &str, rows: &[R]) -> Result<(), Failure> {
         let table = csv(rows)?;
         self.write(name, &if self.bom { marked(table) } else { table })
-    }
-
-    /// Writes a table as CSV, and as Parquet with the feature `tables`.
-    pub(crate) fn table<R: Row>(&self, name: &str, rows: &[R]) -> Result<(), Failure> {
-        self.csv(&format!("{name}.csv"), rows)?;
-        #[cfg(feature = "tables")]
-        self.write(&format!("{name}.parquet"), &crate::report::table::parquet(rows)?)?;
-        Ok(())
     }
 
     /// Draws and writes a chart where charts are wanted; whether there is one. Without data there is none.

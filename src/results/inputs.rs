@@ -161,6 +161,20 @@ impl Reading {
         Settings::parse(path, text).map_err(|e| bad_settings(e.place, &e.reason))
     }
 
+    /// The same with moduli beside those of the settings.
+    ///
+    /// # Errors
+    /// Those of [`evaluation`](Self::evaluation).
+    pub(super) fn evaluation_with(&self, moduli: &[Modulus]) -> Result<Settings, Failure> {
+        let mut settings = self.evaluation()?;
+        for modulus in moduli {
+            if !settings.moduli.contains(modulus) {
+                settings.moduli.push(*modulus);
+            }
+        }
+        Ok(settings)
+    }
+
     /// The entry of a document.
     pub fn entry(&self) -> ReadingEntry {
         ReadingEntry {
@@ -185,12 +199,7 @@ impl Reading {
         observer: &Observer,
     ) -> Result<Read<T>, Failure> {
         let settings = self.read_settings()?;
-        let paths: Vec<PathBuf> = inputs
-            .iter()
-            .filter(|input| matches!(input, Input::Path(_)))
-            .map(|input| input.path().to_path_buf())
-            .collect();
-        let library = Library::find(&paths, &settings);
+        let library = Library::find(&without_memory(inputs), &settings);
         let findings = library.findings().to_vec();
         findings.iter().for_each(|finding| observer.found(None, finding));
         let (mut done, mut errors) =
@@ -227,12 +236,7 @@ impl Reading {
         curves: Curves,
         observer: &Observer,
     ) -> Result<(Vec<Fabric>, Vec<Failure>), Failure> {
-        let mut settings = self.evaluation()?;
-        for modulus in moduli {
-            if !settings.moduli.contains(modulus) {
-                settings.moduli.push(*modulus);
-            }
-        }
+        let settings = self.evaluation_with(moduli)?;
         let evaluated = |input: FabricInput| {
             let mut sheet = characterise(&input, &settings);
             if curves == Curves::Dropped {
@@ -252,8 +256,14 @@ fn bad_settings(place: Place, reason: &str) -> Failure {
     Failure::new("O050", format!("the settings cannot be used: {reason}")).at(place)
 }
 
+/// Paths of the inputs that are on disk.
+pub(super) fn without_memory(inputs: &[Input]) -> Vec<PathBuf> {
+    let on_disk = inputs.iter().filter(|input| matches!(input, Input::Path(_)));
+    on_disk.map(|input| input.path().to_path_buf()).collect()
+}
+
 /// The fabric of a file in memory, and the errors of those that a table in it could not give.
-fn fabric_in_memory(
+pub(super) fn fabric_in_memory(
     path: &Path,
     bytes: &[u8],
     settings: &ReadSettings,
@@ -362,14 +372,21 @@ pub fn paths_of_several(fabrics: &[Fabric]) -> BTreeSet<PathBuf> {
 
 /// A row for each input that could not be read: the fabric that it belongs to, and the code of the failure.
 pub fn unread(fabrics: &[Fabric], failures: &[Failure]) -> Vec<FabricRow> {
+    let known: Vec<(&Path, &str)> =
+        fabrics.iter().map(|f| (f.path.as_path(), f.sheet.name.as_str())).collect();
+    unread_of(&known, failures)
+}
+
+/// The same of fabrics by their folder or file and their name.
+pub(crate) fn unread_of(fabrics: &[(&Path, &str)], failures: &[Failure]) -> Vec<FabricRow> {
     failures.iter().filter_map(|failure| unread_row(fabrics, failure)).collect()
 }
 
-fn unread_row(fabrics: &[Fabric], failure: &Failure) -> Option<FabricRow> {
+fn unread_row(fabrics: &[(&Path, &str)], failure: &Failure) -> Option<FabricRow> {
     let path = &failure.place.as_ref().filter(|_| failure.code.starts_with('R'))?.path;
-    let mut inside = fabrics.iter().filter(|f| f.path.is_dir() && path.starts_with(&f.path));
+    let mut inside = fabrics.iter().filter(|(folder, _)| path.starts_with(folder) && folder.is_dir());
     // A file of a folder of several fabrics is nobody's in particular.
-    let own = inside.next().filter(|_| inside.next().is_none()).map(|f| f.sheet.name.clone());
+    let own = inside.next().filter(|_| inside.next().is_none()).map(|(_, name)| (*name).to_string());
     let stem = || path.file_stem().map(|s| s.to_string_lossy().into_owned());
     let fabric = failure.fabric.as_deref().map(str::to_string).or(own).or_else(stem)?;
     Some(FabricRow { fabric, status: failure.code.to_string(), ..FabricRow::default() })

@@ -10,6 +10,7 @@
 mod batch;
 mod bent;
 mod cards;
+mod catalogue;
 mod checked;
 mod columns;
 mod draped;
@@ -26,7 +27,9 @@ mod outcome;
 mod overview;
 mod page;
 mod page_curves;
+mod page_problems;
 mod page_values;
+mod record;
 mod sampled;
 mod section;
 mod sheet_text;
@@ -40,13 +43,16 @@ pub use crate::finding::FailureKind;
 pub use batch::{Batch, Kind};
 pub use bent::BendingEntry;
 pub use cards::{Card, cards, write_cards};
+pub(crate) use catalogue::Catalogue;
 pub use checked::{CheckDocument, Checked, check};
 pub use columns::Columns;
 pub use draped::{DrapeEntry, DrapePoint};
 pub use fabric::FabricReport;
 pub use failure::{Failure, FailureEntry};
-pub use folder::{Folder, MemorySink, Sink};
+pub(crate) use folder::Table;
+pub use folder::{Folder, MemorySink, Sink, SinkFile};
 pub use init::{Begun, FIRST_CASE, init};
+pub(crate) use inputs::unread_of;
 pub use inputs::{
     Curves, Fabric, FileEntry, Input, Read, Reading, ReadingEntry, cases, nothing_to_read, paths_of_several,
     readable, unread, without_cases,
@@ -54,17 +60,21 @@ pub use inputs::{
 pub use names::distinguish_fabrics;
 pub use observer::{Event, Found, Observer};
 pub use outcome::{ComparisonEntry, Document, Outcome, Solution};
+pub(crate) use record::{Record, hash_of};
 pub use sampled::{InputEntry, SamplingEntry};
 pub use section::{Sectioned, section_text, sections};
 pub use sheet_text::{evaluation_text, parameters_text, statistics_text};
 pub use simulate::simulate;
 pub use solved::{ModelEntry, QuantityEntry, SolutionEntry, SolverEntry, TimingsEntry};
+pub(crate) use task::Shared;
 pub use task::{Limits, Task};
 pub use tested::{Stiffness, TestEntry, Tested};
 pub use work::{Job, Work, named_fabric, no_such_fabric};
+pub(crate) use work::{JobInputs, is_within, without_fabric, without_law};
 
 pub(crate) use draped::{bracket, write_parity as write_drape_parity};
 pub(crate) use friction::write_parity as write_friction_parity;
-pub(crate) use overview::table as overview;
-pub(crate) use page::{Benchmark, page};
+pub(crate) use overview::Overview;
+pub(crate) use page::{Benchmark, FABRICS_OF_PAGE, Head, fabrics_page, page};
+pub(crate) use page_problems::Problems;
 pub(crate) use solved::checks;

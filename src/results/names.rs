@@ -1,6 +1,7 @@
 //! Names of fabrics and cases in a folder of results, where none takes the place of another.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use super::inputs::Fabric;
 use crate::finding::{Finding, Place, Renaming, UsageFact};
@@ -19,7 +20,8 @@ fn folder_name(name: &str) -> String {
     let port =
         |kind| stem.strip_prefix(kind).is_some_and(|n| n.len() == 1 && n.as_bytes()[0].is_ascii_digit());
     let device = ["con", "prn", "aux", "nul"].contains(&stem) || port("com") || port("lpt");
-    if device || OF_RUN.contains(&lower.as_str()) { format!("fabric-{bare}") } else { bare.into() }
+    let page = lower.starts_with("fabrics-") && lower.ends_with(".html");
+    if device || page || OF_RUN.contains(&lower.as_str()) { format!("fabric-{bare}") } else { bare.into() }
 }
 
 /// What `run` puts beside the folders of the fabrics.
@@ -69,34 +71,67 @@ pub(super) fn distinguish_cases(cases: &mut [Case]) -> Vec<Finding> {
     findings
 }
 
-/// Numbers fabrics that share a name, so that none hides another: the invented names are nobody else's. A name that
-/// no folder can have is changed too. Each sheet has a finding of its new name.
-pub fn distinguish_fabrics(fabrics: &mut [Fabric]) {
-    for Fabric { path, sheet } in fabrics.iter_mut() {
-        let name = folder_name(&sheet.name);
-        if name != sheet.name {
-            let because = Renaming::FabricFolder;
-            let fact = UsageFact::Renamed { name: sheet.name.clone(), renamed: name.clone(), because };
-            sheet.findings.push(Finding::new(fact).at(Place::file(path)));
-            sheet.name = name;
+/// The name of a fabric before and after it was made one that no other has.
+#[derive(Clone, Debug)]
+pub(super) struct Named {
+    /// Its name.
+    pub name: String,
+    /// What was said of it.
+    pub findings: Vec<Finding>,
+}
+
+impl Named {
+    /// A fabric as it was named.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into(), findings: Vec::new() }
+    }
+
+    fn rename(&mut self, path: &Path, renamed: String, because: Renaming) {
+        let fact = UsageFact::Renamed { name: self.name.clone(), renamed: renamed.clone(), because };
+        self.findings.push(Finding::new(fact).at(Place::file(path)));
+        self.name = renamed;
+    }
+}
+
+/// Numbers fabrics that share a name, so that none hides another: the invented names are nobody else's. `path` gives
+/// the folder or file of the fabric at a place of the list.
+pub(super) fn distinguish<'p>(fabrics: &mut [Named], path: impl Fn(usize) -> &'p Path) {
+    for (at, fabric) in fabrics.iter_mut().enumerate() {
+        let name = folder_name(&fabric.name);
+        if name != fabric.name {
+            fabric.rename(path(at), name, Renaming::FabricFolder);
         }
     }
     // Names that differ in case only are one folder under Windows and macOS.
-    let own: BTreeSet<String> = fabrics.iter().map(|f| f.sheet.name.to_lowercase()).collect();
+    let mut own: BTreeMap<String, usize> = BTreeMap::new();
+    for fabric in fabrics.iter() {
+        *own.entry(fabric.name.to_lowercase()).or_default() += 1;
+    }
+    if own.len() == fabrics.len() {
+        return;
+    }
     let mut seen: BTreeMap<String, usize> = BTreeMap::new();
-    for Fabric { path, sheet } in fabrics {
-        let count = seen.entry(sheet.name.to_lowercase()).or_default();
+    for (at, fabric) in fabrics.iter_mut().enumerate() {
+        let count = seen.entry(fabric.name.to_lowercase()).or_default();
         *count += 1;
         if *count > 1 {
-            let mut name = format!("{}-{count}", sheet.name);
-            while own.contains(&name.to_lowercase()) {
+            let mut name = format!("{}-{count}", fabric.name);
+            while own.contains_key(&name.to_lowercase()) {
                 *count += 1;
-                name = format!("{}-{count}", sheet.name);
+                name = format!("{}-{count}", fabric.name);
             }
-            let because = Renaming::FabricTwice;
-            let fact = UsageFact::Renamed { name: sheet.name.clone(), renamed: name.clone(), because };
-            sheet.findings.push(Finding::new(fact).at(Place::file(path)));
-            sheet.name = name;
+            fabric.rename(path(at), name, Renaming::FabricTwice);
         }
+    }
+}
+
+/// Numbers fabrics that share a name, so that none hides another: the invented names are nobody else's. A name that
+/// no folder can have is changed too. Each sheet has a finding of its new name.
+pub fn distinguish_fabrics(fabrics: &mut [Fabric]) {
+    let mut named: Vec<Named> = fabrics.iter().map(|f| Named::new(f.sheet.name.as_str())).collect();
+    distinguish(&mut named, |at| &fabrics[at].path);
+    for (fabric, named) in fabrics.iter_mut().zip(named) {
+        fabric.sheet.name = named.name;
+        fabric.sheet.findings.extend(named.findings);
     }
 }

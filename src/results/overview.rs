@@ -57,23 +57,35 @@ fn modulus(sheet: &FabricSheet, direction: Direction) -> String {
 }
 
 /// One line a fabric, one column of deflections a case.
-pub(crate) fn table(reports: &[FabricReport], cases: &[Case]) -> Columns {
-    let cases: Vec<&str> = cases
-        .iter()
-        .filter(|c| c.sheet().is_some() && c.fabric().is_some())
-        .map(|c| c.name.as_str())
-        .collect();
-    let deflections = cases.iter().map(|c| format!("w_max {c} (mm)"));
-    let headings = HEADINGS.map(String::from).into_iter().chain(deflections).chain(["status".to_string()]);
-    let mut table = Columns::new(headings);
-    for report in reports {
+pub(crate) struct Overview<'c> {
+    cases: Vec<&'c str>,
+    table: Columns,
+}
+
+impl<'c> Overview<'c> {
+    /// A table for these cases, yet without fabrics.
+    pub fn new(cases: impl Iterator<Item = &'c Case>) -> Self {
+        let cases: Vec<&str> =
+            cases.filter(|c| c.sheet().is_some() && c.fabric().is_some()).map(|c| c.name.as_str()).collect();
+        let deflections = cases.iter().map(|c| format!("w_max {c} (mm)"));
+        let headings =
+            HEADINGS.map(String::from).into_iter().chain(deflections).chain(["status".to_string()]);
+        Self { table: Columns::new(headings), cases }
+    }
+
+    /// Adds a fabric.
+    pub fn row(&mut self, report: &FabricReport) {
         let mut row = vec![report.name.clone()];
         row.extend(report.cells.iter().cloned());
-        row.extend(cases.iter().map(|case| deflection(report, case)));
+        row.extend(self.cases.iter().map(|case| deflection(report, case)));
         row.push(report.status.clone());
-        table.row(row);
+        self.table.row(row);
     }
-    table.with_note(CAPTION)
+
+    /// The table.
+    pub fn table(self) -> Columns {
+        self.table.with_note(CAPTION)
+    }
 }
 
 fn deflection(report: &FabricReport, case: &str) -> String {

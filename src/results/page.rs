@@ -1,18 +1,13 @@
-//! `index.html` of a folder of results.
+//! `index.html` of a folder of results, and the pages of its fabrics where they are many.
 
-use std::collections::BTreeSet;
-
-use super::draped;
+use super::draped::{self, DrapePoint};
 use super::fabric::FabricReport;
+use super::page_problems::BEYOND_LINEAR;
 use super::page_values::{doubtful, leading, plates, tests};
 use super::solved::status;
 use super::task::Task;
-use crate::finding::explain;
 use crate::quantity::significant;
-use crate::report::html::{
-    Block, Figure, POINTS, Page, PageData, Problem, ProblemGroup, Section, local, without_folders,
-};
-use crate::report::table::{FabricRow, ProblemRow};
+use crate::report::html::{Block, Figure, POINTS, Page, PageData, ProblemGroup, Section, without_folders};
 use crate::study::CaseResult;
 
 /// Above the table of drapes.
@@ -22,51 +17,111 @@ const BRACKET: &str = "Drape coefficient (%): state of lowest energy (all states
 const FILES: [&str; 6] =
     ["fabrics.csv", "fabrics.parquet", "predictions.csv", "predictions.parquet", "problems.csv", "run.json"];
 
-/// Of a linear solve beyond its meaning: it holds of cloth as such and is said once.
-const BEYOND_LINEAR: &str = "S101";
+/// Fabrics of a page: more of them have pages of their own.
+pub(crate) const FABRICS_OF_PAGE: usize = 200;
 
 /// A case with constants of its own, solved, with its charts.
 pub(crate) struct Benchmark<'a, 'w> {
-    pub task: &'a Task<'w>,
+    pub task: &'a Task<'w, 'w>,
     pub result: &'a CaseResult,
     pub figures: &'a [Figure],
 }
 
-/// The page of a batch; `figures` are those of all fabrics together, `rows` and `problems` those of `fabrics.csv` (SI)
-/// and `problems.csv`.
-pub(crate) fn page(
-    reports: &[FabricReport],
-    benchmarks: &[Benchmark],
-    figures: Vec<Figure>,
-    rows: &[FabricRow],
-    problems: &[ProblemRow],
-) -> Page {
-    let section = |heading: &str, blocks: Vec<Block>| Section { heading: heading.into(), blocks };
-    let own: Vec<Block> = benchmarks.iter().flat_map(benchmark_blocks).collect();
+/// What the page says of all fabrics together.
+pub(crate) struct Head<'a> {
+    /// How many there are.
+    pub fabrics: usize,
+    /// Charts.
+    pub figures: Vec<Figure>,
+    /// Everything that failed or was found.
+    pub problems: Vec<ProblemGroup>,
+    pub drapes: &'a [DrapePoint],
+    /// Pages with the fabrics, where there are too many for this one.
+    pub pages: &'a [String],
+}
+
+/// The page of a batch; `reports` are the fabrics, unless they have pages of their own.
+pub(crate) fn page(reports: &[FabricReport], benchmarks: &[Benchmark], head: Head) -> Page {
+    let mut predictions: Vec<Block> = leading(reports).into_iter().collect();
+    predictions.extend(draped::bracket(head.drapes).map(|table| table.block(BRACKET)));
+    predictions.extend(plates(reports));
+    predictions.extend(figures_block(head.figures));
     let sections = [
-        section("Parameters", if reports.is_empty() { Vec::new() } else { vec![Block::Parameters] }),
-        section("Problems and doubtful values", problem_blocks(reports, rows, problems)),
-        section("Predictions", prediction_blocks(reports, figures)),
-        section("Fabrics", reports.iter().enumerate().map(|(i, r)| fabric_block(i, r)).collect()),
-        section("Fabrics side by side", side_by_side(reports)),
-        section("Cases with constants of their own", own),
+        parameters(reports),
+        section("Fabrics", links(head.pages)),
+        section("Problems and doubtful values", problem_blocks(reports, head.problems)),
+        section("Predictions", predictions),
+        fabrics(reports),
+        side_by_side(reports),
+        section("Cases with constants of their own", benchmarks.iter().flat_map(benchmark_blocks).collect()),
         section("Files", vec![files()]),
     ];
+    made_of(sections, "KES-F results".into(), head.fabrics, reports)
+}
+
+/// A page of some of the fabrics; `number` counts from 1.
+pub(crate) fn fabrics_page(reports: &[FabricReport], number: usize) -> Page {
+    let sections = [
+        parameters(reports),
+        section("Doubtful values", doubtful(reports).into_iter().collect()),
+        section("Predictions", leading(reports).into_iter().chain(plates(reports)).collect()),
+        fabrics(reports),
+        side_by_side(reports),
+        section("All fabrics", vec![Block::Files(vec!["index.html".into()])]),
+    ];
+    made_of(sections, format!("KES-F results, page {number}"), reports.len(), reports)
+}
+
+/// A page of the sections that hold something.
+fn made_of(
+    sections: impl IntoIterator<Item = Section>,
+    title: String,
+    fabrics: usize,
+    reports: &[FabricReport],
+) -> Page {
+    let version = env!("CARGO_PKG_VERSION");
     Page {
-        title: "KES-F results".into(),
-        lead: format!(
-            "{} fabrics; kesf {}; inputs and their hashes are in run.json.",
-            reports.len(),
-            env!("CARGO_PKG_VERSION")
-        ),
+        title,
+        lead: format!("{fabrics} fabrics; kesf {version}; inputs and their hashes are in run.json."),
         sections: sections.into_iter().filter(|s| !s.blocks.is_empty()).collect(),
-        data: data(reports, rows),
+        data: data(reports),
     }
 }
 
-fn data(reports: &[FabricReport], rows: &[FabricRow]) -> PageData {
+fn section(heading: &str, blocks: Vec<Block>) -> Section {
+    Section { heading: heading.into(), blocks }
+}
+
+fn parameters(reports: &[FabricReport]) -> Section {
+    section("Parameters", if reports.is_empty() { Vec::new() } else { vec![Block::Parameters] })
+}
+
+fn fabrics(reports: &[FabricReport]) -> Section {
+    section("Fabrics", reports.iter().enumerate().map(|(i, r)| fabric_block(i, r)).collect())
+}
+
+fn links(pages: &[String]) -> Vec<Block> {
+    if pages.is_empty() {
+        return Vec::new();
+    }
+    let text =
+        format!("Parameters, curves and charts are on pages of {FABRICS_OF_PAGE} fabrics, in name order:");
+    vec![Block::Text(text), Block::Files(pages.to_vec())]
+}
+
+fn problem_blocks(reports: &[FabricReport], problems: Vec<ProblemGroup>) -> Vec<Block> {
+    let mut blocks: Vec<Block> = doubtful(reports).into_iter().collect();
+    if problems.is_empty() {
+        blocks.push(Block::Text("Nothing was found that a reader of the results must know.".into()));
+    } else {
+        blocks.push(Block::Problems(problems));
+    }
+    blocks
+}
+
+fn data(reports: &[FabricReport]) -> PageData {
     let fabrics = reports.iter().map(|r| (r.name.as_str(), without_folders(&r.about)));
-    let mut data = PageData::of_rows(fabrics, rows.iter());
+    let mut data = PageData::of_rows(fabrics, reports.iter().flat_map(|r| &r.rows));
     for (fabric, report) in reports.iter().enumerate() {
         data.curves.extend(report.curves.iter().cloned().map(|curves| {
             let mut curves = curves;
@@ -82,8 +137,8 @@ fn files() -> Block {
     Block::Files(written.map(String::from).collect())
 }
 
-fn side_by_side(reports: &[FabricReport]) -> Vec<Block> {
-    if reports.len() < 2 { Vec::new() } else { vec![Block::ControlChart] }
+fn side_by_side(reports: &[FabricReport]) -> Section {
+    section("Fabrics side by side", if reports.len() < 2 { Vec::new() } else { vec![Block::ControlChart] })
 }
 
 fn benchmark_blocks(benchmark: &Benchmark) -> Vec<Block> {
@@ -100,54 +155,6 @@ fn benchmark_blocks(benchmark: &Benchmark) -> Vec<Block> {
 
 fn figures_block(figures: Vec<Figure>) -> Option<Block> {
     (!figures.is_empty()).then_some(Block::Figures(figures))
-}
-
-/// Problems by code: what failed first, then in the order of the rows; linear solves beyond their meaning last.
-fn problem_blocks(reports: &[FabricReport], rows: &[FabricRow], problems: &[ProblemRow]) -> Vec<Block> {
-    let mut groups: Vec<(&str, Vec<&ProblemRow>)> = Vec::new();
-    for row in problems {
-        match groups.iter_mut().find(|(code, _)| *code == row.code) {
-            Some((_, rows)) => rows.push(row),
-            None => groups.push((&row.code, vec![row])),
-        }
-    }
-    let is_error = |code: &str| explain(code).is_some_and(|e| e.kind == "error");
-    groups.sort_by_key(|(code, _)| (*code == BEYOND_LINEAR, !is_error(code)));
-    let mut blocks: Vec<Block> = doubtful(rows).into_iter().collect();
-    if groups.is_empty() {
-        return vec![Block::Text("Nothing was found that a reader of the results must know.".into())];
-    }
-    let groups = groups.iter().map(|(code, rows)| group(code, rows, reports.len()));
-    blocks.push(Block::Problems(groups.collect()));
-    blocks
-}
-
-fn group(code: &str, rows: &[&ProblemRow], fabrics: usize) -> ProblemGroup {
-    let concerned: BTreeSet<&str> = rows.iter().filter_map(|row| row.fabric.as_deref()).collect();
-    let times = if rows.len() == 1 { "once".to_string() } else { format!("{} times", rows.len()) };
-    let mut count = match concerned.len() {
-        0 => times,
-        some => format!("{some} of {fabrics} fabrics"),
-    };
-    if code == BEYOND_LINEAR {
-        let cases: BTreeSet<&str> = rows.iter().map(|row| row.place.as_str()).collect();
-        count += &format!(", in {}", cases.into_iter().map(local).collect::<Vec<_>>().join(", "));
-    }
-    let lines = rows.iter().filter(|_| code != BEYOND_LINEAR).map(|row| Problem {
-        fabric: row.fabric.clone(),
-        place: row.place.clone(),
-        message: row.message.clone(),
-    });
-    ProblemGroup { code: code.into(), count, lines: lines.collect() }
-}
-
-fn prediction_blocks(reports: &[FabricReport], figures: Vec<Figure>) -> Vec<Block> {
-    let draped: Vec<_> = reports.iter().flat_map(|r| r.drapes.clone()).collect();
-    let mut blocks: Vec<Block> = leading(reports).into_iter().collect();
-    blocks.extend(draped::bracket(&draped).map(|table| table.block(BRACKET)));
-    blocks.extend(plates(reports));
-    blocks.extend(figures_block(figures));
-    blocks
 }
 
 fn fabric_block(place: usize, report: &FabricReport) -> Block {
@@ -181,7 +188,7 @@ fn fabric_block(place: usize, report: &FabricReport) -> Block {
 /// Whether the script draws the same from records: charts of tests, and of simulated tests on them.
 fn is_drawn(report: &FabricReport, figure: &Figure) -> bool {
     report.curves.iter().filter(|curves| !curves.specimens.is_empty()).any(|curves| {
-        is_named(figure, curves.test) || curves.simulated.iter().any(|line| is_named(figure, &line.case))
+        is_named(figure, &curves.test) || curves.simulated.iter().any(|line| is_named(figure, &line.case))
     })
 }
 
@@ -193,32 +200,6 @@ fn is_named(figure: &Figure, stem: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn problem(code: &str, fabric: Option<&str>) -> ProblemRow {
-        ProblemRow {
-            code: code.into(),
-            place: "cases/plate.toml".into(),
-            message: "m".into(),
-            fabric: fabric.map(String::from),
-        }
-    }
-
-    #[test]
-    fn linear_solves_beyond_their_meaning_are_told_once_and_last_and_errors_first() {
-        let names = ["a", "b", "c"];
-        let reports: Vec<FabricReport> = names
-            .iter()
-            .map(|name| FabricReport { name: (*name).into(), ..FabricReport::default() })
-            .collect();
-        let mut rows = vec![problem("S101", Some("a")), problem("K011", Some("b")), problem("R002", None)];
-        rows.extend([problem("S101", Some("b")), problem("S101", Some("b")), problem("K011", Some("b"))]);
-        let blocks = problem_blocks(&reports, &[], &rows);
-        let [Block::Problems(groups)] = blocks.as_slice() else { panic!("{blocks:?}") };
-        let told: Vec<(&str, &str, usize)> =
-            groups.iter().map(|g| (g.code.as_str(), g.count.as_str(), g.lines.len())).collect();
-        let beyond = ("S101", "2 of 3 fabrics, in cases/plate.toml", 0);
-        assert_eq!(told, [("R002", "once", 1), ("K011", "1 of 3 fabrics", 2), beyond]);
-    }
 
     #[test]
     fn pictures_that_the_script_draws_are_links() {

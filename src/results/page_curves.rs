@@ -2,7 +2,7 @@
 
 use super::tested::Tested;
 use crate::characterise::{FabricSheet, SpecimenResult};
-use crate::instrument::{Direction, Test};
+use crate::instrument::Test;
 use crate::report::html::{AxisEntry, Line, SimulatedLine, SpecimenCurves, TestCurves, shortened};
 
 /// Tests with curves, in their order; the place of the fabric is for the caller to say.
@@ -17,7 +17,7 @@ pub(super) fn curves(sheet: &FabricSheet, simulated: &[Tested]) -> Vec<TestCurve
             .collect();
         let axes = AxisEntry::of(test);
         let is_there = !(specimens.is_empty() && simulated.is_empty());
-        is_there.then(|| TestCurves { fabric: 0, test: test.name(), axes, specimens, simulated })
+        is_there.then(|| TestCurves { fabric: 0, test: test.name().to_string(), axes, specimens, simulated })
     };
     Test::ALL.into_iter().filter_map(of_test).collect()
 }
@@ -29,12 +29,11 @@ fn specimen(specimen: &SpecimenResult) -> SpecimenCurves {
     } else {
         specimen.branches.iter().map(|b| Line::of(&b.curve)).collect()
     };
-    let windows = specimen
-        .windows
-        .iter()
-        .map(|w| (w.parameter.symbol(), [w.from, w.to].map(shortened), w.ordinates.map(shortened)));
+    let windows = specimen.windows.iter().map(|w| {
+        (w.parameter.symbol().to_string(), [w.from, w.to].map(shortened), w.ordinates.map(shortened))
+    });
     SpecimenCurves {
-        direction: measurement.direction.map(Direction::name),
+        direction: measurement.direction.map(|d| d.name().to_string()),
         specimen: measurement.specimen,
         branches,
         windows: windows.collect(),
@@ -46,7 +45,7 @@ fn simulated_line(tested: &Tested) -> SimulatedLine {
     SimulatedLine {
         label: format!("simulated, {how}"),
         case: tested.case.clone(),
-        direction: tested.simulated.direction.map(Direction::name),
+        direction: tested.simulated.direction.map(|d| d.name().to_string()),
         line: Line::of(&tested.curve),
     }
 }

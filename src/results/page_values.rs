@@ -149,9 +149,10 @@ fn test_row(row: &PredictionRow) -> Vec<[String; 2]> {
 }
 
 /// Values that a finding speaks against or that rest on an assumption.
-pub(super) fn doubtful(rows: &[FabricRow]) -> Option<Block> {
+pub(super) fn doubtful(reports: &[FabricReport]) -> Option<Block> {
     let is_meant = |row: &&FabricRow| matches!(row.status.as_str(), "doubtful" | "assumed");
-    let rows: Vec<Vec<[String; 2]>> = rows.iter().filter(is_meant).map(doubtful_row).collect();
+    let rows: Vec<Vec<[String; 2]>> =
+        reports.iter().flat_map(|r| &r.rows).filter(is_meant).map(doubtful_row).collect();
     (!rows.is_empty()).then(|| Block::Units {
         caption: "Values not to be relied on as they stand; why, and what to do, stands below.".into(),
         header: ["fabric", "parameter", "mean", "unit", "n", "status"].map(String::from).to_vec(),
@@ -242,8 +243,9 @@ mod tests {
             status: status.into(),
             ..FabricRow::default()
         };
-        assert!(doubtful(&[row("measured"), row("inferred")]).is_none());
-        let Some(Block::Units { rows, .. }) = doubtful(&[row("measured"), row("doubtful")]) else {
+        let report = |rows: [FabricRow; 2]| [FabricReport { rows: rows.to_vec(), ..FabricReport::default() }];
+        assert!(doubtful(&report([row("measured"), row("inferred")])).is_none());
+        let Some(Block::Units { rows, .. }) = doubtful(&report([row("measured"), row("doubtful")])) else {
             panic!("a table")
         };
         assert_eq!(rows.len(), 1);

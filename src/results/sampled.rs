@@ -11,7 +11,7 @@ use crate::report::table::PredictionRow;
 use crate::study::{SampledQuantity, Sampling};
 
 /// One line a result with bands, over all tasks; none where no case has `[uncertainty]`.
-pub(super) fn table<'a, 'w: 'a>(tasks: impl Iterator<Item = &'a Task<'w>>) -> Option<String> {
+pub(super) fn table<'a, 'f: 'a, 'c: 'a>(tasks: impl Iterator<Item = &'a Task<'f, 'c>>) -> Option<String> {
     let mut table = Columns::new([
         "95 % bands",
         "case",

@@ -17,14 +17,14 @@ use crate::study::{self, PreparedCase, PreparedTest, Sampling, drape_stages, sam
 
 /// A case and its fabric; none for a case with constants of its own.
 #[derive(Clone)]
-pub struct Task<'a> {
+pub struct Task<'f, 'c> {
     /// The case.
-    pub case: &'a Case,
+    pub case: &'c Case,
     /// Its fabric.
-    pub fabric: Option<&'a FabricSheet>,
+    pub fabric: Option<&'f FabricSheet>,
     /// Folder or file of its fabric.
-    pub path: Option<&'a Path>,
-    shared: Arc<Shared<'a>>,
+    pub path: Option<&'f Path>,
+    shared: Arc<Shared<'c>>,
     /// A section that the caller brings, instead of the one that the case would make.
     given: Option<Arc<Constitutive>>,
     /// Its bands, once they are sampled.
@@ -50,7 +50,7 @@ impl Default for Limits {
 /// What the tasks of one case share, made by the first that needs it. Nothing in the making waits for
 /// other threads' work, so those that wait for it cannot lock each other out.
 #[derive(Default)]
-pub(super) struct Shared<'a> {
+pub(crate) struct Shared<'a> {
     options: SolveOptions,
     limits: Limits,
     case: OnceLock<Result<PreparedCase<'a>, Failure>>,
@@ -65,9 +65,9 @@ impl Shared<'_> {
     }
 }
 
-impl<'a> Task<'a> {
+impl<'f, 'c> Task<'f, 'c> {
     /// The mesh and model of the case, made by the first of its tasks.
-    pub(super) fn prepared_case(&self) -> Result<&PreparedCase<'a>, Failure> {
+    pub(super) fn prepared_case(&self) -> Result<&PreparedCase<'c>, Failure> {
         let prepare = || Ok(PreparedCase::new(self.case, &self.shared.options)?);
         self.shared.case.get_or_init(prepare).as_ref().map_err(Clone::clone)
     }
@@ -93,7 +93,7 @@ impl<'a> Task<'a> {
         self.sampling.get_or_init(|| sampling);
     }
 
-    pub(super) fn new(case: &'a Case, fabric: Option<&'a Fabric>, shared: Arc<Shared<'a>>) -> Self {
+    pub(crate) fn new(case: &'c Case, fabric: Option<&'f Fabric>, shared: Arc<Shared<'c>>) -> Self {
         let path = fabric.map(|f| f.path.as_path());
         let fabric = fabric.map(|f| &f.sheet);
         Self { case, fabric, path, shared, given: None, sampling: Arc::default() }
@@ -101,7 +101,7 @@ impl<'a> Task<'a> {
 
     /// A task that shares nothing with others: a case with a fabric of the caller's choice, whatever fabric the case
     /// names, or with its own section. `threads` are those inside one solve; 0 is one.
-    pub fn alone(case: &'a Case, fabric: Option<&'a Fabric>, threads: usize) -> Self {
+    pub fn alone(case: &'c Case, fabric: Option<&'f Fabric>, threads: usize) -> Self {
         Self::new(case, fabric, Arc::new(Shared::new(threads.max(1), Limits::default())))
     }
 
@@ -116,7 +116,7 @@ impl<'a> Task<'a> {
     }
 }
 
-impl Task<'_> {
+impl Task<'_, '_> {
     /// Stages of the work that [`simulate`](super::simulate) tells of.
     pub fn stages(&self) -> usize {
         let of_drape = if self.is_drape() { drape_stages(self.case) } else { 0 };

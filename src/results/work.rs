@@ -45,6 +45,15 @@ impl Job {
     /// # Errors
     /// Those of [`Reading::sheets`]; what is wrong with one input is among the failures.
     pub fn read(&self, observer: &Observer) -> Result<Work, Failure> {
+        let JobInputs { cases, fabrics, mut failures } = self.cases(observer);
+        let moduli: Vec<_> = cases.iter().filter_map(|c| c.assumptions()).map(|a| a.modulus).collect();
+        let (fabrics, unread) = self.reading.sheets(&fabrics, &moduli, Curves::Kept, observer)?;
+        failures.extend(unread);
+        Ok(Work { cases, fabrics, failures, threads: self.threads.max(1), limits: self.limits })
+    }
+
+    /// The cases of the inputs, and what fabrics are to be read: those of the inputs, and those that only cases name.
+    pub(crate) fn cases(&self, observer: &Observer) -> JobInputs {
         let (mut cases, mut failures) = inputs::cases(&self.inputs);
         for finding in distinguish_cases(&mut cases) {
             observer.found(None, &finding);
@@ -67,11 +76,18 @@ impl Job {
                 }
             }
         }
-        let moduli: Vec<_> = cases.iter().filter_map(|c| c.assumptions()).map(|a| a.modulus).collect();
-        let (fabrics, unread) = self.reading.sheets(&fabrics, &moduli, Curves::Kept, observer)?;
-        failures.extend(unread);
-        Ok(Work { cases, fabrics, failures, threads: self.threads.max(1), limits: self.limits })
+        JobInputs { cases, fabrics, failures }
     }
+}
+
+/// What a job names, yet without the data of fabrics.
+pub(crate) struct JobInputs {
+    /// In name order, each with a name of its own.
+    pub cases: Vec<Case>,
+    /// Fabrics.
+    pub fabrics: Vec<Input>,
+    /// What is wrong with cases. The observer has it already.
+    pub failures: Vec<Failure>,
 }
 
 /// The fabric that a case names, unless it is among the inputs already, with what is doubtful about it; `None` for a
@@ -122,7 +138,7 @@ fn two_fabrics(case: &Case, taken: &Path) -> Option<Finding> {
     Some(Finding::new(fact).at(case.place(name)))
 }
 
-fn is_within(path: &Path, folder: &Path) -> bool {
+pub(crate) fn is_within(path: &Path, folder: &Path) -> bool {
     match (path.canonicalize(), folder.canonicalize()) {
         (Ok(path), Ok(folder)) => path.starts_with(folder),
         _ => path == folder,
@@ -136,7 +152,7 @@ impl Work {
     }
 
     /// Every case with every fabric it is for, cases in order; a case that finds none is a failure.
-    pub fn tasks<'w>(&'w self) -> (Vec<Task<'w>>, Vec<Failure>) {
+    pub fn tasks<'w>(&'w self) -> (Vec<Task<'w, 'w>>, Vec<Failure>) {
         let (mut tasks, mut failures) = (Vec::new(), Vec::new());
         // Tasks share the threads; one that is alone has them all.
         let alone = self.cases.len() == 1 && self.fabrics.len() < 2;
@@ -154,7 +170,7 @@ impl Work {
             let suitable = self.fabrics_of(case).filter(|f| case.suits(&f.sheet));
             tasks.extend(suitable.map(|fabric| Task::new(case, Some(fabric), Arc::clone(&shared))));
             if tasks.len() == before {
-                failures.push(self.without_fabric(case));
+                failures.push(without_fabric(case, self.without_law(case).is_some()));
             }
         }
         (tasks, failures)
@@ -166,34 +182,10 @@ impl Work {
         self.fabrics.iter().filter(move |f| named.as_ref().is_none_or(|n| is_within(&f.path, n)))
     }
 
-    /// O055: no fabric has what a case needs.
-    fn without_fabric(&self, case: &Case) -> Failure {
-        let name = &case.name;
-        let (text, hint) = if case.is_for_fab_records() {
-            (
-                format!("{name} is for a fabric with FAB bend tests, and none is there"),
-                "name a U3M file with `raw_data`, as in `kesf compare cases/fab_bend_loop.toml FABRIC.u3m`",
-            )
-        } else if self.without_law(case).is_some() {
-            (
-                format!("{name} is for fabrics with a friction law of bending, and none has one"),
-                "add FB2 loops, or 2HB beside B in a result table, or take law = \"elastic\"",
-            )
-        } else {
-            (
-                format!("{name} is for a fabric, and none is there"),
-                "name one, as in `kesf solve CASE kesf_data/poplin`",
-            )
-        };
-        Failure::new("O055", text).at(Place::file(&case.path)).hint(hint)
-    }
-
     /// S118: the fabrics that a case with friction is for, and that have no law; `None` without such.
     pub fn without_law(&self, case: &Case) -> Option<Finding> {
         let without = self.fabrics_of(case).filter(|f| case.lacks_law(&f.sheet));
-        let fabrics: Vec<String> = without.map(|f| f.sheet.name.clone()).collect();
-        (!fabrics.is_empty())
-            .then(|| Finding::new(StudyFact::WithoutLaw { fabrics }).at(Place::file(&case.path)))
+        without_law(case, without.map(|f| f.sheet.name.clone()).collect())
     }
 
     /// What to say of fabrics that no task is for because every case brings or names its own.
@@ -211,8 +203,37 @@ impl Work {
     }
 }
 
+/// O055: no fabric has what a case needs; `lacks_law` of one for which a law of friction is all that is missing.
+pub(crate) fn without_fabric(case: &Case, lacks_law: bool) -> Failure {
+    let name = &case.name;
+    let (text, hint) = if case.is_for_fab_records() {
+        (
+            format!("{name} is for a fabric with FAB bend tests, and none is there"),
+            "name a U3M file with `raw_data`, as in `kesf compare cases/fab_bend_loop.toml FABRIC.u3m`",
+        )
+    } else if lacks_law {
+        (
+            format!("{name} is for fabrics with a friction law of bending, and none has one"),
+            "add FB2 loops, or 2HB beside B in a result table, or take law = \"elastic\"",
+        )
+    } else {
+        (
+            format!("{name} is for a fabric, and none is there"),
+            "name one, as in `kesf solve CASE kesf_data/poplin`",
+        )
+    };
+    Failure::new("O055", text).at(Place::file(&case.path)).hint(hint)
+}
+
+/// S118: the fabrics that a case with friction is for, and that have no law; `None` without such.
+pub(crate) fn without_law(case: &Case, fabrics: Vec<String>) -> Option<Finding> {
+    (!fabrics.is_empty()).then(|| Finding::new(StudyFact::WithoutLaw { fabrics }).at(Place::file(&case.path)))
+}
+
 /// What is known of the fabrics of tasks, and of the sections that were made of them, each thing once.
-pub(super) fn findings<'a, 'w: 'a>(tasks: impl Iterator<Item = &'a Task<'w>>) -> Vec<(String, Finding)> {
+pub(super) fn findings<'a, 'f: 'a, 'c: 'a>(
+    tasks: impl Iterator<Item = &'a Task<'f, 'c>>,
+) -> Vec<(String, Finding)> {
     let mut seen = BTreeSet::new();
     let mut all = Vec::new();
     for task in tasks {

@@ -174,7 +174,8 @@ fn signals_are_answered_at_once() {
         let milliseconds = start.elapsed().as_millis();
         println!("SIG{signal}: {milliseconds} ms");
         assert_eq!(status.code(), Some(130));
-        // 100 ms are given to the work; the rest is the system's, on a machine that others use too.
-        assert!(milliseconds < 1000, "SIG{signal}: {milliseconds} ms");
+        // 100 ms are given to the work, and the system takes its memory back; on a machine whose processors are all
+        // taken it has taken 2 s. The factorisation itself goes on for longer.
+        assert!(milliseconds < 5000, "SIG{signal}: {milliseconds} ms");
     }
 }

@@ -4,9 +4,15 @@
 //! Kind: own. Nothing here is a number of mechanics: what is held is that files are whole, that what was not
 //! understood is told, and that every computation ends.
 
+#[path = "../common/mod.rs"]
+mod common;
 mod folders;
 mod limits;
+mod memory;
+mod resume;
+mod same;
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -51,4 +57,22 @@ fn first_cells(path: &Path) -> Vec<String> {
     let mut names: Vec<String> = reader.records().map(|row| row.unwrap()[0].to_string()).collect();
     names.dedup();
     names
+}
+
+/// Every file below a folder, hidden ones included, by its name with `/`.
+fn tree(root: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    let mut folders = vec![root.to_path_buf()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let name = path.strip_prefix(root).unwrap().to_string_lossy().into_owned();
+                files.insert(name, fs::read(&path).unwrap());
+            }
+        }
+    }
+    files
 }

@@ -1,5 +1,7 @@
 //! Simulated against measured, one panel per quantity.
 
+use serde::{Deserialize, Serialize};
+
 use crate::report::number::{fixed, prefixed, significant};
 
 use super::axes::{Frame, Label, Range};
@@ -11,7 +13,7 @@ use super::palette::{GREY, INK, lighter};
 use super::panel::{self, Row, marker};
 
 /// One comparison.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ParityPoint {
     /// Shown beside the point where there is room, e.g. the fabric.
     pub label: String,

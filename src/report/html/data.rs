@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::str::FromStr;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::instrument::{Direction, Parameter, Test};
 use crate::quantity::Curve;
@@ -70,12 +70,12 @@ pub struct Value {
 }
 
 /// The curves of one test of one fabric.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TestCurves {
     /// Place in [`PageData::fabrics`].
     pub fabric: usize,
     /// `tensile`, `shear`, `bending` or `compression`.
-    pub test: &'static str,
+    pub test: String,
     /// Abscissa and ordinate.
     pub axes: [AxisEntry; 2],
     /// Measured specimens.
@@ -85,10 +85,10 @@ pub struct TestCurves {
 }
 
 /// How an axis is labelled.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AxisEntry {
     /// E.g. `Curvature K`.
-    pub quantity: &'static str,
+    pub quantity: String,
     /// Unit and its SI value, in KES units.
     pub kes: (String, f64),
     /// The same in SI.
@@ -96,33 +96,33 @@ pub struct AxisEntry {
 }
 
 /// A measured specimen.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpecimenCurves {
     /// `warp`, `weft` or `bias`.
-    pub direction: Option<&'static str>,
+    pub direction: Option<String>,
     /// Its number, from 1.
     pub specimen: usize,
     /// Branches in recorded order, thinned.
     pub branches: Vec<Line>,
     /// Windows of fits and readings: symbol, abscissae and ordinates of both ends.
-    pub windows: Vec<(&'static str, [f64; 2], [f64; 2])>,
+    pub windows: Vec<(String, [f64; 2], [f64; 2])>,
 }
 
 /// A simulated curve.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SimulatedLine {
     /// What made it.
     pub label: String,
     /// Name of its case.
     pub case: String,
     /// `warp`, `weft` or `bias`.
-    pub direction: Option<&'static str>,
+    pub direction: Option<String>,
     /// The curve.
     pub line: Line,
 }
 
 /// Points of a line (SI) to five significant digits.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Line {
     /// Abscissae.
     pub x: Vec<f64>,
@@ -150,7 +150,7 @@ impl AxisEntry {
         axes(test).map(|axis| {
             let kes = (unit_text(axis.kes_unit), axis.kes_factor);
             let si = axis.si.map(|(unit, factor)| (unit.to_string(), factor));
-            Self { quantity: axis.quantity, si: si.unwrap_or_else(|| kes.clone()), kes }
+            Self { quantity: axis.quantity.to_string(), si: si.unwrap_or_else(|| kes.clone()), kes }
         })
     }
 }

@@ -12,6 +12,7 @@ mod text;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::finding::{Finding, explain};
@@ -102,7 +103,7 @@ pub enum Block {
 }
 
 /// A picture with its caption.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
     /// What it shows, for readers who do not see it, and as caption.
     pub caption: String,

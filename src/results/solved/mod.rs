@@ -76,10 +76,12 @@ pub(super) fn write(task: &Task, result: &CaseResult, folder: &Folder) -> Result
         folder.csv(&format!("{stem}.csv"), &history)?;
     }
     let mesh = fields::Mesh::new(result);
-    folder.write(&format!("{stem}.vtu"), &mesh.vtu(result)?)?;
-    for (k, step) in result.path.iter().flat_map(|path| path.load_steps.iter().enumerate()) {
-        let then = result.at_end_of(step);
-        folder.write(&format!("{stem}-step-{}.vtu", k + 1), &fields::Mesh::new(&then).vtu(&then)?)?;
+    if folder.fields() {
+        folder.write(&format!("{stem}.vtu"), &mesh.vtu(result)?)?;
+        for (k, step) in result.path.iter().flat_map(|path| path.load_steps.iter().enumerate()) {
+            let then = result.at_end_of(step);
+            folder.write(&format!("{stem}-step-{}.vtu", k + 1), &fields::Mesh::new(&then).vtu(&then)?)?;
+        }
     }
     folder.chart(&format!("{stem}.png"), || chart::field(&mesh.plot(task, result)))
 }

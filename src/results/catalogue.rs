@@ -1,0 +1,199 @@
+//! The fabrics of a batch, known by name and by a hash of what was read, without their data: a run goes through
+//! thousands of them with one in memory at a time.
+
+use std::ops::Range;
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::failure::Failure;
+use super::inputs::{Fabric, Input, Reading, fabric_in_memory, without_memory};
+use super::names::{Named, distinguish};
+use super::observer::Observer;
+use super::record::digest_of;
+use crate::characterise::{Modulus, Settings, characterise};
+use crate::finding::{Finding, Place};
+use crate::instrument::{FabricInput, Library, ReadError, ReadSettings};
+use crate::platform;
+
+/// Files up to which a library is kept in memory as it was read the first time: a few fabrics are not read twice.
+const KEPT: usize = 256;
+
+/// The fabrics of a batch, in name order.
+pub(crate) struct Catalogue {
+    library: Library,
+    memory: Vec<Input>,
+    reading: ReadSettings,
+    evaluation: Settings,
+    entries: Vec<Entry>,
+    names: Vec<Named>,
+    /// What could not be read. The observer has it already.
+    pub failures: Vec<Failure>,
+    /// What belongs to no fabric. The observer has it already.
+    pub findings: Vec<Finding>,
+}
+
+/// A fabric of the catalogue.
+struct Entry {
+    origin: Origin,
+    path: Arc<Path>,
+    /// Hash of all that was read of it.
+    inputs: [u8; 32],
+    kept: Mutex<Option<Box<FabricInput>>>,
+}
+
+/// Where a fabric is read.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Origin {
+    /// The folder or file of the library.
+    Group(usize),
+    /// The input in memory.
+    Memory(usize),
+}
+
+impl Catalogue {
+    /// Reads every fabric below the inputs for its name and its hash. `moduli` are evaluated beside those of the
+    /// settings.
+    ///
+    /// # Errors
+    /// Those of [`Reading::read_settings`] and [`Reading::evaluation`], and O054 if the work was cancelled.
+    pub fn find(
+        reading: &Reading,
+        inputs: &[Input],
+        moduli: &[Modulus],
+        observer: &Observer,
+    ) -> Result<Self, Failure> {
+        let settings = reading.read_settings()?;
+        let evaluation = reading.evaluation_with(moduli)?;
+        let library = Library::find(&without_memory(inputs), &settings);
+        let findings = library.findings().to_vec();
+        findings.iter().for_each(|finding| observer.found(None, finding));
+        let keep = library.files() <= KEPT;
+        let groups = observer.part("reading", library.files(), || {
+            platform::map_several((0..library.groups()).collect(), |group| {
+                observer.go_on().ok()?;
+                let (fabrics, errors) = library.read(group, &|_: &Path| observer.step());
+                let entry = |fabric: FabricInput| Entry::new(Origin::Group(group), fabric, keep);
+                Some((fabrics.into_iter().map(entry).collect::<Result<Vec<_>, _>>(), errors))
+            })
+        })?;
+        let mut catalogue = Self {
+            memory: inputs.iter().filter(|input| matches!(input, Input::Memory { .. })).cloned().collect(),
+            reading: settings,
+            evaluation,
+            entries: Vec::new(),
+            names: Vec::new(),
+            failures: Vec::new(),
+            findings,
+            library,
+        };
+        let mut errors: Vec<ReadError> = catalogue.library.failures().to_vec();
+        for (entries, unread) in groups.into_iter().flatten() {
+            catalogue.add(entries?);
+            errors.extend(unread);
+        }
+        for (at, input) in catalogue.memory.clone().iter().enumerate() {
+            let Input::Memory { name, bytes } = input else { continue };
+            match fabric_in_memory(name, bytes, &catalogue.reading) {
+                Ok((fabric, left_out)) => {
+                    catalogue.add(vec![Entry::new(Origin::Memory(at), fabric, true)?]);
+                    errors.extend(left_out);
+                }
+                Err(error) => errors.push(error),
+            }
+        }
+        let paths: Vec<&Path> = catalogue.entries.iter().map(|entry| &*entry.path).collect();
+        distinguish(&mut catalogue.names, |at| paths[at]);
+        catalogue.failures = errors.into_iter().map(Failure::from).collect();
+        catalogue.failures.iter().for_each(|failure| observer.failed(failure));
+        Ok(catalogue)
+    }
+
+    fn add(&mut self, entries: Vec<(Entry, Named)>) {
+        let (entries, names): (Vec<_>, Vec<_>) = entries.into_iter().unzip();
+        self.entries.extend(entries);
+        self.names.extend(names);
+    }
+
+    /// Number of fabrics.
+    pub fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// The name of a fabric, which no other has.
+    pub fn name(&self, at: usize) -> &str {
+        &self.names[at].name
+    }
+
+    /// The folder or file of a fabric.
+    pub fn path(&self, at: usize) -> &Path {
+        &self.entries[at].path
+    }
+
+    /// Hash of all that was read of a fabric.
+    pub fn inputs(&self, at: usize) -> &[u8] {
+        &self.entries[at].inputs
+    }
+
+    /// The fabrics that are read together, in order.
+    pub fn units(&self) -> Vec<Range<usize>> {
+        let mut units: Vec<Range<usize>> = Vec::new();
+        for (at, entry) in self.entries.iter().enumerate() {
+            match units.last_mut() {
+                Some(unit) if self.entries[unit.start].origin == entry.origin => unit.end = at + 1,
+                _ => units.push(at..at + 1),
+            }
+        }
+        units
+    }
+
+    /// The fabrics of one of the [`units`](Self::units) with their sheets, or why one has none.
+    pub fn fabrics(&self, unit: Range<usize>) -> Vec<Result<Fabric, Failure>> {
+        let kept = unit.clone().map(|at| self.entries[at].take()).collect::<Option<Vec<_>>>();
+        let inputs = kept.unwrap_or_else(|| self.read_again(self.entries[unit.start].origin));
+        let mut inputs = inputs.into_iter();
+        unit.map(|at| self.fabric(at, inputs.next())).collect()
+    }
+
+    fn read_again(&self, origin: Origin) -> Vec<FabricInput> {
+        match origin {
+            Origin::Group(group) => self.library.read(group, &|_: &Path| ()).0,
+            Origin::Memory(at) => match &self.memory[at] {
+                Input::Memory { name, bytes } => {
+                    fabric_in_memory(name, bytes, &self.reading).into_iter().map(|read| read.0).collect()
+                }
+                Input::Path(_) => Vec::new(),
+            },
+        }
+    }
+
+    fn fabric(&self, at: usize, input: Option<FabricInput>) -> Result<Fabric, Failure> {
+        let changed = || {
+            Failure::new("O063", format!("{} changed while the run was going on", self.name(at)))
+                .at(Place::file(self.path(at)))
+                .hint("run again when nothing writes there")
+        };
+        let input = input.ok_or_else(changed)?;
+        if digest_of(&input)? != self.entries[at].inputs {
+            return Err(changed());
+        }
+        let mut sheet = characterise(&input, &self.evaluation);
+        let Named { name, findings } = self.names[at].clone();
+        sheet.name = name;
+        sheet.findings.extend(findings);
+        Ok(Fabric { path: input.path, sheet })
+    }
+}
+
+impl Entry {
+    fn new(origin: Origin, fabric: FabricInput, keep: bool) -> Result<(Self, Named), Failure> {
+        let named = Named::new(fabric.name.as_str());
+        let (path, inputs) = (Arc::from(fabric.path.as_path()), digest_of(&fabric)?);
+        let kept = Mutex::new(keep.then(|| Box::new(fabric)));
+        Ok((Self { origin, path, inputs, kept }, named))
+    }
+
+    /// What was kept of the first reading; once.
+    fn take(&self) -> Option<FabricInput> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner).take().map(|kept| *kept)
+    }
+}

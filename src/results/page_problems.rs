@@ -1,0 +1,121 @@
+//! Problems of a batch by their codes, gathered one after the other.
+
+use std::collections::BTreeSet;
+
+use crate::finding::explain;
+use crate::report::html::{Problem, ProblemGroup, local};
+use crate::report::table::ProblemRow;
+
+/// Of a linear solve beyond its meaning: it holds of cloth as such and is said once.
+pub(super) const BEYOND_LINEAR: &str = "S101";
+
+/// Most lines and names of a code that are kept; all of them are in `problems.csv`.
+const KEPT: usize = 1000;
+
+/// Gathers the rows of `problems.csv`, and keeps what the page shows of them.
+#[derive(Default)]
+pub(crate) struct Problems(Vec<OfCode>);
+
+/// The problems of one code.
+#[derive(Default)]
+struct OfCode {
+    code: String,
+    count: usize,
+    /// Names of the fabrics that it concerns.
+    fabrics: BTreeSet<String>,
+    /// Where it was found, of linear solves beyond their meaning.
+    places: BTreeSet<String>,
+    lines: Vec<Problem>,
+}
+
+impl Problems {
+    /// Adds a row.
+    pub fn add(&mut self, row: &ProblemRow) {
+        let at = self.0.iter().position(|group| group.code == row.code).unwrap_or_else(|| {
+            self.0.push(OfCode { code: row.code.clone(), ..OfCode::default() });
+            self.0.len() - 1
+        });
+        self.0[at].add(row);
+    }
+
+    /// The groups: what failed first, then in the order of the rows; linear solves beyond their meaning last.
+    /// `fabrics` is the number of all fabrics.
+    pub fn groups(mut self, fabrics: usize) -> Vec<ProblemGroup> {
+        let is_error = |code: &str| explain(code).is_some_and(|e| e.kind == "error");
+        self.0.sort_by_key(|group| (group.code == BEYOND_LINEAR, !is_error(&group.code)));
+        self.0.into_iter().map(|group| group.made(fabrics)).collect()
+    }
+}
+
+impl OfCode {
+    fn add(&mut self, row: &ProblemRow) {
+        self.count += 1;
+        if let Some(fabric) = row.fabric.as_ref().filter(|_| self.fabrics.len() <= KEPT) {
+            self.fabrics.insert(fabric.clone());
+        }
+        if self.code == BEYOND_LINEAR {
+            self.places.insert(row.place.clone());
+        } else if self.lines.len() < KEPT {
+            self.lines.push(Problem {
+                fabric: row.fabric.clone(),
+                place: row.place.clone(),
+                message: row.message.clone(),
+            });
+        }
+    }
+
+    fn made(self, fabrics: usize) -> ProblemGroup {
+        let mut count = match self.fabrics.len() {
+            0 if self.count == 1 => "once".to_string(),
+            0 => format!("{} times", self.count),
+            some if some > KEPT => format!("more than {KEPT} of {fabrics} fabrics"),
+            some => format!("{some} of {fabrics} fabrics"),
+        };
+        if !self.places.is_empty() {
+            let places: Vec<String> = self.places.iter().map(|place| local(place)).collect();
+            count += &format!(", in {}", places.join(", "));
+        } else if self.count > self.lines.len() {
+            count += &format!("; the first {KEPT} of {} here, all in problems.csv", self.count);
+        }
+        ProblemGroup { code: self.code, count, lines: self.lines }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(code: &str, fabric: Option<&str>) -> ProblemRow {
+        ProblemRow {
+            code: code.into(),
+            place: "cases/plate.toml".into(),
+            message: "m".into(),
+            fabric: fabric.map(String::from),
+        }
+    }
+
+    #[test]
+    fn linear_solves_beyond_their_meaning_are_told_once_and_last_and_errors_first() {
+        let mut problems = Problems::default();
+        for (code, fabric) in [("S101", Some("a")), ("K011", Some("b")), ("R002", None), ("S101", Some("b"))]
+        {
+            problems.add(&row(code, fabric));
+        }
+        [row("S101", Some("b")), row("K011", Some("b"))].iter().for_each(|row| problems.add(row));
+        let groups = problems.groups(3);
+        let told: Vec<(&str, &str, usize)> =
+            groups.iter().map(|g| (g.code.as_str(), g.count.as_str(), g.lines.len())).collect();
+        let beyond = ("S101", "2 of 3 fabrics, in cases/plate.toml", 0);
+        assert_eq!(told, [("R002", "once", 1), ("K011", "1 of 3 fabrics", 2), beyond]);
+    }
+
+    #[test]
+    fn of_a_code_that_is_everywhere_the_first_lines_are_kept_and_the_rest_is_counted() {
+        let mut problems = Problems::default();
+        (0..1500).for_each(|i| problems.add(&row("K011", Some(&format!("fabric {i}")))));
+        let groups = problems.groups(1500);
+        assert_eq!((groups.len(), groups[0].lines.len()), (1, 1000));
+        let count = "more than 1000 of 1500 fabrics; the first 1000 of 1500 here, all in problems.csv";
+        assert_eq!(groups[0].count, count);
+    }
+}

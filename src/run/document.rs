@@ -1,0 +1,87 @@
+//! `run.json`: version, options and the hashes of what was read.
+
+use std::cell::RefCell;
+
+use serde::ser::SerializeSeq;
+use serde::{Serialize, Serializer};
+
+use super::settings::RunSettings;
+use crate::case::{Case, SolverChoice};
+use crate::instrument::Source;
+use crate::results::{Failure, FileEntry, Job, ReadingEntry, readable};
+
+/// `kesf.run/1`. The lists of files are written as they come: of a large library they are long.
+#[derive(Serialize)]
+pub(super) struct RunDocument<'d> {
+    schema: &'static str,
+    version: &'static str,
+    options: OptionsEntry,
+    /// Files of measurements.
+    inputs: Streamed<'d, Source>,
+    /// Files about fabrics.
+    fabrics: Streamed<'d, FileEntry>,
+    cases: Vec<CaseEntry>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    date: Option<String>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct OptionsEntry {
+    inputs: Vec<String>,
+    charts: bool,
+    drape: bool,
+    strict: bool,
+    solver: Option<SolverChoice>,
+    evaluation: ReadingEntry,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct CaseEntry {
+    name: String,
+    #[serde(flatten)]
+    file: FileEntry,
+}
+
+/// A list whose entries are made while they are written; once.
+struct Streamed<'d, T>(RefCell<Option<Entries<'d, T>>>);
+
+/// The entries of a list, one after the other.
+type Entries<'d, T> = Box<dyn Iterator<Item = Result<T, Failure>> + 'd>;
+
+impl<T: Serialize> Serialize for Streamed<'_, T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut list = serializer.serialize_seq(None)?;
+        for entry in self.0.take().into_iter().flatten() {
+            list.serialize_element(&entry.map_err(serde::ser::Error::custom)?)?;
+        }
+        list.end()
+    }
+}
+
+/// The document of a run.
+pub(super) fn document<'d>(
+    job: &Job,
+    settings: &RunSettings,
+    cases: impl Iterator<Item = &'d Case>,
+    sources: impl Iterator<Item = Result<Source, Failure>> + 'd,
+    stated: impl Iterator<Item = Result<FileEntry, Failure>> + 'd,
+) -> RunDocument<'d> {
+    let case = |c: &Case| CaseEntry { name: c.name.clone(), file: FileEntry::of(&c.path) };
+    let inputs = readable(job.inputs.iter().map(|input| input.path()));
+    RunDocument {
+        schema: "kesf.run/1",
+        version: env!("CARGO_PKG_VERSION"),
+        options: OptionsEntry {
+            inputs: inputs.into_iter().map(|path| path.into_owned()).collect(),
+            charts: settings.charts,
+            drape: settings.drape,
+            strict: settings.strict,
+            solver: job.solver,
+            evaluation: job.reading.entry(),
+        },
+        inputs: Streamed(RefCell::new(Some(Box::new(sources)))),
+        fabrics: Streamed(RefCell::new(Some(Box::new(stated)))),
+        cases: cases.map(case).collect(),
+        date: settings.stamp.clone(),
+    }
+}

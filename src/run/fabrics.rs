@@ -1,0 +1,276 @@
+//! Every fabric with its cases: read, evaluated, simulated, written and dropped, one at a time on each thread.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use serde_json::json;
+
+use super::settings::RunSettings;
+use super::work::RunWork;
+use crate::case::{Case, Outline};
+use crate::finding::Finding;
+use crate::platform::map_several;
+use crate::results::{
+    Fabric, FabricReport, Failure, FileEntry, Folder, Job, Observer, Record, Shared, Task, hash_of,
+    is_within, named_fabric, without_fabric, without_law,
+};
+
+/// What is known of a fabric once its files are written.
+pub(super) struct Made {
+    pub failures: Vec<Failure>,
+    pub is_useful: bool,
+    pub fails_a_check: bool,
+    /// Whether an earlier run had made it.
+    pub resumed: bool,
+    /// What could not be written, for JSON cannot hold it.
+    pub held: Option<Box<Record>>,
+}
+
+/// What the fabrics are to a case.
+#[derive(Default)]
+struct Tally {
+    suits_any: bool,
+    lacked_by_any: bool,
+    tasks: usize,
+    /// Fabrics that it is for, and that have no law, by their places.
+    without: BTreeMap<usize, String>,
+}
+
+/// A case with what all of its tasks share.
+struct CaseWork<'c> {
+    case: &'c Case,
+    shared: Arc<Shared<'c>>,
+    /// The fabric that it names.
+    named: Option<PathBuf>,
+    /// Hash of what it says, and of its mesh.
+    key: String,
+    tally: Mutex<Tally>,
+}
+
+/// The work on all fabrics.
+pub(super) struct Workshop<'c> {
+    work: &'c RunWork,
+    folder: &'c Folder<'c>,
+    observer: &'c Observer<'c>,
+    /// Cases without constants of their own.
+    jobs: Vec<CaseWork<'c>>,
+    /// Hash of program and settings.
+    base: String,
+    fresh: bool,
+    with_fields: bool,
+    /// Set when the results cannot be written: what is still to do is left.
+    ended: AtomicBool,
+}
+
+impl<'c> Workshop<'c> {
+    /// Nothing is made yet.
+    pub fn new(
+        (job, settings): (&Job, &RunSettings),
+        work: &'c RunWork,
+        folder: &'c Folder<'c>,
+        observer: &'c Observer<'c>,
+    ) -> Result<Self, Failure> {
+        let of_fabrics = work.cases.iter().filter(|case| case.section().is_none());
+        let jobs = of_fabrics.map(|case| CaseWork::new(case, work)).collect::<Result<_, _>>()?;
+        let base = json!({
+            "record": 1,
+            "program": settings.program.as_deref().unwrap_or(env!("CARGO_PKG_VERSION")),
+            "charts": settings.charts,
+            "bom": settings.bom,
+            "evaluation": job.reading.entry(),
+        });
+        Ok(Self {
+            work,
+            folder,
+            observer,
+            jobs,
+            base: hash_of(&base)?,
+            fresh: settings.fresh,
+            with_fields: folder.fields(),
+            ended: AtomicBool::new(false),
+        })
+    }
+
+    /// Makes every fabric, in parallel; in name order.
+    pub fn run(&self) -> Result<Vec<Made>, Failure> {
+        let fabrics = &self.work.catalogue;
+        let mine = |at: usize| self.jobs.iter().filter(move |job| job.is_for(self.work, at));
+        let stages = |at: usize| mine(at).map(|job| job.task(None).stages()).sum::<usize>();
+        let steps = (0..fabrics.len()).map(|at| 1 + stages(at)).sum();
+        let made =
+            self.observer.part("fabrics", steps, || map_several(fabrics.units(), |unit| self.unit(unit)))?;
+        made.into_iter().flatten().collect()
+    }
+
+    /// The fabrics that are read together.
+    fn unit(&self, unit: Range<usize>) -> Vec<Result<Made, Failure>> {
+        let finished: Vec<_> = unit.clone().map(|at| self.finished(at)).collect();
+        if finished.iter().all(|found| matches!(found, Ok(Some(_)))) {
+            return finished.into_iter().flatten().flatten().map(Ok).collect();
+        }
+        if self.is_over() {
+            return vec![Err(Failure::interrupted())];
+        }
+        let fabrics = self.work.catalogue.fabrics(unit.clone()).into_iter();
+        let all = unit.zip(fabrics).zip(finished).collect();
+        map_several(all, |((at, fabric), finished)| match finished {
+            Ok(Some(made)) => Ok(made),
+            Err(failure) => Err(failure),
+            Ok(None) if self.is_over() => Err(Failure::interrupted()),
+            Ok(None) => {
+                let made = self.make(at, fabric);
+                self.ended.fetch_or(made.is_err(), Ordering::Relaxed);
+                self.observer.step();
+                made
+            }
+        })
+    }
+
+    fn is_over(&self) -> bool {
+        self.ended.load(Ordering::Relaxed) || self.observer.go_on().is_err()
+    }
+
+    /// Hash of all that the results of a fabric depend on.
+    fn key(&self, at: usize, with_fields: bool) -> Result<String, Failure> {
+        let fabrics = &self.work.catalogue;
+        let cases = self.jobs.iter().filter(|job| job.is_for(self.work, at)).map(|job| &job.key);
+        hash_of(&json!({
+            "base": self.base,
+            "fabric": fabrics.name(at),
+            "inputs": fabrics.inputs(at),
+            "cases": cases.collect::<Vec<_>>(),
+            "fields": with_fields,
+        }))
+    }
+
+    /// A fabric that an earlier run has made of the same inputs; fields that are not wanted do no harm.
+    fn finished(&self, at: usize) -> Result<Option<Made>, Failure> {
+        if self.fresh {
+            return Ok(None);
+        }
+        let (sink, name) = (self.folder.sink(), self.work.catalogue.name(at));
+        let mut found = Record::finished(sink, name, &self.key(at, self.with_fields)?)?;
+        if found.is_none() && !self.with_fields {
+            found = Record::finished(sink, name, &self.key(at, true)?)?;
+        }
+        Ok(found.map(|record| {
+            self.count(at, &record);
+            self.observer.step();
+            Made { resumed: true, ..Made::of(&record) }
+        }))
+    }
+
+    fn make(&self, at: usize, fabric: Result<Fabric, Failure>) -> Result<Made, Failure> {
+        let fabrics = &self.work.catalogue;
+        let fabric = match fabric {
+            Ok(fabric) => fabric,
+            Err(failure) => {
+                let report = FabricReport::failed(fabrics.name(at), failure);
+                let record = Record::new("", Vec::new(), Vec::new(), Default::default(), report);
+                return Ok(Made { held: Some(Box::new(record.clone())), ..Made::of(&record) });
+            }
+        };
+        Record::begin(self.folder.sink(), &fabric.sheet.name)?;
+        let names = |wanted: &dyn Fn(&Case) -> bool| -> Vec<String> {
+            self.jobs.iter().filter(|job| wanted(job.case)).map(|job| job.case.name.clone()).collect()
+        };
+        let of_cases =
+            [names(&|case| case.suits(&fabric.sheet)), names(&|case| case.lacks_law(&fabric.sheet))];
+        let mine = self.jobs.iter().filter(|job| job.is_for(self.work, at) && job.case.suits(&fabric.sheet));
+        let tasks: Vec<Task> = mine.map(|job| job.task(Some(&fabric))).collect();
+        let folder = self.folder.listing();
+        let report = FabricReport::new(&fabric, &tasks, &folder, self.observer);
+        drop(tasks);
+        self.observer.go_on()?;
+        let key = self.key(at, self.with_fields)?;
+        let record = Record::new(&key, folder.into_names(), fabric.sheet.sources, of_cases, report);
+        self.count(at, &record);
+        let made = Made::of(&record);
+        Ok(Made { held: record.write(self.folder.sink())?, ..made })
+    }
+
+    /// Counts what a fabric is to the cases.
+    fn count(&self, at: usize, record: &Record) {
+        for job in &self.jobs {
+            let (suits, lacks) =
+                (record.suited.contains(&job.case.name), record.lacking.contains(&job.case.name));
+            let is_for = job.is_for(self.work, at);
+            let mut tally = job.tally();
+            tally.suits_any |= suits;
+            tally.lacked_by_any |= lacks;
+            tally.tasks += usize::from(is_for && suits);
+            if is_for && lacks {
+                tally.without.insert(at, record.report.name.clone());
+            }
+        }
+    }
+
+    /// What is to be said of fabrics without the law that a case needs.
+    pub fn without_law(&self) -> Vec<Finding> {
+        let names = |job: &CaseWork| job.tally().without.values().cloned().collect();
+        self.jobs.iter().filter_map(|job| without_law(job.case, names(job))).collect()
+    }
+
+    /// The cases that a batch of these fabrics is for: one for FAB records or laws is nothing to fabrics without them.
+    pub fn suitable(&self) -> Vec<&'c Case> {
+        let left_out = |case: &Case| {
+            let job = self.jobs.iter().find(|job| std::ptr::eq(job.case, case));
+            job.is_some_and(|job| {
+                let tally = job.tally();
+                (case.is_for_fab_records() || tally.lacked_by_any) && !tally.suits_any
+            })
+        };
+        self.work.cases.iter().filter(|case| !left_out(case)).collect()
+    }
+
+    /// Of the suitable cases, those that found no fabric.
+    pub fn without_fabric(&self, suitable: &[&Case]) -> Vec<Failure> {
+        let idle = |job: &&CaseWork| {
+            let is_there = job.named.as_ref().is_none_or(|path| path.exists());
+            is_there && job.tally().tasks == 0 && suitable.iter().any(|case| std::ptr::eq(*case, job.case))
+        };
+        let failure = |job: &CaseWork| without_fabric(job.case, !job.tally().without.is_empty());
+        self.jobs.iter().filter(idle).map(failure).collect()
+    }
+}
+
+impl Made {
+    fn of(record: &Record) -> Self {
+        let FabricReport { failures, is_useful, fails_a_check, .. } = &record.report;
+        Self {
+            failures: failures.clone(),
+            is_useful: *is_useful,
+            fails_a_check: *fails_a_check,
+            resumed: false,
+            held: None,
+        }
+    }
+}
+
+impl<'c> CaseWork<'c> {
+    fn new(case: &'c Case, work: &RunWork) -> Result<Self, Failure> {
+        let mesh = case.sheet().and_then(|problem| match &problem.sheet.outline {
+            Outline::File { path, .. } => Some(FileEntry::of(&case.path.with_file_name("").join(path))),
+            Outline::Rectangle { .. } | Outline::Disc { .. } | Outline::Annulus(_) => None,
+        });
+        let key = hash_of(&json!({ "case": format!("{case:?}"), "mesh": mesh }))?;
+        let shared = Arc::new(Shared::new(work.threads_of_task(), work.limits));
+        Ok(Self { case, shared, named: named_fabric(case), key, tally: Mutex::default() })
+    }
+
+    /// Whether the case is for a fabric, if that has what it needs.
+    fn is_for(&self, work: &RunWork, at: usize) -> bool {
+        self.named.as_ref().is_none_or(|named| is_within(work.catalogue.path(at), named))
+    }
+
+    fn task<'f>(&self, fabric: Option<&'f Fabric>) -> Task<'f, 'c> {
+        Task::new(self.case, fabric, Arc::clone(&self.shared))
+    }
+
+    fn tally(&self) -> MutexGuard<'_, Tally> {
+        self.tally.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

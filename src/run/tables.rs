@@ -1,0 +1,285 @@
+//! Tables, pages and charts over all fabrics, from their records: one in memory at a time.
+
+use std::collections::BTreeMap;
+
+use super::document::document;
+use super::fabrics::Made;
+use super::own::Own;
+use super::settings::RunSettings;
+use super::work::RunWork;
+use crate::case::Case;
+use crate::finding::Finding;
+use crate::instrument::Source;
+use crate::report::CsvTable;
+use crate::report::chart::{self, ParityPoint};
+use crate::report::html::{Figure, html};
+use crate::report::table::{FabricRow, PredictionRow, ProblemRow, problem_row};
+#[cfg(feature = "tables")]
+use crate::report::workbook;
+use crate::results::{
+    Benchmark, Columns, DrapePoint, FABRICS_OF_PAGE, FabricReport, Failure, FileEntry, Folder, Head, Job,
+    Observer, Overview, Problems, Record, SinkFile, Table, bracket, checks, fabrics_page, page, unread_of,
+    write_drape_parity, write_friction_parity,
+};
+
+/// Fabrics that the overview for people lists; all of them are in `fabrics.csv`.
+pub(super) const LISTED: usize = 200;
+
+/// What there is to write about.
+pub(super) struct Results<'r, 'w> {
+    pub work: &'w RunWork,
+    pub folder: &'r Folder<'r>,
+    pub made: &'r [Made],
+    pub own: &'r [Own<'w>],
+    /// Of inputs and tasks.
+    pub failures: &'r [Failure],
+    pub without_law: &'r [Finding],
+    /// Cases that were not left out.
+    pub cases: &'r [&'w Case],
+}
+
+/// The files that get rows of every fabric.
+struct Tables<'s> {
+    fabrics: Table<'s, FabricRow>,
+    predictions: Table<'s, PredictionRow>,
+    problems: CsvTable<Box<dyn SinkFile + 's>>,
+    /// What the page shows of the problems.
+    shown: Problems,
+    /// The rows once more, for a workbook.
+    #[cfg(feature = "tables")]
+    workbook: Option<Rows>,
+}
+
+/// The rows of a workbook.
+#[cfg(feature = "tables")]
+#[derive(Default)]
+struct Rows {
+    fabrics: Vec<FabricRow>,
+    predictions: Vec<PredictionRow>,
+    problems: Vec<ProblemRow>,
+}
+
+/// What is kept of all fabrics together.
+#[derive(Default)]
+struct Kept {
+    parity: Vec<ParityPoint>,
+    re_extracted: Vec<ParityPoint>,
+    drapes: Vec<DrapePoint>,
+    /// Reports for the page that is being filled.
+    reports: Vec<FabricReport>,
+    /// Names of the pages that are full.
+    pages: Vec<String>,
+}
+
+impl Results<'_, '_> {
+    /// Writes everything that is about all fabrics; the tables for people.
+    pub fn write(
+        &self,
+        job: &Job,
+        settings: &RunSettings,
+        observer: &Observer,
+    ) -> Result<Vec<Columns>, Failure> {
+        let lost = self.unread();
+        let mut tables = self.begin(settings)?;
+        let mut overview = Overview::new(self.cases.iter().copied());
+        let mut kept = Kept::default();
+        for at in 0..self.made.len() {
+            observer.go_on()?;
+            let mut report = self.record(at)?.report;
+            report.findings.iter().for_each(|finding| observer.found_in_batch(finding));
+            tables.add(&report)?;
+            if let Some(status) = lost.get(report.name.as_str()).filter(|_| report.status == "ok") {
+                report.status.clone_from(status);
+            }
+            if at < LISTED {
+                overview.row(&report);
+            }
+            self.keep(report, &mut kept)?;
+        }
+        for own in self.own {
+            own.findings().into_iter().for_each(|finding| observer.found_in_batch(finding));
+        }
+        let problems = self.finish(tables)?;
+        self.write_document(job, settings)?;
+        let benchmarks: Vec<Benchmark> = self.own.iter().filter_map(Own::benchmark).collect();
+        let bracket = bracket(&kept.drapes);
+        self.write_pages(kept, &benchmarks, problems)?;
+        let checks = checks(benchmarks.iter().map(|b| b.result));
+        Ok([Some(overview.table()), checks, bracket].into_iter().flatten().collect())
+    }
+
+    /// The record of a fabric.
+    fn record(&self, at: usize) -> Result<Record, Failure> {
+        record(self.folder, self.work, self.made, at)
+    }
+
+    /// Status of the fabrics of which a file could not be read.
+    fn unread(&self) -> BTreeMap<String, String> {
+        let rows = self.unread_rows().into_iter().rev();
+        rows.map(|row| (row.fabric, row.status)).collect()
+    }
+
+    /// Rows of inputs that could not be read.
+    pub fn unread_rows(&self) -> Vec<FabricRow> {
+        let fabrics = &self.work.catalogue;
+        let known: Vec<_> = (0..fabrics.len()).map(|at| (fabrics.path(at), fabrics.name(at))).collect();
+        unread_of(&known, &self.work.failures)
+    }
+
+    /// Rows of findings that belong to no fabric.
+    pub fn problems_of_batch(&self) -> Vec<ProblemRow> {
+        let findings = self.work.catalogue.findings.iter().chain(self.without_law);
+        findings.map(|finding| problem_row(finding, "")).collect()
+    }
+
+    /// Rows of findings of cases with constants of their own.
+    pub fn problems_of_own(&self) -> Vec<ProblemRow> {
+        let rows = |own: &Own| -> Vec<ProblemRow> {
+            own.findings().into_iter().map(|finding| problem_row(finding, &own.task.case.name)).collect()
+        };
+        self.own.iter().flat_map(rows).collect()
+    }
+
+    fn begin(&self, settings: &RunSettings) -> Result<Tables<'_>, Failure> {
+        let mut tables = Tables {
+            fabrics: self.folder.table("fabrics")?,
+            predictions: self.folder.table("predictions")?,
+            problems: self.folder.csv_table::<ProblemRow>("problems.csv")?,
+            shown: Problems::default(),
+            #[cfg(feature = "tables")]
+            workbook: settings.workbook.then(Rows::default),
+        };
+        for failure in self.failures {
+            tables.problem(failure.row())?;
+        }
+        self.problems_of_batch().into_iter().try_for_each(|row| tables.problem(row))?;
+        Ok(tables)
+    }
+
+    /// Writes what is about no fabric, and closes the tables; what the page shows of the problems.
+    fn finish(&self, mut tables: Tables) -> Result<Problems, Failure> {
+        self.unread_rows().iter().try_for_each(|row| tables.fabric(row))?;
+        for own in self.own {
+            own.rows().iter().try_for_each(|row| tables.prediction(row))?;
+        }
+        self.problems_of_own().into_iter().try_for_each(|row| tables.problem(row))?;
+        #[cfg(feature = "tables")]
+        if let Some(Rows { fabrics, predictions, problems }) = &tables.workbook {
+            let sheets = workbook::Tables { fabrics, predictions, problems };
+            self.folder.write("results.xlsx", &workbook::workbook(&sheets)?)?;
+        }
+        tables.fabrics.commit()?;
+        tables.predictions.commit()?;
+        tables.problems.finish()?.commit()?;
+        Ok(tables.shown)
+    }
+
+    /// Keeps what charts and pages need of a fabric, and writes a page that is full.
+    fn keep(&self, report: FabricReport, kept: &mut Kept) -> Result<(), Failure> {
+        if self.folder.charts() {
+            kept.parity.extend(report.parity.iter().cloned());
+            kept.re_extracted.extend(report.re_extracted.iter().cloned());
+        }
+        kept.drapes.extend(report.drapes.iter().cloned());
+        kept.reports.push(report);
+        let is_full = kept.reports.len() == FABRICS_OF_PAGE && self.made.len() > FABRICS_OF_PAGE;
+        if is_full { self.write_page_of_fabrics(kept) } else { Ok(()) }
+    }
+
+    fn write_page_of_fabrics(&self, kept: &mut Kept) -> Result<(), Failure> {
+        let reports = std::mem::take(&mut kept.reports);
+        let number = kept.pages.len() + 1;
+        let name = format!("fabrics-{number}.html");
+        self.folder.write(&name, html(&fabrics_page(&reports, number)).as_bytes())?;
+        kept.pages.push(name);
+        Ok(())
+    }
+
+    fn write_pages(
+        &self,
+        mut kept: Kept,
+        benchmarks: &[Benchmark],
+        problems: Problems,
+    ) -> Result<(), Failure> {
+        let figures = self.write_parity(&kept)?;
+        if !kept.pages.is_empty() && !kept.reports.is_empty() {
+            self.write_page_of_fabrics(&mut kept)?;
+        }
+        let Kept { drapes, reports, pages, .. } = kept;
+        let fabrics = self.made.len();
+        let problems = problems.groups(fabrics);
+        let head = Head { fabrics, figures, problems, drapes: &drapes, pages: &pages };
+        self.folder.write("index.html", html(&page(&reports, benchmarks, head)).as_bytes())
+    }
+
+    /// Charts over all fabrics.
+    fn write_parity(&self, kept: &Kept) -> Result<Vec<Figure>, Failure> {
+        let (folder, mut figures) = (self.folder, Vec::new());
+        // The section is made of the measured value, so this is a closed loop and must say so.
+        let subtitle = "closed loop: the measured stiffness, seen again through a simulated test (clamps, edges, element)";
+        let draw = || chart::parity(&kept.parity, "Simulated against measured", subtitle);
+        if folder.chart("parity.png", draw)? {
+            figures.push(figure("Simulated against measured stiffness", "parity.png"));
+        }
+        figures.extend(write_friction_parity(folder, &kept.re_extracted)?);
+        if let Some(picture) = write_drape_parity(folder, &kept.drapes)? {
+            figures.push(figure("Simulated against measured drape", &picture));
+        }
+        Ok(figures)
+    }
+
+    fn write_document(&self, job: &Job, settings: &RunSettings) -> Result<(), Failure> {
+        let fabrics = &self.work.catalogue;
+        let sources = (0..self.made.len()).flat_map(|at| match self.record(at) {
+            Ok(record) => record.sources.into_iter().map(Ok::<Source, Failure>).collect(),
+            Err(failure) => vec![Err(failure)],
+        });
+        let stated = (0..fabrics.len()).map(|at| fabrics.path(at).join("fabric.toml"));
+        let stated = stated.filter(|path| path.is_file()).map(|path| Ok(FileEntry::of(&path)));
+        self.folder.stream("run.json", &document(job, settings, self.cases.iter().copied(), sources, stated))
+    }
+}
+
+/// The record of a fabric of a run.
+pub(super) fn record(folder: &Folder, work: &RunWork, made: &[Made], at: usize) -> Result<Record, Failure> {
+    if let Some(held) = &made[at].held {
+        return Ok((**held).clone());
+    }
+    let name = work.catalogue.name(at);
+    Record::read(folder.sink(), name)?.ok_or_else(|| {
+        Failure::new("O064", format!("the record of {name} was changed while the run was going on"))
+            .hint("run again when nothing else writes into the folder of results")
+    })
+}
+
+impl Tables<'_> {
+    fn add(&mut self, report: &FabricReport) -> Result<(), Failure> {
+        report.rows.iter().try_for_each(|row| self.fabric(row))?;
+        report.predictions.iter().try_for_each(|row| self.prediction(row))?;
+        report.problems().try_for_each(|row| self.problem(row))
+    }
+
+    fn fabric(&mut self, row: &FabricRow) -> Result<(), Failure> {
+        #[cfg(feature = "tables")]
+        self.workbook.iter_mut().for_each(|rows| rows.fabrics.push(row.clone()));
+        self.fabrics.row(row)
+    }
+
+    fn prediction(&mut self, row: &PredictionRow) -> Result<(), Failure> {
+        #[cfg(feature = "tables")]
+        self.workbook.iter_mut().for_each(|rows| rows.predictions.push(row.clone()));
+        self.predictions.row(row)
+    }
+
+    fn problem(&mut self, row: ProblemRow) -> Result<(), Failure> {
+        self.problems.row(&row)?;
+        self.shown.add(&row);
+        #[cfg(feature = "tables")]
+        self.workbook.iter_mut().for_each(|rows| rows.problems.push(row.clone()));
+        Ok(())
+    }
+}
+
+fn figure(caption: &str, picture: &str) -> Figure {
+    Figure { caption: caption.into(), picture: picture.into() }
+}

@@ -1,0 +1,282 @@
+//! Runs that end early, and those after them.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::{code, kesf, stderr, tree, write};
+
+/// Fabrics of the library that is run.
+const FABRICS: usize = 12;
+
+/// Names of files that hold nothing for people.
+fn is_hidden(name: &str) -> bool {
+    name.rsplit('/').next().is_some_and(|file| file.starts_with('.'))
+}
+
+/// A library with a case, and where its results go.
+struct Library {
+    folder: tempfile::TempDir,
+}
+
+impl Library {
+    fn new() -> Self {
+        let library = Self { folder: tempfile::tempdir().unwrap() };
+        for k in 0..FABRICS {
+            library.write_fabric(k, 0.1 + 0.01 * k as f64);
+        }
+        let case =
+            fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/cantilever_strip.toml"));
+        write(library.folder.path(), "case.toml", &case.unwrap());
+        library
+    }
+
+    fn write_fabric(&self, k: usize, rigidity: f64) {
+        let folder = self.folder.path().join(format!("lab/cloth{k:02}"));
+        write(&folder, "fabric.toml", "areal_density = \"120 g/m²\"\n");
+        let rows = format!("parameter,unit,warp,weft\nB,gf·cm²/cm,{rigidity},{}\n", 0.5 * rigidity);
+        write(&folder, "t.csv", &rows);
+    }
+
+    fn command(&self, out: &str, more: &[&str]) -> Command {
+        let path = |name: &str| self.folder.path().join(name);
+        let mut command = kesf();
+        command.args(["run", "--no-charts"]).arg(path("lab")).arg(path("case.toml")).arg("-o").arg(path(out));
+        command.args(more);
+        command
+    }
+
+    fn run(&self, out: &str, more: &[&str]) -> Output {
+        let done = self.command(out, more).output().unwrap();
+        assert!([0, 1].contains(&code(&done)), "{}", stderr(&done));
+        done
+    }
+
+    fn out(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// What people see of the results.
+    fn shown(&self, out: &str) -> BTreeMap<String, Vec<u8>> {
+        tree(&self.out(out)).into_iter().filter(|(name, _)| !is_hidden(name)).collect()
+    }
+}
+
+/// How many fabrics a run found done.
+fn resumed(done: &Output) -> usize {
+    let told = stderr(done);
+    let line = told.lines().find(|line| line.contains("as an earlier run left them"));
+    line.map_or(0, |line| line.split(' ').next().unwrap().parse().unwrap())
+}
+
+/// A file that is there is whole: what ends in `.json`, `.csv`, `.parquet`, `.vtu`, `.png` or `.html` is one.
+fn assert_whole(folder: &Path, when: &str) {
+    for (name, bytes) in tree(folder).into_iter().filter(|(name, _)| !is_hidden(name)) {
+        let text = String::from_utf8_lossy(&bytes);
+        let whole = match name.rsplit('.').next().unwrap() {
+            "json" => serde_json::from_slice::<serde_json::Value>(&bytes).is_ok(),
+            "csv" => {
+                text.ends_with('\n') && csv::Reader::from_reader(&bytes[..]).records().all(|row| row.is_ok())
+            }
+            "parquet" => bytes.starts_with(b"PAR1") && bytes.ends_with(b"PAR1"),
+            "vtu" => text.trim_end().ends_with("</VTKFile>"),
+            "png" => bytes.ends_with(b"IEND\xaeB`\x82"),
+            "html" => text.trim_end().ends_with("</html>"),
+            ending => panic!("{when}: what is {name} ({ending})?"),
+        };
+        assert!(whole, "{when}: {name} is not whole ({} bytes)", bytes.len());
+    }
+}
+
+/// What has not changed is not computed again, and what has is.
+#[test]
+fn a_second_run_computes_what_has_changed_and_nothing_else() {
+    let library = Library::new();
+    assert_eq!(resumed(&library.run("out", &[])), 0);
+    let first = library.shown("out");
+    assert_eq!(resumed(&library.run("out", &[])), FABRICS);
+    assert_eq!(library.shown("out"), first);
+    assert_eq!(resumed(&library.run("out", &["--fresh"])), 0);
+    assert_eq!(library.shown("out"), first);
+
+    library.write_fabric(3, 0.5);
+    assert_eq!(resumed(&library.run("out", &[])), FABRICS - 1, "another measurement of one fabric");
+    library.run("anew", &[]);
+    assert_eq!(library.shown("out"), library.shown("anew"));
+    fs::remove_file(library.out("out/cloth05/case.json")).unwrap();
+    assert_eq!(resumed(&library.run("out", &[])), FABRICS - 1, "a file of one fabric is gone");
+    assert_eq!(library.shown("out"), library.shown("anew"));
+    let case = fs::read_to_string(library.out("case.toml")).unwrap();
+    write(
+        library.folder.path(),
+        "case.toml",
+        &case.replace("width = \"20 mm\"", "width = \"21 mm\"").replace("[\"20 mm\"", "[\"21 mm\""),
+    );
+    assert_eq!(resumed(&library.run("out", &[])), 0, "another case");
+    assert_ne!(library.shown("out"), library.shown("anew"));
+    write(library.folder.path(), "settings.toml", "");
+    let settings = library.out("settings.toml");
+    assert_eq!(
+        resumed(&library.run("out", &["--settings", settings.to_str().unwrap()])),
+        0,
+        "other settings"
+    );
+}
+
+/// What somebody changed in the results of an earlier run is not taken for ours.
+#[test]
+fn a_result_that_was_edited_is_not_kept_and_not_overwritten() {
+    let library = Library::new();
+    library.run("out", &[]);
+    fs::write(library.out("out/cloth01/sheet.json"), "edited").unwrap();
+    let done = library.command("out", &[]).output().unwrap();
+    assert_eq!(code(&done), 1, "{}", stderr(&done));
+    assert!(stderr(&done).contains("O002"), "{}", stderr(&done));
+    assert_eq!(resumed(&done), FABRICS - 1);
+    assert_eq!(fs::read_to_string(library.out("out/cloth01/sheet.json")).unwrap(), "edited");
+}
+
+/// Killed at many moments (`KESF_KILLS`, 10 by default): every file is whole each time, and the run after it gives
+/// what an undisturbed one gives, without computing what was done.
+#[cfg(unix)]
+#[test]
+fn a_run_that_is_killed_goes_on_where_it_was() {
+    let library = Library::new();
+    let start = Instant::now();
+    library.run("undisturbed", &["-j", "1"]);
+    let whole = start.elapsed();
+    let kills = std::env::var("KESF_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(10);
+    let (mut fresh, mut most) = (true, 0);
+    for kill in 0..kills {
+        if fresh && library.out("out").exists() {
+            fs::remove_dir_all(library.out("out")).unwrap();
+        }
+        // Moments spread over the run by the golden section.
+        let part = (0.618_034 * f64::from(kill)).fract();
+        let mut child =
+            library.command("out", &["-j", "1"]).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(whole.mul_f64(part));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        if library.out("out").exists() {
+            assert_whole(&library.out("out"), &format!("kill {kill}"));
+        }
+        // Every other time the next run goes on from there, and is killed too.
+        fresh = kill % 2 == 1;
+        if fresh {
+            let done = library.run("out", &["-j", "1"]);
+            most = most.max(resumed(&done));
+            assert_eq!(library.shown("out"), library.shown("undisturbed"), "after kill {kill}");
+            let left: Vec<String> = tree(&library.out("out"))
+                .into_keys()
+                .filter(|n| n.contains("/.kesf-") || n.starts_with(".kesf-"))
+                .collect();
+            let known = |name: &String| name.ends_with(".kesf-record.json") || name == ".kesf-manifest.json";
+            assert!(left.iter().all(known), "temporary files are left: {left:?}");
+        }
+    }
+    println!(
+        "{kills} kills over {:.1} s; at most {most} of {FABRICS} fabrics were found done",
+        whole.as_secs_f64()
+    );
+    assert!(most > 0, "what was done is known");
+}
+
+/// Two runs into one folder: one works, the other says so.
+#[test]
+fn two_runs_into_one_folder_do_not_mix() {
+    let library = Library::new();
+    let mut first =
+        library.command("out", &["-j", "1"]).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let journal = library.out("out/.kesf-journal");
+    let start = Instant::now();
+    while !journal.exists() && start.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let second = library.command("out", &[]).output().unwrap();
+    let ended_before = first.try_wait().unwrap().is_some();
+    assert!(first.wait().unwrap().success());
+    if !ended_before || code(&second) == 2 {
+        assert_eq!(code(&second), 2, "{}", stderr(&second));
+        assert!(stderr(&second).contains("O005"), "{}", stderr(&second));
+    }
+    library.run("alone", &[]);
+    assert_eq!(library.shown("out"), library.shown("alone"));
+}
+
+/// Standard output that is closed or full costs no result.
+#[cfg(target_os = "linux")]
+#[test]
+fn standard_output_that_takes_nothing_costs_no_result() {
+    let library = Library::new();
+    library.run("expected", &[]);
+    for (out, redirection) in [("closed", ">&-"), ("full", ">/dev/full"), ("pipe", "| head -c 1")] {
+        let command = library.command(out, &[]);
+        let quoted =
+            command.get_args().map(|a| format!("'{}'", a.to_str().unwrap())).collect::<Vec<_>>().join(" ");
+        let line = format!("{} {quoted} {redirection}", env!("CARGO_BIN_EXE_kesf"));
+        let done = Command::new("sh").args(["-c", &line]).output().unwrap();
+        let full = out == "full";
+        assert_eq!(code(&done), if full { 2 } else { 0 }, "{out}: {}", stderr(&done));
+        assert_eq!(stderr(&done).contains("O051"), full, "{out}: {}", stderr(&done));
+        assert_eq!(library.shown(out), library.shown("expected"), "{out}");
+    }
+}
+
+/// Disks of several sizes that fill up, and one that cannot be written to: an error that says so, every file whole,
+/// and when there is room the same run goes on.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_costs_no_whole_file() {
+    let library = Library::new();
+    library.run("expected", &[]);
+    let command = library.command("disk/out", &[]);
+    let quoted =
+        command.get_args().map(|a| format!("'{}'", a.to_str().unwrap())).collect::<Vec<_>>().join(" ");
+    let (kesf, disk) = (env!("CARGO_BIN_EXE_kesf"), library.out("disk"));
+    fs::create_dir(&disk).unwrap();
+    let (disk, kept) = (disk.display(), library.out("kept"));
+    let kept = kept.display();
+    let sizes: Vec<usize> = (0..6).map(|k| 40 << (2 * k)).collect();
+    let mut script = String::from("set -u\n");
+    for size in &sizes {
+        script += &format!(
+            "mount -t tmpfs -o size={size}k none '{disk}' || exit 77\n\
+             {kesf} {quoted} >/dev/null 2>'{kept}.err'; echo \"$? $(grep -c O001 '{kept}.err')\"\n\
+             mkdir -p '{kept}.{size}'; cp -r '{disk}/.' '{kept}.{size}/'\n\
+             mount -o remount,size=64m '{disk}'; {kesf} {quoted} >/dev/null 2>&1; echo \"again $?\"\n\
+             rm -rf '{kept}.whole.{size}'; cp -r '{disk}/out' '{kept}.whole.{size}'\n\
+             umount '{disk}'\n"
+        );
+    }
+    script += &format!(
+        "mount -t tmpfs -o ro none '{disk}' || exit 77\n{kesf} {quoted} >/dev/null 2>'{kept}.err'; echo \"$? $(grep -c O001 '{kept}.err')\"\n"
+    );
+    let done = Command::new("unshare").args(["-rm", "sh", "-c", &script]).output();
+    let Some(done) = done.ok().filter(|done| done.status.code() != Some(77) && !done.stdout.is_empty())
+    else {
+        return crate::common::skipped(
+            "a_full_disk_costs_no_whole_file",
+            "no file system can be mounted here",
+        );
+    };
+    let said = String::from_utf8_lossy(&done.stdout).into_owned();
+    let mut lines = said.lines();
+    let mut failed = 0;
+    for size in &sizes {
+        let first = lines.next().unwrap_or_else(|| panic!("{said} {}", stderr(&done)));
+        let (exit, told) = first.split_once(' ').unwrap();
+        assert!(exit == "0" || (["1", "2"].contains(&exit) && told != "0"), "{size} kB: {first}");
+        failed += usize::from(exit != "0");
+        assert_eq!(lines.next(), Some("again 0"), "{size} kB");
+        assert_whole(&library.out(&format!("kept.{size}")), &format!("{size} kB"));
+        let whole = library.shown(&format!("kept.whole.{size}"));
+        assert_eq!(whole, library.shown("expected"), "{size} kB, then room");
+    }
+    println!("{failed} of {} disks were too small", sizes.len());
+    assert!(failed > 0 && failed < sizes.len(), "{said}");
+    let read_only = lines.next().unwrap();
+    assert!(read_only.starts_with("2 ") && read_only != "2 0", "{read_only}");
+}
