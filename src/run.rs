@@ -65,6 +65,11 @@ pub struct RunReport {
 }
 
 impl RunReport {
+    /// Of inputs of which nothing could be read.
+    pub fn of_failures(failures: Vec<Failure>) -> Self {
+        Self { failures, ..Self::default() }
+    }
+
     /// Names of the fabrics, in name order.
     pub fn names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.fabrics.iter().map(|(name, _)| name.as_str())
@@ -139,7 +144,7 @@ pub fn run(
 ) -> Result<RunReport, Failure> {
     let work = read(job, settings, observer)?;
     if work.is_empty() {
-        return Ok(RunReport { failures: work.failures, ..RunReport::default() });
+        return Ok(RunReport::of_failures(work.failures));
     }
     write(job, settings, &work, sink, observer)
 }

@@ -67,5 +67,5 @@ fn units_of_parameters() -> Vec<(&'static str, &'static str, f64)> {
 /// The explanation of a code as JSON (`code`, `kind`, `title`, `cause`, `example`, `cure`), or None.
 #[pyfunction]
 fn explain(code: &str) -> PyResult<Option<String>> {
-    kesf::finding::explain(code).map(|explanation| told::json(explanation)).transpose()
+    kesf::finding::explain(code).map(told::json).transpose()
 }

@@ -84,7 +84,7 @@ pub fn run(
         let work = read(&job, &settings, observer)?;
         if work.is_empty() {
             let sink = MemorySink::default();
-            let report = RunReport { failures: work.failures, ..RunReport::default() };
+            let report = RunReport::of_failures(work.failures);
             return Ok((rows(&report, &sink)?, report, Files::new()));
         }
         let Some(out) = out.filter(|_| keep) else {

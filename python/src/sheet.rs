@@ -260,12 +260,15 @@ impl Sheet {
     }
 }
 
+/// Mean and unit of the parameters and directions of a sheet.
+type Cells = HashMap<(String, Option<String>), (Option<f64>, String)>;
+
 /// Columns `B_warp`, `T0`, `E_secant_weft` ...: those that any of the sheets has.
 fn wide(sheets: &[&FabricSheet], units: UnitSystem) -> Vec<Column> {
     let name = sheets.iter().map(|s| Some(s.name.clone())).collect();
     let mut columns =
         vec![Column { name: "fabric".into(), values: Values::Text(name), metadata: HashMap::new() }];
-    let rows: Vec<HashMap<(String, Option<String>), (Option<f64>, String)>> = sheets
+    let rows: Vec<Cells> = sheets
         .iter()
         .map(|s| {
             fabric_rows(s, units)

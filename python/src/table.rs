@@ -126,13 +126,14 @@ fn unit(name: &str, columns: &[(&str, Values)]) -> HashMap<String, String> {
     told
 }
 
+/// Name, kind, metadata and cells of a column from Python.
+type PythonColumn<'py> = (String, String, HashMap<String, String>, Bound<'py, PyAny>);
+
 #[pymethods]
 impl Table {
     /// A table of `(name, kind, metadata, cells)`; kind is `text`, `number` or `count`.
     #[staticmethod]
-    fn _from_columns(
-        columns: Vec<(String, String, HashMap<String, String>, Bound<'_, PyAny>)>,
-    ) -> PyResult<Self> {
+    fn _from_columns(columns: Vec<PythonColumn<'_>>) -> PyResult<Self> {
         let columns = columns.into_iter().map(|(name, kind, metadata, cells)| {
             let values = match kind.as_str() {
                 "text" => Values::Text(cells.extract()?),

@@ -80,7 +80,12 @@ impl Results<'_, '_> {
         observer: &Observer,
     ) -> Result<Vec<Columns>, Failure> {
         let lost = self.unread();
-        let mut tables = self.begin(settings)?;
+        let mut tables = self.begin()?;
+        #[cfg(feature = "tables")]
+        {
+            tables.workbook = settings.workbook.then(Rows::default);
+        }
+        self.add_problems(&mut tables)?;
         let mut overview = Overview::new(self.cases.iter().copied());
         let mut kept = Kept::default();
         for at in 0..self.made.len() {
@@ -140,20 +145,21 @@ impl Results<'_, '_> {
         self.own.iter().flat_map(rows).collect()
     }
 
-    fn begin(&self, settings: &RunSettings) -> Result<Tables<'_>, Failure> {
-        let mut tables = Tables {
+    fn begin(&self) -> Result<Tables<'_>, Failure> {
+        Ok(Tables {
             fabrics: self.folder.table("fabrics")?,
             predictions: self.folder.table("predictions")?,
             problems: self.folder.csv_table::<ProblemRow>("problems.csv")?,
             shown: Problems::default(),
             #[cfg(feature = "tables")]
-            workbook: settings.workbook.then(Rows::default),
-        };
-        for failure in self.failures {
-            tables.problem(failure.row())?;
-        }
-        self.problems_of_batch().into_iter().try_for_each(|row| tables.problem(row))?;
-        Ok(tables)
+            workbook: None,
+        })
+    }
+
+    /// What failed, and what was found of the batch: it comes first.
+    fn add_problems(&self, tables: &mut Tables) -> Result<(), Failure> {
+        let failed = self.failures.iter().map(Failure::row);
+        failed.chain(self.problems_of_batch()).try_for_each(|row| tables.problem(row))
     }
 
     /// Writes what is about no fabric, and closes the tables; what the page shows of the problems.
