@@ -25,7 +25,7 @@ def test_progress_is_told_to_a_function() -> None:
         charts=False,
         progress=lambda what, done, of: told.append((what, done, of)),
     )
-    assert {what for what, _, _ in told} >= {"characterising", "fabrics"}
+    assert {what for what, _, _ in told} >= {"reading", "fabrics"}
     assert all(0 <= done <= of for _, done, of in told)
     for what in {what for what, _, _ in told}:
         steps = [(done, of) for name, done, of in told if name == what]

@@ -4,9 +4,6 @@ use super::{FabricSheet, Settings};
 use crate::finding::{EvaluationFact, Finding};
 use crate::instrument::{Direction, FabricInput, Measurement, Parameter, Test};
 
-/// Loop widths: a negative one means that the branches were taken for each other.
-const WIDTHS: [Parameter; 4] = [Parameter::Hg, Parameter::Hg5, Parameter::Hb, Parameter::Hb05];
-
 /// K011: values that no woven apparel fabric has; usually a unit. A value of a table is pointed at.
 pub(super) fn plausibility(sheet: &FabricSheet, input: &FabricInput) -> Vec<Finding> {
     let mut findings = Vec::new();
@@ -18,13 +15,11 @@ pub(super) fn plausibility(sheet: &FabricSheet, input: &FabricInput) -> Vec<Find
             place: cell.map(|c| c.place.clone()),
             fact: EvaluationFact::Implausible { key: *key, value: estimate.mean, range }.into(),
         };
-        if let Some([low, high]) = key.parameter.plausible()
-            && !(low..=high).contains(&value)
-        {
-            findings.push(implausible(Some([low, high])));
-        }
-        if WIDTHS.contains(&key.parameter) && value < 0.0 {
+        let [low, high] = key.parameter.plausible();
+        if value < 0.0 {
             findings.push(implausible(None));
+        } else if !(low..=high).contains(&value) {
+            findings.push(implausible(Some([low, high])));
         }
     }
     findings

@@ -16,6 +16,7 @@ mod onset;
 #[cfg(test)]
 mod oracles;
 mod recording;
+mod relations;
 mod settings;
 mod sheet;
 mod simulated;
@@ -89,6 +90,7 @@ pub fn characterise(input: &FabricInput, settings: &Settings) -> FabricSheet {
     tables::moduli(&mut sheet, settings);
     friction::add(&mut sheet, settings);
     let mut found = checks::plausibility(&sheet, input);
+    found.extend(relations::relations(&sheet, input));
     found.extend(checks::shear_directions(&sheet, settings));
     sheet.findings.append(&mut found);
     status::assign(&mut sheet);

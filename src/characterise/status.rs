@@ -12,6 +12,8 @@ use crate::kes::{Direction, Key, Parameter, RecordName};
 enum Scope<'a> {
     /// One value.
     Value(Key),
+    /// Several values.
+    Values(&'a [Key]),
     /// Every value of a record's test and direction.
     Record(&'a RecordName),
     /// One parameter of a record.
@@ -49,6 +51,7 @@ impl FabricSheet {
     fn status_of_value(&self, key: Key) -> ValueStatus {
         self.prevailing(|scope| match scope {
             Scope::Value(of) => *of == key,
+            Scope::Values(of) => of.contains(&key),
             Scope::Record(record) => is_of_record(key, record),
             Scope::OfRecord(record, parameter) => key.parameter == *parameter && is_of_record(key, record),
             Scope::Slope(record, name) => is_of_record(key, record) && is_slope(key.parameter, name),
@@ -64,11 +67,8 @@ impl FabricSheet {
         };
         self.prevailing(|scope| match scope {
             // Secant and energy modulus follow from them.
-            Scope::Value(of) => {
-                matches!(of.parameter, Parameter::Emt | Parameter::Lt | Parameter::Wt)
-                    && of.direction.is_none_or(|of| of == direction)
-                    && !self.specimens.iter().any(|s| s.measurement.test == Test::Tensile)
-            }
+            Scope::Value(of) => self.gives_modulus(*of, direction),
+            Scope::Values(of) => of.iter().any(|of| self.gives_modulus(*of, direction)),
             Scope::Record(record) => is_tensile(record),
             Scope::OfRecord(..) => false,
             Scope::Slope(record, slope) => is_tensile(record) && *slope == name,
@@ -76,6 +76,13 @@ impl FabricSheet {
             Scope::File(path) => self.is_of_file(Some(Test::Tensile), Some(direction), path),
             Scope::Moduli => true,
         })
+    }
+
+    /// Whether a value of a table is one that the moduli follow from.
+    fn gives_modulus(&self, of: Key, direction: Direction) -> bool {
+        matches!(of.parameter, Parameter::Emt | Parameter::Lt | Parameter::Wt)
+            && of.direction.is_none_or(|of| of == direction)
+            && !self.specimens.iter().any(|s| s.measurement.test == Test::Tensile)
     }
 
     fn prevailing(&self, concerns: impl Fn(&Scope<'_>) -> bool) -> ValueStatus {
@@ -136,6 +143,7 @@ fn of_evaluation(fact: &EvaluationFact) -> Option<(Scope<'_>, ValueStatus)> {
         F::StandsApart { key, .. } | F::Implausible { key, .. } | F::TableDiffers { key, .. } => {
             (Scope::Value(*key), Doubtful)
         }
+        F::NotTogether { keys, .. } => (Scope::Values(keys), Doubtful),
         F::OtherDirection { parameter, own, .. } => (value(*parameter, Some(*own)), Doubtful),
         F::ShearDiffers { .. } => (Scope::Test(Test::Shear), Doubtful),
         F::OtherThickness { .. } => (value(Parameter::T0, None), Doubtful),

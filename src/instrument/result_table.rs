@@ -25,7 +25,7 @@ use super::value::{is_gap, value};
 use super::words::{folded, normalised};
 use super::{Direction, Parameter, ResultValue};
 use crate::finding::{Finding, Place, ReadFact};
-use crate::quantity::{Unit, divides_by_length};
+use crate::quantity::{Unit, counts_angles, divides_by_length};
 
 /// Values with the fabric that each belongs to.
 pub(super) type Values = Vec<(Option<String>, ResultValue)>;
@@ -408,7 +408,9 @@ impl<'t> Table<'t, '_> {
             && text.contains("gf")
             && !(text.contains("deg") || text.contains("rad") || text.contains('°') || text.contains('度'));
         let undivided = p == Parameter::W && !divides_by_length(text);
-        if unit.dimension != expected.dimension || per_angle || undivided {
+        // An angle has no dimension, and a ratio in degrees would be 57 times too large as one in radians.
+        let angle = matches!(p.kes_unit(), "1" | "%") && counts_angles(text);
+        if unit.dimension != expected.dimension || per_angle || undivided || angle {
             let of = p.symbol().to_string();
             let expected = p.kes_unit();
             return Err(error(Problem::UnitWrong { found: text.to_string(), of, expected }));

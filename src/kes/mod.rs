@@ -1,6 +1,7 @@
 //! What the instruments of the Kawabata Evaluation System measure: tests, yarn directions and parameters.
 
 mod parameter;
+mod relation;
 pub mod specimen;
 
 use std::fmt;
@@ -9,6 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use parameter::{Direction, Key, Parameter};
+pub use relation::Relation;
 
 /// The KES-F test that a curve comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]

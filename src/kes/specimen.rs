@@ -100,21 +100,38 @@ impl Test {
 }
 
 impl Parameter {
-    /// Plausible means of woven apparel fabrics (KES unit), where they are known: a value outside is a question, not
-    /// an error.
-    pub fn plausible(self) -> Option<[f64; 2]> {
+    /// Plausible means of woven apparel fabrics (KES unit): a value outside is a question, not an error.
+    ///
+    /// B, G, LT, EMT, RT, T0 and W are those of the literature of the instruments. The others follow from them: energies
+    /// from LT or LC, the maximum of the test and its strain or compression; loop widths from residual strains of a
+    /// five-hundredth to a half of the maximum; MIU, MMD and SMD span a polished film to a coarse pile.
+    pub fn plausible(self) -> [f64; 2] {
         match self {
-            Self::B => Some([0.01, 1.0]),
-            Self::G => Some([0.3, 3.0]),
-            Self::Lt => Some([0.4, 1.0]),
-            Self::Emt => Some([1.0, 30.0]),
-            Self::Rt => Some([30.0, 80.0]),
-            Self::T0 => Some([0.1, 2.0]),
-            Self::W => Some([3.0, 50.0]),
-            Self::Lc => Some([0.1, 1.0]),
-            Self::Rc => Some([20.0, 100.0]),
-            _ => None,
+            Self::B | Self::Bf | Self::Bb => [0.01, 1.0],
+            Self::Hb | Self::Hb05 => [0.001, 1.0],
+            Self::G => [0.3, 3.0],
+            Self::Hg => [0.05, 20.0],
+            Self::Hg5 => [0.05, 30.0],
+            Self::Lt => [0.4, 1.0],
+            Self::Wt => [0.1, 75.0],
+            Self::Emt => [1.0, 30.0],
+            Self::Rt => [30.0, 80.0],
+            Self::T0 => [0.1, 2.0],
+            Self::Tm => [0.05, 2.0],
+            Self::Emc => [1.0, 90.0],
+            Self::Lc => [0.1, 1.0],
+            Self::Wc => [0.005, 2.5],
+            Self::Rc => [20.0, 100.0],
+            Self::W => [3.0, 50.0],
+            Self::Miu => [0.05, 0.6],
+            Self::Mmd => [0.001, 0.2],
+            Self::Smd => [0.1, 50.0],
         }
+    }
+
+    /// Whether it is the width of a loop: a negative one means that the branches were taken for each other.
+    pub fn is_width(self) -> bool {
+        matches!(self, Self::Hg | Self::Hg5 | Self::Hb | Self::Hb05)
     }
 }
 

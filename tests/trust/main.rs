@@ -6,6 +6,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod factors;
 mod folders;
 mod limits;
 mod memory;

@@ -115,12 +115,20 @@ fn channel(
     let maximum = conditions(test, settings).maximum;
     Some(match test {
         Test::Bending => {
-            bending(value(Parameter::B)?, value(Parameter::Hb)?, maximum).map_err(|e| e.to_string())
+            let (b, width) = (value(Parameter::B)?, value(Parameter::Hb)?);
+            match all_friction(["B", "2HB"], b, width, maximum) {
+                Some(why) => Err(why),
+                None => bending(b, width, maximum).map_err(|e| e.to_string()),
+            }
         }
         Test::Shear => {
             let near = value(Parameter::Hg)?;
             let widths = [near, value(Parameter::Hg5).unwrap_or(near)];
-            shear(value(Parameter::G)?, widths, settings, maximum).map_err(|e| e.to_string())
+            let g = value(Parameter::G)?;
+            match all_friction(["G", "2HG"], g, near, maximum) {
+                Some(why) => Err(why),
+                None => shear(g, widths, settings, maximum).map_err(|e| e.to_string()),
+            }
         }
         Test::Tensile => {
             let [lt, rt, emt] = [Parameter::Lt, Parameter::Rt, Parameter::Emt].map(value);
@@ -136,6 +144,16 @@ fn channel(
             }
         }
         Test::Compression => return None,
+    })
+}
+
+/// Why there is no law of a loop that is wider than its slope lets it rise: what was read is no such loop.
+fn all_friction(names: [&str; 2], slope: f64, width: f64, e_max: f64) -> Option<String> {
+    let [stiffness, loop_width] = names;
+    (0.5 * width > slope * e_max).then(|| {
+        format!(
+            "{loop_width} is more than twice {stiffness} times the maximum of the test: one of both is wrong"
+        )
     })
 }
 

@@ -2,7 +2,7 @@
 
 use super::parts::{Missed, RecordAxis, Samples, StripLength, Subject};
 use crate::finding::Place;
-use crate::kes::{Direction, Key, Parameter, RecordName, Test, series};
+use crate::kes::{Direction, Key, Parameter, RecordName, Relation, Test, series};
 use crate::quantity::{STANDARD_GRAVITY, in_unit, significant};
 
 super::facts! {
@@ -113,9 +113,18 @@ super::facts! {
             key: Key,
             /// Its mean (SI).
             value: f64,
-            /// The plausible range (KES unit); none for a loop that runs backwards.
+            /// The plausible range (KES unit); none of a value that is negative.
             range: Option<[f64; 2]>,
-        } = "{key} = {:.4} {} {}", value / key.parameter.kes_factor(), key.parameter.kes_unit(), implausible(*range);
+        } = "{key} = {:.4} {} {}", value / key.parameter.kes_factor(), key.parameter.kes_unit(), implausible(*key, *range);
+        /// Values of one fabric that do not go together.
+        "K050" NotTogether {
+            /// What they do not obey.
+            relation: Relation,
+            /// The values, in the order of the relation.
+            keys: Vec<Key>,
+            /// The ratio that tells it.
+            ratio: f64,
+        } = "{}", not_together(*relation, keys, *ratio);
         /// G of warp and weft differ.
         "K012" ShearDiffers {
             /// Their difference over their mean.
@@ -382,12 +391,24 @@ fn correction(test: Test, axis: RecordAxis, taken_off: f64, limit: f64) -> Strin
     format!("a zero offset of {} was taken off{from}", in_unit(taken_off, ordinate))
 }
 
-fn implausible(range: Option<[f64; 2]>) -> String {
+fn not_together(relation: Relation, keys: &[Key], ratio: f64) -> String {
+    let names: Vec<String> = keys.iter().map(ToString::to_string).collect();
+    let [low, high] = relation.range();
+    format!(
+        "{} do not go together: {} is {}, and of cloth it is {low} to {high}: look at the unit and the place of each",
+        names.join(", "),
+        relation.text(),
+        significant(ratio)
+    )
+}
+
+fn implausible(key: Key, range: Option<[f64; 2]>) -> String {
     match range {
         Some([low, high]) => format!(
             "is outside {low} to {high}, the range of woven apparel fabrics: check unit, specimen width and conditions"
         ),
-        None => "is negative: the loop runs backwards".into(),
+        None if key.parameter.is_width() => "is negative: the loop runs backwards".into(),
+        None => "is negative, which it cannot be: check the sign and the column".into(),
     }
 }
 
