@@ -6,7 +6,7 @@
 use kesf::characterise::{Settings, characterise};
 use kesf::finding::Place;
 use kesf::instrument::{Direction, FabricInput, Parameter, ResultValue};
-use rand::{Rng, SeedableRng};
+use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 /// Factors of slips: decimal places, gf against N, cm against mm, twice a half width.
