@@ -14,21 +14,20 @@ use super::ui::Ui;
 use crate::report::OutputFolder;
 use crate::report::cards::{EXPORTERS, Target, named};
 use crate::report::write::write_file;
-use crate::results::{Card, Failure, cards, sections, write_cards};
+use crate::results::{Card, Curves, Failure, cards, sections_with, write_cards};
 
 /// Write fabrics as material files of other programs
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Example: kesf export kesf_data/poplin --to u3m -o poplin.u3m\n`kesf list exports` tells what each target is given."
-)]
+#[command(after_help = "Examples:\n  kesf export kesf_data/poplin --to u3m -o poplin.u3m\n  \
+    kesf export kesf_data --to usd,mujoco,fabric -o presets/\n`kesf list exports` tells what each target is given.")]
 pub struct Options {
     /// Fabric folders, measurement files, sheets, or sections (`kesf section -o section.json`), which have their
     /// assumptions; `-` is a file on standard input
     #[arg(value_name = "INPUT", required = true)]
     inputs: Vec<PathBuf>,
-    /// The program
-    #[arg(long, value_name = "TARGET", required = true, value_parser = target())]
-    to: Target,
+    /// The program, or several with commas between them
+    #[arg(long, value_name = "TARGETS", required = true, value_parser = target(), value_delimiter = ',')]
+    to: Vec<Target>,
     /// Write to this file, or to this folder if it is one or ends in `/` [default: standard output]
     #[arg(short, long, value_name = "PATH", default_value = "-", hide_default_value = true)]
     output: PathBuf,
@@ -49,32 +48,44 @@ fn target() -> impl TypedValueParser<Value = Target> {
     names.try_map(|name| named(&name).ok_or("no target of that name"))
 }
 
+/// The cards of a program.
+type Made = (Target, Vec<Card>);
+
 /// `kesf.export/1`: the cards, or where they were written.
 #[derive(Serialize)]
 struct Document<'a> {
     schema: &'static str,
-    target: &'static str,
+    target: String,
     #[serde(skip_serializing_if = "Option::is_none")]
-    cards: Option<&'a [Card]>,
+    cards: Option<Vec<&'a Card>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     files: Option<Vec<String>>,
 }
 
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let (inputs, reading) = (inputs(&options.inputs)?, options.evaluate.reading());
-    let (cards, mut failures) = ui.observe(|observer| {
-        let (sections, mut failures) = sections(&inputs, &reading, &options.assume.assumptions(), observer)?;
+    let (made, mut failures) = ui.observe(|observer| {
+        let assumptions = options.assume.assumptions();
+        let (sections, mut failures) =
+            sections_with(&inputs, &reading, &assumptions, Curves::Kept, observer)?;
         let stamp = options.stamp.then(now);
-        let (cards, refused) = cards(&sections, options.to, stamp.as_deref(), observer);
-        failures.extend(refused);
-        Ok::<_, Failure>((cards, failures))
+        let mut made: Vec<Made> = Vec::new();
+        for target in &options.to {
+            let (cards, refused) = cards(&sections, target, stamp.as_deref(), observer);
+            failures.extend(refused);
+            made.push((target, cards));
+        }
+        Ok::<_, Failure>((made, failures))
     })?;
-    let document = Document { schema: "kesf.export/1", target: options.to.name, cards: None, files: None };
+    let names: Vec<_> = options.to.iter().map(|target| target.name).collect();
+    let document = Document { schema: "kesf.export/1", target: names.join(","), cards: None, files: None };
     if is_stdin(&options.output) && ui.json {
-        ui.document(Document { cards: Some(&cards), ..document })?;
-        return Ok(Exit::of_batch(cards.len(), &failures));
+        let cards: Vec<&Card> = made.iter().flat_map(|(_, cards)| cards).collect();
+        let count = cards.len();
+        ui.document(Document { cards: Some(cards), ..document })?;
+        return Ok(Exit::of_batch(count, &failures));
     }
-    let files = write(options, &cards, &mut failures, ui)?;
+    let files = write(options, &made, &mut failures, ui)?;
     if ui.json {
         let files = files.iter().map(|path| path.to_string_lossy().into_owned()).collect();
         ui.document(Document { files: Some(files), ..document })?;
@@ -85,25 +96,30 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
 /// One card goes to a file or to standard output, several into a folder. Where they went.
 fn write(
     options: &Options,
-    cards: &[Card],
+    made: &[Made],
     failures: &mut Vec<Failure>,
     ui: &Ui,
 ) -> Result<Vec<PathBuf>, Failure> {
     let output = &options.output;
+    let cards: Vec<&Card> = made.iter().flat_map(|(_, cards)| cards).collect();
     let to_folder = is_folder(output) || (cards.len() > 1 && !is_stdin(output) && is_new_folder(output));
-    match cards {
+    match cards[..] {
         [] => return Ok(Vec::new()),
         _ if to_folder => {
             let folder = OutputFolder::open(output, options.force)?;
-            let (names, refused) = ui.observe(|observer| write_cards(cards, options.to, &folder, observer));
+            let mut files = Vec::new();
+            for (target, cards) in made {
+                let (names, refused) = ui.observe(|observer| write_cards(cards, target, &folder, observer));
+                files.extend(names.into_iter().map(|name| output.join(name)));
+                failures.extend(refused);
+            }
             folder.finish()?;
-            failures.extend(refused);
-            return Ok(names.into_iter().map(|name| output.join(name)).collect());
+            return Ok(files);
         }
         [card] if is_stdin(output) => drop(ui.print(&card.text)?),
         [card] => write_file(output, card.text.as_bytes(), options.force)?,
-        several => {
-            let text = format!("{} fabrics do not go into one file", several.len());
+        _ => {
+            let text = format!("{} cards do not go into one file", cards.len());
             return Err(Failure::new("O058", text).hint("give a folder, such as `-o cards/`"));
         }
     }

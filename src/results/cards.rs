@@ -16,6 +16,8 @@ use crate::report::cards::{Material, Target, card};
 pub struct Card {
     /// Its name.
     pub fabric: String,
+    /// The program.
+    pub target: &'static str,
     /// The file.
     pub text: String,
 }
@@ -34,7 +36,7 @@ pub fn cards(
                 for finding in card.findings {
                     observer.found(Some(&sheet.name), &finding.at(Place::file(path)));
                 }
-                cards.push(Card { fabric: sheet.name.clone(), text: card.text });
+                cards.push(Card { fabric: sheet.name.clone(), target: target.name, text: card.text });
             }
             Err(error) => {
                 let failure = Failure::from(error).of(&sheet.name).at(Place::file(path));
@@ -55,7 +57,7 @@ pub fn write_cards(
 ) -> (Vec<String>, Vec<Failure>) {
     let (mut names, mut failures) = (Vec::new(), Vec::new());
     let mut taken = BTreeSet::new();
-    for Card { fabric, text } in cards {
+    for Card { fabric, text, .. } in cards {
         let name = format!("{}.{}", free_name(fabric, &mut taken), target.ending);
         match sink.write(&name, text.as_bytes()) {
             Ok(()) => names.push(name),
@@ -88,7 +90,7 @@ mod tests {
 
     #[test]
     fn two_fabrics_of_one_name_have_a_file_each() {
-        let card = |text: &str| Card { fabric: "poplin".into(), text: text.into() };
+        let card = |text: &str| Card { fabric: "poplin".into(), target: "u3m", text: text.into() };
         let sink = MemorySink::default();
         let (names, failures) =
             write_cards(&[card("a"), card("b")], named("u3m").unwrap(), &sink, &Observer::default());

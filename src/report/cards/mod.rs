@@ -10,11 +10,15 @@
 //! |---|---|---|
 //! | `abaqus.rs` | Abaqus | all of it |
 //! | `ansys.rs` | Ansys Mechanical APDL | all of it, if it resists twisting |
+//! | `arcsim.rs` | ARCSim | stretching; bending along warp, weft and the bias |
+//! | `blender.rs` | Blender | strips along warp and weft, shear; an isotropic sheet |
 //! | `calculix.rs` | CalculiX | all of it, as three layers |
+//! | `fabric.rs` | the open fabric file `kesf.fabric/1` | all that is known of the fabric |
 //! | `kratos.rs` | Kratos Multiphysics | all of it, as three layers |
 //! | `opensees.rs` | OpenSees | all of it, as three layers |
 //! | `lsdyna.rs` | LS-DYNA `*MAT_FABRIC` | tension, shear and mass of a membrane |
 //! | `nastran.rs` | Nastran and MYSTRAN | all of it |
+//! | `radioss.rs` | OpenRadioss `/MAT/LAW19` | tension, shear and mass of a membrane |
 //! | `mujoco.rs` | MuJoCo 4 | strips along warp and weft; an isotropic sheet |
 //! | `usd.rs` | USD, as newton reads it | strips along warp and weft, shear; an isotropic sheet |
 //! | `newton.rs` | newton, Style3D | tension, shear and bending along warp and weft; torsion on a grid |
@@ -22,8 +26,11 @@
 
 mod abaqus;
 mod ansys;
+mod arcsim;
+mod blender;
 mod calculix;
 mod constants;
+mod fabric;
 mod kratos;
 mod laminate;
 mod lsdyna;
@@ -31,6 +38,7 @@ mod mujoco;
 mod nastran;
 mod newton;
 mod opensees;
+mod radioss;
 pub mod read;
 mod swatch;
 mod text;
@@ -66,13 +74,17 @@ pub type Target = &'static Exporter;
 pub static EXPORTERS: &[Target] = &[
     &abaqus::EXPORTER,
     &ansys::EXPORTER,
+    &arcsim::EXPORTER,
+    &blender::EXPORTER,
     &calculix::EXPORTER,
+    &fabric::EXPORTER,
     &kratos::EXPORTER,
     &lsdyna::EXPORTER,
     &mujoco::EXPORTER,
     &nastran::EXPORTER,
     &newton::EXPORTER,
     &opensees::EXPORTER,
+    &radioss::EXPORTER,
     &u3m::EXPORTER,
     &usd::EXPORTER,
 ];
