@@ -48,44 +48,35 @@ fn target() -> impl TypedValueParser<Value = Target> {
     names.try_map(|name| named(&name).ok_or("no target of that name"))
 }
 
-/// The cards of a program.
-type Made = (Target, Vec<Card>);
-
 /// `kesf.export/1`: the cards, or where they were written.
 #[derive(Serialize)]
 struct Document<'a> {
     schema: &'static str,
     target: String,
     #[serde(skip_serializing_if = "Option::is_none")]
-    cards: Option<Vec<&'a Card>>,
+    cards: Option<&'a [Card]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     files: Option<Vec<String>>,
 }
 
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let (inputs, reading) = (inputs(&options.inputs)?, options.evaluate.reading());
-    let (made, mut failures) = ui.observe(|observer| {
-        let assumptions = options.assume.assumptions();
+    let assumptions = options.assume.assumptions();
+    let (cards, mut failures) = ui.observe(|observer| {
         let (sections, mut failures) =
             sections_with(&inputs, &reading, &assumptions, Curves::Kept, observer)?;
         let stamp = options.stamp.then(now);
-        let mut made: Vec<Made> = Vec::new();
-        for target in &options.to {
-            let (cards, refused) = cards(&sections, target, stamp.as_deref(), observer);
-            failures.extend(refused);
-            made.push((target, cards));
-        }
-        Ok::<_, Failure>((made, failures))
+        let (cards, refused) = cards(&sections, &options.to, stamp.as_deref(), observer);
+        failures.extend(refused);
+        Ok::<_, Failure>((cards, failures))
     })?;
-    let names: Vec<_> = options.to.iter().map(|target| target.name).collect();
-    let document = Document { schema: "kesf.export/1", target: names.join(","), cards: None, files: None };
+    let target = options.to.iter().map(|target| target.name).collect::<Vec<_>>().join(",");
+    let document = Document { schema: "kesf.export/1", target, cards: None, files: None };
     if is_stdin(&options.output) && ui.json {
-        let cards: Vec<&Card> = made.iter().flat_map(|(_, cards)| cards).collect();
-        let count = cards.len();
-        ui.document(Document { cards: Some(cards), ..document })?;
-        return Ok(Exit::of_batch(count, &failures));
+        ui.document(Document { cards: Some(&cards), ..document })?;
+        return Ok(Exit::of_batch(cards.len(), &failures));
     }
-    let files = write(options, &made, &mut failures, ui)?;
+    let files = write(options, &cards, &mut failures, ui)?;
     if ui.json {
         let files = files.iter().map(|path| path.to_string_lossy().into_owned()).collect();
         ui.document(Document { files: Some(files), ..document })?;
@@ -96,25 +87,20 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
 /// One card goes to a file or to standard output, several into a folder. Where they went.
 fn write(
     options: &Options,
-    made: &[Made],
+    cards: &[Card],
     failures: &mut Vec<Failure>,
     ui: &Ui,
 ) -> Result<Vec<PathBuf>, Failure> {
     let output = &options.output;
-    let cards: Vec<&Card> = made.iter().flat_map(|(_, cards)| cards).collect();
     let to_folder = is_folder(output) || (cards.len() > 1 && !is_stdin(output) && is_new_folder(output));
-    match cards[..] {
+    match cards {
         [] => return Ok(Vec::new()),
         _ if to_folder => {
             let folder = OutputFolder::open(output, options.force)?;
-            let mut files = Vec::new();
-            for (target, cards) in made {
-                let (names, refused) = ui.observe(|observer| write_cards(cards, target, &folder, observer));
-                files.extend(names.into_iter().map(|name| output.join(name)));
-                failures.extend(refused);
-            }
+            let (names, refused) = ui.observe(|observer| write_cards(cards, &folder, observer));
             folder.finish()?;
-            return Ok(files);
+            failures.extend(refused);
+            return Ok(names.into_iter().map(|name| output.join(name)).collect());
         }
         [card] if is_stdin(output) => drop(ui.print(&card.text)?),
         [card] => write_file(output, card.text.as_bytes(), options.force)?,

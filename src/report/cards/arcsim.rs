@@ -2,9 +2,9 @@
 
 use serde_json::{Value, json};
 
+use super::card::{Card, CardError, Exporter, Material};
 use super::constants::{Constants, no_place};
 use super::text::provenance;
-use super::{Card, CardError, Exporter, Material};
 use crate::report::json;
 use crate::section::ShellSection;
 

@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
+use super::card::{Card, CardError, Exporter, Material};
 use super::text::provenance;
-use super::{Card, CardError, Exporter, Material};
 use crate::characterise::SpecimenResult;
 use crate::report::json::{assumptions, section_document, sheet_document, text};
 use crate::section::ShellSection;

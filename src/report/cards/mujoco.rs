@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
+use super::card::{Card, CardError, Exporter, Material};
 use super::constants::{Constants, Yarn, lost, no_place};
 use super::swatch::{SIDE, Swatch, cell, swatch};
 use super::text::{number, provenance, wrapped};
-use super::{Card, CardError, Exporter, Material};
 use crate::section::ShellSection;
 
 /// `kesf export --to mujoco`.

@@ -6,6 +6,8 @@ use nalgebra::{Matrix2, Matrix3};
 use serde_json::Value;
 
 use super::*;
+use crate::characterise::FabricSheet;
+use crate::constitutive::Constitutive;
 use crate::section::ShellSection;
 
 /// A poplin-like sheet: every entry another number.

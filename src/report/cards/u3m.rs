@@ -7,8 +7,8 @@ use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 use uuid::Builder;
 
+use super::card::{Card, CardError, Exporter, Material};
 use super::fabric::file_names;
-use super::{Card, CardError, Exporter, Material};
 use crate::report::json::{assumptions, section_document, sheet_document, text};
 
 use crate::section::ShellSection;
