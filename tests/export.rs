@@ -69,6 +69,45 @@ fn many_fabrics_go_into_a_folder() {
     assert_eq!(document["cards"].as_array().unwrap().len(), 2);
 }
 
+/// The catalogue of presets: every shipped fabric for several programs, a file each; what some of them cannot hold costs the
+/// others nothing, and the open fabric file is as good an input as the folder.
+#[test]
+fn several_programs_are_given_every_shipped_fabric() {
+    let folder = tempfile::tempdir().unwrap();
+    let presets = folder.path().join("presets");
+    let output = kesf(&["--json", "export", "kesf_data", "--to", "usd,mujoco,fabric", "-o", text(&presets)]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["target"], "usd,mujoco,fabric");
+    let fabrics: Vec<_> =
+        fs::read_dir("kesf_data").unwrap().filter(|e| e.as_ref().unwrap().path().is_dir()).collect();
+    assert_eq!(document["files"].as_array().unwrap().len(), 3 * fabrics.len());
+    let open = presets.join("satin.fabric.json");
+    let of = |input: &str| kesf(&["-q", "export", input, "--to", "abaqus"]).stdout;
+    let numbers = |card: Vec<u8>| {
+        let card = String::from_utf8(card).unwrap();
+        card.lines().filter(|l| !l.starts_with("**")).map(String::from).collect::<Vec<_>>()
+    };
+    assert_eq!(numbers(of(text(&open))), numbers(of("kesf_data/satin")));
+    let open: Value = serde_json::from_slice(&fs::read(&open).unwrap()).unwrap();
+    let curves = open["curves"].as_array().unwrap();
+    let files = open["sheet"]["inputs"].as_array().unwrap();
+    assert!(curves.len() >= files.len() && !files.is_empty());
+    for curve in curves {
+        assert!(files.iter().any(|f| f["sha256"] == curve["sha256"] && f["path"] == curve["file"]));
+        let count = |axis: &str| curve[axis]["values"].as_array().unwrap().len();
+        assert!(count("x") > 100 && count("x") == count("y"));
+    }
+    let published: Value =
+        serde_json::from_slice(&fs::read(presets.join("petrak_m1.fabric.json")).unwrap()).unwrap();
+    assert_eq!(
+        (&published["origin"], published["curves"].as_array().unwrap().len()),
+        (&"published".into(), 0)
+    );
+    let twice = kesf(&["-q", "export", "kesf_data/satin", "--to", "usd,mujoco"]);
+    assert!(code(&twice) == 2 && stderr(&twice).contains("O058"), "{}", stderr(&twice));
+}
+
 /// A file in the way costs the others nothing, and is kept; under `--json` a document says what was written.
 #[test]
 fn a_file_in_the_way_is_kept() {

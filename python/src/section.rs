@@ -149,7 +149,7 @@ pub fn export(py: Python<'_>, section: &Section, to: &str) -> PyResult<(String, 
     let (target, sectioned) = (target.or_raise(py)?, Arc::clone(section.sectioned()));
     let follower = Follower { progress: None, threads: Some(1) };
     let (card, told) = follow(py, &follower, move |observer| {
-        let (cards, failures) = cards(std::slice::from_ref(&*sectioned), target, None, observer);
+        let (cards, failures) = cards(std::slice::from_ref(&*sectioned), &[target], None, observer);
         match (cards.into_iter().next(), failures.into_iter().next()) {
             (Some(Card { text, .. }), _) => Ok(text),
             (None, failure) => Err(failure.unwrap_or_else(Failure::interrupted)),

@@ -14,21 +14,20 @@ use super::ui::Ui;
 use crate::report::OutputFolder;
 use crate::report::cards::{EXPORTERS, Target, named};
 use crate::report::write::write_file;
-use crate::results::{Card, Failure, cards, sections, write_cards};
+use crate::results::{Card, Curves, Failure, cards, sections_with, write_cards};
 
 /// Write fabrics as material files of other programs
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Example: kesf export kesf_data/poplin --to u3m -o poplin.u3m\n`kesf list exports` tells what each target is given."
-)]
+#[command(after_help = "Examples:\n  kesf export kesf_data/poplin --to u3m -o poplin.u3m\n  \
+    kesf export kesf_data --to usd,mujoco,fabric -o presets/\n`kesf list exports` tells what each target is given.")]
 pub struct Options {
     /// Fabric folders, measurement files, sheets, or sections (`kesf section -o section.json`), which have their
     /// assumptions; `-` is a file on standard input
     #[arg(value_name = "INPUT", required = true)]
     inputs: Vec<PathBuf>,
-    /// The program
-    #[arg(long, value_name = "TARGET", required = true, value_parser = target())]
-    to: Target,
+    /// The program, or several with commas between them
+    #[arg(long, value_name = "TARGETS", required = true, value_parser = target(), value_delimiter = ',')]
+    to: Vec<Target>,
     /// Write to this file, or to this folder if it is one or ends in `/` [default: standard output]
     #[arg(short, long, value_name = "PATH", default_value = "-", hide_default_value = true)]
     output: PathBuf,
@@ -53,7 +52,7 @@ fn target() -> impl TypedValueParser<Value = Target> {
 #[derive(Serialize)]
 struct Document<'a> {
     schema: &'static str,
-    target: &'static str,
+    target: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     cards: Option<&'a [Card]>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -62,14 +61,17 @@ struct Document<'a> {
 
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let (inputs, reading) = (inputs(&options.inputs)?, options.evaluate.reading());
+    let assumptions = options.assume.assumptions();
     let (cards, mut failures) = ui.observe(|observer| {
-        let (sections, mut failures) = sections(&inputs, &reading, &options.assume.assumptions(), observer)?;
+        let (sections, mut failures) =
+            sections_with(&inputs, &reading, &assumptions, Curves::Kept, observer)?;
         let stamp = options.stamp.then(now);
-        let (cards, refused) = cards(&sections, options.to, stamp.as_deref(), observer);
+        let (cards, refused) = cards(&sections, &options.to, stamp.as_deref(), observer);
         failures.extend(refused);
         Ok::<_, Failure>((cards, failures))
     })?;
-    let document = Document { schema: "kesf.export/1", target: options.to.name, cards: None, files: None };
+    let target = options.to.iter().map(|target| target.name).collect::<Vec<_>>().join(",");
+    let document = Document { schema: "kesf.export/1", target, cards: None, files: None };
     if is_stdin(&options.output) && ui.json {
         ui.document(Document { cards: Some(&cards), ..document })?;
         return Ok(Exit::of_batch(cards.len(), &failures));
@@ -95,15 +97,15 @@ fn write(
         [] => return Ok(Vec::new()),
         _ if to_folder => {
             let folder = OutputFolder::open(output, options.force)?;
-            let (names, refused) = ui.observe(|observer| write_cards(cards, options.to, &folder, observer));
+            let (names, refused) = ui.observe(|observer| write_cards(cards, &folder, observer));
             folder.finish()?;
             failures.extend(refused);
             return Ok(names.into_iter().map(|name| output.join(name)).collect());
         }
         [card] if is_stdin(output) => drop(ui.print(&card.text)?),
         [card] => write_file(output, card.text.as_bytes(), options.force)?,
-        several => {
-            let text = format!("{} fabrics do not go into one file", several.len());
+        _ => {
+            let text = format!("{} cards do not go into one file", cards.len());
             return Err(Failure::new("O058", text).hint("give a folder, such as `-o cards/`"));
         }
     }

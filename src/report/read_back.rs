@@ -1,4 +1,4 @@
-//! `kesf.sheet/1` and `kesf.section/1` read back: what other people keep of a fabric is enough to go on with.
+//! `kesf.sheet/1`, `kesf.section/1` and `kesf.fabric/1` read back: what other people keep of a fabric is enough to go on with.
 //!
 //! Friction laws, curves and findings are not read: they come from measurements.
 
@@ -49,7 +49,8 @@ impl From<serde_json::Error> for DocumentError {
 pub enum Document {
     /// Parameters of fabrics.
     Sheets(Vec<FabricSheet>),
-    /// Sections with their assumptions; of each sheet only the name and the origin are known.
+    /// Sections with their assumptions; of each sheet only the name and the origin are known, unless the document has
+    /// both (`kesf.fabric/1`).
     Sections(Vec<(FabricSheet, Constitutive)>),
 }
 
@@ -75,8 +76,22 @@ pub fn read(bytes: &[u8]) -> Result<Option<Document>, DocumentError> {
             let read = document.sections.into_iter().map(Section::read).collect::<Result<_, _>>()?;
             Ok(Some(Document::Sections(read)))
         }
+        "kesf.fabric/1" => {
+            let Open { sheet, section } = serde_json::from_slice(bytes)?;
+            let sheets = sheet.fabrics.into_iter().map(Sheet::read);
+            let sections = section.sections.into_iter().map(Section::read);
+            let read = sheets.zip(sections).map(|(sheet, section)| Ok((sheet?, section?.1)));
+            Ok(Some(Document::Sections(read.collect::<Result<_, DocumentError>>()?)))
+        }
         _ => Ok(None),
     }
+}
+
+/// The open fabric file: a sheet and its section; curves and laws are not read.
+#[derive(Deserialize)]
+struct Open {
+    sheet: Sheets,
+    section: Sections,
 }
 
 #[derive(Deserialize)]

@@ -9,32 +9,36 @@ use super::folder::Sink;
 use super::observer::Observer;
 use super::section::Sectioned;
 use crate::finding::Place;
-use crate::report::cards::{Material, Target, card};
+use crate::report::cards::{Material, Target, card, named};
 
 /// The material file of a fabric.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Card {
     /// Its name.
     pub fabric: String,
+    /// The program.
+    pub target: &'static str,
     /// The file.
     pub text: String,
 }
 
-/// A card for each section that the target can hold, and why the others have none. `stamp` is the date to be noted.
+/// A card for each section that a target can hold, target by target, and why the others have none. `stamp` is the date to
+/// be noted.
 pub fn cards(
     sections: &[Sectioned],
-    target: Target,
+    targets: &[Target],
     stamp: Option<&str>,
     observer: &Observer,
 ) -> (Vec<Card>, Vec<Failure>) {
     let (mut cards, mut failures) = (Vec::new(), Vec::new());
-    for Sectioned { path, sheet, made } in sections {
+    let pairs = targets.iter().flat_map(|target| sections.iter().map(move |section| (*target, section)));
+    for (target, Sectioned { path, sheet, made }) in pairs {
         match card(target, &Material { sheet, made, stamp }) {
             Ok(card) => {
                 for finding in card.findings {
                     observer.found(Some(&sheet.name), &finding.at(Place::file(path)));
                 }
-                cards.push(Card { fabric: sheet.name.clone(), text: card.text });
+                cards.push(Card { fabric: sheet.name.clone(), target: target.name, text: card.text });
             }
             Err(error) => {
                 let failure = Failure::from(error).of(&sheet.name).at(Place::file(path));
@@ -47,16 +51,12 @@ pub fn cards(
 }
 
 /// Writes a file for each card, `<fabric>.<ending>`; the names of those that are there, and why others are not.
-pub fn write_cards(
-    cards: &[Card],
-    target: Target,
-    sink: &dyn Sink,
-    observer: &Observer,
-) -> (Vec<String>, Vec<Failure>) {
+pub fn write_cards(cards: &[Card], sink: &dyn Sink, observer: &Observer) -> (Vec<String>, Vec<Failure>) {
     let (mut names, mut failures) = (Vec::new(), Vec::new());
     let mut taken = BTreeSet::new();
-    for Card { fabric, text } in cards {
-        let name = format!("{}.{}", free_name(fabric, &mut taken), target.ending);
+    for Card { fabric, target, text } in cards {
+        let ending = named(target).map_or("txt", |target| target.ending);
+        let name = free_name(fabric, ending, &mut taken);
         match sink.write(&name, text.as_bytes()) {
             Ok(()) => names.push(name),
             Err(error) => {
@@ -69,13 +69,13 @@ pub fn write_cards(
     (names, failures)
 }
 
-/// The name, or with a number behind it: the same name may come from a folder and from a document.
-fn free_name(name: &str, taken: &mut BTreeSet<String>) -> String {
-    let mut free = name.to_string();
+/// The name of a file, or with a number behind that of the fabric: it may come from a folder and from a document.
+fn free_name(fabric: &str, ending: &str, taken: &mut BTreeSet<String>) -> String {
+    let mut free = format!("{fabric}.{ending}");
     let mut number = 1;
     while !taken.insert(free.clone()) {
         number += 1;
-        free = format!("{name}-{number}");
+        free = format!("{fabric}-{number}.{ending}");
     }
     free
 }
@@ -83,15 +83,13 @@ fn free_name(name: &str, taken: &mut BTreeSet<String>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::cards::named;
     use crate::results::MemorySink;
 
     #[test]
     fn two_fabrics_of_one_name_have_a_file_each() {
-        let card = |text: &str| Card { fabric: "poplin".into(), text: text.into() };
+        let card = |text: &str| Card { fabric: "poplin".into(), target: "u3m", text: text.into() };
         let sink = MemorySink::default();
-        let (names, failures) =
-            write_cards(&[card("a"), card("b")], named("u3m").unwrap(), &sink, &Observer::default());
+        let (names, failures) = write_cards(&[card("a"), card("b")], &sink, &Observer::default());
         assert_eq!((names, failures), (vec!["poplin.u3m".to_string(), "poplin-2.u3m".into()], Vec::new()));
         assert_eq!(sink.into_files()["poplin-2.u3m"], b"b");
     }

@@ -62,7 +62,7 @@ pub use observer::{Event, Found, Observer};
 pub use outcome::{ComparisonEntry, Document, Outcome, Solution};
 pub(crate) use record::{Record, hash_of};
 pub use sampled::{InputEntry, SamplingEntry};
-pub use section::{Sectioned, section_text, sections};
+pub use section::{Sectioned, section_text, sections, sections_with};
 pub use sheet_text::{evaluation_text, parameters_text, statistics_text};
 pub use simulate::simulate;
 pub use solved::{ModelEntry, QuantityEntry, SolutionEntry, SolverEntry, TimingsEntry};

@@ -72,11 +72,25 @@ pub fn sections(
     assumptions: &Assumptions,
     observer: &Observer,
 ) -> Result<(Vec<Sectioned>, Vec<Failure>), Failure> {
+    sections_with(inputs, reading, assumptions, Curves::Dropped, observer)
+}
+
+/// The same, with the curves behind the values of the sheets or without them.
+///
+/// # Errors
+/// See [`sections`].
+pub fn sections_with(
+    inputs: &[Input],
+    reading: &Reading,
+    assumptions: &Assumptions,
+    curves: Curves,
+    observer: &Observer,
+) -> Result<(Vec<Sectioned>, Vec<Failure>), Failure> {
     let Sorted { documents, others, mut failures } = Sorted::new(inputs);
     failures.iter().for_each(|failure| observer.failed(failure));
     let mut fabrics = Vec::new();
     if !others.is_empty() {
-        let (read, unread) = reading.sheets(&others, &[assumptions.modulus], Curves::Dropped, observer)?;
+        let (read, unread) = reading.sheets(&others, &[assumptions.modulus], curves, observer)?;
         fabrics = read;
         failures.extend(unread);
     }

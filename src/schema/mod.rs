@@ -1,8 +1,9 @@
 //! The contracts of the program as files: JSON Schemas of what it reads, and the reference of all keys of a case.
 //!
-//! Everything here is generated from the types that read the files: a key that is not in a type is in no schema, and a
-//! key of a type is in its schema and in the reference.
+//! What the program reads has schemas that are generated from the types that read it: a key that is not in a type is in no
+//! schema, and a key of a type is in its schema and in the reference. The open fabric file, which others read, is stated.
 
+mod open_fabric;
 mod reference;
 
 use schemars::JsonSchema;
@@ -20,7 +21,7 @@ use crate::quantity::Unit;
 /// A JSON Schema (draft 7, which editors of TOML know) with the name of its file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SchemaFile {
-    /// Name without an ending: `case`, `fabric`, `settings`, `dialect`.
+    /// Name without an ending: `case`, `dialect`, `fabric`, `open-fabric`, `settings`.
     pub name: &'static str,
     /// What files it is of.
     pub title: &'static str,
@@ -45,12 +46,17 @@ impl SchemaFile {
     }
 }
 
-/// The schemas of all files that the program reads, in name order.
+/// The schemas of all files that the program reads and describes to others, in name order.
 pub fn schemas() -> Vec<SchemaFile> {
     vec![
         SchemaFile::of::<CaseTable>("case", "Case file of kesf"),
         SchemaFile::of::<Dialect>("dialect", "Dialect file of kesf"),
         SchemaFile::of::<FabricFile>("fabric", "fabric.toml of kesf"),
+        SchemaFile {
+            name: "open-fabric",
+            title: "Open fabric file kesf.fabric/1",
+            schema: open_fabric::schema(),
+        },
         SchemaFile::of::<Settings>("settings", "Settings of the evaluation of kesf"),
     ]
 }

@@ -203,7 +203,6 @@ const KNOWN_CIRCLES: &[(&str, usize)] = &[
     ("case", 6),
     ("characterise", 13),
     ("constitutive", 5),
-    ("report/cards", 14),
     ("report/chart", 5),
     ("solve", 8),
     ("study", 7),

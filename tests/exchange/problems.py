@@ -79,7 +79,8 @@ def hang(along, cells=(32, 4)):
     mesh = problem.mesh
     problem.fix(range(len(mesh.points)), (3, 4, 5))
     end = mesh.where(lambda *p: p[along] < 1e-12)
-    problem.fix(end, (along + 1,))
+    # A grip that holds a straight edge lets no point of it turn in the plane.
+    problem.fix(end, (along + 1, 6))
     problem.fix(end[len(end) // 2 : len(end) // 2 + 1], (2 - along,))
     tip = mesh.at(*((cells[0], cells[1] // 2) if along == 0 else (cells[0] // 2, cells[1])))
     return problem, lambda u: u[tip][along] / STRIP

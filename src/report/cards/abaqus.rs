@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
+use super::card::{Card, CardError, Exporter, Material};
 use super::text::{number, preamble, set};
-use super::{Card, CardError, Exporter, Material};
 use crate::section::ShellSection;
 
 /// `kesf export --to abaqus`.

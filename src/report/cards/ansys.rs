@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use nalgebra::Matrix3;
 
+use super::card::{Card, CardError, Exporter, Material};
 use super::laminate::NO_STIFFNESS;
 use super::text::{label, number, preamble};
-use super::{Card, CardError, Exporter, Material};
 use crate::section::ShellSection;
 
 /// `kesf export --to ansys`.

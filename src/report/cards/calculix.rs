@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 
 use nalgebra::Matrix3;
 
+use super::card::{Card, CardError, Exporter, Material};
 use super::constants::plane_stress;
 use super::laminate::laminate;
 use super::text::{number, preamble, set};
-use super::{Card, CardError, Exporter, Material};
 use crate::section::ShellSection;
 
 /// `kesf export --to calculix`.

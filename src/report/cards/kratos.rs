@@ -2,10 +2,10 @@
 
 use serde_json::{Value, json};
 
+use super::card::{Card, CardError, Exporter, Material};
 use super::constants::plane_stress;
 use super::laminate::laminate;
 use super::text::provenance;
-use super::{Card, CardError, Exporter, Material};
 use crate::report::json;
 use crate::section::ShellSection;
 

@@ -13,7 +13,7 @@
 
 use nalgebra::{Matrix3, SymmetricEigen};
 
-use super::CardError;
+use super::card::CardError;
 use crate::section::ShellSection;
 
 /// A symmetric laminate of three layers; reduced stiffnesses in material axes (Pa).

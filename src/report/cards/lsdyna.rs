@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
+use super::card::{Card, CardError, Exporter, Material};
 use super::constants::{Constants, no_place};
 use super::text::{label, preamble};
-use super::{Card, CardError, Exporter, Material};
 use crate::section::ShellSection;
 
 /// `kesf export --to lsdyna`.

@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
+use super::card::{Card, CardError, Exporter, Material};
 use super::constants::{Constants, Yarn, lost, no_place};
 use super::swatch::{SIDE, Swatch, cell, swatch};
 use super::text::{number, provenance, wrapped};
-use super::{Card, CardError, Exporter, Material};
 use crate::section::ShellSection;
 
 /// `kesf export --to mujoco`.
@@ -21,6 +21,9 @@ pub static EXPORTER: Exporter = Exporter {
 
 /// Greatest Poisson ratio that a flex takes.
 const POISSON_LIMIT: f64 = 0.499;
+
+/// Torsional rigidity of the grid over its bending rigidity, see [`super::swatch`].
+const GRID_TWIST: f64 = 1.25;
 
 /// Young's modulus (Pa) and thickness (m) of an isotropic plate, `E t` and `E t³ / (12 (1 - ν²))` of which are those of
 /// a strip.
@@ -48,7 +51,7 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
         // Two hyphens end a comment of XML.
         let _ = writeln!(text, "  <!-- {} -->", line.replace("--", "- -"));
     }
-    text.push_str("  <option timestep=\"0.005\" gravity=\"0 0 -9.80665\" integrator=\"discrete\" tolerance=\"1e-12\"/>\n");
+    text.push_str("  <option timestep=\"0.005\" gravity=\"0 0 -9.80665\" integrator=\"discrete\" tolerance=\"1e-10\"/>\n");
     text.push_str("  <size memory=\"200M\"/>\n  <custom>\n");
     for (name, value) in [
         ("kesf_areal_density", section.areal_density),
@@ -99,10 +102,9 @@ fn flex(
 fn losses(c: &Constants, poisson: f64) -> Vec<crate::finding::Finding> {
     let mean = c.mean();
     let shear = mean.tensile / (2.0 * (1.0 + poisson));
-    // Diagonal hinges twist with the whole rigidity; ½ k (... + 4 w,xy²) against ½ (... + 4 D66 w,xy²).
     let mut findings: Vec<_> = [
         ("a shear stiffness", [shear, c.shear], "N/m"),
-        ("a torsional rigidity", [mean.bending, c.torsion], "N·m"),
+        ("on a grid, a torsional rigidity", [GRID_TWIST * mean.bending, c.torsion], "N·m"),
         ("for a sheet, a bending rigidity along the warp", [mean.bending, c.yarns[0].bending], "N·m"),
         ("for a sheet, a bending rigidity along the weft", [mean.bending, c.yarns[1].bending], "N·m"),
         ("for a sheet, a tensile stiffness along the warp", [mean.tensile, c.yarns[0].tensile], "N/m"),

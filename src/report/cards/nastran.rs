@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
+use super::card::{Card, CardError, Exporter, Material};
 use super::constants::plane_stress;
 use super::text::preamble;
-use super::{Card, CardError, Exporter, Material};
 use crate::section::ShellSection;
 
 /// `kesf export --to nastran`.

@@ -4,12 +4,14 @@
 //! the triangles lie. On a grid whose diagonals change direction from column to column each column of hinges bends
 //! like a strip of its own width: with a hinge energy `½ k (c·w)²/A` of the cotangent operator `c` of Wardetzky et
 //! al. (*Comput. Aided Geom. Des.* 24 (2007) 499), A the area of both triangles, the energy per area of a bent sheet
-//! is `½ k (w,xx² + w,yy² + 4 w,xy²)` for squares: no hinge couples bending with twisting, and none is idle.
+//! is `½ k (w,xx² + w,yy² + 5 w,xy²)` for squares. Four of the five are the diagonals'; the fifth is that of the hinges
+//! within a column, whose triangles have their right angles at opposite ends. Were the diagonals to change from cell to
+//! cell, the fifth would vanish, but then every second vertex of a row bends freely (MuJoCo's strip drops 3 % more).
 //!
 //! ```text
 //!  j=1  +---+---+---+        The first column of cells lies half before the clamp: points at -h/2 and h/2
 //!       | / | \ | / |        are held, so that the hinge between them is the clamp at x = 0.
-//!  j=0  +---+---+---+
+//!  j=0  +---+---+---+        For stretching the clamp is at h/2.
 //!      i=0  1   2   3
 //! ```
 

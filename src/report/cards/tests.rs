@@ -6,6 +6,8 @@ use nalgebra::{Matrix2, Matrix3};
 use serde_json::Value;
 
 use super::*;
+use crate::characterise::FabricSheet;
+use crate::constitutive::Constitutive;
 use crate::section::ShellSection;
 
 /// A poplin-like sheet: every entry another number.
@@ -123,4 +125,120 @@ fn u3m_has_the_keys_of_its_schema() {
     assert!(id.len() == 36 && &id[14..15] == "4" && "89ab".contains(&id[19..20]), "{id}");
     assert_eq!(document["custom"]["kesf"]["section"]["sections"][0]["d_m"][0][0], 6000.0);
     assert_eq!(written("u3m", section()).unwrap(), text);
+}
+
+fn json(name: &str) -> Value {
+    serde_json::from_str(&written(name, section()).unwrap()).unwrap()
+}
+
+fn close(found: &Value, expected: f64) {
+    assert_relative_eq!(found.as_f64().unwrap(), expected, max_relative = 1e-8);
+}
+
+/// `conf.cpp`: 6 x 4 and 3 x 5 numbers; `dde.cpp` doubles the first, and takes the second by the direction of the hinge.
+#[test]
+fn arcsim_has_the_rows_that_its_sources_read() {
+    let card = json("arcsim");
+    close(&card["density"], 0.118);
+    let stretching = card["stretching"].as_array().unwrap();
+    assert_eq!(stretching.len(), 6);
+    for row in stretching {
+        let k: Vec<f64> = row.as_array().unwrap().iter().map(|c| 2.0 * c.as_f64().unwrap()).collect();
+        // Energies of D over [ε11, ε22, 2 ε12].
+        assert_relative_eq!(k[..], [6000.0, 900.0, 4000.0, 4.0 * 60.0][..], max_relative = 1e-12);
+    }
+    let bending = card["bending"].as_array().unwrap();
+    assert!(bending.len() == 3 && bending.iter().all(|row| row.as_array().unwrap().len() == 5));
+    let strip = |i: usize, j: usize| section().d_b[(i, i)] - 5e-7 * 5e-7 / section().d_b[(j, j)];
+    let bias = 0.25 * (8e-6 + 4e-6 + 2.0 * 5e-7) + 2.5e-6;
+    for (row, rigidity) in bending.iter().zip([strip(1, 0), bias, strip(0, 1)]) {
+        close(&row[0], 4.0 * rigidity);
+        close(&row[4], 4.0 * rigidity);
+    }
+}
+
+/// The reference guide: fields of twenty columns, in the order of LAW19; read back they are the membrane.
+#[test]
+fn radioss_has_fields_of_twenty_columns() {
+    let text = written("radioss", section()).unwrap();
+    let at = text.find("/MAT/LAW19/1/1\nKESF_").unwrap();
+    let rows: Vec<Vec<f64>> = text[at..]
+        .lines()
+        .skip(2)
+        .filter(|line| !line.starts_with('#'))
+        .map(|line| {
+            assert!(line.len() % 20 == 0 && line.len() <= 100, "{line}");
+            line.as_bytes()
+                .chunks(20)
+                .map(|f| std::str::from_utf8(f).unwrap().trim().parse().unwrap())
+                .collect()
+        })
+        .collect();
+    let [rho, e11, e22, nu12, g12, g23, g31, reduced] = rows.concat()[..] else { panic!("{rows:?}") };
+    let t = section().thickness;
+    let nu21 = nu12 * e22 / e11;
+    let q = Matrix3::new(e11, nu21 * e11, 0.0, nu12 * e22, e22, 0.0, 0.0, 0.0, g12 * (1.0 - nu12 * nu21));
+    assert_relative_eq!(q * (t / (1.0 - nu12 * nu21)), section().d_m, max_relative = 1e-8, epsilon = 1e-6);
+    assert_relative_eq!(rho * t, 0.118, max_relative = 1e-8);
+    assert_relative_eq!(Matrix2::new(g31 * t, 0.0, 0.0, g23 * t), section().d_s, max_relative = 1e-8);
+    assert_eq!((rows.len(), reduced), (4, 1.0));
+}
+
+/// The manual of LS-DYNA: fields of ten columns; read back they are the membrane.
+#[test]
+fn lsdyna_has_fields_of_ten_columns() {
+    let text = written("lsdyna", section()).unwrap();
+    let block = |keyword: &str| -> Vec<Vec<f64>> {
+        let lines = text.lines().skip_while(|l| *l != keyword).skip(2).take_while(|l| !l.starts_with('*'));
+        let real = |f: &[u8]| std::str::from_utf8(f).unwrap().trim().parse().unwrap_or(f64::NAN);
+        lines
+            .map(|line| {
+                assert!(line.len() % 10 == 0 && line.len() <= 80, "{line}");
+                line.as_bytes().chunks(10).map(real).collect()
+            })
+            .collect()
+    };
+    let (shell, fabric) = (block("*SECTION_SHELL_TITLE"), block("*MAT_FABRIC_TITLE"));
+    assert_eq!((shell.len(), fabric.len(), fabric[2][5]), (2, 6, 14.0));
+    let t = shell[1][0];
+    let [_, rho, ea, eb, _, prba, prab, _] = fabric[0][..] else { panic!("{fabric:?}") };
+    let gab = fabric[1][0];
+    // PRBA EA = PRAB EB, and the fields hold five digits.
+    assert_relative_eq!(prba * ea, prab * eb, max_relative = 1e-3);
+    let free = 1.0 - prba * prab;
+    let q = Matrix3::new(ea, prba * ea, 0.0, prba * ea, eb, 0.0, 0.0, 0.0, gab * free) * (t / free);
+    assert_relative_eq!(q, section().d_m, max_relative = 1e-3, epsilon = 1e-6);
+    assert_relative_eq!(rho * t, 0.118, max_relative = 1e-3);
+}
+
+/// The open fabric file is an input like a section, and loses nothing of it.
+#[test]
+fn the_open_fabric_file_is_read_back() {
+    use crate::report::read_back::{Document, read};
+    let text = written("fabric", section()).unwrap();
+    let Some(Document::Sections(found)) = read(text.as_bytes()).unwrap() else { panic!("no section") };
+    let [(sheet, made)] = &found[..] else { panic!("{}", found.len()) };
+    assert_eq!((sheet.name.as_str(), &made.section), ("Köper 65", &section()));
+    assert!(read(text.replace("\"d_m\"", "\"a\"").as_bytes()).is_err());
+}
+
+/// What is exchanged, slipped by a unit or doubled in a section is another number in the card of every program.
+#[test]
+fn a_planted_mistake_is_another_card() {
+    let mistakes: [fn(&mut ShellSection); 4] = [
+        |s| s.d_m = Matrix3::new(4000.0, 900.0, 0.0, 900.0, 6000.0, 0.0, 0.0, 0.0, 60.0),
+        |s| s.d_m *= 1e-3,
+        |s| s.d_m[(2, 2)] *= 2.0,
+        |s| s.areal_density *= 1e3,
+    ];
+    for target in EXPORTERS {
+        let own = written(target.name, section()).unwrap();
+        for plant in mistakes {
+            let mut other = section();
+            plant(&mut other);
+            // MuJoCo has no shear stiffness.
+            let told = target.name != "mujoco" || other.d_m[(2, 2)] / other.d_m[(0, 0)] == 0.01;
+            assert!(!told || written(target.name, other).unwrap() != own, "{}", target.name);
+        }
+    }
 }

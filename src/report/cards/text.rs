@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use unicode_normalization::UnicodeNormalization;
 
-use super::Material;
+use super::card::Material;
 use crate::report::write::hash;
 
 /// What every card says of itself: the fabric, the origin of its data, units, axes, date, assumptions, and notes.

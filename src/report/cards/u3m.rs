@@ -7,7 +7,8 @@ use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 use uuid::Builder;
 
-use super::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, Exporter, Material};
+use super::fabric::file_names;
 use crate::report::json::{assumptions, section_document, sheet_document, text};
 
 use crate::section::ShellSection;
@@ -126,11 +127,7 @@ fn without_loops(mut sheet: Value) -> Value {
             fabric.shift_remove(key);
         }
     }
-    for input in sheet["inputs"].as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut) {
-        if let Some(Value::String(path)) = input.get_mut("path") {
-            *path = path.rsplit('/').next().unwrap_or_default().to_string();
-        }
-    }
+    file_names(&mut sheet);
     if let Some(document) = sheet.as_object_mut() {
         document.shift_remove("findings");
     }

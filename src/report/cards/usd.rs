@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
+use super::card::{Card, CardError, Exporter, Material};
 use super::constants::{Constants, Yarn, lost, no_place};
 use super::swatch::{Swatch, swatch};
 use super::text::{label, number, preamble};
-use super::{Card, CardError, Exporter, Material};
 use crate::section::ShellSection;
 
 /// `kesf export --to usd`.
