@@ -1,4 +1,4 @@
-//! K050: values of one fabric that do not go together.
+//! K059: values of one fabric that do not go together.
 
 use super::FabricSheet;
 use crate::finding::{EvaluationFact, Finding};

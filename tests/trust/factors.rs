@@ -62,7 +62,7 @@ fn is_told(values: &[(Parameter, f64)]) -> bool {
     let results = values.iter().enumerate().map(result).collect();
     let input = FabricInput { name: "a".into(), results, ..FabricInput::default() };
     let sheet = characterise(&input, &Settings::default());
-    sheet.findings.iter().any(|finding| ["K011", "K042", "K050"].contains(&finding.code()))
+    sheet.findings.iter().any(|finding| ["K011", "K042", "K059"].contains(&finding.code()))
 }
 
 #[test]

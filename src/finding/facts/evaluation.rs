@@ -117,7 +117,7 @@ super::facts! {
             range: Option<[f64; 2]>,
         } = "{key} = {:.4} {} {}", value / key.parameter.kes_factor(), key.parameter.kes_unit(), implausible(*key, *range);
         /// Values of one fabric that do not go together.
-        "K050" NotTogether {
+        "K059" NotTogether {
             /// What they do not obey.
             relation: Relation,
             /// The values, in the order of the relation.
