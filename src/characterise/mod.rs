@@ -8,6 +8,7 @@ mod branch;
 mod checks;
 mod closed_loop;
 mod compression;
+mod crossing;
 #[cfg(test)]
 mod doubtful;
 mod friction;
