@@ -11,6 +11,7 @@ mod compression;
 mod crossing;
 #[cfg(test)]
 mod doubtful;
+pub mod drape;
 mod friction;
 mod graph;
 mod onset;

@@ -1,5 +1,6 @@
 //! What the instruments of the Kawabata Evaluation System measure: tests, yarn directions and parameters.
 
+mod drape_method;
 mod parameter;
 pub mod specimen;
 
@@ -8,6 +9,7 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use drape_method::{CUSICK, CUSICK_DISC, DrapeMethod, JIS};
 pub use parameter::{Direction, Key, Parameter};
 
 /// The KES-F test that a curve comes from.

@@ -22,5 +22,8 @@ pub(crate) mod number;
 #[cfg(feature = "charts")]
 pub mod chart;
 
+#[cfg(feature = "pictures")]
+pub mod overlay;
+
 pub use output_folder::{OutputFolder, Pending};
 pub use write::OutputError;

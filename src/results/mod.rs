@@ -12,6 +12,8 @@ mod bent;
 mod cards;
 mod checked;
 mod columns;
+#[cfg(feature = "pictures")]
+mod drape_picture;
 mod draped;
 mod fabric;
 mod failure;
@@ -42,6 +44,8 @@ pub use bent::BendingEntry;
 pub use cards::{Card, cards, write_cards};
 pub use checked::{CheckDocument, Checked, check};
 pub use columns::Columns;
+#[cfg(feature = "pictures")]
+pub use drape_picture::{DrapePictures, drape_pictures};
 pub use draped::{DrapeEntry, DrapePoint};
 pub use fabric::FabricReport;
 pub use failure::{Failure, FailureEntry};

@@ -14,6 +14,7 @@ pub use reference::case_reference;
 
 use crate::case::CaseTable;
 use crate::characterise::Settings;
+use crate::characterise::drape::DrapeDocument;
 use crate::instrument::{Dialect, FabricFile};
 use crate::quantity::Unit;
 
@@ -45,11 +46,15 @@ impl SchemaFile {
     }
 }
 
-/// The schemas of all files that the program reads, in name order.
+/// The schemas of all files that the program reads, and of the document of `kesf drape-image`, in name order.
 pub fn schemas() -> Vec<SchemaFile> {
     vec![
         SchemaFile::of::<CaseTable>("case", "Case file of kesf"),
         SchemaFile::of::<Dialect>("dialect", "Dialect file of kesf"),
+        SchemaFile::of::<DrapeDocument>(
+            "drape-image",
+            "kesf.drape-image/1, the document of kesf drape-image",
+        ),
         SchemaFile::of::<FabricFile>("fabric", "fabric.toml of kesf"),
         SchemaFile::of::<Settings>("settings", "Settings of the evaluation of kesf"),
     ]
