@@ -2,11 +2,11 @@
 //!
 //! Nothing here knows centimetres: outlines are in pixels, from the upper left corner of the picture, y downwards.
 //!
-//! 1. The background is a colour that changes slowly over the picture ([`background`]); what differs from it is split
-//!    off by Otsu's level, and the largest part is the sheet ([`blob`]).
-//! 2. The outline lies where the colour is halfway between those inside and outside nearby ([`edge`]): uneven light
+//! 1. The background is a colour that changes slowly over the picture (`background`); what differs from it is split
+//!    off by Otsu's level, and the largest part is the sheet (`blob`).
+//! 2. The outline lies where the colour is halfway between those inside and outside nearby (`edge`): uneven light
 //!    and blur do not move it, and it is found between pixels.
-//! 3. The disc is a circle within, along which the brightness steps the same way all around ([`disc`]).
+//! 3. The disc is a circle within, along which the brightness steps the same way all around (`disc`).
 
 mod background;
 mod blob;
