@@ -94,6 +94,17 @@ const NOT_FROM_FILES: &[(&str, &str)] = &[
     ("K015", "a curve without a direction is refused with R012"),
     ("K019", "specimens that share a number are renumbered with R103"),
     ("K022", "values that are not finite are refused with R017"),
+    ("R024", "of pictures, which no folder is searched for: tests/drape_image.rs"),
+    ("R025", "the same"),
+    ("K050", "the same"),
+    ("K051", "the same"),
+    ("K052", "the same"),
+    ("K053", "the same"),
+    ("K054", "the same"),
+    ("K055", "the same"),
+    ("K056", "the same"),
+    ("K057", "the same"),
+    ("K058", "the same"),
 ];
 
 fn root() -> PathBuf {

@@ -98,11 +98,25 @@ pub(super) struct DrapeTable {
     pub folds: Vec<usize>,
     /// How often the cells are halved for the state of lowest energy.
     pub refinements: usize,
+    /// Whose sizes disc and sheet have: `case` (those of [sheet]), or `measured` (those that the method of the fabric's
+    /// measured drape coefficient states, such as 24 cm on 18 cm, where it states some).
+    pub sizes: DrapeSizes,
+}
+
+/// Whose sizes disc and sheet of a drape have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum DrapeSizes {
+    /// Those of the case.
+    #[default]
+    Case,
+    /// Those with which the fabric was measured.
+    Measured,
 }
 
 impl Default for DrapeTable {
     fn default() -> Self {
-        Self { folds: vec![3, 4, 5, 6, 7], refinements: 1 }
+        Self { folds: vec![3, 4, 5, 6, 7], refinements: 1, sizes: DrapeSizes::default() }
     }
 }
 

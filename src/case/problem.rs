@@ -98,6 +98,8 @@ pub struct DrapeProblem {
     pub folds: Vec<usize>,
     /// How often the cells are halved for the state of lowest energy.
     pub refinements: usize,
+    /// Whether the sizes of disc and sheet are those with which the fabric's drape was measured, where they are known.
+    pub sizes_as_measured: bool,
     /// How the equations are solved.
     pub solver: Solver,
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::analysis::{Analysis, AnalysisTable, DrapeTable, Linear, Modal};
+use super::analysis::{Analysis, AnalysisTable, DrapeSizes, DrapeTable, Linear, Modal};
 use super::bending_test::{BendingTest, BendingTestTable};
 use super::check::{checks, probes};
 use super::element::Purpose;
@@ -311,6 +311,7 @@ impl CaseTable {
             gravity: weight(case)?,
             folds: drape.folds,
             refinements: drape.refinements,
+            sizes_as_measured: drape.sizes == DrapeSizes::Measured,
             solver,
         })
     }

@@ -82,15 +82,10 @@ impl Graph {
         Some(sum + 0.5 * (yb + y0) * (b - x0))
     }
 
-    /// The smallest abscissa at which y reaches `level` from below; `None` if it starts above or
-    /// never gets there.
+    /// The abscissa at which y reaches `level` from below; `None` if it starts above or never gets there. Noise moves it
+    /// to neither side.
     pub fn first_rise_to(&self, level: f64) -> Option<f64> {
-        let i = self.y.iter().position(|v| *v >= level)?;
-        if i == 0 {
-            return (self.y[0] <= level + 1e-9 * level.abs()).then(|| self.x[0]);
-        }
-        let part = (level - self.y[i - 1]) / (self.y[i] - self.y[i - 1]);
-        Some(self.x[i - 1] + part * (self.x[i] - self.x[i - 1]))
+        super::crossing::rise(&self.x, &self.y, level)
     }
 
     /// The least-squares line over the abscissae from `a` to `b`; `None` if they are not covered.

@@ -8,8 +8,10 @@ mod branch;
 mod checks;
 mod closed_loop;
 mod compression;
+mod crossing;
 #[cfg(test)]
 mod doubtful;
+pub mod drape;
 mod friction;
 mod graph;
 mod onset;

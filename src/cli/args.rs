@@ -5,8 +5,8 @@ use clap::{Parser, Subcommand};
 use super::global::Global;
 
 use super::{
-    characterise, check, compare, completions, explain, export, init, list, man, read, report, run, section,
-    solve, verify,
+    characterise, check, compare, completions, drape_image, explain, export, init, list, man, read, report,
+    run, section, solve, verify,
 };
 
 /// Kawabata (KES-F) measurements in; fabric parameters, shell sections, predictions and charts out.
@@ -32,6 +32,7 @@ pub enum Command {
     Section(section::Options),
     Solve(solve::Options),
     Compare(compare::Options),
+    DrapeImage(drape_image::Options),
     Export(export::Options),
     Report(report::Options),
     Verify(verify::Options),

@@ -10,6 +10,7 @@ mod check;
 mod compare;
 mod completions;
 mod diagnostics;
+mod drape_image;
 mod exit;
 mod explain;
 mod export;
@@ -70,6 +71,7 @@ fn dispatch(command: &Command, ui: &Ui) -> Result<Exit, Failure> {
         Command::Section(options) => section::run(options, ui),
         Command::Solve(options) => solve::run(options, ui),
         Command::Compare(options) => compare::run(options, ui),
+        Command::DrapeImage(options) => drape_image::run(options, ui),
         Command::Export(options) => export::run(options, ui),
         Command::Report(options) => report::run(options, ui),
         Command::Verify(options) => verify::run(options, ui),

@@ -251,6 +251,18 @@ problems! {
         reason: String,
     } = "{reason}",
         "only the FAB raw data of a U3M file are read (raw_data.L|W|B.S1 ...); remove other JSON files from the folder";
+    /// A picture that cannot be decoded.
+    "R024" BadPicture {
+        /// The decoder's words.
+        reason: String,
+    } = "the picture cannot be read: {reason}",
+        "PNG and JPEG are read; open it in another program and save it as one of them";
+    /// A picture without a sheet.
+    "R025" NoSheet {
+        /// Why.
+        reason: String,
+    } = "no draped sheet is seen in the picture: {reason}",
+        "take the picture from above, the whole sheet on a background that is lighter or darker everywhere";
 }
 
 /// `R021`, in the words of a reader.

@@ -30,7 +30,18 @@ pub(crate) struct FabricFile {
     results: Vec<MeasuredResult>,
 }
 
-/// What `fabric.toml` in a folder says: of the fabric, of the conditions of its tests, and what nothing can use.
+/// What `kesf drape-image` writes: measured results, to be laid beside `fabric.toml`.
+pub const DRAPE_FILE: &str = "drape.toml";
+
+/// `drape.toml`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct DrapeFile {
+    results: Vec<MeasuredResult>,
+}
+
+/// What `fabric.toml` in a folder says: of the fabric, of the conditions of its tests, and what nothing can use;
+/// with the results of a `drape.toml` beside it.
 ///
 /// # Errors
 /// `R001` and `R019`, with the position.
@@ -39,6 +50,21 @@ pub(super) fn read_fabric_file(
 ) -> Result<(FabricInfo, StatedConditions, Vec<Finding>), ReadError> {
     let path = folder.join("fabric.toml");
     let file: FabricFile = from_toml(&path, |reason| Problem::BadFabricFile { reason })?;
+    let drape = folder.join(DRAPE_FILE);
+    let mut results = file.results;
+    let mut findings = Vec::new();
+    if drape.is_file() {
+        let found: DrapeFile = from_toml(&drape, |reason| Problem::BadFabricFile { reason })?;
+        for result in found.results {
+            if results.iter().any(|r| r.quantity == result.quantity) {
+                let reason = Some("fabric.toml states it too, and is taken".into());
+                let fact = ReadFact::Unusable { names: vec![result.quantity], reason };
+                findings.push(Finding::new(fact).at(Place::file(&drape)));
+            } else {
+                results.push(result);
+            }
+        }
+    }
     let info = FabricInfo {
         title: file.name.unwrap_or_default(),
         weave: file.weave,
@@ -49,10 +75,10 @@ pub(super) fn read_fabric_file(
         areal_density: file.areal_density.map(ArealDensity::si),
         thickness: file.thickness.map(Length::si),
         notes: file.notes,
-        results: file.results,
+        results,
     };
     let finding = |fact| Finding::new(fact).at(Place::file(&path));
-    let findings = info.results.iter().filter_map(unusable).map(finding).collect();
+    findings.extend(info.results.iter().filter_map(unusable).map(finding));
     Ok((info, file.conditions, findings))
 }
 

@@ -25,6 +25,8 @@ mod marks;
 mod measurement;
 mod own_results;
 mod pairs;
+#[cfg(feature = "pictures")]
+pub mod picture;
 mod raw;
 mod read;
 mod result_table;
@@ -48,7 +50,7 @@ pub use conditions::{
 pub use dialect::{BranchColumn, DIALECT_FILES, Dialect, Key, Role, Statistic, TableColumn, dialects};
 pub use error::{About, Problem, ReadError};
 pub(crate) use fabric_file::FabricFile;
-pub use fabric_file::read_dialect;
+pub use fabric_file::{DRAPE_FILE, read_dialect};
 pub use folder::{Batch, Library, read_fabrics};
 pub use measurement::{
     Conditions, FabricInfo, FabricInput, Inference, MeasuredResult, Measurement, Origin, ResultValue, Source,

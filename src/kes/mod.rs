@@ -1,5 +1,6 @@
 //! What the instruments of the Kawabata Evaluation System measure: tests, yarn directions and parameters.
 
+mod drape_method;
 mod parameter;
 mod relation;
 pub mod specimen;
@@ -9,6 +10,7 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use drape_method::{CUSICK, CUSICK_DISC, DrapeMethod, JIS};
 pub use parameter::{Direction, Key, Parameter};
 pub use relation::Relation;
 

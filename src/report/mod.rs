@@ -23,6 +23,9 @@ pub(crate) mod number;
 #[cfg(feature = "charts")]
 pub mod chart;
 
+#[cfg(feature = "pictures")]
+pub mod overlay;
+
 pub use output_folder::{OutputFolder, Pending};
 pub use table_stream::CsvTable;
 #[cfg(feature = "tables")]

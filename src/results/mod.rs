@@ -13,6 +13,8 @@ mod cards;
 mod catalogue;
 mod checked;
 mod columns;
+#[cfg(feature = "pictures")]
+mod drape_picture;
 mod draped;
 mod fabric;
 mod failure;
@@ -46,6 +48,8 @@ pub use cards::{Card, cards, write_cards};
 pub(crate) use catalogue::Catalogue;
 pub use checked::{CheckDocument, Checked, check};
 pub use columns::Columns;
+#[cfg(feature = "pictures")]
+pub use drape_picture::{DrapePictures, drape_pictures};
 pub use draped::{DrapeEntry, DrapePoint};
 pub use fabric::FabricReport;
 pub use failure::{Failure, FailureEntry};

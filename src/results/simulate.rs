@@ -73,7 +73,13 @@ fn drape(task: &Task, observer: &Observer) -> Result<Drape, Failure> {
     let law = made.as_ref().and_then(|m| m.law.as_ref());
     let stage = || observer.step();
     let watch = observer.watch(&stage);
-    Ok(study::drape(task.case, &section, law, &task.options().single(), watch)?)
+    let (case, told) = match task.fabric {
+        Some(sheet) => study::as_measured(task.case, sheet),
+        None => (std::borrow::Cow::Borrowed(task.case), Vec::new()),
+    };
+    let mut hung = study::drape(&case, &section, law, &task.options().single(), watch)?;
+    hung.findings.extend(told);
+    Ok(hung)
 }
 
 /// A `[bending_test]`; with the result, the directions that failed.

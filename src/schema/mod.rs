@@ -15,6 +15,7 @@ pub use reference::case_reference;
 
 use crate::case::CaseTable;
 use crate::characterise::Settings;
+use crate::characterise::drape::DrapeDocument;
 use crate::instrument::{Dialect, FabricFile};
 use crate::quantity::Unit;
 
@@ -51,6 +52,10 @@ pub fn schemas() -> Vec<SchemaFile> {
     vec![
         SchemaFile::of::<CaseTable>("case", "Case file of kesf"),
         SchemaFile::of::<Dialect>("dialect", "Dialect file of kesf"),
+        SchemaFile::of::<DrapeDocument>(
+            "drape-image",
+            "kesf.drape-image/1, the document of kesf drape-image",
+        ),
         SchemaFile::of::<FabricFile>("fabric", "fabric.toml of kesf"),
         SchemaFile {
             name: "open-fabric",

@@ -32,7 +32,7 @@ pub use crate::case::{Case, CaseError};
 pub use build::section;
 pub use compare::{Comparison, compare_curves, measured_curve};
 pub use convergence::{Convergence, MeshSeries};
-pub use drape::{Drape, DrapeState, Folds, drape, drape_stages, measured_drape};
+pub use drape::{Drape, DrapeState, Folds, as_measured, drape, drape_method, drape_stages, measured_drape};
 pub use dynamics::History;
 pub use effort::within_limits;
 pub use nonlinear::{LoadPath, LoadStepEnd, PathStep};

@@ -13,7 +13,9 @@
 //! no band, as it would be too narrow.
 
 use super::bending::{BendingResult, simulate_cantilever, simulate_heart_loop};
-use super::{Case, PreparedCase, PreparedTest, Status, StudyError, Watch, drape, refused, simulate_cycle};
+use super::{
+    Case, PreparedCase, PreparedTest, Status, StudyError, Watch, as_measured, drape, refused, simulate_cycle,
+};
 use crate::case::{
     BendingTest, DrapeProblem, FabricMaterial, InstrumentTest, Problem, SamplingPlan, ShellSpecimen,
 };
@@ -137,6 +139,7 @@ pub fn sample(
         Problem::Drape(problem) => {
             let problem = DrapeProblem { refinements: 0, ..problem.clone() };
             let coarse = Case { problem: Problem::Drape(problem), ..case.clone() };
+            let (coarse, _) = as_measured(&coarse, sheet);
             let hang = |_: &FabricSheet, made: &Constitutive| {
                 let watch = Watch { stage: &|| (), ..watch };
                 let hung = drape(&coarse, &made.section, made.law.as_ref(), options, watch)?;

@@ -3,6 +3,7 @@
 //! Each variant has its own code, typed fields (SI where nothing else is said) and the sentence that is written of
 //! them. Programs ask the variant and its fields; nothing reads a sentence.
 
+mod drape;
 mod evaluation;
 mod exchange;
 mod parts;
@@ -16,6 +17,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+pub use drape::DrapeFact;
 pub use evaluation::EvaluationFact;
 pub use exchange::ExchangeFact;
 pub use parts::{
@@ -82,6 +84,8 @@ pub enum Fact {
     Usage(UsageFact),
     /// Of other programs that read a card (`O`).
     Exchange(ExchangeFact),
+    /// Of pictures of a drape test (`K`).
+    Drape(DrapeFact),
 }
 
 impl Fact {
@@ -94,6 +98,7 @@ impl Fact {
             Self::Study(fact) => fact.code(),
             Self::Usage(fact) => fact.code(),
             Self::Exchange(fact) => fact.code(),
+            Self::Drape(fact) => fact.code(),
         }
     }
 
@@ -118,6 +123,7 @@ impl fmt::Display for Fact {
             Self::Study(fact) => fact.fmt(f),
             Self::Usage(fact) => fact.fmt(f),
             Self::Exchange(fact) => fact.fmt(f),
+            Self::Drape(fact) => fact.fmt(f),
         }
     }
 }
@@ -138,5 +144,6 @@ groups!(
     Section(SectionFact),
     Study(StudyFact),
     Usage(UsageFact),
-    Exchange(ExchangeFact)
+    Exchange(ExchangeFact),
+    Drape(DrapeFact)
 );

@@ -172,6 +172,24 @@ super::facts! {
             change: f64,
         } = "the last refinement, to {elements} elements, changed the coefficient by {:+.1} points: as much may be left to the mesh",
             100.0 * change;
+        /// A measured drape whose sizes nobody stated.
+        "S125" AssumedDrapeSizes {
+            /// Name of the fabric.
+            fabric: String,
+            /// What is assumed.
+            sizes: String,
+        } = "{fabric}: the source of the measured drape coefficient does not state disc and sheet, or says that they are assumed; \
+             it is taken as that of a {sizes}";
+        /// A drape that was measured with other sizes than it is solved with.
+        "S126" OtherDrapeSizes {
+            /// Name of the fabric.
+            fabric: String,
+            /// With which it was measured.
+            measured: String,
+            /// With which it is solved.
+            hung: String,
+        } = "{fabric}: the drape coefficient was measured with a {measured}, and this is a {hung}: they cannot be compared; \
+             write sizes = \"measured\" in [analysis]";
         /// Rotations that depend on the steps.
         "S121" TurnedAbout {
             /// The largest rotation about an axis that is held (rad).

@@ -10,6 +10,7 @@
 //! of folds at the start; every one ends in a stable equilibrium with whatever folds it then has. The
 //! result is the state of lowest energy, refined, and the band of all coefficients.
 
+mod method;
 mod refine;
 mod rim;
 mod shadow;
@@ -20,6 +21,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
+pub use method::{as_measured, drape_method};
 pub use rim::Folds;
 
 use super::effort::within_limits;
