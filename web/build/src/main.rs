@@ -33,9 +33,10 @@ const REPORT_STYLE: &str = include_str!("../../../src/report/page.css");
 const REPORT_SCRIPT: &str = include_str!("../../../src/report/page.js");
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let root =
+        Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).ok_or("this crate is not in web/build")?;
     let out = env::args_os().nth(1).map_or_else(|| root.join("target/web/kesf.html"), PathBuf::from);
-    let compiled = compiled(&root)?;
+    let compiled = compiled(root)?;
     let engine = bound(&compiled, "kesf_web")?;
     let page = page(&engine, &bound(&compiled, "kesf_web_unpack")?)?;
     let sent = gzip(page.as_bytes())?.len();
