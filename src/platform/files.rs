@@ -1,4 +1,4 @@
-//! Files that are read: those of the system, and on WebAssembly without one those of a [`Tree`] in memory.
+//! Files that are read: those of the system, and on WebAssembly without one those of a tree in memory.
 //!
 //! The computing layers read through these functions only, so that folders mean the same wherever the program runs.
 
