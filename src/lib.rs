@@ -49,16 +49,16 @@ pub mod report;
 
 pub mod schema;
 
-#[cfg(feature = "charts")]
+#[cfg(feature = "results")]
 pub mod results;
 
-#[cfg(feature = "charts")]
+#[cfg(feature = "results")]
 pub mod run;
 
 #[cfg(feature = "cli")]
 pub mod cli;
 
-#[cfg(feature = "charts")]
+#[cfg(feature = "results")]
 pub use run::{FieldFiles, RunReport, RunSettings, run};
 
 #[cfg(test)]

@@ -37,6 +37,7 @@ use crate::constitutive::Assumptions;
 use crate::finding::{Located, Node, Place, ReadLater, TomlError, TomlFile};
 use crate::instrument::{Direction, Test};
 use crate::law::Mode;
+use crate::platform::files;
 use crate::solve::{Method, Options};
 
 pub use analysis::{Analysis, Linear, Modal, Newmark, Nonlinear, Rotations};
@@ -134,7 +135,7 @@ impl Case {
     /// # Errors
     /// S001 to S003 with the position in the file.
     pub fn read(path: &Path) -> Result<Self, CaseError> {
-        let text = std::fs::read_to_string(path)
+        let text = files::read_to_string(path)
             .map_err(|e| CaseError::Unreadable { place: Place::file(path), reason: e.to_string() })?;
         Self::parse(path, &text)
     }

@@ -10,6 +10,7 @@ use super::dialect::Dialect;
 use super::error::{Problem, ReadError};
 use super::{FabricInfo, MeasuredResult, Origin};
 use crate::finding::{Finding, Place, ReadFact, position};
+use crate::platform::files;
 use crate::quantity::{ArealDensity, Length, Ratio};
 
 /// `fabric.toml`: what people know of a fabric and no instrument writes.
@@ -53,7 +54,7 @@ pub(super) fn read_fabric_file(
     let drape = folder.join(DRAPE_FILE);
     let mut results = file.results;
     let mut findings = Vec::new();
-    if drape.is_file() {
+    if files::is_file(&drape) {
         let found: DrapeFile = from_toml(&drape, |reason| Problem::BadFabricFile { reason })?;
         for result in found.results {
             if results.iter().any(|r| r.quantity == result.quantity) {
@@ -108,7 +109,7 @@ fn from_toml<T: serde::de::DeserializeOwned>(
     path: &Path,
     problem: impl Fn(String) -> Problem,
 ) -> Result<T, ReadError> {
-    let text = std::fs::read_to_string(path)
+    let text = files::read_to_string(path)
         .map_err(|e| ReadError::new(Place::file(path), Problem::Unreadable { reason: e.to_string() }))?;
     toml::from_str(&text).map_err(|e: toml::de::Error| {
         let (line, column) = position(&text, e.span().map_or(0, |s| s.start));

@@ -12,8 +12,8 @@ pub(super) const EXTENSIONS: &[&str] = &[
 pub(super) const ABOUT: &[&str] =
     &["readme", "license", "licence", "notes", "changelog", "citation", "copying"];
 
-/// Whether a name in an archive is that of a file that may hold measurements.
-pub(super) fn is_data_name(name: &str) -> bool {
+/// Whether a name, with `/` between its parts, is that of a file that may hold measurements.
+pub fn is_data_name(name: &str) -> bool {
     let path = Path::new(name);
     let lower =
         |part: Option<&std::ffi::OsStr>| part.map(|p| p.to_string_lossy().to_lowercase()).unwrap_or_default();

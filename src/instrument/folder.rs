@@ -10,7 +10,7 @@ use super::own_results::{JOURNAL, MANIFEST, OwnResults};
 use super::read::{FileContent, ReadSettings, read};
 use super::{FabricInfo, FabricInput, Inference, ResultValue};
 use crate::finding::{Finding, Place, ReadFact, UsageFact};
-use crate::platform;
+use crate::platform::{self, files};
 
 /// The fabrics of a batch, and what could not be read.
 #[derive(Clone, Debug, Default)]
@@ -74,7 +74,7 @@ impl Library {
         };
         let mut known = BTreeMap::new();
         for input in inputs {
-            if input.is_dir() {
+            if files::is_folder(input) {
                 walk(input, settings, &mut library);
             } else if library.own.wrote(input) {
                 library
@@ -222,7 +222,7 @@ impl Group {
     fn about(&self, settings: &ReadSettings) -> Result<AboutGroup, ReadError> {
         let folder = if self.name.is_none() {
             None
-        } else if self.path.is_file() {
+        } else if files::is_file(&self.path) {
             fabric_folder(&self.path)
         } else {
             Some(self.path.as_path())
@@ -250,7 +250,7 @@ pub fn read_fabrics(inputs: &[PathBuf], settings: &ReadSettings, progress: &(dyn
 /// The folder in which a file lies, or one above it, that has a fabric.toml; on the path as it is given.
 fn fabric_folder(file: &Path) -> Option<&Path> {
     let mut folder = file.parent()?;
-    while !folder.join("fabric.toml").is_file() {
+    while !files::is_file(&folder.join("fabric.toml")) {
         // What stands before a `..` is not above it.
         folder = folder.parent().filter(|_| !folder.ends_with(".."))?;
     }
@@ -270,12 +270,7 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>, ReadError> {
     let unreadable = |e: std::io::Error| {
         ReadError::new(Place::file(folder), Problem::Unreadable { reason: e.to_string() })
     };
-    let mut paths = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
-        paths.push(entry.map_err(unreadable)?.path());
-    }
-    paths.sort();
-    Ok(paths)
+    files::entries(folder).map_err(unreadable)
 }
 
 fn is_hidden(path: &Path) -> bool {
@@ -288,30 +283,30 @@ fn is_data(path: &Path) -> bool {
         |part: Option<&std::ffi::OsStr>| part.map(|p| p.to_string_lossy().to_lowercase()).unwrap_or_default();
     let extension = lower(path.extension());
     let about = ABOUT.contains(&lower(path.file_stem()).as_str());
-    let known = EXTENSIONS.contains(&extension.as_str()) && !about && path.is_file();
+    let known = EXTENSIONS.contains(&extension.as_str()) && !about && files::is_file(path);
     // JSON is used for everything: only FAB records are ours.
     known
         && (extension != "json"
-            || std::fs::read(path).is_ok_and(|b| b.windows(10).any(|w| w == b"\"raw_data\"")))
+            || files::read(path).is_ok_and(|b| b.windows(10).any(|w| w == b"\"raw_data\"")))
 }
 
 /// Whether a folder holds results of this program and nothing else to read: charts and tables of fabrics are none
 /// themselves. One that the user names is read all the same, and one into which results were put beside measurements.
 fn is_results(folder: &Path) -> bool {
-    let read = |name: &&str| std::fs::read_to_string(folder.join(name)).ok();
+    let read = |name: &&str| files::read_to_string(&folder.join(name)).ok();
     let ours: String = [MANIFEST, JOURNAL].iter().filter_map(read).collect();
-    if ours.is_empty() || folder.join("fabric.toml").is_file() {
+    if ours.is_empty() || files::is_file(&folder.join("fabric.toml")) {
         return false;
     }
     // Both lists hold names as JSON texts, those in a folder of results with it: `"poplin/sheet.json"`.
     let is_ours = |path: &PathBuf| {
         let name = path.file_name().map(|n| n.to_string_lossy()).and_then(|n| serde_json::to_string(&n).ok());
-        name.is_some_and(|n| match path.is_dir() {
+        name.is_some_and(|n| match files::is_folder(path) {
             true => ours.contains(&format!("{}/", n.strip_suffix('"').unwrap_or(&n))),
             false => ours.contains(&n),
         })
     };
-    let to_read = |p: &PathBuf| !is_hidden(p) && (p.is_dir() || is_data(p));
+    let to_read = |p: &PathBuf| !is_hidden(p) && (files::is_folder(p) || is_data(p));
     entries(folder).is_ok_and(|all| all.iter().filter(|p| to_read(p)).all(is_ours))
 }
 
@@ -329,7 +324,7 @@ impl Library {
 
     /// Says which links lead nowhere: they are neither files nor folders.
     fn tell_dangling(&mut self, paths: &[PathBuf]) {
-        let dangles = |path: &&PathBuf| !is_hidden(path) && path.is_symlink() && !path.exists();
+        let dangles = |path: &&PathBuf| !is_hidden(path) && files::is_link(path) && !files::exists(path);
         let told = |path: &PathBuf| Finding::new(UsageFact::DanglingLink {}).at(Place::file(path));
         self.findings.extend(paths.iter().filter(dangles).map(told));
     }
@@ -337,7 +332,7 @@ impl Library {
 
 fn walk(folder: &Path, settings: &ReadSettings, library: &mut Library) {
     // A link to a folder above would be followed without end.
-    let Ok(real) = std::fs::canonicalize(folder).map(|real| (!library.above.contains(&real)).then_some(real))
+    let Ok(real) = files::canonicalize(folder).map(|real| (!library.above.contains(&real)).then_some(real))
     else {
         return library.failures.extend(entries(folder).err());
     };
@@ -356,14 +351,14 @@ fn search(folder: &Path, settings: &ReadSettings, library: &mut Library) {
     let visible = || paths.iter().filter(|p| !is_hidden(p));
     let mut files: Vec<PathBuf> = visible().filter(|p| is_data(p)).cloned().collect();
     let stated = folder.join("fabric.toml");
-    let has_fabric_file = stated.is_file();
+    let has_fabric_file = files::is_file(&stated);
     if has_fabric_file {
         // Everything below belongs to this fabric.
-        let is_inner = |p: &PathBuf| !is_hidden(p) && p.is_dir() && !is_results(p);
+        let is_inner = |p: &PathBuf| !is_hidden(p) && files::is_folder(p) && !is_results(p);
         let mut folders: Vec<PathBuf> = paths.iter().filter(|p| is_inner(p)).cloned().collect();
-        let mut seen = BTreeSet::from_iter(std::fs::canonicalize(folder));
+        let mut seen = BTreeSet::from_iter(files::canonicalize(folder));
         while let Some(folder) = folders.pop() {
-            if std::fs::canonicalize(&folder).is_ok_and(|real| !seen.insert(real)) {
+            if files::canonicalize(&folder).is_ok_and(|real| !seen.insert(real)) {
                 continue;
             }
             match entries(&folder) {
@@ -385,7 +380,7 @@ fn search(folder: &Path, settings: &ReadSettings, library: &mut Library) {
         }
     }
     if !has_fabric_file {
-        for inner in visible().filter(|p| p.is_dir() && !is_results(p)) {
+        for inner in visible().filter(|p| files::is_folder(p) && !is_results(p)) {
             walk(inner, settings, library);
         }
     }
@@ -394,7 +389,7 @@ fn search(folder: &Path, settings: &ReadSettings, library: &mut Library) {
 /// The fabric of a folder; the error of its fabric.toml or dialect.toml names it.
 fn group(folder: &Path, files: Vec<PathBuf>, settings: &ReadSettings) -> Result<Group, ReadError> {
     // "." and ".." have a name only on disk.
-    let real = std::fs::canonicalize(folder_path(folder)).unwrap_or_else(|_| folder.to_path_buf());
+    let real = files::canonicalize(folder_path(folder)).unwrap_or_else(|_| folder.to_path_buf());
     let name = real.file_name().map_or_else(|| "fabric".into(), |n| n.to_string_lossy().into_owned());
     match about(folder, settings) {
         Ok(_) => Ok(Group { path: folder_path(folder).to_path_buf(), name: Some(name), files, named: false }),
@@ -409,10 +404,10 @@ fn group(folder: &Path, files: Vec<PathBuf>, settings: &ReadSettings) -> Result<
 fn about(folder: &Path, settings: &ReadSettings) -> Result<AboutGroup, ReadError> {
     let mut settings = settings.clone();
     let dialect = folder.join("dialect.toml");
-    if dialect.is_file() {
+    if files::is_file(&dialect) {
         settings.dialects.insert(0, read_dialect(&dialect)?);
     }
-    if !folder.join("fabric.toml").is_file() {
+    if !files::is_file(&folder.join("fabric.toml")) {
         let findings = vec![without_fabric_file(folder)];
         return Ok(AboutGroup { info: FabricInfo::default(), settings, findings });
     }

@@ -36,6 +36,7 @@ mod statistic;
 mod suggest;
 mod told;
 mod unit_text;
+mod unpacked;
 mod value;
 mod vocabulary;
 mod web_page;
@@ -51,9 +52,11 @@ pub use dialect::{BranchColumn, DIALECT_FILES, Dialect, Key, Role, Statistic, Ta
 pub use error::{About, Problem, ReadError};
 pub(crate) use fabric_file::FabricFile;
 pub use fabric_file::{DRAPE_FILE, read_dialect};
+pub use file_name::is_data_name;
 pub use folder::{Batch, Library, read_fabrics};
 pub use measurement::{
     Conditions, FabricInfo, FabricInput, Inference, MeasuredResult, Measurement, Origin, ResultValue, Source,
 };
 pub use own_results::{JOURNAL, MANIFEST};
 pub use read::{FileContent, ReadSettings, parse, read};
+pub use unpacked::unpacked;

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
+use crate::platform::files;
+
 /// The list of files that this program wrote into a folder: results, and no measurements.
 pub const MANIFEST: &str = ".kesf-manifest.json";
 /// What stands for it as long as a run is writing, or where one was killed.
@@ -38,7 +40,7 @@ impl OwnResults {
     pub fn wrote(&mut self, file: &Path) -> bool {
         let Some((folder, name)) = file.parent().zip(file.file_name()) else { return false };
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-        let Ok(real) = folder.canonicalize() else { return false };
+        let Ok(real) = files::canonicalize(folder) else { return false };
         let real = real.join(name);
         real.ancestors().skip(1).any(|above| {
             let Ok(name) = real.strip_prefix(above) else { return false };
@@ -54,7 +56,7 @@ impl OwnResults {
 
 /// Names that the lists of a folder hold.
 fn names(folder: &Path) -> BTreeSet<String> {
-    let read = |name: &str| std::fs::read(folder.join(name)).unwrap_or_default();
+    let read = |name: &str| files::read(&folder.join(name)).unwrap_or_default();
     let manifest = serde_json::from_slice::<Manifest>(&read(MANIFEST));
     let mut names: BTreeSet<String> =
         manifest.map_or_else(|_| BTreeSet::new(), |m| m.files.into_keys().collect());

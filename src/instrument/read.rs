@@ -21,6 +21,7 @@ use super::workbook::{self, Archive};
 use super::{Measurement, Parameter, ResultValue, Source};
 use super::{limits, web_page};
 use crate::finding::{Fact, Finding, Place, ReadFact};
+use crate::platform;
 use crate::quantity::ArealDensity;
 
 /// What a reader may be told beforehand. The default infers everything and assumes no unit.
@@ -62,7 +63,7 @@ pub struct FileContent {
 /// # Errors
 /// See [`Problem`].
 pub fn read(path: &Path, settings: &ReadSettings) -> Result<FileContent, ReadError> {
-    let bytes = std::fs::read(path)
+    let bytes = platform::files::read(path)
         .map_err(|e| ReadError::new(Place::file(path), Problem::Unreadable { reason: e.to_string() }))?;
     parse(path, &bytes, settings)
 }

@@ -114,7 +114,10 @@ pub(super) fn files(bytes: &[u8]) -> Result<Vec<(String, Vec<u8>)>, Problem> {
         let mut entry = zip.by_index(i).map_err(bad)?;
         let name = entry.name().map_err(bad)?.into_owned();
         // An archive within an archive is none of a laboratory's.
-        if entry.is_dir() || !super::file_name::is_data_name(&name) || name.to_lowercase().ends_with(".zip") {
+        if name.ends_with('/')
+            || !super::file_name::is_data_name(&name)
+            || name.to_lowercase().ends_with(".zip")
+        {
             continue;
         }
         let mut inner = Vec::new();

@@ -1,11 +1,12 @@
-//! What depends on the machine below the program: threads and the clock.
+//! What depends on the machine below the program: threads, the clock, and files that are read.
 //!
 //! Nothing else in the computing layers names them, so that the library builds for targets that have
-//! neither: without the feature `threads` everything here runs on the calling thread, and on
-//! WebAssembly without a system a [`Stopwatch`] measures nothing.
+//! none: without the feature `threads` everything here runs on the calling thread, and on
+//! WebAssembly without a system a [`Stopwatch`] measures nothing and [`files`] are in memory.
 
 mod clock;
 mod deadline;
+pub mod files;
 mod parallel;
 
 pub use clock::Stopwatch;

@@ -11,16 +11,16 @@ pub mod read_back;
 pub mod table;
 mod table_stream;
 pub mod vtu;
-#[cfg(feature = "tables")]
+#[cfg(feature = "workbook")]
 pub mod workbook;
 pub mod write;
 
 mod axes;
 // Charts need all of it, the page a part.
-#[cfg_attr(not(feature = "charts"), allow(dead_code))]
+#[cfg_attr(not(feature = "results"), allow(dead_code))]
 pub(crate) mod number;
 
-#[cfg(feature = "charts")]
+#[cfg(feature = "results")]
 pub mod chart;
 
 #[cfg(feature = "pictures")]

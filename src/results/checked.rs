@@ -12,6 +12,7 @@ use super::observer::Observer;
 use super::work::{named_fabric, no_such_fabric};
 use crate::finding::{Finding, Place};
 use crate::instrument::{FabricInput, Inference, Source};
+use crate::platform::files;
 use crate::study::{Case, StudyError, validate};
 
 /// What is in the inputs.
@@ -66,7 +67,7 @@ pub fn check(inputs: &[Input], reading: &Reading, observer: &Observer) -> Result
             Err(error) => failures.push(located(&case, error)),
         }
     }
-    let without_fabric = |case: &&Case| named_fabric(case).is_some_and(|path| !path.exists());
+    let without_fabric = |case: &&Case| named_fabric(case).is_some_and(|path| !files::exists(&path));
     failures.extend(cases.iter().filter(without_fabric).map(no_such_fabric));
     failures.iter().for_each(|failure| observer.failed(failure));
     let others = inputs::without_cases(inputs);
@@ -99,7 +100,7 @@ impl Checked {
         let unread =
             self.failures.iter().filter(|f| f.code.starts_with('R')).filter_map(|f| f.place.as_ref());
         let paths = self.inference().map(|i| i.path.clone()).chain(unread.map(|place| place.path.clone()));
-        paths.filter(|path| path.is_file()).collect::<BTreeSet<_>>().into_iter().collect()
+        paths.filter(|path| files::is_file(path)).collect::<BTreeSet<_>>().into_iter().collect()
     }
 
     /// The document.

@@ -16,7 +16,7 @@ use crate::characterise::drape::{
 use crate::finding::{DrapeFact, Finding, Place};
 use crate::instrument::picture::{Silhouette, read_silhouette};
 use crate::instrument::{DRAPE_FILE, MeasuredResult};
-use crate::platform;
+use crate::platform::{self, files};
 use crate::quantity::significant;
 use crate::report::overlay::{Overlay, overlay};
 
@@ -109,18 +109,12 @@ pub fn drape_pictures(
 fn pictures(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for path in paths {
-        if !path.is_dir() {
+        if !files::is_folder(path) {
             found.push(path.clone());
             continue;
         }
         let unreadable = |e: std::io::Error| Failure::new("R001", e.to_string()).at(Place::file(path));
-        let mut inside = Vec::new();
-        for entry in std::fs::read_dir(path).map_err(unreadable)? {
-            inside.push(entry.map_err(unreadable)?.path());
-        }
-        inside.retain(|p| is_picture(p));
-        inside.sort();
-        found.extend(inside);
+        found.extend(files::entries(path).map_err(unreadable)?.into_iter().filter(|p| is_picture(p)));
     }
     if found.is_empty() {
         return Err(Failure::new("O055", "there is no picture in what was named")
@@ -132,7 +126,10 @@ fn pictures(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
 fn is_picture(path: &Path) -> bool {
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
-    path.is_file() && ENDINGS.contains(&ending.as_str()) && !name.ends_with(OVERLAY) && !name.starts_with('.')
+    files::is_file(path)
+        && ENDINGS.contains(&ending.as_str())
+        && !name.ends_with(OVERLAY)
+        && !name.starts_with('.')
 }
 
 fn read(path: &Path, keep: bool) -> Result<Seen, Failure> {

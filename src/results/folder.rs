@@ -267,13 +267,14 @@ impl<'s> Folder<'s> {
         self.write(name, &if self.bom { marked(table) } else { table })
     }
 
-    /// Draws and writes a chart where charts are wanted; whether there is one. Without data there is none.
+    /// Draws and writes a chart where charts are wanted; whether there is one. Without data there is none, and without
+    /// the feature `charts` nothing is drawn.
     pub(crate) fn chart(
         &self,
         name: &str,
         draw: impl FnOnce() -> Result<Vec<u8>, ChartError>,
     ) -> Result<bool, Failure> {
-        if !self.charts {
+        if !cfg!(feature = "charts") || !self.charts {
             return Ok(false);
         }
         match draw() {

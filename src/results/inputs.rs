@@ -14,6 +14,7 @@ use crate::finding::{Finding, Place};
 use crate::instrument::{
     FabricInput, Inference, Library, ReadError, ReadSettings, ResultValue, parse, read_dialect,
 };
+use crate::platform::files;
 use crate::report::table::FabricRow;
 use crate::report::write::hash;
 use crate::study::Case;
@@ -49,7 +50,7 @@ impl Input {
     /// Whether it is a case, by the name of a file or by the tables of a text in memory.
     pub fn is_case(&self) -> bool {
         match self {
-            Self::Path(path) => !path.is_dir() && has_name_of_case(path),
+            Self::Path(path) => !files::is_folder(path) && has_name_of_case(path),
             Self::Memory { bytes, .. } => case_text(bytes).is_some(),
         }
     }
@@ -92,7 +93,7 @@ pub struct FileEntry {
 impl FileEntry {
     /// The entry of a file.
     pub fn of(path: &Path) -> Self {
-        let sha256 = std::fs::read(path).ok().map(|bytes| hash(&bytes));
+        let sha256 = files::read(path).ok().map(|bytes| hash(&bytes));
         Self { path: path.to_string_lossy().into_owned(), sha256 }
     }
 }
@@ -149,7 +150,7 @@ impl Reading {
     pub fn evaluation(&self) -> Result<Settings, Failure> {
         let Some(path) = &self.settings else { return Ok(Settings::default()) };
         let text =
-            std::fs::read_to_string(path).map_err(|e| bad_settings(Place::file(path), &e.to_string()))?;
+            files::read_to_string(path).map_err(|e| bad_settings(Place::file(path), &e.to_string()))?;
         Self::evaluation_of(path, &text)
     }
 
@@ -305,7 +306,7 @@ pub fn cases(inputs: &[Input]) -> (Vec<Case>, Vec<Failure>) {
     let mut files = Vec::new();
     for input in inputs {
         match input {
-            Input::Path(path) if path.is_dir() && !path.join("fabric.toml").exists() => {
+            Input::Path(path) if is_folder_of_several(path) => {
                 cases_below(path, &mut files);
             }
             Input::Path(path) if has_name_of_case(path) => files.push(path.clone()),
@@ -320,7 +321,7 @@ pub fn cases(inputs: &[Input]) -> (Vec<Case>, Vec<Failure>) {
         }
     }
     let mut seen = BTreeSet::new();
-    files.retain(|file| file.canonicalize().map_or(true, |real| seen.insert(real)));
+    files.retain(|file| files::canonicalize(file).map_or(true, |real| seen.insert(real)));
     for file in files {
         match Case::read(&file) {
             Ok(case) => cases.push(case),
@@ -341,15 +342,18 @@ fn has_name_of_case(path: &Path) -> bool {
     name.ends_with(".toml") && !name.starts_with('.') && !["fabric.toml", "dialect.toml"].contains(&name)
 }
 
+/// Whether a path is a folder that is no fabric: it may hold cases.
+fn is_folder_of_several(path: &Path) -> bool {
+    files::is_folder(path) && !files::exists(&path.join("fabric.toml"))
+}
+
 /// A folder that cannot be listed is reported by the reader of fabrics, which sees it too.
 fn cases_below(folder: &Path, files: &mut Vec<PathBuf>) {
-    let Ok(entries) = std::fs::read_dir(folder) else { return };
-    let mut paths: Vec<PathBuf> = entries.filter_map(|e| Some(e.ok()?.path())).collect();
-    paths.sort();
+    let Ok(paths) = files::entries(folder) else { return };
     for path in paths {
-        if path.is_dir() && !path.join("fabric.toml").exists() {
+        if is_folder_of_several(&path) {
             cases_below(&path, files);
-        } else if has_name_of_case(&path) && path.is_file() {
+        } else if has_name_of_case(&path) && files::is_file(&path) {
             files.push(path);
         }
     }
@@ -384,7 +388,8 @@ pub(crate) fn unread_of(fabrics: &[(&Path, &str)], failures: &[Failure]) -> Vec<
 
 fn unread_row(fabrics: &[(&Path, &str)], failure: &Failure) -> Option<FabricRow> {
     let path = &failure.place.as_ref().filter(|_| failure.code.starts_with('R'))?.path;
-    let mut inside = fabrics.iter().filter(|(folder, _)| path.starts_with(folder) && folder.is_dir());
+    let mut inside =
+        fabrics.iter().filter(|(folder, _)| path.starts_with(folder) && files::is_folder(folder));
     // A file of a folder of several fabrics is nobody's in particular.
     let own = inside.next().filter(|_| inside.next().is_none()).map(|(_, name)| (*name).to_string());
     let stem = || path.file_stem().map(|s| s.to_string_lossy().into_owned());

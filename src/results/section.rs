@@ -14,6 +14,7 @@ use super::observer::Observer;
 use crate::characterise::{FabricSheet, Key};
 use crate::constitutive::{Assumptions, Constitutive, InputSource, entries, section};
 use crate::finding::{EvaluationFact, Fact, Place};
+use crate::platform::files;
 use crate::quantity::{Bands, significant};
 use crate::report::read_back::{self, Document};
 
@@ -57,7 +58,7 @@ fn document_bytes(input: &Input) -> Option<Cow<'_, [u8]>> {
         Input::Memory { bytes, .. } => Some(Cow::Borrowed(bytes)),
         Input::Path(path) => {
             let is_json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
-            is_json.then(|| std::fs::read(path).ok().map(Cow::Owned))?
+            is_json.then(|| files::read(path).ok().map(Cow::Owned))?
         }
     }
 }

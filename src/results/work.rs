@@ -11,6 +11,7 @@ use super::observer::Observer;
 use super::task::{Limits, Shared, Task};
 use crate::case::{Case, FabricMaterial, SolverChoice};
 use crate::finding::{Finding, Place, StudyFact, UsageFact};
+use crate::platform::files;
 
 /// Inputs and how they are to be used.
 #[derive(Clone, Debug, Default)]
@@ -96,7 +97,7 @@ type Named = Option<(Option<Input>, Option<Finding>)>;
 
 fn fabric_of_case(case: &Case, inputs: &[Input]) -> Result<Named, Failure> {
     let Some(path) = named_fabric(case) else { return Ok(None) };
-    if !path.exists() {
+    if !files::exists(&path) {
         return Err(no_such_fabric(case));
     }
     let doubt = two_fabrics(case, &path);
@@ -108,12 +109,12 @@ fn fabric_of_case(case: &Case, inputs: &[Input]) -> Result<Named, Failure> {
 pub fn named_fabric(case: &Case) -> Option<PathBuf> {
     let path = PathBuf::from(case.fabric().map(|f| &f.name.value).filter(|f| *f != "*")?);
     let beside = beside_case(case, &path);
-    Some(if path.exists() { path } else { beside.unwrap_or(path) })
+    Some(if files::exists(&path) { path } else { beside.unwrap_or(path) })
 }
 
 /// A path beside the case file, if it is there.
 fn beside_case(case: &Case, path: &Path) -> Option<PathBuf> {
-    case.path.parent().map(|p| p.join(path)).filter(|p| p.exists())
+    case.path.parent().map(|p| p.join(path)).filter(|p| files::exists(p))
 }
 
 /// O055: a case whose fabric is nowhere.
@@ -139,7 +140,7 @@ fn two_fabrics(case: &Case, taken: &Path) -> Option<Finding> {
 }
 
 pub(crate) fn is_within(path: &Path, folder: &Path) -> bool {
-    match (path.canonicalize(), folder.canonicalize()) {
+    match (files::canonicalize(path), files::canonicalize(folder)) {
         (Ok(path), Ok(folder)) => path.starts_with(folder),
         _ => path == folder,
     }
@@ -163,7 +164,7 @@ impl Work {
                 tasks.push(Task::new(case, None, shared));
                 continue;
             }
-            if named_fabric(case).is_some_and(|path| !path.exists()) {
+            if named_fabric(case).is_some_and(|path| !files::exists(&path)) {
                 continue; // The failure of it is there already.
             }
             let before = tasks.len();

@@ -12,7 +12,7 @@ use super::settings::RunSettings;
 use super::work::RunWork;
 use crate::case::{Case, Outline};
 use crate::finding::Finding;
-use crate::platform::map_several;
+use crate::platform::{files, map_several};
 use crate::results::{
     Fabric, FabricReport, Failure, FileEntry, Folder, Job, Observer, Record, Shared, Task, hash_of,
     is_within, named_fabric, without_fabric, without_law,
@@ -229,7 +229,7 @@ impl<'c> Workshop<'c> {
     /// Of the suitable cases, those that found no fabric.
     pub fn without_fabric(&self, suitable: &[&Case]) -> Vec<Failure> {
         let idle = |job: &&CaseWork| {
-            let is_there = job.named.as_ref().is_none_or(|path| path.exists());
+            let is_there = job.named.as_ref().is_none_or(|path| files::exists(path));
             is_there && job.tally().tasks == 0 && suitable.iter().any(|case| std::ptr::eq(*case, job.case))
         };
         let failure = |job: &CaseWork| without_fabric(job.case, !job.tally().without.is_empty());

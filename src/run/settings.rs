@@ -44,7 +44,7 @@ pub struct RunSettings {
     /// Whether CSV tables begin with the mark (BOM) by which Excel knows UTF-8.
     pub bom: bool,
     /// Whether all tables are written as a workbook too (`results.xlsx`); their rows are then all in memory.
-    #[cfg(feature = "tables")]
+    #[cfg(feature = "workbook")]
     pub workbook: bool,
     /// Whether the caller takes a finding for a failure; noted in `run.json`.
     pub strict: bool,
@@ -60,7 +60,7 @@ impl Default for RunSettings {
             program: None,
             stamp: None,
             bom: false,
-            #[cfg(feature = "tables")]
+            #[cfg(feature = "workbook")]
             workbook: false,
             strict: false,
         }

@@ -10,11 +10,12 @@ use super::work::RunWork;
 use crate::case::Case;
 use crate::finding::Finding;
 use crate::instrument::Source;
+use crate::platform::files;
 use crate::report::CsvTable;
 use crate::report::chart::{self, ParityPoint};
 use crate::report::html::{Figure, html};
 use crate::report::table::{FabricRow, PredictionRow, ProblemRow, problem_row};
-#[cfg(feature = "tables")]
+#[cfg(feature = "workbook")]
 use crate::report::workbook;
 use crate::results::{
     Benchmark, Columns, DrapePoint, FABRICS_OF_PAGE, FabricReport, Failure, FileEntry, Folder, Head, Job,
@@ -46,12 +47,12 @@ struct Tables<'s> {
     /// What the page shows of the problems.
     shown: Problems,
     /// The rows once more, for a workbook.
-    #[cfg(feature = "tables")]
+    #[cfg(feature = "workbook")]
     workbook: Option<Rows>,
 }
 
 /// The rows of a workbook.
-#[cfg(feature = "tables")]
+#[cfg(feature = "workbook")]
 #[derive(Default)]
 struct Rows {
     fabrics: Vec<FabricRow>,
@@ -81,7 +82,7 @@ impl Results<'_, '_> {
     ) -> Result<Vec<Columns>, Failure> {
         let lost = self.unread();
         let mut tables = self.begin()?;
-        #[cfg(feature = "tables")]
+        #[cfg(feature = "workbook")]
         {
             tables.workbook = settings.workbook.then(Rows::default);
         }
@@ -151,7 +152,7 @@ impl Results<'_, '_> {
             predictions: self.folder.table("predictions")?,
             problems: self.folder.csv_table::<ProblemRow>("problems.csv")?,
             shown: Problems::default(),
-            #[cfg(feature = "tables")]
+            #[cfg(feature = "workbook")]
             workbook: None,
         })
     }
@@ -169,7 +170,7 @@ impl Results<'_, '_> {
             own.rows().iter().try_for_each(|row| tables.prediction(row))?;
         }
         self.problems_of_own().into_iter().try_for_each(|row| tables.problem(row))?;
-        #[cfg(feature = "tables")]
+        #[cfg(feature = "workbook")]
         if let Some(Rows { fabrics, predictions, problems }) = &tables.workbook {
             let sheets = workbook::Tables { fabrics, predictions, problems };
             self.folder.write("results.xlsx", &workbook::workbook(&sheets)?)?;
@@ -241,7 +242,7 @@ impl Results<'_, '_> {
             Err(failure) => vec![Err(failure)],
         });
         let stated = (0..fabrics.len()).map(|at| fabrics.path(at).join("fabric.toml"));
-        let stated = stated.filter(|path| path.is_file()).map(|path| Ok(FileEntry::of(&path)));
+        let stated = stated.filter(|path| files::is_file(path)).map(|path| Ok(FileEntry::of(&path)));
         self.folder.stream("run.json", &document(job, settings, self.cases.iter().copied(), sources, stated))
     }
 }
@@ -266,13 +267,13 @@ impl Tables<'_> {
     }
 
     fn fabric(&mut self, row: &FabricRow) -> Result<(), Failure> {
-        #[cfg(feature = "tables")]
+        #[cfg(feature = "workbook")]
         self.workbook.iter_mut().for_each(|rows| rows.fabrics.push(row.clone()));
         self.fabrics.row(row)
     }
 
     fn prediction(&mut self, row: &PredictionRow) -> Result<(), Failure> {
-        #[cfg(feature = "tables")]
+        #[cfg(feature = "workbook")]
         self.workbook.iter_mut().for_each(|rows| rows.predictions.push(row.clone()));
         self.predictions.row(row)
     }
@@ -280,7 +281,7 @@ impl Tables<'_> {
     fn problem(&mut self, row: ProblemRow) -> Result<(), Failure> {
         self.problems.row(&row)?;
         self.shown.add(&row);
-        #[cfg(feature = "tables")]
+        #[cfg(feature = "workbook")]
         self.workbook.iter_mut().for_each(|rows| rows.problems.push(row.clone()));
         Ok(())
     }

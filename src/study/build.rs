@@ -13,6 +13,7 @@ use crate::fields::{Locator, nearest};
 use crate::finding::{Located, Place};
 use crate::mesh::{self, MeshError, QuadMesh};
 use crate::model::{Load, Model, RigidBody, Support};
+use crate::platform::files;
 use crate::quantity::significant;
 use crate::section::ShellSection;
 use crate::solve::SolveError;
@@ -200,7 +201,7 @@ fn outline(case: &Case, outline: &Outline) -> Result<QuadMesh, StudyError> {
         )?,
         Outline::File { path, unit } => {
             let path = case.path.parent().unwrap_or(Path::new("")).join(path);
-            let text = std::fs::read_to_string(&path).map_err(|e| MeshError::File {
+            let text = files::read_to_string(&path).map_err(|e| MeshError::File {
                 place: Place::file(&path),
                 message: format!("the mesh cannot be read: {e}"),
             })?;

@@ -58,6 +58,11 @@ fn clock_threads_files_and_process_are_named_only_where_the_table_allows() {
 }
 
 #[test]
+fn the_layers_ask_the_platform_about_files_and_not_the_system() {
+    assert_none(&rules::questions(&SOURCE));
+}
+
+#[test]
 fn only_the_command_line_prints() {
     assert_none(&rules::printing(&SOURCE));
 }

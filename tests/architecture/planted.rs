@@ -111,6 +111,16 @@ fn clock_threads_and_files_are_seen() {
 }
 
 #[test]
+fn questions_to_the_system_are_seen() {
+    let text = "fn f(p: &std::path::Path) -> bool {\np.join(\"a\").exists() }\n#[cfg(test)]\nmod tests { fn f() { p.is_dir(); } }";
+    assert_eq!(
+        rules::questions(&with_element(text)),
+        ["src/element/mod.rs:2: .exists(): ask platform::files"]
+    );
+    assert_eq!(rules::questions(&with_element("fn f() { crate::section::exists(1) }")), [""; 0]);
+}
+
+#[test]
 fn printing_is_seen() {
     for text in [
         "#[cfg(test)]\nmod tests {}\nfn f() { println!() }",

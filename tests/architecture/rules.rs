@@ -39,6 +39,7 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
     (
         "case",
         &[
+            "platform",
             "quantity",
             "kes",
             "finding",
@@ -172,8 +173,8 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
 /// places only.
 const PLACES: &[(&str, &[&str])] = &[
     ("faer", &["src/solve/factor", "src/solve/multifrontal", "src/characterise/friction/nnls.rs"]),
-    // A target without a system has none of these: threads and the clock are in `platform`, files are
-    // read and written where the layers meet the outside, and the rest is the command's.
+    // A target without a system has none of these: threads, the clock and files that are read are in
+    // `platform`, files are written where results leave, and the rest is the command's.
     ("rayon", &["src/platform/parallel.rs", "src/cli/"]),
     ("std::thread", &["src/cli/"]),
     ("std::time::Instant", &["src/platform/clock.rs", "src/cli/"]),
@@ -187,25 +188,20 @@ const PLACES: &[(&str, &[&str])] = &[
     ("std::io::stderr", &["src/cli/"]),
 ];
 
-/// Where files are read or written.
+/// Where files are read, or written.
 const FILES: &[&str] = &[
-    "src/instrument/fabric_file.rs",
-    "src/instrument/folder.rs",
-    "src/instrument/own_results.rs",
-    "src/instrument/picture/mod.rs",
-    "src/instrument/read.rs",
-    "src/study/build.rs",
-    "src/case/mod.rs",
+    "src/platform/files",
     "src/report/output_folder.rs",
     "src/report/write.rs",
-    "src/results/drape_picture.rs",
-    "src/results/inputs.rs",
     "src/results/init/",
-    "src/results/section.rs",
+    // What the system tells of this process.
     "src/results/solved/effort.rs",
-    "src/run.rs",
     "src/cli/",
 ];
+
+/// What asks the system about a path: the layers ask `platform::files`, but for those that write.
+const QUESTIONS: &[&str] =
+    &["is_dir", "is_file", "exists", "canonicalize", "is_symlink", "read_dir", "metadata"];
 
 /// What only `cli` may call.
 const PRINTING: &[&str] = &["println", "eprintln", "print", "eprint", "dbg"];
@@ -294,6 +290,21 @@ fn begins(segments: &[String], path: &str) -> bool {
         Some("*") => true,
         found => found == Some(part),
     })
+}
+
+/// Calls of [`QUESTIONS`] where files are not read or written.
+pub fn questions(source: &Crate) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for module in source.modules.values() {
+        if FILES.iter().any(|place| module.file.starts_with(place)) {
+            continue;
+        }
+        let asked = module.methods.iter().filter(|(name, _)| QUESTIONS.contains(&name.as_str()));
+        wrong.extend(
+            asked.map(|(name, line)| format!("{}:{line}: .{name}(): ask platform::files", module.file)),
+        );
+    }
+    wrong
 }
 
 /// Printing outside the command.

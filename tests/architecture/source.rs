@@ -26,6 +26,8 @@ pub struct Module {
     pub names: Vec<Name>,
     /// Macros that are called, by the last segment of their path, and the lines.
     pub macros: Vec<(String, usize)>,
+    /// Methods that are called, and the lines.
+    pub methods: Vec<(String, usize)>,
     /// Identifiers and literals, comments left out.
     pub words: Vec<String>,
 }
@@ -433,6 +435,11 @@ impl<'ast> Visit<'ast> for Scan {
         self.module.macros.push((last.to_string(), last.span().start().line));
         self.visit_path(&node.path);
         self.tokens(node.tokens.clone(), &[]);
+    }
+
+    fn visit_expr_method_call(&mut self, node: &'ast syn::ExprMethodCall) {
+        self.module.methods.push((node.method.to_string(), node.method.span().start().line));
+        visit::visit_expr_method_call(self, node);
     }
 
     /// `pub(in crate::a)` names no module that is used.

@@ -24,6 +24,7 @@ pub(crate) use raster::decoded;
 
 use super::error::{Problem, ReadError};
 use crate::finding::Place;
+use crate::platform::files;
 use edge::enclosed;
 use raster::{Colours, Raster};
 
@@ -55,7 +56,7 @@ const SMALLEST: u32 = 40;
 /// R001 if the file cannot be read, and those of [`silhouette`].
 pub fn read_silhouette(path: &Path) -> Result<(Silhouette, Vec<u8>), ReadError> {
     let at = |problem| ReadError::new(Place::file(path), problem);
-    let bytes = std::fs::read(path).map_err(|e| at(Problem::Unreadable { reason: e.to_string() }))?;
+    let bytes = files::read(path).map_err(|e| at(Problem::Unreadable { reason: e.to_string() }))?;
     Ok((silhouette(&bytes).map_err(at)?, bytes))
 }
 

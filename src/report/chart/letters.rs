@@ -7,8 +7,8 @@ use std::sync::OnceLock;
 
 use ab_glyph::{Font, FontRef};
 use plotters::prelude::{DrawingBackend, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor};
+use plotters::style::IntoTextStyle;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{IntoTextStyle, register_font};
 use unifont::Glyph;
 
 use super::canvas::{Canvas, OVERSAMPLING, Point, device, drawing};
@@ -70,13 +70,23 @@ enum Run<'a> {
     Unifont(&'static Glyph),
 }
 
+/// Makes the font known to plotters, which takes fonts everywhere but in a browser: there it has those of the page.
+#[cfg(not(target_arch = "wasm32"))]
+fn are_known() -> bool {
+    use plotters::style::register_font;
+    register_font(FONT, FontStyle::Normal, dejavu::sans::regular()).is_ok()
+        && register_font(FONT, FontStyle::Bold, dejavu::sans::bold()).is_ok()
+}
+
+#[cfg(target_arch = "wasm32")]
+fn are_known() -> bool {
+    false
+}
+
 /// Makes the font known to plotters.
 pub(super) fn register() -> Result<(), ChartError> {
     static REGISTERED: OnceLock<bool> = OnceLock::new();
-    let ok = *REGISTERED.get_or_init(|| {
-        register_font(FONT, FontStyle::Normal, dejavu::sans::regular()).is_ok()
-            && register_font(FONT, FontStyle::Bold, dejavu::sans::bold()).is_ok()
-    });
+    let ok = *REGISTERED.get_or_init(are_known);
     if ok { Ok(()) } else { Err(ChartError::Drawing { problem: "the built-in font is not readable".into() }) }
 }
 

@@ -18,7 +18,7 @@ use sha2::{Digest, Sha256};
 use crate::finding::{Finding, explain};
 
 pub use data::POINTS;
-#[cfg(feature = "charts")]
+#[cfg(feature = "results")]
 pub(crate) use data::shortened;
 pub use data::{
     AxisEntry, Column, FabricValues, Line, PageData, SimulatedLine, SpecimenCurves, TestCurves, Value,
@@ -91,7 +91,7 @@ pub enum Block {
     Curves(usize),
     /// The control chart of the parameters and the nearest fabrics, drawn by the script.
     ControlChart,
-    /// The part about a fabric, closed until it is wanted.
+    /// The part about a fabric, closed until it is wanted where there are several.
     Fabric {
         /// Its identifier.
         name: String,
@@ -184,8 +184,10 @@ fn block(out: &mut String, part: &Block, data: &PageData) {
         }
         Block::ControlChart => out.push_str("<div id=\"control-chart\"></div>\n"),
         Block::Fabric { name, about, blocks } => {
+            // A reader of one fabric need not open it.
+            let open = if data.fabrics.len() == 1 { " open" } else { "" };
             out.push_str(&format!(
-                "<details class=\"fabric\" id=\"{}\"><summary><h3>{}</h3> <span>{}</span></summary>\n",
+                "<details class=\"fabric\" id=\"{}\"{open}><summary><h3>{}</h3> <span>{}</span></summary>\n",
                 fabric_id(name),
                 escape(name),
                 escape(&without_folders(about))

@@ -1,0 +1,66 @@
+// The thread of the engine: takes files and the form, gives a report of the fabrics alone, which is there at once, then what
+// was understood, then everything. To cancel, the page ends the thread and begins another.
+"use strict";
+
+// Named by the engine: an event of the work.
+function tell(kind, text, steps) {
+  postMessage({ kind: "event", event: kind, text, steps });
+}
+
+const DECODER = new TextDecoder();
+
+async function take({ files, example, loose }) {
+  kesf_web.clear();
+  for (const { path, file } of files) {
+    kesf_web.put(path, new Uint8Array(await file.arrayBuffer()), loose);
+  }
+  if (example) kesf_web.put_example();
+}
+
+function report(job, answer, isFinal) {
+  const bytes = kesf_web.read("report.html");
+  postMessage({ kind: "report", job, said: answer.said, files: answer.files || [], page: DECODER.decode(bytes), isFinal });
+}
+
+async function work({ job, form, ...dropped }) {
+  await take(dropped);
+  const options = JSON.stringify(form);
+  const first = JSON.parse(kesf_web.run(options, true));
+  if ((first.files || []).length) report(job, first, false);
+  const checked = JSON.parse(kesf_web.check(options));
+  postMessage({ kind: "checked", job, ...checked });
+  const { document } = checked;
+  if (document && (document.fabrics.length || document.cases.length)) {
+    report(job, JSON.parse(kesf_web.run(options, false)), true);
+  }
+  postMessage({ kind: "done", job });
+}
+
+const ANSWERS = {
+  // The first thread unpacks the engine and gives it to the page for those that follow.
+  begin({ module, unpack, packed }) {
+    if (!module) {
+      kesf_web_unpack.initSync({ module: new WebAssembly.Module(unpack) });
+      module = new WebAssembly.Module(kesf_web_unpack.unpack(packed));
+    }
+    kesf_web.initSync({ module });
+    postMessage({ kind: "ready", version: kesf_web.version(), module });
+  },
+  work,
+  cards({ form }) {
+    const answer = JSON.parse(kesf_web.cards(JSON.stringify(form)));
+    postMessage({ kind: "cards", said: answer.said, files: answer.files });
+  },
+  save({ name, as }) {
+    const bytes = name === null ? kesf_web.archive() : kesf_web.read(name);
+    postMessage({ kind: "saved", as, bytes }, [bytes.buffer]);
+  },
+};
+
+// One after the other: reading a file is waited for.
+let last = Promise.resolve();
+addEventListener("message", ({ data }) => {
+  last = last.then(() => ANSWERS[data.ask](data)).catch((error) => {
+    postMessage({ kind: "failed", text: String(error && error.message || error) });
+  });
+});
