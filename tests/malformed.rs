@@ -86,6 +86,7 @@ const CASES: &[(&str, &str, &str)] = &[
     ("K047", "k047-copy.csv", "k047-copy.csv:113"),
     ("K048", "k048-knit.json", "k048-knit.json"),
     ("K049", "k002-two-degrees.csv", "k002-two-degrees.csv:6"),
+    ("K059", "k059-tm-above-t0.csv", "k059-tm-above-t0.csv:3:4"),
 ];
 
 /// Codes that no file can trigger, because reading refuses it or sets it right before; programs
@@ -94,7 +95,7 @@ const NOT_FROM_FILES: &[(&str, &str)] = &[
     ("K015", "a curve without a direction is refused with R012"),
     ("K019", "specimens that share a number are renumbered with R103"),
     ("K022", "values that are not finite are refused with R017"),
-    ("R024", "of pictures, which no folder is searched for: tests/drape_image.rs"),
+    ("R024", "of pictures, which no folder is searched for: tests/drape_image"),
     ("R025", "the same"),
     ("K050", "the same"),
     ("K051", "the same"),
