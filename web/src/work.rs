@@ -158,8 +158,8 @@ pub fn cards(options: &str) -> Result<RunAnswer, Failure> {
     let mut made = results(Clone::clone);
     for target in EXPORTERS {
         let sink = MemorySink::default();
-        let (cards, _) = cards_of(&sections, target, None, &observer);
-        write_cards(&cards, target, &sink, &observer);
+        let (cards, _) = cards_of(&sections, &[target], None, &observer);
+        write_cards(&cards, &sink, &observer);
         made.extend(
             sink.into_files().into_iter().map(|(name, text)| (format!("cards/{}/{name}", target.name), text)),
         );
