@@ -47,12 +47,6 @@ impl Making {
 /// Files by their names, without a folder.
 type Files = Vec<(String, Vec<u8>)>;
 
-/// What is for people: the records of fabrics are for the next run of the command.
-fn visible(sink: MemorySink) -> Files {
-    let is_hidden = |name: &str| name.rsplit('/').next().is_some_and(|file| file.starts_with('.'));
-    sink.into_files().into_iter().filter(|(name, _)| !is_hidden(name)).collect()
-}
-
 /// Tables of parameters, predictions and problems; files; findings, failures and notes as JSON; whether a check fails.
 type Ran = (Table, Table, Table, Files, (String, String, String), bool);
 
@@ -97,7 +91,7 @@ pub fn run(
             let sink = MemorySink::default();
             let report = write(&job, &settings, &work, &sink, observer)?;
             let rows = rows(&report, &sink)?;
-            let files = if keep { visible(sink) } else { Files::new() };
+            let files = if keep { sink.into_files().into_iter().collect() } else { Files::new() };
             return Ok((rows, report, files));
         };
         let folder = OutputFolder::open(&out, force)?;

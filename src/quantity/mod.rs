@@ -6,6 +6,7 @@
 
 mod curve;
 mod estimate;
+mod polygon;
 mod propagation;
 mod sobol;
 mod text;
@@ -14,6 +15,7 @@ mod unit;
 
 pub use curve::Curve;
 pub use estimate::Estimate;
+pub use polygon::{polygon_area, polygon_centre};
 pub use propagation::{Band, Bands, NoSpread};
 pub use sobol::{Population, Sampled, sampled, sobol_points};
 pub use text::{in_unit, significant, without_rounding};

@@ -26,7 +26,7 @@ pub mod chart;
 #[cfg(feature = "pictures")]
 pub mod overlay;
 
-pub use output_folder::{OutputFolder, Pending};
+pub use output_folder::{OutputFolder, Pending, is_hidden};
 pub use table_stream::CsvTable;
 #[cfg(feature = "tables")]
 pub use table_stream::ParquetTable;

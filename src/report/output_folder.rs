@@ -203,7 +203,7 @@ impl OutputFolder {
             };
             if let Some(left) = left {
                 // What is ours alone is no left-over to anybody.
-                if !name.rsplit('/').next().is_some_and(|file| file.starts_with('.')) {
+                if !is_hidden(&name) {
                     left_over.push(name.to_string());
                 }
                 files.insert(name, left);
@@ -214,6 +214,11 @@ impl OutputFolder {
         let _ = fs::remove_file(self.root.join(JOURNAL));
         Ok(left_over)
     }
+}
+
+/// Whether a name (with `/` between its parts) is that of a file for the next run, which people are not shown.
+pub fn is_hidden(name: &str) -> bool {
+    name.rsplit('/').next().is_some_and(|file| file.starts_with('.'))
 }
 
 impl Drop for OutputFolder {

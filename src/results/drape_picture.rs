@@ -1,6 +1,7 @@
 //! Pictures of drape tests: captures, means, text, overlays, and the file that states them as measured.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -8,6 +9,7 @@ use serde::Serialize;
 use super::columns::Columns;
 use super::failure::Failure;
 use super::folder::Sink;
+use super::names::{Named, distinguish};
 use super::observer::Observer;
 use crate::characterise::drape::{
     ClothSide, DrapeCapture, DrapeDocument, DrapeSetup, DrapeSummary, SeenSheet, Spread, drape_results,
@@ -37,13 +39,15 @@ pub struct DrapePictures {
 /// A picture in which a sheet was found.
 struct Seen {
     path: PathBuf,
+    /// The folder of the test that it belongs to.
+    folder: PathBuf,
     size: [u32; 2],
     sheet: SeenSheet,
     bytes: Option<Vec<u8>>,
 }
 
-/// Measures the pictures that are named, and those in folders that are; the name of a picture's folder is that of
-/// its test. With a sink the overlays, and the measured results of each test, are written there.
+/// Measures the pictures that are named, and those in folders that are, each once; the name of a picture's folder is that
+/// of its test, numbered where two folders share one. With a sink the overlays, and the measured results of each test, are written there.
 ///
 /// # Errors
 /// O055 if there is no picture, O054 if the work was cancelled, and those of the sink.
@@ -75,11 +79,12 @@ pub fn drape_pictures(
             }
         }
     }
-    let scales = scales(&seen, setup);
+    let (scales, tests) = (scales(&seen, setup), tests(&seen));
+    tests.values().flat_map(|test| &test.findings).for_each(|finding| observer.found(None, finding));
     let mut captures = Vec::new();
-    for Seen { path, size, sheet, bytes } in &seen {
-        let test = test_of(path);
-        let others = scales.get(&(test.clone(), *size)).copied();
+    for Seen { path, folder, size, sheet, bytes } in &seen {
+        let test = tests[folder.as_path()].name.clone();
+        let others = scales.get(&(folder.as_path(), *size)).copied();
         let (capture, facts) = measure(sheet, setup, others);
         let name = path.to_string_lossy().replace('\\', "/");
         let side = ClothSide::in_name(&stem(path));
@@ -89,7 +94,7 @@ pub fn drape_pictures(
         let capture = DrapeCapture { picture: name, test, side, ..capture };
         if let Some((sink, bytes)) = sink.zip(bytes.as_ref()) {
             let picture = overlay(bytes, &drawn(sheet, &capture))?;
-            sink.write(&format!("{}/{}{OVERLAY}", capture.test, stem(path)), &picture)?;
+            sink.write(&format!("{}/{}{OVERLAY}", capture.test, file_name(path)), &picture)?;
         }
         captures.push(capture);
     }
@@ -105,7 +110,7 @@ pub fn drape_pictures(
     Ok(DrapePictures { document, failures })
 }
 
-/// The pictures that paths name, in their order; those of a folder in name order.
+/// The pictures that paths name, in their order and each once; those of a folder in name order.
 fn pictures(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for path in paths {
@@ -116,6 +121,8 @@ fn pictures(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
         let unreadable = |e: std::io::Error| Failure::new("R001", e.to_string()).at(Place::file(path));
         found.extend(files::entries(path).map_err(unreadable)?.into_iter().filter(|p| is_picture(p)));
     }
+    let mut known = BTreeSet::new();
+    found.retain(|picture| files::canonicalize(picture).map_or(true, |real| known.insert(real)));
     if found.is_empty() {
         return Err(Failure::new("O055", "there is no picture in what was named")
             .hint("name PNG or JPEG files, or a folder of them"));
@@ -137,15 +144,17 @@ fn read(path: &Path, keep: bool) -> Result<Seen, Failure> {
         read_silhouette(path)?;
     let disc = disc.map(|d| (d.centre, d.radius));
     let sheet = SeenSheet { outline, disc, contrast: [contrast, noise], others, at_border };
-    Ok(Seen { path: path.to_path_buf(), size, sheet, bytes: keep.then_some(bytes) })
+    let real = files::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    let folder = real.parent().unwrap_or(Path::new("")).to_path_buf();
+    Ok(Seen { path: path.to_path_buf(), folder, size, sheet, bytes: keep.then_some(bytes) })
 }
 
 /// The scale by the discs in the pictures of a test that have one size: their median.
-fn scales(seen: &[Seen], setup: &DrapeSetup) -> BTreeMap<(String, [u32; 2]), f64> {
-    let mut all: BTreeMap<(String, [u32; 2]), Vec<f64>> = BTreeMap::new();
+fn scales<'s>(seen: &'s [Seen], setup: &DrapeSetup) -> BTreeMap<(&'s Path, [u32; 2]), f64> {
+    let mut all: BTreeMap<(&Path, [u32; 2]), Vec<f64>> = BTreeMap::new();
     for picture in seen {
         if let Some(scale) = setup.by_disc(&picture.sheet) {
-            all.entry((test_of(&picture.path), picture.size)).or_default().push(scale);
+            all.entry((&picture.folder, picture.size)).or_default().push(scale);
         }
     }
     let median = |mut values: Vec<f64>| {
@@ -155,10 +164,19 @@ fn scales(seen: &[Seen], setup: &DrapeSetup) -> BTreeMap<(String, [u32; 2]), f64
     all.into_iter().map(|(key, values)| (key, median(values))).collect()
 }
 
-/// The name of the folder of a picture.
-fn test_of(path: &Path) -> String {
-    let folder = std::path::absolute(path).ok().and_then(|p| Some(p.parent()?.file_name()?.to_os_string()));
-    folder.map_or_else(|| "pictures".to_string(), |name| name.to_string_lossy().into_owned())
+/// The tests by their folders: each with the name of its folder, or with one that no other has.
+fn tests(seen: &[Seen]) -> BTreeMap<&Path, Named> {
+    let folders: BTreeSet<&Path> = seen.iter().map(|picture| picture.folder.as_path()).collect();
+    let folders: Vec<&Path> = folders.into_iter().collect();
+    let name =
+        |folder: &Path| folder.file_name().map_or("pictures".into(), OsStr::to_string_lossy).into_owned();
+    let mut named: Vec<Named> = folders.iter().map(|folder| Named::new(name(folder))).collect();
+    distinguish(&mut named, |at| folders[at]);
+    folders.into_iter().zip(named).collect()
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
 fn stem(path: &Path) -> String {
@@ -216,7 +234,7 @@ impl DrapePictures {
         ]);
         for c in &self.document.captures {
             let [clear, all] = c.folds_band;
-            let scale = c.scale.map(|s| format!("{:?}", s.source).to_lowercase());
+            let scale = c.scale.map(|s| s.source.text().to_string());
             captures.row([
                 c.picture.clone(),
                 c.side.map_or("", ClothSide::name).into(),

@@ -12,7 +12,7 @@ use crate::report::ParquetTable;
 use crate::report::chart::ChartError;
 use crate::report::json::text;
 use crate::report::table::{Row, csv, marked};
-use crate::report::{CsvTable, OutputError, OutputFolder, Pending};
+use crate::report::{CsvTable, OutputError, OutputFolder, Pending, is_hidden};
 
 /// Takes the files of results, and gives back what it has. Several threads may write.
 pub trait Sink: Sync {
@@ -86,9 +86,11 @@ struct MemoryFile<'s> {
 }
 
 impl MemorySink {
-    /// The files that were written.
+    /// The files that were written. Hidden ones, which are for the next run into a folder, are none of them.
     pub fn into_files(self) -> BTreeMap<String, Vec<u8>> {
-        self.0.into_inner().unwrap_or_else(PoisonError::into_inner)
+        let mut files = self.0.into_inner().unwrap_or_else(PoisonError::into_inner);
+        files.retain(|name, _| !is_hidden(name));
+        files
     }
 
     fn files(&self) -> MutexGuard<'_, BTreeMap<String, Vec<u8>>> {

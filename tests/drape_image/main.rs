@@ -100,17 +100,13 @@ fn hold(errors: &Errors) {
     assert_eq!(errors.discs[2], 0, "a disc where there is none");
 }
 
+/// Twelve small pictures, or as many of any size as `KESF_PICTURES` says: 330 take some minutes.
 #[test]
 fn pictures_are_measured_within_a_point_and_their_folds_counted() {
-    let small = |seed: &u64| Synthetic::random(*seed).size[0] < 500;
-    hold(&errors((0..).filter(small).take(12)));
-}
-
-/// Some minutes: `cargo test --release --test drape_image -- --ignored --nocapture`.
-#[test]
-#[ignore = "takes minutes"]
-fn many_pictures_are_measured_within_a_point_and_their_folds_counted() {
-    hold(&errors(1000..1330));
+    match std::env::var("KESF_PICTURES") {
+        Ok(many) => hold(&errors((1000..).take(many.parse().unwrap()))),
+        Err(_) => hold(&errors((0..).filter(|seed| Synthetic::random(*seed).size[0] < 500).take(12))),
+    }
 }
 
 fn kesf(arguments: &[&str], folder: &Path) -> (i32, String, String) {
@@ -151,9 +147,9 @@ fn the_command_measures_writes_and_feeds_a_fabric() {
     }
     let (code, text, told) = kesf(&["drape-image", "poplin", "-o", "drape"], root);
     assert_eq!(code, 0, "{told}");
-    assert!(text.contains("face-2.png") && text.contains("otherpictures"), "{text}");
+    assert!(text.contains("face-2.png") && text.contains("other pictures"), "{text}");
     assert!(told.contains("K058") && told.contains("back-1.png: K051"), "{told}");
-    for name in ["face-1.outline.png", "back-1.outline.png", "drape.toml"] {
+    for name in ["face-1.png.outline.png", "back-1.png.outline.png", "drape.toml"] {
         assert!(root.join("drape/poplin").join(name).is_file(), "{name}");
     }
     let (code, json, _) = kesf(&["--json", "drape-image", "poplin", "--method", "ISO 9073-9, 30 cm"], root);
@@ -222,4 +218,46 @@ fn what_is_wrong_with_a_picture_is_told() {
     }
     let (exit, _, told) = kesf(&["drape-image", "sheet.png", "--disc", "30", "--sheet", "18"], root);
     assert!(exit == 2 && told.contains("O050"), "{told}");
+}
+
+/// Two folders of one name are two tests, a picture that is named twice is one, and a letter in a name states no side.
+#[test]
+fn what_is_named_alike_is_not_mixed() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = folder.path();
+    for (name, coefficient) in [("one", 0.5), ("two", 0.8)] {
+        std::fs::create_dir_all(root.join(name).join("photos")).unwrap();
+        let png = plain(1, coefficient, false).png();
+        std::fs::write(root.join(name).join("photos/sample_b.png"), png).unwrap();
+    }
+    let arguments =
+        ["one/photos", "two/photos", "one/photos/sample_b.png", "--pixels-per-cm", "14", "-o", "out"];
+    let (code, _, told) = kesf(&[&["drape-image"], &arguments[..]].concat(), root);
+    assert!(code == 0 && told.contains("O056"), "{told}");
+    let (_, json, _) = kesf(&[&["--json", "drape-image"], &arguments[..5]].concat(), root);
+    let document: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let summaries = document["summaries"].as_array().unwrap();
+    assert_eq!((summaries.len(), document["captures"].as_array().unwrap().len()), (2, 2), "{json}");
+    for (summary, coefficient) in summaries.iter().zip([0.5, 0.8]) {
+        assert!(summary["side"].is_null() && summary["folds"]["n"] == 1, "{summary}");
+        assert!((summary["coefficient"]["mean"].as_f64().unwrap() - coefficient).abs() < 0.01, "{summary}");
+    }
+    for test in ["photos", "photos-2"] {
+        for file in ["sample_b.png.outline.png", "drape.toml"] {
+            assert!(root.join("out").join(test).join(file).is_file(), "{test}/{file}");
+        }
+    }
+}
+
+/// A few kilobytes that claim to be a picture of ten gigabytes cost that picture only.
+#[test]
+fn a_picture_that_unpacks_to_too_much_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut bytes = Vec::new();
+    // The header is written, and the pixels that it promises never follow.
+    drop(png::Encoder::new(&mut bytes, 60_000, 60_000).write_header().unwrap());
+    std::fs::write(folder.path().join("bomb.png"), bytes).unwrap();
+    std::fs::write(folder.path().join("good.png"), plain(1, 0.5, true).png()).unwrap();
+    let (code, text, told) = kesf(&["drape-image", "."], folder.path());
+    assert!(code == 1 && told.contains("bomb.png: R024") && text.contains("good.png"), "{code} {told}");
 }

@@ -15,6 +15,7 @@ pub use crate::kes::DrapeMethod;
 pub use summary::{DrapeSummary, Spread, drape_results, summaries};
 
 use crate::finding::DrapeFact;
+use crate::quantity::{polygon_area, polygon_centre};
 
 /// Orders of the harmonics that are given.
 const ORDERS: usize = 20;
@@ -52,6 +53,17 @@ pub enum ScaleSource {
     OtherPictures,
 }
 
+impl ScaleSource {
+    /// What people call it.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::Given => "given",
+            Self::Disc => "disc",
+            Self::OtherPictures => "other pictures",
+        }
+    }
+}
+
 /// A scale with its source.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Scale {
@@ -72,15 +84,13 @@ pub enum ClothSide {
 }
 
 impl ClothSide {
-    /// The side that the words of a file name state: `poplin-face-2`, `裏`.
+    /// The side that the words of a file name state: `poplin-face-2`, `裏`. Letters and places such as `a` or `top` are
+    /// names of specimens and views as well, and state none.
     pub fn in_name(name: &str) -> Option<Self> {
         let name = name.to_lowercase();
         let words: Vec<&str> = name.split(|c: char| !c.is_alphabetic()).collect();
         let has = |list: &[&str]| words.iter().any(|word| list.contains(word));
-        let (face, back) = (
-            has(&["face", "front", "up", "top", "a", "表"]),
-            has(&["back", "rear", "reverse", "down", "bottom", "b", "裏"]),
-        );
+        let (face, back) = (has(&["face", "front", "表"]), has(&["back", "rear", "reverse", "裏"]));
         match (face, back) {
             (true, false) => Some(Self::Face),
             (false, true) => Some(Self::Back),
@@ -194,14 +204,14 @@ pub fn measure(seen: &SeenSheet, setup: &DrapeSetup, others: Option<f64>) -> (Dr
     // Upwards in the picture is upwards here.
     let upright = |[x, y]: [f64; 2]| [x / metre, -y / metre];
     let line: Vec<[f64; 2]> = seen.outline.iter().map(|p| upright(*p)).collect();
-    let middle = outline::centre(&line);
+    let middle = polygon_centre(&line);
     let axis = seen.disc.map_or(middle, |(centre, _)| upright(centre));
     let counted = folds::count(&outline::distances(&line, middle));
     let distance = outline::distances(&line, axis);
     let parts = outline::harmonics(&distance, ORDERS);
     let harmonics: Vec<Harmonic> = parts.iter().enumerate().map(|(k, part)| harmonic(k, *part)).collect();
     let strongest = harmonics.iter().skip(2).max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
-    let area = outline::area(&line);
+    let area = polygon_area(&line).abs();
     let coefficient = scale.map(|_| setup.method.coefficient(area));
     let capture = DrapeCapture {
         picture: String::new(),

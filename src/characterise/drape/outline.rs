@@ -1,32 +1,9 @@
-//! An outline about a point: its area, its distance in all directions, and the harmonics of that.
+//! An outline about a point: its distance in all directions, and the harmonics of that.
 
 use std::f64::consts::TAU;
 
 /// Directions in which the distance is given.
 pub const DIRECTIONS: usize = 360;
-
-/// Area within a closed line.
-pub fn area(line: &[[f64; 2]]) -> f64 {
-    let next = line.iter().cycle().skip(1);
-    let twice: f64 = line.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum();
-    0.5 * twice.abs()
-}
-
-/// Centre of the area within a closed line.
-pub fn centre(line: &[[f64; 2]]) -> [f64; 2] {
-    let origin = line.first().copied().unwrap_or_default();
-    let moved: Vec<[f64; 2]> = line.iter().map(|p| [p[0] - origin[0], p[1] - origin[1]]).collect();
-    let (mut sum, mut twice) = ([0.0; 2], 0.0);
-    for (a, b) in moved.iter().zip(moved.iter().cycle().skip(1)) {
-        let part = a[0] * b[1] - a[1] * b[0];
-        twice += part;
-        sum = [sum[0] + part * (a[0] + b[0]), sum[1] + part * (a[1] + b[1])];
-    }
-    if twice == 0.0 {
-        return origin;
-    }
-    [origin[0] + sum[0] / (3.0 * twice), origin[1] + sum[1] / (3.0 * twice)]
-}
 
 /// Distance of a closed line from a point in [`DIRECTIONS`] equal steps from x towards y: the farthest point where
 /// the line turns back on itself, 0 where it is not met.

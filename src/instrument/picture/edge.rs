@@ -8,6 +8,7 @@ use imageproc::distance_transform::euclidean_squared_distance_transform;
 use super::background::colour;
 use super::blob::filled;
 use super::raster::{Colours, Field};
+use crate::quantity::polygon_area;
 
 /// Half the width of the band in which the edge is looked for, and the reach of the levels on both sides: part of
 /// the diameter of a circle of the same area.
@@ -137,11 +138,5 @@ fn outline(part: &Field) -> Option<Vec<[f64; 2]>> {
     let contours = builder.contours(&values, &[0.5]).ok()?;
     let rings = contours.iter().flat_map(|c| c.geometry()).map(|polygon| polygon.exterior());
     let lines = rings.map(|ring| ring.coords().map(|c| [c.x, c.y]).collect::<Vec<_>>());
-    lines.max_by(|a, b| enclosed(a).abs().total_cmp(&enclosed(b).abs()))
-}
-
-/// Area within a closed line.
-pub(super) fn enclosed(line: &[[f64; 2]]) -> f64 {
-    let next = line.iter().cycle().skip(1);
-    line.iter().zip(next).map(|(a, b)| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum()
+    lines.max_by(|a, b| polygon_area(a).abs().total_cmp(&polygon_area(b).abs()))
 }

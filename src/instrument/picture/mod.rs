@@ -25,7 +25,7 @@ pub(crate) use raster::decoded;
 use super::error::{Problem, ReadError};
 use crate::finding::Place;
 use crate::platform::files;
-use edge::enclosed;
+use crate::quantity::{polygon_area, polygon_centre};
 use raster::{Colours, Raster};
 
 /// The outline of a sheet in a picture.
@@ -74,8 +74,8 @@ pub fn silhouette(bytes: &[u8]) -> Result<Silhouette, Problem> {
     let found = found(&raster.colours, noise);
     let nothing = || Problem::NoSheet { reason: "nothing stands out from the background".into() };
     let Found { colours, edge, others, left } = found.ok_or_else(nothing)?;
-    let radius = (enclosed(&edge.outline).abs() / PI).sqrt();
-    let disc = disc::disc(&colours, &edge.depth, (centroid(&edge.outline), radius), left);
+    let radius = (polygon_area(&edge.outline).abs() / PI).sqrt();
+    let disc = disc::disc(&colours, &edge.depth, (polygon_centre(&edge.outline), radius), left);
     let mut outline: Vec<[f64; 2]> = edge.outline.iter().map(|p| raster.place(*p)).collect();
     outline.dedup();
     if outline.len() > 1 && outline.first() == outline.last() {
@@ -137,16 +137,6 @@ fn noise(colours: &Colours) -> f64 {
         most = most.max(*median / 0.6745);
     }
     most
-}
-
-/// Centre of the area within a closed line.
-fn centroid(line: &[[f64; 2]]) -> [f64; 2] {
-    let next = line.iter().cycle().skip(1);
-    let sum = line.iter().zip(next).fold([0.0; 3], |[x, y, area], (a, b)| {
-        let part = 0.5 * (a[0] * b[1] - a[1] * b[0]);
-        [x + part * (a[0] + b[0]) / 3.0, y + part * (a[1] + b[1]) / 3.0, area + part]
-    });
-    [sum[0] / sum[2], sum[1] / sum[2]]
 }
 
 /// Part of a line that lies within a pixel of the border of the picture.

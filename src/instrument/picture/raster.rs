@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageReader, Luma, Rgba};
+use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageReader, Limits, Luma, Rgba};
 
 /// A number at each pixel.
 pub(super) type Field = ImageBuffer<Luma<f32>, Vec<f32>>;
@@ -52,9 +52,13 @@ impl Raster {
 /// A picture (PNG or JPEG), turned as the camera says.
 ///
 /// # Errors
-/// Those of the decoder.
+/// Those of the decoder, and one for a picture that takes more than half a gigabyte.
 pub(crate) fn decoded(bytes: &[u8]) -> Result<DynamicImage, image::ImageError> {
     let mut decoder = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?.into_decoder()?;
+    // What a file says of its size is not believed: half a gigabyte is more than any camera's picture.
+    let mut limits = Limits::default();
+    limits.reserve(decoder.total_bytes())?;
+    decoder.set_limits(limits)?;
     let orientation = decoder.orientation()?;
     let mut picture = DynamicImage::from_decoder(decoder)?;
     picture.apply_orientation(orientation);
