@@ -34,8 +34,8 @@ mod value_status;
 pub use crate::kes::Key;
 pub(crate) use friction::nnls::nnls;
 pub use friction::{
-    Basis, ClosedForm, Conditioning, CycleFit, FrictionLaw, LawBand, LawTrace, LoopFit, ReExtracted,
-    bending_law, cycle, extract,
+    Basis, ClosedForm, CycleFit, FrictionLaw, LawBand, LawTrace, LoopFit, ReExtracted, Relaxation,
+    StripMemory, bending_law, cycle, extract,
 };
 pub use graph::LineFit;
 pub use settings::{CycleChoice, Modulus, Settings, Sides, SlopeMethod};

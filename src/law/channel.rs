@@ -146,6 +146,11 @@ impl Channel {
         Self { backbone: self.backbone.with_offset(0.0), families: self.families.clone(), one_sided: false }
     }
 
+    /// The same law without the cut of stresses below zero.
+    pub fn uncut(&self) -> Self {
+        Self { one_sided: false, ..self.clone() }
+    }
+
     /// The same law of cloth of which either face may be up: the backbone [`Backbone::symmetric`].
     pub fn symmetric(&self) -> Self {
         Self { backbone: self.backbone.symmetric(), ..self.centred() }

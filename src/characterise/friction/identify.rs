@@ -5,6 +5,7 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 
 use super::nnls::{nnls, triangle};
+use super::strip_memory::{Relaxation, relaxed};
 use crate::law::{Backbone, Channel, Family, LawError, Slider, Widening};
 
 /// Slip levels offered to the fit, as parts of the greatest strain: log-spaced. Larger ones make
@@ -35,6 +36,10 @@ const NEGLIGIBLE: f64 = 1e-6;
 const CLOSE: f64 = 0.025;
 /// ... and have at least so many samples between them.
 const BETWEEN: usize = 2;
+/// Time constants of the Maxwell arm that are tried first, less 1: log-spaced from a sample to the fitted cycle.
+const CONSTANTS: u8 = 8;
+/// The logarithm of the time constant is known to this.
+const CONSTANT_KNOWN: f64 = 0.1;
 /// Samples nearer than this part of the strain are one.
 const SAME: f64 = 1e-3;
 
@@ -98,9 +103,11 @@ pub(super) fn two_sided(path: &Path) -> Option<Channel> {
     let search = |levels: &[f64], places: &[f64], tolerance: f64| {
         let mut active = vec![false; problem.columns(&[levels])];
         let alpha = lowest(places, tolerance, |alpha| {
-            problem.fit(&[(&widening(alpha), levels)], &mut active).map_or(f64::INFINITY, |f| f.residual)
+            problem
+                .fit(&[(&widening(alpha), levels)], None, &mut active)
+                .map_or(f64::INFINITY, |f| f.residual)
         });
-        Some((alpha, problem.fit(&[(&widening(alpha), levels)], &mut active)?))
+        Some((alpha, problem.fit(&[(&widening(alpha), levels)], None, &mut active)?))
     };
     // The first search finds the levels and about where the widening lies, the second the widening.
     let places: Vec<f64> = (0..=8).map(|i| f64::from(i) / 8.0 * WIDEST).collect();
@@ -114,6 +121,11 @@ pub(super) fn two_sided(path: &Path) -> Option<Channel> {
 
 /// The law of a test to one side: friction that is constant, and friction that grows with the load.
 pub(super) fn one_sided(path: &Path) -> Option<Channel> {
+    relaxing(path, None).map(|(channel, _)| channel)
+}
+
+/// The law of a test to one side, and where the times of the samples are given, a Maxwell arm beside it if the record shows one.
+pub(super) fn relaxing(path: &Path, time: Option<&[f64]>) -> Option<(Channel, Option<Relaxation>)> {
     let (path, size) = path.normalised()?;
     let curve = loading_curve(&path)?;
     let top = curve.at(1.0).stress;
@@ -124,13 +136,35 @@ pub(super) fn one_sided(path: &Path) -> Option<Channel> {
     let offered = levels();
     let gentle: Vec<f64> = offered.iter().copied().filter(|x| x * steepest < 1.0).collect();
     let widenings = [Widening::Constant, Widening::Loading(curve.clone())];
-    let fit = |levels: [&[f64]; 2]| {
-        let mut active = vec![false; problem.columns(&levels)];
-        problem.fit(&[(&widenings[0], levels[0]), (&widenings[1], levels[1])], &mut active)
+    let springs: Vec<f64> = path.strain.iter().map(|e| curve.at(e.clamp(0.0, 1.0)).stress / top).collect();
+    let fit = |levels: [&[f64]; 2], constant: Option<f64>| {
+        let arm = time.zip(constant).map(|(time, constant)| relaxed(&springs, time, constant));
+        let mut active = vec![false; problem.columns(&levels) + usize::from(arm.is_some())];
+        let families = [(&widenings[0], levels[0]), (&widenings[1], levels[1])];
+        problem.fit(&families, arm.as_deref(), &mut active)
     };
-    let all = fit([&offered, &gentle])?;
+    // Stress that relaxes more slowly than in a cycle cannot be told from stress that stays.
+    let slowest = path.fitted.len() as f64;
+    let places: Vec<f64> =
+        (0..=CONSTANTS).map(|i| f64::from(i) / f64::from(CONSTANTS) * slowest.ln()).collect();
+    let constant = time.map(|_| {
+        let missed =
+            |log: f64| fit([&offered, &gentle], Some(log.exp())).map_or(f64::INFINITY, |f| f.residual);
+        lowest(&places, CONSTANT_KNOWN, missed).exp()
+    });
+    let all = fit([&offered, &gentle], constant)?;
     let [a, b] = [0, 1].map(|i| lump(&all.sliders[i]));
-    fit([&a, &b])?.channel(&problem.knots, &widenings, size, true).ok()
+    let fit = fit([&a, &b], constant)?;
+    let relaxation = constant.filter(|_| fit.arm > 0.0).and_then(|time| {
+        let [knots, tangents] = in_units(&curve, size, fit.arm / top);
+        Some(Relaxation { curve: Backbone::new(0.0, &knots, &tangents).ok()?, time })
+    });
+    Some((fit.channel(&problem.knots, &widenings, size, true).ok()?, relaxation))
+}
+
+/// Knots and tangents of a normalised curve times a factor, in the units of the record.
+fn in_units(curve: &Backbone, [e, s]: [f64; 2], factor: f64) -> [Vec<f64>; 2] {
+    [curve.knots().map(|k| k * e).collect(), curve.tangents().map(|t| factor * t * s / e).collect()]
 }
 
 /// A monotone curve through the outgoing branch of the fitted cycle of a normalised path, through
@@ -168,7 +202,7 @@ fn loading_curve(path: &Path) -> Option<Backbone> {
     }
     spaced.push(1.0);
     let problem = Problem::new(&branch, spaced, true)?;
-    let fit = problem.fit(&[], &mut vec![false; problem.columns(&[])])?;
+    let fit = problem.fit(&[], None, &mut vec![false; problem.columns(&[])])?;
     Backbone::new(0.0, &problem.knots, &fit.tangents).ok().filter(|c| c.at(1.0).stress > 0.0)
 }
 
@@ -227,6 +261,8 @@ struct Fit {
     tangents: Vec<f64>,
     /// Per family.
     sliders: Vec<Vec<Slider>>,
+    /// Stress of the Maxwell arm at the greatest strain, reached at once; 0 without one.
+    arm: f64,
     /// Root mean square of the residual.
     residual: f64,
 }
@@ -272,8 +308,9 @@ impl<'a> Problem<'a> {
         self.backbone.ncols() + levels.iter().map(|l| l.len()).sum::<usize>()
     }
 
-    /// The best weights for sliders of given slip levels in families; `active` as in [`nnls`].
-    fn fit(&self, families: &[(&Widening, &[f64])], active: &mut [bool]) -> Option<Fit> {
+    /// The best weights for sliders of given slip levels in families, and for an arm of given stresses along the path;
+    /// `active` as in [`nnls`].
+    fn fit(&self, families: &[(&Widening, &[f64])], arm: Option<&[f64]>, active: &mut [bool]) -> Option<Fit> {
         let (fixed, n) = (self.backbone.ncols(), active.len());
         let mut a = DMatrix::zeros(self.backbone.nrows(), n + 1);
         a.columns_mut(0, fixed).copy_from(&self.backbone);
@@ -281,6 +318,10 @@ impl<'a> Problem<'a> {
         for (widening, levels) in families {
             self.slide(widening, levels, &mut a, column);
             column += levels.len();
+        }
+        if let Some(arm) = arm {
+            let scale = 1.0 / (self.rows.len() as f64).sqrt();
+            self.rows.iter().enumerate().for_each(|(row, &k)| a[(row, column)] = scale * arm[k]);
         }
         a.set_column(n, &self.target);
         // The triangle of (A b) has the same normal equations, and far fewer rows.
@@ -301,6 +342,7 @@ impl<'a> Problem<'a> {
             offset: x[0],
             tangents: x.iter().take(fixed).skip(1).copied().collect(),
             sliders,
+            arm: arm.map_or(0.0, |_| x[n - 1]),
             residual,
         })
         .filter(|f| f.residual.is_finite())
@@ -345,8 +387,8 @@ impl Fit {
                 Widening::Constant => Widening::Constant,
                 Widening::Quadratic { alpha, .. } => Widening::Quadratic { alpha: *alpha, e_max: e },
                 Widening::Loading(curve) => {
-                    let (knots, tangents): (Vec<f64>, Vec<f64>) = curve.knots().zip(curve.tangents()).unzip();
-                    Widening::Loading(Backbone::new(0.0, &stretch(&knots), &stiffen(&tangents))?)
+                    let [knots, tangents] = in_units(curve, [e, s], 1.0);
+                    Widening::Loading(Backbone::new(0.0, &knots, &tangents)?)
                 }
             };
             let sliders: Vec<Slider> = sliders

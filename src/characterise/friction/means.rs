@@ -116,7 +116,7 @@ mod tests {
             thickness: None,
             channel,
             strip: None,
-            conditioning: None,
+            memory: None,
             fit: None,
             closed_form: None,
             values: Default::default(),

@@ -5,18 +5,18 @@
 //! per width, shear angle and force, strain and force, approach of the faces and pressure).
 //! Identification is linear in the weights: least squares with weights not below zero over 20
 //! slip levels, a search for the widening, then six sliders that carry equal parts of the friction
-//! in place of the levels found, and the weights again. FAB strips soften with every cycle that goes further: that is
-//! a [`Conditioning`] beside the law.
+//! in place of the levels found, and the weights again. FAB strips grow with every cycle that goes further, and relax: that is
+//! a [`StripMemory`] beside the law.
 
 mod bands;
 mod closed_form;
-mod conditioning;
 mod identify;
 mod loop_fit;
 mod means;
 pub(crate) mod nnls;
 mod record;
 mod strip;
+mod strip_memory;
 mod summary;
 
 use std::collections::BTreeMap;
@@ -33,9 +33,9 @@ use crate::quantity::{Curve, Estimate};
 
 pub use bands::LawBand;
 pub use closed_form::ClosedForm;
-pub use conditioning::Conditioning;
 pub use loop_fit::{CycleFit, LoopFit};
 pub use record::{cycle, extract};
+pub use strip_memory::{Relaxation, StripMemory};
 pub use summary::bending_law;
 
 /// A law of one test in one direction.
@@ -56,8 +56,9 @@ pub struct FrictionLaw {
     pub thickness: Option<f64>,
     /// The law (SI: 1/m and N; rad and N/m; 1 and N/m; m and Pa).
     pub channel: Channel,
-    /// How a FAB strip softens as it is stretched further; the channel alone is the strip as its last cycle left it.
-    pub conditioning: Option<Conditioning>,
+    /// How a FAB strip grows as it is stretched further, and how its stress relaxes; the channel alone is the strip before its
+    /// last cycle, strained slowly.
+    pub memory: Option<StripMemory>,
     /// Measured beside simulated; `None` without a loop.
     pub fit: Option<LoopFit>,
     /// B and 2HB by a closed form, as a check on the fit; bending loops only.
@@ -128,39 +129,40 @@ impl FrictionLaw {
     pub fn traces(&self, sheet: &FabricSheet) -> Vec<LawTrace> {
         let Some(fit) = &self.fit else { return Vec::new() };
         let mut traces = Vec::new();
-        for (cycle, path) in self.cycles(sheet) {
-            let law = stresses(&self.channel, self.conditioning.as_ref(), &path);
+        for (cycle, path, law) in self.cycles(sheet) {
             let Path { strain, stress, fitted, .. } = path;
-            let law = law[fitted.clone()].to_vec();
-            let strain = &strain[fitted.clone()];
             traces.push(LawTrace {
                 cycle,
                 fitted: cycle == fit.fitted.cycle,
-                x: strain.iter().map(|e| self.abscissa(*e)).collect(),
-                measured: stress[fitted].to_vec(),
-                law,
-                line: strain.iter().map(|e| fit.line[0] + fit.line[1] * e).collect(),
+                x: strain[fitted.clone()].iter().map(|e| self.abscissa(*e)).collect(),
+                measured: stress[fitted.clone()].to_vec(),
+                law: law[fitted.clone()].to_vec(),
+                line: strain[fitted].iter().map(|e| fit.line[0] + fit.line[1] * e).collect(),
             });
         }
         traces
     }
 
-    /// Number and path of each measured cycle.
-    fn cycles(&self, sheet: &FabricSheet) -> Vec<(usize, Path)> {
+    /// Number, path and stresses of the law of each measured cycle.
+    fn cycles(&self, sheet: &FabricSheet) -> Vec<(usize, Path, Vec<f64>)> {
         let mine = |s: &&SpecimenResult| {
             let m = &s.measurement;
             (m.test, m.direction, m.specimen) == (self.test, self.direction, self.specimen)
         };
         let one_sided = self.channel.is_one_sided();
         let found = if let Some(index) = self.strip {
-            let lag = self.conditioning.map_or(0.0, |c| c.lag);
-            sheet.strips.get(index).and_then(|s| strip::history(s, lag))
+            let history = sheet.strips.get(index).and_then(strip::history);
+            history.map(|h| (h.path, h.cycles, h.time))
         } else {
             let specimen = sheet.specimens.iter().find(mine);
-            specimen.and_then(|s| path(s, self.thickness, one_sided, CycleChoice::First))
+            let path = specimen.and_then(|s| path(s, self.thickness, one_sided, CycleChoice::First));
+            path.map(|(path, cycles)| (path, cycles, Vec::new()))
         };
-        let Some((path, cycles)) = found else { return Vec::new() };
-        let cycle = |(i, range): (usize, std::ops::Range<usize>)| (i, Path { fitted: range, ..path.clone() });
+        let Some((path, cycles, time)) = found else { return Vec::new() };
+        let law = stresses(&self.channel, self.memory.as_ref(), &path.strain, &time);
+        let cycle = |(i, range): (usize, std::ops::Range<usize>)| {
+            (i, Path { fitted: range, ..path.clone() }, law.clone())
+        };
         cycles.into_iter().enumerate().filter(|(_, r)| !r.is_empty()).map(cycle).collect()
     }
 }
@@ -219,11 +221,20 @@ pub(super) fn add(sheet: &mut FabricSheet, settings: &Settings) {
     summary::add(sheet, settings);
 }
 
-/// The stresses of a law along a path from cloth never deformed.
-fn stresses(channel: &Channel, conditioning: Option<&Conditioning>, path: &Path) -> Vec<f64> {
-    let factors = conditioning.map_or_else(|| vec![1.0; path.strain.len()], |c| c.factors(&path.strain));
-    let alike = path.strain.iter().zip(&factors).map(|(e, r)| e / r);
-    channel.path(Default::default(), alike).zip(&factors).map(|(reached, r)| reached.stress * r).collect()
+/// The stresses of a law along strains from cloth never deformed. `time` in samples, for what relaxes.
+fn stresses(channel: &Channel, memory: Option<&StripMemory>, strain: &[f64], time: &[f64]) -> Vec<f64> {
+    let Some(memory) = memory else {
+        return channel.path(Default::default(), strain.iter().copied()).map(|r| r.stress).collect();
+    };
+    let strain = memory.effective(strain);
+    let Some(relaxation) = &memory.relaxation else {
+        return channel.path(Default::default(), strain).map(|r| r.stress).collect();
+    };
+    // The strip is slack where both together would push.
+    let arm = relaxation.stresses(&strain, time);
+    let channel = channel.uncut();
+    let both = channel.path(Default::default(), strain).zip(arm).map(|(r, arm)| r.stress + arm);
+    both.map(|stress| stress.max(0.0)).collect()
 }
 
 /// A law that misses its own loop by more than this part of the span is none: the stress falls, or the
@@ -277,7 +288,7 @@ fn fitted(specimen: &SpecimenResult, settings: &Settings) -> Option<FrictionLaw>
     let one_sided = matches!(m.test, Test::Tensile | Test::Compression);
     let (path, cycles) = path(specimen, thickness, one_sided, settings.cycle)?;
     let channel = if one_sided { identify::one_sided(&path)? } else { identify::two_sided(&path)? };
-    let fit = LoopFit::of(&stresses(&channel, None, &path), &path, &cycles);
+    let fit = LoopFit::of(&stresses(&channel, None, &path.strain, &[]), &path, &cycles);
     if fit.fitted.nrmse.is_nan() || fit.fitted.nrmse > WORST_FIT {
         return None;
     }
@@ -290,7 +301,7 @@ fn fitted(specimen: &SpecimenResult, settings: &Settings) -> Option<FrictionLaw>
         basis: Basis::Loop,
         thickness,
         channel,
-        conditioning: None,
+        memory: None,
         fit: Some(fit),
         closed_form,
         values: BTreeMap::new(),

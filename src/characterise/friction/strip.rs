@@ -3,27 +3,21 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::conditioning::{Conditioning, EXPONENT};
-use super::identify::{Path, lowest, one_sided};
+use super::identify::{Path, relaxing};
+use super::strip_memory::{LAG, StripMemory};
 use super::{BACK, Basis, CycleFit, FrictionLaw, GIVEN, LoopFit, WORST_FIT, stresses};
 use crate::characterise::{Branch, Strip};
 use crate::instrument::Test;
 use crate::instrument::fab::FabKind;
-use crate::law::Channel;
-
-/// Lags that are tried first (samples): both readings of a sample are taken within its interval. The lag that fits best
-/// takes up what it can of another cause too, above all of stress that relaxes while the clamps stop and turn.
-const LAGS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
-/// The lag is known to this (samples).
-const LAG_KNOWN: f64 = 0.02;
 
 /// The law of the last cycle, after the ones before it: the strip remembers them. Strains of all cycles count from
-/// the onset of load of the last, so that what the strip has grown by since is part of what is predicted.
+/// the onset of load of the last. The first cycle gives one number, where its load begins; nothing else of the cycles before the
+/// last has a part in the law.
 ///
 /// # Errors
 /// Why the strip has none.
 pub(super) fn law(index: usize, strip: &Strip) -> Result<FrictionLaw, &'static str> {
-    let law = with_exponent(index, strip, EXPONENT).ok_or("its last cycle has too few samples")?;
+    let law = fitted(index, strip).ok_or("its last cycle has too few samples")?;
     let fit = law.fit.as_ref().map_or(CycleFit::default(), |fit| fit.fitted);
     if !returns(strip) {
         Err("its last cycle has no way back, and so no loop")
@@ -46,12 +40,12 @@ fn returns(strip: &Strip) -> bool {
     way(false) > BACK * way(true)
 }
 
-/// The same with another exponent of conditioning.
-pub(super) fn with_exponent(index: usize, strip: &Strip, exponent: f64) -> Option<FrictionLaw> {
-    let missed =
-        |lag: f64| fitted(strip, exponent, lag).map_or(f64::INFINITY, |(_, _, fit)| fit.fitted.nrmse);
-    let lag = lowest(&LAGS, LAG_KNOWN, missed);
-    let (channel, conditioning, fit) = fitted(strip, exponent, lag)?;
+fn fitted(index: usize, strip: &Strip) -> Option<FrictionLaw> {
+    let History { path, cycles, time, mut memory } = history(strip)?;
+    let along = Path { strain: memory.effective(&path.strain), ..path.clone() };
+    let (channel, relaxation) = relaxing(&along, Some(&time))?;
+    memory.relaxation = relaxation;
+    let fit = LoopFit::of(&stresses(&channel, Some(&memory), &path.strain, &time), &path, &cycles);
     Some(FrictionLaw {
         test: Test::Tensile,
         direction: Some(strip.direction),
@@ -60,7 +54,7 @@ pub(super) fn with_exponent(index: usize, strip: &Strip, exponent: f64) -> Optio
         basis: Basis::Strip,
         thickness: None,
         channel,
-        conditioning: Some(conditioning),
+        memory: Some(memory),
         fit: Some(fit),
         closed_form: None,
         values: BTreeMap::new(),
@@ -68,26 +62,25 @@ pub(super) fn with_exponent(index: usize, strip: &Strip, exponent: f64) -> Optio
     })
 }
 
-fn fitted(strip: &Strip, exponent: f64, lag: f64) -> Option<(Channel, Conditioning, LoopFit)> {
-    let (path, cycles) = history(strip, lag)?;
-    let greatest = path.strain[..path.fitted.end].iter().copied().fold(0.0, f64::max);
-    let conditioning = Conditioning { exponent, greatest, lag };
-    let factors = conditioning.factors(&path.strain);
-    let alike = |v: &[f64]| v.iter().zip(&factors).map(|(v, r)| v / r).collect();
-    let (strain, stress) = (alike(&path.strain), alike(&path.stress));
-    let channel = one_sided(&Path { strain, stress, fitted: path.fitted.clone() })?;
-    let fit = LoopFit::of(&stresses(&channel, Some(&conditioning), &path), &path, &cycles);
-    Some((channel, conditioning, fit))
-}
-
 /// 1 for the short, 2 for the long clamp distance.
 pub(super) fn number(strip: &Strip) -> usize {
     if strip.kind == FabKind::S1 { 1 } else { 2 }
 }
 
-/// All cycles as one path, of which the last is fitted, and the samples of each; strains count from the onset of load
-/// of the last one. The slack strip is left out. A force stands beside the clamps as they are `lag` samples later.
-pub(super) fn history(strip: &Strip, lag: f64) -> Option<(Path, Vec<Range<usize>>)> {
+/// All cycles of a strip as one path.
+pub(super) struct History {
+    /// Strains from the onset of load in the last cycle, which is fitted. A strip that is slack has no sample.
+    pub path: Path,
+    /// The samples of each cycle.
+    pub cycles: Vec<Range<usize>>,
+    /// The place of each sample in the record.
+    pub time: Vec<f64>,
+    /// How the strip grows.
+    pub memory: StripMemory,
+}
+
+/// The recorded cycles; `None` if the clamps never pass the onset of the last.
+pub(super) fn history(strip: &Strip) -> Option<History> {
     let mut force = Vec::new();
     let mut distance = Vec::new();
     let mut ends = vec![0];
@@ -104,25 +97,31 @@ pub(super) fn history(strip: &Strip, lag: f64) -> Option<(Path, Vec<Range<usize>
         let next = distance[(i + 1).min(distance.len() - 1)];
         distance[i] + (place - i as f64).min(1.0) * (next - distance[i])
     };
-    // The onset of the last cycle lies where its clamps pass it for the first time.
-    let (last, onset) = (ends[strip.cycles.len().checked_sub(1)?], strip.cycles.last()?.onset);
-    let above = (last..force.len()).find(|&i| distance[i] > onset)?;
-    let gauge = match above.checked_sub(1).filter(|i| *i >= last) {
-        Some(i) => at(i as f64 + (onset - distance[i]) / (distance[above] - distance[i]) + lag),
-        None => at(above as f64 + lag),
+    // The onset of a cycle lies where its clamps pass it for the first time.
+    let onset_of = |cycle: usize| {
+        let (start, onset) = (ends[cycle], strip.cycles[cycle].onset);
+        let above = (start..force.len()).find(|&i| distance[i] > onset)?;
+        Some(match above.checked_sub(1).filter(|i| *i >= start) {
+            Some(i) => at(i as f64 + (onset - distance[i]) / (distance[above] - distance[i]) + LAG),
+            None => at(above as f64 + LAG),
+        })
     };
-    let (mut path, mut cycles) = (Path::default(), Vec::new());
+    let last = strip.cycles.len().checked_sub(1)?;
+    let gauge = onset_of(last)?;
+    let strain: Vec<f64> = (0..force.len()).map(|i| at(i as f64 + LAG) / gauge - 1.0).collect();
+    let greatest = strain[..ends[last]].iter().copied().fold(0.0, f64::max);
+    let memory = StripMemory::of(onset_of(0)? / gauge - 1.0, greatest);
+    let taut = memory.effective(&strain).into_iter().map(|e| e >= 0.0).collect::<Vec<bool>>();
+    let (mut path, mut time, mut cycles) = (Path::default(), Vec::new(), Vec::new());
     for cycle in ends.windows(2) {
-        let start = path.strain.len();
-        for (i, f) in force.iter().enumerate().take(cycle[1]).skip(cycle[0]) {
-            let e = at(i as f64 + lag) / gauge - 1.0;
-            if e >= 0.0 {
-                path.strain.push(e);
-                path.stress.push(*f);
-            }
+        let start = time.len();
+        for i in (cycle[0]..cycle[1]).filter(|&i| taut[i]) {
+            path.strain.push(strain[i]);
+            path.stress.push(force[i]);
+            time.push(i as f64);
         }
-        cycles.push(start..path.strain.len());
+        cycles.push(start..time.len());
     }
     path.fitted = cycles.last()?.clone();
-    Some((path, cycles))
+    Some(History { path, cycles, time, memory })
 }

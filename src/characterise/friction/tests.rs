@@ -245,84 +245,114 @@ fn cupro_weave(test: &str) -> Option<crate::characterise::FabricSheet> {
     Some(crate::characterise::characterise(&batch.fabrics[0], &Default::default()))
 }
 
-/// Last cycle fitted, the one before it predicted. The bounds are the figures reached, rounded up; those of the
-/// straight line stand beside them. With an exponent of 0 the short weft strip is predicted to 7 % and the long bias
-/// strip to 8 %.
+/// Last cycle fitted, those before it predicted: no number of this law was chosen with their stresses in sight, but for the onset of
+/// load in the first. Weft at 8 cm and bias at 2 cm were not looked at until the law was as it is. Errors in % of the span of the last cycle.
 #[test]
 fn strips_of_a_real_cupro_weave() {
-    use crate::instrument::{Direction, fab::FabKind};
+    use crate::instrument::fab::FabKind;
     let Some(sheet) = cupro_weave("strips_of_a_real_cupro_weave") else { return };
-    // Direction, strip, last cycle, the one before (NRMSE, %).
-    let reached = [
-        (Direction::Warp, 1, 0.60, 3.4),
-        (Direction::Warp, 2, 0.35, 2.0),
-        (Direction::Weft, 1, 0.75, 3.9),
-        (Direction::Weft, 2, 0.60, 2.6),
-        (Direction::Bias, 1, 0.60, 1.9),
-        (Direction::Bias, 2, 0.90, 3.4),
-    ];
     assert_eq!(sheet.strips.iter().filter(|s| s.kind == FabKind::S1).count(), 3);
-    for (direction, strip, fitted, inner) in reached {
-        let of = |l: &&super::FrictionLaw| l.direction == Some(direction) && l.specimen == strip;
-        let law = sheet.laws.iter().find(of).unwrap();
+    let mut sum = [0.0; 3];
+    for (i, strip) in sheet.strips.iter().enumerate() {
+        let law = sheet.laws.iter().find(|l| l.strip == Some(i)).unwrap();
         let fit = law.fit.as_ref().unwrap();
-        let [last, before] = [fit.fitted, *fit.unseen.last().unwrap()];
+        let memory = law.memory.as_ref().unwrap();
+        let span = |cycle: usize| {
+            let force = strip.cycles[cycle].branches.iter().flat_map(|b| &b.curve.y);
+            let (low, high) = force.fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(*v), b.max(*v)));
+            high - low
+        };
+        let last = fit.fitted.cycle;
+        let error = |f: &super::CycleFit| 100.0 * f.nrmse * span(f.cycle) / span(last);
+        let [previous, second, first] = [last - 1, 1, 0].map(|cycle| error(&fit.unseen[cycle]));
         println!(
-            "{direction} {strip}: lag {:.2}, last {:.2} % (line {:.1}), inner {:.2} % (line {:.1})",
-            law.conditioning.unwrap().lag,
-            100.0 * last.nrmse,
-            100.0 * last.line_nrmse,
-            100.0 * before.nrmse,
-            100.0 * before.line_nrmse
+            "{} {}: set {:.3}, relaxes within {:.1} samples, last {:.2} % (line {:.1}), previous {previous:.2} %, \
+             second {second:.2} %, first {first:.2} %",
+            strip.direction,
+            strip.kind.name(),
+            memory.set,
+            memory.relaxation.as_ref().map_or(f64::NAN, |r| r.time),
+            100.0 * fit.fitted.nrmse,
+            100.0 * fit.fitted.line_nrmse,
         );
-        assert!(100.0 * last.nrmse < fitted && 100.0 * before.nrmse < inner);
-        assert!(last.line_nrmse > 5.0 * last.nrmse && before.line_nrmse > 2.0 * before.nrmse);
+        assert!(fit.fitted.nrmse < 0.01 && fit.fitted.line_nrmse > 5.0 * fit.fitted.nrmse);
+        assert!(memory.set > 0.0 && memory.set < 0.5);
+        sum.iter_mut().zip([previous, second, first]).for_each(|(sum, e)| *sum += e / 6.0);
     }
+    println!("mean: previous {:.2} %, second {:.2} %, first {:.2} %", sum[0], sum[1], sum[2]);
+    assert!(sum[0] < 4.0 && sum[1] < 6.0 && sum[2] < 12.0, "{sum:?}");
 }
 
-/// How far the inner cycle is predicted where it had no part in the exponent: for each strip, the exponent that is best
-/// for the other five, for the worst of them or by the sum of squares. Over the span of the last cycle all are below
-/// 4 %; over its own span two are not by squares (short weft 4.1 %, long bias 4.4 %).
+/// A strip with a set, friction and a Maxwell arm, made by formulas that are not those of the fit: the first cycles come out
+/// of the last, and the arm is found where there is one.
 #[test]
-fn exponents_that_other_strips_give() {
-    let Some(sheet) = cupro_weave("exponents_that_other_strips_give") else { return };
-    let exponents: Vec<f64> = (0..=50).map(|i| 0.02 * f64::from(i)).collect();
-    let figures = |strip: &crate::characterise::Strip| -> Vec<[f64; 2]> {
-        let of = |p: &f64| {
-            let fit = super::strip::with_exponent(0, strip, *p).unwrap().fit.unwrap();
-            [fit.fitted.nrmse, fit.unseen.last().unwrap().nrmse].map(|v| 100.0 * v)
+fn a_set_and_a_relaxation_are_found() {
+    use crate::characterise::{Branch, Strip, StripCycle};
+    use crate::instrument::{Direction, fab::FabKind};
+    use crate::quantity::Curve;
+    let (first_length, set, constant) = (0.02, 0.15, 6.0f64);
+    let strip = |share: f64| {
+        let (mut greatest, mut friction, mut arm, mut before) = (0.0f64, 0.0f64, 0.0f64, 0.0f64);
+        let mut force = |d: f64| {
+            let strain = d / first_length - 1.0;
+            greatest = greatest.max(strain);
+            let e = (strain - set * greatest).max(0.0);
+            let spring = 400.0 * e + 30_000.0 * e * e;
+            // Dahl friction of 6 N/m, and an arm in unit steps.
+            let end = 6.0 * (e - before).signum();
+            friction = if e == before {
+                friction
+            } else {
+                end + (friction - end) * (-(e - before).abs() / 0.004).exp()
+            };
+            let decay = (-1.0 / constant).exp();
+            let rise = share * (spring - (400.0 * before + 30_000.0 * before * before));
+            arm = arm * decay + rise * constant * (1.0 - decay);
+            before = e;
+            (spring + friction + arm).max(0.0)
         };
-        exponents.iter().map(of).collect()
-    };
-    let strips: Vec<Vec<[f64; 2]>> = sheet.strips.iter().map(figures).collect();
-    let best =
-        |f: &dyn Fn(usize) -> f64| (0..exponents.len()).min_by(|a, b| f(*a).total_cmp(&f(*b))).unwrap();
-    for (k, strip) in strips.iter().enumerate() {
-        let others = |i: usize| {
-            let others = strips.iter().enumerate().filter(|(o, _)| *o != k);
-            others.map(|(_, s)| s[i][1]).collect::<Vec<f64>>()
-        };
-        let worst = best(&|i| others(i).into_iter().fold(0.0, f64::max));
-        let squares = best(&|i| others(i).iter().map(|v| v * v).sum());
-        let alone = best(&|i| strip[i][1]);
-        // Greatest force of the cycle before over that of the last.
-        let tops = sheet.strips[k]
-            .cycles
-            .iter()
-            .map(|c| c.branches.iter().flat_map(|b| &b.curve.y).copied().fold(0.0, f64::max));
-        let tops: Vec<f64> = tops.collect();
-        let share = tops[tops.len() - 2] / tops[tops.len() - 1];
-        for (what, i) in [("worst", worst), ("squares", squares), ("alone", alone)] {
-            let [fitted, inner] = strip[i];
-            let outer = share * inner;
-            println!(
-                "strip {k}, {what}: p {:.2}: last {fitted:.2} %, inner {inner:.2} % of its span, {outer:.2} % of the last",
-                exponents[i]
-            );
-            assert!(what == "alone" || (fitted < 1.0 && outer < 4.0));
+        let mut cycles = Vec::new();
+        for cycle in 0..4u8 {
+            let top = 0.03 + 0.02 * f64::from(cycle);
+            let lengths =
+                |from: f64, to: f64| (0..=60).map(move |i| from + (to - from) * f64::from(i) / 60.0);
+            let far = first_length * (1.0 + top);
+            // A reading of the force belongs to the clamps of half a sample later.
+            let [out, back] = [(0.0195, far), (far, 0.0195)].map(|(from, to)| {
+                let step = (to - from) / 60.0;
+                Curve::from_points(lengths(from, to).map(|d| (d - 0.5 * step, force(d))))
+            });
+            let begins = first_length * (1.0 + set * if cycle == 0 { 0.0 } else { top - 0.02 });
+            let onset = begins - 0.5 * (far - 0.0195) / 60.0;
+            let strained = |c: Curve| Curve::from_points(c.points().map(|(d, f)| (d / onset - 1.0, f)));
+            let branches = [(out, true), (back, false)].map(|(c, outgoing)| Branch {
+                cycle: cycle as usize,
+                outgoing,
+                curve: strained(c),
+            });
+            cycles.push(StripCycle {
+                onset,
+                slack: 0.0,
+                residual: 0.0,
+                offset: 0.0,
+                branches: branches.into(),
+                moduli: Default::default(),
+                fits: Vec::new(),
+            });
         }
-        assert!((exponents[worst] - super::conditioning::EXPONENT).abs() < 0.05);
-        assert!(strip[worst][1] < 4.0 && strip[squares][1] < 4.4);
+        Strip { direction: Direction::Warp, kind: FabKind::S1, width: 0.05, cycles }
+    };
+    for share in [0.0, 0.2] {
+        let law = super::strip::law(0, &strip(share)).unwrap();
+        let (fit, memory) = (law.fit.unwrap(), law.memory.unwrap());
+        println!("{share}: {memory:?} {fit:?}");
+        assert_relative_eq!(memory.set, set, max_relative = 0.05);
+        assert!(fit.fitted.nrmse < 0.01 && fit.unseen.iter().all(|u| u.nrmse < 0.1), "{fit:?}");
+        let arm = memory.relaxation.map(|r| (r.time, r.curve.at(0.07).stress));
+        if share > 0.0 {
+            let (time, _) = arm.unwrap();
+            assert!((0.5..2.0).contains(&(time / constant)), "{time}");
+        }
     }
 }
 
@@ -342,13 +372,10 @@ fn strips_are_held_to_what_loops_are_held_to() {
     assert!(super::strip::law(0, &coarse).is_err());
     let mut shorter = strip;
     shorter.cycles.swap(2, 3);
-    let conditioning = super::strip::law(0, &shorter).unwrap().conditioning.unwrap();
-    let (path, _) = super::strip::history(&shorter, conditioning.lag).unwrap();
-    let factors = conditioning.factors(&path.strain);
-    assert!(
-        path.fitted.clone().all(|k| (factors[k] - 1.0).abs() < 1e-12),
-        "nothing goes beyond the cycle before"
-    );
+    let super::strip::History { path, memory, .. } = super::strip::history(&shorter).unwrap();
+    let strain = memory.effective(&path.strain);
+    let set: Vec<f64> = path.fitted.map(|k| path.strain[k] - strain[k]).collect();
+    assert!(set.iter().all(|s| (s - set[0]).abs() < 1e-12), "nothing goes beyond the cycle before");
 }
 
 /// Laws of strips do not stand in the way of laws from summary values, which structures are calculated with.

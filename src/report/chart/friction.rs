@@ -223,9 +223,11 @@ fn figures(sheet: &FabricSheet, one: &Loop<'_>) -> Vec<Row> {
         value("R²", format!("{:.5}", fit.fitted.r_squared)),
         value("loop energy", fit.fitted.loop_energy.map_or("no loop".into(), percent)),
     ];
-    if let Some(soft) = &law.conditioning {
-        rows.push(value("lag of the force", format!("{} samples", significant(soft.lag, 2))));
-        rows.push(value("conditioning, exponent", significant(soft.exponent, 2)));
+    if let Some(memory) = &law.memory {
+        rows.push(value("set of the greatest strain", percent(memory.set)));
+        if let Some(relaxation) = &memory.relaxation {
+            rows.push(value("relaxes within", format!("{} samples", significant(relaxation.time, 2))));
+        }
     }
     for u in &fit.unseen {
         let number = |v: f64| significant(100.0 * v, 2);
