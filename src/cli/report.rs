@@ -56,6 +56,12 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let folder = &options.folder;
     // What is sent is what was made: no file that somebody else put or changed here.
     let left = left(folder)?;
+    if left("fabrics-1.html")?.is_some() {
+        let folder = folder.display();
+        ui.note(&format!(
+            "so many fabrics have pages of their own: they stay in {folder}, and links to them lead nowhere in this file"
+        ));
+    }
     let left = |name: &str| {
         left(name)?.ok_or_else(|| {
             Failure::new("O059", format!("{name} is not there as `kesf run` left it"))

@@ -1,6 +1,6 @@
 //! Problems of a batch by their codes, gathered one after the other.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::finding::explain;
 use crate::report::html::{Problem, ProblemGroup, local};
@@ -39,11 +39,16 @@ impl Problems {
     }
 
     /// The groups: what failed first, then in the order of the rows; linear solves beyond their meaning last.
-    /// `fabrics` is the number of all fabrics.
-    pub fn groups(mut self, fabrics: usize) -> Vec<ProblemGroup> {
+    /// `fabrics` are the names of all fabrics in the order of their pages, `page` that of the page of each place among them.
+    pub fn groups(mut self, fabrics: &[String], page: impl Fn(usize) -> String) -> Vec<ProblemGroup> {
         let is_error = |code: &str| explain(code).is_some_and(|e| e.kind == "error");
         self.0.sort_by_key(|group| (group.code == BEYOND_LINEAR, !is_error(&group.code)));
-        self.0.into_iter().map(|group| group.made(fabrics)).collect()
+        let place: BTreeMap<&String, usize> =
+            fabrics.iter().enumerate().map(|(at, name)| (name, at)).collect();
+        for line in self.0.iter_mut().flat_map(|group| &mut group.lines) {
+            line.page = line.fabric.as_ref().and_then(|name| place.get(name)).map(|at| page(*at));
+        }
+        self.0.into_iter().map(|group| group.made(fabrics.len())).collect()
     }
 }
 
@@ -58,6 +63,7 @@ impl OfCode {
         } else if self.lines.len() < KEPT {
             self.lines.push(Problem {
                 fabric: row.fabric.clone(),
+                page: None,
                 place: row.place.clone(),
                 message: row.message.clone(),
             });
@@ -102,7 +108,10 @@ mod tests {
             problems.add(&row(code, fabric));
         }
         [row("S101", Some("b")), row("K011", Some("b"))].iter().for_each(|row| problems.add(row));
-        let groups = problems.groups(3);
+        let fabrics = ["a", "c", "b"].map(String::from);
+        let groups = problems.groups(&fabrics, |at| format!("fabrics-{at}.html"));
+        let pages: Vec<Option<&str>> = groups[1].lines.iter().map(|l| l.page.as_deref()).collect();
+        assert_eq!(pages, [Some("fabrics-2.html"); 2]);
         let told: Vec<(&str, &str, usize)> =
             groups.iter().map(|g| (g.code.as_str(), g.count.as_str(), g.lines.len())).collect();
         let beyond = ("S101", "2 of 3 fabrics, in cases/plate.toml", 0);
@@ -113,7 +122,8 @@ mod tests {
     fn of_a_code_that_is_everywhere_the_first_lines_are_kept_and_the_rest_is_counted() {
         let mut problems = Problems::default();
         (0..1500).for_each(|i| problems.add(&row("K011", Some(&format!("fabric {i}")))));
-        let groups = problems.groups(1500);
+        let fabrics: Vec<String> = (0..1500).map(|i| format!("fabric {i}")).collect();
+        let groups = problems.groups(&fabrics, |_| String::new());
         assert_eq!((groups.len(), groups[0].lines.len()), (1, 1000));
         let count = "more than 1000 of 1500 fabrics; the first 1000 of 1500 here, all in problems.csv";
         assert_eq!(groups[0].count, count);

@@ -196,7 +196,7 @@ impl Results<'_, '_> {
     fn write_page_of_fabrics(&self, kept: &mut Kept) -> Result<(), Failure> {
         let reports = std::mem::take(&mut kept.reports);
         let number = kept.pages.len() + 1;
-        let name = format!("fabrics-{number}.html");
+        let name = name_of_page(number);
         self.folder.write(&name, html(&fabrics_page(&reports, number)).as_bytes())?;
         kept.pages.push(name);
         Ok(())
@@ -214,7 +214,10 @@ impl Results<'_, '_> {
         }
         let Kept { drapes, reports, pages, .. } = kept;
         let fabrics = self.made.len();
-        let problems = problems.groups(fabrics);
+        let names: Vec<String> = (0..fabrics).map(|at| self.work.catalogue.name(at).to_string()).collect();
+        let page_of =
+            |at: usize| if pages.is_empty() { String::new() } else { name_of_page(at / FABRICS_OF_PAGE + 1) };
+        let problems = problems.groups(&names, page_of);
         let head = Head { fabrics, figures, problems, drapes: &drapes, pages: &pages };
         self.folder.write("index.html", html(&page(&reports, benchmarks, head)).as_bytes())
     }
@@ -285,6 +288,11 @@ impl Tables<'_> {
         self.workbook.iter_mut().for_each(|rows| rows.problems.push(row.clone()));
         Ok(())
     }
+}
+
+/// The name of a page of fabrics; pages count from 1.
+fn name_of_page(number: usize) -> String {
+    format!("fabrics-{number}.html")
 }
 
 fn figure(caption: &str, picture: &str) -> Figure {

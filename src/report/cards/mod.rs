@@ -9,6 +9,7 @@
 //! | file | program | what it holds of a section |
 //! |---|---|---|
 //! | `abaqus.rs` | Abaqus | all of it |
+//! | `abaqus_fabric.rs` | Abaqus/Explicit `*FABRIC` | measured curves of tension and shear of a membrane |
 //! | `ansys.rs` | Ansys Mechanical APDL | all of it, if it resists twisting |
 //! | `arcsim.rs` | ARCSim | stretching; bending along warp, weft and the bias |
 //! | `blender.rs` | Blender | strips along warp and weft, shear; an isotropic sheet |
@@ -25,6 +26,7 @@
 //! | `u3m.rs` | U3M 1.1 | thickness, mass, composition; the rest under `custom` |
 
 mod abaqus;
+mod abaqus_fabric;
 mod ansys;
 mod arcsim;
 mod blender;
@@ -52,6 +54,7 @@ pub use laminate::{Laminate, laminate};
 /// Every program, by name.
 pub static EXPORTERS: &[Target] = &[
     &abaqus::EXPORTER,
+    &abaqus_fabric::EXPORTER,
     &ansys::EXPORTER,
     &arcsim::EXPORTER,
     &blender::EXPORTER,

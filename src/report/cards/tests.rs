@@ -185,6 +185,61 @@ fn radioss_has_fields_of_twenty_columns() {
 }
 
 /// The manual of LS-DYNA: fields of ten columns; read back they are the membrane.
+/// The blocks of `*LOADING DATA` in their order: pairs of stress and strain.
+fn loading_data(text: &str) -> Vec<Vec<f64>> {
+    let blocks = text.split("*LOADING DATA\n").skip(1);
+    blocks.map(|b| b.lines().take_while(|l| !l.starts_with('*')).flat_map(numbers).collect()).collect()
+}
+
+#[test]
+fn abaqus_fabric_has_measured_curves_as_stress_over_strain() {
+    use crate::characterise::{Branch, SpecimenResult};
+    use crate::instrument::{Direction, Measurement, Test};
+    use crate::quantity::Curve;
+    // Two warp specimens of 2000 and 4000 N/m: half the mean strain of 2:1 at every force. The weft and shear have no record.
+    let specimen = |stiffness: f64| {
+        let curve = Curve::from_points((0..=50).map(|i| f64::from(i) * 10.0).map(|f| (f / stiffness, f)));
+        SpecimenResult {
+            measurement: Measurement {
+                test: Test::Tensile,
+                sample: None,
+                direction: Some(Direction::Warp),
+                specimen: 1,
+                conditions: Default::default(),
+                curve: curve.clone(),
+                lines: Vec::new(),
+                source: Default::default(),
+                metadata: Default::default(),
+            },
+            branches: vec![Branch { cycle: 0, outgoing: true, curve }],
+            correction: [0.0; 2],
+            windows: Vec::new(),
+            fits: Vec::new(),
+            values: Default::default(),
+            moduli: Default::default(),
+        }
+    };
+    let sheet = FabricSheet { specimens: vec![specimen(2000.0), specimen(4000.0)], ..sheet() };
+    let section = section();
+    let made =
+        Constitutive { section, law: None, used: Vec::new(), inputs: Vec::new(), findings: Vec::new() };
+    let card =
+        card(named("abaqus-fabric").unwrap(), &Material { sheet: &sheet, made: &made, stamp: None }).unwrap();
+    let [warp, weft, shear] = loading_data(&card.text).try_into().unwrap();
+    let (t, last) = (4e-4, warp.len() - 2);
+    assert_relative_eq!(warp[last], 500.0 / t, max_relative = 1e-9);
+    assert_relative_eq!(warp[last + 1], 0.5 * (500.0 / 2000.0 + 500.0 / 4000.0), max_relative = 1e-9);
+    assert_eq!((warp[0], warp[1], weft[0]), (0.0, -1.0, 0.0), "yarns carry no push");
+    assert!(warp.chunks(2).collect::<Vec<_>>().windows(2).all(|w| w[1][1] > w[0][1]));
+    // Strips along the weft: D22 - D12²/D11. A swap of warp and weft or a lost thickness is seen here.
+    let secant = |data: &[f64]| data[data.len() - 2] / data[data.len() - 1] * t;
+    assert_relative_eq!(secant(&weft), 4000.0 - 900.0 * 900.0 / 6000.0, max_relative = 1e-8);
+    assert_relative_eq!(secant(&shear), 60.0, max_relative = 1e-8);
+    assert!(card.text.contains("n = 2") && card.text.contains("no curve was recorded"));
+    assert!(card.text.contains(&format!("*DENSITY\n{},", super::text::number(0.118 / t))));
+    assert_eq!(card.findings.len(), 4);
+}
+
 #[test]
 fn lsdyna_has_fields_of_ten_columns() {
     let text = written("lsdyna", section()).unwrap();

@@ -7,8 +7,16 @@ use unicode_normalization::UnicodeNormalization;
 use super::card::Material;
 use crate::report::write::hash;
 
+/// What cards say of a law that is a section.
+const LINEAR: &str = "Linear and elastic: no friction, no time.";
+
 /// What every card says of itself: the fabric, the origin of its data, units, axes, date, assumptions, and notes.
 pub fn provenance(material: &Material<'_>, notes: &[String]) -> Vec<String> {
+    provenance_of(material, LINEAR, notes)
+}
+
+/// The same of a law that is not linear, with a sentence of what it is.
+fn provenance_of(material: &Material<'_>, law: &str, notes: &[String]) -> Vec<String> {
     let info = &material.sheet.info;
     let mut lines = vec![
         format!(
@@ -17,8 +25,7 @@ pub fn provenance(material: &Material<'_>, notes: &[String]) -> Vec<String> {
             info.origin.name(),
             env!("CARGO_PKG_VERSION")
         ),
-        "SI: m, kg, s, N. Local axis 1 is the warp, 2 the weft. Linear and elastic: no friction, no time."
-            .into(),
+        format!("SI: m, kg, s, N. Local axis 1 is the warp, 2 the weft. {law}"),
     ];
     lines.extend(material.stamp.map(|date| format!("date: {date}")));
     lines.extend(info.source.iter().map(|s| format!("source: {s}")));
@@ -29,8 +36,13 @@ pub fn provenance(material: &Material<'_>, notes: &[String]) -> Vec<String> {
 
 /// The same as comments, each line behind `comment`.
 pub fn preamble(material: &Material<'_>, comment: &str, notes: &[String]) -> String {
+    preamble_of(material, comment, LINEAR, notes)
+}
+
+/// The same of a law that is not linear, with a sentence of what it is.
+pub fn preamble_of(material: &Material<'_>, comment: &str, law: &str, notes: &[String]) -> String {
     let mut text = String::new();
-    for part in provenance(material, notes).iter().flat_map(|line| wrapped(line)) {
+    for part in provenance_of(material, law, notes).iter().flat_map(|line| wrapped(line)) {
         let _ = writeln!(text, "{comment} {part}");
     }
     text

@@ -19,6 +19,8 @@ pub struct ProblemGroup {
 pub struct Problem {
     /// The fabric, if it is about one.
     pub fabric: Option<String>,
+    /// The page that shows this fabric, empty for the page itself; `None` if none does.
+    pub page: Option<String>,
     /// File and line, or the case.
     pub place: String,
     /// One sentence.
@@ -57,8 +59,12 @@ fn lines(out: &mut String, lines: &[Problem]) {
     out.push_str(&format!("<details{open}><summary>Where ({})</summary><ul>\n", lines.len()));
     for line in lines {
         out.push_str("<li>");
-        if let Some(name) = &line.fabric {
-            out.push_str(&format!("<a href=\"#{}\">{}</a> ", fabric_id(name), escape(name)));
+        match (&line.fabric, &line.page) {
+            (Some(name), Some(page)) => {
+                out.push_str(&format!("<a href=\"{page}#{}\">{}</a> ", fabric_id(name), escape(name)));
+            }
+            (Some(name), None) => out.push_str(&format!("{} ", escape(name))),
+            (None, _) => {}
         }
         out.push_str(&format!(
             "<code>{}</code> {}</li>\n",

@@ -101,6 +101,7 @@ fn data_cannot_end_their_element() {
 fn problems_of_a_code_have_one_cure_and_no_absolute_path() {
     let line = |place: &str| Problem {
         fabric: Some("a b".into()),
+        page: Some(String::new()),
         place: place.into(),
         message: "as in /home/ann/x/y.csv: <no>".into(),
     };
