@@ -213,3 +213,46 @@ fn a_report_is_one_page_with_its_pictures() {
     fs::write(results.join("index.html"), "<html></html>").unwrap();
     assert_eq!(code(&kesf(&["report", text(&results)])), 2);
 }
+
+/// The card of a fabric for Abaqus or CalculiX is an input like its folder: the same matrices, and what the card does not say is told.
+#[test]
+fn cards_of_abaqus_and_calculix_give_the_section_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let card = |target: &str| {
+        let card = folder.path().join(format!("card.{target}.inp"));
+        let options = ["-q", "export", "kesf_data/poplin", "--to", target, "-o", card.to_str().unwrap()];
+        assert_eq!(code(&kesf(&options)), 0);
+        card
+    };
+    let section = |input: &str, more: &[&str]| -> Value {
+        let run = kesf(&[&["-q", "--json", "section", input], more].concat());
+        assert_eq!(code(&run), 0, "{}", stderr(&run));
+        serde_json::from_slice::<Value>(&run.stdout).unwrap()["sections"][0].clone()
+    };
+    let own = section("kesf_data/poplin", &[]);
+    let numbers = |section: &Value, key: &str| -> Vec<f64> {
+        let rows = section[key].as_array().unwrap().iter();
+        rows.flat_map(|row| row.as_array().unwrap().iter().map(|v| v.as_f64().unwrap())).collect()
+    };
+    for target in ["abaqus", "calculix"] {
+        let card = card(target);
+        let read = section(card.to_str().unwrap(), &["--thickness", "0.5 mm"]);
+        for key in ["d_m", "d_b"] {
+            let (ours, theirs) = (numbers(&own, key), numbers(&read, key));
+            let size = ours.iter().fold(0.0f64, |a, v| a.max(v.abs()));
+            let far = ours.iter().zip(&theirs).map(|(a, b)| (a - b).abs() / size).fold(0.0, f64::max);
+            assert!(far < 1e-8, "{target}, {key}: {ours:?} {theirs:?}");
+        }
+        assert_eq!(read["origin"], "synthetic");
+        let assumed = read["assumptions"].to_string().contains("the card states none");
+        assert_eq!(assumed, target == "abaqus", "{read}");
+    }
+    let broken = folder.path().join("broken.inp");
+    std::fs::write(&broken, "*SHELL GENERAL SECTION, ELSET=A, DENSITY=0.1\n1., six\n").unwrap();
+    let run = kesf(&["section", broken.to_str().unwrap()]);
+    assert!(
+        code(&run) == 1 && stderr(&run).contains("O045") && stderr(&run).contains("line 2"),
+        "{}",
+        stderr(&run)
+    );
+}

@@ -1,4 +1,4 @@
-//! Shell sections of fabrics: from measurements, or from documents of this program.
+//! Shell sections of fabrics: from measurements, from documents of this program, or from cards of another.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -12,10 +12,12 @@ use super::failure::Failure;
 use super::inputs::{Curves, Fabric, Input, Reading, nothing_to_read, paths_of_several};
 use super::observer::Observer;
 use crate::characterise::{FabricSheet, Key};
-use crate::constitutive::{Assumptions, Constitutive, InputSource, entries, section};
+use crate::constitutive::{Assumptions, Constitutive, InputSource, Used, entries, section};
 use crate::finding::{EvaluationFact, Fact, Place};
+use crate::instrument::{FabricInfo, Origin};
 use crate::platform::files;
 use crate::quantity::{Bands, significant};
+use crate::report::cards::{self, read::StatedSection};
 use crate::report::read_back::{self, Document};
 
 /// A sheet and its section.
@@ -29,7 +31,7 @@ pub struct Sectioned {
     pub made: Constitutive,
 }
 
-/// Inputs that are documents of this program, and the others.
+/// Inputs that are documents of this program or cards of another, and the others.
 #[derive(Default)]
 struct Sorted {
     documents: Vec<(PathBuf, Document)>,
@@ -38,27 +40,62 @@ struct Sorted {
 }
 
 impl Sorted {
-    fn new(inputs: &[Input]) -> Self {
+    fn new(inputs: &[Input], assumptions: &Assumptions) -> Self {
         let mut sorted = Self::default();
         for input in inputs {
             let path = input.path().to_path_buf();
-            match document_bytes(input).map_or(Ok(None), |bytes| read_back::read(&bytes)) {
+            match document(input, assumptions) {
                 Ok(Some(document)) => sorted.documents.push((path, document)),
                 Ok(None) => sorted.others.push(input.clone()),
-                Err(error) => sorted.failures.push(Failure::from(error).at(Place::file(path))),
+                Err(failure) => sorted.failures.push(failure.at(Place::file(path))),
             }
         }
         sorted
     }
 }
 
-/// The bytes of an input that may be a document: a JSON file, or anything in memory.
+/// The document or the card of another program that an input is, if it is one.
+fn document(input: &Input, assumptions: &Assumptions) -> Result<Option<Document>, Failure> {
+    let Some(bytes) = document_bytes(input) else { return Ok(None) };
+    if let Some(document) = read_back::read(&bytes)? {
+        return Ok(Some(document));
+    }
+    let card =
+        cards::read::section_in(&String::from_utf8_lossy(&bytes), assumptions.thickness.si()).transpose()?;
+    Ok(card.map(|card| Document::Sections(vec![of_card(input, card, assumptions)])))
+}
+
+/// A section that the card of another program states, with what the card leaves open.
+fn of_card(input: &Input, card: StatedSection, assumptions: &Assumptions) -> (FabricSheet, Constitutive) {
+    let name = input.path().file_stem().map_or_else(|| "card".into(), |stem| stem.to_string_lossy());
+    // The numbers of a card that is not ours are somebody's, and no record is behind them.
+    let origin = card.origin.unwrap_or(Origin::Published);
+    let info = FabricInfo { title: name.to_string(), origin, ..FabricInfo::default() };
+    let entry = |name: &'static str, value: String, source: String| Used { name: name.into(), value, source };
+    let mut used =
+        vec![entry("matrices, areal density", "as stated".into(), format!("the card: {}", card.keyword))];
+    if card.origin.is_none() {
+        used.push(entry("origin", origin.name().into(), "assumed: the card does not say it".into()));
+    }
+    if !card.has_thickness {
+        let source = "assumed (--thickness): the card states none".into();
+        used.push(entry("thickness", assumptions.thickness.to_string(), source));
+    }
+    let made =
+        Constitutive { section: card.section, law: None, used, inputs: Vec::new(), findings: Vec::new() };
+    (FabricSheet { name: name.into_owned(), info, ..FabricSheet::default() }, made)
+}
+
+/// The bytes of an input that may be a document or a card: a JSON file, an input file of Abaqus or CalculiX, or
+/// anything in memory.
 fn document_bytes(input: &Input) -> Option<Cow<'_, [u8]>> {
     match input {
         Input::Memory { bytes, .. } => Some(Cow::Borrowed(bytes)),
         Input::Path(path) => {
-            let is_json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
-            is_json.then(|| files::read(path).ok().map(Cow::Owned))?
+            let ending =
+                |e: &std::ffi::OsStr| ["json", "inp"].iter().any(|known| e.eq_ignore_ascii_case(known));
+            let is_document = path.extension().is_some_and(ending);
+            is_document.then(|| files::read(path).ok().map(Cow::Owned))?
         }
     }
 }
@@ -87,7 +124,7 @@ pub fn sections_with(
     curves: Curves,
     observer: &Observer,
 ) -> Result<(Vec<Sectioned>, Vec<Failure>), Failure> {
-    let Sorted { documents, others, mut failures } = Sorted::new(inputs);
+    let Sorted { documents, others, mut failures } = Sorted::new(inputs, assumptions);
     failures.iter().for_each(|failure| observer.failed(failure));
     let mut fabrics = Vec::new();
     if !others.is_empty() {

@@ -6,6 +6,7 @@
 use nalgebra::{Matrix2, Matrix3};
 
 use crate::finding::errors;
+use crate::instrument::Origin;
 use crate::section::{SectionError, ShellSection};
 
 errors! {
@@ -64,6 +65,47 @@ fn parameter((line, text): (usize, &str), name: &'static str) -> Result<f64, Car
         key.trim().eq_ignore_ascii_case(name).then_some(value)
     });
     real((line, found.unwrap_or_default()), name)
+}
+
+/// A section that a card states.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StatedSection {
+    /// The keyword that states it.
+    pub keyword: &'static str,
+    /// The section.
+    pub section: ShellSection,
+    /// Whether the thickness is the card's; the one that was given otherwise.
+    pub has_thickness: bool,
+    /// Where the data come from, of a card of this program.
+    pub origin: Option<Origin>,
+}
+
+/// The section that an input file of Abaqus or CalculiX states, by its first keyword of a shell section; `None` if it has
+/// none. `thickness` (m) is taken where the card states none.
+///
+/// # Errors
+/// See [`CardReadError`].
+pub fn section_in(text: &str, thickness: f64) -> Option<Result<StatedSection, CardReadError>> {
+    const GENERAL: &str = "*SHELL GENERAL SECTION";
+    const LAYERS: &str = "*SHELL SECTION, COMPOSITE";
+    let lines = lines(text, "**");
+    let stated = |keyword, section: Result<_, _>, has_thickness| {
+        section.map(|section| StatedSection { keyword, section, has_thickness, origin: origin(text) })
+    };
+    if keyword(&lines, GENERAL).is_ok() {
+        Some(stated(GENERAL, abaqus(text, thickness), false))
+    } else if keyword(&lines, "*SHELL SECTION").is_ok() {
+        Some(stated(LAYERS, calculix(text), true))
+    } else {
+        None
+    }
+}
+
+/// What a card of this program says of its data in the comment at its head.
+fn origin(text: &str) -> Option<Origin> {
+    let head = text.lines().next().unwrap_or_default();
+    let says = |origin: &Origin| head.contains(&format!("({} data), by kesf", origin.name()));
+    [Origin::Measured, Origin::Published, Origin::Synthetic].into_iter().find(says)
 }
 
 /// An Abaqus `*SHELL GENERAL SECTION` with `*TRANSVERSE SHEAR STIFFNESS`. Abaqus knows no thickness of such a section: it is
