@@ -74,6 +74,13 @@ pub(super) fn one_sided(curve: &Curve, sense: f64, part: f64) -> Option<Vec<Bran
     Some(branches)
 }
 
+/// Branches of a sweep forth and back: outgoing as the first one goes.
+pub(super) fn swept(curve: &Curve, part: f64) -> Option<Vec<Branch>> {
+    let turns = turning_points(&curve.x, threshold(&curve.x, part))?;
+    let way = |ends: &[usize]| curve.x[ends[1]] - curve.x[ends[0]];
+    one_sided(curve, way(turns.get(..2)?).signum(), part)
+}
+
 /// Branches of a test that is driven to both sides of zero; a run across zero is cut there, and
 /// the sample before the crossing belongs to both parts. A new cycle begins when the drive
 /// leaves zero again towards the side that it took first.

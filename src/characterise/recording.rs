@@ -8,7 +8,7 @@ use super::branch::{self, usual_step};
 use super::specimen::Notes;
 use super::{CycleChoice, Settings};
 use crate::finding::{EvaluationFact, RecordAxis, Samples};
-use crate::instrument::{Measurement, Test};
+use crate::instrument::{Measurement, Shape, Test};
 use crate::quantity::Curve;
 
 /// A step is a jump if it is more than this many times the usual step and the longest of its neighbours. Jitter of
@@ -22,6 +22,10 @@ const DROPOUT: usize = 3;
 const SMALL: f64 = 0.01;
 /// Jumps of the ordinate are at least so many of its smallest steps, which may be those of a coarse converter.
 const QUANTA: f64 = 4.0;
+/// Part of the samples of a sweep, at each end of their order, that may be spikes.
+const TAILS: f64 = 0.01;
+/// A spike of a sweep is so many times as far away as the rest of the samples lie apart.
+const TEXTURE: f64 = 3.0;
 /// Samples on each side of a jump of the ordinate over which the drive must run on: where it turns or rests, yarns
 /// slide back and relax, and the ordinate may fall at once.
 const RUN: usize = 6;
@@ -68,7 +72,11 @@ fn drop_outs(kept: &mut Vec<usize>, notes: &mut Notes<'_>) -> Vec<usize> {
     let mut found = take(kept, &away_and_back(&curve.x, median));
     let curve = samples(m, kept);
     let usual = usual_step(&curve.x);
-    let mut spikes = away_and_back(&curve.y, smallest_jump(&curve.y) / JUMP);
+    let least = match m.test.shape() {
+        Shape::Rise | Shape::Loop => smallest_jump(&curve.y),
+        Shape::Sweep => beyond_texture(&curve.y),
+    };
+    let mut spikes = away_and_back(&curve.y, least / JUMP);
     spikes.retain(|run| runs_on(&curve.x, run.start - 1, run.end, usual) || turns_once(&curve.x, run, usual));
     found.extend(take(kept, &spikes));
     found.sort_unstable();
@@ -131,6 +139,15 @@ fn smallest_jump(y: &[f64]) -> f64 {
     (SMALL * (high - low)).max(QUANTA * quantum)
 }
 
+/// The texture of a surface jumps, too: what stands out of it is further away than it is high anywhere.
+fn beyond_texture(y: &[f64]) -> f64 {
+    let mut sorted = y.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let outside = (TAILS * sorted.len() as f64).ceil() as usize;
+    let inside = sorted.get(outside..sorted.len() - outside).unwrap_or_default();
+    inside.first().zip(inside.last()).map_or(f64::INFINITY, |(low, high)| TEXTURE * (high - low))
+}
+
 fn ends(v: &[f64]) -> [f64; 2] {
     v.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(*v), high.max(*v)])
 }
@@ -168,6 +185,9 @@ fn lost(curve: &Curve, usual: f64, kept: &[usize], notes: &mut Notes<'_>) {
         };
         notes.add_at(kept[first], fact);
     }
+    if m.test.shape() == Shape::Sweep {
+        return;
+    }
     let mut steps = jumps(&curve.y, smallest_jump(&curve.y) / JUMP);
     // Where the abscissa steps, the ordinate does too.
     steps.retain(|i| !gaps.contains(i) && runs_on(&curve.x, i - 1, *i, usual));
@@ -198,7 +218,7 @@ fn jumps(v: &[f64], usual: f64) -> Vec<usize> {
 fn clipped(curve: &Curve, usual: f64, kept: &[usize], notes: &mut Notes<'_>) {
     let m = notes.measurement;
     let [low, high] = ends(&curve.y);
-    let two_sided = matches!(m.test, Test::Shear | Test::Bending);
+    let two_sided = m.test.shape() == Shape::Loop;
     // The low end of the other tests is the zero before contact and after it.
     let extremes = [(high, "greatest"), (low, "least")];
     let runs = level_runs(curve, usual);
@@ -254,10 +274,11 @@ fn steps_made(x: &[f64], usual: f64) -> usize {
 fn cycles(curve: &Curve, kept: &[usize], settings: &Settings, notes: &mut Notes<'_>) {
     let m = notes.measurement;
     let reversal = settings.reversal.si();
-    let branches = match m.test {
-        Test::Tensile => branch::one_sided(curve, 1.0, reversal),
-        Test::Compression => branch::one_sided(curve, -1.0, reversal),
-        Test::Shear | Test::Bending => branch::two_sided(curve, reversal),
+    let branches = match (m.test, m.test.shape()) {
+        (Test::Compression, _) => branch::one_sided(curve, -1.0, reversal),
+        (_, Shape::Rise) => branch::one_sided(curve, 1.0, reversal),
+        (_, Shape::Loop) => branch::two_sided(curve, reversal),
+        (_, Shape::Sweep) => branch::swept(curve, reversal),
     };
     let branches = branches.unwrap_or_default();
     let way = |x: &[f64]| (x[x.len() - 1] - x[0]).abs();
@@ -285,7 +306,7 @@ fn cycles(curve: &Curve, kept: &[usize], settings: &Settings, notes: &mut Notes<
 
 /// The sample from which the drive goes out: where it passes zero, the branches meet at the sample before.
 fn leaves(x: &[f64], mut at: usize, test: Test) -> usize {
-    let two_sided = matches!(test, Test::Shear | Test::Bending);
+    let two_sided = test.shape() == Shape::Loop;
     let waits = |a: f64, b: f64| a == b || two_sided && b.abs() <= a.abs();
     while at + 1 < x.len() && waits(x[at], x[at + 1]) {
         at += 1;

@@ -72,6 +72,8 @@ pub(super) fn leading(test: Test) -> Parameter {
         Test::Shear => Parameter::G,
         Test::Bending => Parameter::B,
         Test::Compression => Parameter::Wc,
+        Test::Friction => Parameter::Miu,
+        Test::Roughness => Parameter::Smd,
     }
 }
 
@@ -124,7 +126,7 @@ mod tests {
         for test in Test::ALL {
             let axes = TestAxes::of(test);
             assert!(axes.x_factor.is_finite() && axes.y_factor.is_finite(), "{test:?}");
-            assert!(axes.y.second.is_some());
+            assert_eq!(axes.y.second.is_some(), test.shape() != crate::instrument::Shape::Sweep);
         }
         // 1 gf·cm/cm = 9.80665 mN·m/m: one mN·m/m is 1/9.80665 of our unit.
         let second = TestAxes::of(Test::Bending).y.second.unwrap();
