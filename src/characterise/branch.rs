@@ -36,20 +36,6 @@ pub(super) fn turning_points(x: &[f64], threshold: f64) -> Option<Vec<usize>> {
     Some(turns)
 }
 
-/// The step that the drive makes from one sample to the next: a third of the way is made in shorter ones. Samples at
-/// rest do not count, since they make no way, and gaps may be as long as a branch.
-pub(super) fn usual_step(x: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = x.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
-    steps.sort_by(f64::total_cmp);
-    let third = steps.iter().sum::<f64>() / 3.0;
-    let mut way = 0.0;
-    let reaches = |step: &f64| {
-        way += step;
-        way >= third
-    };
-    steps.into_iter().find(reaches).unwrap_or(0.0)
-}
-
 /// Range of the abscissa times `part`.
 fn threshold(x: &[f64], part: f64) -> f64 {
     let low = x.iter().copied().fold(f64::INFINITY, f64::min);
@@ -124,6 +110,7 @@ pub(super) fn two_sided(curve: &Curve, part: f64) -> Option<Vec<Branch>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::characterise::onset::usual_step;
 
     /// A cycle 0, +1, -1, 0 with `n` steps per quarter.
     fn cycle(n: usize) -> Vec<f64> {

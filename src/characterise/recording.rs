@@ -4,7 +4,8 @@
 
 use std::ops::Range;
 
-use super::branch::{self, usual_step};
+use super::branch;
+use super::onset::{self, usual_step};
 use super::specimen::Notes;
 use super::{CycleChoice, Settings};
 use crate::finding::{EvaluationFact, RecordAxis, Samples};
@@ -77,8 +78,21 @@ fn drop_outs(kept: &mut Vec<usize>, notes: &mut Notes<'_>) -> Vec<usize> {
         Shape::Sweep => beyond_texture(&curve.y),
     };
     let mut spikes = away_and_back(&curve.y, least / JUMP);
-    spikes.retain(|run| runs_on(&curve.x, run.start - 1, run.end, usual) || turns_once(&curve.x, run, usual));
+    // Before the drive moves nothing in the cloth does.
+    let rest = onset::rest(&curve.x);
+    spikes.retain(|run| {
+        run.end <= rest
+            || runs_on(&curve.x, run.start - 1, run.end, usual)
+            || turns_once(&curve.x, run, usual)
+    });
+    spikes.extend(at_ends(&curve.y, least));
+    spikes.sort_by_key(|run| run.start);
     found.extend(take(kept, &spikes));
+    if m.test.shape() != Shape::Sweep {
+        let curve = samples(m, kept);
+        let alone = off_course(&curve, usual_step(&curve.x));
+        found.extend(take(kept, &alone));
+    }
     found.sort_unstable();
     let Some(&first) = found.first() else { return found };
     let fact = EvaluationFact::Dropout {
@@ -124,6 +138,97 @@ fn comes_back(v: &[f64], i: usize, n: usize, usual: f64) -> bool {
     jump > JUMP * around && v[i..i + n].iter().all(away) && !away(&v[i + n])
 }
 
+/// Samples that stand off the course of those beside them, however small the slip: further than [`JUMP`] times the usual
+/// residual of the record (its median, as of Hampel's filter), and than what their neighbours are off without them. A
+/// kink leaves its neighbours off, too, and is none. Only along stretches in which the drive runs evenly, one by one.
+fn off_course(curve: &Curve, usual: f64) -> Vec<Range<usize>> {
+    let residuals: Vec<(Range<usize>, usize, f64)> = even_stretches(&curve.x, usual)
+        .into_iter()
+        .flat_map(|s| s.clone().map(move |i| (s.clone(), i)))
+        .map(|(stretch, i)| (stretch.clone(), i, residual(curve, &stretch, i, i)))
+        .collect();
+    let mut sorted: Vec<f64> = residuals.iter().map(|r| r.2).collect();
+    sorted.sort_by(f64::total_cmp);
+    let Some(middle) = sorted.get(sorted.len() / 2) else { return Vec::new() };
+    let quantum = curve.y.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|s| *s > 0.0);
+    // The median of |r| is 0.6745 of the standard deviation of noise.
+    let least = (JUMP * middle / 0.6745).max(QUANTA * quantum.fold(f64::INFINITY, f64::min));
+    // A rounded abscissa puts a sample off by half of its last digit times the slope.
+    let rounding = 0.5 * resolution(&curve.x, usual);
+    let stands_alone = |(stretch, i, off): &(Range<usize>, usize, f64)| {
+        // Where the drive turns, friction does, too, and the ordinate may fall at once.
+        if [stretch.start, stretch.end - 1].contains(i) {
+            return false;
+        }
+        let slope = (curve.y[i + 1] - curve.y[i - 1]) / (curve.x[i + 1] - curve.x[i - 1]);
+        if *off <= JUMP * rounding * slope.abs() {
+            return false;
+        }
+        let beside = stretch.clone().filter(|j| j != i && j.abs_diff(*i) <= 2);
+        beside.map(|j| residual(curve, stretch, j, *i)).all(|r| JUMP * r < *off)
+    };
+    residuals.iter().filter(|r| r.2 > least && stands_alone(r)).map(|r| r.1..r.1 + 1).collect()
+}
+
+/// Stretches of samples between which the drive makes whole steps one way, long enough to see a course in.
+fn even_stretches(x: &[f64], usual: f64) -> Vec<Range<usize>> {
+    let step = |i: usize| x[i + 1] - x[i];
+    let is_whole = |i: usize| (0.5 * usual..2.0 * usual).contains(&step(i).abs());
+    let (mut stretches, mut start) = (Vec::new(), 0);
+    for i in 0..x.len() {
+        let ends = i + 1 == x.len() || !is_whole(i) || i > start && step(i).signum() != step(i - 1).signum();
+        if ends {
+            stretches.push(start..i + 1);
+            start = if i + 1 < x.len() && is_whole(i) { i } else { i + 1 };
+        }
+    }
+    stretches.retain(|s| s.len() > 2 * NEIGHBOURS);
+    stretches
+}
+
+/// The last digit of the abscissae: the least difference between steps; next to nothing where they are not rounded.
+fn resolution(x: &[f64], usual: f64) -> f64 {
+    let mut steps: Vec<f64> = x.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
+    steps.sort_by(f64::total_cmp);
+    let differences = steps.windows(2).map(|w| w[1] - w[0]).filter(|d| *d > 1e-6 * usual);
+    let least = differences.fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
+}
+
+/// How far a sample is from the cubic through the four nearest ones of a stretch, without one of them, over what noise
+/// of one would make of it.
+fn residual(curve: &Curve, stretch: &Range<usize>, i: usize, without: usize) -> f64 {
+    let from = i.saturating_sub(NEIGHBOURS + 2).max(stretch.start);
+    let mut near: Vec<usize> =
+        (from..stretch.end.min(i + NEIGHBOURS + 3)).filter(|j| *j != i && *j != without).collect();
+    near.sort_by_key(|j| j.abs_diff(i));
+    near.truncate(4);
+    let (mut off, mut noise) = (curve.y[i], 1.0);
+    for &k in &near {
+        let others = near.iter().filter(|j| **j != k).map(|&j| curve.x[j]);
+        let part: f64 = others.map(|x| (curve.x[i] - x) / (curve.x[k] - x)).product();
+        off -= part * curve.y[k];
+        noise += part * part;
+    }
+    off.abs() / noise.sqrt()
+}
+
+/// The first and the last sample, where they are further from the next one than any sample near it from its own. Some
+/// records begin or end with a row of zeros: that is a reading of the instrument and no slip.
+fn at_ends(v: &[f64], least: f64) -> Vec<Range<usize>> {
+    let n = v.len();
+    if n < NEIGHBOURS + 2 {
+        return Vec::new();
+    }
+    let far = |end: usize, next: usize, steps: Range<usize>| {
+        let jump = (v[end] - v[next]).abs();
+        v[end] != 0.0 && jump > least && jump > JUMP * longest(v, steps)
+    };
+    let first = far(0, 1, 1..1 + NEIGHBOURS).then_some(0..1);
+    let last = far(n - 1, n - 2, n - 2 - NEIGHBOURS..n - 2).then_some(n - 1..n);
+    first.into_iter().chain(last).collect()
+}
+
 /// The longest of the steps that begin at the samples of a range; it may reach beyond the record.
 fn longest(v: &[f64], from: Range<usize>) -> f64 {
     let end = (from.end + 1).min(v.len());
@@ -164,10 +269,14 @@ fn runs_on(x: &[f64], before: usize, after: usize, usual: f64) -> bool {
 fn turns_once(x: &[f64], run: &Range<usize>, usual: f64) -> bool {
     let around = run.start.saturating_sub(1 + NEIGHBOURS)..(run.end + 1 + NEIGHBOURS).min(x.len());
     let steps: Vec<f64> = x[around].windows(2).map(|w| w[1] - w[0]).collect();
-    let turns = steps.windows(2).filter(|w| w[0] * w[1] < 0.0).count();
-    // Where it turns between two samples, the two steps next to the turn may be any part of the usual one.
-    let short = steps.iter().filter(|s| s.abs() < 0.5 * usual).count();
-    turns <= 1 && short <= 2 * turns
+    let is_short = |s: &&f64| s.abs() < 0.5 * usual;
+    let whole: Vec<f64> = steps.iter().filter(|s| !is_short(s)).copied().collect();
+    let turns = whole.windows(2).filter(|w| w[0] * w[1] < 0.0).count();
+    // Where it turns between two samples, the two steps next to the turn may be any part of the usual one; the turn
+    // itself may lie beyond the samples that are looked at.
+    let groups = steps.chunk_by(|a, b| is_short(&a) == is_short(&b)).filter(|g| is_short(&&g[0]));
+    let groups: Vec<usize> = groups.map(<[f64]>::len).collect();
+    turns <= 1 && matches!(groups[..], [] | [1 | 2])
 }
 
 /// K046: the abscissa or the ordinate goes on elsewhere.

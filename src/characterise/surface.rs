@@ -35,6 +35,12 @@ pub(super) fn friction(
         if against.is_some_and(|area| area < 0.0) {
             branch.curve.y.iter_mut().for_each(|y| *y = 0.0 - *y);
         }
+        // Where the sweep turns, friction passes through zero: that sample is of the other motion.
+        let moving: Vec<usize> = (0..branch.curve.len()).filter(|i| branch.curve.y[*i] > 0.0).collect();
+        if let (Some(first), Some(last)) = (moving.first(), moving.last()) {
+            let points = branch.curve.points().take(last + 1).skip(*first);
+            branch.curve = Curve::from_points(points.collect::<Vec<_>>());
+        }
     }
     let parts = parts(&branches, "MIU, MMD", settings, notes)?;
     let mut e = evaluation(branches, &parts, Parameter::Mmd);

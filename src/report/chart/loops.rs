@@ -6,6 +6,7 @@ use crate::characterise::{FabricSheet, SpecimenResult, Window};
 use crate::instrument::{Direction, Parameter, Test};
 use crate::quantity::Curve;
 use crate::report::axes::{Axis, axes};
+use crate::report::number::unit_text;
 
 use super::axes::Label;
 
@@ -32,11 +33,11 @@ impl TestAxes {
                 unit: match x.kes_unit {
                     "deg" => "°".into(),
                     "1/cm" => "cm⁻¹".into(),
-                    unit => unit.into(),
+                    unit => unit_text(unit),
                 },
                 second: second(x),
             },
-            y: Label { quantity: y.quantity.into(), unit: y.kes_unit.into(), second: second(y) },
+            y: Label { quantity: y.quantity.into(), unit: unit_text(y.kes_unit), second: second(y) },
         }
     }
 
