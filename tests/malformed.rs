@@ -87,6 +87,7 @@ const CASES: &[(&str, &str, &str)] = &[
     ("K048", "k048-knit.json", "k048-knit.json"),
     ("K049", "k002-two-degrees.csv", "k002-two-degrees.csv:6"),
     ("K059", "k059-tm-above-t0.csv", "k059-tm-above-t0.csv:3:4"),
+    ("K060", "k060-tilted.csv", "k060-tilted.csv:6"),
 ];
 
 /// Codes that no file can trigger, because reading refuses it or sets it right before; programs

@@ -7,7 +7,7 @@ use std::io::{Cursor, Read, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use kesf::instrument::{FileContent, ReadSettings, Test, parse};
+use kesf::instrument::{FileContent, ReadSettings, parse};
 use kesf::quantity::Unit;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -27,8 +27,10 @@ fn seeds() -> Vec<Vec<u8>> {
     let wide = "id,B_warp_uN_m,B_weft_uN_m,G_N_per_m,W_g_per_m2,T_mm\nM1,1.95,0.61,41,135.17,0.31\nM2,0.85,0.33,46,83.66,0.25\n";
     let long = "fabric\tparameter\tdirection\tmean\tsd\tn\tunit\npoplin\tB\twarp\t0.085\t0.003\t3\tgf·cm²/cm\npoplin\tEMT\tweft\t7.6\t0.2\t3\t%\n";
     let fab = r#"{"raw_data": {"L": {"S1": {"length": 2.08, "width": "5", "samplesTree": [[1.9, 0.1, 2.0, "5.5", 2.1, 20], [2.1, 20, 1.9, 0.1]]}}, "M": "105.6"}}"#;
+    let surface = "test,KES-FB4\ndirection,warp\ncontact load,50 gf\n\nposition (mm),friction force (gf),height (um)\n0,9,10\n10,11,14\n\
+                   20,9,9\n30,12,15\n20,-10,11\n10,-9,13\n0,-11,10\n";
     let utf16 = english.encode_utf16().flat_map(u16::to_le_bytes).collect();
-    let mut seeds: Vec<Vec<u8>> = [english, japanese, portuguese, volts, wide, long, fab]
+    let mut seeds: Vec<Vec<u8>> = [english, japanese, portuguese, volts, wide, long, fab, surface]
         .iter()
         .map(|t| t.as_bytes().to_vec())
         .collect();
@@ -122,7 +124,7 @@ fn check(content: &FileContent) {
         assert_eq!(m.curve.x.len(), m.lines.len());
         assert!(m.curve.points().all(|(x, y)| x.is_finite() && y.is_finite()));
         assert!(m.specimen > 0 && m.curve.len() >= 3);
-        assert_eq!(m.direction.is_none(), m.test == Test::Compression);
+        assert_eq!(m.direction.is_some(), m.test.is_directional());
         assert!(m.conditions.width > 0.0 && m.conditions.maximum > 0.0);
     }
     assert!(content.results.iter().all(|(_, r)| r.mean.is_finite() && r.n > 0));

@@ -32,6 +32,7 @@ fn words(test: Test, japanese: bool) -> [&'static str; 3] {
         (Test::Shear, true) => ["せん断", "せん断角", "せん断力"],
         (Test::Bending, true) => ["曲げ", "曲率", "曲げモーメント"],
         (Test::Compression, true) => ["圧縮", "厚さ", "圧力"],
+        (Test::Friction | Test::Roughness, _) => panic!("no shipped fabric has a sweep"),
     }
 }
 
@@ -42,6 +43,8 @@ fn kes(test: Test) -> [&'static str; 2] {
         Test::Shear => ["deg", "gf/cm"],
         Test::Bending => ["1/cm", "gf cm/cm"],
         Test::Compression => ["mm", "gf/cm2"],
+        Test::Friction => ["cm", "1"],
+        Test::Roughness => ["cm", "um"],
     }
 }
 
@@ -232,12 +235,14 @@ fn units_never_change_a_parameter() {
             Test::Shear => ["rad", "mN/m"],
             Test::Bending => ["1/m", "uN"],
             Test::Compression => ["um", "Pa"],
+            _ => kes(test),
         },
         |test| match test {
             Test::Tensile => ["%", "cN/cm"],
             Test::Shear => ["rad", "cN/cm"],
             Test::Bending => ["1/cm", "mN mm/mm"],
             Test::Compression => ["um", "kPa"],
+            _ => kes(test),
         },
     ];
     let settings = Settings::default();

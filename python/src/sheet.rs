@@ -119,9 +119,8 @@ impl Sheet {
 /// The test of a name.
 fn test(name: &str) -> PyResult<Test> {
     Test::ALL.into_iter().find(|test| test.name() == name).ok_or_else(|| {
-        PyValueError::new_err(format!(
-            "`{name}` is no test; there are tensile, shear, bending and compression"
-        ))
+        let known: Vec<&str> = Test::ALL.iter().map(|test| test.name()).collect();
+        PyValueError::new_err(format!("`{name}` is no test; there are {}", known.join(", ")))
     })
 }
 
@@ -177,13 +176,7 @@ impl Sheet {
     /// The PNG chart of a test, as `kesf run` writes it.
     fn chart(&self, py: Python<'_>, name: &str) -> PyResult<Vec<u8>> {
         let (test, sheet) = (test(name)?, self.sheet());
-        py.detach(|| match test {
-            Test::Tensile => chart::tensile(sheet, &[]),
-            Test::Shear => chart::shear(sheet, &[]),
-            Test::Bending => chart::bending(sheet, &[]),
-            Test::Compression => chart::compression(sheet, &[]),
-        })
-        .or_raise(py)
+        py.detach(|| chart::of_test(sheet, test, &[])).or_raise(py)
     }
 
     fn __eq__(&self, other: &Self) -> bool {

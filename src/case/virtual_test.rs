@@ -86,7 +86,7 @@ impl ShellTest {
             Test::Tensile => Some(Self::Tensile),
             Test::Shear => Some(Self::Shear),
             Test::Bending => Some(Self::Bending),
-            Test::Compression => None,
+            Test::Compression | Test::Friction | Test::Roughness => None,
         }
     }
 

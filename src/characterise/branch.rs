@@ -36,20 +36,6 @@ pub(super) fn turning_points(x: &[f64], threshold: f64) -> Option<Vec<usize>> {
     Some(turns)
 }
 
-/// The step that the drive makes from one sample to the next: a third of the way is made in shorter ones. Samples at
-/// rest do not count, since they make no way, and gaps may be as long as a branch.
-pub(super) fn usual_step(x: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = x.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
-    steps.sort_by(f64::total_cmp);
-    let third = steps.iter().sum::<f64>() / 3.0;
-    let mut way = 0.0;
-    let reaches = |step: &f64| {
-        way += step;
-        way >= third
-    };
-    steps.into_iter().find(reaches).unwrap_or(0.0)
-}
-
 /// Range of the abscissa times `part`.
 fn threshold(x: &[f64], part: f64) -> f64 {
     let low = x.iter().copied().fold(f64::INFINITY, f64::min);
@@ -72,6 +58,13 @@ pub(super) fn one_sided(curve: &Curve, sense: f64, part: f64) -> Option<Vec<Bran
         branches.push(Branch { cycle, outgoing, curve: piece(curve, ends[0], ends[1]) });
     }
     Some(branches)
+}
+
+/// Branches of a sweep forth and back: outgoing as the first one goes.
+pub(super) fn swept(curve: &Curve, part: f64) -> Option<Vec<Branch>> {
+    let turns = turning_points(&curve.x, threshold(&curve.x, part))?;
+    let way = |ends: &[usize]| curve.x[ends[1]] - curve.x[ends[0]];
+    one_sided(curve, way(turns.get(..2)?).signum(), part)
 }
 
 /// Branches of a test that is driven to both sides of zero; a run across zero is cut there, and
@@ -117,6 +110,7 @@ pub(super) fn two_sided(curve: &Curve, part: f64) -> Option<Vec<Branch>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::characterise::onset::usual_step;
 
     /// A cycle 0, +1, -1, 0 with `n` steps per quarter.
     fn cycle(n: usize) -> Vec<f64> {

@@ -65,7 +65,7 @@ pub(super) fn records(input: &FabricInput) -> Vec<Finding> {
     for test in Test::ALL {
         let set: Vec<&Measurement> = input.measurements.iter().filter(|m| m.test == test).collect();
         for (i, m) in set.iter().enumerate() {
-            if m.direction.is_none() && test != Test::Compression {
+            if m.direction.is_none() && test.is_directional() {
                 let fact = EvaluationFact::NoDirection { record: m.record_name() };
                 findings.push(Finding::new(fact).at(m.place()));
             }

@@ -27,6 +27,7 @@ mod spread;
 mod statistics;
 mod status;
 mod strip;
+mod surface;
 mod tables;
 mod tensile;
 mod value_status;
@@ -38,7 +39,7 @@ pub use friction::{
     StripMemory, bending_law, cycle, extract,
 };
 pub use graph::LineFit;
-pub use settings::{CycleChoice, Modulus, Settings, Sides, SlopeMethod};
+pub use settings::{CycleChoice, Modulus, Settings, Sides, SlopeMethod, Sweeps};
 pub use sheet::{Branch, FabricSheet, RunTo, SpecimenResult, Window};
 pub use simulated::parameters;
 pub use spread::{MeanBranch, mean_branches};

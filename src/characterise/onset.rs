@@ -1,7 +1,5 @@
 //! Where load begins: zero offset and slack of a one-sided test.
 
-use super::branch::usual_step;
-
 /// The sample from which the load rises, and the mean ordinate up to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Onset {
@@ -34,8 +32,22 @@ pub(super) fn onset(x: &[f64], y: &[f64]) -> Onset {
     Onset { index: skipped + before, baseline, before }
 }
 
+/// The step that the drive makes from one sample to the next: a third of the way is made in shorter ones. Samples at
+/// rest do not count, since they make no way, and gaps may be as long as a branch.
+pub(super) fn usual_step(x: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = x.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
+    steps.sort_by(f64::total_cmp);
+    let third = steps.iter().sum::<f64>() / 3.0;
+    let mut way = 0.0;
+    let reaches = |step: &f64| {
+        way += step;
+        way >= third
+    };
+    steps.into_iter().find(reaches).unwrap_or(0.0)
+}
+
 /// The last sample before the drive moves: it stays within half a step of the first until one is a whole step away.
-fn rest(x: &[f64]) -> usize {
+pub(super) fn rest(x: &[f64]) -> usize {
     let (Some(&start), step) = (x.first(), usual_step(x)) else { return 0 };
     let moved = x.iter().position(|v| (v - start).abs() > step).unwrap_or(0);
     x[..moved].iter().rposition(|v| (v - start).abs() <= 0.5 * step).unwrap_or(0)

@@ -29,7 +29,7 @@ pub(super) fn measurement(test: Test, maximum: f64, points: Vec<(f64, f64)>) -> 
         sample: None,
         direction: (test != Test::Compression).then_some(Direction::Warp),
         specimen: 1,
-        conditions: Conditions { width: 0.2, gauge: 0.05, maximum, pretension: 9.80665 },
+        conditions: Conditions { width: 0.2, gauge: 0.05, maximum, pretension: 9.80665, contact: 0.0 },
         lines: (1..=points.len()).collect(),
         curve: Curve::from_points(points),
         source: Source { path: "clean.csv".into(), ..Source::default() },

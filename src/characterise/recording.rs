@@ -4,11 +4,12 @@
 
 use std::ops::Range;
 
-use super::branch::{self, usual_step};
+use super::branch;
+use super::onset::{self, usual_step};
 use super::specimen::Notes;
 use super::{CycleChoice, Settings};
 use crate::finding::{EvaluationFact, RecordAxis, Samples};
-use crate::instrument::{Measurement, Test};
+use crate::instrument::{Measurement, Shape, Test};
 use crate::quantity::Curve;
 
 /// A step is a jump if it is more than this many times the usual step and the longest of its neighbours. Jitter of
@@ -22,6 +23,10 @@ const DROPOUT: usize = 3;
 const SMALL: f64 = 0.01;
 /// Jumps of the ordinate are at least so many of its smallest steps, which may be those of a coarse converter.
 const QUANTA: f64 = 4.0;
+/// Part of the samples of a sweep, at each end of their order, that may be spikes.
+const TAILS: f64 = 0.01;
+/// A spike of a sweep is so many times as far away as the rest of the samples lie apart.
+const TEXTURE: f64 = 3.0;
 /// Samples on each side of a jump of the ordinate over which the drive must run on: where it turns or rests, yarns
 /// slide back and relax, and the ordinate may fall at once.
 const RUN: usize = 6;
@@ -68,9 +73,26 @@ fn drop_outs(kept: &mut Vec<usize>, notes: &mut Notes<'_>) -> Vec<usize> {
     let mut found = take(kept, &away_and_back(&curve.x, median));
     let curve = samples(m, kept);
     let usual = usual_step(&curve.x);
-    let mut spikes = away_and_back(&curve.y, smallest_jump(&curve.y) / JUMP);
-    spikes.retain(|run| runs_on(&curve.x, run.start - 1, run.end, usual) || turns_once(&curve.x, run, usual));
+    let least = match m.test.shape() {
+        Shape::Rise | Shape::Loop => smallest_jump(&curve.y),
+        Shape::Sweep => beyond_texture(&curve.y),
+    };
+    let mut spikes = away_and_back(&curve.y, least / JUMP);
+    // Before the drive moves nothing in the cloth does.
+    let rest = onset::rest(&curve.x);
+    spikes.retain(|run| {
+        run.end <= rest
+            || runs_on(&curve.x, run.start - 1, run.end, usual)
+            || turns_once(&curve.x, run, usual)
+    });
+    spikes.extend(at_ends(&curve.y, least));
+    spikes.sort_by_key(|run| run.start);
     found.extend(take(kept, &spikes));
+    if m.test.shape() != Shape::Sweep {
+        let curve = samples(m, kept);
+        let alone = off_course(&curve, usual_step(&curve.x));
+        found.extend(take(kept, &alone));
+    }
     found.sort_unstable();
     let Some(&first) = found.first() else { return found };
     let fact = EvaluationFact::Dropout {
@@ -116,6 +138,97 @@ fn comes_back(v: &[f64], i: usize, n: usize, usual: f64) -> bool {
     jump > JUMP * around && v[i..i + n].iter().all(away) && !away(&v[i + n])
 }
 
+/// Samples that stand off the course of those beside them, however small the slip: further than [`JUMP`] times the usual
+/// residual of the record (its median, as of Hampel's filter), and than what their neighbours are off without them. A
+/// kink leaves its neighbours off, too, and is none. Only along stretches in which the drive runs evenly, one by one.
+fn off_course(curve: &Curve, usual: f64) -> Vec<Range<usize>> {
+    let residuals: Vec<(Range<usize>, usize, f64)> = even_stretches(&curve.x, usual)
+        .into_iter()
+        .flat_map(|s| s.clone().map(move |i| (s.clone(), i)))
+        .map(|(stretch, i)| (stretch.clone(), i, residual(curve, &stretch, i, i)))
+        .collect();
+    let mut sorted: Vec<f64> = residuals.iter().map(|r| r.2).collect();
+    sorted.sort_by(f64::total_cmp);
+    let Some(middle) = sorted.get(sorted.len() / 2) else { return Vec::new() };
+    let quantum = curve.y.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|s| *s > 0.0);
+    // The median of |r| is 0.6745 of the standard deviation of noise.
+    let least = (JUMP * middle / 0.6745).max(QUANTA * quantum.fold(f64::INFINITY, f64::min));
+    // A rounded abscissa puts a sample off by half of its last digit times the slope.
+    let rounding = 0.5 * resolution(&curve.x, usual);
+    let stands_alone = |(stretch, i, off): &(Range<usize>, usize, f64)| {
+        // Where the drive turns, friction does, too, and the ordinate may fall at once.
+        if [stretch.start, stretch.end - 1].contains(i) {
+            return false;
+        }
+        let slope = (curve.y[i + 1] - curve.y[i - 1]) / (curve.x[i + 1] - curve.x[i - 1]);
+        if *off <= JUMP * rounding * slope.abs() {
+            return false;
+        }
+        let beside = stretch.clone().filter(|j| j != i && j.abs_diff(*i) <= 2);
+        beside.map(|j| residual(curve, stretch, j, *i)).all(|r| JUMP * r < *off)
+    };
+    residuals.iter().filter(|r| r.2 > least && stands_alone(r)).map(|r| r.1..r.1 + 1).collect()
+}
+
+/// Stretches of samples between which the drive makes whole steps one way, long enough to see a course in.
+fn even_stretches(x: &[f64], usual: f64) -> Vec<Range<usize>> {
+    let step = |i: usize| x[i + 1] - x[i];
+    let is_whole = |i: usize| (0.5 * usual..2.0 * usual).contains(&step(i).abs());
+    let (mut stretches, mut start) = (Vec::new(), 0);
+    for i in 0..x.len() {
+        let ends = i + 1 == x.len() || !is_whole(i) || i > start && step(i).signum() != step(i - 1).signum();
+        if ends {
+            stretches.push(start..i + 1);
+            start = if i + 1 < x.len() && is_whole(i) { i } else { i + 1 };
+        }
+    }
+    stretches.retain(|s| s.len() > 2 * NEIGHBOURS);
+    stretches
+}
+
+/// The last digit of the abscissae: the least difference between steps; next to nothing where they are not rounded.
+fn resolution(x: &[f64], usual: f64) -> f64 {
+    let mut steps: Vec<f64> = x.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
+    steps.sort_by(f64::total_cmp);
+    let differences = steps.windows(2).map(|w| w[1] - w[0]).filter(|d| *d > 1e-6 * usual);
+    let least = differences.fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
+}
+
+/// How far a sample is from the cubic through the four nearest ones of a stretch, without one of them, over what noise
+/// of one would make of it.
+fn residual(curve: &Curve, stretch: &Range<usize>, i: usize, without: usize) -> f64 {
+    let from = i.saturating_sub(NEIGHBOURS + 2).max(stretch.start);
+    let mut near: Vec<usize> =
+        (from..stretch.end.min(i + NEIGHBOURS + 3)).filter(|j| *j != i && *j != without).collect();
+    near.sort_by_key(|j| j.abs_diff(i));
+    near.truncate(4);
+    let (mut off, mut noise) = (curve.y[i], 1.0);
+    for &k in &near {
+        let others = near.iter().filter(|j| **j != k).map(|&j| curve.x[j]);
+        let part: f64 = others.map(|x| (curve.x[i] - x) / (curve.x[k] - x)).product();
+        off -= part * curve.y[k];
+        noise += part * part;
+    }
+    off.abs() / noise.sqrt()
+}
+
+/// The first and the last sample, where they are further from the next one than any sample near it from its own. Some
+/// records begin or end with a row of zeros: that is a reading of the instrument and no slip.
+fn at_ends(v: &[f64], least: f64) -> Vec<Range<usize>> {
+    let n = v.len();
+    if n < NEIGHBOURS + 2 {
+        return Vec::new();
+    }
+    let far = |end: usize, next: usize, steps: Range<usize>| {
+        let jump = (v[end] - v[next]).abs();
+        v[end] != 0.0 && jump > least && jump > JUMP * longest(v, steps)
+    };
+    let first = far(0, 1, 1..1 + NEIGHBOURS).then_some(0..1);
+    let last = far(n - 1, n - 2, n - 2 - NEIGHBOURS..n - 2).then_some(n - 1..n);
+    first.into_iter().chain(last).collect()
+}
+
 /// The longest of the steps that begin at the samples of a range; it may reach beyond the record.
 fn longest(v: &[f64], from: Range<usize>) -> f64 {
     let end = (from.end + 1).min(v.len());
@@ -129,6 +242,15 @@ fn smallest_jump(y: &[f64]) -> f64 {
     let steps = y.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|s| *s > 0.0);
     let quantum = steps.fold(f64::INFINITY, f64::min);
     (SMALL * (high - low)).max(QUANTA * quantum)
+}
+
+/// The texture of a surface jumps, too: what stands out of it is further away than it is high anywhere.
+fn beyond_texture(y: &[f64]) -> f64 {
+    let mut sorted = y.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let outside = (TAILS * sorted.len() as f64).ceil() as usize;
+    let inside = sorted.get(outside..sorted.len() - outside).unwrap_or_default();
+    inside.first().zip(inside.last()).map_or(f64::INFINITY, |(low, high)| TEXTURE * (high - low))
 }
 
 fn ends(v: &[f64]) -> [f64; 2] {
@@ -147,10 +269,14 @@ fn runs_on(x: &[f64], before: usize, after: usize, usual: f64) -> bool {
 fn turns_once(x: &[f64], run: &Range<usize>, usual: f64) -> bool {
     let around = run.start.saturating_sub(1 + NEIGHBOURS)..(run.end + 1 + NEIGHBOURS).min(x.len());
     let steps: Vec<f64> = x[around].windows(2).map(|w| w[1] - w[0]).collect();
-    let turns = steps.windows(2).filter(|w| w[0] * w[1] < 0.0).count();
-    // Where it turns between two samples, the two steps next to the turn may be any part of the usual one.
-    let short = steps.iter().filter(|s| s.abs() < 0.5 * usual).count();
-    turns <= 1 && short <= 2 * turns
+    let is_short = |s: &&f64| s.abs() < 0.5 * usual;
+    let whole: Vec<f64> = steps.iter().filter(|s| !is_short(s)).copied().collect();
+    let turns = whole.windows(2).filter(|w| w[0] * w[1] < 0.0).count();
+    // Where it turns between two samples, the two steps next to the turn may be any part of the usual one; the turn
+    // itself may lie beyond the samples that are looked at.
+    let groups = steps.chunk_by(|a, b| is_short(&a) == is_short(&b)).filter(|g| is_short(&&g[0]));
+    let groups: Vec<usize> = groups.map(<[f64]>::len).collect();
+    turns <= 1 && matches!(groups[..], [] | [1 | 2])
 }
 
 /// K046: the abscissa or the ordinate goes on elsewhere.
@@ -167,6 +293,9 @@ fn lost(curve: &Curve, usual: f64, kept: &[usize], notes: &mut Notes<'_>) {
             samples: named(m, &gaps.iter().map(|&i| kept[i]).collect::<Vec<_>>()),
         };
         notes.add_at(kept[first], fact);
+    }
+    if m.test.shape() == Shape::Sweep {
+        return;
     }
     let mut steps = jumps(&curve.y, smallest_jump(&curve.y) / JUMP);
     // Where the abscissa steps, the ordinate does too.
@@ -198,7 +327,7 @@ fn jumps(v: &[f64], usual: f64) -> Vec<usize> {
 fn clipped(curve: &Curve, usual: f64, kept: &[usize], notes: &mut Notes<'_>) {
     let m = notes.measurement;
     let [low, high] = ends(&curve.y);
-    let two_sided = matches!(m.test, Test::Shear | Test::Bending);
+    let two_sided = m.test.shape() == Shape::Loop;
     // The low end of the other tests is the zero before contact and after it.
     let extremes = [(high, "greatest"), (low, "least")];
     let runs = level_runs(curve, usual);
@@ -254,10 +383,11 @@ fn steps_made(x: &[f64], usual: f64) -> usize {
 fn cycles(curve: &Curve, kept: &[usize], settings: &Settings, notes: &mut Notes<'_>) {
     let m = notes.measurement;
     let reversal = settings.reversal.si();
-    let branches = match m.test {
-        Test::Tensile => branch::one_sided(curve, 1.0, reversal),
-        Test::Compression => branch::one_sided(curve, -1.0, reversal),
-        Test::Shear | Test::Bending => branch::two_sided(curve, reversal),
+    let branches = match (m.test, m.test.shape()) {
+        (Test::Compression, _) => branch::one_sided(curve, -1.0, reversal),
+        (_, Shape::Rise) => branch::one_sided(curve, 1.0, reversal),
+        (_, Shape::Loop) => branch::two_sided(curve, reversal),
+        (_, Shape::Sweep) => branch::swept(curve, reversal),
     };
     let branches = branches.unwrap_or_default();
     let way = |x: &[f64]| (x[x.len() - 1] - x[0]).abs();
@@ -285,7 +415,7 @@ fn cycles(curve: &Curve, kept: &[usize], settings: &Settings, notes: &mut Notes<
 
 /// The sample from which the drive goes out: where it passes zero, the branches meet at the sample before.
 fn leaves(x: &[f64], mut at: usize, test: Test) -> usize {
-    let two_sided = matches!(test, Test::Shear | Test::Bending);
+    let two_sided = test.shape() == Shape::Loop;
     let waits = |a: f64, b: f64| a == b || two_sided && b.abs() <= a.abs();
     while at + 1 < x.len() && waits(x[at], x[at + 1]) {
         at += 1;

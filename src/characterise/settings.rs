@@ -14,9 +14,11 @@ use crate::finding::{Place, TomlError, TomlFile};
 use crate::kes::Test;
 use crate::kes::specimen::{
     BENDING_READINGS, BENDING_SLOPE, COMPRESSION_START, DEGREE, GF_PER_CM, SHEAR_READINGS, SHEAR_SLOPE,
-    TENSILE, TENSILE_SLOPE,
+    SURFACE_LENGTH, TENSILE, TENSILE_SLOPE,
 };
-use crate::quantity::{Angle, Curvature, LineForce, Pressure, QuantityError, Ratio, STANDARD_GRAVITY};
+use crate::quantity::{
+    Angle, Curvature, Length, LineForce, Pressure, QuantityError, Ratio, STANDARD_GRAVITY,
+};
 
 /// How a stiffness is taken from the loading branch of a tensile test.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,6 +142,30 @@ impl Sides {
     }
 }
 
+/// Which sweeps over a surface are evaluated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Sweeps {
+    /// The mean of both.
+    #[default]
+    Both,
+    /// The first way only.
+    Forth,
+    /// The way back only.
+    Back,
+}
+
+impl Sweeps {
+    /// Whether the way forth, or the way back, counts.
+    pub(super) fn has(self, forth: bool) -> bool {
+        match self {
+            Self::Both => true,
+            Self::Forth => forth,
+            Self::Back => !forth,
+        }
+    }
+}
+
 /// How the slope over a window is taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -209,6 +235,10 @@ pub struct Settings {
     pub table_maximum: LineForce,
     /// Pressure at which thickness counts as begun: T0 (0.5 gf/cm²).
     pub compression_start: Pressure,
+    /// Length, in the middle of each sweep, that MIU, MMD and SMD are means over (2 cm).
+    pub surface_length: Length,
+    /// Sweeps that MIU, MMD and SMD are taken from (the mean of forth and back).
+    pub surface_sweeps: Sweeps,
     /// Which cycle the parameters are taken from.
     pub cycle: CycleChoice,
     /// Force at which a FAB strip counts as under load: its strain zero (1 gf/cm).
@@ -256,6 +286,8 @@ impl Default for Settings {
             moduli: vec![Modulus::TangentLow, Modulus::Secant, Modulus::Energy],
             table_maximum: LineForce(TENSILE.maximum),
             compression_start: Pressure(COMPRESSION_START),
+            surface_length: Length(SURFACE_LENGTH),
+            surface_sweeps: Sweeps::Both,
             cycle: CycleChoice::First,
             strip_onset: LineForce(GF_PER_CM),
             strip_windows: [[2.0, 5.0], [20.0, 100.0]].map(|w| w.map(|f| LineForce(f * GF_PER_CM))).to_vec(),
@@ -310,6 +342,7 @@ impl Settings {
             above("tensile_maximum", &self.tensile_maximum.map_or(vec![], |f| vec![f.si()])),
             above("compression_maximum", &self.compression_maximum.map_or(vec![], |p| vec![p.si()])),
             above("compression_start", &[self.compression_start.si()]),
+            above("surface_length", &[self.surface_length.si()]),
             above("strip_onset", &[self.strip_onset.si()]),
             above("strip_secant", &[self.strip_secant.si()]),
             above("strip_shear", &[self.strip_shear.si()]),
@@ -335,7 +368,7 @@ impl Settings {
         match test {
             Test::Tensile => self.tensile_maximum.map(LineForce::si),
             Test::Compression => self.compression_maximum.map(Pressure::si),
-            Test::Shear | Test::Bending => None,
+            _ => None,
         }
     }
 
@@ -344,7 +377,7 @@ impl Settings {
         match test {
             Test::Shear => Some(self.shear_slope.map(Angle::si)),
             Test::Bending => Some(self.bending_slope.map(Curvature::si)),
-            Test::Tensile | Test::Compression => None,
+            _ => None,
         }
     }
 
@@ -365,6 +398,11 @@ impl Settings {
             Sides::Positive => "positive side only",
             Sides::Negative => "negative side only",
         };
+        let sweeps = match self.surface_sweeps {
+            Sweeps::Both => "mean of the sweeps forth and back",
+            Sweeps::Forth => "sweep forth only",
+            Sweeps::Back => "sweep back only",
+        };
         let method = match self.slope_method {
             SlopeMethod::Regression => "regression over the window",
             SlopeMethod::TwoPoint => "the ends of the window",
@@ -381,6 +419,11 @@ impl Settings {
             ("tensile parameters read at", self.tensile_maximum.map_or_else(stated, in_gf_per_cm)),
             ("T0 read at", per_cm2(self.compression_start)),
             ("Tm read at", self.compression_maximum.map_or_else(stated, per_cm2)),
+            (
+                "MIU, MMD, SMD over",
+                format!("the middle {} cm of a sweep", round(100.0 * self.surface_length.si())),
+            ),
+            ("MIU, MMD, SMD from", sweeps.to_string()),
             ("cycle", if self.cycle == CycleChoice::First { "first" } else { "last" }.to_string()),
             ("zero, offset and slack corrected", yes_no(self.correct_zero)),
             (

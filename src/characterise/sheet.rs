@@ -9,7 +9,7 @@ use super::{CycleChoice, FrictionLaw, Key, LineFit, Settings, Strip};
 use crate::finding::Finding;
 use crate::instrument::fab::FabTest;
 use crate::instrument::{
-    Conditions, Direction, FabricInfo, Measurement, Parameter, Source, Test, standard_conditions,
+    Conditions, Direction, FabricInfo, Measurement, Parameter, Shape, Source, Test, standard_conditions,
 };
 use crate::quantity::{Curve, Estimate};
 
@@ -114,7 +114,7 @@ impl SpecimenResult {
     pub fn conditions(&self, choice: CycleChoice) -> Conditions {
         let m = &self.measurement;
         let cycle = self.cycle(choice);
-        let by_strain = matches!(m.test, Test::Shear | Test::Bending);
+        let by_strain = m.test.shape() != Shape::Rise;
         let driven = |b: &Branch| if by_strain { b.curve.x.clone() } else { b.curve.y.clone() };
         let reached = self
             .branches

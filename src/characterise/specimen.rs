@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::graph::LineFit;
-use super::{Branch, Settings, SpecimenResult, Window, closed_loop, compression, tensile};
+use super::{Branch, Settings, SpecimenResult, Window, closed_loop, compression, surface, tensile};
 use crate::finding::{EvaluationFact, Finding, Place, Subject};
-use crate::instrument::{Measurement, Parameter, Test};
+use crate::instrument::{Measurement, Parameter, Shape, Test};
 use crate::kes::RecordName;
 use crate::quantity::Curve;
 
@@ -131,12 +131,17 @@ pub(super) fn evaluate(
     let outcome = if curve.len() < 8 {
         Err(format!("the record has {} usable samples, at least 8 are needed", curve.len()))
     } else {
-        noise(&curve, settings, &mut notes);
+        // What looks like noise is what a sweep measures.
+        if measurement.test.shape() != Shape::Sweep {
+            noise(&curve, settings, &mut notes);
+        }
         match measurement.test {
             Test::Tensile => tensile::evaluate(&curve, settings, &mut notes),
             Test::Shear => closed_loop::shear(&curve, settings, &mut notes),
             Test::Bending => closed_loop::bending(&curve, settings, &mut notes),
             Test::Compression => compression::evaluate(&curve, settings, &mut notes),
+            Test::Friction => surface::friction(&curve, settings, &mut notes),
+            Test::Roughness => surface::roughness(&curve, settings, &mut notes),
         }
     };
     match outcome {

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::graph::Graph;
 use super::{FabricSheet, SpecimenResult};
-use crate::instrument::{Direction, Test};
+use crate::instrument::{Direction, Shape, Test};
 use crate::quantity::{Curve, Estimate};
 
 /// The mean of one branch over the specimens of a direction, point by point along what the instrument
@@ -32,8 +32,11 @@ const POINTS: usize = 100;
 
 /// The mean branches of a test over all directions with two specimens or more, in recorded order. They reach
 /// as far as every specimen does; specimens that were recorded in another number of branches than the first
-/// of their direction are left out.
+/// of their direction are left out. Sweeps have none: their textures have no phase in common.
 pub fn mean_branches(sheet: &FabricSheet, test: Test) -> Vec<MeanBranch> {
+    if test.shape() == Shape::Sweep {
+        return Vec::new();
+    }
     let specimens: Vec<&SpecimenResult> =
         sheet.specimens.iter().filter(|s| s.measurement.test == test && !s.branches.is_empty()).collect();
     let mut directions: Vec<Option<Direction>> = specimens.iter().map(|s| s.measurement.direction).collect();
@@ -60,7 +63,7 @@ fn mean_branches_along(
 
 /// The mean of curves; `None` for fewer than two, or if they have no range in common.
 pub(super) fn mean_branch(test: Test, direction: Option<Direction>, curves: &[&Curve]) -> Option<MeanBranch> {
-    let along_ordinate = matches!(test, Test::Tensile | Test::Compression);
+    let along_ordinate = test.shape() == Shape::Rise;
     let turned = |c: &Curve| {
         if along_ordinate { Curve { x: c.y.clone(), y: c.x.clone() } } else { c.clone() }
     };

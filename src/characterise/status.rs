@@ -131,6 +131,7 @@ fn of_evaluation(fact: &EvaluationFact) -> Option<(Scope<'_>, ValueStatus)> {
             (Scope::Slope(record, slope), Doubtful)
         }
         F::NarrowedWindow { record, slope, .. } => (Scope::Slope(record, slope), Inferred),
+        F::Drift { record, .. } => (Scope::Record(record), Doubtful),
         F::OneSide { record, parameter } => (Scope::OfRecord(record, *parameter), Doubtful),
         F::ShortOfMaximum { record, .. }
         | F::BeyondMaximum { record, .. }

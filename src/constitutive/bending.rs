@@ -13,7 +13,7 @@
 use nalgebra::Matrix3;
 
 use super::{Assumptions, BendingCoupling, Constant, ConstitutiveError, Notes, Torsion};
-use crate::finding::SectionFact;
+use crate::finding::{EvaluationFact, Fact, SectionFact};
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::significant;
 
@@ -32,7 +32,8 @@ pub(super) fn matrix(
         notes.positive(&what, b, "N·m", "look at the bending chart and its windows")?;
     }
     let value = format!("warp {} N·m, weft {} N·m", significant(b1), significant(b2));
-    notes.used("bending rigidity", value, "measured: B of KES-FB2 is D11, D22");
+    let source = rigidity_source(notes);
+    notes.used("bending rigidity", value, source);
 
     let d12 = match assumptions.bending_coupling {
         BendingCoupling::Poisson(nu) => nu * (b1 * b2).sqrt(),
@@ -48,6 +49,25 @@ pub(super) fn matrix(
     let (d66, source) = torsion([b1, b2, d12], g, thickness, assumptions.torsion, notes)?;
     notes.used("torsional rigidity D66", format!("{} N·m", significant(d66)), source);
     Ok(Matrix3::new(b1, d12, 0.0, d12, b2, 0.0, 0.0, 0.0, d66))
+}
+
+/// Whether B in a direction is that of buckled strips.
+fn is_of_strips(notes: &Notes, direction: Direction) -> bool {
+    notes.sheet.findings.iter().any(|f| match &f.fact {
+        Fact::Evaluation(EvaluationFact::BuckledStrips { direction: of, .. }) => *of == direction,
+        _ => false,
+    })
+}
+
+/// Where B comes from; C018 if it is that of strips.
+fn rigidity_source(notes: &mut Notes) -> &'static str {
+    let directions: Vec<Direction> =
+        [Direction::Warp, Direction::Weft].into_iter().filter(|d| is_of_strips(notes, *d)).collect();
+    if directions.is_empty() {
+        return "measured: B of KES-FB2 is D11, D22";
+    }
+    notes.finding(SectionFact::StripRigidity { fabric: notes.fabric(), directions });
+    "inferred: buckled FAB strips, whose B stands for D11, D22"
 }
 
 /// D66 (N·m) and where it comes from.
@@ -71,7 +91,8 @@ fn torsion(
             };
             notes.origin_value(Parameter::B, Some(Direction::Bias), &[(Constant::Bias, 1.0)]);
             let b45 = b45.mean;
-            (b45 - (b1 + b2 + 2.0 * d12) / 4.0, format!("measured: B at 45° = {} N·m", significant(b45)))
+            let had = if is_of_strips(notes, Direction::Bias) { "inferred from strips" } else { "measured" };
+            (b45 - (b1 + b2 + 2.0 * d12) / 4.0, format!("{had}: B at 45° = {} N·m", significant(b45)))
         }
         Torsion::Shear => (g * thickness.powi(2) / 12.0, "assumed: G t²/12".to_string()),
         Torsion::Value(h) => (h.si(), "assumed: stated".to_string()),

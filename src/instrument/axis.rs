@@ -41,7 +41,7 @@ impl Scale {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Axis {
     pub scale: Scale,
-    /// Width, gauge or foot area, by which raw force, moment or travel is divided.
+    /// Width, gauge, foot area or contact load, by which raw force, moment or travel is divided.
     pub by: Option<Key>,
 }
 
@@ -120,6 +120,9 @@ impl Axes<'_> {
             (Test::Bending, false, MOMENT) if raw() => over(Key::Width, *width),
             (Test::Compression, false, PRESSURE) => plain,
             (Test::Compression, false, FORCE) if raw() => over(Key::Area, self.foot_area()?),
+            (Test::Friction | Test::Roughness, true, LENGTH) | (Test::Roughness, false, LENGTH) => plain,
+            (Test::Friction, false, RATIO) => plain,
+            (Test::Friction, false, FORCE) if raw() => over(Key::Contact, self.conditions.contact),
             _ => return Ok(Err(expected(self.test, abscissa))),
         }))
     }
@@ -127,7 +130,8 @@ impl Axes<'_> {
     /// What is said of a column that was divided by a dimension which nobody stated.
     pub fn assumed(&self, column: &Column, axis: Axis) -> Option<Finding> {
         let by = axis.by.filter(|key| {
-            let by_size = *key != Key::Area && size(self.header, self.context).is_some();
+            let by_size =
+                !matches!(key, Key::Area | Key::Contact) && size(self.header, self.context).is_some();
             !by_size
                 && !self.header.known.contains_key(key)
                 && !self.context.conditions.states(self.test, *key)
@@ -135,23 +139,26 @@ impl Axes<'_> {
         // The same for all columns of a kind: one finding a file.
         let (dimension, value, test) = match by {
             Key::Area => (Divisor::Area, FOOT_AREA, None),
+            Key::Contact => (Divisor::Contact, self.conditions.contact, None),
             Key::Gauge => (Divisor::Gauge, self.conditions.gauge, Some(self.test)),
             _ => (Divisor::Width, self.conditions.width, None),
         };
-        let not_understood = self.lengths_not_understood();
+        let not_understood = self.sizes_not_understood(by);
         let fact = ReadFact::AssumedDimension { dimension, value, test, not_understood };
         Some(Finding::new(fact).at(Place::at(self.context.path, column.line, 0)))
     }
 
-    /// Header lines of unknown words whose values are lengths or areas, for people: what was not understood is not denied.
-    fn lengths_not_understood(&self) -> Vec<String> {
+    /// Header lines of unknown words whose values are lengths or areas, or forces in the place of a load, for people:
+    /// what was not understood is not denied.
+    fn sizes_not_understood(&self, by: Key) -> Vec<String> {
+        let possible: &[Dimension] = if by == Key::Contact { &[FORCE] } else { &[LENGTH, AREA] };
         let is_size = |text: &str| {
             let text = folded(text).replace(',', ".");
             let last = text.rsplit(['x', '×']).next().unwrap_or_default().trim().to_string();
-            parse_quantity(&last, "5 cm").is_ok_and(|(_, u)| u.dimension == LENGTH || u.dimension == AREA)
+            parse_quantity(&last, "5 cm").is_ok_and(|(_, u)| possible.contains(&u.dimension))
         };
         let known = |key: &String| self.context.vocabulary.key(key).is_some();
-        let size = self.header.known.get(&Key::Size).map(|e| e.text.clone());
+        let size = self.header.known.get(&Key::Size).filter(|_| by != Key::Contact).map(|e| e.text.clone());
         let other = self.header.other.iter().filter(|(key, value)| !known(key) && is_size(value));
         other.map(|(key, value)| format!("{key}: {value}")).chain(size).collect()
     }
@@ -179,6 +186,9 @@ fn expected(test: Test, abscissa: bool) -> &'static str {
         (Test::Tensile | Test::Shear, false) => "gf/cm or gf",
         (Test::Bending, false) => "gf·cm/cm or gf·cm",
         (Test::Compression, false) => "gf/cm² or gf",
+        (Test::Friction | Test::Roughness, true) => "cm or mm",
+        (Test::Friction, false) => "1 or gf",
+        (Test::Roughness, false) => "µm or mm",
     }
 }
 

@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::dialect::Key;
 use super::{Conditions, Test};
-use crate::quantity::{Angle, Curvature, Length, LineForce, Pressure};
+use crate::quantity::{Angle, Curvature, Force, Length, LineForce, Pressure};
 
 /// Conditions that files leave out; the `[conditions]` of fabric.toml and of dialects.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
@@ -21,6 +21,10 @@ pub struct StatedConditions {
     pub bending: BendingConditions,
     /// FB3 compression.
     pub compression: CompressionConditions,
+    /// FB4 surface friction.
+    pub friction: SurfaceConditions,
+    /// FB4 surface roughness.
+    pub roughness: SurfaceConditions,
 }
 
 /// Conditions of FB1 tensile.
@@ -69,10 +73,46 @@ pub struct CompressionConditions {
     pub maximum: Option<Pressure>,
 }
 
+/// Conditions of FB4.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct SurfaceConditions {
+    /// Load on the contactor: a friction force is divided by it.
+    pub contact: Option<Force>,
+    /// Length of the sweep.
+    pub maximum: Option<Length>,
+    /// Tension per width along the sweep.
+    pub pretension: Option<LineForce>,
+}
+
+impl SurfaceConditions {
+    fn or(&self, other: &Self) -> Self {
+        Self {
+            contact: self.contact.or(other.contact),
+            maximum: self.maximum.or(other.maximum),
+            pretension: self.pretension.or(other.pretension),
+        }
+    }
+
+    fn of(stated: &StatedConditions, test: Test) -> Option<&Self> {
+        match test {
+            Test::Friction => Some(&stated.friction),
+            Test::Roughness => Some(&stated.roughness),
+            _ => None,
+        }
+    }
+}
+
 /// The standard set of conditions of a test; see [`specimen`](crate::kes::specimen).
 pub fn standard_conditions(test: Test) -> Conditions {
     let spec = test.spec();
-    Conditions { width: spec.width, gauge: spec.gauge, maximum: spec.maximum, pretension: spec.pretension }
+    Conditions {
+        width: spec.width,
+        gauge: spec.gauge,
+        maximum: spec.maximum,
+        pretension: spec.pretension,
+        contact: spec.contact,
+    }
 }
 
 impl StatedConditions {
@@ -98,18 +138,21 @@ impl StatedConditions {
                 maximum: a.bending.maximum.or(b.bending.maximum),
             },
             compression: CompressionConditions { maximum: a.compression.maximum.or(b.compression.maximum) },
+            friction: a.friction.or(&b.friction),
+            roughness: a.roughness.or(&b.roughness),
         }
     }
 
-    /// Whether the width or the gauge of a test is stated; otherwise it is that of the standard set.
+    /// Whether the width, the gauge or the contact load of a test is stated; otherwise it is that of the standard set.
     pub(super) fn states(&self, test: Test, key: Key) -> bool {
         let (width, gauge) = match test {
             Test::Tensile => (self.tensile.width, self.tensile.gauge),
             Test::Shear => (self.shear.width, self.shear.gauge),
             Test::Bending => (self.bending.width, self.bending.gauge),
-            Test::Compression => (None, None),
+            Test::Compression | Test::Friction | Test::Roughness => (None, None),
         };
         match key {
+            Key::Contact => SurfaceConditions::of(self, test).is_some_and(|s| s.contact.is_some()),
             Key::Width => width.or(self.width).is_some(),
             Key::Gauge => gauge.is_some(),
             _ => false,
@@ -134,6 +177,12 @@ impl StatedConditions {
                 (t.width, t.gauge, t.maximum.map(Curvature::si))
             }
             Test::Compression => (None, None, self.compression.maximum.map(Pressure::si)),
+            Test::Friction | Test::Roughness => {
+                let s = SurfaceConditions::of(self, test);
+                c.contact = s.and_then(|s| s.contact).map_or(c.contact, Force::si);
+                c.pretension = s.and_then(|s| s.pretension).map_or(c.pretension, LineForce::si);
+                (None, None, s.and_then(|s| s.maximum).map(Length::si))
+            }
         };
         c.width = width.or(self.width).map_or(c.width, Length::si);
         c.gauge = gauge.map_or(c.gauge, Length::si);

@@ -11,9 +11,9 @@ use super::raw::Row;
 use super::sniff::{Number, number};
 use super::told;
 use super::words::folded;
-use super::{Conditions, Direction, Measurement, Source, Test};
+use super::{Conditions, Direction, Measurement, Shape, Source, Test};
 use crate::finding::{Finding, Place, ReadFact};
-use crate::quantity::{Angle, Curvature, Curve, Length, LineForce, Pressure, QuantityError};
+use crate::quantity::{Angle, Curvature, Curve, Force, Length, LineForce, Pressure, QuantityError};
 
 /// The measurement of one column pair, with what was noticed on the way; `None` if the pair holds
 /// no value at all (an empty column block).
@@ -50,10 +50,7 @@ pub(super) fn measurement(
         let problem = Problem::TooShort { points: points.rows.len() };
         return Err(context.error(points.rows[0].0, pair.x.column, problem));
     }
-    let direction = match test {
-        Test::Compression => None,
-        _ => Some(direction(pair, context)?),
-    };
+    let direction = if test.is_directional() { Some(direction(pair, context)?) } else { None };
     let mut findings = points.findings;
     findings
         .extend([(&pair.x, x_axis), (&pair.y, y_axis)].into_iter().filter_map(|(c, a)| axes.assumed(c, a)));
@@ -119,6 +116,8 @@ fn test_of(pair: &Pair, context: &Context<'_>) -> Result<(Test, &'static str), R
         Role::ShearForce => Some(Test::Shear),
         Role::Moment => Some(Test::Bending),
         Role::Pressure => Some(Test::Compression),
+        Role::FrictionCoefficient | Role::FrictionForce => Some(Test::Friction),
+        Role::Height => Some(Test::Roughness),
         _ => None,
     };
     let columns = match (by_x, by_y) {
@@ -135,13 +134,16 @@ fn test_of(pair: &Pair, context: &Context<'_>) -> Result<(Test, &'static str), R
         (a, b) => a.or(b),
     };
     match (columns, stated.or(elsewhere)) {
-        (Some(c), Some(s)) if c != s => Err(unclear(format!(
-            "the columns {:?} and {:?} are those of a {} test, but {} is stated",
-            pair.x.name,
-            pair.y.name,
-            c.name(),
-            s.name()
-        ))),
+        // One file of KES-FB4 has both.
+        (Some(c), Some(s)) if c != s && [c, s].iter().any(|t| t.shape() != Shape::Sweep) => {
+            Err(unclear(format!(
+                "the columns {:?} and {:?} are those of a {} test, but {} is stated",
+                pair.x.name,
+                pair.y.name,
+                c.name(),
+                s.name()
+            )))
+        }
         (Some(test), Some(_)) => Ok((test, "as the columns say and the file states")),
         (Some(test), None) => Ok((test, "which the columns belong to")),
         (None, Some(test)) => Ok((test, "as stated: the columns occur in several tests")),
@@ -178,8 +180,8 @@ const SLOPE: f64 = 0.9;
 /// Whether the ordinate is counted the other way round: cloth resists, so that moment and shear force rise with curvature
 /// and angle, and tension and pressure are not negative throughout.
 fn is_opposite(test: Test, curve: &Curve) -> bool {
-    match test {
-        Test::Bending | Test::Shear => {
+    match test.shape() {
+        Shape::Loop => {
             let n = curve.len() as f64;
             let (mx, my) = (curve.x.iter().sum::<f64>() / n, curve.y.iter().sum::<f64>() / n);
             let sum = |f: fn(f64, f64) -> f64| curve.points().map(|(x, y)| f(x - mx, y - my)).sum::<f64>();
@@ -187,7 +189,9 @@ fn is_opposite(test: Test, curve: &Curve) -> bool {
             // A loop that is all hysteresis has no slope to tell, and neither have a few points.
             curve.len() >= SLOPE_POINTS && xy < -SLOPE * (xx * yy).sqrt()
         }
-        Test::Tensile | Test::Compression => {
+        // Forth and back, friction is of one sign and the other.
+        Shape::Sweep => false,
+        Shape::Rise => {
             let low = curve.y.iter().copied().fold(f64::INFINITY, f64::min);
             let high = curve.y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             low < 0.0 && high < 0.05 * low.abs()
@@ -218,13 +222,13 @@ fn conditions(
     let mut c = context.conditions.over_standard(test);
     if let Some((width, gauge)) = size(header, context) {
         c.width = width;
-        c.gauge = if test == Test::Compression { c.gauge } else { gauge };
+        c.gauge = if test.spec().gauge == 0.0 { c.gauge } else { gauge };
     }
     let value = |key: Key, name: &str| quantity_of::<Length>(header, key, name, "mm", context);
     if let Some(width) = value(Key::Width, "width")? {
         c.width = positive(width.si(), Key::Width, header, context)?;
     }
-    if let Some(gauge) = value(Key::Gauge, "gauge")?.filter(|_| test != Test::Compression) {
+    if let Some(gauge) = value(Key::Gauge, "gauge")?.filter(|_| test.spec().gauge > 0.0) {
         c.gauge = positive(gauge.si(), Key::Gauge, header, context)?;
     }
     let maximum =
@@ -240,15 +244,23 @@ fn conditions(
                 Test::Compression => {
                     quantity_of::<Pressure>(header, Key::Maximum, "maximum", unit, context)?.map(Pressure::si)
                 }
+                Test::Friction | Test::Roughness => {
+                    quantity_of::<Length>(header, Key::Maximum, "maximum", unit, context)?.map(Length::si)
+                }
             })
         };
     if let Some(m) = maximum(driven(test).kes_unit())? {
         c.maximum = positive(m.abs(), Key::Maximum, header, context)?;
     }
-    if test == Test::Shear
+    if test.spec().pretension > 0.0
         && let Some(w) = quantity_of::<LineForce>(header, Key::Pretension, "pretension", "gf/cm", context)?
     {
         c.pretension = w.si();
+    }
+    if test.spec().contact > 0.0
+        && let Some(load) = quantity_of::<Force>(header, Key::Contact, "contact load", "gf", context)?
+    {
+        c.contact = positive(load.si(), Key::Contact, header, context)?;
     }
     log.push(told::conditions(test, &c, header));
     let unknown: Vec<&str> =
@@ -281,6 +293,7 @@ pub(super) fn driven(test: Test) -> Role {
         Test::Shear => Role::Angle,
         Test::Bending => Role::Curvature,
         Test::Compression => Role::Pressure,
+        Test::Friction | Test::Roughness => Role::Position,
     }
 }
 

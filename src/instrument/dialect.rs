@@ -32,6 +32,14 @@ pub enum Role {
     Moment,
     /// Pressure on the foot.
     Pressure,
+    /// Position of a sweep along the surface.
+    Position,
+    /// Coefficient of surface friction.
+    FrictionCoefficient,
+    /// Friction force on the contactor.
+    FrictionForce,
+    /// Height of the surface.
+    Height,
     /// Known and not needed: time, counter, branch.
     Ignored,
 }
@@ -39,7 +47,28 @@ pub enum Role {
 impl Role {
     /// Whether it is the abscissa of a curve.
     pub fn is_abscissa(self) -> bool {
-        matches!(self, Self::Strain | Self::Angle | Self::Curvature | Self::Thickness | Self::Displacement)
+        matches!(
+            self,
+            Self::Strain
+                | Self::Angle
+                | Self::Curvature
+                | Self::Thickness
+                | Self::Displacement
+                | Self::Position
+        )
+    }
+
+    /// The role of a column beside the position of a sweep: what moves there is the contactor, up and down.
+    pub(super) fn in_sweep(self) -> Self {
+        match self {
+            Self::Thickness | Self::Displacement => Self::Height,
+            other => other,
+        }
+    }
+
+    /// Whether it is measured along a sweep only.
+    pub(super) fn is_of_sweep(self) -> bool {
+        matches!(self, Self::FrictionCoefficient | Self::FrictionForce | Self::Height)
     }
 
     /// The customary KES unit.
@@ -52,7 +81,10 @@ impl Role {
             Self::Force | Self::ShearForce => "gf/cm",
             Self::Moment => "gf·cm/cm",
             Self::Pressure => "gf/cm²",
-            Self::Ignored => "1",
+            Self::Position => "cm",
+            Self::FrictionForce => "gf",
+            Self::Height => "um",
+            Self::FrictionCoefficient | Self::Ignored => "1",
         }
     }
 }
@@ -79,8 +111,10 @@ pub enum Key {
     Area,
     /// Set maximum of the drive or load.
     Maximum,
-    /// Constant tension during shear.
+    /// Constant tension during shear, or along a sweep.
     Pretension,
+    /// Load on the contactor of a sweep.
+    Contact,
     /// Full scale (10 V) of the ordinate.
     Sens,
     /// Full scale (10 V) of the abscissa.

@@ -4,8 +4,8 @@ use std::path::Path;
 
 /// File names that hold measurements; a folder's other files are none of ours.
 pub(super) const EXTENSIONS: &[&str] = &[
-    "csv", "tsv", "txt", "dat", "asc", "prn", "kes", "fb1", "fb2", "fb3", "xlsx", "xlsm", "xls", "ods",
-    "htm", "html", "zip", "json", "u3m",
+    "csv", "tsv", "txt", "dat", "asc", "prn", "kes", "fb1", "fb2", "fb3", "fb4", "xlsx", "xlsm", "xls",
+    "ods", "htm", "html", "zip", "json", "u3m",
 ];
 
 /// Text files that are about the data.

@@ -78,7 +78,7 @@ impl Label {
             self.test = self.test.or(Some(test));
         } else {
             let word = normalised(part);
-            return matches!(word.as_str(), "kes" | "kesf" | "fb1" | "no")
+            return matches!(word.as_str(), "kes" | "kesf" | "fb1" | "fb4" | "no")
                 || vocabulary.key(part) == Some(Key::Specimen);
         }
         true

@@ -43,7 +43,9 @@ impl Context<'_> {
     /// The unit of a column that states none.
     pub fn default_unit(&self, role: Role) -> Option<String> {
         let of_dialect = self.dialect.and_then(|d| d.units.get(&role).cloned());
-        of_dialect.or_else(|| self.kes_units.then(|| role.kes_unit().to_string()))
+        // A coefficient has no unit to state.
+        let customary = self.kes_units || role == Role::FrictionCoefficient;
+        of_dialect.or_else(|| customary.then(|| role.kes_unit().to_string()))
     }
 }
 
@@ -134,6 +136,16 @@ fn is_numeric(row: &Row<'_>, decimal: char) -> bool {
     row.filled().count() > 1 && row.filled().all(|(_, c)| number(&c.text, decimal) != Number::Text)
 }
 
+/// Columns beside the position of a sweep, where nothing of another test is among them.
+fn along_sweep(mut columns: Vec<Column>) -> Vec<Column> {
+    let alone =
+        |c: &Column| c.role.in_sweep().is_of_sweep() || matches!(c.role, Role::Position | Role::Ignored);
+    if columns.iter().any(|c| c.role == Role::Position) && columns.iter().all(alone) {
+        columns.iter_mut().for_each(|c| c.role = c.role.in_sweep());
+    }
+    columns
+}
+
 pub(super) struct Scanner<'t, 'a> {
     rows: &'t [Row<'t>],
     pub(super) context: &'a Context<'a>,
@@ -156,11 +168,12 @@ impl<'t> Scanner<'t, '_> {
             let role = says.role?;
             Some(Column { index, role, name, unit, line: row.line, column: cell.column, says })
         };
-        let columns: Vec<Column> = row.filled().filter_map(column).collect();
+        let columns: Vec<Column> = along_sweep(row.filled().filter_map(column).collect());
+        let sweep = columns.iter().any(|c| c.role == Role::Position && c.unit.is_some());
         let abscissa = columns.iter().any(|c| c.role.is_abscissa());
         let ordinate = columns.iter().any(|c| !c.role.is_abscissa() && c.role != Role::Ignored);
         // A result table may have columns named thickness and pressure too; then it has symbols.
-        let curve = abscissa && ordinate && !shape::has_symbols(row, self.context);
+        let curve = abscissa && ordinate && (sweep || !shape::has_symbols(row, self.context));
         let curve = curve || self.half_pair(row, &columns);
         if curve {
             return Some(columns);

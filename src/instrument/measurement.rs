@@ -58,10 +58,18 @@ pub struct Conditions {
     /// Length between jaws or clamps (m); 0.05 for FB1, 0.01 for FB2, 0 for FB3.
     pub gauge: f64,
     /// The set maximum of the drive or load: FB1 tensile N/m (490.3325), FB1 shear rad (8 deg),
-    /// FB2 1/m (250), FB3 Pa (4903.325).
+    /// FB2 1/m (250), FB3 Pa (4903.325), FB4 m (0.03).
     pub maximum: f64,
-    /// Constant tension during a shear test (N/m; 9.80665 by default); 0 otherwise.
+    /// Constant tension during a shear test (N/m; 9.80665 by default) and along a sweep of FB4 (19.6133); 0 otherwise.
     pub pretension: f64,
+    /// Load on the contactor of FB4 (N; 0.49 for friction, 0.098 for roughness); 0 otherwise, and then not written.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub contact: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// One specimen in one test: the raw curve in SI, in recorded order, untouched otherwise.

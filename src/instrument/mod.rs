@@ -43,7 +43,7 @@ mod web_page;
 mod words;
 mod workbook;
 
-pub use crate::kes::{Direction, Parameter, Test};
+pub use crate::kes::{Direction, Parameter, Shape, Test};
 pub use conditions::{
     BendingConditions, CompressionConditions, ShearConditions, StatedConditions, TensileConditions,
     standard_conditions,

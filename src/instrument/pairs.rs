@@ -102,8 +102,12 @@ impl Scanner<'_, '_> {
         }
         let pair = |(x, y): Halves| match (x.or(first.clone()), y) {
             (Some(x), Some(y)) => Ok(Pair { x, y, back: None, header: self.header.clone() }),
-            (Some(c), None) => Err(self.lacks(&c, "an ordinate (force, moment or pressure)")),
-            (None, Some(c)) => Err(self.lacks(&c, "an abscissa (strain, angle, curvature or thickness)")),
+            (Some(c), None) => {
+                Err(self.lacks(&c, "an ordinate (force, moment, pressure, friction or height)"))
+            }
+            (None, Some(c)) => {
+                Err(self.lacks(&c, "an abscissa (strain, angle, curvature, thickness or position)"))
+            }
             (None, None) => Err(self.context.error(0, 0, Problem::Empty)),
         };
         let pairs: Vec<Pair> = halves.into_iter().map(pair).collect::<Result<_, _>>()?;

@@ -54,6 +54,7 @@ pub(super) fn conditions(test: Test, c: &Conditions, header: &Header) -> String 
         (Key::Gauge, "gauge", c.gauge, standard.gauge, "cm"),
         (Key::Maximum, "maximum", c.maximum, standard.maximum, driven(test).kes_unit()),
         (Key::Pretension, "tension", c.pretension, standard.pretension, "gf/cm"),
+        (Key::Contact, "contact load", c.contact, standard.contact, "gf"),
     ];
     // What a test does not have is zero in the standard set.
     let told: Vec<String> = all

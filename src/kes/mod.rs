@@ -26,20 +26,52 @@ pub enum Test {
     Bending,
     /// FB3 compression: x = thickness (m), y = pressure (Pa).
     Compression,
+    /// FB4 surface friction: x = position of the sweep (m), y = coefficient of friction (1).
+    Friction,
+    /// FB4 surface roughness: x = position of the sweep (m), y = height of the surface (m).
+    Roughness,
+}
+
+/// What the record of a test looks like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// To a set load and back: a loading and an unloading branch on one side of zero.
+    Rise,
+    /// To a set strain on both sides of zero and back: a loop about the origin.
+    Loop,
+    /// Along the cloth and back: a profile over the position. No law of the cloth, and no stiffness, comes of it.
+    Sweep,
 }
 
 impl Test {
     /// Every test, in output order.
-    pub const ALL: [Self; 4] = [Self::Tensile, Self::Shear, Self::Bending, Self::Compression];
+    pub const ALL: [Self; 6] =
+        [Self::Tensile, Self::Shear, Self::Bending, Self::Compression, Self::Friction, Self::Roughness];
 
-    /// `tensile`, `shear`, `bending` or `compression`.
+    /// `tensile`, `shear`, `bending`, `compression`, `friction` or `roughness`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Tensile => "tensile",
             Self::Shear => "shear",
             Self::Bending => "bending",
             Self::Compression => "compression",
+            Self::Friction => "friction",
+            Self::Roughness => "roughness",
         }
+    }
+
+    /// What its record looks like.
+    pub fn shape(self) -> Shape {
+        match self {
+            Self::Tensile | Self::Compression => Shape::Rise,
+            Self::Shear | Self::Bending => Shape::Loop,
+            Self::Friction | Self::Roughness => Shape::Sweep,
+        }
+    }
+
+    /// Whether it is made along a direction of the cloth.
+    pub fn is_directional(self) -> bool {
+        self != Self::Compression
     }
 
     /// SI units of abscissa and ordinate.
@@ -49,6 +81,8 @@ impl Test {
             Self::Shear => ["rad", "N/m"],
             Self::Bending => ["1/m", "N"],
             Self::Compression => ["m", "Pa"],
+            Self::Friction => ["m", "1"],
+            Self::Roughness => ["m", "m"],
         }
     }
 
@@ -59,15 +93,17 @@ impl Test {
             Self::Shear => ["deg", "gf/cm"],
             Self::Bending => ["1/cm", "gf·cm/cm"],
             Self::Compression => ["mm", "gf/cm²"],
+            Self::Friction => ["cm", "1"],
+            Self::Roughness => ["cm", "um"],
         }
     }
 
     /// The KES unit of the set maximum: that of the ordinate where a load is set, else that of the abscissa.
     pub fn kes_maximum(self) -> &'static str {
         let [abscissa, ordinate] = self.kes_axes();
-        match self {
-            Self::Tensile | Self::Compression => ordinate,
-            Self::Shear | Self::Bending => abscissa,
+        match self.shape() {
+            Shape::Rise => ordinate,
+            Shape::Loop | Shape::Sweep => abscissa,
         }
     }
 
@@ -77,6 +113,7 @@ impl Test {
             Self::Tensile | Self::Shear => "KES-FB1",
             Self::Bending => "KES-FB2",
             Self::Compression => "KES-FB3",
+            Self::Friction | Self::Roughness => "KES-FB4",
         }
     }
 }

@@ -72,7 +72,7 @@ macro_rules! parameters {
                 match self { $(Self::$variant => $si,)* }
             }
 
-            /// The test that measures it; `None` for values that come from elsewhere (balance, FB4).
+            /// The test that measures it; `None` for values that come from elsewhere (a balance).
             pub fn test(self) -> Option<Test> {
                 match self { $(Self::$variant => $test,)* }
             }
@@ -85,7 +85,7 @@ macro_rules! parameters {
     };
 }
 
-use Test::{Bending, Compression, Shear, Tensile};
+use Test::{Bending, Compression, Friction, Roughness, Shear, Tensile};
 
 parameters! {
     /// Linearity of the load-extension curve, WT / (Fm e_m / 2).
@@ -126,12 +126,12 @@ parameters! {
     Emc: "EMC", "%", "1", Some(Compression), false;
     /// Areal density (mass per area), from a balance.
     W: "W", "mg/cm²", "kg/m²", None, false;
-    /// Coefficient of surface friction (FB4), from result tables only.
-    Miu: "MIU", "1", "1", None, true;
-    /// Mean deviation of MIU (FB4), from result tables only.
-    Mmd: "MMD", "1", "1", None, true;
-    /// Geometrical roughness (FB4), from result tables only.
-    Smd: "SMD", "um", "m", None, true;
+    /// Mean coefficient of surface friction over the evaluated length of a sweep.
+    Miu: "MIU", "1", "1", Some(Friction), true;
+    /// Mean deviation of the coefficient of friction from MIU.
+    Mmd: "MMD", "1", "1", Some(Friction), true;
+    /// Geometrical roughness: mean deviation of the height of the surface from its mean.
+    Smd: "SMD", "um", "m", Some(Roughness), true;
 }
 
 impl Parameter {

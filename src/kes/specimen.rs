@@ -2,7 +2,7 @@
 //!
 //! Reading takes from here what a file does not state, evaluation its windows, virtual tests their specimen, charts
 //! their ranges. Sources: Kawabata (1980), The Standardization and Analysis of Hand Evaluation, 2nd ed., and the
-//! manuals of KES-FB1 to FB3.
+//! manuals of KES-FB1 to FB4.
 
 use super::{Parameter, Test};
 use crate::quantity::STANDARD_GRAVITY;
@@ -28,18 +28,26 @@ pub const TENSILE_SLOPE: [f64; 2] = [5.0 * GF_PER_CM, 20.0 * GF_PER_CM];
 pub const COMPRESSION_START: f64 = 0.5 * STANDARD_GRAVITY * 10.0;
 /// Area of the foot of KES-FB3: 2 cm² (m²).
 pub const FOOT_AREA: f64 = 2.0e-4;
+/// Length of a sweep of KES-FB4 that MIU, MMD and SMD are means over: 2 cm (m), in the middle of the sweep.
+pub const SURFACE_LENGTH: f64 = 0.02;
+/// Load on the contactor of the friction of KES-FB4, by which a force is divided: 50 gf (N).
+pub const FRICTION_LOAD: f64 = 50.0e-3 * STANDARD_GRAVITY;
+/// Load on the contactor of the roughness of KES-FB4: 10 gf (N).
+pub const ROUGHNESS_LOAD: f64 = 10.0e-3 * STANDARD_GRAVITY;
 
 /// The standard specimen of a test, and how the test is run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TestSpec {
     /// Width between the free edges (m).
     pub width: f64,
-    /// Length between jaws or clamps (m); 0 of compression, which has none.
+    /// Length between jaws or clamps (m); 0 of compression and of the surface, which have none.
     pub gauge: f64,
-    /// The set maximum: force per width (N/m), shear angle (rad), curvature (1/m) or pressure (Pa).
+    /// The set maximum: force per width (N/m), shear angle (rad), curvature (1/m), pressure (Pa) or sweep (m).
     pub maximum: f64,
-    /// Constant tension across the specimen (N/m); 0 but in shear.
+    /// Constant tension across the specimen, or along a sweep (N/m); 0 of the others.
     pub pretension: f64,
+    /// Load on a contactor (N); 0 but of the surface.
+    pub contact: f64,
     /// Abscissae that are shown where there is no record (SI; see [`Test`]).
     pub range: [f64; 2],
     /// Whether the drive goes to both sides.
@@ -52,6 +60,7 @@ pub const TENSILE: TestSpec = TestSpec {
     gauge: 0.05,
     maximum: 500.0 * GF_PER_CM,
     pretension: 0.0,
+    contact: 0.0,
     range: [0.0, 0.05],
     two_sided: false,
 };
@@ -62,6 +71,7 @@ pub const SHEAR: TestSpec = TestSpec {
     gauge: 0.05,
     maximum: 8.0 * DEGREE,
     pretension: 10.0 * GF_PER_CM,
+    contact: 0.0,
     range: [-8.0 * DEGREE, 8.0 * DEGREE],
     two_sided: true,
 };
@@ -72,6 +82,7 @@ pub const BENDING: TestSpec = TestSpec {
     gauge: 0.01,
     maximum: 250.0,
     pretension: 0.0,
+    contact: 0.0,
     range: [-250.0, 250.0],
     two_sided: true,
 };
@@ -82,10 +93,25 @@ pub const COMPRESSION: TestSpec = TestSpec {
     gauge: 0.0,
     maximum: 50.0 * GF_PER_CM2,
     pretension: 0.0,
+    contact: 0.0,
     // From one thickness to another: there is none without a record.
     range: [0.0, 0.0],
     two_sided: false,
 };
+
+/// KES-FB4, friction: ten steel wires side by side.
+pub const FRICTION: TestSpec = TestSpec {
+    width: 0.20,
+    gauge: 0.0,
+    maximum: 0.03,
+    pretension: 20.0 * GF_PER_CM,
+    contact: FRICTION_LOAD,
+    range: [0.0, 0.0],
+    two_sided: false,
+};
+
+/// KES-FB4, roughness: one steel wire.
+pub const ROUGHNESS: TestSpec = TestSpec { contact: ROUGHNESS_LOAD, ..FRICTION };
 
 impl Test {
     /// The standard specimen and conditions.
@@ -95,6 +121,8 @@ impl Test {
             Self::Shear => &SHEAR,
             Self::Bending => &BENDING,
             Self::Compression => &COMPRESSION,
+            Self::Friction => &FRICTION,
+            Self::Roughness => &ROUGHNESS,
         }
     }
 }
@@ -138,13 +166,14 @@ impl Parameter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quantity::{Angle, Curvature, LineForce, Pressure};
+    use crate::quantity::{Angle, Curvature, Force, LineForce, Pressure};
 
     /// What the customary units say, to the rounding of a conversion.
     #[test]
     fn the_standard_set_is_that_of_the_customary_units() {
         let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-15, "{a} {b}");
         let force = |text: &str| text.parse::<LineForce>().unwrap().si();
+        let load = |text: &str| text.parse::<Force>().unwrap().si();
         let angle = |text: &str| text.parse::<Angle>().unwrap().si();
         let curvature = |text: &str| text.parse::<Curvature>().unwrap().si();
         let pressure = |text: &str| text.parse::<Pressure>().unwrap().si();
@@ -157,5 +186,8 @@ mod tests {
         near(BENDING_SLOPE[0], curvature("0.5 1/cm"));
         near(COMPRESSION.maximum, pressure("50 gf/cm²"));
         near(COMPRESSION_START, pressure("0.5 gf/cm²"));
+        near(FRICTION.pretension, force("20 gf/cm"));
+        near(FRICTION.contact, load("50 gf"));
+        near(ROUGHNESS.contact, load("10 gf"));
     }
 }

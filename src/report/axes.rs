@@ -34,11 +34,13 @@ pub(crate) fn axes(test: Test) -> [Axis; 2] {
         Test::Compression => {
             [axis("Thickness T", "mm", None), axis("Pressure P", "gf/cm²", Some(("kPa", 1e3)))]
         }
+        Test::Friction => [axis("Position x", "cm", None), axis("Coefficient of friction µ", "1", None)],
+        Test::Roughness => [axis("Position x", "cm", None), axis("Height of the surface", "um", None)],
     }
 }
 
 fn axis(quantity: &'static str, kes_unit: &'static str, si: Option<(&'static str, f64)>) -> Axis {
-    // The four tests name units of the table in `quantity`; a test of the charts reads them all.
+    // The tests name units of the table in `quantity`; a test of the charts reads them all.
     let kes_factor = Unit::parse(kes_unit).map_or(f64::NAN, |u| u.factor);
     Axis { quantity, kes_unit, kes_factor, si }
 }

@@ -402,13 +402,7 @@ fn measurement_rows<'a>(
 
 /// Units of abscissa and ordinate of a test, each with its SI value.
 pub fn curve_units(test: Test, units: UnitSystem) -> [(&'static str, f64); 2] {
-    let (kes, si) = match test {
-        Test::Tensile => (["%", "gf/cm"], ["1", "N/m"]),
-        Test::Shear => (["deg", "gf/cm"], ["rad", "N/m"]),
-        Test::Bending => (["1/cm", "gf·cm/cm"], ["1/m", "N"]),
-        Test::Compression => (["mm", "gf/cm²"], ["m", "Pa"]),
-    };
-    let names = if units == UnitSystem::Kes { kes } else { si };
+    let names = if units == UnitSystem::Kes { test.kes_axes() } else { test.axes() };
     // Every name is in the table of units; a test reads them all.
     names.map(|name| (name, crate::quantity::Unit::parse(name).map_or(f64::NAN, |u| u.factor)))
 }

@@ -4,7 +4,7 @@ use super::columns::Columns;
 use super::failure::Failure;
 use super::folder::Folder;
 use crate::characterise::{Basis, FabricSheet};
-use crate::instrument::{Direction, Parameter, Test};
+use crate::instrument::{Direction, Parameter, Shape, Test};
 use crate::quantity::significant;
 use crate::report::chart::{self, ParityPoint};
 use crate::report::html::Figure;
@@ -84,7 +84,8 @@ pub(crate) fn write_parity(folder: &Folder, points: &[ParityPoint]) -> Result<Ve
 /// Writes `<fabric>/friction_bending.png` ...: laws beside the loops behind them; those that there are.
 pub(super) fn write_charts(folder: &Folder, sheet: &FabricSheet) -> Result<Vec<Figure>, Failure> {
     let mut drawn = Vec::new();
-    for test in Test::ALL.map(Some).into_iter().chain([None]) {
+    let looped = Test::ALL.into_iter().filter(|test| test.shape() != Shape::Sweep);
+    for test in looped.map(Some).chain([None]) {
         let what = test.map_or("strips", Test::name);
         let picture = format!("{}/friction_{what}.png", sheet.name);
         if folder.chart(&picture, || chart::friction(sheet, test))? {

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::inputs::Fabric;
 use crate::finding::{Finding, Place, Renaming, UsageFact};
+use crate::kes::Test;
 use crate::study::Case;
 
 /// A name that a folder can have, here and under Windows: nothing of it leads into another, and no file or device
@@ -43,7 +44,8 @@ const OF_RUN: [&str; 12] = [
 /// Whether a fabric has files of its own of that name.
 fn is_reserved(name: &str) -> bool {
     let name = name.to_lowercase();
-    ["sheet", "section", "tensile", "shear", "bending", "compression"].contains(&name.as_str())
+    ["sheet", "section"].contains(&name.as_str())
+        || Test::ALL.iter().any(|test| test.name() == name)
         || name.starts_with("friction_")
 }
 

@@ -14,7 +14,7 @@ use crate::characterise::{FabricSheet, Modulus};
 use crate::instrument::{Direction, Parameter, Test};
 use crate::law::Mode;
 use crate::quantity::{Band, Curve, Estimate, significant};
-use crate::report::chart::{self, ChartError, ParityPoint, SimulatedCurve};
+use crate::report::chart::{self, ParityPoint, SimulatedCurve};
 use crate::report::html::Figure;
 use crate::report::table::{PredictionRow, relative_error};
 use crate::study::{
@@ -104,7 +104,7 @@ fn stiffness(
         }
         Test::Shear => ("G", "N/m", parameter(Parameter::G)),
         Test::Bending => ("B", "N·m", parameter(Parameter::B)),
-        Test::Compression => return None,
+        Test::Compression | Test::Friction | Test::Roughness => return None,
     };
     Some(Stiffness { symbol, unit, measured })
 }
@@ -239,11 +239,10 @@ fn cycle_row(task: &Task, t: &Tested, parameter: Parameter, value: f64) -> Predi
 pub(super) fn parity_point(task: &Task, t: &Tested) -> Option<ParityPoint> {
     let stiffness = t.stiffness.as_ref().filter(|_| t.simulated.cycle.is_none())?;
     let measured = stiffness.measured.as_ref()?;
-    let quantity = match t.simulated.test {
-        Test::Tensile => "Tensile stiffness",
-        Test::Shear => "Shear stiffness G",
-        Test::Bending => "Bending rigidity B",
-        Test::Compression => "Compression",
+    let quantity = match stiffness.symbol {
+        "E" => "Tensile stiffness",
+        "G" => "Shear stiffness G",
+        _ => "Bending rigidity B",
     };
     Some(ParityPoint {
         label: task.fabric_name().unwrap_or_default().into(),
@@ -263,7 +262,7 @@ pub(super) fn write_chart(task: &Task, tested: &[Tested], folder: &Folder) -> Re
     let (Some(sheet), Some(first)) = (task.fabric, tested.first()) else { return Ok(false) };
     let test = first.simulated.test;
     let curves = curves(Some(task), tested.iter(), test);
-    folder.chart(&format!("{}.png", task.stem()), || draw(sheet, test, &curves))
+    folder.chart(&format!("{}.png", task.stem()), || chart::of_test(sheet, test, &curves))
 }
 
 /// Writes `<fabric>/tensile.png` ..., with the simulated curves of its cases on top; those that there are. Cycles
@@ -277,20 +276,11 @@ pub(super) fn write_fabric_charts(
     for test in Test::ALL {
         let curves = curves(None, tested.iter().filter(|t| t.simulated.cycle.is_none()), test);
         let picture = format!("{}/{}.png", sheet.name, test.name());
-        if folder.chart(&picture, || draw(sheet, test, &curves))? {
+        if folder.chart(&picture, || chart::of_test(sheet, test, &curves))? {
             drawn.push(Figure { caption: test.name().into(), picture });
         }
     }
     Ok(drawn)
-}
-
-fn draw(sheet: &FabricSheet, test: Test, simulated: &[SimulatedCurve]) -> Result<Vec<u8>, ChartError> {
-    match test {
-        Test::Tensile => chart::tensile(sheet, simulated),
-        Test::Shear => chart::shear(sheet, simulated),
-        Test::Bending => chart::bending(sheet, simulated),
-        Test::Compression => chart::compression(sheet, simulated),
-    }
 }
 
 /// With the bands of the parameters of a cycle, where the task is named.
@@ -418,10 +408,9 @@ fn notes(task: &Task, t: &Tested) -> Vec<String> {
             .push(format!("{name}: {without} N/m, and {adds} N/m by the tension of {value} N/m across it\n"));
     }
     if let Some(x) = simulated.unstable_from {
-        let unit = match simulated.test {
-            Test::Tensile => "strain",
-            Test::Shear => "rad",
-            Test::Bending | Test::Compression => "1/m",
+        let unit = match simulated.test.axes()[0] {
+            "1" => "strain",
+            unit => unit,
         };
         notes.push(format!("{name}: the specimen buckles before {} {unit}\n", significant(x)));
     }

@@ -70,21 +70,21 @@ fn curve() -> Value {
         "type": "object",
         "required": ["test", "direction", "specimen", "sha256", "conditions", "correction", "x", "y"],
         "properties": {
-            "test": {"enum": ["tensile", "shear", "bending", "compression"]},
+            "test": {"enum": ["tensile", "shear", "bending", "compression", "friction", "roughness"]},
             "direction": {"enum": ["warp", "weft", "bias", null]},
             "specimen": {"type": "integer", "minimum": 1},
             "file": {"type": ["string", "null"]},
             "sha256": {"description": "Of the file.", "type": "string", "pattern": "^[0-9a-f]{64}$"},
             "conditions": {
-                "description": "Width and gauge of the specimen (m), the set maximum and the pretension (SI).",
+                "description": "Width and gauge of the specimen (m), the set maximum and the pretension (SI), of the surface the load on the contactor (N).",
                 "type": "object", "additionalProperties": {"type": "number"},
             },
             "correction": {
                 "description": "What the evaluation added to x and y.",
                 "type": "array", "minItems": 2, "maxItems": 2, "items": {"type": "number"},
             },
-            "x": with(&axis, "Strain (1), shear angle (rad), curvature (1/m) or approach of the faces (m)."),
-            "y": with(&axis, "Force per width (N/m), moment per width (N) or pressure (Pa)."),
+            "x": with(&axis, "Strain (1), shear angle (rad), curvature (1/m), approach of the faces or position of a sweep (m)."),
+            "y": with(&axis, "Force per width (N/m), moment per width (N), pressure (Pa), coefficient of friction (1) or height (m)."),
         },
     })
 }

@@ -70,11 +70,7 @@ pub fn compare_curves(sheet: &FabricSheet, simulated: &VirtualCurve) -> Option<C
         Some(direction) => format!("{} {direction}", simulated.test.name()),
         None => simulated.test.name().to_string(),
     };
-    let unit = match simulated.test {
-        Test::Tensile | Test::Shear => "N/m",
-        Test::Bending => "N",
-        Test::Compression => "Pa",
-    };
+    let [_, unit] = simulated.test.axes();
     Some(Comparison {
         name,
         test: simulated.test,

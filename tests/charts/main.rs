@@ -14,8 +14,8 @@ use kesf::characterise::{FabricSheet, characterise};
 use kesf::instrument::{Direction, ReadSettings, Test, read_fabrics};
 use kesf::quantity::Curve;
 use kesf::report::chart::{
-    DrapePlot, FieldPlot, ParityPoint, ProfileLine, ProfilePlot, SimulatedCurve, bending, compression,
-    drape_shadow, field, friction, parity, profile, shear, tensile,
+    DrapePlot, FieldPlot, ParityPoint, ProfileLine, ProfilePlot, SimulatedCurve, bending, drape_shadow,
+    field, friction, of_test, parity, profile,
 };
 use picture::{Color, HEIGHT, Picture, Point, Region, Scale, along};
 
@@ -102,13 +102,7 @@ fn assert_specimen(picture: &Picture, specimens: &[Vec<Point>], color: Color, ex
 
 fn assert_test(name: &str, test: Test, numbers: [[&str; 2]; 2], units: [f64; 2]) {
     let Some(sheet) = poplin(name) else { return };
-    let draw = match test {
-        Test::Tensile => tensile,
-        Test::Shear => shear,
-        Test::Bending => bending,
-        Test::Compression => compression,
-    };
-    let picture = Picture::decode(&draw(&sheet, &[]).unwrap());
+    let picture = Picture::decode(&of_test(&sheet, test, &[]).unwrap());
     let scales = [picture.x_scale(numbers[0], BELOW), picture.y_scale(numbers[1], BESIDE)];
     let curves = |direction| specimens(&sheet, test, direction, units, scales);
     if test == Test::Compression {

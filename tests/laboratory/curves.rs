@@ -17,7 +17,8 @@ pub struct Records {
     pub expected: Vec<Expected>,
 }
 
-const TESTS: [Test; 4] = [Test::Bending, Test::Shear, Test::Tensile, Test::Compression];
+const TESTS: [Test; 6] =
+    [Test::Bending, Test::Shear, Test::Tensile, Test::Compression, Test::Friction, Test::Roughness];
 
 const GF: f64 = 9.80665e-3;
 const DEG: f64 = std::f64::consts::PI / 180.0;
@@ -45,6 +46,10 @@ fn units(test: Test) -> [&'static [Printed]; 2] {
             &[("mm", 1e-3), ("µm", 1e-6)],
             &[("gf/cm²", GF / 1e-4), ("gf/cm2", GF / 1e-4), ("kPa", 1e3), ("Pa", 1.0)],
         ],
+        Test::Friction => [&[("cm", 1e-2), ("mm", 1e-3)], &[("-", 1.0), ("1", 1.0)]],
+        Test::Roughness => {
+            [&[("cm", 1e-2), ("mm", 1e-3)], &[("µm", 1e-6), ("um", 1e-6), ("mm", 1e-3), ("micron", 1e-6)]]
+        }
     }
 }
 
@@ -85,6 +90,11 @@ fn record(rng: &mut Pcg64, test: Test, direction: Option<Direction>, [x, y]: [Pr
             let up = ramp(0.0, 1.0).map(|u| (thick - 0.25 * u, 50.0 * u.powi(3)));
             let down = ramp(1.0, 0.1).map(|u| (thick - 0.25 * u, 50.0 * u.powi(4)));
             std::iter::once((thick, 0.0)).chain(up).chain(down).collect()
+        }
+        Test::Friction | Test::Roughness => {
+            let (mean, wave) = if test == Test::Friction { (0.2, 0.03) } else { (12.0, 5.0) };
+            let profile = |x: f64| (x, stiff * (mean + wave * (7.0 * x).sin()));
+            ramp(-0.1, 3.0).chain(ramp(3.0, 0.0)).map(profile).collect()
         }
     };
     let customary = units(test);
@@ -216,7 +226,7 @@ fn body(grid: &mut Grid, records: &[&Record]) {
 pub fn any(rng: &mut Pcg64, l: &Language) -> Records {
     let test = pick(rng, &TESTS);
     let heads = Heads::any(rng, l, test);
-    match rng.random_range(0..10) {
+    match rng.random_range(0..11) {
         0 => single(rng, &heads),
         1 => side_by_side(rng, &heads),
         2 => by_direction(rng, &heads),
@@ -226,6 +236,7 @@ pub fn any(rng: &mut Pcg64, l: &Language) -> Records {
         6 => pages(rng, &heads),
         7 => raw_geometry(rng, l),
         8 => file_name(rng, &heads),
+        9 => both_of_surface(rng, l),
         _ => opposite_sign(rng, l),
     }
 }
@@ -519,6 +530,8 @@ fn file_name(rng: &mut Pcg64, heads: &Heads<'_>) -> Records {
     let module = match heads.test {
         Test::Bending => "FB2",
         Test::Shear => "shear",
+        Test::Friction => "friction",
+        Test::Roughness => "FB4",
         _ => "tensile",
     };
     let r = Record { direction: d, ..record(rng, heads.test, d, heads.units) };
@@ -534,6 +547,40 @@ fn file_name(rng: &mut Pcg64, heads: &Heads<'_>) -> Records {
         None => vec![Expected::Refusal],
     };
     Records { layout: "direction in the file name", grid, stem: pattern.replace("{}", module), expected }
+}
+
+/// Friction and height over one position, as KES-FB4 records them; the friction as a force in some.
+fn both_of_surface(rng: &mut Pcg64, l: &Language) -> Records {
+    let heads = Heads { own_row: false, ..Heads::any(rng, l, Test::Friction) };
+    let heights = Heads { own_row: false, square: heads.square, ..Heads::any(rng, l, Test::Roughness) };
+    let d = directions(rng, Test::Friction, 1)[0];
+    let a = record(rng, Test::Friction, d, heads.units);
+    let b = record(rng, Test::Roughness, d, [heads.units[0], heights.units[1]]);
+    let force = l.name == "en" && chance(rng, 0.5);
+    let load = pick(rng, &[50.0, 25.0, 100.0]);
+    let mut grid = Grid::default();
+    grid.texts(&[l.sample[0], "S1"]);
+    grid.texts(&["Test", "KES-FB4"]);
+    grid.texts(&[l.direction[0], word(l, d.expect("a direction"))]);
+    let mut second = heads.head(1, heads.names[1]);
+    if force {
+        grid.texts(&[pick(rng, &["Contact load", "Normal load"]), &format!("{load} gf")]);
+        second = Cell::text(if heads.square { "Friction force [gf]" } else { "Friction force (gf)" });
+    }
+    grid.row(vec![heads.head(0, heads.names[0]), second, heights.head(1, heights.names[1])]);
+    let [x, y] = heads.factors();
+    let (mut friction, mut height) = (Vec::new(), Vec::new());
+    for (p, q) in a.points.iter().zip(&b.points) {
+        let shown = if force { printing(p.1.value * load, 3) } else { p.1 };
+        grid.row(vec![Cell::Number(p.0), Cell::Number(shown), Cell::Number(q.1)]);
+        let mu = if force { shown.value / load } else { shown.value * y };
+        friction.push((p.0.value * x, mu));
+        height.push((p.0.value * x, q.1.value * heights.units[1].1));
+    }
+    let curve = |test, points| Expected::Curve { test, direction: d, points };
+    let expected = vec![curve(Test::Friction, friction), curve(Test::Roughness, height)];
+    let layout = if force { "friction force and height" } else { "friction and height" };
+    Records { layout, grid, stem: "S1".into(), expected }
 }
 
 /// The moment counted the other way round.

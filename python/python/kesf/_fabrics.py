@@ -38,12 +38,14 @@ class Measurement:
     """The curve of one specimen in one test, as recorded, in SI.
 
     Attributes:
-        test: ``tensile``, ``shear``, ``bending`` or ``compression``.
+        test: ``tensile``, ``shear``, ``bending``, ``compression``, ``friction`` or ``roughness``.
         direction: ``warp``, ``weft`` or ``bias``; None for compression.
         specimen: Number of the specimen, from 1.
         sample: Name of the sample in the file, if any.
-        x: Abscissae, shape (n,): strain (1), shear angle (rad), curvature (1/m) or thickness (m).
-        y: Ordinates, shape (n,): force per width (N/m), the same, moment per width (N) or pressure (Pa).
+        x: Abscissae, shape (n,): strain (1), shear angle (rad), curvature (1/m), thickness (m) or
+            position (m).
+        y: Ordinates, shape (n,): force per width (N/m), the same, moment per width (N), pressure (Pa),
+            coefficient of friction (1) or height (m).
         x_unit: Unit of ``x``.
         y_unit: Unit of ``y``.
         conditions: Width (m), gauge (m), maximum and pretension of the test, in SI.
@@ -189,7 +191,7 @@ class Fabric:
 
     def _repr_html_(self) -> str:
         rows = []
-        for test in ("tensile", "shear", "bending", "compression"):
+        for test in ("tensile", "shear", "bending", "compression", "friction", "roughness"):
             curves = [m for m in self.measurements if m.test == test]
             if curves:
                 rows.append(f"<td>{test}, {len(curves)}<br>{lines([(m.x, m.y) for m in curves], 140)}</td>")

@@ -25,7 +25,7 @@ SettingsLike = str | os.PathLike[str] | bytes | Mapping[str, Any]
 Units = Literal["si", "kes"]
 
 #: A KES test.
-Test = Literal["tensile", "shear", "bending", "compression"]
+Test = Literal["tensile", "shear", "bending", "compression", "friction", "roughness"]
 
 #: A yarn direction.
 Direction = Literal["warp", "weft", "bias"]

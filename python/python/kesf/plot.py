@@ -24,10 +24,12 @@ AXES = {
     "shear": ("Shear angle", "Shear force per width"),
     "bending": ("Curvature", "Moment per width"),
     "compression": ("Thickness", "Pressure"),
+    "friction": ("Position", "Coefficient of friction"),
+    "roughness": ("Position", "Height of the surface"),
 }
 
 #: The parameter whose middle specimen is drawn in full strength.
-LEADING = {"tensile": "WT", "shear": "G", "bending": "B", "compression": "WC"}
+LEADING = {"tensile": "WT", "shear": "G", "bending": "B", "compression": "WC", "friction": "MIU", "roughness": "SMD"}
 
 
 def plot(sheet: Sheet, test: Test = "bending", axes: Axes | None = None) -> Figure:
@@ -36,7 +38,7 @@ def plot(sheet: Sheet, test: Test = "bending", axes: Axes | None = None) -> Figu
 
     Args:
         sheet: The sheet of a fabric with curves.
-        test: ``tensile``, ``shear``, ``bending`` or ``compression``.
+        test: ``tensile``, ``shear``, ``bending``, ``compression``, ``friction`` or ``roughness``.
         axes: Where to draw; a figure of its own when None.
 
     Raises:

@@ -8,7 +8,7 @@
 use super::record::extract_backbone;
 use super::{Basis, FrictionLaw};
 use crate::characterise::{FabricSheet, Settings};
-use crate::instrument::{Conditions, Direction, Parameter, Test};
+use crate::instrument::{Conditions, Direction, Parameter, Shape, Test};
 use crate::law::Channel;
 
 /// The parameters that a law is brought to: stiffness and width of a loop.
@@ -18,6 +18,8 @@ fn leading(test: Test) -> (Parameter, Option<Parameter>) {
         Test::Shear => (Parameter::G, Some(Parameter::Hg)),
         Test::Bending => (Parameter::B, Some(Parameter::Hb)),
         Test::Compression => (Parameter::Wc, None),
+        Test::Friction => (Parameter::Miu, None),
+        Test::Roughness => (Parameter::Smd, None),
     }
 }
 
@@ -32,9 +34,10 @@ impl FrictionLaw {
         };
         let (leads, widens) = leading(self.test);
         let stiffer = ratio(stiffness, own(leads));
-        let made = match self.test {
-            Test::Tensile | Test::Compression => stiffer.map(|part| self.channel.stretched(part)),
-            Test::Shear | Test::Bending => {
+        let made = match self.test.shape() {
+            Shape::Sweep => None,
+            Shape::Rise => stiffer.map(|part| self.channel.stretched(part)),
+            Shape::Loop => {
                 let sliders = ratio(width, widens.and_then(own)).unwrap_or(1.0);
                 let backbone = self.backbone_stiffness.zip(own(leads)).and_then(|(elastic, all)| {
                     let wanted = stiffness.unwrap_or(all);
@@ -89,7 +92,7 @@ impl FabricSheet {
         let mean = |p: Parameter| self.get(p, law.direction).map(|e| e.mean);
         let (leads, widens) = leading(test);
         // Works up to different forces have no mean.
-        let by_force = matches!(test, Test::Tensile | Test::Compression);
+        let by_force = test.shape() == Shape::Rise;
         if by_force && self.run_to.get(&(test, law.direction)).is_some_and(|r| !r.alike) {
             return Some(law.channel.clone());
         }

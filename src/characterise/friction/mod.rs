@@ -26,7 +26,7 @@ use serde::{Serialize, Serializer, ser::SerializeMap};
 use self::identify::Path;
 use super::{Branch, CycleChoice, FabricSheet, Key, Settings, SpecimenResult};
 use crate::finding::{EvaluationFact, Finding, Place, Subject};
-use crate::instrument::{Conditions, Direction, Parameter, Test};
+use crate::instrument::{Conditions, Direction, Parameter, Shape, Test};
 use crate::law::Channel;
 use crate::platform;
 use crate::quantity::{Curve, Estimate};
@@ -201,8 +201,11 @@ impl FabricSheet {
 
 /// Adds the laws to a sheet.
 pub(super) fn add(sheet: &mut FabricSheet, settings: &Settings) {
-    let found: Vec<_> = platform::map(&sheet.specimens, |s| of_specimen(s, settings));
-    for (specimen, law) in sheet.specimens.iter().zip(found) {
+    // A sweep over a surface is no law of the cloth.
+    let looped = |s: &&SpecimenResult| s.measurement.test.shape() != Shape::Sweep;
+    let specimens: Vec<&SpecimenResult> = sheet.specimens.iter().filter(looped).collect();
+    let found: Vec<_> = platform::map(&specimens, |s| of_specimen(s, settings));
+    for (specimen, law) in specimens.into_iter().zip(found) {
         match law {
             Ok(law) => sheet.laws.push(law),
             Err(why) => sheet.findings.push(none(specimen, why)),
@@ -262,7 +265,7 @@ fn of_specimen(specimen: &SpecimenResult, settings: &Settings) -> Result<Frictio
 
 /// Whether the drive comes back in the chosen cycle: the strain, or the force of a test that is driven by it.
 fn returns(specimen: &SpecimenResult, choice: CycleChoice) -> bool {
-    let by_force = matches!(specimen.measurement.test, Test::Tensile | Test::Compression);
+    let by_force = specimen.measurement.test.shape() == Shape::Rise;
     let length = |b: &Branch| {
         let driven = if by_force { &b.curve.y } else { &b.curve.x };
         driven.first().zip(driven.last()).map_or(0.0, |(a, z)| (z - a).abs())
@@ -285,7 +288,7 @@ fn fitted(specimen: &SpecimenResult, settings: &Settings) -> Option<FrictionLaw>
         }),
         _ => None,
     };
-    let one_sided = matches!(m.test, Test::Tensile | Test::Compression);
+    let one_sided = m.test.shape() == Shape::Rise;
     let (path, cycles) = path(specimen, thickness, one_sided, settings.cycle)?;
     let channel = if one_sided { identify::one_sided(&path)? } else { identify::two_sided(&path)? };
     let fit = LoopFit::of(&stresses(&channel, None, &path.strain, &[]), &path, &cycles);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::FrictionLaw;
 use crate::characterise::{Settings, parameters};
-use crate::instrument::{Conditions, Parameter, Test};
+use crate::instrument::{Conditions, Parameter, Shape};
 use crate::law::{Channel, State};
 use crate::quantity::Curve;
 
@@ -23,9 +23,10 @@ pub fn cycle(law: &FrictionLaw, conditions: &Conditions) -> Curve {
     if !(maximum.is_finite() && maximum > 0.0) {
         return Curve::default();
     }
-    let strained = match law.test {
-        Test::Bending | Test::Shear => to_both_sides(&law.channel, maximum, SAMPLES),
-        Test::Tensile | Test::Compression => to_force(&law.channel, maximum),
+    let strained = match law.test.shape() {
+        Shape::Loop => to_both_sides(&law.channel, maximum, SAMPLES),
+        Shape::Rise => to_force(&law.channel, maximum),
+        Shape::Sweep => return Curve::default(),
     };
     Curve::from_points(strained.into_iter().map(|(e, s)| (law.abscissa(e), s)))
 }

@@ -99,7 +99,7 @@ fn conditions(test: Test, settings: &Settings) -> Conditions {
     let maximum = match test {
         Test::Bending | Test::Shear => test.spec().maximum,
         Test::Tensile => settings.table_maximum.si(),
-        Test::Compression => f64::NAN,
+        Test::Compression | Test::Friction | Test::Roughness => f64::NAN,
     };
     Conditions { maximum, ..Conditions::default() }
 }
@@ -143,7 +143,7 @@ fn channel(
                 ))
             }
         }
-        Test::Compression => return None,
+        Test::Compression | Test::Friction | Test::Roughness => return None,
     })
 }
 

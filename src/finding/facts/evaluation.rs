@@ -171,6 +171,18 @@ super::facts! {
             /// The parameter.
             parameter: Parameter,
         } = "{record}: {parameter} comes from one side only, not from the mean of both";
+        /// A record of heights that runs up or down.
+        "K060" Drift {
+            /// The record.
+            record: RecordName,
+            /// Rise of the straight line over the evaluated length (m).
+            rise: f64,
+            /// SMD (m).
+            smd: f64,
+            /// SMD of what the straight line leaves (m).
+            without: f64,
+        } = "{record}: the height runs by {} over the evaluated length, which makes SMD {}; without the straight line it is \
+             {}", in_unit(*rise, "um"), in_unit(*smd, "um"), in_unit(*without, "um");
         /// Two specimens have one number.
         "K019" NumberTwice {
             /// The later record.
@@ -386,7 +398,7 @@ fn correction(test: Test, axis: RecordAxis, taken_off: f64, limit: f64) -> Strin
     let from = match test {
         Test::Tensile => " the force",
         Test::Compression => " the pressure",
-        Test::Shear | Test::Bending => "",
+        _ => "",
     };
     format!("a zero offset of {} was taken off{from}", in_unit(taken_off, ordinate))
 }

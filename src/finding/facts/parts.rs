@@ -111,6 +111,8 @@ pub enum Divisor {
     Gauge,
     /// Width of the specimen (m).
     Width,
+    /// Load on the contactor (N).
+    Contact,
 }
 
 /// How a linear result is beyond its meaning.

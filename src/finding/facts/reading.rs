@@ -2,7 +2,7 @@
 
 use super::parts::{Divisor, LeftOutLine};
 use crate::kes::{Direction, Parameter, Test};
-use crate::quantity::without_rounding;
+use crate::quantity::{STANDARD_GRAVITY, without_rounding};
 
 super::facts! {
     /// What a reader of the data of a file must know.
@@ -132,6 +132,10 @@ fn assumed(dimension: Divisor, value: f64, test: Option<Test>, not_understood: &
         Divisor::Gauge => format!(
             "no gauge is {stated}: travel was divided by the standard {cm} cm; state `gauge` in the header or in [conditions{}] of fabric.toml",
             test.map_or(String::new(), |test| format!(".{}", test.name()))
+        ),
+        Divisor::Contact => format!(
+            "no load on the contactor is {stated}: force was divided by the standard {} gf; state `contact load` in the header or `contact` in [conditions.friction] of fabric.toml",
+            without_rounding(value / (1e-3 * STANDARD_GRAVITY))
         ),
         Divisor::Width => format!(
             "no width is {stated}: force or moment was divided by the standard {cm} cm; state `width` in the header or in [conditions] of fabric.toml"

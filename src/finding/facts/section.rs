@@ -52,6 +52,15 @@ super::facts! {
             fabric: String,
         } = "{fabric}: torsion is neglected (H = 0): twisting costs nothing, and bending on the bias is \
              underestimated about twofold for woven cloth";
+        /// Rigidities of buckled strips in the place of those of KES-FB2.
+        "C018" StripRigidity {
+            /// Name of the fabric.
+            fabric: String,
+            /// Directions of the strips.
+            directions: Vec<Direction>,
+        } = "{fabric}: B {} is that of buckled FAB strips: the section uses the rigidity of the elastic strip, with friction in \
+             it; a law with friction, which a comparison with the strips' bend loops identifies, is softer, up to about twofold",
+            directions.iter().map(|d| d.name()).collect::<Vec<_>>().join(" and ");
         /// No hysteresis of bending.
         "C017" NoHysteresis {
             /// Name of the fabric.

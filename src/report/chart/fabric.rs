@@ -1,7 +1,7 @@
-//! The four charts of a fabric: tensile, shear, bending, compression.
+//! The charts of a fabric, one for each test.
 
 use crate::characterise::{FabricSheet, mean_branches};
-use crate::instrument::{Direction, Origin, Parameter, Test};
+use crate::instrument::{Direction, Origin, Parameter, Shape, Test};
 use crate::quantity::{Curve, Estimate};
 use crate::report::number::{fixed, plain_exponent, power_of_ten, significant, unit_text, with_spread};
 use crate::study::Comparison;
@@ -67,7 +67,7 @@ impl From<&Comparison> for SimulatedCurve {
 /// # Errors
 /// [`ChartError::NothingToDraw`] if the sheet has neither curves nor LT, WT and EMT.
 pub fn tensile(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<Vec<u8>, ChartError> {
-    draw(sheet, Test::Tensile, simulated)
+    of_test(sheet, Test::Tensile, simulated)
 }
 
 /// KES-FB1 shear: shear force per width against angle, with the window of G and the bars 2HG, 2HG5.
@@ -75,7 +75,7 @@ pub fn tensile(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<Vec<
 /// # Errors
 /// [`ChartError::NothingToDraw`] if the sheet has neither curves nor G and 2HG.
 pub fn shear(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<Vec<u8>, ChartError> {
-    draw(sheet, Test::Shear, simulated)
+    of_test(sheet, Test::Shear, simulated)
 }
 
 /// KES-FB2 bending: moment per width against curvature, with the windows of B and the bars 2HB.
@@ -83,7 +83,7 @@ pub fn shear(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<Vec<u8
 /// # Errors
 /// [`ChartError::NothingToDraw`] if the sheet has neither curves nor B and 2HB.
 pub fn bending(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<Vec<u8>, ChartError> {
-    draw(sheet, Test::Bending, simulated)
+    of_test(sheet, Test::Bending, simulated)
 }
 
 /// KES-FB3 compression: pressure against thickness, with WC and WC', T0 and Tm.
@@ -91,10 +91,15 @@ pub fn bending(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<Vec<
 /// # Errors
 /// [`ChartError::NothingToDraw`] if the sheet has neither curves nor LC, WC, T0 and Tm.
 pub fn compression(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<Vec<u8>, ChartError> {
-    draw(sheet, Test::Compression, simulated)
+    of_test(sheet, Test::Compression, simulated)
 }
 
-fn draw(sheet: &FabricSheet, test: Test, simulated: &[SimulatedCurve]) -> Result<Vec<u8>, ChartError> {
+/// The chart of any test: its curves with the windows and readings of the parameters. A sweep of KES-FB4 has a line at
+/// its mean, as long as the evaluated part, and a bar of twice the mean deviation.
+///
+/// # Errors
+/// [`ChartError::NothingToDraw`] if the sheet has neither curves nor the values that a curve can be drawn from.
+pub fn of_test(sheet: &FabricSheet, test: Test, simulated: &[SimulatedCurve]) -> Result<Vec<u8>, ChartError> {
     let axes = TestAxes::of(test);
     let mut traces = loops::traces(sheet, test, &axes);
     let recorded = !traces.is_empty();
@@ -147,7 +152,7 @@ fn frame(test: Test, traces: &[Trace], overlay: &[Vec<Point>], spread: &Spread) 
         measured.chain(overlay.iter().flatten()).chain(spread.points())
     };
     // The axes of one-sided tests begin at zero load, so that areas are seen whole.
-    let zero = matches!(test, Test::Tensile | Test::Compression).then_some(0.0);
+    let zero = (test.shape() == Shape::Rise).then_some(0.0);
     Frame {
         left: 185.0,
         top: if test == Test::Compression { 170.0 } else { 235.0 },

@@ -6,6 +6,7 @@ use crate::characterise::{FabricSheet, SpecimenResult, Window};
 use crate::instrument::{Direction, Parameter, Test};
 use crate::quantity::Curve;
 use crate::report::axes::{Axis, axes};
+use crate::report::number::unit_text;
 
 use super::axes::Label;
 
@@ -32,11 +33,11 @@ impl TestAxes {
                 unit: match x.kes_unit {
                     "deg" => "°".into(),
                     "1/cm" => "cm⁻¹".into(),
-                    unit => unit.into(),
+                    unit => unit_text(unit),
                 },
                 second: second(x),
             },
-            y: Label { quantity: y.quantity.into(), unit: y.kes_unit.into(), second: second(y) },
+            y: Label { quantity: y.quantity.into(), unit: unit_text(y.kes_unit), second: second(y) },
         }
     }
 
@@ -72,6 +73,8 @@ pub(super) fn leading(test: Test) -> Parameter {
         Test::Shear => Parameter::G,
         Test::Bending => Parameter::B,
         Test::Compression => Parameter::Wc,
+        Test::Friction => Parameter::Miu,
+        Test::Roughness => Parameter::Smd,
     }
 }
 
@@ -124,7 +127,7 @@ mod tests {
         for test in Test::ALL {
             let axes = TestAxes::of(test);
             assert!(axes.x_factor.is_finite() && axes.y_factor.is_finite(), "{test:?}");
-            assert!(axes.y.second.is_some());
+            assert_eq!(axes.y.second.is_some(), test.shape() != crate::instrument::Shape::Sweep);
         }
         // 1 gf·cm/cm = 9.80665 mN·m/m: one mN·m/m is 1/9.80665 of our unit.
         let second = TestAxes::of(Test::Bending).y.second.unwrap();

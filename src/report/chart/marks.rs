@@ -1,7 +1,7 @@
 //! What a chart shows of how its parameters were obtained: areas, slopes, loop widths, readings.
 
 use crate::characterise::{FabricSheet, Window};
-use crate::instrument::{Parameter, Test};
+use crate::instrument::{Parameter, Shape, Test};
 
 use super::axes::Frame;
 use super::canvas::{Canvas, Point, Stroke};
@@ -29,7 +29,7 @@ impl Marks<'_> {
     /// Energy under the loading branch (tinted) and under the unloading branch (hatched), of the first
     /// emphasised trace; drawn below everything else.
     pub(super) fn areas(&self, canvas: &mut Canvas, traces: &[Trace]) -> Result<(), ChartError> {
-        if !matches!(self.test, Test::Tensile | Test::Compression) {
+        if self.test.shape() != Shape::Rise {
             return Ok(());
         }
         let Some(trace) = traces.iter().find(|t| t.emphasised) else { return Ok(()) };
@@ -129,7 +129,7 @@ impl Marks<'_> {
         let names = match self.test {
             Test::Tensile => ["WT", "WT′"],
             Test::Compression => ["WC", "WC′"],
-            Test::Shear | Test::Bending => return Ok(()),
+            _ => return Ok(()),
         };
         let height_at = |outgoing: bool, x: f64| {
             let part = &trace.parts.iter().rfind(|p| p.0 == outgoing)?.1;

@@ -28,7 +28,7 @@ mod spread;
 
 pub use drape::{DrapePlot, drape_shadow, drape_view};
 pub use error::ChartError;
-pub use fabric::{SimulatedCurve, bending, compression, shear, tensile};
+pub use fabric::{SimulatedCurve, bending, compression, of_test, shear, tensile};
 pub use field::{FieldPlot, field};
 pub use force::{ForcePlot, bend_loops};
 pub use friction::friction;

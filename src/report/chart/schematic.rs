@@ -34,6 +34,8 @@ fn trace(sheet: &FabricSheet, test: Test, direction: Option<Direction>, axes: &T
         Test::Shear => shear(value, sheet.settings.shear_readings.map(Angle::si))?,
         Test::Bending => bending(value)?,
         Test::Compression => compression(value)?,
+        // A mean deviation draws no profile.
+        Test::Friction | Test::Roughness => return None,
     };
     let parts = parts.into_iter().map(|(out, curve)| (out, axes.convert(&curve))).collect();
     Some(Trace {
@@ -53,6 +55,7 @@ pub(super) fn needs(test: Test) -> &'static str {
         Test::Shear => "neither curves nor the values G and 2HG",
         Test::Bending => "neither curves nor the values B and 2HB",
         Test::Compression => "neither curves nor the values LC, WC, T0 and Tm",
+        Test::Friction | Test::Roughness => "no curves",
     }
 }
 

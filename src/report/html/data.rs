@@ -74,7 +74,7 @@ pub struct Value {
 pub struct TestCurves {
     /// Place in [`PageData::fabrics`].
     pub fabric: usize,
-    /// `tensile`, `shear`, `bending` or `compression`.
+    /// `tensile`, `shear`, `bending`, `compression`, `friction` or `roughness`.
     pub test: String,
     /// Abscissa and ordinate.
     pub axes: [AxisEntry; 2],
