@@ -56,8 +56,12 @@ impl OutputArgs {
 
     /// A table as it goes out, with the mark that was asked for.
     pub fn csv<R: Row>(&self, rows: &[R]) -> Result<Vec<u8>, Failure> {
-        let bytes = csv(rows)?;
-        Ok(if self.bom { marked(bytes) } else { bytes })
+        Ok(self.marked(csv(rows)?))
+    }
+
+    /// The bytes of a CSV table, with the mark if it was asked for.
+    pub fn marked(&self, bytes: Vec<u8>) -> Vec<u8> {
+        if self.bom { marked(bytes) } else { bytes }
     }
 
     /// The error for an ending that the command has no format for.

@@ -82,6 +82,15 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     system::read(path)
 }
 
+/// A file that is read in pieces.
+///
+/// # Errors
+/// Those of the system.
+#[cfg(feature = "parquet")]
+pub fn open(path: &Path) -> io::Result<std::fs::File> {
+    std::fs::File::open(path)
+}
+
 /// The text of a file.
 ///
 /// # Errors
