@@ -182,7 +182,9 @@ pub fn read(job: &Job, settings: &RunSettings, observer: &Observer) -> Result<Ru
     let cases = without_drapes(cases, settings, observer);
     let (threads, limits, share) = (job.threads.max(1), job.limits, job.share);
     let work = RunWork { cases, catalogue, failures, threads, limits, share };
-    if work.is_empty() && work.failures.is_empty() && !work.catalogue.left_out {
+    // A shard may have nothing.
+    let may_be_empty = work.catalogue.left_out || job.share.is_some_and(|share| !share.of_whole);
+    if work.is_empty() && work.failures.is_empty() && !may_be_empty {
         return Err(Failure::new("O055", "there is neither a fabric nor a case in the inputs")
             .hint("run where kesf_data and cases are, or name fabric folders and case files"));
     }

@@ -13,7 +13,7 @@ use super::tasks::TaskArgs;
 use super::ui::Ui;
 use crate::report::table::PredictionRow;
 use crate::results::{Failure, Shard};
-use crate::run::{self, RunReport, RunSettings};
+use crate::run::{self, RunSettings};
 
 /// Do everything: read fabrics, evaluate, solve and compare every case, draw charts, write tables
 #[derive(Debug, Args)]
@@ -114,9 +114,6 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
             "{shown}: index.html, fabrics.csv, predictions.csv{charts}; {findings} findings in problems.csv"
         ));
     }
-    Ok(exit(&report, options.task.strict && ui.findings() > 0))
-}
-
-fn exit(report: &RunReport, strict: bool) -> Exit {
-    Exit::of_batch(report.useful, &report.failures).unless(report.fails_a_check || strict)
+    let strict = options.task.strict && ui.findings() > 0;
+    Ok(Exit::of_batch(report.useful, &report.failures).unless(report.fails_a_check || strict))
 }

@@ -21,6 +21,9 @@ use crate::results::Failure;
 /// Names that people use, and what they stand for.
 const NAMES: [(&str, &str); 2] = [("thickness", "T0"), ("mass", "W")];
 
+/// Columns of a table of parameters.
+const OF_RUN: [&str; 5] = ["fabric", "parameter", "direction", "mean", "unit"];
+
 /// Rows of a row group: what an answer reads at once.
 const GROUP: usize = 1 << 16;
 
@@ -91,6 +94,14 @@ impl Shelf {
             filled.values[at] = in_unit(value, factor);
         }
         Ok(())
+    }
+
+    /// Adds parameters in SI that are in memory: rows of results or of parameters.
+    ///
+    /// # Errors
+    /// Those of [`add_rows`](Self::add_rows), and O069 for another table.
+    pub fn add_table(&mut self, name: &str, table: &RecordBatch) -> Result<(), LibraryError> {
+        self.add_rows(name, Path::new(name), &rows_of_parameters(name, table)?)
     }
 
     fn fabric(&mut self, name: &str, results: usize, path: &Path) -> Result<usize, LibraryError> {
@@ -207,8 +218,7 @@ fn rows_of_run(path: &Path) -> Result<Vec<FabricRow>, LibraryError> {
     let refused = |problem: String| LibraryError::Results { path: path.to_path_buf(), problem };
     let bytes = files::read(path).map_err(|e| refused(e.to_string()))?;
     let (_, table) = read(bytes.into()).map_err(|e| refused(e.to_string()))?;
-    rows(&table, ["fabric", "parameter", "direction", "mean", "unit"])
-        .map_err(|name| refused(format!("there is no column `{name}`")))
+    rows(&table, OF_RUN).map_err(|name| refused(format!("there is no column `{name}`")))
 }
 
 fn rows_of_csv(path: &Path) -> Result<Vec<FabricRow>, LibraryError> {
@@ -217,6 +227,17 @@ fn rows_of_csv(path: &Path) -> Result<Vec<FabricRow>, LibraryError> {
     let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(&bytes);
     let mut reader = csv::Reader::from_reader(bytes);
     reader.deserialize().collect::<Result<_, _>>().map_err(|e| refused(e.to_string()))
+}
+
+/// The parameters of a table of results or of parameters; `name` stands for it in messages.
+pub(super) fn rows_of_parameters(name: &str, table: &RecordBatch) -> Result<Vec<FabricRow>, LibraryError> {
+    let of_results = table.column_by_name("case").is_some();
+    let rows = if of_results { rows_of_results(table) } else { rows(table, OF_RUN) };
+    let missing = |column| LibraryError::Results {
+        path: name.into(),
+        problem: format!("there is no column `{column}`"),
+    };
+    rows.map_err(missing)
 }
 
 /// Of the results of a part or of all parts, those of no case.

@@ -30,7 +30,7 @@ impl LibraryFile {
     pub fn open(path: &Path) -> Result<Self, LibraryError> {
         let builder = builder(path)?;
         let schema = builder.schema().clone();
-        if !schema.metadata().contains_key("kesf.library") || schema.field_with_name("fabric").is_err() {
+        if !schema.metadata.contains_key("kesf.library") || schema.field_with_name("fabric").is_err() {
             return Err(broken(path, "it is another table"));
         }
         Ok(Self { path: path.to_path_buf(), schema })
@@ -69,7 +69,9 @@ impl LibraryFile {
     /// O070 for a file that is cut or broken.
     pub fn rows(&self, numbers: &[usize]) -> Result<RecordBatch, LibraryError> {
         let builder = builder(&self.path)?;
-        let count = usize::try_from(builder.metadata().file_metadata().num_rows()).unwrap_or_default();
+        let count =
+            usize::try_from(ParquetRecordBatchReaderBuilder::metadata(&builder).file_metadata().num_rows())
+                .unwrap_or_default();
         let ranges = numbers.iter().map(|number| *number..*number + 1);
         let selection = RowSelection::from_consecutive_ranges(ranges, count);
         let reader = builder.with_row_selection(selection).build();
@@ -80,7 +82,7 @@ impl LibraryFile {
     }
 }
 
-fn builder(path: &Path) -> Result<ParquetRecordBatchReaderBuilder<std::fs::File>, LibraryError> {
+fn builder(path: &Path) -> Result<ParquetRecordBatchReaderBuilder<files::File>, LibraryError> {
     let file = files::open(path).map_err(|e| broken(path, &e.to_string()))?;
     ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| broken(path, &e.to_string()))
 }

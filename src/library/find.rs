@@ -9,6 +9,7 @@ use arrow_array::{Array, ArrayRef, Float64Array, RecordBatch, UInt64Array};
 use arrow_schema::{DataType, Field, Schema};
 
 use super::bounds::Bounds;
+use super::build::rows_of_parameters;
 use super::error::LibraryError;
 use super::file::LibraryFile;
 use super::space::{Axis, FEWEST, Point, SPACE, Usual, Values, column, columns, distance, point};
@@ -161,6 +162,16 @@ impl LibraryFile {
 fn number(table: &RecordBatch, name: &str, row: usize) -> Option<f64> {
     let numbers = table.column_by_name(name)?.as_primitive_opt::<Float64Type>()?;
     numbers.is_valid(row).then(|| numbers.value(row))
+}
+
+impl Like {
+    /// The parameters in SI of a table of one fabric.
+    ///
+    /// # Errors
+    /// O069 for another table.
+    pub fn of_table(table: &RecordBatch) -> Result<Self, LibraryError> {
+        Ok(Self::Rows(rows_of_parameters("the fabric", table)?))
+    }
 }
 
 /// The point of parameters in SI.

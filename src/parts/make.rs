@@ -16,7 +16,7 @@ use crate::platform::files;
 use crate::report::OutputError;
 use crate::report::arrow::read;
 use crate::report::write::{hash, write_part};
-use crate::results::{Failure, Input, Job, Observer, Share};
+use crate::results::{Failure, Input, Job, Observer, Share, hash_of};
 use crate::run::{RunSettings, key_of_case};
 
 /// What part is to be made, and where.
@@ -143,11 +143,12 @@ fn keys(request: &Request, share: Share) -> Result<(String, String), Failure> {
             texts.push(format!("{} {bytes}", source.display()));
         }
     }
-    texts.extend(found.fabrics.iter().filter_map(|input| match input {
-        Input::Memory { name, bytes } if share.shard.has(name) => {
-            Some(format!("{} {}", name.display(), hash(bytes)))
+    for input in found.fabrics.iter().filter(|input| share.shard.has(input.path())) {
+        match input {
+            Input::Path(_) => {}
+            Input::Memory { name, bytes } => texts.push(format!("{} {}", name.display(), hash(bytes))),
+            Input::Fabric(fabric) => texts.push(hash_of(fabric)?),
         }
-        Input::Memory { .. } | Input::Path(_) => None,
-    }));
+    }
     Ok((set_up, key_of(texts.iter().map(String::as_bytes))))
 }

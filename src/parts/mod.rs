@@ -22,4 +22,4 @@ pub use error::PartError;
 pub use evaluation::{Evaluation, evaluate};
 pub use make::{Done, Request, make};
 pub use merge::{Merged, complete, merge, merge_folder};
-pub use part::{Part, TABLES, Table, key_of};
+pub use part::{Part, TABLES, Table, encode, key_of};

@@ -92,26 +92,28 @@ impl Evaluation {
     /// # Errors
     /// O030 if a table cannot be made, O057 if the tallies cannot.
     pub fn files(&self, shard: Shard, set_up: &str, key: &str) -> Result<Vec<(String, Vec<u8>)>, Failure> {
-        let cases = serde_json::to_string(&self.tallies)?;
+        let tables = [batch(&self.findings)?, batch(&self.failures)?, batch(&self.results)?];
         let key = if self.unfinished { UNFINISHED } else { key };
-        let shard_text = shard.to_string();
-        let told = [
-            (VERSION, env!("CARGO_PKG_VERSION")),
-            (SHARD, &shard_text),
-            (SET_UP, set_up),
-            (KEY, key),
-            (CASES, &cases),
-        ];
-        let file = |table: Table| {
-            let rows = match table {
-                Table::Findings => batch(&self.findings),
-                Table::Failures => batch(&self.failures),
-                Table::Results => batch(&self.results),
-            };
-            Ok((table.file(shard), write(&rows?, &told)?))
-        };
-        TABLES.into_iter().map(file).collect()
+        encode(&tables, &serde_json::to_string(&self.tallies)?, shard, set_up, key)
     }
+}
+
+/// The files of a part by their names, of its tables in the order of [`TABLES`] and its tallies as JSON.
+///
+/// # Errors
+/// O030 if a table cannot be made.
+pub fn encode(
+    tables: &[RecordBatch; 3],
+    cases: &str,
+    shard: Shard,
+    set_up: &str,
+    key: &str,
+) -> Result<Vec<(String, Vec<u8>)>, Failure> {
+    let number = shard.to_string();
+    let version = env!("CARGO_PKG_VERSION");
+    let told = [(VERSION, version), (SHARD, &number), (SET_UP, set_up), (KEY, key), (CASES, cases)];
+    let file = |(table, rows): (Table, &RecordBatch)| Ok((table.file(shard), write(rows, &told)?));
+    TABLES.into_iter().zip(tables).map(file).collect()
 }
 
 impl Part {

@@ -133,5 +133,5 @@ pub fn read(bytes: Bytes) -> Result<(Metadata, RecordBatch), ParquetError> {
     let plain = Arc::new(schema.as_ref().clone().with_metadata(Metadata::default()));
     let batches = reader.build()?.collect::<Result<Vec<_>, _>>()?;
     let whole = concat_batches(&plain, &batches)?;
-    Ok((schema.metadata().clone().into(), whole))
+    Ok((schema.metadata.clone().into(), whole))
 }

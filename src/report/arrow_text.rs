@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use arrow_array::cast::AsArray;
 use arrow_array::types::{Float64Type, UInt64Type};
 use arrow_array::{Array, ArrayRef, RecordBatch};
-use arrow_schema::DataType;
+use arrow_schema::{DataType, Field};
 use serde::ser::{SerializeMap, SerializeSeq};
 use serde::{Serialize, Serializer};
 
@@ -94,7 +94,7 @@ impl Serialize for Record<'_> {
 /// Units of the columns that have one throughout, by their names.
 pub fn units(table: &RecordBatch) -> BTreeMap<String, String> {
     let unit = |field: &arrow_schema::FieldRef| {
-        Some((field.name().clone(), field.metadata().get(super::arrow::UNIT)?.clone()))
+        Some((field.name().clone(), Field::metadata(field).get(super::arrow::UNIT)?.clone()))
     };
     table.schema().fields().iter().filter_map(unit).collect()
 }

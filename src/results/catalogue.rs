@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::failure::Failure;
-use super::inputs::{Fabric, Input, Reading, fabric_in_memory, without_memory};
+use super::inputs::{Fabric, Input, Reading, without_memory};
 use super::names::{Named, distinguish};
 use super::observer::Observer;
 use super::record::digest_of;
@@ -101,13 +101,13 @@ impl Catalogue {
             errors.extend(unread);
         }
         for (at, input) in catalogue.memory.clone().iter().enumerate() {
-            let Input::Memory { name, bytes } = input else { continue };
-            match fabric_in_memory(name, bytes, &catalogue.reading) {
-                Ok((fabric, left_out)) => {
+            match input.in_memory(&catalogue.reading) {
+                Some(Ok((fabric, left_out))) => {
                     catalogue.add(vec![Entry::new(Origin::Memory(at), fabric, true)?]);
                     errors.extend(left_out);
                 }
-                Err(error) => errors.push(error),
+                Some(Err(error)) => errors.push(error),
+                None => {}
             }
         }
         let paths: Vec<&Path> = catalogue.entries.iter().map(|entry| &*entry.path).collect();
@@ -166,12 +166,10 @@ impl Catalogue {
     fn read_again(&self, origin: Origin) -> Vec<FabricInput> {
         match origin {
             Origin::Group(group) => self.library.read(group, &|_: &Path| ()).0,
-            Origin::Memory(at) => match &self.memory[at] {
-                Input::Memory { name, bytes } => {
-                    fabric_in_memory(name, bytes, &self.reading).into_iter().map(|read| read.0).collect()
-                }
-                Input::Path(_) => Vec::new(),
-            },
+            Origin::Memory(at) => {
+                let read = self.memory[at].in_memory(&self.reading).and_then(Result::ok);
+                read.into_iter().map(|(fabric, _)| fabric).collect()
+            }
         }
     }
 
@@ -194,7 +192,7 @@ impl Catalogue {
 }
 
 fn is_wanted_in_memory(input: &Input, share: Option<Share>) -> bool {
-    matches!(input, Input::Memory { name, .. } if share.is_none_or(|share| share.shard.has(name)))
+    !matches!(input, Input::Path(_)) && share.is_none_or(|share| share.shard.has(input.path()))
 }
 
 impl Entry {

@@ -13,6 +13,7 @@ mod cards;
 mod catalogue;
 mod checked;
 mod columns;
+mod curve_table;
 #[cfg(feature = "pictures")]
 mod drape_picture;
 mod draped;
@@ -49,6 +50,7 @@ pub use cards::{Card, cards, write_cards};
 pub(crate) use catalogue::Catalogue;
 pub use checked::{CheckDocument, Checked, check};
 pub use columns::Columns;
+pub use curve_table::{CurveTableError, fabrics_of_curves};
 #[cfg(feature = "pictures")]
 pub use drape_picture::{DrapePictures, drape_pictures};
 pub use draped::{DrapeEntry, DrapePoint};

@@ -56,6 +56,7 @@ impl Sorted {
 fn document_bytes(input: &Input) -> Option<Cow<'_, [u8]>> {
     match input {
         Input::Memory { bytes, .. } => Some(Cow::Borrowed(bytes)),
+        Input::Fabric(_) => None,
         Input::Path(path) => {
             let is_json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
             is_json.then(|| files::read(path).ok().map(Cow::Owned))?
