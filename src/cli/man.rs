@@ -1,4 +1,4 @@
-//! `kesf man`: manual pages for `man`, one for the command and one for each subcommand.
+//! `kesf man`: manual pages for `man`, one for the command and one for each subcommand and its own.
 
 use std::path::PathBuf;
 
