@@ -55,6 +55,12 @@ pub mod results;
 #[cfg(feature = "results")]
 pub mod run;
 
+#[cfg(feature = "parquet")]
+pub mod parts;
+
+#[cfg(feature = "parquet")]
+pub mod library;
+
 #[cfg(feature = "cli")]
 pub mod cli;
 

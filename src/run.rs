@@ -23,6 +23,7 @@ mod fabrics;
 mod own;
 mod settings;
 mod tables;
+mod tally;
 mod work;
 
 use crate::case::Case;
@@ -31,7 +32,12 @@ use crate::results::{
     Catalogue, Columns, FabricReport, Failure, Folder, Job, JobInputs, Observer, Record, Sink,
 };
 
+#[cfg(feature = "parquet")]
+pub(crate) use fabrics::key_of_case;
 pub use settings::{FieldFiles, RunSettings};
+pub use tally::CaseTally;
+#[cfg(feature = "parquet")]
+pub(crate) use tally::of_batch;
 pub use work::RunWork;
 
 use fabrics::Workshop;
@@ -54,6 +60,11 @@ pub struct RunReport {
     pub tables: Vec<Columns>,
     /// How many fabrics the overview does not list.
     pub unlisted: usize,
+    /// Whether another run of the same could find more, as after a limit of time or for want of memory.
+    pub unfinished: bool,
+    /// What the fabrics of a share are to the cases; nothing of a whole batch, of which the failures and findings
+    /// say it.
+    pub tallies: Vec<CaseTally>,
     /// Names of the fabrics, and those whose record could not be written.
     fabrics: Vec<(String, Option<Box<Record>>)>,
     own: Vec<PredictionRow>,
@@ -116,6 +127,12 @@ impl RunReport {
         Ok(rows)
     }
 
+    /// Rows of the predictions of cases with constants of their own.
+    #[cfg(feature = "parquet")]
+    pub(crate) fn own_predictions(&self) -> &[PredictionRow] {
+        &self.own
+    }
+
     /// Every row of `predictions.csv`, from the folder of results that the run wrote to.
     ///
     /// # Errors
@@ -157,11 +174,17 @@ pub fn run(
 pub fn read(job: &Job, settings: &RunSettings, observer: &Observer) -> Result<RunWork, Failure> {
     let JobInputs { cases, fabrics, mut failures } = job.cases(observer);
     let moduli: Vec<_> = cases.iter().filter_map(|c| c.assumptions()).map(|a| a.modulus).collect();
-    let mut catalogue = Catalogue::find(&job.reading, &fabrics, &moduli, observer)?;
+    if job.share.is_some_and(|share| !share.speaks_for_all()) {
+        failures.clear();
+    }
+    let mut catalogue = Catalogue::find(&job.reading, &fabrics, &moduli, job.share, observer)?;
     failures.append(&mut catalogue.failures);
     let cases = without_drapes(cases, settings, observer);
-    let work = RunWork { cases, catalogue, failures, threads: job.threads.max(1), limits: job.limits };
-    if work.is_empty() && work.failures.is_empty() {
+    let (threads, limits, share) = (job.threads.max(1), job.limits, job.share);
+    let work = RunWork { cases, catalogue, failures, threads, limits, share };
+    // A shard may have nothing.
+    let may_be_empty = work.catalogue.left_out || job.share.is_some_and(|share| !share.of_whole);
+    if work.is_empty() && work.failures.is_empty() && !may_be_empty {
         return Err(Failure::new("O055", "there is neither a fabric nor a case in the inputs")
             .hint("run where kesf_data and cases are, or name fabric folders and case files"));
     }
@@ -184,12 +207,13 @@ pub fn write(
     let folder = Folder::new(sink, settings.charts).with_fields(with_fields).with_bom(settings.bom);
     let shop = Workshop::new((job, settings), work, &folder, observer)?;
     let mut made = shop.run()?;
-    let without_law = shop.without_law();
+    // Of a share, nobody knows yet what is true of all fabrics.
+    let without_law = if job.share.is_some() { Vec::new() } else { shop.without_law() };
     without_law.iter().for_each(|finding| observer.found(None, finding));
     let cases = shop.suitable();
     let own = own_cases(work, &folder, observer)?;
 
-    let mut failures = shop.without_fabric(&cases);
+    let mut failures = if job.share.is_some() { Vec::new() } else { shop.without_fabric(&cases) };
     failures.extend(made.iter().flat_map(|m| m.failures.iter().cloned()));
     failures.extend(own.iter().flat_map(Own::failures));
     failures.iter().for_each(|failure| observer.failed(failure));
@@ -212,6 +236,8 @@ pub fn write(
         resumed: made.iter().filter(|m| m.resumed).count(),
         fails_a_check: made.iter().any(|m| m.fails_a_check) || own.iter().any(Own::fails_a_check),
         unlisted: made.len().saturating_sub(LISTED),
+        unfinished: !made.iter().all(|m| m.is_final),
+        tallies: if job.share.is_some() { shop.tallies() } else { Vec::new() },
         fabrics: made
             .iter_mut()
             .enumerate()

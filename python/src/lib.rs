@@ -14,11 +14,13 @@
 //! | `section.rs` | shell sections and material cards |
 //! | `simulate.rs` | cases and their outcomes |
 //! | `run.rs` | a folder of results; the verification suite |
+//! | `parts.rs` | parts of a batch, their merge, libraries |
 // Not `forbid`: what PyO3 generates allows it again.
 #![deny(unsafe_code)]
 
 mod error;
 mod fabric;
+mod parts;
 mod run;
 mod section;
 mod sheet;
@@ -36,6 +38,11 @@ use pyo3::prelude::*;
 mod _kesf {
     #[pymodule_export]
     use crate::fabric::{Fabric, find, read};
+    #[pymodule_export]
+    use crate::parts::{
+        complete, evaluate, key_in, key_of, library_build, library_find, make_part, merge, merge_file,
+        part_files, shard_of,
+    };
     #[pymodule_export]
     use crate::run::{run, verify};
     #[pymodule_export]

@@ -12,6 +12,8 @@ use arrow_array::{
     StringArray, UInt64Array,
 };
 use arrow_schema::{ArrowError, DataType, Field, Schema};
+use arrow_select::concat::concat_batches;
+use kesf::report::arrow::{UNIT, UNIT_COLUMN, array, unit_of};
 use kesf::report::table::{Row, Values};
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::{PyKeyError, PyValueError};
@@ -21,30 +23,6 @@ use pyo3::types::{PyCapsule, PyDict, PyList};
 /// Names that the PyCapsule interface of Arrow fixes.
 const SCHEMA: &CStr = c"arrow_schema";
 const STREAM: &CStr = c"arrow_array_stream";
-
-/// Where the unit of a column is written.
-const UNIT: &str = "unit";
-
-/// Key of the column that has the unit of each row, where one column holds several units.
-const UNIT_COLUMN: &str = "unit_column";
-
-/// Columns of numbers, and the column of their units; `1` is for those that have none.
-const UNITS: [(&str, &str); 14] = [
-    ("mean", "unit"),
-    ("sd", "unit"),
-    ("ci95", "unit"),
-    ("cv", "1"),
-    ("n", "1"),
-    ("simulated", "unit"),
-    ("measured", "unit"),
-    ("simulated_low", "unit"),
-    ("simulated_high", "unit"),
-    ("error", "1"),
-    ("value", "unit"),
-    ("x", "x_unit"),
-    ("y", "y_unit"),
-    ("factor", "1"),
-];
 
 /// A table of the library. Its columns are text, 64-bit numbers or counts; what is absent is null.
 #[pyclass(frozen, module = "kesf._kesf")]
@@ -69,6 +47,22 @@ impl Table {
             metadata: unit(name, &columns),
         };
         Self::of_columns(columns.iter().map(with_unit))
+    }
+
+    /// The table of Arrow.
+    pub fn new(batch: RecordBatch) -> Self {
+        Self { batch }
+    }
+
+    /// The table of pieces of one schema, of which there is one at least.
+    pub fn of_pieces(pieces: &[RecordBatch]) -> PyResult<Self> {
+        let schema = pieces.first().map_or_else(|| Arc::new(Schema::empty()), RecordBatch::schema);
+        Ok(Self { batch: concat_batches(&schema, pieces).map_err(refused)? })
+    }
+
+    /// The table of Arrow.
+    pub fn batch(&self) -> &RecordBatch {
+        &self.batch
     }
 
     /// The table of columns of equal length.
@@ -102,23 +96,13 @@ fn refused(error: ArrowError) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-fn array(values: Values) -> ArrayRef {
-    match values {
-        Values::Text(cells) => Arc::new(StringArray::from(cells)),
-        Values::Number(cells) => Arc::new(Float64Array::from(cells)),
-        Values::Count(cells) => Arc::new(UInt64Array::from(cells)),
-    }
-}
-
-/// The unit of a column, if all of it has one, and else where the units are.
+/// Where the unit of a column is told, and the unit itself if all of the column has one.
 fn unit(name: &str, columns: &[(&str, Values)]) -> HashMap<String, String> {
-    let Some((_, source)) = UNITS.iter().find(|(column, _)| *column == name) else { return HashMap::new() };
-    let units = match columns.iter().find(|(column, _)| column == source) {
-        Some((_, Values::Text(units))) => units,
-        _ => return HashMap::from([(UNIT.into(), (*source).into())]),
-    };
-    let mut told = HashMap::from([(UNIT_COLUMN.to_string(), (*source).to_string())]);
-    if let Some(Some(first)) = units.first()
+    let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
+    let mut told = unit_of(name, &names);
+    let source = told.get(UNIT_COLUMN).and_then(|source| columns.iter().find(|(name, _)| name == source));
+    if let Some((_, Values::Text(units))) = source
+        && let Some(Some(first)) = units.first()
         && units.iter().all(|unit| unit.as_ref() == Some(first))
     {
         told.insert(UNIT.into(), first.clone());

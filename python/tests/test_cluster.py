@@ -53,12 +53,8 @@ def client() -> Iterator[Any]:
         yield client
 
 
-def merged(out: Path) -> list[Any]:
-    return [parts.merge(str(out), table) for table in parts.TABLES]
-
-
 def as_bytes(out: Path) -> list[bytes]:
-    return [parts.parquet(table, {}) for table in merged(out)]
+    return [parts.merge_file(str(out), table) for table in parts.TABLES]
 
 
 def test_an_evaluation_is_what_a_run_gives() -> None:
@@ -83,8 +79,63 @@ def test_a_table_of_files_is_evaluated(tmp_path: Path) -> None:
     assert [v for v in in_memory.results["value"] if v not in values] == []
     polars = pytest.importorskip("polars")
     assert kesf.evaluate(polars.DataFrame({"path": ["kesf_data/petrak_m1"]}), CASE) == by_path
-    with pytest.raises(kesf.KesfError, match="no column `path`; it has file"):
+    with pytest.raises(kesf.KesfError, match="no column `path` and no column `fabric`; it has file"):
         kesf.evaluate(pyarrow.table({"file": ["a"]}))
+
+
+def test_a_table_of_curves_is_evaluated() -> None:
+    batch = kesf.read("kesf_data/poplin")
+    by_path = kesf.evaluate("kesf_data/poplin")
+    expected = {(row["quantity"], row["direction"]): row for row in by_path.results.rows()}
+    for curves in (batch.curves(), pyarrow.table(batch.curves())):
+        done = kesf.evaluate(curves)
+        found = {(row["quantity"], row["direction"]): row for row in done.results.rows()}
+        # Areal density is in fabric.toml, which a table of curves has not.
+        assert set(expected) - set(found) == {("W", None)}
+        for name, row in found.items():
+            assert row["value"] == pytest.approx(expected[name]["value"], rel=1e-12), name
+            assert row["n"] == expected[name]["n"] and row["unit"] == expected[name]["unit"]
+    kes = kesf.evaluate(batch.curves(units="kes"), CASE)
+    for row in kes.results.rows():
+        assert row["value"] == pytest.approx(expected[row["quantity"], row["direction"]]["value"], rel=1e-9)
+    # The case needs the areal density, and says so.
+    assert any("areal density" in row["message"] for row in kes.failures.rows()), kes.failures.rows()
+    table = pyarrow.table(batch.curves())
+    wrong = table.set_column(table.column_names.index("x_unit"), "x_unit", pyarrow.array(["gf"] * len(table)))
+    with pytest.raises(kesf.KesfError, match="row 1 of the table of curves .*the unit is `gf`") as refused:
+        kesf.evaluate(wrong)
+    assert refused.value.code == "O073"
+    with pytest.raises(kesf.KesfError, match="no column `path` and no column `y`"):
+        kesf.evaluate(table.drop_columns(["y"]))
+    empty = table.set_column(table.column_names.index("y"), "y", pyarrow.array([None] * len(table), pyarrow.float64()))
+    with pytest.raises(kesf.KesfError, match="row 1 of the table of curves has no y"):
+        kesf.evaluate(empty)
+
+
+def test_parts_of_different_runs_are_refused(tmp_path: Path) -> None:
+    for case, shard in ((CASE, 0), ("cases/virtual_shear.toml", 1)):
+        dask.work(dask.plan("kesf_data/petrak_m1", case, tmp_path, 2)[shard])
+    with pytest.raises(kesf.KesfError, match="of other inputs, cases or settings") as refused:
+        parts.merge(str(tmp_path))
+    assert refused.value.code == "O066"
+
+
+def test_what_only_the_whole_batch_tells_is_told_once(client: Any, tmp_path: Path) -> None:
+    cases = [
+        "cases/virtual_bending_friction.toml",
+        "cases/fab_bend_loop.toml",
+        "cases/benchmark_clamped_isotropic.toml",
+    ]
+    for shards in (1, 3):
+        dask.run("kesf_data", cases, tmp_path / str(shards), client, shards=shards)
+    assert as_bytes(tmp_path / "1") == as_bytes(tmp_path / "3")
+    whole = kesf.evaluate("kesf_data", cases)
+    results = parts.merge(str(tmp_path / "3"))
+    assert sorted(map(str, whole.results.rows())) == sorted(map(str, results.to_pylist()))
+    said = parts.merge(str(tmp_path / "3"), "findings").to_pylist()
+    assert [row["message"] for row in said if row["code"] == "S118"] == [
+        row["message"] for row in whole.findings.rows() if row["code"] == "S118"
+    ]
 
 
 def test_any_number_of_shards_gives_the_same_bytes(library: Path, client: Any, tmp_path: Path) -> None:
@@ -148,7 +199,7 @@ def test_finished_shards_are_not_done_again(library: Path, client: Any, tmp_path
     broken.write_bytes(broken.read_bytes()[:100])
     with pytest.raises(kesf.KesfError, match="cannot be read") as refused:
         parts.merge(str(out))
-    assert refused.value.code == "O042" and refused.value.path == str(broken)
+    assert refused.value.code == "O067" and refused.value.path == str(broken)
     assert [one.kept for one in dask.run(copy, CASE, out, client, shards=3)] == [False, True, True]
     assert as_bytes(out) == whole
     # Another case is another run.
@@ -177,7 +228,7 @@ def test_one_name_in_two_parts_is_refused(tmp_path: Path) -> None:
         parts.write(kesf.evaluate("kesf_data/petrak_m1"), out, parts.Shard(number, 2), "key")
     with pytest.raises(kesf.KesfError, match="petrak_m1 is in part-0001-of-0002") as refused:
         parts.merge(out)
-    assert refused.value.code == "O056"
+    assert refused.value.code == "O068"
 
 
 def test_what_cannot_be_opened_is_told(client: Any, tmp_path: Path) -> None:

@@ -5,8 +5,8 @@ use clap::{Parser, Subcommand};
 use super::global::Global;
 
 use super::{
-    characterise, check, compare, completions, drape_image, explain, export, init, list, man, read, report,
-    run, section, solve, verify,
+    characterise, check, compare, completions, drape_image, explain, export, init, library, list, man, merge,
+    read, report, run, section, solve, verify,
 };
 
 /// Kawabata (KES-F) measurements in; fabric parameters, shell sections, predictions and charts out.
@@ -27,6 +27,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     Run(run::Options),
+    Merge(merge::Options),
     Read(read::Options),
     Characterise(characterise::Options),
     Section(section::Options),
@@ -35,6 +36,7 @@ pub enum Command {
     DrapeImage(drape_image::Options),
     Export(export::Options),
     Report(report::Options),
+    Library(library::Options),
     Verify(verify::Options),
     Init(init::Options),
     Check(check::Options),

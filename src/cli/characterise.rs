@@ -9,7 +9,7 @@ use super::inputs::{EvaluateArgs, Units, inputs};
 use super::output::{Format, OutputArgs};
 use super::ui::Ui;
 use crate::report::json::sheet_document;
-use crate::report::table::{FabricRow, ProblemRow, fabric_rows, parquet, problem_row};
+use crate::report::table::{FabricRow, ProblemRow, csv, fabric_rows, parquet, problem_row};
 use crate::report::workbook::{Tables, workbook};
 use crate::results::{
     Curves, Event, Fabric, Failure, Found, evaluation_text, nothing_to_read, parameters_text,
@@ -58,7 +58,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
             parts.collect::<Vec<_>>().join("\n").into_bytes()
         }
         Format::Json => ui.with_failures(sheet_document(sheets(), Some(&settings)))?.into_bytes(),
-        Format::Csv => options.output.csv(&rows())?,
+        Format::Csv => options.output.marked(csv(&rows())?),
         Format::Parquet => parquet(&rows())?,
         Format::Xlsx => {
             let problems = problems(&fabrics, &failures);

@@ -1,4 +1,4 @@
-//! `kesf man`: manual pages for `man`, one for the command and one for each subcommand.
+//! `kesf man`: manual pages for `man`, one for the command and one for each subcommand and its own.
 
 use std::path::PathBuf;
 
@@ -27,7 +27,8 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let folder = open_folder(&options.output, options.force)?;
     let mut command = Cli::command().disable_help_subcommand(true);
     command.build();
-    let pages: Vec<_> = std::iter::once(&command).chain(command.get_subcommands()).cloned().collect();
+    let inner = command.get_subcommands().flat_map(|own| std::iter::once(own).chain(own.get_subcommands()));
+    let pages: Vec<_> = std::iter::once(&command).chain(inner).cloned().collect();
     let mut names = Vec::new();
     for page in pages.into_iter().map(Man::new) {
         let mut text = Vec::new();

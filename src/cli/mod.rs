@@ -19,15 +19,19 @@ mod global;
 mod init;
 mod inputs;
 mod interrupt;
+mod library;
+mod library_find;
 mod list;
 mod man;
 mod memory;
+mod merge;
 mod output;
 mod progress;
 mod read;
 mod report;
 mod run;
 mod section;
+mod shard;
 mod simulate;
 mod solve;
 mod tasks;
@@ -66,6 +70,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 fn dispatch(command: &Command, ui: &Ui) -> Result<Exit, Failure> {
     match command {
         Command::Run(options) => run::run(options, ui),
+        Command::Merge(options) => merge::run(options, ui),
         Command::Read(options) => read::run(options, ui),
         Command::Characterise(options) => characterise::run(options, ui),
         Command::Section(options) => section::run(options, ui),
@@ -74,6 +79,7 @@ fn dispatch(command: &Command, ui: &Ui) -> Result<Exit, Failure> {
         Command::DrapeImage(options) => drape_image::run(options, ui),
         Command::Export(options) => export::run(options, ui),
         Command::Report(options) => report::run(options, ui),
+        Command::Library(options) => library::run(options, ui),
         Command::Verify(options) => verify::run(options, ui),
         Command::Init(options) => init::run(options, ui),
         Command::Check(options) => check::run(options, ui),

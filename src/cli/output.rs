@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::report::OutputFolder;
-use crate::report::table::{Row, csv, marked};
+use crate::report::table::marked;
 use crate::report::write::write_file;
 use crate::results::Failure;
 
@@ -54,10 +54,9 @@ impl OutputArgs {
         }
     }
 
-    /// A table as it goes out, with the mark that was asked for.
-    pub fn csv<R: Row>(&self, rows: &[R]) -> Result<Vec<u8>, Failure> {
-        let bytes = csv(rows)?;
-        Ok(if self.bom { marked(bytes) } else { bytes })
+    /// A CSV table with the mark, if it was asked for.
+    pub fn marked(&self, bytes: Vec<u8>) -> Vec<u8> {
+        if self.bom { marked(bytes) } else { bytes }
     }
 
     /// The error for an ending that the command has no format for.

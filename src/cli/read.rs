@@ -10,7 +10,7 @@ use super::inputs::{ReadArgs, Units, inputs};
 use super::output::{Format, OutputArgs};
 use super::ui::Ui;
 use crate::instrument::FabricInput;
-use crate::report::table::{CurveRow, curve_rows, parquet};
+use crate::report::table::{CurveRow, csv, curve_rows, parquet};
 use crate::results::{Event, Failure, Found, Read, nothing_to_read};
 
 /// Read measurement files into one tidy table of points (CSV, Parquet or JSON)
@@ -54,7 +54,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     }
     let rows: Vec<CurveRow> = fabrics.iter().flat_map(|f| curve_rows(f, options.units.into())).collect();
     let bytes = match format {
-        Format::Text | Format::Csv => options.output.csv(&rows)?,
+        Format::Text | Format::Csv => options.output.marked(csv(&rows)?),
         Format::Xlsx => return Err(options.output.no_such_format(".csv, .parquet or .json")),
         Format::Parquet => parquet(&rows)?,
         Format::Json => ui.complete(Document { schema: "kesf.curves/1", fabrics: &fabrics })?.into_bytes(),

@@ -8,15 +8,18 @@ use serde::Serialize;
 use super::exit::Exit;
 use super::fields::FieldsArg;
 use super::output::{now, open_folder, program};
+use super::shard::{self, Request};
 use super::tasks::TaskArgs;
 use super::ui::Ui;
 use crate::report::table::PredictionRow;
-use crate::results::Failure;
-use crate::run::{self, RunReport, RunSettings};
+use crate::results::{Failure, Shard};
+use crate::run::{self, RunSettings};
 
 /// Do everything: read fabrics, evaluate, solve and compare every case, draw charts, write tables
 #[derive(Debug, Args)]
-#[command(after_help = "Example: kesf run kesf_data cases -o results")]
+#[command(
+    after_help = "Example: kesf run kesf_data cases -o results\n         kesf run fabrics cases --shard 3/1000 -o parts"
+)]
 pub struct Options {
     /// Fabrics and cases
     #[arg(value_name = "INPUT", default_values = ["kesf_data", "cases"])]
@@ -24,6 +27,9 @@ pub struct Options {
     /// Folder of the results
     #[arg(short, long, value_name = "FOLDER", default_value = "results")]
     output: PathBuf,
+    /// Do one part of many, as Parquet: the fabrics whose names fall to this shard; `kesf merge` joins the parts
+    #[arg(long, value_name = "K/N", conflicts_with_all = ["fields", "stamp", "xlsx", "bom", "no_charts"])]
+    shard: Option<Shard>,
     /// Solve drape cases too: a minute or so for each fabric
     #[arg(long)]
     drape: bool,
@@ -67,6 +73,13 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         workbook: options.xlsx,
         strict: options.task.strict,
     };
+    if let Some(shard) = options.shard {
+        return shard::run(
+            shard,
+            &Request { job, settings, folder: &options.output, force: options.task.force },
+            ui,
+        );
+    }
     let work = ui.observe(|observer| run::read(&job, &settings, observer))?;
     if work.is_empty() {
         return Ok(Exit::of_batch(0, &work.failures));
@@ -101,9 +114,6 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
             "{shown}: index.html, fabrics.csv, predictions.csv{charts}; {findings} findings in problems.csv"
         ));
     }
-    Ok(exit(&report, options.task.strict && ui.findings() > 0))
-}
-
-fn exit(report: &RunReport, strict: bool) -> Exit {
-    Exit::of_batch(report.useful, &report.failures).unless(report.fails_a_check || strict)
+    let strict = options.task.strict && ui.findings() > 0;
+    Ok(Exit::of_batch(report.useful, &report.failures).unless(report.fails_a_check || strict))
 }

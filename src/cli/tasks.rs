@@ -70,6 +70,7 @@ impl TaskArgs {
             solver: self.solver.map(Into::into),
             threads: ui.threads,
             limits: self.limits(),
+            share: None,
         })
     }
 

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::error::{Problem, ReadError};
-use super::fabric_file::{read_dialect, read_fabric_file};
+use super::fabric_file::{DRAPE_FILE, read_dialect, read_fabric_file};
 use super::file_name::{ABOUT, EXTENSIONS};
 use super::own_results::{JOURNAL, MANIFEST, OwnResults};
 use super::read::{FileContent, ReadSettings, read};
@@ -25,6 +25,9 @@ pub struct Batch {
 
 /// Files that are read by one thread: starting more takes longer.
 const FEW: usize = 16;
+
+/// Files beside the measurements of a fabric that are read with them.
+const BESIDE: [&str; 3] = ["fabric.toml", "dialect.toml", DRAPE_FILE];
 
 /// What is to be read as one fabric.
 struct Group {
@@ -140,6 +143,25 @@ impl Library {
         self.groups.iter().map(|group| (group.path.as_path(), group.files.as_slice()))
     }
 
+    /// Every file that what is read of each fabric depends on, with the folder or file of the fabric: its measurements,
+    /// and what is said of them beside it.
+    pub fn sources(&self) -> impl Iterator<Item = (&Path, Vec<PathBuf>)> {
+        self.groups.iter().map(|group| {
+            let beside = group.folder().into_iter().flat_map(|folder| BESIDE.map(|name| folder.join(name)));
+            let files = group.files.iter().cloned().chain(beside.filter(|file| files::is_file(file)));
+            (group.path.as_path(), files.collect())
+        })
+    }
+
+    /// Keeps the fabrics whose folder or file is wanted; with `alone`, nothing is said of the inputs as a whole.
+    pub fn keep(&mut self, wanted: impl Fn(&Path) -> bool, alone: bool) {
+        self.groups.retain(|group| wanted(&group.path));
+        if alone {
+            self.findings.clear();
+            self.failures.clear();
+        }
+    }
+
     /// Number of the folders and files that are read together.
     pub fn groups(&self) -> usize {
         self.groups.len()
@@ -218,16 +240,20 @@ impl Group {
         (fabrics(self, &about, contents), failures)
     }
 
-    /// What the folder says of its data, or the one above a single file.
-    fn about(&self, settings: &ReadSettings) -> Result<AboutGroup, ReadError> {
-        let folder = if self.name.is_none() {
+    /// The folder that may say something of its data.
+    fn folder(&self) -> Option<&Path> {
+        if self.name.is_none() {
             None
         } else if files::is_file(&self.path) {
             fabric_folder(&self.path)
         } else {
             Some(self.path.as_path())
-        };
-        match folder {
+        }
+    }
+
+    /// What the folder says of its data, or the one above a single file.
+    fn about(&self, settings: &ReadSettings) -> Result<AboutGroup, ReadError> {
+        match self.folder() {
             Some(folder) => about(folder, settings),
             None => Ok(AboutGroup {
                 info: FabricInfo::default(),

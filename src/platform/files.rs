@@ -82,6 +82,18 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     system::read(path)
 }
 
+#[cfg(feature = "parquet")]
+pub use std::fs::File;
+
+/// A file that is read in pieces.
+///
+/// # Errors
+/// Those of the system.
+#[cfg(feature = "parquet")]
+pub fn open(path: &Path) -> io::Result<File> {
+    File::open(path)
+}
+
 /// The text of a file.
 ///
 /// # Errors

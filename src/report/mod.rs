@@ -3,7 +3,13 @@
 //! The makers are pure: they return bytes, the same for the same data. [`mod@write`] is the only part that
 //! touches the disk.
 
+#[cfg(feature = "parquet")]
+pub mod arrow;
+#[cfg(feature = "parquet")]
+pub mod arrow_text;
 pub mod cards;
+#[cfg(feature = "polars")]
+pub mod frame;
 pub mod html;
 pub mod json;
 mod output_folder;
@@ -28,6 +34,6 @@ pub mod overlay;
 
 pub use output_folder::{OutputFolder, Pending, is_hidden};
 pub use table_stream::CsvTable;
-#[cfg(feature = "tables")]
+#[cfg(feature = "parquet")]
 pub use table_stream::ParquetTable;
 pub use write::OutputError;

@@ -1,4 +1,4 @@
-//! Tidy tables: one observation a row, with its unit; as CSV, and as Parquet with the feature `tables`.
+//! Tidy tables: one observation a row, with its unit; as CSV, and as Parquet with the feature `parquet`.
 
 use serde::{Deserialize, Serialize};
 
@@ -55,6 +55,7 @@ cell! {
     f64, Number, Some;
     Option<f64>, Number, |cell| cell;
     u64, Count, Some;
+    Option<u64>, Count, |cell| cell;
 }
 
 /// A row of a table: a plain struct whose field names are the column names.
@@ -70,12 +71,6 @@ pub trait Row: Clone + Serialize {
     /// The row with no text that a spreadsheet would take for a formula; see [`csv`](fn@csv).
     #[must_use]
     fn harmless(self) -> Self;
-
-    /// The columns of the rows.
-    #[cfg(feature = "tables")]
-    fn columns(rows: &[Self]) -> Vec<polars::prelude::Column>
-    where
-        Self: Sized;
 }
 
 /// A cell of a table.
@@ -93,6 +88,12 @@ impl Harmless for String {
     }
 }
 
+/// Text that no spreadsheet takes for a formula; see [`csv`](fn@csv).
+#[cfg(feature = "parquet")]
+pub(super) fn harmless(text: String) -> String {
+    text.harmless()
+}
+
 impl Harmless for Option<String> {
     fn harmless(self) -> Self {
         self.map(Harmless::harmless)
@@ -108,7 +109,7 @@ macro_rules! numbers {
         }
     )*};
 }
-numbers!(f64, u64, Option<f64>);
+numbers!(f64, u64, Option<f64>, Option<u64>);
 
 macro_rules! row {
     ($(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident: $type:ty,)* }) => {
@@ -127,14 +128,6 @@ macro_rules! row {
 
             fn harmless(self) -> Self {
                 Self { $($field: Harmless::harmless(self.$field)),* }
-            }
-
-            #[cfg(feature = "tables")]
-            fn columns(rows: &[Self]) -> Vec<polars::prelude::Column> {
-                vec![$({
-                    let values: Vec<$type> = rows.iter().map(|row| row.$field.clone()).collect();
-                    polars::prelude::Column::new(stringify!($field).into(), values)
-                }),*]
             }
         }
     };
@@ -225,6 +218,50 @@ row! {
 }
 
 row! {
+    /// Something that is known of a fabric: a parameter, or what a case predicts; SI (the results of a part).
+    ResultRow {
+        /// Identifier of the fabric; of a case with constants of its own, nothing.
+        fabric: String,
+        /// Name of the case; nothing of a parameter.
+        case: Option<String>,
+        /// Symbol of a parameter, e.g. `2HB`, or what was predicted, e.g. `w_max`.
+        quantity: String,
+        /// `warp`, `weft` or `bias` of a parameter that has one.
+        direction: Option<String>,
+        /// Mean over the repeats, or the simulated value.
+        value: Option<f64>,
+        /// SI unit of all numbers of the row.
+        unit: String,
+        /// Sample standard deviation of a parameter.
+        sd: Option<f64>,
+        /// Number of repeats of a parameter.
+        n: Option<u64>,
+        /// Measured value beside a prediction.
+        measured: Option<f64>,
+        /// Lower end of the 95 % band of a prediction.
+        low: Option<f64>,
+        /// Upper end of that band.
+        high: Option<f64>,
+        /// Status of a parameter, as in `fabrics.csv`.
+        status: Option<String>,
+    }
+}
+
+row! {
+    /// What a reader of a part must know, or what gave nothing (the findings and failures of a part).
+    RemarkRow {
+        /// The fabric that it is about.
+        fabric: Option<String>,
+        /// Code for `kesf explain`.
+        code: String,
+        /// `file:line:column`, or the fabric or case.
+        place: String,
+        /// One sentence.
+        message: String,
+    }
+}
+
+row! {
     /// A point of a measured curve, as read (`kesf read`).
     CurveRow {
         /// Identifier of the fabric.
@@ -278,7 +315,7 @@ impl UnitSystem {
 
 /// An SI value in another unit, to 12 significant digits: what was 0.1 gf·cm²/cm in a file is that again, not
 /// 0.09999999999999999.
-fn in_unit(value: f64, factor: f64) -> f64 {
+pub(crate) fn in_unit(value: f64, factor: f64) -> f64 {
     if factor == 1.0 {
         return value;
     }
@@ -430,7 +467,7 @@ pub fn marked(csv: Vec<u8>) -> Vec<u8> {
 ///
 /// # Errors
 /// [`TableError::Encode`].
-#[cfg(feature = "tables")]
+#[cfg(feature = "parquet")]
 pub fn parquet<R: Row>(rows: &[R]) -> Result<Vec<u8>, TableError> {
     let mut table = super::ParquetTable::new(Vec::new())?;
     rows.iter().try_for_each(|row| table.row(row))?;
@@ -438,94 +475,4 @@ pub fn parquet<R: Row>(rows: &[R]) -> Result<Vec<u8>, TableError> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::characterise::Key;
-
-    fn sheet() -> FabricSheet {
-        let mut sheet = FabricSheet { name: "poplin, \"A\"".into(), ..FabricSheet::default() };
-        let b = Estimate { mean: 9.80665e-6, sd: Some(9.80665e-8), n: 3, values: vec![] };
-        sheet.values.insert(Key { parameter: Parameter::B, direction: Some(Direction::Warp) }, b);
-        sheet.values.insert(Key { parameter: Parameter::T0, direction: None }, Estimate::single(4e-4));
-        sheet
-    }
-
-    #[test]
-    fn fabrics_as_csv() {
-        // B: 9.80665e-6 N·m is 0.1 gf·cm²/cm.
-        let text = String::from_utf8(csv(&fabric_rows(&sheet(), UnitSystem::Kes)).unwrap()).unwrap();
-        let mut lines = text.lines();
-        assert_eq!(lines.next(), Some("fabric,parameter,direction,mean,sd,n,unit,status,cv,ci95"));
-        let b = lines.next().unwrap();
-        // t(0.975, 2) = 4.30265272991 (tables): 0.001 t / √3.
-        let (values, half) = b.rsplit_once(',').unwrap();
-        assert_eq!(values, "\"poplin, \"\"A\"\"\",B,warp,0.1,0.001,3,gf·cm²/cm,measured,0.01");
-        assert!((half.parse::<f64>().unwrap() / 0.002_484_137_711_8 - 1.0).abs() < 1e-10);
-        assert!(lines.next().unwrap().ends_with(",T0,,0.4,,1,mm,measured,,"));
-        let si = String::from_utf8(csv(&fabric_rows(&sheet(), UnitSystem::Si)).unwrap()).unwrap();
-        assert!(si.contains(",B,warp,9.80665e-6,9.80665e-8,3,N·m,measured"), "{si}");
-    }
-
-    #[test]
-    fn the_columns_of_rows_are_their_cells() {
-        let mut rows = fabric_rows(&sheet(), UnitSystem::Si);
-        rows.push(failed_fabric_row("bad", "R004"));
-        let columns: Vec<_> = FabricRow::HEADER.iter().copied().zip(FabricRow::values(&rows)).collect();
-        assert_eq!(columns[1].0, "parameter");
-        assert_eq!(columns[1].1, Values::Text(["B", "T0", ""].map(|t| Some(t.to_string())).to_vec()));
-        assert_eq!(columns[3], ("mean", Values::Number(vec![Some(9.80665e-6), Some(4e-4), None])));
-        assert_eq!(columns[5], ("n", Values::Count(vec![Some(3), Some(1), Some(0)])));
-        assert_eq!(FabricRow::values(&[])[2], Values::Text(Vec::new()), "an empty column keeps its type");
-    }
-
-    #[test]
-    fn no_text_is_a_formula_and_numbers_stay_numbers() {
-        for name in ["=cmd|' /C calc'!A0", "+1", "-1", "@SUM(A1)", "\t=1", "\r=1"] {
-            let row = FabricRow { fabric: name.into(), mean: Some(-1.5), ..FabricRow::default() };
-            let bytes = csv(&[row]).unwrap();
-            let mut reader = csv::ReaderBuilder::new().from_reader(&bytes[..]);
-            let cells = reader.records().next().unwrap().unwrap();
-            assert_eq!((&cells[0], &cells[3]), (format!("'{name}").as_str(), "-1.5"));
-        }
-        let plain = FabricRow { fabric: "a=b".into(), ..FabricRow::default() };
-        assert!(String::from_utf8(csv(&[plain]).unwrap()).unwrap().contains("\na=b,"));
-    }
-
-    #[test]
-    fn an_empty_table_keeps_its_header() {
-        assert_eq!(csv::<ProblemRow>(&[]).unwrap(), b"place,code,message,fabric\n");
-    }
-
-    #[test]
-    fn units_of_curves_are_known_and_belong_together() {
-        for test in Test::ALL {
-            let kes = curve_units(test, UnitSystem::Kes);
-            for (axis, (name, factor)) in curve_units(test, UnitSystem::Si).into_iter().enumerate() {
-                assert_eq!(factor, 1.0, "{name}");
-                let dimension = |u: &str| crate::quantity::Unit::parse(u).unwrap().dimension;
-                assert_eq!(dimension(name), dimension(kes[axis].0), "{test:?}");
-            }
-        }
-        assert_eq!(relative_error(1.1, 0.0), None);
-        assert!((relative_error(1.1, 1.0).unwrap() - 0.1).abs() < 1e-12);
-    }
-
-    #[cfg(feature = "tables")]
-    #[test]
-    fn parquet_reads_back_to_the_same_table() {
-        use polars::prelude::{ParquetReader, SerReader};
-        let mut rows = fabric_rows(&sheet(), UnitSystem::Si);
-        rows.push(failed_fabric_row("bad", "R004"));
-        let bytes = parquet(&rows).unwrap();
-        assert_eq!(bytes, parquet(&rows).unwrap(), "same rows, same bytes");
-        let frame = ParquetReader::new(std::io::Cursor::new(bytes)).finish().unwrap();
-        let names: Vec<String> = frame.get_column_names().iter().map(ToString::to_string).collect();
-        assert_eq!(names, FabricRow::HEADER);
-        let mean = frame.column("mean").unwrap().f64().unwrap();
-        assert_eq!(mean.iter().collect::<Vec<_>>(), [Some(9.80665e-6), Some(4e-4), None]);
-        let direction = frame.column("direction").unwrap().str().unwrap();
-        assert_eq!(direction.iter().collect::<Vec<_>>(), [Some("warp"), None, None]);
-        assert_eq!(frame.column("n").unwrap().u64().unwrap().get(0), Some(3));
-        assert!(parquet::<ProblemRow>(&[]).is_ok(), "an empty table is a table");
-    }
-}
+mod tests;

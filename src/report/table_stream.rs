@@ -10,7 +10,7 @@ pub struct CsvTable<W: Write> {
     writer: csv::Writer<W>,
 }
 
-fn refused(format: &'static str, problem: &dyn std::fmt::Display) -> TableError {
+pub(super) fn refused(format: &'static str, problem: &dyn std::fmt::Display) -> TableError {
     TableError::Encode { format, problem: problem.to_string() }
 }
 
@@ -42,63 +42,33 @@ impl<W: Write> CsvTable<W> {
     }
 }
 
-#[cfg(feature = "tables")]
+#[cfg(feature = "parquet")]
 pub use parquet::ParquetTable;
 
-#[cfg(feature = "tables")]
+#[cfg(feature = "parquet")]
 mod parquet {
-    use std::cell::RefCell;
-    use std::io::{self, Write};
-    use std::rc::Rc;
+    use std::io::Write;
 
-    use polars::io::parquet::write::BatchedWriter;
-    use polars::prelude::{DataFrame, ParquetCompression, ParquetWriter, PolarsError};
+    use parquet::arrow::ArrowWriter;
 
+    use super::super::arrow::{GROUP, batch, properties, schema};
     use super::super::table::{Row, TableError};
     use super::refused;
 
-    /// Rows of a row group: what is held in memory at once.
-    const GROUP: usize = 16_384;
-
     /// A table as Parquet, in row groups: UTF-8 and 64-bit columns, absent values are null.
-    pub struct ParquetTable<W: Write, R: Row> {
-        writer: BatchedWriter<Shared<W>>,
-        to: Rc<RefCell<W>>,
+    pub struct ParquetTable<W: Write + Send, R: Row> {
+        writer: ArrowWriter<W>,
         rows: Vec<R>,
     }
 
-    /// The writer keeps what it writes to, and does not give it back.
-    struct Shared<W>(Rc<RefCell<W>>);
-
-    impl<W: Write> Write for Shared<W> {
-        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-            self.0.borrow_mut().write(bytes)
-        }
-
-        fn flush(&mut self) -> io::Result<()> {
-            self.0.borrow_mut().flush()
-        }
-    }
-
-    fn failed(e: PolarsError) -> TableError {
-        refused("Parquet", &e)
-    }
-
-    impl<W: Write, R: Row> ParquetTable<W, R> {
+    impl<W: Write + Send, R: Row> ParquetTable<W, R> {
         /// Begins a table.
         ///
         /// # Errors
         /// [`TableError::Encode`].
         pub fn new(to: W) -> Result<Self, TableError> {
-            let schema = frame::<R>(&[])?.schema().clone();
-            let to = Rc::new(RefCell::new(to));
-            let writer = ParquetWriter::new(Shared(Rc::clone(&to)))
-                // Snappy is what every reader of Parquet knows.
-                .with_compression(ParquetCompression::Snappy)
-                .set_parallel(false)
-                .batched(&schema)
-                .map_err(failed)?;
-            Ok(Self { writer, to, rows: Vec::new() })
+            let writer = ArrowWriter::try_new(to, schema::<R>(), Some(properties(GROUP, &[])));
+            Ok(Self { writer: writer.map_err(|e| refused("Parquet", &e))?, rows: Vec::new() })
         }
 
         /// Writes a row.
@@ -115,7 +85,7 @@ mod parquet {
 
         fn group(&mut self) -> Result<(), TableError> {
             let rows = std::mem::take(&mut self.rows);
-            self.writer.write_batch(&frame(&rows)?).map_err(failed)
+            self.writer.write(&batch(&rows)?).map_err(|e| refused("Parquet", &e))
         }
 
         /// What was written to, with everything in it.
@@ -126,21 +96,12 @@ mod parquet {
             if !self.rows.is_empty() {
                 self.group()?;
             }
-            let Self { writer, to, .. } = self;
-            writer.finish().map_err(failed)?;
-            drop(writer);
-            Rc::try_unwrap(to)
-                .map(RefCell::into_inner)
-                .map_err(|_| refused("Parquet", &"the writer is still in use"))
+            self.writer.into_inner().map_err(|e| refused("Parquet", &e))
         }
-    }
-
-    fn frame<R: Row>(rows: &[R]) -> Result<DataFrame, TableError> {
-        DataFrame::new(rows.len(), R::columns(rows)).map_err(failed)
     }
 }
 
-#[cfg(all(test, feature = "tables"))]
+#[cfg(all(test, feature = "parquet"))]
 mod tests {
     use super::super::table::{ProblemRow, csv, parquet};
     use super::*;
@@ -159,10 +120,7 @@ mod tests {
         assert_eq!(table.finish().unwrap(), csv(&rows).unwrap());
         let bytes = columns.finish().unwrap();
         assert_eq!(bytes, parquet(&rows).unwrap());
-        use polars::prelude::{ParquetReader, SerReader};
-        let frame = ParquetReader::new(std::io::Cursor::new(bytes)).finish().unwrap();
-        assert_eq!(frame.height(), rows.len());
-        let places = frame.column("place").unwrap().str().unwrap();
-        assert!(places.iter().zip(&rows).all(|(found, row)| found == Some(&row.place)));
+        let (_, read) = crate::report::arrow::read(bytes.into()).unwrap();
+        assert_eq!(read, crate::report::arrow::batch(&rows).unwrap());
     }
 }

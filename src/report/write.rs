@@ -63,6 +63,9 @@ const SCHEMA: &str = "kesf.manifest/1";
 const TEMPORARY: &str = ".kesf-";
 const LETTERS: usize = 6;
 
+/// What the names of parts end with that are being written.
+const HALF: &str = ".half";
+
 /// SHA-256 of the bytes of a file.
 pub(super) type Digest32 = [u8; 32];
 
@@ -94,6 +97,35 @@ pub(super) fn place(file: NamedTempFile, path: &Path) -> Result<(), OutputError>
     let failed = |source: io::Error| OutputError::Write { path: path.to_path_buf(), source };
     file.as_file().sync_data().map_err(failed)?;
     file.persist(path).map_err(|e| failed(e.error))?;
+    Ok(())
+}
+
+/// Writes a file that several programs may be making at once, such as a part of a batch that a scheduler gave away
+/// twice: under a temporary name of its own, and renamed when it is whole. What programs that were killed left of the
+/// same file is removed.
+///
+/// # Errors
+/// [`OutputError::Write`], with nothing changed.
+pub fn write_part(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
+    let failed = |source: io::Error| OutputError::Write { path: path.to_path_buf(), source };
+    let (folder, name) = (path.parent().unwrap_or(Path::new(".")), path.file_name().unwrap_or_default());
+    let begins = format!(".{}.", name.to_string_lossy());
+    fs::create_dir_all(folder).map_err(failed)?;
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&begins).suffix(HALF).rand_bytes(LETTERS);
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = builder.tempfile_in(folder).map_err(failed)?;
+    file.write_all(bytes).map_err(failed)?;
+    place(file, path)?;
+    for entry in fs::read_dir(folder).map_err(failed)?.flatten() {
+        let left = entry.file_name();
+        let left = left.to_string_lossy();
+        if left.starts_with(&begins) && left.ends_with(HALF) {
+            // One that cannot be removed does no harm.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
     Ok(())
 }
 

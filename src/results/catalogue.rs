@@ -6,10 +6,11 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::failure::Failure;
-use super::inputs::{Fabric, Input, Reading, fabric_in_memory, without_memory};
+use super::inputs::{Fabric, Input, Reading, without_memory};
 use super::names::{Named, distinguish};
 use super::observer::Observer;
 use super::record::digest_of;
+use super::shard::Share;
 use crate::characterise::{Modulus, Settings, characterise};
 use crate::finding::{Finding, Place};
 use crate::instrument::{FabricInput, Library, ReadError, ReadSettings};
@@ -26,6 +27,8 @@ pub(crate) struct Catalogue {
     evaluation: Settings,
     entries: Vec<Entry>,
     names: Vec<Named>,
+    /// Whether there are fabrics that other shards have.
+    pub left_out: bool,
     /// What could not be read. The observer has it already.
     pub failures: Vec<Failure>,
     /// What belongs to no fabric. The observer has it already.
@@ -51,8 +54,8 @@ enum Origin {
 }
 
 impl Catalogue {
-    /// Reads every fabric below the inputs for its name and its hash. `moduli` are evaluated beside those of the
-    /// settings.
+    /// Reads every fabric below the inputs, or those of a share, for its name and its hash. `moduli` are evaluated
+    /// beside those of the settings.
     ///
     /// # Errors
     /// Those of [`Reading::read_settings`] and [`Reading::evaluation`], and O054 if the work was cancelled.
@@ -60,11 +63,16 @@ impl Catalogue {
         reading: &Reading,
         inputs: &[Input],
         moduli: &[Modulus],
+        share: Option<Share>,
         observer: &Observer,
     ) -> Result<Self, Failure> {
         let settings = reading.read_settings()?;
         let evaluation = reading.evaluation_with(moduli)?;
-        let library = Library::find(&without_memory(inputs), &settings);
+        let mut library = Library::find(&without_memory(inputs), &settings);
+        let found = library.groups();
+        if let Some(share) = share {
+            library.keep(|path| share.shard.has(path), !share.speaks_of_inputs());
+        }
         let findings = library.findings().to_vec();
         findings.iter().for_each(|finding| observer.found(None, finding));
         let keep = library.files() <= KEPT;
@@ -77,7 +85,8 @@ impl Catalogue {
             })
         })?;
         let mut catalogue = Self {
-            memory: inputs.iter().filter(|input| matches!(input, Input::Memory { .. })).cloned().collect(),
+            memory: inputs.iter().filter(|input| is_wanted_in_memory(input, share)).cloned().collect(),
+            left_out: found > library.groups(),
             reading: settings,
             evaluation,
             entries: Vec::new(),
@@ -92,13 +101,13 @@ impl Catalogue {
             errors.extend(unread);
         }
         for (at, input) in catalogue.memory.clone().iter().enumerate() {
-            let Input::Memory { name, bytes } = input else { continue };
-            match fabric_in_memory(name, bytes, &catalogue.reading) {
-                Ok((fabric, left_out)) => {
+            match input.in_memory(&catalogue.reading) {
+                Some(Ok((fabric, left_out))) => {
                     catalogue.add(vec![Entry::new(Origin::Memory(at), fabric, true)?]);
                     errors.extend(left_out);
                 }
-                Err(error) => errors.push(error),
+                Some(Err(error)) => errors.push(error),
+                None => {}
             }
         }
         let paths: Vec<&Path> = catalogue.entries.iter().map(|entry| &*entry.path).collect();
@@ -157,12 +166,10 @@ impl Catalogue {
     fn read_again(&self, origin: Origin) -> Vec<FabricInput> {
         match origin {
             Origin::Group(group) => self.library.read(group, &|_: &Path| ()).0,
-            Origin::Memory(at) => match &self.memory[at] {
-                Input::Memory { name, bytes } => {
-                    fabric_in_memory(name, bytes, &self.reading).into_iter().map(|read| read.0).collect()
-                }
-                Input::Path(_) => Vec::new(),
-            },
+            Origin::Memory(at) => {
+                let read = self.memory[at].in_memory(&self.reading).and_then(Result::ok);
+                read.into_iter().map(|(fabric, _)| fabric).collect()
+            }
         }
     }
 
@@ -182,6 +189,10 @@ impl Catalogue {
         sheet.findings.extend(findings);
         Ok(Fabric { path: input.path, sheet })
     }
+}
+
+fn is_wanted_in_memory(input: &Input, share: Option<Share>) -> bool {
+    !matches!(input, Input::Path(_)) && share.is_none_or(|share| share.shard.has(input.path()))
 }
 
 impl Entry {

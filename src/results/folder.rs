@@ -7,7 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use serde::Serialize;
 
 use super::failure::Failure;
-#[cfg(feature = "tables")]
+#[cfg(feature = "parquet")]
 use crate::report::ParquetTable;
 use crate::report::chart::ChartError;
 use crate::report::json::text;
@@ -42,7 +42,7 @@ pub trait Sink: Sync {
 }
 
 /// A file that comes piece by piece; without [`commit`](Self::commit) there is none.
-pub trait SinkFile: Write {
+pub trait SinkFile: Write + Send {
     /// Says that the file is complete.
     ///
     /// # Errors
@@ -76,7 +76,10 @@ impl SinkFile for Pending<'_> {
 
 /// Keeps the files by their names.
 #[derive(Debug, Default)]
-pub struct MemorySink(Mutex<BTreeMap<String, Vec<u8>>>);
+pub struct MemorySink {
+    files: Mutex<BTreeMap<String, Vec<u8>>>,
+    records_only: bool,
+}
 
 /// A file of a [`MemorySink`].
 struct MemoryFile<'s> {
@@ -86,21 +89,28 @@ struct MemoryFile<'s> {
 }
 
 impl MemorySink {
+    /// One that keeps nothing but what tables are made of, for a batch of which nothing else is wanted.
+    pub fn of_records() -> Self {
+        Self { records_only: true, ..Self::default() }
+    }
+
     /// The files that were written. Hidden ones, which are for the next run into a folder, are none of them.
     pub fn into_files(self) -> BTreeMap<String, Vec<u8>> {
-        let mut files = self.0.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let mut files = self.files.into_inner().unwrap_or_else(PoisonError::into_inner);
         files.retain(|name, _| !is_hidden(name));
         files
     }
 
     fn files(&self) -> MutexGuard<'_, BTreeMap<String, Vec<u8>>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.files.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl Sink for MemorySink {
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
-        self.files().insert(name.to_string(), bytes.to_vec());
+        if !self.records_only || is_hidden(name) {
+            self.files().insert(name.to_string(), bytes.to_vec());
+        }
         Ok(())
     }
 
@@ -130,17 +140,19 @@ impl Write for MemoryFile<'_> {
 impl SinkFile for MemoryFile<'_> {
     fn commit(self: Box<Self>) -> Result<(), OutputError> {
         let Self { sink, name, bytes } = *self;
-        sink.files().insert(name, bytes);
+        if !sink.records_only || is_hidden(&name) {
+            sink.files().insert(name, bytes);
+        }
         Ok(())
     }
 }
 
-/// A table that is written row by row, as CSV and with the feature `tables` as Parquet.
+/// A table that is written row by row, as CSV and with the feature `parquet` as Parquet.
 pub(crate) struct Table<'s, R: Row> {
     csv: CsvTable<Box<dyn SinkFile + 's>>,
-    #[cfg(feature = "tables")]
+    #[cfg(feature = "parquet")]
     parquet: ParquetTable<Box<dyn SinkFile + 's>, R>,
-    #[cfg(not(feature = "tables"))]
+    #[cfg(not(feature = "parquet"))]
     _rows: std::marker::PhantomData<R>,
 }
 
@@ -148,7 +160,7 @@ impl<R: Row> Table<'_, R> {
     /// Writes a row.
     pub fn row(&mut self, row: &R) -> Result<(), Failure> {
         self.csv.row(row)?;
-        #[cfg(feature = "tables")]
+        #[cfg(feature = "parquet")]
         self.parquet.row(row)?;
         Ok(())
     }
@@ -156,7 +168,7 @@ impl<R: Row> Table<'_, R> {
     /// Says that the table is complete.
     pub fn commit(self) -> Result<(), Failure> {
         self.csv.finish()?.commit()?;
-        #[cfg(feature = "tables")]
+        #[cfg(feature = "parquet")]
         self.parquet.finish()?.commit()?;
         Ok(())
     }
@@ -252,13 +264,13 @@ impl<'s> Folder<'s> {
         Ok(CsvTable::new::<R>(file)?)
     }
 
-    /// Begins a table: CSV, and Parquet with the feature `tables`.
+    /// Begins a table: CSV, and Parquet with the feature `parquet`.
     pub(crate) fn table<R: Row>(&self, name: &str) -> Result<Table<'s, R>, Failure> {
         Ok(Table {
             csv: self.csv_table::<R>(&format!("{name}.csv"))?,
-            #[cfg(feature = "tables")]
+            #[cfg(feature = "parquet")]
             parquet: ParquetTable::new(self.sink.create(&format!("{name}.parquet"))?)?,
-            #[cfg(not(feature = "tables"))]
+            #[cfg(not(feature = "parquet"))]
             _rows: std::marker::PhantomData,
         })
     }

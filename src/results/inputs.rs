@@ -20,7 +20,7 @@ use crate::report::write::hash;
 use crate::study::Case;
 
 /// Something to be read.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Input {
     /// A file, or a folder: every readable file below it, in name order.
     Path(PathBuf),
@@ -31,6 +31,8 @@ pub enum Input {
         /// Its bytes.
         bytes: Vec<u8>,
     },
+    /// A fabric whose curves the caller has; see [`fabrics_of_curves`](super::fabrics_of_curves).
+    Fabric(Box<FabricInput>),
 }
 
 impl<P: Into<PathBuf>> From<P> for Input {
@@ -44,6 +46,7 @@ impl Input {
     pub fn path(&self) -> &Path {
         match self {
             Self::Path(path) | Self::Memory { name: path, .. } => path,
+            Self::Fabric(fabric) => &fabric.path,
         }
     }
 
@@ -52,6 +55,21 @@ impl Input {
         match self {
             Self::Path(path) => !files::is_folder(path) && has_name_of_case(path),
             Self::Memory { bytes, .. } => case_text(bytes).is_some(),
+            Self::Fabric(_) => false,
+        }
+    }
+}
+
+/// A fabric in memory with what could not be read of it, or why there is none.
+type InMemory = Result<(FabricInput, Vec<ReadError>), ReadError>;
+
+impl Input {
+    /// The fabric that it is itself; `None` of what is on disk.
+    pub(super) fn in_memory(&self, settings: &ReadSettings) -> Option<InMemory> {
+        match self {
+            Self::Path(_) => None,
+            Self::Memory { name, bytes } => Some(fabric_in_memory(name, bytes, settings)),
+            Self::Fabric(fabric) => Some(Ok(((**fabric).clone(), Vec::new()))),
         }
     }
 }
@@ -206,13 +224,13 @@ impl Reading {
         let (mut done, mut errors) =
             observer.part(what, library.files(), || library.each(&|_| observer.step(), &work))?;
         for input in inputs {
-            let Input::Memory { name, bytes } = input else { continue };
-            match fabric_in_memory(name, bytes, &settings) {
-                Ok((fabric, left_out)) => {
+            match input.in_memory(&settings) {
+                Some(Ok((fabric, left_out))) => {
                     done.push(work(fabric));
                     errors.extend(left_out);
                 }
-                Err(error) => errors.push(error),
+                Some(Err(error)) => errors.push(error),
+                None => {}
             }
         }
         let inference_of_failures = errors
@@ -264,11 +282,7 @@ pub(super) fn without_memory(inputs: &[Input]) -> Vec<PathBuf> {
 }
 
 /// The fabric of a file in memory, and the errors of those that a table in it could not give.
-pub(super) fn fabric_in_memory(
-    path: &Path,
-    bytes: &[u8],
-    settings: &ReadSettings,
-) -> Result<(FabricInput, Vec<ReadError>), ReadError> {
+fn fabric_in_memory(path: &Path, bytes: &[u8], settings: &ReadSettings) -> InMemory {
     let content = parse(path, bytes, settings)?;
     let sample = content.measurements.iter().find_map(|m| m.sample.clone());
     let results: Vec<ResultValue> = content.results.into_iter().map(|(_, value)| value).collect();
@@ -310,7 +324,7 @@ pub fn cases(inputs: &[Input]) -> (Vec<Case>, Vec<Failure>) {
                 cases_below(path, &mut files);
             }
             Input::Path(path) if has_name_of_case(path) => files.push(path.clone()),
-            Input::Path(_) => {}
+            Input::Path(_) | Input::Fabric(_) => {}
             Input::Memory { name, bytes } => {
                 let Some(text) = case_text(bytes) else { continue };
                 match Case::parse(name, text) {

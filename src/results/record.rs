@@ -83,6 +83,11 @@ impl Record {
         Ok(())
     }
 
+    /// Whether another run of the same would find nothing more.
+    pub fn is_final(&self) -> bool {
+        self.key.is_some()
+    }
+
     /// Writes the record. Where JSON cannot hold what is in it, such as a number that is not finite, nothing is
     /// written and it comes back.
     ///

@@ -91,6 +91,7 @@ fn of_card(input: &Input, card: StatedSection, assumptions: &Assumptions) -> (Fa
 fn document_bytes(input: &Input) -> Option<Cow<'_, [u8]>> {
     match input {
         Input::Memory { bytes, .. } => Some(Cow::Borrowed(bytes)),
+        Input::Fabric(_) => None,
         Input::Path(path) => {
             let ending =
                 |e: &std::ffi::OsStr| ["json", "inp"].iter().any(|known| e.eq_ignore_ascii_case(known));

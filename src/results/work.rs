@@ -8,6 +8,7 @@ use super::failure::Failure;
 use super::inputs::{self, Curves, Fabric, Input, Reading};
 use super::names::distinguish_cases;
 use super::observer::Observer;
+use super::shard::Share;
 use super::task::{Limits, Shared, Task};
 use crate::case::{Case, FabricMaterial, SolverChoice};
 use crate::finding::{Finding, Place, StudyFact, UsageFact};
@@ -26,6 +27,8 @@ pub struct Job {
     pub threads: usize,
     /// What each task may take.
     pub limits: Limits,
+    /// Which part of the batch is to be done; all of it when `None`. For [`run`](fn@crate::run) only.
+    pub share: Option<Share>,
 }
 
 /// The cases and fabrics that inputs name, and what could not be read.
@@ -206,8 +209,17 @@ impl Work {
 
 /// O055: no fabric has what a case needs; `lacks_law` of one for which a law of friction is all that is missing.
 pub(crate) fn without_fabric(case: &Case, lacks_law: bool) -> Failure {
-    let name = &case.name;
-    let (text, hint) = if case.is_for_fab_records() {
+    without_fabric_named(&case.name, &case.path, case.is_for_fab_records(), lacks_law)
+}
+
+/// The same of a case by its name and file.
+pub(crate) fn without_fabric_named(
+    name: &str,
+    path: &Path,
+    is_for_fab_records: bool,
+    lacks_law: bool,
+) -> Failure {
+    let (text, hint) = if is_for_fab_records {
         (
             format!("{name} is for a fabric with FAB bend tests, and none is there"),
             "name a U3M file with `raw_data`, as in `kesf compare cases/fab_bend_loop.toml FABRIC.u3m`",
@@ -223,7 +235,7 @@ pub(crate) fn without_fabric(case: &Case, lacks_law: bool) -> Failure {
             "name one, as in `kesf solve CASE kesf_data/poplin`",
         )
     };
-    Failure::new("O055", text).at(Place::file(&case.path)).hint(hint)
+    Failure::new("O055", text).at(Place::file(path)).hint(hint)
 }
 
 /// S118: the fabrics that a case with friction is for, and that have no law; `None` without such.

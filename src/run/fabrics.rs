@@ -9,9 +9,10 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use serde_json::json;
 
 use super::settings::RunSettings;
+use super::tally::CaseTally;
 use super::work::RunWork;
 use crate::case::{Case, Outline};
-use crate::finding::Finding;
+use crate::finding::{Finding, Place};
 use crate::platform::{files, map_several};
 use crate::results::{
     Fabric, FabricReport, Failure, FileEntry, Folder, Job, Observer, Record, Shared, Task, hash_of,
@@ -25,6 +26,8 @@ pub(super) struct Made {
     pub fails_a_check: bool,
     /// Whether an earlier run had made it.
     pub resumed: bool,
+    /// Whether another run of the same would find nothing more.
+    pub is_final: bool,
     /// What could not be written, for JSON cannot hold it.
     pub held: Option<Box<Record>>,
 }
@@ -214,6 +217,24 @@ impl<'c> Workshop<'c> {
         self.jobs.iter().filter_map(|job| without_law(job.case, names(job))).collect()
     }
 
+    /// What the fabrics are to each case.
+    pub fn tallies(&self) -> Vec<CaseTally> {
+        let of = |job: &CaseWork| {
+            let tally = job.tally();
+            CaseTally {
+                name: job.case.name.clone(),
+                place: Place::file(&job.case.path),
+                is_for_fab_records: job.case.is_for_fab_records(),
+                is_there: job.named.as_ref().is_none_or(|path| files::exists(path)),
+                suits_any: tally.suits_any,
+                lacked_by_any: tally.lacked_by_any,
+                tasks: tally.tasks,
+                without: tally.without.values().cloned().collect(),
+            }
+        };
+        self.jobs.iter().map(of).collect()
+    }
+
     /// The cases that a batch of these fabrics is for: one for FAB records or laws is nothing to fabrics without them.
     pub fn suitable(&self) -> Vec<&'c Case> {
         let left_out = |case: &Case| {
@@ -237,6 +258,15 @@ impl<'c> Workshop<'c> {
     }
 }
 
+/// Hash of what a case says, and of its mesh.
+pub(crate) fn key_of_case(case: &Case) -> Result<String, Failure> {
+    let mesh = case.sheet().and_then(|problem| match &problem.sheet.outline {
+        Outline::File { path, .. } => Some(FileEntry::of(&case.path.with_file_name("").join(path))),
+        Outline::Rectangle { .. } | Outline::Disc { .. } | Outline::Annulus(_) => None,
+    });
+    hash_of(&json!({ "case": format!("{case:?}"), "mesh": mesh }))
+}
+
 impl Made {
     fn of(record: &Record) -> Self {
         let FabricReport { failures, is_useful, fails_a_check, .. } = &record.report;
@@ -245,6 +275,7 @@ impl Made {
             is_useful: *is_useful,
             fails_a_check: *fails_a_check,
             resumed: false,
+            is_final: record.is_final(),
             held: None,
         }
     }
@@ -252,11 +283,7 @@ impl Made {
 
 impl<'c> CaseWork<'c> {
     fn new(case: &'c Case, work: &RunWork) -> Result<Self, Failure> {
-        let mesh = case.sheet().and_then(|problem| match &problem.sheet.outline {
-            Outline::File { path, .. } => Some(FileEntry::of(&case.path.with_file_name("").join(path))),
-            Outline::Rectangle { .. } | Outline::Disc { .. } | Outline::Annulus(_) => None,
-        });
-        let key = hash_of(&json!({ "case": format!("{case:?}"), "mesh": mesh }))?;
+        let key = key_of_case(case)?;
         let shared = Arc::new(Shared::new(work.threads_of_task(), work.limits));
         Ok(Self { case, shared, named: named_fabric(case), key, tally: Mutex::default() })
     }

@@ -7,7 +7,7 @@ use crate::finding::Finding;
 use crate::platform::map_several;
 use crate::report::html::Figure;
 use crate::report::table::PredictionRow;
-use crate::results::{Benchmark, Failure, Folder, Observer, Outcome, Shared, Task, simulate};
+use crate::results::{Benchmark, Failure, Folder, Observer, Outcome, Share, Shared, Task, simulate};
 use crate::study::CaseResult;
 
 /// A case with constants of its own, and what it gave.
@@ -22,7 +22,9 @@ pub(super) fn own_cases<'w>(
     folder: &Folder,
     observer: &Observer,
 ) -> Result<Vec<Own<'w>>, Failure> {
-    let own = work.cases.iter().filter(|case| case.section().is_some() && case.has_sheet());
+    // They are for no fabric: one share has them.
+    let is_mine = work.share.is_none_or(Share::speaks_for_all);
+    let own = work.cases.iter().filter(|case| is_mine && case.section().is_some() && case.has_sheet());
     let task = |case| Task::new(case, None, Arc::new(Shared::new(work.threads_of_task(), work.limits)));
     let own: Vec<Task> = own.map(task).collect();
     let steps = own.iter().map(|task| task.stages() + 1).sum();

@@ -1,7 +1,7 @@
 //! What a run is to do.
 
 use crate::case::Case;
-use crate::results::{Catalogue, Failure, Limits};
+use crate::results::{Catalogue, Failure, Limits, Share};
 
 /// What a run is to do: its cases, and its fabrics by name and hash.
 pub struct RunWork {
@@ -11,6 +11,7 @@ pub struct RunWork {
     pub failures: Vec<Failure>,
     pub(super) threads: usize,
     pub(super) limits: Limits,
+    pub(super) share: Option<Share>,
 }
 
 impl RunWork {

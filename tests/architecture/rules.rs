@@ -117,7 +117,11 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
             "percent_encoding",
             "plotters",
             "png",
-            "polars",
+            "arrow_array",
+            "arrow_schema",
+            "arrow_select",
+            "bytes",
+            "parquet",
             "quick_xml",
             "rust_xlsxwriter",
         ],
@@ -148,6 +152,16 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ),
     ("run", &["case", "platform", "finding", "instrument", "study", "report", "results"], &[]),
     (
+        "parts",
+        &["case", "platform", "finding", "instrument", "report", "results", "run"],
+        &["arrow_array", "arrow_schema", "arrow_select", "bytes"],
+    ),
+    (
+        "library",
+        &["platform", "kes", "finding", "instrument", "report", "results", "parts"],
+        &["arrow_array", "arrow_schema", "arrow_select", "csv", "parquet", "sqlparser"],
+    ),
+    (
         "cli",
         &[
             "schema",
@@ -164,6 +178,8 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
             "report",
             "results",
             "run",
+            "parts",
+            "library",
         ],
         &["clap", "clap_complete", "clap_mangen", "indicatif", "ctrlc", "rayon"],
     ),

@@ -168,7 +168,11 @@ pub fn replay(page: &Path, lines: &[String], folder: &Path) -> usize {
 
 /// What a command prints: standard output, then standard error. `ls` and `cat` are done here.
 fn print(command: &str, folder: &Path) -> String {
-    let words: Vec<&str> = command.split_whitespace().collect();
+    // What stands in quotes is one word.
+    let parts = command.split('"').enumerate();
+    let words: Vec<&str> = parts
+        .flat_map(|(k, part)| if k % 2 == 1 { vec![part] } else { part.split_whitespace().collect() })
+        .collect();
     match words[..] {
         ["kesf", ref arguments @ ..] => {
             let output = kesf().args(arguments).current_dir(folder).output().unwrap();

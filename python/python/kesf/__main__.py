@@ -9,10 +9,13 @@ python -m kesf library find library.parquet --like kesf_data/poplin --where "thi
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 
+from . import _kesf
 from ._errors import KesfError
+from ._functions import _options
 from ._kesf import version
 
 
@@ -69,24 +72,40 @@ def _shard(text: str) -> tuple[int, int]:
 
 
 def _evaluate(options: argparse.Namespace) -> int:
+    number, count = options.shard if isinstance(options.shard, tuple) else _shard(options.shard)
+    if not any("://" in path or "::" in path for path in [*options.inputs, options.output]):
+        for path in options.inputs:
+            if not os.path.exists(path):
+                raise KesfError("there is no such file or folder", code="R001", path=path)
+        # What `kesf run --shard` does, by the same code.
+        made = _kesf.make_part(
+            [*options.inputs, *options.cases],
+            _options(None, None, None, False),
+            (options.settings, options.drape, (number, count, True)),
+            options.output,
+        )
+        kept, fabrics, rows, _, failures = made
+        return _told(options.output, number, count, fabrics, None if kept else rows, failures)
     from . import dask
 
-    number, count = options.shard if isinstance(options.shard, tuple) else _shard(options.shard)
     tasks = dask.plan(
         options.inputs, options.cases, options.output, shards=count, settings=options.settings, drape=options.drape
     )
     done = dask.work(tasks[number - 1])
-    what = "is there already" if done.kept else f"{done.rows} rows, {done.failures} failures"
-    print(f"{options.output}: shard {number}/{count}, {done.fabrics} fabrics: {what}", file=sys.stderr)
+    return _told(options.output, number, count, done.fabrics, done.rows, done.failures)
+
+
+def _told(out: str, number: int, count: int, fabrics: int, rows: int | None, failures: int | None) -> int:
+    what = "is there already" if rows is None else f"{rows} rows, {failures} failures"
+    print(f"{out}: shard {number}/{count}, {fabrics} fabrics: {what}", file=sys.stderr)
     return 0
 
 
 def _merge(options: argparse.Namespace) -> int:
     from . import parts
 
-    table = parts.merge(options.folder, options.table)
-    parts.write_file(options.output, parts.parquet(table, {}))
-    print(f"{options.output}: {table.num_rows} rows", file=sys.stderr)
+    parts.write_file(options.output, parts.merge_file(options.folder, options.table))
+    print(f"{options.output}: {options.table} of {len(parts.listed(options.folder))} parts", file=sys.stderr)
     return 0
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, cast
 
@@ -11,29 +11,12 @@ from . import _kesf
 from ._calls import follower, sources
 from ._data import Result
 from ._errors import KesfError
-from ._functions import Readable, _Making, _options
-from ._reports import Run, run_of
+from ._functions import Readable, _options
 from ._table import Table
 from ._types import Path, Progress
 
-#: Columns of the results, with their kinds.
-RESULTS = {
-    "fabric": "text",
-    "case": "text",
-    "quantity": "text",
-    "direction": "text",
-    "value": "number",
-    "unit": "text",
-    "sd": "number",
-    "n": "count",
-    "measured": "number",
-    "low": "number",
-    "high": "number",
-    "status": "text",
-}
-
-#: Columns of findings and failures.
-PROBLEMS = {"fabric": "text", "code": "text", "place": "text", "message": "text"}
+#: Columns of a table of curves, as :meth:`kesf.Batch.curves` gives it.
+CURVES = ("fabric", "test", "direction", "specimen", "index", "x", "x_unit", "y", "y_unit")
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +37,9 @@ class Evaluation(Result):
     results: Table
     findings: Table = field(repr=False)
     failures: Table = field(repr=False)
+    # For a part of a batch: what its fabrics are to the cases (JSON), and whether another run could find more.
+    _cases: str = field(default="[]", repr=False)
+    _unfinished: bool = field(default=False, repr=False)
 
     def __arrow_c_schema__(self) -> object:
         """The schema of the results, as a capsule."""
@@ -86,8 +72,9 @@ def evaluate(
     """Characterises fabrics and solves cases for each of them: a pure function, for workers of a cluster.
 
     Args:
-        batch: Folders and files of fabrics as in :func:`kesf.read`; or an Arrow table of files, with a column ``path``
-            and, for files that are not on disk, ``content`` (needs pyarrow).
+        batch: Folders and files of fabrics as in :func:`kesf.read`; or an Arrow table (needs pyarrow) of files, with a
+            column ``path`` and, for files that are not on disk, ``content``; or of curves, a row a point, as
+            ``batch.curves()`` and ``kesf read -o curves.parquet`` give it: their tests are taken for standard ones.
         cases: Case files, bytes, or pairs of a name and bytes.
         settings: TOML file with windows and thresholds of the evaluation.
         drape: Whether drape cases are solved too.
@@ -97,103 +84,61 @@ def evaluate(
         The results. What fails is in ``failures`` and costs the others nothing.
 
     Raises:
-        KesfError: if the settings cannot be used, or there is nothing to do.
+        KesfError: if the settings cannot be used, or there is nothing to do; O073 for a table that is not understood.
 
     >>> import kesf
     >>> done = kesf.evaluate(["kesf_data/petrak_m1"], "cases/virtual_bending.toml")
     >>> [row["quantity"] for row in done.results.rows() if row["case"]]
     ['B warp', 'B weft']
     """
-    paths, memory = sources(_files(batch))
+    given, curves = _given(batch)
+    paths, memory = sources(given)
     case_paths, case_memory = sources(cases)
-    making = _Making(
-        out=None,
-        keep=False,
-        charts=False,
-        drape=drape,
-        stamp=None,
-        force=False,
-        solver=None,
-        settings=None if settings is None else os.fspath(settings),
-    )
+    making = (None if settings is None else os.fspath(settings), drape, None)
     options = _options(dialect, delimiter, decimal, assume_kes_units)
-    raw = _kesf.run(paths + case_paths, memory + case_memory, options, making, threads, follower(progress))
-    parameters, predictions, problems, _, told, fails_a_check = raw
-    return evaluation_of(run_of((parameters, predictions, problems, told, fails_a_check), {}))
+    whole = (paths + case_paths, memory + case_memory, curves)
+    return evaluation_of(_kesf.evaluate(whole, options, making, threads, follower(progress)))
 
 
-def _files(batch: object) -> Iterable[Any]:
+def evaluation_of(raw: tuple[Any, Any, Any, str, bool]) -> Evaluation:
+    """The evaluation of its native tables."""
+    results, findings, failures, cases, unfinished = raw
+    return Evaluation(Table(results), Table(findings), Table(failures), cases, unfinished)
+
+
+def _given(batch: object) -> tuple[Iterable[Any], Any]:
+    """Files, and the columns of a table of curves, if it is one."""
     if not hasattr(batch, "__arrow_c_stream__"):
-        return cast("Iterable[Any]", batch)
+        return cast("Iterable[Any]", batch), None
     try:
         import pyarrow
     except ImportError as error:
         raise KesfError(
-            "a table of files is read with pyarrow, which is not installed",
+            "a table is read with pyarrow, which is not installed",
             code="O053",
             cure="pip install pyarrow, or give a list of paths",
         ) from error
     table = pyarrow.table(batch)
-    if "path" not in table.column_names:
+    if "path" in table.column_names:
+        names = table.column("path").to_pylist()
+        contents = table.column("content").to_pylist() if "content" in table.column_names else [None] * len(names)
+        return [n if data is None else (n, data) for n, data in zip(names, contents, strict=True)], None
+    missing = [name for name in CURVES if name not in table.column_names]
+    if missing:
         raise KesfError(
-            f"the table of files has no column `path`; it has {', '.join(table.column_names)}",
-            cure="name the column of files `path`, and the column of their bytes, if any, `content`",
+            f"the table has no column `path` and no column `{missing[0]}`; it has {', '.join(table.column_names)}",
+            code="O073",
+            cure=f"a table of files has `path` (and `content`), one of curves has {', '.join(CURVES)}",
         )
-    names = table.column("path").to_pylist()
-    contents = table.column("content").to_pylist() if "content" in table.column_names else [None] * len(names)
-    return [name if data is None else (name, data) for name, data in zip(names, contents, strict=True)]
-
-
-def evaluation_of(run: Run) -> Evaluation:
-    """The tables of a run as one."""
-    # A row without a value stands for a fabric that failed: it is among the failures.
-    rows = [_parameter(row) for row in run.parameters.rows() if row["mean"] is not None]
-    rows += [_prediction(row) for row in run.predictions.rows()]
-    problems = run.problems.rows()
-    # The failures come first; a table of problems has no other mark of them.
-    count = len(run.failures)
-    return Evaluation(
-        results=table_of(RESULTS, rows),
-        findings=table_of(PROBLEMS, problems[count:]),
-        failures=table_of(PROBLEMS, problems[:count]),
-    )
-
-
-def _parameter(row: dict[str, Any]) -> dict[str, Any]:
-    return {
-        "fabric": row["fabric"],
-        "quantity": row["parameter"],
-        "direction": row["direction"],
-        "value": row["mean"],
-        "unit": row["unit"],
-        "sd": row["sd"],
-        "n": row["n"],
-        "status": row["status"],
-    }
-
-
-def _prediction(row: dict[str, Any]) -> dict[str, Any]:
-    return {
-        "fabric": row["fabric"],
-        "case": row["case"],
-        "quantity": row["quantity"],
-        "value": row["simulated"],
-        "unit": row["unit"],
-        "measured": row["measured"],
-        "low": row["simulated_low"],
-        "high": row["simulated_high"],
-    }
-
-
-def table_of(columns: dict[str, str], rows: Sequence[dict[str, Any]]) -> Table:
-    """A table of rows; a cell that a row does not have is null."""
-    units = {"unit_column": "unit"}
-    numbers = [name for name, kind in columns.items() if kind == "number"]
-    cells = [
-        (name, kind, units if name in numbers else {}, [row.get(name) for row in rows])
-        for name, kind in columns.items()
-    ]
-    return Table(_kesf.Table._from_columns(cells))
+    columns = [table.column(name).to_pylist() for name in CURVES]
+    for name, column in zip(CURVES, columns, strict=True):
+        if name != "direction" and None in column:
+            raise KesfError(
+                f"row {column.index(None) + 1} of the table of curves has no {name}",
+                code="O073",
+                cure="every point has all cells but the direction, which compression has not",
+            )
+    return [], tuple(columns)
 
 
 def find(

@@ -9,11 +9,22 @@ __all__ = [
     "Table",
     "case_text",
     "characterise",
+    "complete",
+    "evaluate",
     "explain",
     "export",
     "find",
+    "key_in",
+    "key_of",
+    "library_build",
+    "library_find",
+    "make_part",
+    "merge",
+    "merge_file",
+    "part_files",
     "read",
     "run",
+    "shard_of",
     "simulate",
     "targets",
     "units_of_parameters",
@@ -25,6 +36,20 @@ _Progress = Callable[[str, int, int], object] | None
 _Memory = list[tuple[str, bytes]]
 _Options = tuple[Any, ...]
 _Array = tuple[str, str, list[int], bytes]
+_Curves = tuple[
+    list[str],
+    list[str],
+    list[str | None],
+    list[int],
+    list[int],
+    list[float],
+    list[str],
+    list[float],
+    list[str],
+]
+_Batch = tuple[list[str], _Memory, _Curves | None]
+_Share = tuple[str | None, bool, tuple[int, int, bool] | None]
+_Files = list[tuple[int, int, bytes, bytes, bytes]]
 
 def version() -> str: ...
 def explain(code: str) -> str | None: ...
@@ -129,3 +154,28 @@ def run(
     progress: _Progress = None,
 ) -> tuple[Table, Table, Table, list[tuple[str, bytes]], tuple[str, str, str], bool]: ...
 def verify(filter: str | None = None, threads: int | None = None, progress: _Progress = None) -> str: ...
+def evaluate(
+    batch: _Batch, options: _Options, making: _Share, threads: int | None = None, progress: _Progress = None
+) -> tuple[Table, Table, Table, str, bool]: ...
+def make_part(
+    paths: list[str],
+    options: _Options,
+    making: _Share,
+    folder: str,
+    force: bool = False,
+    fresh: bool = False,
+    threads: int | None = None,
+) -> tuple[bool, int, int, int, int]: ...
+def part_files(
+    tables: tuple[Table, Table, Table], cases: str, shard: tuple[int, int], set_up: str, key: str
+) -> list[tuple[str, bytes]]: ...
+def key_in(bytes: bytes) -> str | None: ...
+def key_of(texts: list[bytes]) -> str: ...
+def shard_of(path: str, count: int) -> int: ...
+def complete(folder: str, shards: list[tuple[int, int]]) -> None: ...
+def merge(folder: str, files: _Files, table: str) -> Table: ...
+def merge_file(folder: str, files: _Files, table: str) -> bytes: ...
+def library_build(results: list[str | tuple[str, Table]]) -> tuple[bytes, int]: ...
+def library_find(
+    library: str, name: str | None = None, like: Table | None = None, bounds: str | None = None, count: int = 10
+) -> Table | None: ...

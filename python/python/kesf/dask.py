@@ -5,15 +5,15 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
-from . import parts
+from . import _kesf, parts
 from ._calls import sources
 from ._errors import KesfError
-from ._evaluate import PROBLEMS as _PROBLEMS
-from ._evaluate import Evaluation, evaluate, find, table_of
-from ._functions import Readable
+from ._evaluate import Evaluation, evaluation_of, find
+from ._functions import Readable, _options
+from ._table import Table
 from ._types import Path
 
 #: Fabrics of a shard, where no number of shards is given: some seconds of work.
@@ -31,6 +31,7 @@ class Task:
         out: The folder of parts, a path or URL.
         shard: Which part.
         key: Hash of everything that the part depends on.
+        set_up: Hash of what all parts of the batch share.
         drape: Whether drape cases are solved too.
         options: Options of the file systems.
     """
@@ -41,6 +42,7 @@ class Task:
     out: str
     shard: parts.Shard
     key: str
+    set_up: str
     drape: bool
     options: dict[str, Any]
 
@@ -162,7 +164,7 @@ def plan(
     if others:
         raise KesfError(
             f"there are parts of a run with {' and '.join(map(str, sorted(others)))} shards, and this one has {count}",
-            code="O059",
+            code="O066",
             path=place,
             cure="give that number of shards, remove those parts, or name another folder",
         )
@@ -171,13 +173,14 @@ def plan(
     divided: list[list[str]] = [[] for _ in range(count)]
     for path in sorted(stamps):
         divided[parts.shard_of(path, count) - 1].append(path)
+    of_cases = [part for name, text in texts for part in (name, text)]
+    set_up = parts.key_of(f"{count} {drape}", how or b"", *of_cases, *[_absolute(os.fspath(one)) for one in given])
     tasks = []
     for number, mine in enumerate(divided, 1):
         told = [f"{path}\n{stamps[path]}" for path in mine]
-        of_cases = [part for name, text in texts for part in (name, text)]
         key = parts.key_of(f"{number}/{count} {drape}", how or b"", *of_cases, *told)
         shard = parts.Shard(number, count)
-        tasks.append(Task(tuple(mine), texts, how, place, shard, key, drape, options))
+        tasks.append(Task(tuple(mine), texts, how, place, shard, key, set_up, drape, options))
     return tasks
 
 
@@ -260,20 +263,10 @@ def work(task: Task, threads: int | None = None) -> Done:
     count = len(task.fabrics)
     if parts.key_in(task.out, task.shard, task.options) == task.key:
         return Done(task.shard, count, None, None, kept=True)
-    if not task.fabrics:
-        evaluation = nothing()
-    else:
-        with tempfile.TemporaryDirectory(prefix="kesf-") as scratch:
-            evaluation = _evaluate(task, scratch, threads or _threads())
-    parts.write(evaluation, task.out, task.shard, task.key, task.options)
+    with tempfile.TemporaryDirectory(prefix="kesf-") as scratch:
+        evaluation = _evaluate(task, scratch, threads or _threads())
+    parts.write(evaluation, task.out, task.shard, task.key, task.options, task.set_up)
     return Done(task.shard, count, len(evaluation), len(evaluation.failures), kept=False)
-
-
-def nothing() -> Evaluation:
-    """The evaluation of no fabric."""
-    from ._evaluate import RESULTS
-
-    return Evaluation(table_of(RESULTS, []), table_of(_PROBLEMS, []), table_of(_PROBLEMS, []))
 
 
 def _evaluate(task: Task, scratch: str, threads: int | None) -> Evaluation:
@@ -283,16 +276,16 @@ def _evaluate(task: Task, scratch: str, threads: int | None) -> Evaluation:
         with open(settings, "wb") as file:
             file.write(task.settings)
     paths, names = _fetched(task, scratch)
-    try:
-        evaluation = evaluate(paths, task.cases, settings, drape=task.drape, threads=threads)
-    except KesfError as error:
-        # A folder of a store may turn out to hold no measurement; of local ones it is known that they do.
-        if error.code != "O055" or len(names) < len(paths):
-            raise
-        return nothing()
+    # A shard may have no fabric, and what is true of all fabrics is told by one of them.
+    making = (settings, task.drape, (task.shard.number, task.shard.count, False))
+    memory = [(os.fspath(name), text) for name, text in task.cases]
+    evaluation = evaluation_of(
+        _kesf.evaluate((paths, memory, None), _options(None, None, None, False), making, threads)
+    )
     if not names:
         return evaluation
-    return Evaluation(evaluation.results, _renamed(evaluation.findings, names), _renamed(evaluation.failures, names))
+    findings, failures = (_renamed(table, names) for table in (evaluation.findings, evaluation.failures))
+    return replace(evaluation, findings=findings, failures=failures)
 
 
 def _fetched(task: Task, scratch: str) -> tuple[list[str], dict[str, str]]:
@@ -329,13 +322,15 @@ def _first(system: Any, file: str, target: str) -> None:
     system.get_file(file, target)
 
 
-def _renamed(table: Any, names: dict[str, str]) -> Any:
-    rows = table.rows()
-    for row in rows:
+def _renamed(table: Table, names: dict[str, str]) -> Table:
+    columns = table.to_pydict()
+    for column in ("place", "message"):
         for place, url in names.items():
-            row["place"] = row["place"].replace(place, url)
-            row["message"] = row["message"].replace(place, url)
-    return table_of(_PROBLEMS, rows)
+            columns[column] = [text.replace(place, url) for text in columns[column]]
+    cells: list[tuple[str, str, dict[str, str], list[Any]]] = [
+        (name, "text", {}, list(column)) for name, column in columns.items()
+    ]
+    return Table(_kesf.Table._from_columns(cells))
 
 
 def _threads() -> int | None:

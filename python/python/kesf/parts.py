@@ -7,15 +7,14 @@ A folder of parts::
     out/_failures/part-0001-of-0007.parquet   what gave nothing
 
 The metadata of a part has the version of kesf and a key, the hash of everything that the part depends on: a part with
-the same key is not made again. The results are written last, so that a part that is there is complete. polars and
-duckdb read ``out/part-*.parquet`` as one table. Needs pyarrow and fsspec.
+the same key is not made again. The results are written last, so that a part that is there is complete. The command's
+``kesf run --shard`` and ``kesf merge`` write and read the same files; polars and duckdb read ``out/part-*.parquet`` as
+one table. Needs fsspec, and pyarrow for tables.
 """
 
 from __future__ import annotations
 
 import contextlib
-import hashlib
-import io
 import os
 import re
 import uuid
@@ -26,6 +25,7 @@ from typing import TYPE_CHECKING, Any
 from . import _kesf
 from ._errors import KesfError
 from ._evaluate import Evaluation
+from ._table import Table
 
 if TYPE_CHECKING:
     import pyarrow
@@ -62,20 +62,16 @@ def shard_of(path: str, count: int) -> int:
     """The number of the shard, from 1, that a fabric belongs to: by the hash of the last part of its path without
     ending, whatever its case, so that fabrics that could be of one name are in one shard and are told apart there.
 
-    >>> shard_of("lot1/Poplin.csv", 7) == shard_of("lot2/poplin", 7)
+    >>> shard_of("lot1/Poplin.csv", 7) == shard_of("zip://lot2/poplin::fabrics.zip", 7)
     True
     """
-    stem = os.path.splitext(os.path.basename(path.rstrip("/")))[0].lower()
-    return int.from_bytes(hashlib.sha256(stem.encode()).digest()[:8], "big") % count + 1
+    # Of a chained URL, such as zip://lot1/poplin::fabrics.zip, the fabric is the first link.
+    return _kesf.shard_of(path.split("::", 1)[0].rstrip("/"), count)
 
 
 def key_of(*texts: str | bytes) -> str:
     """The hash of everything that a part depends on, and of the version of kesf."""
-    digest = hashlib.sha256(_kesf.version().encode())
-    for text in texts:
-        data = text.encode() if isinstance(text, str) else text
-        digest.update(len(data).to_bytes(8, "big") + data)
-    return digest.hexdigest()
+    return _kesf.key_of([text.encode() if isinstance(text, str) else text for text in texts])
 
 
 def _needs(module: str) -> KesfError:
@@ -113,30 +109,28 @@ def write_file(path: str, data: bytes, options: dict[str, Any] | None = None) ->
         ) from error
 
 
-def write(evaluation: Evaluation, out: str, shard: Shard, key: str, options: dict[str, Any] | None = None) -> None:
+def write(
+    evaluation: Evaluation, out: str, shard: Shard, key: str, options: dict[str, Any] | None = None, set_up: str = ""
+) -> None:
     """Writes the three files of a part, each whole or not at all, the results last.
+
+    Args:
+        evaluation: What is known of its fabrics.
+        out: The folder of parts, a path or URL.
+        shard: Which part.
+        key: Hash of everything that it depends on.
+        options: Options of the file system.
+        set_up: Hash of what all parts of the batch share; :func:`merge` refuses parts that differ in it.
 
     Raises:
         KesfError: O001 if a file cannot be written; what was half written is removed.
     """
-    for name, folder in TABLES.items():
-        data = parquet(getattr(evaluation, name), {"kesf.key": key, "kesf.shard": f"{shard.number}/{shard.count}"})
-        write_file(f"{out.rstrip('/')}/{folder}{shard.file}", data, options)
-
-
-def parquet(table: Any, metadata: dict[str, str]) -> bytes:
-    """A table as Parquet, in one row group: the same table gives the same bytes."""
-    try:
-        import pyarrow
-        import pyarrow.parquet
-    except ImportError as error:
-        raise _needs("pyarrow") from error
-    taken = pyarrow.table(table)
-    told = {"kesf.version": _kesf.version(), **metadata}
-    taken = taken.replace_schema_metadata({**(taken.schema.metadata or {}), **told})
-    sink = io.BytesIO()
-    pyarrow.parquet.write_table(taken, sink, compression="zstd", row_group_size=max(1, len(taken)))
-    return sink.getvalue()
+    tables = (evaluation.findings._native, evaluation.failures._native, evaluation.results._native)
+    files = _kesf.part_files(
+        tables, evaluation._cases, (shard.number, shard.count), set_up, "" if evaluation._unfinished else key
+    )
+    for name, data in files:
+        write_file(f"{out.rstrip('/')}/{name}", data, options)
 
 
 def _write_whole(system: Any, path: str, data: bytes) -> None:
@@ -164,17 +158,12 @@ def _write_whole(system: Any, path: str, data: bytes) -> None:
 
 def key_in(out: str, shard: Shard, options: dict[str, Any] | None = None) -> str | None:
     """The key of a part that is there; None if there is none, or if it cannot be read."""
-    import pyarrow.parquet
-
     system, root = filesystem(out, options)
-    path = f"{root}/{shard.file}"
     try:
-        with system.open(path, "rb") as file:
-            metadata = pyarrow.parquet.ParquetFile(file).schema_arrow.metadata or {}
-    except (FileNotFoundError, pyarrow.ArrowInvalid):
+        with system.open(f"{root}/{shard.file}", "rb") as file:
+            return _kesf.key_in(file.read())
+    except FileNotFoundError:
         return None
-    key = metadata.get(b"kesf.key")
-    return None if key is None else key.decode()
 
 
 def listed(out: str, options: dict[str, Any] | None = None) -> list[Shard]:
@@ -189,7 +178,9 @@ def listed(out: str, options: dict[str, Any] | None = None) -> list[Shard]:
 
 
 def merge(out: str, table: str = "results", options: dict[str, Any] | None = None) -> pyarrow.Table:
-    """The parts as one table of pyarrow, in order of the fabrics' names: the same for any number of shards.
+    """The parts as one table of pyarrow, in order of the fabrics' names: the same for any number of shards. Findings
+    and failures that only the whole batch tells are added: fabrics without a law that a case needs, and cases that
+    found no fabric.
 
     Args:
         out: The folder of parts, a path or URL.
@@ -197,76 +188,45 @@ def merge(out: str, table: str = "results", options: dict[str, Any] | None = Non
         options: Options of the file system.
 
     Raises:
-        KesfError: O059 if parts are missing or of different runs, O042 if one cannot be read, and O056 if a fabric is
-            in two of them.
+        KesfError: O065 if parts are missing, O066 if they are of different runs, O067 if one cannot be read, and O068
+            if a fabric is in two of them.
     """
-    import pyarrow
-    import pyarrow.compute
-    import pyarrow.parquet
+    try:
+        import pyarrow
+    except ImportError as error:
+        raise _needs("pyarrow") from error
+    return pyarrow.table(Table(_kesf.merge(out, _files(out, table, options), table)))
 
+
+def merge_file(out: str, table: str = "results", options: dict[str, Any] | None = None) -> bytes:
+    """The same as the bytes of a Parquet file, those of ``kesf merge -o``."""
+    return _kesf.merge_file(out, _files(out, table, options), table)
+
+
+def _files(out: str, table: str, options: dict[str, Any] | None) -> list[tuple[int, int, bytes, bytes, bytes]]:
     if table not in TABLES:
-        raise KesfError(f"`{table}` is no table of a part", cure="take results, findings or failures")
-    shards = complete(out, options)
+        raise KesfError(f"`{table}` is no table of a part", code="O050", cure="take results, findings or failures")
     system, root = filesystem(out, options)
-    taken: list[pyarrow.Table] = []
-    seen: dict[str, Shard] = {}
-    for shard in shards:
-        path = f"{root}/{TABLES[table]}{shard.file}"
-        try:
-            with system.open(path, "rb") as file:
-                part = pyarrow.parquet.read_table(file)
-        except (FileNotFoundError, pyarrow.ArrowInvalid, OSError) as error:
-            raise KesfError(
-                f"the part cannot be read: {error}",
-                code="O042",
-                path=path,
-                cure="remove it and run again: the other parts are kept",
-            ) from error
-        if table == "results":
-            _distinct(part, shard, seen, path)
-        taken.append(part.replace_schema_metadata({"kesf.version": _kesf.version()}))
-    whole = pyarrow.concat_tables(taken)
-    order = pyarrow.compute.sort_indices(
-        whole.append_column("row", pyarrow.array(range(len(whole)))),
-        sort_keys=[("fabric", "ascending"), ("row", "ascending")]
-        if table == "results"
-        else [("fabric", "ascending"), ("place", "ascending"), ("code", "ascending"), ("message", "ascending")],
-    )
-    return whole.take(order).combine_chunks()
-
-
-def _distinct(part: pyarrow.Table, shard: Shard, seen: dict[str, Shard], path: str) -> None:
-    for fabric in part.column("fabric").unique().to_pylist():
-        if fabric in seen:
-            raise KesfError(
-                f"{fabric} is in {seen[fabric].file} and in {shard.file}",
-                code="O056",
-                path=path,
-                cure="give the fabrics folders or sample names of their own, or make one shard of them",
-            )
-        seen[fabric] = shard
+    files = []
+    for shard in complete(out, options):
+        parts = []
+        for folder in TABLES.values():
+            try:
+                with system.open(f"{root}/{folder}{shard.file}", "rb") as file:
+                    parts.append(file.read())
+            except (FileNotFoundError, OSError) as error:
+                raise KesfError(
+                    f"the part cannot be read: {error}",
+                    code="O067",
+                    path=f"{out.rstrip('/')}/{folder}{shard.file}",
+                    cure="remove it and run again: the other parts are kept",
+                ) from error
+        files.append((shard.number, shard.count, *parts))
+    return files
 
 
 def complete(out: str, options: dict[str, Any] | None = None) -> Sequence[Shard]:
     """The parts, if all are there and of one run."""
     shards = listed(out, options)
-    if not shards:
-        raise KesfError("there is no part", code="O059", path=out, cure="name a folder that kesf.dask.run wrote")
-    counts = {shard.count for shard in shards}
-    if len(counts) > 1:
-        raise KesfError(
-            f"there are parts of runs with {' and '.join(map(str, sorted(counts)))} shards",
-            code="O059",
-            path=out,
-            cure="remove those of one run, or write each run to a folder of its own",
-        )
-    (count,) = counts
-    missing = sorted(set(range(1, count + 1)) - {shard.number for shard in shards})
-    if missing:
-        raise KesfError(
-            f"{len(missing)} of {count} parts are missing, number {missing[0]} first",
-            code="O059",
-            path=out,
-            cure="run again: finished parts are kept",
-        )
+    _kesf.complete(out, [(shard.number, shard.count) for shard in shards])
     return shards

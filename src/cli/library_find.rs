@@ -1,0 +1,104 @@
+//! `kesf library find`: the fabrics of a library that are like one, or within bounds.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::exit::Exit;
+use super::inputs::EvaluateArgs;
+use super::output::{Format, OutputArgs};
+use super::ui::Ui;
+use crate::library::{Answer, Axis, Bounds, LibraryError, LibraryFile, Like, Question};
+use crate::report::arrow::write;
+use crate::report::arrow_text::{Records, csv, units};
+use crate::report::table::{FabricRow, UnitSystem, fabric_rows};
+use crate::results::{Curves, Failure, Input};
+
+/// Find the fabrics that are most alike, or within bounds
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: kesf library find library.parquet --like poplin --where 'thickness < 0.6' -n 5\nDistances are root mean squares, over the KES parameters that both fabrics have, of differences in standard\ndeviations of the library; log10 is taken of WT, B, 2HB, G, 2HG, 2HG5, WC, MMD, SMD, T0 and W."
+)]
+pub struct Find {
+    /// The library
+    #[arg(value_name = "LIBRARY.parquet")]
+    library: PathBuf,
+    /// Name of a fabric of the library, or the path of one
+    #[arg(long, value_name = "FABRIC")]
+    like: Option<String>,
+    /// Bounds in SQL and KES units, such as `thickness < 0.4 and B_warp < 0.08`
+    #[arg(long = "where", value_name = "SQL")]
+    bounds: Option<String>,
+    /// How many at most
+    #[arg(short = 'n', long, value_name = "COUNT", default_value_t = 10)]
+    count: usize,
+    #[command(flatten)]
+    output: OutputArgs,
+    #[command(flatten)]
+    evaluate: EvaluateArgs,
+}
+
+/// `kesf.found/1`.
+#[derive(Serialize)]
+struct Found<'a> {
+    schema: &'static str,
+    like: Option<&'a str>,
+    #[serde(rename = "where")]
+    bounds: Option<&'a str>,
+    /// What is usual in the library for the parameters that fabrics were compared by.
+    space: &'a [Axis],
+    units: BTreeMap<String, String>,
+    fabrics: Records<'a>,
+}
+
+pub fn run(options: &Find, ui: &Ui) -> Result<Exit, Failure> {
+    let format = options.output.format(ui.json)?;
+    let library = LibraryFile::open(&options.library)?;
+    let bounds = options.bounds.as_deref().map(|text| Bounds::parse(text, library.schema())).transpose()?;
+    let answer = answer(options, &library, bounds.clone(), ui)?;
+    let table = std::slice::from_ref(&answer.table);
+    let bytes = match format {
+        Format::Text => answer.text(bounds.as_ref()).into_bytes(),
+        Format::Csv => options.output.marked(csv(table)?),
+        Format::Parquet => write(&answer.table, &[])?,
+        Format::Json => {
+            let (like, bounds) = (options.like.as_deref(), options.bounds.as_deref());
+            let (space, units, fabrics) = (&answer.axes[..], units(&answer.table), Records(table));
+            ui.complete(Found { schema: "kesf.found/1", like, bounds, space, units, fabrics })?.into_bytes()
+        }
+        Format::Xlsx => return Err(options.output.no_such_format(".txt, .csv, .parquet or .json")),
+    };
+    options.output.emit(&bytes)?;
+    Ok(Exit::Done)
+}
+
+/// The fabric is one of the library, or else one on disk.
+fn answer(options: &Find, library: &LibraryFile, bounds: Option<Bounds>, ui: &Ui) -> Result<Answer, Failure> {
+    let like = options.like.clone().map(Like::Named);
+    let question = Question { like, bounds, count: options.count };
+    match (library.find(&question), &options.like) {
+        (Err(LibraryError::Unknown { .. }), Some(path)) if Path::new(path).exists() => {
+            let like = Some(Like::Rows(rows(Path::new(path), options, ui)?));
+            Ok(library.find(&Question { like, ..question })?)
+        }
+        (answer, _) => Ok(answer?),
+    }
+}
+
+/// The parameters of the fabric of a path (SI).
+fn rows(path: &Path, options: &Find, ui: &Ui) -> Result<Vec<FabricRow>, Failure> {
+    let (inputs, reading) = ([Input::from(path)], options.evaluate.reading());
+    let (fabrics, mut failures) =
+        ui.observe(|observer| reading.sheets(&inputs, &[], Curves::Dropped, observer))?;
+    match &fabrics[..] {
+        [one] => Ok(fabric_rows(&one.sheet, UnitSystem::Si)),
+        [] if !failures.is_empty() => Err(failures.remove(0)),
+        several => Err(Failure::new(
+            "O058",
+            format!("{} has {} fabrics, and one is asked for", path.display(), several.len()),
+        )
+        .hint("name the folder or the file of one fabric")),
+    }
+}

@@ -1,0 +1,92 @@
+//! The file of a library, of which only what is asked for is read.
+
+use std::path::{Path, PathBuf};
+
+use arrow_array::RecordBatch;
+use arrow_schema::SchemaRef;
+use arrow_select::concat::concat_batches;
+use parquet::arrow::ProjectionMask;
+use parquet::arrow::arrow_reader::{ParquetRecordBatchReaderBuilder, RowSelection};
+use parquet::errors::ParquetError;
+
+use super::error::LibraryError;
+use crate::platform::files;
+
+/// Rows that are in memory at once.
+const PIECE: usize = 1 << 13;
+
+/// A library on disk.
+#[derive(Clone, Debug)]
+pub struct LibraryFile {
+    path: PathBuf,
+    schema: SchemaRef,
+}
+
+impl LibraryFile {
+    /// Opens a library and reads which columns it has.
+    ///
+    /// # Errors
+    /// O070 for a file that is none.
+    pub fn open(path: &Path) -> Result<Self, LibraryError> {
+        let builder = builder(path)?;
+        let schema = builder.schema().clone();
+        if !schema.metadata.contains_key("kesf.library") || schema.field_with_name("fabric").is_err() {
+            return Err(broken(path, "it is another table"));
+        }
+        Ok(Self { path: path.to_path_buf(), schema })
+    }
+
+    /// Its columns.
+    pub fn schema(&self) -> &SchemaRef {
+        &self.schema
+    }
+
+    /// Reads some of its columns piece by piece; `work` gets each piece and the number of its first row.
+    ///
+    /// # Errors
+    /// O070 for a file that is cut or broken.
+    pub fn scan(
+        &self,
+        columns: &[&str],
+        mut work: impl FnMut(&RecordBatch, usize),
+    ) -> Result<(), LibraryError> {
+        let builder = builder(&self.path)?;
+        let mask = ProjectionMask::columns(builder.parquet_schema(), columns.iter().copied());
+        let failed = |e: ParquetError| broken(&self.path, &e.to_string());
+        let reader = builder.with_projection(mask).with_batch_size(PIECE).build().map_err(failed)?;
+        let mut first = 0;
+        for piece in reader {
+            let piece = piece.map_err(|e| broken(&self.path, &e.to_string()))?;
+            work(&piece, first);
+            first += piece.num_rows();
+        }
+        Ok(())
+    }
+
+    /// Rows by their numbers, which ascend, with all columns.
+    ///
+    /// # Errors
+    /// O070 for a file that is cut or broken.
+    pub fn rows(&self, numbers: &[usize]) -> Result<RecordBatch, LibraryError> {
+        let builder = builder(&self.path)?;
+        let count =
+            usize::try_from(ParquetRecordBatchReaderBuilder::metadata(&builder).file_metadata().num_rows())
+                .unwrap_or_default();
+        let ranges = numbers.iter().map(|number| *number..*number + 1);
+        let selection = RowSelection::from_consecutive_ranges(ranges, count);
+        let reader = builder.with_row_selection(selection).build();
+        let failed = |problem: String| broken(&self.path, &problem);
+        let pieces = reader.map_err(|e| failed(e.to_string()))?.collect::<Result<Vec<_>, _>>();
+        concat_batches(&self.schema, &pieces.map_err(|e| failed(e.to_string()))?)
+            .map_err(|e| failed(e.to_string()))
+    }
+}
+
+fn builder(path: &Path) -> Result<ParquetRecordBatchReaderBuilder<files::File>, LibraryError> {
+    let file = files::open(path).map_err(|e| broken(path, &e.to_string()))?;
+    ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| broken(path, &e.to_string()))
+}
+
+fn broken(path: &Path, problem: &str) -> LibraryError {
+    LibraryError::File { path: path.to_path_buf(), problem: problem.into() }
+}

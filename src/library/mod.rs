@@ -1,0 +1,25 @@
+//! A library of fabrics that answers: which of them are like this one, and which are within these bounds.
+//!
+//! A library is one Parquet file, a row a fabric: a column for each parameter in a direction in its customary KES unit
+//! (`B_warp`, `T0`, `E_secant_weft`), with the unit in the metadata of the field, and `thickness` (mm) and `mass`
+//! (mg/cm²) beside `T0` and `W`. It is asked without being held in memory: only the columns that a question names are
+//! read, piece by piece.
+//!
+//! Likeness is the distance in the space of the sixteen KES parameters: each the mean over the directions that are
+//! known, log10 for those that Kawabata takes logarithms of, less the mean over the library and over its standard
+//! deviation there; the distance is the root mean square over the parameters that both fabrics have.
+
+mod bounds;
+mod build;
+mod error;
+mod file;
+mod find;
+mod space;
+mod text;
+
+pub use bounds::Bounds;
+pub use build::{Shelf, Stored};
+pub use error::LibraryError;
+pub use file::LibraryFile;
+pub use find::{Answer, Like, Question};
+pub use space::{Axis, FEWEST, SPACE};

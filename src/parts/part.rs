@@ -1,0 +1,169 @@
+//! A part of a batch as files, and read back.
+
+use std::path::{Path, PathBuf};
+
+use arrow_array::RecordBatch;
+use bytes::Bytes;
+use sha2::{Digest, Sha256};
+
+use super::error::PartError;
+use super::evaluation::Evaluation;
+use crate::report::arrow::{Metadata, batch, read, schema, write};
+use crate::report::table::{RemarkRow, ResultRow};
+use crate::results::{Failure, Shard};
+use crate::run::CaseTally;
+
+/// The tables of a part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Table {
+    /// What a reader must know.
+    Findings,
+    /// What gave nothing.
+    Failures,
+    /// Parameters and predictions.
+    Results,
+}
+
+/// In the order of writing: the results come last.
+pub const TABLES: [Table; 3] = [Table::Findings, Table::Failures, Table::Results];
+
+const VERSION: &str = "kesf.version";
+const SHARD: &str = "kesf.shard";
+const SET_UP: &str = "kesf.setup";
+const KEY: &str = "kesf.key";
+const CASES: &str = "kesf.cases";
+
+/// The key of a part that another run could make better: it is that of no request.
+const UNFINISHED: &str = "";
+
+/// A part that was read back.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Which part.
+    pub shard: Shard,
+    /// The file of its results.
+    pub path: PathBuf,
+    /// Hash of everything that it depends on.
+    pub key: String,
+    /// Hash of the set-up that all parts of its batch share.
+    pub set_up: String,
+    /// What its fabrics are to the cases.
+    pub tallies: Vec<CaseTally>,
+    /// Its tables, in the order of [`TABLES`].
+    pub tables: [RecordBatch; 3],
+}
+
+impl Table {
+    /// `results`, `findings` or `failures`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Findings => "findings",
+            Self::Failures => "failures",
+            Self::Results => "results",
+        }
+    }
+
+    /// Its place in a folder of parts: the name of the file of a shard, with what is before it.
+    pub fn file(self, shard: Shard) -> String {
+        match self {
+            Self::Results => shard.file(),
+            Self::Findings | Self::Failures => format!("_{}/{}", self.name(), shard.file()),
+        }
+    }
+
+    fn schema(self) -> arrow_schema::SchemaRef {
+        if self == Self::Results { schema::<ResultRow>() } else { schema::<RemarkRow>() }
+    }
+}
+
+/// The hash of texts, each with its length, and of the version of this program.
+pub fn key_of<'t>(texts: impl IntoIterator<Item = &'t [u8]>) -> String {
+    let mut digest = Sha256::new_with_prefix(env!("CARGO_PKG_VERSION"));
+    for text in texts {
+        digest.update((text.len() as u64).to_be_bytes());
+        digest.update(text);
+    }
+    digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+impl Evaluation {
+    /// The files of a part, by their names in its folder, in the order of writing.
+    ///
+    /// # Errors
+    /// O030 if a table cannot be made, O057 if the tallies cannot.
+    pub fn files(&self, shard: Shard, set_up: &str, key: &str) -> Result<Vec<(String, Vec<u8>)>, Failure> {
+        let tables = [batch(&self.findings)?, batch(&self.failures)?, batch(&self.results)?];
+        let key = if self.unfinished { UNFINISHED } else { key };
+        encode(&tables, &serde_json::to_string(&self.tallies)?, shard, set_up, key)
+    }
+}
+
+/// The files of a part by their names, of its tables in the order of [`TABLES`] and its tallies as JSON.
+///
+/// # Errors
+/// O030 if a table cannot be made.
+pub fn encode(
+    tables: &[RecordBatch; 3],
+    cases: &str,
+    shard: Shard,
+    set_up: &str,
+    key: &str,
+) -> Result<Vec<(String, Vec<u8>)>, Failure> {
+    let number = shard.to_string();
+    let version = env!("CARGO_PKG_VERSION");
+    let told = [(VERSION, version), (SHARD, &number), (SET_UP, set_up), (KEY, key), (CASES, cases)];
+    let file = |(table, rows): (Table, &RecordBatch)| Ok((table.file(shard), write(rows, &told)?));
+    TABLES.into_iter().zip(tables).map(file).collect()
+}
+
+impl Part {
+    /// The part of files, in the order of [`TABLES`]; `folder` names them in messages.
+    ///
+    /// # Errors
+    /// [`PartError::Part`] if one is not as this program writes it, or they do not belong together.
+    pub fn read(folder: &Path, shard: Shard, files: [Bytes; 3]) -> Result<Self, PartError> {
+        let mut found: Option<(Metadata, Vec<CaseTally>)> = None;
+        let mut tables = Vec::new();
+        for (table, bytes) in TABLES.into_iter().zip(files) {
+            let path = folder.join(table.file(shard));
+            let failed = |problem: String| PartError::Part { path: path.clone(), problem };
+            let (told, rows) = read(bytes).map_err(|e| failed(e.to_string()))?;
+            let told: Metadata = told.into_iter().filter(|(key, _)| key.starts_with("kesf.")).collect();
+            if rows.schema().fields() != table.schema().fields() {
+                return Err(failed(format!("it has other columns than a table of {}", table.name())));
+            }
+            if told.get(SHARD).is_none_or(|text| *text != shard.to_string()) {
+                return Err(failed(format!("it does not say that it is shard {shard}")));
+            }
+            match &found {
+                None => {
+                    let cases = told.get(CASES).and_then(|text| serde_json::from_str(text).ok());
+                    let cases = cases.ok_or_else(|| failed("it does not say what its cases were".into()))?;
+                    found = Some((told, cases));
+                }
+                Some((first, _)) if *first != told => {
+                    return Err(failed("its results and its findings are of different runs".into()));
+                }
+                Some(_) => {}
+            }
+            tables.push(rows);
+        }
+        let path = folder.join(shard.file());
+        let text = |told: &Metadata, key: &str| told.get(key).cloned().unwrap_or_default();
+        let broken = || PartError::Part { path: path.clone(), problem: "a table is missing".into() };
+        let (told, tallies) = found.ok_or_else(broken)?;
+        let tables = tables.try_into().map_err(|_| broken())?;
+        // Another version is another set-up.
+        let set_up = format!("{} {}", text(&told, VERSION), text(&told, SET_UP));
+        Ok(Self { shard, key: text(&told, KEY), set_up, tallies, tables, path })
+    }
+
+    /// One of its tables.
+    pub fn table(&self, table: Table) -> &RecordBatch {
+        match table {
+            Table::Findings => &self.tables[0],
+            Table::Failures => &self.tables[1],
+            Table::Results => &self.tables[2],
+        }
+    }
+}
