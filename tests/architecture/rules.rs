@@ -122,6 +122,7 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
             "arrow_select",
             "bytes",
             "parquet",
+            "polars",
             "quick_xml",
             "rust_xlsxwriter",
         ],
