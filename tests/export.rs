@@ -251,7 +251,7 @@ fn cards_of_abaqus_and_calculix_give_the_section_back() {
     std::fs::write(&broken, "*SHELL GENERAL SECTION, ELSET=A, DENSITY=0.1\n1., six\n").unwrap();
     let run = kesf(&["section", broken.to_str().unwrap()]);
     assert!(
-        code(&run) == 1 && stderr(&run).contains("O045") && stderr(&run).contains("line 2"),
+        code(&run) == 2 && stderr(&run).contains("O045") && stderr(&run).contains("line 2"),
         "{}",
         stderr(&run)
     );

@@ -156,20 +156,20 @@ mod tests {
 
     #[test]
     fn rows_that_are_no_points_are_told() {
-        let wrong = |change: fn(&mut CurveRow), problem: &str| {
+        let wrong_at = |place: usize, change: fn(&mut CurveRow), problem: &str| {
             let mut rows = [row(0), row(1), row(2)];
             change(&mut rows[2]);
             let text = fabrics_of_curves(&rows).unwrap_err().to_string();
-            assert!(
-                text.contains("O073 row 3 of the table of curves (cloth)") && text.contains(problem),
-                "{text}"
-            );
+            let begins = format!("O073 row {place} of the table of curves (cloth)");
+            assert!(text.contains(&begins) && text.contains(problem), "{text}");
         };
+        let wrong = |change: fn(&mut CurveRow), problem: &str| wrong_at(3, change, problem);
         wrong(|row| row.test = "bendng".into(), "`bendng` is no test");
         wrong(|row| row.direction = None, "no direction where warp");
         wrong(|row| row.direction = Some("up".into()), "`up` is no direction");
         wrong(|row| row.specimen = 0, "specimens count from 1");
-        wrong(|row| row.specimen = 2, "1 points where 3 are needed");
+        // Two of the three points are left to the first specimen, whose curve begins in row 1.
+        wrong_at(1, |row| row.specimen = 2, "2 points where 3 are needed");
         wrong(|row| row.x = f64::NAN, "no number of a curve");
         wrong(|row| row.x_unit = "gf".into(), "the unit is `gf` where one such as 1/m");
         wrong(|row| row.index = 1, "index 1 is there twice");
