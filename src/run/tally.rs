@@ -26,6 +26,7 @@ pub struct CaseTally {
     pub without: Vec<String>,
 }
 
+#[cfg_attr(not(feature = "parquet"), allow(dead_code, reason = "only parts are put together"))]
 impl CaseTally {
     fn add(&mut self, other: &Self) {
         self.suits_any |= other.suits_any;
@@ -49,6 +50,7 @@ impl CaseTally {
 
 /// What is to be said of a batch of which these are the shares: the fabrics that miss a law, and the cases that found
 /// no fabric.
+#[cfg_attr(not(feature = "parquet"), allow(dead_code, reason = "only parts are put together"))]
 pub(crate) fn of_batch(shares: &[Vec<CaseTally>]) -> (Vec<Finding>, Vec<Failure>) {
     let mut whole = shares.first().cloned().unwrap_or_default();
     for share in shares.iter().skip(1) {
