@@ -67,7 +67,10 @@ pub struct Conditions {
     pub contact: f64,
 }
 
-#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference; by 32-bit addresses it is none")]
+#[allow(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde hands over a reference; by 32-bit addresses it is none"
+)]
 fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }

@@ -148,7 +148,7 @@ def same_digits(browser, address, kesf, work):
         compared(name, downloaded(page, name), (work / "native" / name).read_bytes())
     left = [n for n in page.locator("[data-file]").evaluate_all("all => all.map((b) => b.dataset.file)")]
     on_disk = {str(p.relative_to(work / "native")) for p in (work / "native").rglob("*") if p.is_file()}
-    missing = {n for n in on_disk if not n.endswith((".parquet",)) and not n.startswith(".kesf")} - set(left)
+    missing = {n for n in on_disk if not n.endswith(".parquet") and not Path(n).name.startswith(".kesf")} - set(left)
     check("every file of the command is there, but for pictures and Parquet", not missing, sorted(missing)[:5])
     check("a workbook is a workbook", zipfile.is_zipfile(io.BytesIO(downloaded(page, "results.xlsx"))))
     with page.expect_download() as caught:
