@@ -61,6 +61,9 @@ pub mod parts;
 #[cfg(feature = "parquet")]
 pub mod library;
 
+#[cfg(feature = "results")]
+pub mod documents;
+
 #[cfg(feature = "cli")]
 pub mod cli;
 

@@ -26,6 +26,8 @@ mod tables;
 mod tally;
 mod work;
 
+pub(crate) use document::RunDocument;
+
 use crate::case::Case;
 use crate::report::table::{FabricRow, PredictionRow, ProblemRow};
 use crate::results::{
@@ -204,7 +206,10 @@ pub fn write(
     observer: &Observer,
 ) -> Result<RunReport, Failure> {
     let with_fields = settings.fields.are_written(work.catalogue.len());
-    let folder = Folder::new(sink, settings.charts).with_fields(with_fields).with_bom(settings.bom);
+    let folder = Folder::new(sink, settings.charts)
+        .with_formats(&settings.formats)
+        .with_fields(with_fields)
+        .with_bom(settings.bom);
     let shop = Workshop::new((job, settings), work, &folder, observer)?;
     let mut made = shop.run()?;
     // Of a share, nobody knows yet what is true of all fabrics.
@@ -222,13 +227,14 @@ pub fn write(
     let results = Results {
         work,
         folder: &folder,
+        settings,
         made: &made,
         own: &own,
         failures: &failures,
         without_law: &without_law,
         cases: &cases,
     };
-    let tables = results.write(job, settings, observer)?;
+    let tables = results.write(job, observer)?;
     let (unread, of_batch, of_own) =
         (results.unread_rows(), results.problems_of_batch(), results.problems_of_own());
     Ok(RunReport {

@@ -237,7 +237,7 @@ fn what_is_found_late_stands_where_it_is_written() {
     let line_of = |text: &str, word: &str| text[..text.rfind(word).unwrap()].matches('\n').count() + 1;
     let place = |text: &str| {
         let case = Case::parse(Path::new("c.toml"), text).unwrap();
-        let error = kesf::study::validate(&case).unwrap_err();
+        let error = kesf::study::validate(&case, &kesf::solve::Options::default()).unwrap_err();
         let place = Coded::place(&error).unwrap_or_else(|| panic!("{error}"));
         (error.code(), place.line, place.column)
     };

@@ -337,6 +337,68 @@ fn fabrics_and_cases_of_the_same_name_are_told_apart() {
     }
 }
 
+/// One drawing, several files; the page shows what browsers show. Another run with other files draws again.
+#[test]
+fn charts_are_files_of_the_formats_that_are_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    write(
+        folder.path(),
+        "t.csv",
+        "parameter,unit,warp,weft\nB,gf·cm²/cm,0.1,0.1\n2HB,gf·cm/cm,0.05,0.05\nW,mg/cm²,10,10\n",
+    );
+    let (root, out) = (folder.path().to_str().unwrap(), folder.path().join("out"));
+    let drawn = |format: &str| {
+        let output = run(&["run", &format!("{root}/t.csv"), "-o", out.to_str().unwrap(), "--format", format]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        let page = fs::read_to_string(out.join("index.html")).unwrap();
+        let there = |ending: &str| out.join("t").join(format!("bending.{ending}")).is_file();
+        (["png", "svg", "pdf"].map(there), page)
+    };
+    let (there, page) = drawn("svg, pdf");
+    assert_eq!(there, [false, true, true]);
+    assert!(page.contains("src=\"./t/bending.svg\"") && page.contains("as SVG and PDF"));
+    let svg = fs::read_to_string(out.join("t/bending.svg")).unwrap();
+    assert!(svg.contains("<title>") && svg.contains("<desc>") && svg.contains(">Curvature K"), "{svg}");
+    let output = run(&["--json", "report", out.to_str().unwrap()]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    assert!(fs::read_to_string(out.join("report.html")).unwrap().contains("data:image/svg+xml;base64,"));
+    let (there, page) = drawn("png");
+    assert!(there[0] && page.contains("src=\"./t/bending.png\"") && !page.contains("another ending"));
+    let output = run(&["run", root, "--format", "png,bmp"]);
+    assert_eq!(code(&output), 2);
+    assert!(
+        stderr(&output).contains("\"bmp\" is no format of charts: there are png, svg, pdf"),
+        "{}",
+        stderr(&output)
+    );
+}
+
+/// A population that is given is in the page with its source; what is none is refused before anything is computed.
+#[test]
+fn a_population_is_named_in_the_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_string();
+    write(folder.path(), "t.csv", "parameter,unit,warp,weft\nB,gf·cm²/cm,0.1,0.1\nW,mg/cm²,10,10\n");
+    write(folder.path(), "own.csv", "parameter,mean,sd,n,unit\nlog B,-1,0.2,9,gf·cm²/cm\n");
+    write(folder.path(), "bad.csv", "parameter,mean,sd,unit\nlog B,-1,0.2,mm\n");
+    let with = |population: &str| {
+        run(&["run", &at("t.csv"), "-o", &at("out"), "--no-charts", "--population", &at(population)])
+    };
+    let output = with("bad.csv");
+    assert_eq!(code(&output), 2);
+    assert!(
+        stderr(&output).contains("bad.csv:2: O074") && !folder.path().join("out").exists(),
+        "{}",
+        stderr(&output)
+    );
+    assert!(stderr(&with("none.toml")).contains("O074"));
+    let output = with("own.csv");
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let page = fs::read_to_string(at("out/index.html")).unwrap();
+    assert!(page.contains(r#""population":{"source":"own.csv","parameters":[{"symbol":"B","log":true,"mean":-1.0,"sd":0.2,"n":9}]}"#));
+    assert!(page.contains("id=\"control-chart\""), "one fabric is compared with a population");
+}
+
 /// What solving would refuse is refused by the check as well.
 #[test]
 fn a_check_builds_the_case() {
@@ -421,6 +483,7 @@ fn a_second_run_writes_the_same_bytes() {
         assert!(names.contains(&name), "{name} is missing among {names:?}");
     }
     assert!(names.contains(&"petrak_m1/cantilever_strip.vtu"));
+    assert!(names.contains(&"petrak_m1/cantilever_strip.glb"));
     for ((name, a), ((_, b), (_, c))) in first.iter().zip(second.iter().zip(&again)) {
         assert!(a == b && a == c, "{name} differs between runs");
     }

@@ -140,7 +140,7 @@ fn the_exact_tangent_is_the_derivative_of_the_force() {
             let difference = difference_of_force(&reference, &k, &nodes);
             let exact = motion.exact_tangent(&k, &local);
             assert!((exact - difference).norm() < 1e-9 * exact.norm(), "{amplitude}");
-            // The symmetric one leaves out terms of first order in the local force.
+            // The symmetric one leaves out terms of first order in the local force, and nothing else.
             let near = motion.tangent(&k, &local);
             assert!((near - near.transpose()).norm() < 1e-14 * near.norm());
             assert!((near - difference).norm() < 0.5 * amplitude * exact.norm(), "{amplitude}");

@@ -299,3 +299,13 @@ proptest! {
         check(&dress, &specimens);
     }
 }
+
+/// One line of bytes that are no text took a minute: its encoding was looked for in all of it, character by character.
+#[test]
+fn a_line_of_bytes_takes_no_minutes() {
+    let mut bytes = vec![0xff; 100_000];
+    bytes.push(b'\n');
+    let start = std::time::Instant::now();
+    assert!(parse(Path::new("a_warp_FB2_1.csv"), &bytes, &ReadSettings::default()).is_err());
+    assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
+}

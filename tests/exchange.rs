@@ -79,6 +79,7 @@ const PROGRAMS: &[Program] = &[
             ("hang_weft", SHELL),
             ("shear", SHELL),
             ("plate", SHELL),
+            ("sheet", 0.01),
         ],
     },
     Program {
@@ -132,6 +133,9 @@ const PROGRAMS: &[Program] = &[
             ("rigidity_weft", HINGES),
             ("torsion", HINGES),
             ("mass", 1e-3),
+            // Its hinges, free edges where every second one lies, and a two-hundredth of the tensile stiffness.
+            ("strip_warp", 0.02),
+            ("strip_weft", 0.02),
         ],
     },
     Program {
@@ -151,6 +155,21 @@ const PROGRAMS: &[Program] = &[
         ],
     },
 ];
+
+/// No program that executes: the attributes of CLO, read by Pixar's USD with the factors of Unreal's importer.
+const CLO: Program = Program {
+    target: "clo",
+    script: "clo_usd.py",
+    needs: ("venv", "pxr"),
+    problems: &[
+        ("tensile_warp", SINGLE),
+        ("tensile_weft", SINGLE),
+        ("shear", SINGLE),
+        ("rigidity_warp", SINGLE),
+        ("rigidity_weft", SINGLE),
+        ("mass", SINGLE),
+    ],
+};
 
 /// The fabric of all tables.
 fn poplin() -> (FabricSheet, Constitutive) {
@@ -335,31 +354,102 @@ fn hold(rows: &[Row]) {
     }
 }
 
-/// A validator that is not ours finds every shipped fabric to be what `docs/schemas/open-fabric.json` says, and a file without
-/// its section not.
-#[test]
-fn open_fabric_files_are_valid() {
+/// A file, and whether it is to be valid.
+type Judged = (String, bool);
+
+/// Asks a validator that is not ours whether files are what a JSON Schema says; none if there is no validator.
+fn judge(schema: &str, files: &[Judged]) {
     let Some(python) = home().map(|home| home.join("venv/bin/python")).filter(|p| p.exists()) else {
-        return common::skipped(
-            "open fabric files",
-            "there is no validator; ci/exchange installs jsonschema",
-        );
+        return common::skipped(schema, "there is no validator; ci/exchange installs jsonschema");
     };
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let (sheet, made) = poplin();
     let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("poplin.fabric.json");
-    let material = Material { sheet: &sheet, made: &made, stamp: Some("2026-01-02T03:04:05Z") };
-    let text = card(named("fabric").unwrap(), &material).unwrap().text;
-    for (text, valid) in [(text.clone(), true), (text.replace("\"section\":", "\"sections\":"), false)] {
+    let file = folder.path().join("file.json");
+    for (text, valid) in files {
         std::fs::write(&file, text).unwrap();
         let ran = Command::new(&python)
-            .args(["-m", "jsonschema", "-i"])
+            .args(["-W", "ignore", "-m", "jsonschema", "-i"])
             .arg(&file)
-            .arg(root.join("docs/schemas/open-fabric.json"))
+            .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join(schema))
             .output()
             .unwrap();
-        assert_eq!(ran.status.success(), valid, "{}", String::from_utf8_lossy(&ran.stderr));
+        let said = String::from_utf8_lossy(&ran.stderr);
+        assert_eq!(ran.status.success(), *valid, "{schema}: {said}\n{text}");
+    }
+}
+
+/// The card of a program of every shipped fabric.
+fn shipped(target: &str) -> Vec<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("kesf_data");
+    let batch = instrument::read_fabrics(&[folder], &Default::default(), &|_| ());
+    let of = |measured| {
+        let sheet = characterise::characterise(measured, &Default::default());
+        let made = constitutive::section(&sheet, &Default::default()).ok()?;
+        let material = Material { sheet: &sheet, made: &made, stamp: Some("2026-01-02T03:04:05Z") };
+        Some(card(named(target).unwrap(), &material).unwrap().text)
+    };
+    let cards: Vec<String> = batch.fabrics.iter().filter_map(of).collect();
+    assert!(cards.len() > 3, "{}", cards.len());
+    cards
+}
+
+/// Every card of a program is valid, and not with any of the faults, each a text and what stands in its place.
+fn judge_cards(target: &str, schema: &str, faults: &[(&str, &str)]) {
+    let cards = shipped(target);
+    let poplin = cards.iter().find(|text| text.contains("poplin")).unwrap();
+    let mut files: Vec<Judged> =
+        faults.iter().map(|(own, other)| (poplin.replacen(own, other, 1), false)).collect();
+    assert!(files.iter().all(|(text, _)| text != poplin), "a fault of {target} is none:\n{poplin}");
+    files.extend(cards.into_iter().map(|text| (text, true)));
+    judge(schema, &files);
+}
+
+/// Every shipped fabric is what `docs/schemas/open-fabric.json` says, and a file without its section not.
+#[test]
+fn open_fabric_files_are_valid() {
+    judge_cards("fabric", "docs/schemas/open-fabric.json", &[("\"section\":", "\"sections\":")]);
+}
+
+/// U3M 1.1 by its specification: what the standard forbids is found.
+#[test]
+fn u3m_files_are_valid() {
+    let faults = [
+        ("\"schema\": \"1.1\"", "\"schema\": \"1.0\""),
+        ("\"weight\":", "\"bend\": 1, \"weight\":"),
+        ("\"weight\":", "\"weights\":"),
+        ("\"thickness\": 0", "\"thickness\": -0"),
+        ("\"fab\": \"null\"", "\"fab\": null"),
+        ("\"ratio\": ", "\"ratio\": 10"),
+        ("2026-01-02T03:04:05Z", "2 January"),
+        ("\"id\": \"", "\"id\": \"x"),
+        ("\"name\": null", "\"name\": \"of my own\""),
+    ];
+    judge_cards("u3m", "tests/exchange/schemas/u3m-1.1.json", &faults);
+}
+
+/// The physics file of U3M 1.1 with Browzwear's block. The schema takes the example of the standard, too (not shipped).
+#[test]
+fn browzwear_files_are_valid() {
+    let faults = [
+        ("\"raw_data\": null", "\"raw_data\": {}"),
+        ("\"raw_data\"", "\"raw\""),
+        ("\"length\": \"", "\"length\": \"about "),
+        ("\"width\"", "\"weft\""),
+    ];
+    judge_cards("browzwear", "tests/exchange/schemas/u3m-physics-1.1.json", &faults);
+}
+
+/// What Unreal's importer looks for is there, and its factors give the section.
+#[test]
+fn attributes_of_clo_are_what_unreal_reads() {
+    if !CLO.is_there() {
+        return common::skipped("clo", "usd-core is not installed; ci/exchange installs it");
+    }
+    let section = poplin().1.section;
+    let problems: Vec<&str> = CLO.problems.iter().map(|p| p.0).collect();
+    let (_, answers) = CLO.answers(&section, &problems).unwrap_or_else(|said| panic!("{said}"));
+    for (problem, bound) in CLO.problems {
+        let off = answers[*problem] / reference(&section, problem) - 1.0;
+        assert!(off.abs() <= *bound, "{problem}: {off}");
     }
 }
 

@@ -174,7 +174,9 @@ fn what_a_program_cannot_hold_is_refused() {
     let unknown = kesf(&["export", "kesf_data/poplin", "--to", "catia"]);
     assert!(code(&unknown) == 2 && stderr(&unknown).contains("abaqus"));
     let listed = String::from_utf8(kesf(&["list", "exports"]).stdout).unwrap();
-    assert!(["abaqus", "ansys", "calculix", "u3m"].iter().all(|t| listed.contains(t)));
+    assert!(["abaqus", "ansys", "browzwear", "calculix", "clo", "u3m"].iter().all(|t| listed.contains(t)));
+    // Nothing is invented where nothing is published.
+    assert!(["Optitex", "*MAT_235", "PAM-FORM"].iter().all(|t| listed.contains(t)), "{listed}");
 }
 
 #[test]

@@ -153,6 +153,22 @@ fn a_column_buckles_by_itself_and_every_method_ends_in_one_shape() {
     assert_eq!((short.status, codes(&short)), (Status::NotConverged, vec!["S112"]));
 }
 
+/// A stiff sheet under next to nothing moves no further than rounding, whatever its forces do: that is told.
+#[test]
+fn loads_below_rounding_are_told() {
+    let text = include_str!("../cases/self_weight_clamped.toml");
+    let (text, _) = text.split_once("[[checks]]").unwrap();
+    let text = text.replace("10000 N/m", "1e8 N/m").replace("6000 N/m", "6e7 N/m");
+    let of = |pressure: &str| {
+        let text = text.replace("\"gravity\"", &format!("\"pressure\"\nvalue = \"{pressure}\""));
+        solved(&Case::parse(Path::new("stiff.toml"), &text).unwrap())
+    };
+    let tiny = of("1e-8 Pa");
+    assert_eq!(codes(&tiny), ["S127"], "{:?}", tiny.path);
+    assert!(tiny.path.unwrap().steps.last().unwrap().residual > 1e-6);
+    assert_eq!(codes(&of("0.147 Pa")), [""; 0]);
+}
+
 /// A linear answer is that of a sheet that cannot buckle: beyond Euler's load, π² B / 4 L² of the clamped strip, that is
 /// said, and below it is not. Tension is no matter at any load.
 #[test]
@@ -234,6 +250,36 @@ fn a_strip_falls_and_the_linear_finding_names_the_cure() {
     assert!(small.findings[0].message().contains("large_rotations = true"));
     let still = solved(&strip("kind = \"linear\"", WEIGHT));
     assert!(still.findings[0].message().contains("kind = \"nonlinear\""));
+}
+
+/// A bias strip is statically determinate: by virtual work with the stretches of the yarns and their angle, for a force p per
+/// width along x and sides λx, λy, each yarn of length L = √((λx² + λy²)/2) carries p λx / 2L, and their angle is held by p λy / 2.
+#[test]
+fn yarns_of_a_sheared_strip_carry_what_statics_says() {
+    for membrane in ["assumed_stress", "one_cell", "cells"] {
+        let text = text_of(
+            "kind = \"nonlinear\"",
+            "kind = \"edge_force\"\nset = \"right\"\nvalue = \"20 N/m\"\ndirection = [1, 0, 0]",
+        );
+        let text = text
+            .replace("600 N/m", "6000 N/m")
+            .replace("shear = \"300 N/m\"", "shear = \"50 N/m\"")
+            .replace("height = \"1 cm\"\ncells = [20, 1]", "height = \"10 cm\"\ncells = [6, 4]\nwarp_angle_deg = 45")
+            .replace("fix = [\"v\", \"theta_x\", \"theta_z\"]", "fix = [\"w\", \"theta_x\", \"theta_y\"]")
+            .replace("kind = \"clamped\"", "fix = [\"u\"]\n[[supports]]\nset = \"bottom\"\nfix = [\"v\"]")
+            .replace("[analysis]", "[[probes]]\nname = \"corner\"\nat = [\"20 cm\", \"10 cm\"]\n[element]\nmembrane = \"MEMBRANE\"\n[analysis]")
+            .replace("MEMBRANE", membrane);
+        let result = solved(&Case::parse(Path::new("bias.toml"), &text).unwrap());
+        let [u, v, _] = result.probes[1].value.u;
+        let (x, y) = (1.0 + u / 0.2, 1.0 + v / 0.1);
+        let length = ((x * x + y * y) / 2.0).sqrt();
+        let found = result.probes[1].value.resultants.membrane;
+        let expected = [20.0 * x / (2.0 * length), 20.0 * x / (2.0 * length), 20.0 * y / 2.0];
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((found.abs() - expected).abs() < 1e-5 * expected, "{membrane}: {found} {expected}");
+        }
+        assert!(found[0] > 0.0 && found[1] > 0.0 && y < 0.95, "{found:?} {y}");
+    }
 }
 
 #[test]

@@ -216,6 +216,48 @@ fn fast_values_give_bending_and_shear_rigidity() {
     assert!(content.findings.iter().any(|f| f.code() == "R104" && f.message().contains("E100-1")));
 }
 
+/// A sheet of SiroFAST: -1 is warp and -2 weft also of values that KES knows; T2 (2 gf/cm²) is no T0 (0.5 gf/cm²); E5 and
+/// E20 give the tensile stiffness between 5 and 20 gf/cm, 14.7 N/m over their difference; nothing is passed off as KES.
+#[test]
+fn a_sheet_of_fast_is_read_for_what_it_determines() {
+    let text = "fabric,W (g/m2),T2 (mm),T100 (mm),ST (mm),C-1 (mm),C-2 (mm),B-1 (uN.m),B-2 (uN.m),E5-1 (%),E5-2 (%),\
+                E20-1 (%),E20-2 (%),E100-1 (%),EB5 (%),G (N/m),RS-1 (%),HE-1 (%)\n\
+                wool,195,0.62,0.48,0.14,18.1,17,11.34,9.4,0.3,0.4,0.9,1.1,2.5,3.1,39.7,1.2,3.5\n";
+    let content = read("fast.csv", text);
+    let of =
+        |p, d| content.results.iter().find(|(_, r)| r.parameter == p && r.direction == d).map(|(_, r)| r);
+    for (direction, b) in [(Direction::Warp, 11.34e-6), (Direction::Weft, 9.4e-6)] {
+        let found = of(Parameter::B, Some(direction)).unwrap();
+        assert_relative_eq!(found.mean, b, max_relative = 1e-12);
+        assert!(found.inferred && found.n == 1);
+    }
+    assert_relative_eq!(of(Parameter::G, None).unwrap().mean, 39.7, max_relative = 1e-12);
+    assert!(of(Parameter::T0, None).is_none() && of(Parameter::B, None).is_none());
+    let stiffness: Vec<(Direction, f64)> =
+        content.stiffnesses.iter().map(|(_, s)| (s.direction, s.stiffness)).collect();
+    let [(Direction::Warp, warp), (Direction::Weft, weft)] = stiffness[..] else { panic!("{stiffness:?}") };
+    assert_relative_eq!(warp, 14.709975 / 0.006, max_relative = 1e-9);
+    assert_relative_eq!(weft, 14.709975 / 0.007, max_relative = 1e-9);
+    let left_out = content.findings.iter().find(|f| f.code() == "R104").unwrap().message();
+    for name in ["T2", "T100", "ST", "E100-1", "RS-1", "HE-1"] {
+        assert!(left_out.contains(name), "{name}: {left_out}");
+    }
+}
+
+/// Rows of one fabric are repeats also of E5 and E20, in any order.
+#[test]
+fn repeated_rows_of_fast_are_averaged() {
+    let (head, rows) = (
+        "fabric,W (g/m2),C-1 (mm),C-2 (mm),E5-1 (%),E20-1 (%)\n",
+        ["wool,195,18,17,0.3,0.9\n", "wool,195,18,17,0.5,1.3\n"],
+    );
+    for [first, second] in [[0, 1], [1, 0]] {
+        let content = read("fast.csv", &format!("{head}{}{}", rows[first], rows[second]));
+        let [(_, stated)] = &content.stiffnesses[..] else { panic!("{:?}", content.stiffnesses) };
+        assert_relative_eq!(stated.stiffness, 14.709975 / 0.007, max_relative = 1e-9);
+    }
+}
+
 /// Numbers that no unit and no width may make infinite.
 #[test]
 fn numbers_stay_finite_in_si() {
@@ -345,6 +387,62 @@ fn rows_that_sum_up_others_are_no_specimens() {
     // A fabric is called like an extreme, and none is left out.
     let max = read("t.csv", "fabric,B (gf·cm²/cm),G (N/m)\nAnna,0.1,30\nMax,0.2,40\n");
     assert_eq!((repeats(&max).len(), messages(&max, "R110").len()), (4, 0));
+}
+
+/// `F1 mean` among rows of F1, its parts or its other statistics is no fabric; alone it is the name of one.
+#[test]
+fn a_name_with_a_statistic_is_that_of_the_fabric() {
+    let rows = |names: &[&str]| {
+        let row = |(i, name): (usize, &&str)| {
+            format!("{name},{},{}\n", 0.1 + 0.017 * i as f64, 0.2 + 0.031 * i as f64)
+        };
+        let rows: String = names.iter().enumerate().map(row).collect();
+        read("t.csv", &format!("Sample,B warp (gf·cm²/cm),B weft (gf·cm²/cm)\n{rows}"))
+    };
+    let names = |table: &FileContent| -> Vec<String> {
+        let named = table.results.iter().filter(|(_, r)| r.direction == Some(Direction::Warp));
+        named.map(|(fabric, r)| format!("{} {}", fabric.as_deref().unwrap_or("-"), r.n)).collect()
+    };
+    let repeated = rows(&["F1", "F1", "F1 mean", "F2", "F2", "F2 mean"]);
+    assert_eq!(names(&repeated), ["F1 2", "F2 2"]);
+    assert!(messages(&repeated, "R110")[0].contains("\"F2 mean\" (line 7)"));
+    assert_eq!(
+        names(&rows(&["F1 1", "F1 2", "Mean of F1", "F2 1", "F2 2", "F2 (SD)"])),
+        ["F1 1 1", "F1 2 1", "F2 1 1", "F2 2 1"]
+    );
+    let published = rows(&["F1 mean", "F1 SD", "F2 mean", "F2 SD"]);
+    assert_eq!(names(&published), ["F1 1", "F2 1"]);
+    assert_relative_eq!(published.results[0].1.mean, 0.1 * 9.80665e-5, max_relative = 1e-12);
+    assert_relative_eq!(published.results[0].1.sd.unwrap(), 0.117 * 9.80665e-5, max_relative = 1e-12);
+    assert_eq!(names(&rows(&["Denim max", "Denims", "Poplin"])), ["Denim max 1", "Denims 1", "Poplin 1"]);
+}
+
+/// Two units of one value, wherever they stand, are refused with both.
+#[test]
+fn two_units_of_a_value_are_refused() {
+    for (place, text) in [
+        ("2:2", "Sample,B warp (gf·cm²/cm),B weft (gf·cm²/cm)\n,N·m²/m,N·m²/m\npoplin,0.1,0.2\n"),
+        ("2:12", "parameter,unit,warp\nB (N·m²/m),gf·cm²/cm,0.1\n"),
+        ("2:11", "unit,parameter,warp\ngf·cm²/cm,B (N·m²/m),0.1\n"),
+        ("2:12", "parameter,warp (gf·cm²/cm),weft (gf·cm²/cm)\nB (N·m²/m),0.1,0.2\n"),
+    ] {
+        let error = read_as("t.csv", text, &ReadSettings::default()).unwrap_err();
+        let message = error.to_string();
+        assert!(error.code() == "R018" && message.contains("the unit of these values is"), "{message}");
+        assert!(message.contains(&format!("t.csv:{place}")), "{message}");
+    }
+    let same = "parameter,unit,warp (gf cm^2/cm)\nB (gf·cm²/cm),gf.cm2/cm,0.1\n";
+    assert_relative_eq!(read("t.csv", same).results[0].1.mean, 0.1 * 9.80665e-5, max_relative = 1e-12);
+}
+
+/// Fabrics over their directions may be called like symbols, where the rows are parameters.
+#[test]
+fn names_over_columns_may_look_like_symbols() {
+    let table = read("t.csv", "Parameter,Unit,A,A,B,B\n,,warp,weft,warp,weft\nB,gf·cm²/cm,0.1,0.2,0.3,0.4\n");
+    let found: Vec<_> =
+        table.results.iter().map(|(f, r)| (f.as_deref().unwrap(), r.direction.unwrap())).collect();
+    let (warp, weft) = (Direction::Warp, Direction::Weft);
+    assert_eq!(found, [("A", warp), ("A", weft), ("B", warp), ("B", weft)]);
 }
 
 /// A column of deviations is no parameter: LT and its CV are both without unit.
@@ -552,4 +650,142 @@ fn the_thickness_of_a_fab_file_is_that_of_the_first_contact() {
     let codes = |sheet: &FabricSheet| sheet.findings.iter().map(|f| f.code()).collect::<Vec<_>>();
     assert!(!codes(&t0).contains(&"K048"));
     assert!(codes(&sheet(0.1156)).contains(&"K048"));
+}
+
+/// A direction or a parameter that stands in the first of its rows only, as merged cells are exported.
+#[test]
+fn blank_cells_below_a_direction_or_a_parameter_are_the_same() {
+    let b = |content: &FileContent| -> Vec<(Option<String>, Option<Direction>, f64, usize)> {
+        let of_b = content.results.iter().filter(|(_, r)| r.parameter == Parameter::B);
+        of_b.map(|(f, r)| (f.clone(), r.direction, (r.mean / 9.80665e-5 * 1e4).round() / 1e4, r.n)).collect()
+    };
+    let (warp, weft) = (Some(Direction::Warp), Some(Direction::Weft));
+    let head = "B (gf·cm²/cm),2HB (gf·cm/cm)\n";
+    let specimens = [
+        format!("Direction,Specimen,{head}Warp,1,0.1,0.04\n,2,0.2,0.05\nWeft,1,0.3,0.03\n,2,0.5,0.02\n"),
+        format!(
+            ",No.,{head}Warp,1,0.1,0.04\n,2,0.2,0.05\n,Mean,0.15,0.045\nWeft,1,0.3,0.03\n,2,0.5,0.02\n,Mean,0.4,0.025\n"
+        ),
+    ];
+    for text in specimens {
+        let content = read("t.csv", &text);
+        assert_eq!(b(&content), [(None, warp, 0.15, 2), (None, weft, 0.4, 2)], "{text}");
+        assert_eq!(messages(&content, "R124").len(), 1, "{text}");
+    }
+    let f = |n: usize| Some(format!("F{n}"));
+    let by_direction = read(
+        "t.csv",
+        &format!("Direction,Fabric,{head}Warp,F1,0.1,0.04\n,F2,0.2,0.05\nWeft,F1,0.3,0.03\n,F2,0.5,0.02\n"),
+    );
+    let expected = [(f(1), warp, 0.1, 1), (f(1), weft, 0.3, 1), (f(2), warp, 0.2, 1), (f(2), weft, 0.5, 1)];
+    let mut found = b(&by_direction);
+    found.sort_by(|a, b| a.partial_cmp(b).unwrap());
+    assert_eq!(found, expected);
+    let down = read(
+        "t.csv",
+        "Parameter,Direction,Value,Unit\nB,Warp,0.1,gf·cm²/cm\n,Weft,0.3,gf·cm²/cm\n2HB,Warp,0.04,gf·cm/cm\n,Weft,0.03,gf·cm/cm\n",
+    );
+    assert_eq!(b(&down), [(None, warp, 0.1, 1), (None, weft, 0.3, 1)]);
+    assert_eq!((down.results.len(), messages(&down, "R124").len()), (4, 1));
+    // One row a direction, and one of the fabric as a whole.
+    let whole = read("t.csv", "fabric,direction,B (gf·cm²/cm),LC\nF1,warp,0.1,\nF1,weft,0.3,\nF1,,,0.35\n");
+    assert_eq!(b(&whole), [(f(1), warp, 0.1, 1), (f(1), weft, 0.3, 1)]);
+    assert_eq!((whole.results.len(), messages(&whole, "R124").len()), (3, 0));
+}
+
+/// Texts and values of B in gf·cm²/cm, rounded, of a table.
+fn of_b(content: &FileContent) -> Vec<(Option<&str>, Option<Direction>, f64, usize)> {
+    let of_b = content.results.iter().filter(|(_, r)| r.parameter == Parameter::B);
+    of_b.map(|(f, r)| (f.as_deref(), r.direction, (r.mean / 9.80665e-5 * 1e4).round() / 1e4, r.n)).collect()
+}
+
+const B: &str = "B (gf·cm²/cm)";
+
+/// Rows that are averaged although a column tells them apart: states, customers, remarks, but not who measured when.
+#[test]
+fn columns_that_tell_repeats_apart_are_told() {
+    for (heads, rows, told) in [
+        ("Fabric,Finish,No.", "A,none,1,0.1\nA,none,2,0.2\nA,soft,3,0.3\nA,soft,4,0.4\n", true),
+        ("Fabric,Washes", "A,0,0.1\nA,5,0.2\nA,10,0.3\n", true),
+        ("Customer,Article,No.", "X,A,1,0.1\nX,A,2,0.2\nY,A,3,0.3\n", true),
+        ("Fabric,No.,Comment", "A,1,,0.1\nA,2,discarded,0.2\nA,3,,0.3\n", true),
+        ("Fabric,No.,Operator", "A,1,Ana,0.1\nA,2,Rui,0.2\nA,3,Ana,0.3\n", false),
+        ("Fabric,No.,When", "A,1,10:31,0.1\nA,2,10:35,0.2\nA,3,10:35,0.3\n", false),
+        ("Fabric,Finish", "A,none,0.1\nC,soft,0.2\nD,soft,0.3\n", false),
+    ] {
+        let content = read("t.csv", &format!("{heads},{B}\n{rows}"));
+        assert_eq!(messages(&content, "R126").len(), usize::from(told), "{rows}: {:?}", content.findings);
+    }
+}
+
+/// A direction is the whole of a text: what else it says is told, and what is across the warp is no warp.
+#[test]
+fn what_is_said_beside_a_direction_is_not_lost() {
+    let with = |direction: &str| format!("Direction,{B}\n{direction},0.1\nweft,0.2\n");
+    for (text, told) in [("warp yarns", 0), ("along the warp", 0), ("Warp 1", 0), ("warp before washing", 1)]
+    {
+        let content = read("t.csv", &with(text));
+        let mut found = of_b(&content);
+        found.sort_by(|a, b| a.2.total_cmp(&b.2));
+        assert_eq!(found[0], (None, Some(Direction::Warp), 0.1, 1), "{text}");
+        assert_eq!(messages(&content, "R125").len(), told, "{text}: {:?}", content.findings);
+    }
+    for text in ["perpendicular to warp", "not warp", "90° to warp", "senkrecht zur Kette", "垂直于经向"]
+    {
+        let refused = read_as("t.csv", &with(text), &ReadSettings::default()).unwrap_err();
+        assert!(refused.to_string().contains("is not a direction"), "{text}: {refused}");
+        let curve =
+            format!("test,bending\ndirection,{text}\n\ncurvature (1/cm),moment (gf·cm/cm)\n0,0\n1,1\n2,2\n");
+        let refused = read_as("t.csv", &curve, &ReadSettings::default()).unwrap_err();
+        assert!(refused.to_string().contains("is not a direction"), "{text}: {refused}");
+    }
+    let heads = read("t.csv", "Property,Unit,Warp direction,Filling direction\nB,gf·cm²/cm,0.1,0.2\n");
+    assert_eq!(of_b(&heads), [(None, Some(Direction::Warp), 0.1, 1), (None, Some(Direction::Weft), 0.2, 1)]);
+}
+
+/// The mean is the value, whatever the column beside it is called; the statistic of a direction is no specimen of it.
+#[test]
+fn a_mean_beside_an_unknown_column_is_the_value() {
+    let german = read(
+        "t.csv",
+        &format!("Fabric,{B},,2HB (gf·cm/cm),\n,Ø,s,Ø,s\nA,0.1,0.01,0.05,0.004\nC,0.2,0.02,0.06,0.006\n"),
+    );
+    assert_eq!(of_b(&german), [(Some("A"), None, 0.1, 1), (Some("C"), None, 0.2, 1)]);
+    assert!(messages(&german, "R104")[0].contains(" s"), "{:?}", german.findings);
+    let rows = read(
+        "t.csv",
+        &format!("Direction,No.,{B}\nWarp,1,0.1\nWarp,2,0.3\nWarp mean,,0.2\nWeft,1,0.4\nWeft,2,0.6\n"),
+    );
+    let mut found = of_b(&rows);
+    found.sort_by(|a, b| a.2.total_cmp(&b.2));
+    assert_eq!(found, [(None, Some(Direction::Warp), 0.2, 2), (None, Some(Direction::Weft), 0.5, 2)]);
+}
+
+/// Names alone over rows of specimens are fabrics; rows behind the end of a table are told.
+#[test]
+fn rows_between_and_behind_the_rows_of_a_table() {
+    let titles = read("t.csv", &format!("No.,{B}\nCotton,\n1,0.1\n2,0.2\nWool,\n1,0.3\n2,0.5\n"));
+    assert_eq!(of_b(&titles), [(Some("Cotton"), None, 0.15, 2), (Some("Wool"), None, 0.4, 2)]);
+    let behind = read("t.csv", &format!("Fabric,{B}\nA,0.1\nC,0.2\n\nRepeated in March\nD,0.3\n"));
+    assert_eq!(of_b(&behind).len(), 2);
+    assert!(messages(&behind, "R128")[0].contains("line 6"), "{:?}", behind.findings);
+    let header = read("t.csv", &format!("Fabric,{B}\nA,0.1\nC,0.2\n\nMeasured in March\nTemperature,20\n"));
+    assert_eq!(messages(&header, "R128").len(), 0);
+}
+
+/// A square is the size of the cloth that was cut: the jaws are as far apart as the instrument has them, and that is told.
+#[test]
+fn a_square_specimen_does_not_state_the_gauge() {
+    let text = |size: &str| {
+        format!(
+            "test,tensile\ndirection,warp\nspecimen size,{size}\n\nextension (mm),force (gf/cm)\n0,0\n1,100\n2,300\n3,500\n"
+        )
+    };
+    let gauge = |size: &str| {
+        let content = read("t.csv", &text(size));
+        (content.measurements[0].conditions.gauge, messages(&content, "R109").len())
+    };
+    assert_eq!(gauge("20 x 5 cm"), (0.05, 0));
+    assert_eq!(gauge("200 x 200 mm"), (0.05, 1));
+    assert_eq!(gauge("20 x 10 cm"), (0.1, 0));
 }

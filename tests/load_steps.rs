@@ -312,6 +312,6 @@ fn steps_that_mean_nothing_are_refused_at_their_place() {
         "{NONLINEAR}{WEIGHT}[[steps]]\nname = \"a\"\n[[steps.supports]]\nset = \"ring\"\nkind = \"clamped\"\n[[steps]]\nname = \"b\"\n"
     );
     let case = parsed(&text).unwrap();
-    let error = kesf::study::validate(&case).unwrap_err();
+    let error = kesf::study::validate(&case, &Options::default()).unwrap_err();
     assert_eq!(error.code(), "M007");
 }

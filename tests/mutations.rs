@@ -1,7 +1,7 @@
 //! Damaged files: thousands of deterministic mutations of valid ones must never panic or hang, and
 //! whatever is still read must be finite and complete.
 //!
-//! Kind: property. The long run is `cargo +nightly fuzz run parse`; this replays a short one.
+//! Kind: property. The long run is `.ci/fuzz`; this replays a short one of texts and workbooks.
 
 use std::io::{Cursor, Read, Write};
 use std::path::Path;

@@ -18,8 +18,8 @@ use kesf::model::{Dof, Load, Model, RigidBody, Support};
 use kesf::section::ShellSection;
 use kesf::solve::Options;
 use kesf::solve::nonlinear::{
-    ArcLength, Flow, Method, NonlinearError, Perturbation, Settings, Solution, Step, plan, relax, search,
-    solve,
+    ArcLength, Flow, Method, NonlinearError, Perturbation, Settings, Solution, State, Step, descend_from,
+    plan, relax, search, solve,
 };
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
@@ -245,9 +245,15 @@ fn a_column_buckles_and_the_straight_one_is_unstable() {
     assert!(tip(&model, &straight).z.abs() < 1e-9);
     assert_eq!(straight.stability.negative_pivots, 1);
     assert!(straight.stability.lowest_eigenvalue < 0.0);
-    for seed in [1, 2] {
+    let (settings, options) = (Settings::default(), Options::default());
+    let flowed = [1, 2].map(|seed| {
         let flow = Flow { seed, ..Flow::default() };
-        let bent = relax(&model, &Settings::default(), &flow, &Options::default(), go_on).unwrap();
+        relax(&model, &settings, &flow, &options, go_on).unwrap()
+    });
+    let shared = plan(&model, &options).unwrap();
+    let rest = State::rest(&model.mesh);
+    let descended = descend_from(&model, &shared, rest, &settings, 600, &options, go_on).unwrap();
+    for bent in flowed.into_iter().chain([descended]) {
         assert!(bent.stability.is_stable() && bent.residual < 1e-8);
         assert!(bent.energy - first * first / 32.0 * -tip(&model, &bent).x < straight.energy);
         let tip = tip(&model, &bent);

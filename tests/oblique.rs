@@ -167,7 +167,10 @@ fn a_check_refuses_an_oblique_rim_in_large_rotations() {
         ("width = \"1 m\"\nheight = \"1 m\"\ncells = [40, 40]", "diameter = \"1 m\"\ncells = [8, 8]");
     let head = head.replace("\"rectangle\"", "\"disc\"").replace(outline, disc).replace("boundary", "outer");
     let check = |analysis: &str| {
-        validate(&Case::parse(Path::new("disc.toml"), &format!("{head}{analysis}")).unwrap())
+        validate(
+            &Case::parse(Path::new("disc.toml"), &format!("{head}{analysis}")).unwrap(),
+            &Options::default(),
+        )
     };
     check("").unwrap();
     check("[analysis]\nkind = \"newmark\"\nduration = \"1 s\"\nstep = \"0.1 s\"").unwrap();

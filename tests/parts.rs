@@ -217,6 +217,38 @@ fn parts_that_do_not_belong_together_are_told_and_nothing_is_written() {
     }
 }
 
+/// A shard ends as a run does: 2 where nothing useful was done, 1 where something was.
+#[test]
+fn a_shard_ends_as_a_run_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    for (inputs, expected) in [(&["nowhere"][..], 2), (&["nowhere", "kesf_data/petrak_m1"], 1)] {
+        let run = kesf(&[&["run", "--no-charts", "-o", &text(&at("run"))], inputs].concat());
+        assert_eq!(run.status.code(), Some(expected), "{}", stderr(&run));
+        // The second time the part is there.
+        for time in ["made", "kept"] {
+            let part = shard(inputs, "1/1", &at(&format!("parts-{expected}")), &[]);
+            assert_eq!(part.status.code(), Some(expected), "{time}: {}", stderr(&part));
+        }
+    }
+}
+
+/// A table is CSV on standard output; a file that is to have text for people is refused, for there is none.
+#[test]
+fn a_merged_table_has_no_text_for_people() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    all(&["kesf_data/petrak_m1"], 1, &at("parts"));
+    let csv = done(&["merge", &text(&at("parts"))]);
+    assert!(String::from_utf8_lossy(&csv.stdout).starts_with("fabric,"));
+    for name in ["all.txt", "all.xlsx"] {
+        let said = refused(&["merge", &text(&at("parts")), "-o", &text(&at(name))], "O050");
+        assert!(said.contains(".csv, .parquet or .json"), "{said}");
+        assert!(!at(name).exists());
+    }
+    refused(&["read", "kesf_data/poplin", "-q", "-o", &text(&at("curves.txt"))], "O050");
+}
+
 #[test]
 fn a_fabric_that_is_in_two_parts_is_told() {
     let folder = tempfile::tempdir().unwrap();

@@ -36,8 +36,10 @@ fn compare(name: &str, expected: &str, found: &str) -> usize {
     let mut rounded = 0;
     for (line, (e, f)) in expected.iter().zip(&found).enumerate() {
         assert_eq!(e.len(), f.len(), "{name}:{}: another number of columns", line + 1);
-        for (e, f) in e.iter().zip(f).filter(|(e, f)| e != f) {
+        for (heading, (e, f)) in expected[0].iter().zip(e.iter().zip(f)).filter(|(_, (e, f))| e != f) {
             let close = match (e.parse::<f64>(), f.parse::<f64>()) {
+                // A fraction of what was measured: that of a closed loop is nothing but rounding.
+                (Ok(e), Ok(f)) if heading == "error" => (e - f).abs() <= ROUNDING,
                 (Ok(e), Ok(f)) => (e - f).abs() <= ROUNDING * e.abs().max(f.abs()),
                 _ => false,
             };

@@ -3,11 +3,11 @@
 //! Kind: own. The small workbooks are put together here or were made for these tests (synthetic);
 //! `twill.xls` holds the same cells as `twill.xlsx`, and two sheets without measurements.
 
-use std::io::{Cursor, Write};
+use std::io::{Cursor, Read, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use kesf::instrument::{FileContent, ReadError, ReadSettings, parse};
+use kesf::instrument::{FileContent, Parameter, ReadError, ReadSettings, parse};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
@@ -197,4 +197,37 @@ fn damaged_workbooks_are_refused_with_a_code() {
             assert!(text.starts_with("lab_warp_1.xlsx: R021 the workbook cannot be read: "), "{cut}: {text}");
         }
     }
+}
+
+/// The reader of old workbooks panics over a record that lacks its data: that is an error of the file.
+#[test]
+fn a_record_without_its_data_costs_its_file_only() {
+    let mut file = cfb::CompoundFile::open(Cursor::new(XLS.to_vec())).unwrap();
+    let mut book = Vec::new();
+    file.open_stream("/Workbook").unwrap().read_to_end(&mut book).unwrap();
+    // A code page (0x0042) of no bytes behind the record that begins the workbook.
+    let first = 4 + usize::from(u16::from_le_bytes([book[2], book[3]]));
+    book.splice(first..first, [0x42, 0, 0, 0]);
+    file.create_stream("/Workbook").unwrap().write_all(&book).unwrap();
+    file.flush().unwrap();
+    let said = error(&file.into_inner().into_inner());
+    assert!(said.contains("R021") && said.contains("damaged"), "{said}");
+}
+
+/// What is struck out was not to count; a formula that no program has calculated has no value. Both are told.
+#[test]
+fn cells_that_are_struck_out_or_were_never_calculated() {
+    let b = |content: &FileContent| -> Vec<f64> {
+        let of_b = content.results.iter().filter(|(_, r)| r.parameter == Parameter::B);
+        of_b.map(|(_, r)| (r.mean / 9.80665e-5 * 1e4).round() / 1e4).collect()
+    };
+    let message = |content: &FileContent, code: &str| {
+        content.findings.iter().find(|f| f.code() == code).unwrap().message()
+    };
+    let struck_out = read(include_bytes!("workbooks/struck-out.xlsx")).unwrap();
+    assert_eq!(b(&struck_out), [0.1, 0.06]);
+    assert!(message(&struck_out, "R113").contains("cells A3, B3, C3, D3, E3, struck out"));
+    let formula = read(include_bytes!("malformed/r129-formula.xlsx")).unwrap();
+    assert_eq!(b(&formula), [0.06]);
+    assert!(message(&formula, "R129").contains("cell C2 of sheet"));
 }

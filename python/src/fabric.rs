@@ -177,13 +177,20 @@ pub fn inputs(paths: Vec<PathBuf>, memory: Vec<(PathBuf, Vec<u8>)>) -> Vec<Input
     paths.into_iter().map(Input::Path).chain(in_memory).collect()
 }
 
-/// The folder or file of each fabric below the paths, with its measurement files.
+/// The folder or file of each fabric below the paths, with its measurement files. A folder that cannot be opened, or whose
+/// `fabric.toml` or `dialect.toml` cannot be read, has what is wrong in their place: whoever evaluates it is told why.
 #[pyfunction]
 pub fn find(py: Python<'_>, paths: Vec<PathBuf>, options: Options) -> PyResult<Vec<(PathBuf, Vec<PathBuf>)>> {
     let settings = options.reading(None).read_settings().or_raise(py)?;
     Ok(py.detach(|| {
         let library = Library::find(&paths, &settings);
-        library.fabrics().map(|(path, files)| (path.to_path_buf(), files.to_vec())).collect()
+        let fabrics = library.fabrics().map(|(path, files)| (path.to_path_buf(), files.to_vec()));
+        let failures = library.failures().iter().map(|error| {
+            let path = &error.place.path;
+            let folder = path.parent().filter(|_| path.is_file()).unwrap_or(path);
+            (folder.to_path_buf(), vec![path.clone()])
+        });
+        fabrics.chain(failures).collect()
     }))
 }
 

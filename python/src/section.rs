@@ -6,7 +6,7 @@ use std::sync::Arc;
 use kesf::constitutive::{Assumptions, section};
 use kesf::finding::Place;
 use kesf::report::cards::{EXPORTERS, named};
-use kesf::report::json::{assumptions, section_document, text};
+use kesf::report::json::{section_document, text};
 use kesf::report::read_back::{self, Document};
 use kesf::results::{Card, Failure, Sectioned, cards};
 use pyo3::exceptions::PyValueError;
@@ -91,8 +91,7 @@ impl Section {
     /// The document `kesf.section/1`.
     fn document(&self) -> PyResult<String> {
         let Sectioned { sheet, made, .. } = &*self.sectioned;
-        let entry = (sheet, &made.section, &made.inputs[..], assumptions(&made.used));
-        text(&section_document([entry])).map_err(|e| PyValueError::new_err(e.to_string()))
+        text(&section_document([(sheet, made)])).map_err(|e| PyValueError::new_err(e.to_string()))
     }
 
     /// Findings of the section as JSON; those of the sheet are the sheet's.

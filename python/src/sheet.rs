@@ -176,7 +176,7 @@ impl Sheet {
     /// The PNG chart of a test, as `kesf run` writes it.
     fn chart(&self, py: Python<'_>, name: &str) -> PyResult<Vec<u8>> {
         let (test, sheet) = (test(name)?, self.sheet());
-        py.detach(|| chart::of_test(sheet, test, &[])).or_raise(py)
+        py.detach(|| chart::of_test(sheet, test, &[]).and_then(|chart| chart.png())).or_raise(py)
     }
 
     fn __eq__(&self, other: &Self) -> bool {

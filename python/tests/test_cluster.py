@@ -252,6 +252,19 @@ def test_what_cannot_be_opened_is_told(client: Any, tmp_path: Path) -> None:
     assert settings.value.code == "O050" and "1 of 1 shards failed" in settings.value.message
 
 
+def test_a_fabric_that_cannot_be_described_is_told(client: Any, tmp_path: Path) -> None:
+    library = tmp_path / "library"
+    for name in ("good", "broken"):
+        shutil.copytree(ROOT / "kesf_data" / "petrak_m1", library / name)
+    (library / "broken" / "fabric.toml").write_text("title = \n")
+    assert kesf.find(library)[str(library / "broken")] == [str(library / "broken" / "fabric.toml")]
+    dask.run(library, CASE, tmp_path / "out", client, shards=2)
+    whole = kesf.evaluate(library, CASE)
+    told = parts.merge(str(tmp_path / "out"), "failures").to_pylist()
+    assert [row["code"] for row in told] == ["R019"] == [row["code"] for row in whole.failures.rows()]
+    assert {row["fabric"] for row in parts.merge(str(tmp_path / "out")).to_pylist()} == {"good"}
+
+
 def test_paths_are_those_of_the_caller(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     tasks = dask.plan("kesf_data/petrak_m1", CASE, "out")
     assert tasks[0].fabrics == (str(ROOT / "kesf_data" / "petrak_m1"),) and tasks[0].out == str(ROOT / "out")

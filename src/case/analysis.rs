@@ -274,7 +274,7 @@ impl AnalysisTable {
     pub fn read(case: &Node<'_>) -> Result<Self, TomlError> {
         const KINDS: [&str; 5] = ["linear", "modal", "newmark", "nonlinear", "drape"];
         let Some(at) = case.get("analysis") else { return Ok(Self::Linear(LinearTable {})) };
-        Ok(match super::kind_of(&at, &KINDS)? {
+        Ok(match super::kind::kind_of(&at, &KINDS)? {
             "linear" => Self::Linear(at.read_without("kind")?),
             "modal" => Self::Modal(at.read_without("kind")?),
             "newmark" => Self::Newmark(at.read_without("kind")?),

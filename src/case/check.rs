@@ -37,7 +37,9 @@ pub struct ProbePoint {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CheckTable {
-    /// `w_max`, `strain_energy`, `frequency_1` ..., or `<probe>.<u|v|w|theta_x|...|moment_x|membrane_x|shear_x ...>`.
+    /// `w_max`, `strain_energy`, `frequency_1` ..., or `<probe>.<u|v|w|theta_x|...|moment_x|membrane_x|shear_x ...>`. `w_max` is the
+    /// largest displacement along z, whatever the plane of the sheet. Moments, membrane and shear forces are per width and along
+    /// the yarns at rest, x the warp and y the weft; displacements and rotations are along the axes of the case.
     #[schemars(example = &"centre.w")]
     quantity: String,
     /// Expected value with unit; a frequency in `rad/s` is an angular one.

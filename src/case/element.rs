@@ -21,7 +21,7 @@ pub(super) struct ElementTable {
     /// Smoothing cells: a number (1, 2, 3, 4, 9, 16 ...) or `[along_xi, along_eta]`.
     #[schemars(extend("default" = 4))]
     subcells: Option<Subcells>,
-    /// The membrane: `cells` (smoothed as bending), `one_cell`, which is the default of a drape, or `assumed_stress`.
+    /// The membrane: `cells` (smoothed as bending), `one_cell`, or `assumed_stress`, which is the default of a drape.
     #[schemars(extend("default" = "cells"))]
     membrane: Option<Membrane>,
     /// α of the transverse shear, 0 to 1; in the profile `seed` 0 when left out, and `fourth_order` has its own.
@@ -145,7 +145,7 @@ impl ElementTable {
             Some(DrillingChoice::HughesBrezzi) => formulation.drilling = Drilling::HughesBrezzi,
             Some(DrillingChoice::Seed) => formulation.drilling = Drilling::Seed(1e-3),
         }
-        let of_drape = purpose.drape.then_some(Membrane::OneCell);
+        let of_drape = purpose.drape.then_some(Membrane::AssumedStress);
         formulation.membrane = self.membrane.or(of_drape).unwrap_or(formulation.membrane);
         if let Some(alpha) = self.shear_stabilisation {
             if !(0.0..=1.0).contains(&alpha) {

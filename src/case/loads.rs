@@ -185,7 +185,7 @@ impl LoadTable {
     /// Reads the table at a node.
     pub fn read(at: &Node<'_>) -> Result<Self, TomlError> {
         const KINDS: [&str; 6] = ["pressure", "gravity", "point", "edge_force", "edge_moment", "prescribed"];
-        Ok(match super::kind_of(at, &KINDS)? {
+        Ok(match super::kind::kind_of(at, &KINDS)? {
             "pressure" => Self::Pressure(at.read_without("kind")?),
             "gravity" => Self::Gravity(at.read_without("kind")?),
             "point" => Self::Point(at.read_without("kind")?),

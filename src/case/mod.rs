@@ -12,6 +12,7 @@ mod convergence;
 mod element;
 mod error;
 mod history;
+mod kind;
 mod loads;
 mod material;
 mod nonlinear;
@@ -34,7 +35,7 @@ use serde::Deserialize;
 
 use crate::characterise::FabricSheet;
 use crate::constitutive::Assumptions;
-use crate::finding::{Located, Node, Place, ReadLater, TomlError, TomlFile};
+use crate::finding::{Located, Place, ReadLater, TomlFile};
 use crate::instrument::{Direction, Test};
 use crate::law::Mode;
 use crate::platform::files;
@@ -281,17 +282,5 @@ impl Case {
             return Err(self.refused(&Located::from(()), solver::ONLY_LINEAR));
         }
         Ok(options)
-    }
-}
-
-/// The `kind` of a table of several kinds, one of `kinds`.
-fn kind_of<'f>(at: &Node<'f>, kinds: &[&str]) -> Result<&'f str, TomlError> {
-    let Some(kind) = at.get("kind") else { return Err(at.error("missing field `kind`")) };
-    match kind.text() {
-        Some(text) if kinds.contains(&text) => Ok(text),
-        found => {
-            let found = found.map_or("no text".to_string(), |text| format!("unknown variant `{text}`"));
-            Err(kind.error(format!("{found}, expected one of `{}`", kinds.join("`, `"))))
-        }
     }
 }

@@ -6,14 +6,14 @@ use serde::{Deserialize, Serialize};
 use super::CaseError;
 use super::error::refused;
 use crate::finding::Node;
-use crate::instrument::Test;
+use crate::instrument::{Shape, Test};
 use crate::quantity::{Curvature, LineForce};
 
 /// `[virtual_test]`: an instrument's test as a model, once along the warp and once along the weft.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct VirtualTestTable {
-    /// Which test.
+    /// Which test; friction and roughness are of the surface, and are not simulated.
     pub test: Test,
     /// Elements along the gauge length and across the specimen; for shear in large rotations 10 and 80 when left out.
     #[schemars(extend("default" = [10, 20]))]
@@ -145,6 +145,15 @@ impl VirtualTestTable {
     /// The test of the table at a node; none for compression, which is a closed form.
     pub fn checked(&self, at: &Node<'_>) -> Result<Option<VirtualTest>, CaseError> {
         let large = self.formulation == TestFormulation::Nonlinear;
+        if self.test.shape() == Shape::Sweep {
+            return refused(
+                at.key_place("test"),
+                format!(
+                    "a {} test feels the surface, which no shell has: take tensile, shear, bending or compression",
+                    self.test.name()
+                ),
+            );
+        }
         let Some(kind) = ShellTest::of(self.test) else {
             return match ["cells", "formulation", "curvature", "pretension"].into_iter().find(|k| at.has(k)) {
                 Some(key) => refused(

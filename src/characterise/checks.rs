@@ -37,18 +37,32 @@ pub(super) fn shear_directions(sheet: &FabricSheet, settings: &Settings) -> Opti
 /// Whether two records are of one test and direction and equal number by number. Noise alone makes sure that no two
 /// specimens are: one is a copy of the other.
 fn is_copy(a: &Measurement, b: &Measurement) -> bool {
-    // Ordinates first: the abscissae of repeats may be those of one drive.
-    (a.test, a.direction) == (b.test, b.direction)
-        && !a.curve.is_empty()
-        && a.curve.y == b.curve.y
-        && a.curve.x == b.curve.x
+    a.direction == b.direction && is_same(a, b)
 }
 
-/// K047: the records without the copies of others, which are no repeats, and a finding for each copy.
+/// Ordinates that differ by less than this part of the largest are the same, rounded or in another unit.
+const ROUNDING: f64 = 1e-3;
+
+/// Whether two records of a test are equal number by number, but for rounding of the ordinates.
+fn is_same(a: &Measurement, b: &Measurement) -> bool {
+    let largest = || a.curve.y.iter().fold(0.0f64, |most, y| most.max(y.abs()));
+    let alike =
+        |most: f64| a.curve.points().zip(b.curve.points()).all(|(a, b)| (a.1 - b.1).abs() <= ROUNDING * most);
+    a.test == b.test && !a.curve.is_empty() && a.curve.x == b.curve.x && alike(largest())
+}
+
+/// K047: the records without the copies of others, which are no repeats, and a finding for each copy; K062 for a record that
+/// stands under two directions, which is kept: nobody can say which is right.
 pub(super) fn originals(input: &FabricInput) -> (Vec<&Measurement>, Vec<Finding>) {
     let (mut originals, mut findings) = (Vec::<&Measurement>::new(), Vec::new());
     for m in &input.measurements {
         let Some(original) = originals.iter().find(|o| is_copy(o, m)) else {
+            let turned = |o: &&&Measurement| o.direction.is_some() && m.direction.is_some() && is_same(o, m);
+            if let Some(other) = originals.iter().find(turned) {
+                let (record, other, place) = (m.record_name(), other.record_name(), other.place());
+                findings
+                    .push(Finding::new(EvaluationFact::SameRecord { record, other, place }).at(m.place()));
+            }
             originals.push(m);
             continue;
         };

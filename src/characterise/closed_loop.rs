@@ -1,7 +1,7 @@
 //! FB1 shear and FB2 bending: slopes and loop widths of a cycle to both sides of zero.
 
+use super::evaluation::{Evaluation, Notes};
 use super::graph::Graph;
-use super::specimen::{Evaluation, Notes};
 use super::tensile::shift;
 use super::{Branch, CycleChoice, Settings, Sides, SlopeMethod, Window, branch};
 use crate::finding::{EvaluationFact, RecordAxis};

@@ -1,8 +1,8 @@
 //! FB3 compression: T0, Tm, WC, LC, RC, EMC from pressure against thickness.
 
+use super::evaluation::{Evaluation, Notes, Regained};
 use super::graph::Graph;
 use super::onset::onset;
-use super::specimen::{Evaluation, Notes, Regained};
 use super::tensile::{cycle, shift};
 use super::{Branch, Settings, Window, branch};
 use crate::finding::{EvaluationFact, RecordAxis};

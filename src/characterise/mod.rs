@@ -6,12 +6,14 @@
 
 mod branch;
 mod checks;
+mod choices;
 mod closed_loop;
 mod compression;
 mod crossing;
 #[cfg(test)]
 mod doubtful;
 pub mod drape;
+mod evaluation;
 mod friction;
 mod graph;
 mod onset;
@@ -33,13 +35,14 @@ mod tensile;
 mod value_status;
 
 pub use crate::kes::Key;
+pub use choices::{CycleChoice, Modulus, Sides, SlopeMethod, Sweeps};
 pub(crate) use friction::nnls::nnls;
 pub use friction::{
     Basis, ClosedForm, CycleFit, FrictionLaw, LawBand, LawTrace, LoopFit, ReExtracted, Relaxation,
     StripMemory, bending_law, cycle, extract,
 };
 pub use graph::LineFit;
-pub use settings::{CycleChoice, Modulus, Settings, Sides, SlopeMethod, Sweeps};
+pub use settings::Settings;
 pub use sheet::{Branch, FabricSheet, RunTo, SpecimenResult, Window};
 pub use simulated::parameters;
 pub use spread::{MeanBranch, mean_branches};
@@ -64,7 +67,7 @@ pub fn characterise(input: &FabricInput, settings: &Settings) -> FabricSheet {
         let mut m = m.clone();
         m.conditions.maximum = settings.maximum(m.test).unwrap_or(m.conditions.maximum);
         let dropouts =
-            recording::check(settings, &mut specimen::Notes { measurement: &m, findings: &mut findings });
+            recording::check(settings, &mut evaluation::Notes { measurement: &m, findings: &mut findings });
         specimen::evaluate(&m, &dropouts, settings, &mut findings)
     };
     let specimens = measurements.into_iter().filter_map(evaluated).collect();
@@ -88,8 +91,11 @@ pub fn characterise(input: &FabricInput, settings: &Settings) -> FabricSheet {
     found.extend(statistics::swapped(&sheet));
     sheet.findings.append(&mut found);
     tables::merge(&mut sheet, input, settings);
+    let mut found = statistics::no_repeats(&sheet, input);
+    sheet.findings.append(&mut found);
     strip::add(&mut sheet, &input.fab, settings);
     tables::metadata(&mut sheet, input);
+    tables::stiffnesses(&mut sheet, input, settings);
     tables::moduli(&mut sheet, settings);
     friction::add(&mut sheet, settings);
     let mut found = checks::plausibility(&sheet, input);

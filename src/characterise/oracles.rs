@@ -24,16 +24,12 @@ pub(super) fn ramp(a: f64, b: f64, n: usize) -> impl Iterator<Item = f64> {
 }
 
 pub(super) fn measurement(test: Test, maximum: f64, points: Vec<(f64, f64)>) -> Measurement {
+    let direction = (test != Test::Compression).then_some(Direction::Warp);
     Measurement {
-        test,
-        sample: None,
-        direction: (test != Test::Compression).then_some(Direction::Warp),
-        specimen: 1,
         conditions: Conditions { width: 0.2, gauge: 0.05, maximum, pretension: 9.80665, contact: 0.0 },
         lines: (1..=points.len()).collect(),
-        curve: Curve::from_points(points),
         source: Source { path: "clean.csv".into(), ..Source::default() },
-        metadata: Default::default(),
+        ..Measurement::of_curve(test, direction, 1, Curve::from_points(points))
     }
 }
 

@@ -5,8 +5,8 @@
 use std::ops::Range;
 
 use super::branch;
+use super::evaluation::Notes;
 use super::onset::{self, usual_step};
-use super::specimen::Notes;
 use super::{CycleChoice, Settings};
 use crate::finding::{EvaluationFact, RecordAxis, Samples};
 use crate::instrument::{Measurement, Shape, Test};

@@ -48,7 +48,7 @@ fn broken(
         _ => return None,
     };
     let [low, high] = relation.range();
-    // A ratio that is no number comes of a zero, which is implausible itself.
+    // A ratio that is no number comes of a zero, which is implausible itself, or of T0 = Tm, which their own ratio tells.
     (ratio.is_finite() && !(low..=high).contains(&ratio)).then_some((relation, keys, ratio))
 }
 
@@ -125,6 +125,8 @@ mod tests {
             (Parameter::W, 10.0, Relation::Density),
             (Parameter::T0, 0.1, Relation::Density),
             (Parameter::Mmd, 10.0, Relation::FrictionDeviation),
+            // Tm = T0, a cloth that nothing compresses: a column that was copied.
+            (Parameter::Tm, 0.5 / 0.3, Relation::CompressedThickness),
         ];
         for (parameter, factor, relation) in slips {
             let found = findings(Some((parameter, factor)));

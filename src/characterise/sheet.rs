@@ -4,8 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::friction::FrictionLaw;
+use super::graph::LineFit;
+use super::strip::Strip;
 use super::value_status::ValueStatus;
-use super::{CycleChoice, FrictionLaw, Key, LineFit, Settings, Strip};
+use super::{CycleChoice, Key, Settings};
 use crate::finding::Finding;
 use crate::instrument::fab::FabTest;
 use crate::instrument::{

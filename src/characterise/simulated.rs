@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Settings, specimen};
-use crate::instrument::{Conditions, Direction, Measurement, Parameter, Source, Test};
+use crate::instrument::{Conditions, Direction, Measurement, Parameter, Test};
 use crate::quantity::Curve;
 
 /// The KES parameters (SI) of a record that an instrument might have made, by the evaluation that its
@@ -18,15 +18,8 @@ pub fn parameters(
     settings: &Settings,
 ) -> BTreeMap<Parameter, f64> {
     let measurement = Measurement {
-        test,
-        sample: None,
-        direction,
-        specimen: 0,
         conditions: conditions.clone(),
-        curve: record.clone(),
-        lines: Vec::new(),
-        source: Source::default(),
-        metadata: BTreeMap::new(),
+        ..Measurement::of_curve(test, direction, 0, record.clone())
     };
     let settings = Settings { correct_zero: false, tension_correction: false, ..settings.clone() };
     // What there is to say about noise or windows is said of the measured record.

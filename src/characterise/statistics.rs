@@ -3,8 +3,8 @@
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::{FabricSheet, Key, Settings, SpecimenResult};
-use crate::finding::{EvaluationFact, Finding};
-use crate::instrument::{Direction, Measurement, Parameter};
+use crate::finding::{EvaluationFact, Fact, Finding};
+use crate::instrument::{Direction, FabricInput, Measurement, Parameter};
 use crate::quantity::Estimate;
 
 /// Modified z-score above which a repeat is an outlier: Iglewicz and Hoaglin (1993), How to
@@ -54,6 +54,38 @@ pub(super) fn outliers(sheet: &FabricSheet, settings: &Settings) -> Vec<Finding>
             criterion: test.to_string(),
         };
         findings.push(Finding::new(fact).at(measurement.place()));
+    }
+    findings
+}
+
+/// K063: repeats of a factor between them that those of one cloth do not have.
+///
+/// The factors are a judgement, far above the scatter of repeats: thickness and mass are alike over a cloth. Hysteresis and
+/// linearity are left out, as their repeats may be near zero or are alike in all cloth.
+pub(super) fn no_repeats(sheet: &FabricSheet, input: &FabricInput) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for (key, estimate) in &sheet.values {
+        let widest = match key.parameter {
+            Parameter::T0 | Parameter::Tm | Parameter::W => 1.5,
+            Parameter::B | Parameter::G | Parameter::Emt | Parameter::Wt | Parameter::Wc => 3.0,
+            _ => continue,
+        };
+        let apart = |f: &Finding| matches!(&f.fact, Fact::Evaluation(EvaluationFact::StandsApart { key: of, .. }) if of == key);
+        let lowest = estimate.values.iter().copied().fold(f64::INFINITY, f64::min);
+        let highest = estimate.values.iter().copied().fold(0.0, f64::max);
+        if estimate.values.len() < 2
+            || lowest <= 0.0
+            || highest <= widest * lowest
+            || sheet.findings.iter().any(apart)
+        {
+            continue;
+        }
+        let cell =
+            input.results.iter().find(|r| (r.parameter, r.direction) == (key.parameter, key.direction));
+        let record = estimate.values.iter().position(|v| *v == highest).and_then(|i| repeat(sheet, *key, i));
+        let place = record.map(Measurement::place).or(cell.map(|c| c.place.clone()));
+        let fact = EvaluationFact::NoRepeats { key: *key, lowest, highest };
+        findings.push(Finding { place, fact: fact.into() });
     }
     findings
 }

@@ -24,8 +24,27 @@ enum Scope<'a> {
     Test(Test),
     /// Every value that a file gave.
     File(&'a Path),
+    /// Every value of a direction.
+    Direction(Direction),
     /// The tensile moduli.
     Moduli,
+}
+
+/// What a finding says of a value, and its code.
+type Told = (ValueStatus, &'static str);
+
+/// The status that prevails.
+fn prevailing(told: &[Told]) -> ValueStatus {
+    told.iter().map(|(status, _)| *status).max().unwrap_or_default()
+}
+
+/// Codes of what gave the status that prevails, each once.
+fn codes(told: &[Told]) -> Vec<&'static str> {
+    let status = prevailing(told);
+    let mut codes: Vec<&str> = told.iter().filter(|(of, _)| *of == status).map(|(_, code)| *code).collect();
+    codes.sort_unstable();
+    codes.dedup();
+    codes
 }
 
 /// Says of each value how it was had. The findings must be complete, and the specimens still there.
@@ -48,8 +67,26 @@ impl FabricSheet {
         self.modulus_statuses.get(&(name.to_string(), direction)).copied().unwrap_or_default()
     }
 
+    /// Codes of the findings that gave the value of a parameter its status.
+    pub fn causes(&self, key: Key) -> Vec<&'static str> {
+        codes(&self.told_of_value(key))
+    }
+
+    /// Codes of the findings that gave a tensile modulus its status.
+    pub fn modulus_causes(&self, name: &str, direction: Direction) -> Vec<&'static str> {
+        codes(&self.told_of_modulus(name, direction))
+    }
+
     fn status_of_value(&self, key: Key) -> ValueStatus {
-        self.prevailing(|scope| match scope {
+        prevailing(&self.told_of_value(key))
+    }
+
+    fn status_of_modulus(&self, name: &str, direction: Direction) -> ValueStatus {
+        prevailing(&self.told_of_modulus(name, direction))
+    }
+
+    fn told_of_value(&self, key: Key) -> Vec<Told> {
+        self.told_of(|scope| match scope {
             Scope::Value(of) => *of == key,
             Scope::Values(of) => of.contains(&key),
             Scope::Record(record) => is_of_record(key, record),
@@ -57,15 +94,16 @@ impl FabricSheet {
             Scope::Slope(record, name) => is_of_record(key, record) && is_slope(key.parameter, name),
             Scope::Test(test) => key.parameter.test() == Some(*test),
             Scope::File(path) => self.is_of_file(key.parameter.test(), key.direction, path),
+            Scope::Direction(direction) => key.direction == Some(*direction),
             Scope::Moduli => false,
         })
     }
 
-    fn status_of_modulus(&self, name: &str, direction: Direction) -> ValueStatus {
+    fn told_of_modulus(&self, name: &str, direction: Direction) -> Vec<Told> {
         let is_tensile = |record: &RecordName| {
             record.test == Test::Tensile && record.direction.is_none_or(|of| of == direction)
         };
-        self.prevailing(|scope| match scope {
+        self.told_of(|scope| match scope {
             // Secant and energy modulus follow from them.
             Scope::Value(of) => self.gives_modulus(*of, direction),
             Scope::Values(of) => of.iter().any(|of| self.gives_modulus(*of, direction)),
@@ -74,6 +112,7 @@ impl FabricSheet {
             Scope::Slope(record, slope) => is_tensile(record) && *slope == name,
             Scope::Test(test) => *test == Test::Tensile,
             Scope::File(path) => self.is_of_file(Some(Test::Tensile), Some(direction), path),
+            Scope::Direction(of) => *of == direction,
             Scope::Moduli => true,
         })
     }
@@ -85,9 +124,12 @@ impl FabricSheet {
             && !self.specimens.iter().any(|s| s.measurement.test == Test::Tensile)
     }
 
-    fn prevailing(&self, concerns: impl Fn(&Scope<'_>) -> bool) -> ValueStatus {
-        let statuses = self.findings.iter().filter_map(told);
-        statuses.filter(|(scope, _)| concerns(scope)).map(|(_, status)| status).max().unwrap_or_default()
+    fn told_of(&self, concerns: impl Fn(&Scope<'_>) -> bool) -> Vec<Told> {
+        let told_by = |finding: &Finding| {
+            let (scope, status) = told(finding)?;
+            concerns(&scope).then(|| (status, finding.code()))
+        };
+        self.findings.iter().filter_map(told_by).collect()
     }
 
     fn is_of_file(&self, test: Option<Test>, direction: Option<Direction>, path: &Path) -> bool {
@@ -141,9 +183,11 @@ fn of_evaluation(fact: &EvaluationFact) -> Option<(Scope<'_>, ValueStatus)> {
         | F::Clipped { record, .. }
         | F::Jump { record, .. } => (Scope::Record(record), Doubtful),
         F::ConditionsDiffer { test, .. } => (Scope::Test(*test), Doubtful),
-        F::StandsApart { key, .. } | F::Implausible { key, .. } | F::TableDiffers { key, .. } => {
-            (Scope::Value(*key), Doubtful)
-        }
+        F::SameRecord { record, .. } => (Scope::Test(record.test), Doubtful),
+        F::StandsApart { key, .. }
+        | F::NoRepeats { key, .. }
+        | F::Implausible { key, .. }
+        | F::TableDiffers { key, .. } => (Scope::Value(*key), Doubtful),
         F::NotTogether { keys, .. } => (Scope::Values(keys), Doubtful),
         F::OtherDirection { parameter, own, .. } => (value(*parameter, Some(*own)), Doubtful),
         F::ShearDiffers { .. } => (Scope::Test(Test::Shear), Doubtful),
@@ -153,7 +197,7 @@ fn of_evaluation(fact: &EvaluationFact) -> Option<(Scope<'_>, ValueStatus)> {
         F::LowLoad { direction, .. } => (value(Parameter::B, Some(*direction)), Doubtful),
         F::BiasStrip { .. } => (value(Parameter::G, None), Inferred),
         F::FabThickness { .. } => (value(Parameter::T0, None), Inferred),
-        F::ModuliOfTable { .. } => (Scope::Moduli, Inferred),
+        F::ModuliOfTable { .. } | F::StiffnessOfFast { .. } => (Scope::Moduli, Inferred),
         F::StatedThickness {} => (value(Parameter::T0, None), Assumed),
         F::NotEvaluated { .. }
         | F::Missing { .. }
@@ -174,7 +218,16 @@ fn of_reading<'a>(fact: &'a ReadFact, place: Option<&'a Place>) -> Option<(Scope
     let file = || place.map(|place| Scope::File(&place.path));
     match fact {
         ReadFact::AssumedDimension { .. } => Some((file()?, ValueStatus::Assumed)),
-        ReadFact::TwoDirections { .. } => Some((file()?, ValueStatus::Doubtful)),
+        ReadFact::TwoDirections { .. } | ReadFact::StatedTwice { .. } | ReadFact::StatedFactor { .. } => {
+            Some((file()?, ValueStatus::Doubtful))
+        }
+        ReadFact::MoreThanDirection { direction, .. } => {
+            Some((Scope::Direction(*direction), ValueStatus::Doubtful))
+        }
+        ReadFact::RecordsOfStates { record, .. } => Some((Scope::Record(record), ValueStatus::Doubtful)),
+        ReadFact::SeveralTables { keys, .. }
+        | ReadFact::NumbersAsSpecimens { keys }
+        | ReadFact::ColumnOfStates { keys, .. } => Some((Scope::Values(keys), ValueStatus::Doubtful)),
         _ => None,
     }
 }

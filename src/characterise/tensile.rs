@@ -1,8 +1,8 @@
 //! FB1 tensile: EMT, WT, LT, RT and moduli from force per width against strain.
 
+use super::evaluation::{Evaluation, Notes, Regained};
 use super::graph::Graph;
 use super::onset::onset;
-use super::specimen::{Evaluation, Notes, Regained};
 use super::{Branch, CycleChoice, Modulus, Settings, Window, branch};
 use crate::finding::{EvaluationFact, RecordAxis};
 use crate::instrument::Parameter;

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::exit::Exit;
+use super::format::Format;
 use super::inputs::{EvaluateArgs, Units, inputs};
-use super::output::{Format, OutputArgs};
+use super::output::OutputArgs;
 use super::ui::Ui;
 use crate::report::json::sheet_document;
 use crate::report::table::{FabricRow, ProblemRow, csv, fabric_rows, parquet, problem_row};

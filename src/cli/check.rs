@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::exit::Exit;
 use super::inputs::{ReadArgs, inputs};
+use super::memory::MemoryArgs;
 use super::ui::Ui;
 use crate::instrument::anonymise::bundle;
 use crate::report::OutputError;
@@ -28,12 +29,14 @@ pub struct Options {
     #[arg(long, value_name = "OUT.zip")]
     bundle: Option<PathBuf>,
     #[command(flatten)]
+    memory: MemoryArgs,
+    #[command(flatten)]
     reading: ReadArgs,
 }
 
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let (inputs, reading) = (inputs(&options.inputs)?, options.reading.reading());
-    let checked = ui.observe(|observer| check(&inputs, &reading, observer))?;
+    let checked = ui.observe(|observer| check(&inputs, &reading, options.memory.bytes(), observer))?;
     if let Some(path) = &options.bundle {
         write_bundle(&checked, path, ui)?;
     }

@@ -2,10 +2,9 @@
 
 use std::io::{IsTerminal, Write};
 
-use serde::Serialize;
-
 use super::global::Global;
 use super::progress::Progress;
+use crate::documents::ErrorLine;
 use crate::report::json::FindingEntry;
 use crate::results::{Event, Failure, FailureEntry, Found};
 
@@ -23,12 +22,6 @@ pub struct Diagnostics {
     pub findings: Vec<FindingEntry>,
     /// Failures, for a document.
     pub failures: Vec<FailureEntry>,
-}
-
-/// A line on standard error with `--json`.
-#[derive(Serialize)]
-struct ErrorLine {
-    error: FailureEntry,
 }
 
 impl Diagnostics {

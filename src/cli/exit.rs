@@ -22,10 +22,16 @@ pub enum Exit {
 impl Exit {
     /// The end of a batch with this many useful results and these failures.
     pub fn of_batch(useful: usize, failures: &[Failure]) -> Self {
+        let numerical = failures.iter().filter(|f| f.kind() == FailureKind::Numerics).count();
+        Self::of_counts(useful, failures.len(), numerical)
+    }
+
+    /// The same by the number of failures, and of those that are numerical.
+    pub fn of_counts(useful: usize, failures: usize, numerical: usize) -> Self {
         match failures {
-            [] => Self::Done,
+            0 => Self::Done,
             _ if useful > 0 => Self::Partly,
-            all if all.iter().all(|f| f.kind() == FailureKind::Numerics) => Self::Numerics,
+            all if all == numerical => Self::Numerics,
             _ => Self::Bad,
         }
     }

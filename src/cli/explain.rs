@@ -1,10 +1,10 @@
 //! `kesf explain`: the text behind a diagnostic code.
 
 use clap::Args;
-use serde::Serialize;
 
 use super::exit::Exit;
 use super::ui::Ui;
+use crate::documents::ExplanationsDocument;
 use crate::finding::{Explanation, explain, explanations};
 use crate::results::Failure;
 
@@ -15,13 +15,6 @@ pub struct Options {
     /// Code, such as R004; `all` for every code
     #[arg(value_name = "CODE", required = true)]
     codes: Vec<String>,
-}
-
-/// `kesf.explanations/1`.
-#[derive(Serialize)]
-struct Document<'a> {
-    schema: &'static str,
-    codes: &'a [&'static Explanation],
 }
 
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
@@ -37,7 +30,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         })?);
     }
     if ui.json {
-        return ui.document(Document { schema: "kesf.explanations/1", codes: &found });
+        return ui.document(ExplanationsDocument::new(&found));
     }
     let texts: Vec<_> = found.iter().map(|e| text(e)).collect();
     ui.print(&texts.join("\n"))

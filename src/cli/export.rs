@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use serde::Serialize;
 
 use super::assumptions::AssumptionArgs;
 use super::exit::Exit;
 use super::inputs::{EvaluateArgs, inputs};
-use super::output::{is_folder, is_stdin, now};
+use super::output::{is_folder, is_stdin};
+use super::program::now;
 use super::ui::Ui;
+use crate::documents::ExportDocument;
 use crate::report::OutputFolder;
 use crate::report::cards::{EXPORTERS, Target, named};
 use crate::report::write::write_file;
@@ -48,17 +49,6 @@ fn target() -> impl TypedValueParser<Value = Target> {
     names.try_map(|name| named(&name).ok_or("no target of that name"))
 }
 
-/// `kesf.export/1`: the cards, or where they were written.
-#[derive(Serialize)]
-struct Document<'a> {
-    schema: &'static str,
-    target: String,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    cards: Option<&'a [Card]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    files: Option<Vec<String>>,
-}
-
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let (inputs, reading) = (inputs(&options.inputs)?, options.evaluate.reading());
     let assumptions = options.assume.assumptions();
@@ -71,15 +61,15 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         Ok::<_, Failure>((cards, failures))
     })?;
     let target = options.to.iter().map(|target| target.name).collect::<Vec<_>>().join(",");
-    let document = Document { schema: "kesf.export/1", target, cards: None, files: None };
+    let document = ExportDocument::new(target);
     if is_stdin(&options.output) && ui.json {
-        ui.document(Document { cards: Some(&cards), ..document })?;
+        ui.document(ExportDocument { cards: Some(&cards), ..document })?;
         return Ok(Exit::of_batch(cards.len(), &failures));
     }
     let files = write(options, &cards, &mut failures, ui)?;
     if ui.json {
         let files = files.iter().map(|path| path.to_string_lossy().into_owned()).collect();
-        ui.document(Document { files: Some(files), ..document })?;
+        ui.document(ExportDocument { files: Some(files), ..document })?;
     }
     Ok(Exit::of_batch(files.len(), &failures))
 }

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde::Serialize;
 
 use super::exit::Exit;
 use super::inputs::ReadArgs;
 use super::ui::Ui;
+use crate::documents::InitDocument;
 use crate::results::{FIRST_CASE as CASE, Failure, init, readable};
 
 /// Write a commented fabric.toml for each fabric of a folder, and a first case
@@ -21,21 +21,13 @@ pub struct Options {
     reading: ReadArgs,
 }
 
-/// `kesf.init/1`.
-#[derive(Serialize)]
-struct Document<'a> {
-    schema: &'static str,
-    written: Vec<std::borrow::Cow<'a, str>>,
-    kept: Vec<std::borrow::Cow<'a, str>>,
-}
-
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let reading = options.reading.reading();
     let begun = ui.observe(|observer| init(&options.folder, &reading, observer))?;
     if ui.json {
         let [written, kept] =
             [&begun.written, &begun.kept].map(|paths| readable(paths.iter().map(PathBuf::as_path)));
-        ui.document(Document { schema: "kesf.init/1", written, kept })?;
+        ui.document(InitDocument::new(written, kept))?;
     } else {
         let line = |path: &PathBuf, what: &str| format!("{what}  {}\n", Path::display(path));
         let written = begun.written.iter().map(|path| line(path, "written"));

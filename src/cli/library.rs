@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use serde::Serialize;
 
 use super::exit::Exit;
 use super::library_find::{self, Find};
 use super::ui::Ui;
+use crate::documents::LibraryDocument;
 use crate::library::{Shelf, Stored};
 use crate::report::write::write_file;
 use crate::results::Failure;
@@ -40,14 +40,6 @@ struct Build {
     force: bool,
 }
 
-/// `kesf.library/1`.
-#[derive(Serialize)]
-struct Built {
-    schema: &'static str,
-    output: String,
-    fabrics: usize,
-}
-
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     match &options.action {
         Action::Build(options) => build(options, ui),
@@ -61,7 +53,7 @@ fn build(options: &Build, ui: &Ui) -> Result<Exit, Failure> {
     write_file(&options.output, &shelf.parquet()?, options.force)?;
     let output = options.output.to_string_lossy().into_owned();
     if ui.json {
-        return ui.document(Built { schema: "kesf.library/1", output, fabrics: shelf.len() });
+        return ui.document(LibraryDocument::new(output, shelf.len()));
     }
     ui.note(&format!("{output}: {} fabrics", shelf.len()));
     Ok(Exit::Done)

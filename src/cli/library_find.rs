@@ -1,16 +1,17 @@
 //! `kesf library find`: the fabrics of a library that are like one, or within bounds.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde::Serialize;
 
 use super::exit::Exit;
+use super::format::Format;
 use super::inputs::EvaluateArgs;
-use super::output::{Format, OutputArgs};
+use super::output::OutputArgs;
 use super::ui::Ui;
-use crate::library::{Answer, Axis, Bounds, LibraryError, LibraryFile, Like, Question};
+use crate::documents::FoundDocument;
+use crate::library::{Answer, Bounds, LibraryError, LibraryFile, Like, Question};
+use crate::platform::files;
 use crate::report::arrow::write;
 use crate::report::arrow_text::{Records, csv, units};
 use crate::report::table::{FabricRow, UnitSystem, fabric_rows};
@@ -40,19 +41,6 @@ pub struct Find {
     evaluate: EvaluateArgs,
 }
 
-/// `kesf.found/1`.
-#[derive(Serialize)]
-struct Found<'a> {
-    schema: &'static str,
-    like: Option<&'a str>,
-    #[serde(rename = "where")]
-    bounds: Option<&'a str>,
-    /// What is usual in the library for the parameters that fabrics were compared by.
-    space: &'a [Axis],
-    units: BTreeMap<String, String>,
-    fabrics: Records<'a>,
-}
-
 pub fn run(options: &Find, ui: &Ui) -> Result<Exit, Failure> {
     let format = options.output.format(ui.json)?;
     let library = LibraryFile::open(&options.library)?;
@@ -66,7 +54,8 @@ pub fn run(options: &Find, ui: &Ui) -> Result<Exit, Failure> {
         Format::Json => {
             let (like, bounds) = (options.like.as_deref(), options.bounds.as_deref());
             let (space, units, fabrics) = (&answer.axes[..], units(&answer.table), Records(table));
-            ui.complete(Found { schema: "kesf.found/1", like, bounds, space, units, fabrics })?.into_bytes()
+            ui.complete(FoundDocument { schema: "kesf.found/1", like, bounds, space, units, fabrics })?
+                .into_bytes()
         }
         Format::Xlsx => return Err(options.output.no_such_format(".txt, .csv, .parquet or .json")),
     };
@@ -79,7 +68,7 @@ fn answer(options: &Find, library: &LibraryFile, bounds: Option<Bounds>, ui: &Ui
     let like = options.like.clone().map(Like::Named);
     let question = Question { like, bounds, count: options.count };
     match (library.find(&question), &options.like) {
-        (Err(LibraryError::Unknown { .. }), Some(path)) if Path::new(path).exists() => {
+        (Err(LibraryError::Unknown { .. }), Some(path)) if files::exists(Path::new(path)) => {
             let like = Some(Like::Rows(rows(Path::new(path), options, ui)?));
             Ok(library.find(&Question { like, ..question })?)
         }

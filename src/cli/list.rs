@@ -6,11 +6,12 @@ use clap::{Args, ValueEnum};
 
 use super::exit::Exit;
 use super::ui::Ui;
+use crate::documents::schemas;
 use crate::instrument::DIALECT_FILES;
 use crate::report::OutputError;
 use crate::report::write::write_file;
 use crate::results::{Failure, list};
-use crate::schema::{case_reference, schemas};
+use crate::schema::case_reference;
 
 /// List the formats, dialects, units, analyses, exports, codes, schemas and keys that the program knows
 #[derive(Debug, Args)]
@@ -43,7 +44,7 @@ enum Topic {
     Units,
     /// Diagnostic codes
     Codes,
-    /// JSON Schemas of the files that are read; `-o FOLDER` writes them
+    /// JSON Schemas of the files that are read and of the documents that are written; `-o FOLDER` writes them
     Schemas,
     /// All keys of a case file, as Markdown
     Keys,
@@ -60,7 +61,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         Topic::Codes => list::codes(),
         Topic::Schemas => match &options.output {
             Some(folder) => return write_schemas(folder, options.force),
-            None => list::schemas(),
+            None => list::schemas(&schemas()),
         },
         Topic::Keys => return ui.print(&case_reference()),
     };

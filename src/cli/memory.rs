@@ -2,9 +2,30 @@
 
 use std::fs::read_to_string;
 
+use clap::Args;
+
+use crate::case::Bytes;
+use crate::results::Limits;
+
+/// How much memory a case may need.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct MemoryArgs {
+    /// Most memory that a case may need, estimated before it begins [default: what the machine has free, else 16 GB]
+    #[arg(long, value_name = "SIZE")]
+    memory_limit: Option<Bytes>,
+}
+
+impl MemoryArgs {
+    /// Bytes.
+    pub fn bytes(self) -> u64 {
+        let free = || available().unwrap_or(Limits::default().bytes);
+        self.memory_limit.map_or_else(free, |typed| typed.0)
+    }
+}
+
 /// Bytes that the machine has free, that the container may hold, and that the process may address: the least of them.
 /// `None` where no file of the system says it.
-pub fn available() -> Option<u64> {
+fn available() -> Option<u64> {
     let free = read_to_string("/proc/meminfo").ok().and_then(|text| free(&text));
     let container =
         read_to_string("/sys/fs/cgroup/memory.max").ok().and_then(|text| text.trim().parse().ok());

@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use serde::Serialize;
 
 use super::exit::Exit;
-use super::output::{Format, OutputArgs};
+use super::format::TableFormat;
+use super::output::OutputArgs;
 use super::ui::Ui;
+use crate::documents::MergedDocument;
 use crate::parts::{Table, merge_folder};
 use crate::report::arrow_text::{Records, csv};
 use crate::results::Failure;
@@ -38,16 +39,8 @@ enum TableArg {
     Failures,
 }
 
-/// `kesf.merged/1`.
-#[derive(Serialize)]
-struct Document<'a> {
-    schema: &'static str,
-    table: &'static str,
-    rows: Records<'a>,
-}
-
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
-    let format = options.output.format(ui.json)?;
+    let format = options.output.format_of_table(ui.json)?;
     let table = match options.table {
         TableArg::Results => Table::Results,
         TableArg::Findings => Table::Findings,
@@ -55,14 +48,13 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     };
     let merged = merge_folder(&options.folder)?;
     let bytes = match format {
-        Format::Text | Format::Csv => options.output.marked(csv(&merged.table(table)?)?),
-        Format::Parquet => merged.parquet(table)?,
-        Format::Json => {
+        TableFormat::Parquet => merged.parquet(table)?,
+        TableFormat::Json => {
             let rows = merged.table(table)?;
-            let document = Document { schema: "kesf.merged/1", table: table.name(), rows: Records(&rows) };
+            let document = MergedDocument::new(table.name(), Records(&rows));
             ui.complete(document)?.into_bytes()
         }
-        Format::Xlsx => return Err(options.output.no_such_format(".csv, .parquet or .json")),
+        TableFormat::Csv => options.output.marked(csv(&merged.table(table)?)?),
     };
     options.output.emit(&bytes)?;
     Ok(Exit::Done)

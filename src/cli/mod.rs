@@ -15,6 +15,7 @@ mod exit;
 mod explain;
 mod export;
 mod fields;
+mod format;
 mod global;
 mod init;
 mod inputs;
@@ -26,6 +27,7 @@ mod man;
 mod memory;
 mod merge;
 mod output;
+mod program;
 mod progress;
 mod read;
 mod report;
@@ -49,11 +51,13 @@ use diagnostics::Diagnostics;
 use exit::Exit;
 use ui::Ui;
 
+use crate::platform::is_guarded;
 use crate::results::Failure;
 
 /// Runs the program with these arguments (the first is its name) and says how it ended.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
+    hush_guarded();
     let cli = match Cli::try_parse_from(&arguments) {
         Ok(cli) => cli,
         Err(error) => return usage(&error, arguments.iter().any(|a| a == "--json")).into(),
@@ -88,6 +92,16 @@ fn dispatch(command: &Command, ui: &Ui) -> Result<Exit, Failure> {
         Command::Completions(options) => completions::run(options, ui),
         Command::Man(options) => man::run(options, ui),
     }
+}
+
+/// A panic that becomes the error of a file is told as that, and not as one of this program.
+fn hush_guarded() {
+    let told = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !is_guarded() {
+            told(panic);
+        }
+    }));
 }
 
 /// Help and version go to standard output; anything else is bad usage.

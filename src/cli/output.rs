@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::format::{Format, TableFormat};
 use crate::report::OutputFolder;
 use crate::report::table::marked;
 use crate::report::write::write_file;
@@ -24,21 +25,6 @@ pub struct OutputArgs {
     bom: bool,
 }
 
-/// Formats of a single result.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// For people.
-    Text,
-    /// One JSON document.
-    Json,
-    /// Comma-separated values.
-    Csv,
-    /// Apache Parquet.
-    Parquet,
-    /// A workbook.
-    Xlsx,
-}
-
 impl OutputArgs {
     /// The format by the ending of the file; on standard output JSON or text.
     pub fn format(&self, json: bool) -> Result<Format, Failure> {
@@ -51,6 +37,17 @@ impl OutputArgs {
             "parquet" => Ok(Format::Parquet),
             "xlsx" => Ok(Format::Xlsx),
             _ => Err(self.no_such_format(".txt, .json, .csv, .parquet or .xlsx")),
+        }
+    }
+
+    /// The same of a table that has no text for people: on standard output it is CSV.
+    pub fn format_of_table(&self, json: bool) -> Result<TableFormat, Failure> {
+        match self.format(json)? {
+            Format::Csv => Ok(TableFormat::Csv),
+            Format::Text if is_stdin(&self.output) => Ok(TableFormat::Csv),
+            Format::Parquet => Ok(TableFormat::Parquet),
+            Format::Json => Ok(TableFormat::Json),
+            Format::Text | Format::Xlsx => Err(self.no_such_format(".csv, .parquet or .json")),
         }
     }
 
@@ -89,18 +86,6 @@ pub fn to_stdout(bytes: &[u8]) -> Result<(), Failure> {
 /// Whether a place is a folder, or is meant to be one.
 pub fn is_folder(path: &Path) -> bool {
     path.is_dir() || path.to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR])
-}
-
-/// Date and time in RFC 3339, for those who ask for a stamp.
-pub fn now() -> String {
-    chrono::Utc::now().to_rfc3339_opts(chrono::SecondsFormat::Secs, true)
-}
-
-/// What tells this program from another of its version: size and time of its file.
-pub fn program() -> Option<String> {
-    let file = std::env::current_exe().and_then(std::fs::metadata).ok()?;
-    let modified = file.modified().ok()?.duration_since(std::time::UNIX_EPOCH).ok()?;
-    Some(format!("{} {} {}", env!("CARGO_PKG_VERSION"), file.len(), modified.as_nanos()))
 }
 
 /// Whether an argument means standard input or output.

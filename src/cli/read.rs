@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use serde::Serialize;
 
 use super::exit::Exit;
+use super::format::TableFormat;
 use super::inputs::{ReadArgs, Units, inputs};
-use super::output::{Format, OutputArgs};
+use super::output::OutputArgs;
 use super::ui::Ui;
+use crate::documents::CurvesDocument;
 use crate::instrument::FabricInput;
 use crate::report::table::{CurveRow, csv, curve_rows, parquet};
 use crate::results::{Event, Failure, Found, Read, nothing_to_read};
@@ -29,15 +30,8 @@ pub struct Options {
     reading: ReadArgs,
 }
 
-/// `kesf.curves/1`.
-#[derive(Serialize)]
-struct Document<'a> {
-    schema: &'static str,
-    fabrics: &'a [FabricInput],
-}
-
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
-    let format = options.output.format(ui.json)?;
+    let format = options.output.format_of_table(ui.json)?;
     let (inputs, reading) = (inputs(&options.inputs)?, options.reading.reading());
     let Read { done: fabrics, failures, .. } = ui.observe(|observer| {
         let read = reading.each(&inputs, "reading", |fabric| fabric, observer)?;
@@ -54,10 +48,9 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     }
     let rows: Vec<CurveRow> = fabrics.iter().flat_map(|f| curve_rows(f, options.units.into())).collect();
     let bytes = match format {
-        Format::Text | Format::Csv => options.output.marked(csv(&rows)?),
-        Format::Xlsx => return Err(options.output.no_such_format(".csv, .parquet or .json")),
-        Format::Parquet => parquet(&rows)?,
-        Format::Json => ui.complete(Document { schema: "kesf.curves/1", fabrics: &fabrics })?.into_bytes(),
+        TableFormat::Parquet => parquet(&rows)?,
+        TableFormat::Json => ui.complete(CurvesDocument::new(&fabrics))?.into_bytes(),
+        TableFormat::Csv => options.output.marked(csv(&rows)?),
     };
     options.output.emit(&bytes)?;
     Ok(Exit::of_batch(fabrics.iter().filter(|f| has_content(f)).count(), &failures))

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use indicatif::HumanBytes;
-use serde::Serialize;
 
 use super::exit::Exit;
 use super::output::{is_folder, is_stdin};
 use super::ui::Ui;
+use crate::documents::ReportDocument;
 use crate::finding::Place;
 use crate::report::OutputFolder;
 use crate::report::html::{LIMIT, OneFile, self_contained};
@@ -28,28 +28,12 @@ pub struct Options {
     /// Write to this file, or into this folder; `-` for standard output [default: report.html in the folder]
     #[arg(short, long, value_name = "PATH")]
     output: Option<PathBuf>,
-    /// Put every picture into the page, however large it becomes; otherwise as many kinds of charts as 3 MB hold
+    /// Put every picture into the page, however large it becomes; otherwise as many as 3 MB hold
     #[arg(long)]
     all_pictures: bool,
     /// Overwrite a file that this tool did not write
     #[arg(long)]
     force: bool,
-}
-
-/// `kesf.report/1`: the page, or where it was written.
-#[derive(Serialize)]
-struct Document {
-    schema: &'static str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    page: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    output: Option<String>,
-}
-
-impl Default for Document {
-    fn default() -> Self {
-        Self { schema: "kesf.report/1", page: None, output: None }
-    }
 }
 
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
@@ -81,7 +65,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     }
     let written = match &options.output {
         Some(output) if is_stdin(output) && ui.json => {
-            return ui.document(Document { page: Some(page), ..Document::default() });
+            return ui.document(ReportDocument { page: Some(page), ..Default::default() });
         }
         Some(output) if is_stdin(output) => return ui.print(&page),
         Some(output) => {
@@ -98,7 +82,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     };
     if ui.json {
         let output = Some(written.to_string_lossy().into_owned());
-        return ui.document(Document { output, ..Document::default() });
+        return ui.document(ReportDocument { output, ..Default::default() });
     }
     ui.note(&format!("{}: {}", written.display(), HumanBytes(page.len() as u64)));
     Ok(Exit::Done)

@@ -3,16 +3,16 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use serde::Serialize;
 
 use super::exit::Exit;
 use super::fields::FieldsArg;
-use super::output::{now, open_folder, program};
+use super::output::open_folder;
+use super::program::{now, program};
 use super::shard::{self, Request};
 use super::tasks::TaskArgs;
 use super::ui::Ui;
-use crate::report::table::PredictionRow;
-use crate::results::{Failure, Shard};
+use crate::documents::ResultsDocument;
+use crate::results::{Failure, Shard, population};
 use crate::run::{self, RunSettings};
 
 /// Do everything: read fabrics, evaluate, solve and compare every case, draw charts, write tables
@@ -28,7 +28,7 @@ pub struct Options {
     #[arg(short, long, value_name = "FOLDER", default_value = "results")]
     output: PathBuf,
     /// Do one part of many, as Parquet: the fabrics whose names fall to this shard; `kesf merge` joins the parts
-    #[arg(long, value_name = "K/N", conflicts_with_all = ["fields", "stamp", "xlsx", "bom", "no_charts"])]
+    #[arg(long, value_name = "K/N", conflicts_with_all = ["fields", "stamp", "xlsx", "bom", "no_charts", "format", "population"])]
     shard: Option<Shard>,
     /// Solve drape cases too: a minute or so for each fabric
     #[arg(long)]
@@ -39,6 +39,9 @@ pub struct Options {
     /// Write fields of sheets (VTU); auto: in runs of up to 100 fabrics
     #[arg(long, value_enum, value_name = "WHEN", default_value_t)]
     fields: FieldsArg,
+    /// Compare fabrics on the page with this population: a folder of results, or a file with mean and SD (TOML, CSV)
+    #[arg(long, value_name = "PATH")]
+    population: Option<PathBuf>,
     /// Put the date into run.json; without it the same input gives the same bytes
     #[arg(long)]
     stamp: bool,
@@ -52,18 +55,12 @@ pub struct Options {
     task: TaskArgs,
 }
 
-/// `kesf.results/1`.
-#[derive(Serialize)]
-struct Document<'a> {
-    schema: &'static str,
-    output: String,
-    predictions: &'a [PredictionRow],
-}
-
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let job = options.task.job(&options.inputs, ui)?;
     let settings = RunSettings {
         charts: !options.task.no_charts,
+        formats: options.task.format.0.clone(),
+        population: options.population.as_deref().map(population).transpose()?,
         fields: options.fields.into(),
         drape: options.drape,
         fresh: options.fresh,
@@ -74,11 +71,8 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         strict: options.task.strict,
     };
     if let Some(shard) = options.shard {
-        return shard::run(
-            shard,
-            &Request { job, settings, folder: &options.output, force: options.task.force },
-            ui,
-        );
+        let request = Request { job, settings, folder: &options.output, force: options.task.force };
+        return shard::run(shard, &request, ui);
     }
     let work = ui.observe(|observer| run::read(&job, &settings, observer))?;
     if work.is_empty() {
@@ -90,29 +84,25 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let predictions = if ui.json { report.predictions(&folder)? } else { Vec::new() };
     let remaining = folder.finish()?;
     if let Some(first) = remaining.first() {
-        let count = remaining.len();
-        ui.note(&format!("{shown}: {count} files of earlier runs are still there, {first} among them"));
+        let told = format!("{} files of earlier runs are still there, {first} among them", remaining.len());
+        ui.note(&format!("{shown}: {told}"));
     }
     if ui.json {
         let output = options.output.to_string_lossy().into_owned();
-        ui.document(Document { schema: "kesf.results/1", output, predictions: &predictions })?;
+        ui.document(ResultsDocument::new(output, &predictions))?;
     } else {
         let tables: Vec<String> = report.tables.iter().map(|table| table.text()).collect();
         ui.print(&tables.join("\n"))?;
         if report.resumed > 0 {
-            let (resumed, all) = (report.resumed, report.names().len());
-            ui.note(&format!(
-                "{resumed} of {all} fabrics are as an earlier run left them; --fresh computes them anew"
-            ));
+            let those = format!("{} of {} fabrics", report.resumed, report.names().len());
+            ui.note(&format!("{those} are as an earlier run left them; --fresh computes them anew"));
         }
         if report.unlisted > 0 {
             ui.note(&format!("{} more fabrics are in fabrics.csv", report.unlisted));
         }
         let charts = if settings.charts { ", charts" } else { "" };
-        let findings = ui.findings();
-        ui.note(&format!(
-            "{shown}: index.html, fabrics.csv, predictions.csv{charts}; {findings} findings in problems.csv"
-        ));
+        let files = format!("index.html, fabrics.csv, predictions.csv{charts}");
+        ui.note(&format!("{shown}: {files}; {} findings in problems.csv", ui.findings()));
     }
     let strict = options.task.strict && ui.findings() > 0;
     Ok(Exit::of_batch(report.useful, &report.failures).unless(report.fails_a_check || strict))

@@ -6,10 +6,11 @@ use clap::Args;
 
 use super::assumptions::AssumptionArgs;
 use super::exit::Exit;
+use super::format::Format;
 use super::inputs::{EvaluateArgs, inputs};
-use super::output::{Format, OutputArgs};
+use super::output::OutputArgs;
 use super::ui::Ui;
-use crate::report::json::{assumptions, section_document};
+use crate::report::json::section_document;
 use crate::results::{Failure, section_text, sections};
 
 /// Compute the membrane, bending and shear stiffness of fabrics, with the assumptions used
@@ -41,9 +42,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let text = if format == Format::Text {
         done.iter().map(|s| section_text(&s.sheet, &s.made)).collect::<Vec<_>>().join("\n")
     } else {
-        let entries =
-            done.iter().map(|s| (&s.sheet, &s.made.section, &s.made.inputs[..], assumptions(&s.made.used)));
-        ui.complete(section_document(entries))?
+        ui.complete(section_document(done.iter().map(|s| (&s.sheet, &s.made))))?
     };
     options.output.emit(text.as_bytes())?;
     Ok(Exit::of_batch(done.len(), &failures))

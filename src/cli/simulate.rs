@@ -25,7 +25,8 @@ pub fn simulate(kind: Kind, inputs: &[PathBuf], args: &SimulateArgs, ui: &Ui) ->
     let job = args.task.job(inputs, ui)?;
     let mut work = ui.observe(|observer| job.read(observer))?;
     let sink = args.output.as_ref().map(|root| open_folder(root, args.task.force)).transpose()?;
-    let folder = sink.as_ref().map(|sink| Folder::new(sink, !args.task.no_charts));
+    let folder =
+        sink.as_ref().map(|sink| Folder::new(sink, !args.task.no_charts).with_formats(&args.task.format.0));
     let batch = ui.observe(|observer| Batch::simulate(&mut work, kind, folder.as_ref(), observer))?;
     if let Some(sink) = sink {
         sink.finish()?;

@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::inputs::{EvaluateArgs, inputs};
-use super::memory;
+use super::memory::MemoryArgs;
 use super::ui::Ui;
-use crate::case::{Bytes, SolverChoice};
+use crate::case::SolverChoice;
 use crate::quantity::Time;
+use crate::report::chart::Format;
 use crate::results::{Failure, Job, Limits};
 
 /// Cases and fabrics on the command line.
@@ -20,6 +21,9 @@ pub struct TaskArgs {
     /// Draw no charts
     #[arg(long)]
     pub no_charts: bool,
+    /// Files of charts, with commas between them: png, svg, pdf
+    #[arg(long, value_name = "LIST", default_value = "png", value_parser = formats, conflicts_with = "no_charts")]
+    pub format: Formats,
     /// Exit with 1 if there is a finding
     #[arg(long)]
     pub strict: bool,
@@ -29,9 +33,8 @@ pub struct TaskArgs {
     /// Longest that a case may take with a fabric; what it has reached by then is kept where it means something
     #[arg(long, value_name = "TIME", default_value = "60 min", value_parser = time)]
     time_limit: f64,
-    /// Most memory that a case may need, estimated before it begins [default: what the machine has free, else 16 GB]
-    #[arg(long, value_name = "SIZE")]
-    memory_limit: Option<Bytes>,
+    #[command(flatten)]
+    memory: MemoryArgs,
     #[command(flatten)]
     evaluate: EvaluateArgs,
 }
@@ -57,6 +60,23 @@ impl From<SolverArg> for SolverChoice {
     }
 }
 
+/// Kinds of files of a chart, as typed.
+#[derive(Clone, Debug)]
+pub struct Formats(pub Vec<Format>);
+
+fn formats(text: &str) -> Result<Formats, String> {
+    let names: Vec<&str> = text.split(',').map(str::trim).collect();
+    let known = Format::ALL.iter().map(|format| format.ending()).collect::<Vec<_>>().join(", ");
+    if let Some(name) = names.iter().find(|name| !Format::ALL.iter().any(|format| format.ending() == **name))
+    {
+        return Err(format!(
+            "\"{name}\" is no format of charts: there are {known}, such as `--format png,svg`"
+        ));
+    }
+    let asked = |format: &&Format| names.contains(&format.ending());
+    Ok(Formats(Format::ALL.iter().filter(asked).copied().collect()))
+}
+
 fn time(text: &str) -> Result<f64, String> {
     let seconds = text.parse::<Time>().map_err(|e| e.to_string())?.si();
     if seconds > 0.0 { Ok(seconds) } else { Err(format!("{seconds} s is no time to compute in")) }
@@ -75,7 +95,6 @@ impl TaskArgs {
     }
 
     fn limits(&self) -> Limits {
-        let bytes = self.memory_limit.map(|typed| typed.0).or_else(memory::available);
-        Limits { seconds: self.time_limit, bytes: bytes.unwrap_or(Limits::default().bytes) }
+        Limits { seconds: self.time_limit, bytes: self.memory.bytes() }
     }
 }

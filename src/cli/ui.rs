@@ -8,8 +8,9 @@ use super::diagnostics::Diagnostics;
 use super::exit::Exit;
 use super::global::Global;
 use super::{interrupt, output};
-use crate::report::json::{FindingEntry, text};
-use crate::results::{Event, Failure, FailureEntry, Observer};
+use crate::documents::Complete;
+use crate::report::json::text;
+use crate::results::{Event, Failure, Observer};
 
 /// The user's side of a command.
 pub struct Ui {
@@ -20,16 +21,6 @@ pub struct Ui {
     /// Threads that the work may take.
     pub threads: usize,
     diagnostics: Mutex<Diagnostics>,
-}
-
-/// A document with what was said beside it.
-#[derive(Serialize)]
-struct Complete<D> {
-    #[serde(flatten)]
-    document: D,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    findings: Option<Vec<FindingEntry>>,
-    failures: Vec<FailureEntry>,
 }
 
 impl Ui {

@@ -13,6 +13,7 @@
 use nalgebra::Matrix3;
 
 use super::{Assumptions, BendingCoupling, Constant, ConstitutiveError, Notes, Torsion};
+use crate::characterise::{Key, ValueStatus};
 use crate::finding::{EvaluationFact, Fact, SectionFact};
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::significant;
@@ -63,6 +64,14 @@ fn is_of_strips(notes: &Notes, direction: Direction) -> bool {
 fn rigidity_source(notes: &mut Notes) -> &'static str {
     let directions: Vec<Direction> =
         [Direction::Warp, Direction::Weft].into_iter().filter(|d| is_of_strips(notes, *d)).collect();
+    let of_table = |direction: Option<Direction>| {
+        let key = Key { parameter: Parameter::B, direction };
+        notes.sheet.status(key) == ValueStatus::Inferred
+    };
+    if directions.is_empty() && [None, Some(Direction::Warp), Some(Direction::Weft)].into_iter().any(of_table)
+    {
+        return "inferred: B of a table that was not measured on KES-FB2 (a cantilever of FAST), for D11, D22";
+    }
     if directions.is_empty() {
         return "measured: B of KES-FB2 is D11, D22";
     }

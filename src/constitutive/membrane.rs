@@ -11,7 +11,7 @@ use nalgebra::Matrix3;
 
 use super::{Assumptions, Constant, ConstitutiveError, InputSource, Notes, PoissonRule};
 use crate::characterise::Modulus;
-use crate::finding::SectionFact;
+use crate::finding::{EvaluationFact, Fact, Finding, SectionFact};
 use crate::instrument::Direction;
 use crate::quantity::{Estimate, significant};
 
@@ -53,7 +53,14 @@ pub(super) fn matrix(
 fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], ConstitutiveError> {
     let chosen = assumptions.modulus;
     if let Some(e) = known(chosen, notes) {
-        return Ok(record(e, Some(chosen), format!("measured: {chosen}"), notes));
+        let of_fast =
+            |f: &Finding| matches!(f.fact, Fact::Evaluation(EvaluationFact::StiffnessOfFast { .. }));
+        let source = if chosen == Modulus::TangentLow && notes.sheet.findings.iter().any(of_fast) {
+            format!("inferred: {chosen} of E5 and E20 of FAST")
+        } else {
+            format!("measured: {chosen}")
+        };
+        return Ok(record(e, Some(chosen), source, notes));
     }
     if let Modulus::Window(..) = chosen {
         return Err(notes.missing(

@@ -13,27 +13,27 @@
 
 mod assumptions;
 mod bending;
+mod error;
 mod friction;
 mod membrane;
+mod notes;
 mod perturbed;
 mod sensitivity;
 mod shear;
 
-use serde::Serialize;
-
-use std::borrow::Cow;
-
-use crate::characterise::{FabricSheet, Key};
-use crate::finding::{Finding, SectionFact, as_text, errors};
-use crate::instrument::{Direction, Parameter};
-use crate::law::LawError;
+use crate::characterise::FabricSheet;
+use crate::finding::{Finding, SectionFact};
+use crate::instrument::Parameter;
 use crate::quantity::{Estimate, significant};
-use crate::section::{SectionError, SheetLaw, ShellSection};
+use crate::section::{SheetLaw, ShellSection};
 
 pub use assumptions::{Assumptions, BendingCoupling, ChoiceError, PoissonRule, Torsion, TransverseShear};
+pub use error::ConstitutiveError;
 pub use friction::tension;
+pub use notes::Used;
+use notes::{Notes, value};
 pub use perturbed::{InputSource, law_inputs, perturbed};
-use sensitivity::{Constant, Origin};
+use sensitivity::Constant;
 pub use sensitivity::{Entry, Input, SectionDerivative, bands, entries};
 
 /// A section with everything that went into it.
@@ -49,64 +49,6 @@ pub struct Constitutive {
     pub inputs: Vec<Input>,
     /// What a reader of the section must know.
     pub findings: Vec<Finding>,
-}
-
-/// One input or assumption behind a section.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Used {
-    /// What it is, e.g. `tensile modulus`.
-    pub name: Cow<'static, str>,
-    /// Its value with unit, e.g. `warp 5120 N/m, weft 3080 N/m`.
-    pub value: String,
-    /// `measured: ...` or `assumed: ...` and why.
-    pub source: String,
-}
-
-errors! {
-    /// Why a sheet gives no section.
-    #[derive(Clone, Debug, PartialEq)]
-    pub enum ConstitutiveError {
-        of_fabric {
-            /// C001 to C003: the matrices do not describe a stable sheet.
-            Section(SectionError),
-            /// M020: a law with friction cannot be made.
-            Law(LawError),
-        }
-        /// C004: a value without which there is nothing to say.
-        "C004" Missing {
-            /// Name of the fabric.
-            fabric: String,
-            /// What is missing.
-            what: String,
-            /// What to do.
-            cure: &'static str,
-        } = "{fabric} has no {what}: {cure}";
-        /// C005: a stiffness that is zero, negative or not a number.
-        "C005" NotPositive {
-            /// Name of the fabric.
-            fabric: String,
-            /// Which stiffness.
-            what: String,
-            /// Its value (SI).
-            value: f64,
-            /// The SI unit.
-            unit: &'static str,
-            /// What to do.
-            cure: &'static str,
-        } = "{fabric}: {what} is {value:e} {unit}, a positive number is needed: {cure}";
-        /// C006: Poisson's ratio is outside the range in which energy is positive.
-        "C006" Poisson {
-            /// Name of the fabric.
-            fabric: String,
-            /// The given ratio.
-            poisson: f64,
-            /// The rule.
-            #[serde(serialize_with = "as_text")]
-            rule: PoissonRule,
-            /// The limit of its absolute value.
-            limit: f64,
-        } = "Poisson's ratio {poisson} ({rule}) is too large: |nu| < {limit} is needed for {fabric}";
-    }
 }
 
 /// The shell section of a fabric: D_m (N/m), D_b (N·m), D_s (N/m), symmetric and positive definite
@@ -188,110 +130,6 @@ fn areal_density(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, Co
     notes.positive("areal density", value, "kg/m²", "correct it in its fabric.toml or result table")?;
     notes.used("areal density", format!("{} g/m²", significant(value * 1e3)), source);
     Ok(value)
-}
-
-/// An estimate of the sheet, and where it stands.
-fn value(
-    sheet: &FabricSheet,
-    parameter: Parameter,
-    direction: Option<Direction>,
-) -> Option<(Estimate, InputSource)> {
-    let estimate = sheet.get(parameter, direction)?.clone();
-    Some((estimate, InputSource::Value(Key { parameter, direction })))
-}
-
-/// What is written down on the way: the sheet, the inputs used and the findings.
-struct Notes<'a> {
-    sheet: &'a FabricSheet,
-    used: Vec<Used>,
-    origins: Vec<Origin>,
-    findings: Vec<Finding>,
-}
-
-impl Notes<'_> {
-    /// Writes down where constants come from; `gives` has `∂ln c/∂ln p` of each.
-    fn origin(
-        &mut self,
-        name: impl Into<String>,
-        (estimate, source): (&Estimate, InputSource),
-        gives: &[(Constant, f64)],
-    ) {
-        let (estimate, gives) = (estimate.clone(), gives.to_vec());
-        self.origins.push(Origin { name: name.into(), estimate, source, gives });
-    }
-
-    /// The same for a parameter of the sheet; nothing if the sheet has none.
-    fn origin_value(
-        &mut self,
-        parameter: Parameter,
-        direction: Option<Direction>,
-        gives: &[(Constant, f64)],
-    ) {
-        if let Some((estimate, from)) = value(self.sheet, parameter, direction) {
-            let name = match direction {
-                Some(direction) => format!("{parameter} {direction}"),
-                None => parameter.symbol().to_string(),
-            };
-            self.origin(name, (&estimate, from), gives);
-        }
-    }
-
-    fn used(&mut self, name: &'static str, value: impl Into<String>, source: impl Into<String>) {
-        self.used.push(Used { name: name.into(), value: value.into(), source: source.into() });
-    }
-
-    /// Name of the fabric.
-    fn fabric(&self) -> String {
-        self.sheet.name.clone()
-    }
-
-    fn finding(&mut self, fact: SectionFact) {
-        let finding = Finding::new(fact);
-        // A value that is looked at twice is reported once.
-        if !self.findings.contains(&finding) {
-            self.findings.push(finding);
-        }
-    }
-
-    fn missing(&self, what: impl Into<String>, cure: &'static str) -> ConstitutiveError {
-        ConstitutiveError::Missing { fabric: self.sheet.name.clone(), what: what.into(), cure }
-    }
-
-    fn positive(
-        &self,
-        what: &str,
-        value: f64,
-        unit: &'static str,
-        cure: &'static str,
-    ) -> Result<(), ConstitutiveError> {
-        if value.is_finite() && value > 0.0 {
-            return Ok(());
-        }
-        let (fabric, what) = (self.sheet.name.clone(), what.to_string());
-        Err(ConstitutiveError::NotPositive { fabric, what, value, unit, cure })
-    }
-
-    /// Bending rigidities along warp and weft. One value for the fabric, or for one direction only,
-    /// stands for both, with a finding.
-    fn bending_rigidities(&mut self) -> Option<[f64; 2]> {
-        let (parameter, sheet) = (Parameter::B, self.sheet);
-        let get = |direction| sheet.get(parameter, direction);
-        let constants = [0, 1].map(|i| (Constant::Bending(i), 1.0));
-        let known = match (get(Some(Direction::Warp)), get(Some(Direction::Weft)), get(None)) {
-            (Some(warp), Some(weft), _) => {
-                self.origin_value(parameter, Some(Direction::Warp), &constants[..1]);
-                self.origin_value(parameter, Some(Direction::Weft), &constants[1..]);
-                return Some([warp.mean, weft.mean]);
-            }
-            (_, _, Some(mean)) => (mean, None),
-            (Some(warp), None, None) => (warp, Some(Direction::Warp)),
-            (None, Some(weft), None) => (weft, Some(Direction::Weft)),
-            (None, None, None) => return None,
-        };
-        self.finding(SectionFact::OneRigidity { fabric: self.fabric(), known: known.1 });
-        self.origin_value(parameter, known.1, &constants);
-        Some([known.0.mean; 2])
-    }
 }
 
 #[cfg(test)]

@@ -4,8 +4,11 @@
 //! derivatives of an entry have the unit of the entry. What is assumed (Poisson's ratio, the
 //! rules for D12 and D66) has no spread here: it is a choice, to be varied by the reader.
 
+use std::borrow::Cow;
+
 use nalgebra::{Matrix2, Matrix3};
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{Assumptions, BendingCoupling, InputSource, PoissonRule, Torsion, TransverseShear};
 use crate::quantity::{Bands, Estimate};
@@ -59,10 +62,10 @@ impl SectionDerivative {
 }
 
 /// An entry of a matrix with its bands.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Entry {
     /// `d_m`, `d_b` or `d_s`.
-    pub matrix: &'static str,
+    pub matrix: Cow<'static, str>,
     /// Row, from 1.
     pub row: usize,
     /// Column, from 1; not below the row, as the matrices are symmetric.
@@ -93,14 +96,15 @@ pub fn bands(inputs: &[Input], derivatives: &[f64]) -> Result<Bands, Vec<String>
 
 /// Every entry on and above the diagonals that is not zero, with its bands: D_m, D_b, then D_s.
 pub fn entries(section: &ShellSection, inputs: &[Input]) -> Vec<Entry> {
-    let entry = |matrix, i: usize, j: usize, value: f64, of: &dyn Fn(&SectionDerivative) -> f64| {
-        let derivatives: Vec<f64> = inputs.iter().map(|input| of(&input.derivative)).collect();
-        let (bands, without_spread) = match bands(inputs, &derivatives) {
-            Ok(bands) => (Some(bands), Vec::new()),
-            Err(names) => (None, names),
+    let entry =
+        |matrix: &'static str, i: usize, j: usize, value: f64, of: &dyn Fn(&SectionDerivative) -> f64| {
+            let derivatives: Vec<f64> = inputs.iter().map(|input| of(&input.derivative)).collect();
+            let (bands, without_spread) = match bands(inputs, &derivatives) {
+                Ok(bands) => (Some(bands), Vec::new()),
+                Err(names) => (None, names),
+            };
+            Entry { matrix: matrix.into(), row: i + 1, column: j + 1, value, bands, without_spread }
         };
-        Entry { matrix, row: i + 1, column: j + 1, value, bands, without_spread }
-    };
     let upper = |n: usize| (0..n).flat_map(move |i| (i..n).map(move |j| (i, j)));
     let mut all: Vec<Entry> =
         upper(3).map(|(i, j)| entry("d_m", i, j, section.d_m[(i, j)], &|d| d.d_m[(i, j)])).collect();

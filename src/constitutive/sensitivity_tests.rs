@@ -112,8 +112,9 @@ fn one_value_for_both_directions_is_one_input() {
 fn entries_carry_the_relative_spread_of_what_they_are_made_of() {
     let c = section(&cloth(), &Assumptions::default()).unwrap();
     let all = entries(&c.section, &c.inputs);
-    let of = |matrix, row, column| {
-        let found = all.iter().find(|e| (e.matrix, e.row, e.column) == (matrix, row, column)).unwrap();
+    let of = |matrix: &str, row, column| {
+        let mut entries = all.iter();
+        let found = entries.find(|e| (e.matrix.as_ref(), e.row, e.column) == (matrix, row, column)).unwrap();
         (found.value, found.bands.unwrap().mean_fabric)
     };
     let root5 = 5f64.sqrt();

@@ -13,6 +13,7 @@
 use nalgebra::Matrix2;
 
 use super::{Assumptions, Constant, ConstitutiveError, InputSource, Notes, TransverseShear};
+use crate::characterise::{Key, ValueStatus};
 use crate::finding::SectionFact;
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::{Estimate, significant};
@@ -39,7 +40,10 @@ pub(super) fn in_plane(assumptions: &Assumptions, notes: &mut Notes) -> Result<f
             Some((direction, measured)) => {
                 let g = measured.mean - tension;
                 notes.origin_value(Parameter::G, direction, &[(Constant::Shear, measured.mean / g)]);
-                (g, format!("measured: G{}", taken_off(tension)))
+                let inferred =
+                    sheet.status(Key { parameter: Parameter::G, direction }) == ValueStatus::Inferred;
+                let known = if inferred { "inferred" } else { "measured" };
+                (g, format!("{known}: G{}", taken_off(tension)))
             }
             None => {
                 let g = assumptions.shear;

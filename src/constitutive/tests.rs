@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::characterise::{Key, Modulus};
+use crate::instrument::Direction;
 use crate::quantity::{BendingRigidity, Estimate, LineForce};
 use approx::assert_relative_eq;
 

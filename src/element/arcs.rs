@@ -19,6 +19,7 @@ use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3};
 
 use super::assumed::Assumed;
 use super::quad4::{Frame, gauss_point};
+use super::transposed::add_with_transpose;
 
 /// Shapes of an element: T, then K of the sides 1-2, 4-3 (along ξ), 1-4, 2-3 (along η) (m).
 const SHAPES: usize = 5;
@@ -26,7 +27,9 @@ const SHAPES: usize = 5;
 const STRAINS: usize = 5;
 type Shapes = SVector<f64, SHAPES>;
 type Quadratic = SMatrix<f64, SHAPES, SHAPES>;
-type Rows = SMatrix<f64, SHAPES, 24>;
+/// On the dofs (w, θx, θy) of the four corners, the only ones that shape an element.
+type Rows = SMatrix<f64, SHAPES, 12>;
+type Vector12 = SVector<f64, 12>;
 type Matrix24 = SMatrix<f64, 24, 24>;
 type Vector24 = SVector<f64, 24>;
 type Matrix2x24 = SMatrix<f64, 2, 24>;
@@ -36,7 +39,7 @@ const SIDES: [[usize; 2]; 4] = [[0, 1], [3, 2], [0, 3], [1, 2]];
 #[derive(Clone, Debug)]
 pub struct Arcs {
     area: f64,
-    /// Shapes for local displacements.
+    /// Shapes for the displacements that shape it.
     shapes: Rows,
     /// `½ cᵀ Q c` of shapes c: three mean strains (1/m²), two of the assumed stresses.
     quadratics: [Quadratic; STRAINS],
@@ -83,7 +86,7 @@ impl Arcs {
 
     /// For local displacements.
     pub fn bent(&self, local: &Vector24) -> Bent {
-        let shapes: Shapes = self.shapes * local;
+        let shapes: Shapes = self.shapes_of(local);
         let mut rates = SMatrix::<f64, STRAINS, SHAPES>::zeros();
         let mut strains = SVector::<f64, STRAINS>::zeros();
         for (i, q) in self.quadratics.iter().enumerate() {
@@ -104,7 +107,7 @@ impl Arcs {
 
     /// Rate of the mean strains above those of chords for that of the local displacements.
     pub fn rate(&self, bent: &Bent, rate: &Vector24) -> Vector3<f64> {
-        bent.rates.fixed_rows::<3>(0) * (self.shapes * rate)
+        bent.rates.fixed_rows::<3>(0) * self.shapes_of(rate)
     }
 
     /// Local force of what arcs add, for the mean resultants (N/m).
@@ -115,7 +118,10 @@ impl Arcs {
     fn of_stresses(&self, bent: &Bent, resultant: &Vector3<f64>, varying: &Vector2<f64>) -> Vector24 {
         let mean: Shapes = bent.rates.fixed_rows::<3>(0).tr_mul(resultant) * self.area;
         let all: Shapes = mean + bent.rates.fixed_rows::<2>(3).tr_mul(varying);
-        self.shapes.tr_mul(&all)
+        let shaping: Vector12 = self.shapes.tr_mul(&all);
+        let mut local = Vector24::zeros();
+        shaping.iter().enumerate().for_each(|(c, f)| local[shaping_dof(c)] = *f);
+        local
     }
 
     /// The change of the amplitudes and of the force for a change of the local displacements with a change of the
@@ -126,7 +132,7 @@ impl Arcs {
         change: &Vector24,
         resultant: &Vector3<f64>,
     ) -> (Vector2<f64>, Vector24) {
-        let added = self.stiffness * (bent.rates.fixed_rows::<2>(3) * (self.shapes * change));
+        let added = self.stiffness * (bent.rates.fixed_rows::<2>(3) * self.shapes_of(change));
         let varying = self.stiffness * (self.varying * change) + added;
         (varying, self.of_stresses(bent, resultant, &varying) + self.varying.tr_mul(&added))
     }
@@ -140,17 +146,18 @@ impl Arcs {
         coupled: impl Fn(&Vector3<f64>) -> Vector24,
         k: &mut Matrix24,
     ) {
-        let rows: SMatrix<f64, STRAINS, 24> = bent.rates * self.shapes;
-        let mean: SMatrix<f64, 3, 24> = rows.fixed_rows::<3>(0).into();
-        let varying: Matrix2x24 = rows.fixed_rows::<2>(3).into();
+        let (mean, varying) = (bent.rates.fixed_rows::<3>(0), bent.rates.fixed_rows::<2>(3));
         // Chords with arcs, both ways, and arcs with arcs.
         let mut of_chords = SMatrix::<f64, 24, 3>::zeros();
         for i in 0..3 {
             of_chords.set_column(i, &coupled(&d.column(i).into()));
         }
         let mixed = of_chords * mean + self.varying.tr_mul(&(self.stiffness * varying));
-        *k += mixed + mixed.transpose();
-        *k += mean.tr_mul(&(d * self.area * mean)) + varying.tr_mul(&(self.stiffness * varying));
+        add_with_transpose(k, &(mixed * self.shapes), shaping_dof);
+        self.add_quadratic(
+            &(mean.tr_mul(&(d * self.area * mean)) + varying.tr_mul(&(self.stiffness * varying))),
+            k,
+        );
     }
 
     /// Adds the geometric stiffness of mean resultants and of the stresses that vary.
@@ -159,22 +166,40 @@ impl Arcs {
         for (i, q) in self.quadratics.iter().enumerate() {
             sum += q * if i < 3 { resultant[i] * self.area } else { varying[i - 3] };
         }
-        *k += self.shapes.tr_mul(&(sum * self.shapes));
+        self.add_quadratic(&sum, k);
+    }
+
+    /// Shapes for local displacements.
+    fn shapes_of(&self, local: &Vector24) -> Shapes {
+        self.shapes * Vector12::from_fn(|c, _| local[shaping_dof(c)])
+    }
+
+    /// Adds a stiffness of the shapes to a local one.
+    fn add_quadratic(&self, q: &Quadratic, k: &mut Matrix24) {
+        let shaping: SMatrix<f64, 12, 12> = self.shapes.transpose() * (q * self.shapes);
+        for (i, j) in (0..12).flat_map(|j| (0..12).map(move |i| (i, j))) {
+            k[(shaping_dof(i), shaping_dof(j))] += shaping[(i, j)];
+        }
     }
 }
 
-/// T and the four K for local displacements.
+/// The local dof of a column of [`Rows`].
+fn shaping_dof(column: usize) -> usize {
+    6 * (column / 3) + 2 + column % 3
+}
+
+/// T and the four K for the displacements that shape an element.
 fn shapes(frame: &Frame) -> Rows {
     let mut rows = Rows::zeros();
     for (i, sign) in [1.0, -1.0, 1.0, -1.0].into_iter().enumerate() {
-        rows[(0, 6 * i + 2)] = 0.25 * sign;
+        rows[(0, 3 * i)] = 0.25 * sign;
     }
     for (side, [i, j]) in SIDES.into_iter().enumerate() {
         let [x, y] = [0, 1].map(|axis| 0.5 * (frame.xy[j][axis] - frame.xy[i][axis]));
         // w,ξ = x,ξ w,x + y,ξ w,y with w,x = -θy, w,y = θx.
         for (node, sign) in [(i, -0.5), (j, 0.5)] {
-            rows[(side + 1, 6 * node + 3)] = sign * y;
-            rows[(side + 1, 6 * node + 4)] = -sign * x;
+            rows[(side + 1, 3 * node + 1)] = sign * y;
+            rows[(side + 1, 3 * node + 2)] = -sign * x;
         }
     }
     rows

@@ -13,6 +13,7 @@ use nalgebra::{Matrix3, Point3, Rotation3, SMatrix, UnitQuaternion, Vector3};
 
 use super::prepared::{Matrix24, Vector24};
 use super::quad4::Frame;
+use super::transposed::add_with_transpose;
 
 type Matrix24x3 = SMatrix<f64, 24, 3>;
 type Matrix3x24 = SMatrix<f64, 3, 24>;
@@ -94,11 +95,54 @@ impl Motion {
         rate
     }
 
-    /// Tangent stiffness for a local stiffness and force, global axes: symmetric, and without the
+    /// Tangent stiffness for a symmetric local stiffness and a local force, global axes: symmetric, and without the
     /// change of the frame's own gradient, neither of which costs Newton's method an iteration.
     pub fn tangent(&self, stiffness: &Matrix24, local: &Vector24) -> Matrix24 {
-        let k = self.tangent_in_frame(stiffness, local);
-        self.matrix_to_global(&(0.5 * (k + k.transpose())))
+        // The symmetric part of `tangent_in_frame`, as K' + Z G + (Z G)ᵀ: most of a search goes into it, and S and G are
+        // sparse.
+        let mut k = *stiffness;
+        self.stiffness_for_spins(&mut k, local, true);
+        let f = self.with_h(local);
+        let moment = self.moment(&f);
+        let balanced = f - self.g.tr_mul(&moment);
+        let mut rigid = self.of_rigid_rotation(&k);
+        let whole = self.moments(&rigid);
+        let mut levers = Matrix3::zeros();
+        for (i, x) in self.corners.iter().enumerate() {
+            let force = f.fixed_rows::<3>(6 * i);
+            levers += Matrix3::identity() * x.dot(&force) - x * force.transpose();
+        }
+        // `levers` is the product of the levers of tangent_in_frame with S, `whole` that of Sᵀ K S.
+        let inner = 0.5 * (levers + levers.transpose()) - 0.5 * (whole + whole.transpose());
+        for i in 0..4 {
+            for at in [6 * i, 6 * i + 3] {
+                let mut part = skew(&balanced.fixed_rows::<3>(at).into());
+                if at == 6 * i {
+                    part += skew(&f.fixed_rows::<3>(at).into());
+                }
+                let mut rows = rigid.fixed_rows_mut::<3>(at);
+                rows += 0.5 * part;
+            }
+        }
+        let z = -rigid - 0.5 * self.g.tr_mul(&inner);
+        // A column of G has one entry for a displacement in the plane, two for one across it, none for a rotation.
+        let mut products = SMatrix::<f64, 24, 12>::zeros();
+        for i in 0..4 {
+            for (d, rows) in [(0, 2..3), (1, 2..3), (2, 0..2)] {
+                let mut product = products.column_mut(3 * i + d);
+                rows.for_each(|row| product.axpy(self.g[(row, 6 * i + d)], &z.column(row), 1.0));
+            }
+        }
+        add_with_transpose(&mut k, &products, |c| 6 * (c / 3) + c % 3);
+        let t = self.axes.transpose();
+        for (i, j) in (0..8).flat_map(|i| (0..=i).map(move |j| (3 * i, 3 * j))) {
+            let block = t * k.fixed_view::<3, 3>(i, j) * self.axes;
+            k.fixed_view_mut::<3, 3>(i, j).copy_from(&block);
+            if i > j {
+                k.fixed_view_mut::<3, 3>(j, i).copy_from(&block.transpose());
+            }
+        }
+        k
     }
 
     /// The derivative of [`force`](Self::force) with respect to spatial displacements and spins:
@@ -113,20 +157,7 @@ impl Motion {
     /// `Pᵀ (Hᵀ K H + L) P - F_nm G - Gᵀ F_nᵀ P`, with `P = I - S G`.
     fn tangent_in_frame(&self, stiffness: &Matrix24, local: &Vector24) -> Matrix24 {
         let mut k = *stiffness;
-        for i in 0..4 {
-            let at = 6 * i + 3;
-            let columns = k.fixed_columns::<3>(at) * self.h[i];
-            k.fixed_columns_mut::<3>(at).copy_from(&columns);
-        }
-        for i in 0..4 {
-            let at = 6 * i + 3;
-            let rows = self.h[i].transpose() * k.fixed_rows::<3>(at);
-            k.fixed_rows_mut::<3>(at).copy_from(&rows);
-            let theta = self.deformation.fixed_rows::<3>(at).into();
-            let change = transpose_change(&theta, &local.fixed_rows::<3>(at).into()) * self.h[i];
-            let mut block = k.fixed_view_mut::<3, 3>(at, at);
-            block += change;
-        }
+        self.stiffness_for_spins(&mut k, local, false);
         let (s, f) = (self.s(), self.with_h(local));
         let balanced = f - self.g.transpose() * (s.transpose() * f);
         let mut turned = Matrix24x3::zeros();
@@ -141,6 +172,59 @@ impl Motion {
         let left = levers - s.transpose() * k;
         let left = left - (left * s) * self.g;
         k - (k * s + turned) * self.g + self.g.transpose() * left
+    }
+
+    /// `Hᵀ K H + L`, or with the symmetric part of `L`, in the place of `K`.
+    fn stiffness_for_spins(&self, k: &mut Matrix24, local: &Vector24, symmetric: bool) {
+        for i in 0..4 {
+            let at = 6 * i + 3;
+            let columns = k.fixed_columns::<3>(at) * self.h[i];
+            k.fixed_columns_mut::<3>(at).copy_from(&columns);
+        }
+        for (i, h) in self.h.iter().enumerate() {
+            let (at, h) = (6 * i + 3, h.transpose());
+            for b in 0..8 {
+                let mut block = k.fixed_view_mut::<3, 3>(at, 3 * b);
+                let rows = h * block.clone_owned();
+                block.copy_from(&rows);
+            }
+            let theta = self.deformation.fixed_rows::<3>(at).into();
+            let change = transpose_change(&theta, &local.fixed_rows::<3>(at).into()) * self.h[i];
+            let mut block = k.fixed_view_mut::<3, 3>(at, at);
+            block += if symmetric { 0.5 * (change + change.transpose()) } else { change };
+        }
+    }
+
+    /// `K S`.
+    fn of_rigid_rotation(&self, k: &Matrix24) -> Matrix24x3 {
+        let mut product = Matrix24x3::zeros();
+        for (i, x) in self.corners.iter().enumerate() {
+            for c in 0..3 {
+                let (next, last) = ((c + 1) % 3, (c + 2) % 3);
+                let mut column = product.column_mut(c);
+                column += k.column(6 * i + 3 + c);
+                // e_c × x, on the displacements.
+                column.axpy(-x[last], &k.column(6 * i + next), 1.0);
+                column.axpy(x[next], &k.column(6 * i + last), 1.0);
+            }
+        }
+        product
+    }
+
+    /// `Sᵀ f`: the moment of local forces about the origin of the frame.
+    fn moment(&self, f: &Vector24) -> Vector3<f64> {
+        let mut moment = Vector3::zeros();
+        for (i, x) in self.corners.iter().enumerate() {
+            let (force, own) = (f.fixed_rows::<3>(6 * i), f.fixed_rows::<3>(6 * i + 3));
+            moment += x.cross(&force) + own;
+        }
+        moment
+    }
+
+    /// [`moment`](Self::moment) of each column.
+    fn moments(&self, forces: &Matrix24x3) -> Matrix3<f64> {
+        let [a, b, c] = [0, 1, 2].map(|column| self.moment(&forces.column(column).into()));
+        Matrix3::from_columns(&[a, b, c])
     }
 
     /// Derivative of `Gᵀ m` with respect to the corners in the frame.
@@ -285,4 +369,38 @@ fn transpose_change(theta: &Vector3<f64>, m: &Vector3<f64>) -> Matrix3<f64> {
     let s = skew(theta);
     let change = Matrix3::identity() * theta.dot(m) + theta * m.transpose() - 2.0 * m * theta.transpose();
     eta * change + mu * (s * s * m) * theta.transpose() - 0.5 * skew(m)
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64Mcg;
+
+    use super::*;
+
+    /// The tangent that is used takes every shortcut; the formula takes none.
+    #[test]
+    fn the_tangent_is_the_symmetric_part_of_the_formula() {
+        let mut random = Pcg64Mcg::seed_from_u64(7);
+        let mut number = |_: usize, _: usize| random.random_range(-1.0..1.0);
+        for size in [0.0, 0.1, 0.8] {
+            let at = [[0.0, 0.0], [2.0, 0.3], [2.2, 1.4], [-0.2, 1.1]];
+            let corner = |i: usize, z: f64| Point3::new(at[i][0], at[i][1], z);
+            let rest = Frame::of(&[0, 1, 2, 3].map(|i| corner(i, 0.0)));
+            let x = [0, 1, 2, 3].map(|i| corner(i, size * number(0, 0)));
+            let turn = [0, 1, 2, 3].map(|_| Vector3::from_fn(&mut number) * size);
+            let motion = Motion::of(&Reference::of(&rest), &x, &turn.map(UnitQuaternion::from_scaled_axis));
+            let any = Matrix24::from_fn(&mut number);
+            let (stiffness, local) = (any + any.transpose(), Vector24::from_fn(&mut number));
+            let formula = motion.tangent_in_frame(&stiffness, &local);
+            let formula = motion.matrix_to_global(&(0.5 * (formula + formula.transpose())));
+            assert_relative_eq!(
+                motion.tangent(&stiffness, &local),
+                formula,
+                max_relative = 1e-12,
+                epsilon = 1e-12
+            );
+        }
+    }
 }

@@ -18,6 +18,7 @@ mod prepared;
 mod quad4;
 mod shear;
 mod smoothing;
+mod transposed;
 mod yarns;
 
 #[cfg(test)]

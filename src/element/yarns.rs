@@ -145,14 +145,20 @@ impl Yarns {
     /// Adds the stiffness of `tangent` on the gradient (N/m) to a local stiffness.
     pub fn add(&self, tangent: &Matrix4<f64>, k: &mut Matrix24) {
         let part: SMatrix<f64, 8, 8> = self.gradient.tr_mul(&(tangent * self.gradient)) * self.area;
-        let mut plane = Matrix24::zeros();
-        let to = if self.links.is_some() { &mut plane } else { &mut *k };
-        for (i, j) in (0..8).flat_map(|j| (0..8).map(move |i| (i, j))) {
-            to[(STRETCHING[i], STRETCHING[j])] += part[(i, j)];
+        match &self.links {
+            None => add_stretching(&part, k),
+            Some(links) => {
+                let mut plane = Matrix24::zeros();
+                add_stretching(&part, &mut plane);
+                *k += links.tr_mul(&(plane * **links));
+            }
         }
-        if let Some(links) = &self.links {
-            *k += links.tr_mul(&(plane * **links));
-        }
+    }
+}
+
+fn add_stretching(part: &SMatrix<f64, 8, 8>, k: &mut Matrix24) {
+    for (i, j) in (0..8).flat_map(|j| (0..8).map(move |i| (i, j))) {
+        k[(STRETCHING[i], STRETCHING[j])] += part[(i, j)];
     }
 }
 

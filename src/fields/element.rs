@@ -5,7 +5,9 @@ use nalgebra::{DMatrix, Matrix3, Point3, SMatrix, Vector3};
 
 use super::Resultants;
 use crate::element::corotational::{Motion, Reference};
-use crate::element::{Arcs, Cells, Frame, Matrix24, Vector24, membrane_and_plate, strain_matrices};
+use crate::element::{
+    Arcs, Cells, Frame, Matrix24, Vector24, YarnStrain, Yarns, membrane_and_plate, strain_matrices,
+};
 use crate::law;
 use crate::mesh::is_translated;
 use crate::model::{Model, ModelError};
@@ -40,8 +42,11 @@ struct Operator {
     membrane: SMatrix<f64, { 3 * PLACES }, 12>,
     moment: SMatrix<f64, { 3 * PLACES }, 12>,
     shear: SMatrix<f64, { 2 * PLACES }, 12>,
-    /// Strains of a bent element, and the membrane stiffness that they meet; `None` where chords are measured.
-    arcs: Option<(Arcs, Matrix3<f64>)>,
+    /// What the mean strain of large motions has above the linear one: stretches of the yarns and their angle, and the
+    /// arcs of a bent element where chords are not measured; and the membrane stiffness that it meets.
+    yarns: Yarns,
+    arcs: Option<Arcs>,
+    d_m: Matrix3<f64>,
     /// What the value of each cell counts at each place.
     weights: Vec<[f64; PLACES]>,
 }
@@ -91,8 +96,9 @@ impl Operator {
         }
         let to_local = Some(element.to_local()).filter(|t| *t != Matrix24::identity());
         // In the frame that the element is moved in, whatever the axes here.
-        let arcs = model.element(quad, false)?.arcs().map(|arcs| (arcs, d_m));
-        Ok(Self { corners: model.mesh.corners(quad), to_local, membrane, moment, shear, arcs, weights })
+        let moved = model.element(quad, false)?;
+        let (yarns, arcs, corners) = (moved.yarns(), moved.arcs(), model.mesh.corners(quad));
+        Ok(Self { corners, to_local, membrane, moment, shear, yarns, arcs, d_m, weights })
     }
 
     /// Adds the stresses that the cells of an element remember.
@@ -107,10 +113,15 @@ impl Operator {
         }
     }
 
+    /// The membrane forces that the linear strain of a motion in its frame lacks (N/m).
+    fn above_linear(&self, local: &Vector24) -> Vector3<f64> {
+        let yarns = YarnStrain::of(&self.yarns.gradient(local)).excess;
+        let arcs = self.arcs.as_ref().map_or_else(Vector3::zeros, |arcs| arcs.bent(local).strain);
+        self.d_m * (yarns + arcs)
+    }
+
     fn apply(&self, moved: &Displacement) -> [Resultants; PLACES] {
-        // Arcs know the corners themselves, not what rigid links bring to the plane.
-        let arcs = moved.in_frame.as_ref().zip(self.arcs.as_ref());
-        let added = arcs.map_or_else(Vector3::zeros, |(local, (arcs, d_m))| d_m * arcs.bent(local).strain);
+        let added = moved.in_frame.as_ref().map_or_else(Vector3::zeros, |local| self.above_linear(local));
         let u = &moved.global;
         let (membrane, plate) = membrane_and_plate(&self.to_local.map_or(*u, |t| t * u));
         let (n, m, q) = (self.membrane * membrane, self.moment * plate, self.shear * plate);

@@ -12,11 +12,12 @@ mod error;
 mod facts;
 mod toml_file;
 
+use std::borrow::Cow;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use serde::ser::SerializeStruct;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize, Serializer};
 
 pub use error::{Coded, FailureKind};
@@ -30,7 +31,7 @@ pub(crate) use toml_file::{Node, ReadLater, TomlError, TomlFile, position};
 
 /// Where in an input something was found. Lines and columns count from 1; a column counts
 /// characters of the decoded line. 0 means "not applicable".
-#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 pub struct Place {
     /// The file, as it was named to us.
     #[serde(serialize_with = "path_as_text")]
@@ -127,12 +128,32 @@ impl fmt::Display for Finding {
 
 impl Serialize for Finding {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut document = serializer.serialize_struct("Finding", 4)?;
-        document.serialize_field("code", self.code())?;
-        document.serialize_field("message", &self.message())?;
-        document.serialize_field("fields", &self.fields())?;
-        document.serialize_field("place", &self.place)?;
-        document.end()
+        let (code, message, fields) = (self.code(), self.message(), self.fields());
+        Stated { code, message, fields, place: self.place.as_ref() }.serialize(serializer)
+    }
+}
+
+/// What is written of a finding.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Finding")]
+struct Stated<'f> {
+    /// Code for `kesf explain`.
+    code: &'static str,
+    /// One sentence.
+    message: String,
+    /// What the sentence is made of, by name; numbers are SI.
+    fields: Fields,
+    /// Where it was found.
+    place: Option<&'f Place>,
+}
+
+impl JsonSchema for Finding {
+    fn schema_name() -> Cow<'static, str> {
+        Stated::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        Stated::json_schema(generator)
     }
 }
 
@@ -151,7 +172,7 @@ impl From<Written> for Finding {
 }
 
 /// The text behind a code, for `kesf explain`.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Explanation {
     /// The code, e.g. `R004`.

@@ -5,7 +5,9 @@
 use super::Direction;
 use super::dialect::{BranchColumn, Role};
 use super::label::SPECIMENS;
+use super::unit_text::is_scaled;
 use super::vocabulary::{HEADING, Vocabulary};
+use super::words::normalised;
 
 /// What the name of a column says.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -14,12 +16,14 @@ pub(super) struct ColumnName {
     pub direction: Option<Direction>,
     pub specimen: Option<usize>,
     pub branch: Option<BranchColumn>,
+    /// The words that stand in it beside these, those of the role with them.
+    pub words: String,
 }
 
 impl ColumnName {
     /// Reads a name without its unit.
     pub fn of(name: &str, vocabulary: Vocabulary<'_>) -> Self {
-        if name.chars().count() > HEADING {
+        if name.chars().count() > HEADING || is_scaled(name) {
             return Self::default();
         }
         if let Some(role) = vocabulary.role_exactly(name) {
@@ -41,6 +45,9 @@ impl ColumnName {
             }
             i += 1;
         }
+        // A letter numbers specimens as well: `moment A`, `moment B`.
+        let words: Vec<&str> = rest.iter().copied().filter(|w| w.chars().nth(1).is_some()).collect();
+        found.words = normalised(&words.join(" "));
         let rest = rest.join(" ");
         found.role = vocabulary.role(&rest).or_else(|| vocabulary.role(name));
         found
@@ -77,18 +84,11 @@ mod tests {
     fn names_with_everything_in_them() {
         let of = |t| ColumnName::of(t, Vocabulary::new(&[]));
         let warp = Some(Direction::Warp);
-        assert_eq!(
-            of("Warp-1 K"),
-            ColumnName { role: Some(Role::Curvature), direction: warp, specimen: Some(1), branch: None }
-        );
-        assert_eq!(
-            of("K_warp"),
-            ColumnName { role: Some(Role::Curvature), direction: warp, specimen: None, branch: None }
-        );
-        assert_eq!(
-            of("曲率 経 2"),
-            ColumnName { role: Some(Role::Curvature), direction: warp, specimen: Some(2), branch: None }
-        );
+        for (text, specimen) in [("Warp-1 K", Some(1)), ("K_warp", None), ("曲率 経 2", Some(2))] {
+            let found = of(text);
+            assert_eq!((found.role, found.direction), (Some(Role::Curvature), warp), "{text}");
+            assert_eq!((found.specimen, found.branch), (specimen, None), "{text}");
+        }
         assert_eq!(of("moment 2").specimen, Some(2));
         let unload = of("Tensile force unloading");
         assert_eq!((unload.role, unload.branch), (Some(Role::Force), Some(BranchColumn::Unloading)));

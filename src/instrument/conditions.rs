@@ -1,11 +1,13 @@
 //! Test conditions: what a file states, else what its owner states, else the standard set.
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::dialect::Key;
-use super::{Conditions, Test};
-use crate::quantity::{Angle, Curvature, Force, Length, LineForce, Pressure};
+use super::{Conditions, Direction, Measurement, Source, Test};
+use crate::quantity::{Angle, Curvature, Curve, Force, Length, LineForce, Pressure};
 
 /// Conditions that files leave out; the `[conditions]` of fabric.toml and of dialects.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
@@ -112,6 +114,23 @@ pub fn standard_conditions(test: Test) -> Conditions {
         maximum: spec.maximum,
         pretension: spec.pretension,
         contact: spec.contact,
+    }
+}
+
+impl Measurement {
+    /// A record of no file (SI, the axes those of the test), taken under the standard conditions of its test.
+    pub fn of_curve(test: Test, direction: Option<Direction>, specimen: usize, curve: Curve) -> Self {
+        Self {
+            test,
+            sample: None,
+            direction,
+            specimen,
+            conditions: standard_conditions(test),
+            curve,
+            lines: Vec::new(),
+            source: Source::default(),
+            metadata: BTreeMap::new(),
+        }
     }
 }
 

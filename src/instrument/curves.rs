@@ -10,6 +10,7 @@ use super::layout::{Context, Entry, Header, Pair};
 use super::raw::Row;
 use super::sniff::{Number, number};
 use super::told;
+use super::value::value;
 use super::words::folded;
 use super::{Conditions, Direction, Measurement, Shape, Source, Test};
 use crate::finding::{Finding, Place, ReadFact};
@@ -222,7 +223,7 @@ fn conditions(
     let mut c = context.conditions.over_standard(test);
     if let Some((width, gauge)) = size(header, context) {
         c.width = width;
-        c.gauge = if test.spec().gauge == 0.0 { c.gauge } else { gauge };
+        c.gauge = gauge.filter(|_| test.spec().gauge != 0.0).unwrap_or(c.gauge);
     }
     let value = |key: Key, name: &str| quantity_of::<Length>(header, key, name, "mm", context);
     if let Some(width) = value(Key::Width, "width")? {
@@ -271,8 +272,9 @@ fn conditions(
     Ok(c)
 }
 
-/// Width and distance between the jaws (m) of `20 x 5 cm`: the specimen is wide and short.
-pub(super) fn size(header: &Header, context: &Context<'_>) -> Option<(f64, f64)> {
+/// Width and distance between the jaws (m) of `20 x 5 cm`: the specimen is wide and short. A square, `20 x 20 cm`, is that of
+/// the cloth that was cut, and says nothing of the jaws.
+pub(super) fn size(header: &Header, context: &Context<'_>) -> Option<(f64, Option<f64>)> {
     let entry = header.known.get(&Key::Size)?;
     let text = folded(&entry.text).replace(['×', 'X', '*'], "x");
     let (first, second) = text.split_once('x')?;
@@ -283,7 +285,8 @@ pub(super) fn size(header: &Header, context: &Context<'_>) -> Option<(f64, f64)>
     let first = mark(first.trim());
     let first = if first.ends_with(|c: char| c.is_ascii_digit()) { format!("{first} {unit}") } else { first };
     let length = |t: &str| t.parse::<Length>().ok().map(Length::si).filter(|v| *v > f64::MIN_POSITIVE);
-    Some((length(&first)?, length(&second)?))
+    let (width, gauge) = (length(&first)?, length(&second)?);
+    Some((width, (gauge != width).then_some(gauge)))
 }
 
 /// The axis that has a set maximum.
@@ -420,6 +423,9 @@ pub(super) fn finite(
         Number::Value(value) => return Ok(value),
         Number::NotFinite => Problem::NotFinite { found: cell.to_string() },
         Number::Broken | Number::Text => {
+            if let (Number::Value(grouped), None) = value(cell, context.decimal) {
+                return Ok(grouped);
+            }
             Problem::NotANumber { found: cell.to_string(), decimal: context.decimal }
         }
     };

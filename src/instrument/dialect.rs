@@ -121,8 +121,12 @@ pub enum Key {
     SensX,
     /// Areal density from a balance.
     Weight,
+    /// A number that the samples are to be multiplied by, or were: it is told, never applied.
+    Factor,
     /// Known and kept as text: date, operator, speed, side, remarks.
     Remark,
+    /// Who measured when, in what climate and which file: what differs between repeats of one state.
+    Circumstance,
 }
 
 /// What a column of a result table holds, apart from parameters.
@@ -173,6 +177,16 @@ pub enum BranchColumn {
     Unloading,
 }
 
+/// What stands beside a direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum DirectionWord {
+    /// It turns it: `across the warp`, `not warp`.
+    Across,
+    /// It adds nothing: `along the warp`, `warp yarns`.
+    Along,
+}
+
 /// The words and marks of one kind of file. A laboratory with a layout of its own writes one.
 ///
 /// Words are compared after NFKC in lower case, without accents, blanks and punctuation.
@@ -211,6 +225,9 @@ pub struct Dialect {
     /// Words of directions.
     #[serde(deserialize_with = "words")]
     pub directions: BTreeMap<Direction, Vec<String>>,
+    /// Words beside those of directions.
+    #[serde(deserialize_with = "words")]
+    pub direction_words: BTreeMap<DirectionWord, Vec<String>>,
     /// Words of tests.
     #[serde(deserialize_with = "words")]
     pub tests: BTreeMap<Test, Vec<String>>,

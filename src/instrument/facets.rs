@@ -5,7 +5,7 @@
 
 use super::dialect::{Statistic, TableColumn};
 use super::fast::{self, FastValue};
-use super::unit_text::{matching_open, split_unit, unit};
+use super::unit_text::{is_scaled, matching_open, split_unit, unit};
 use super::vocabulary::{HEADING, Vocabulary};
 use super::words::{folded, normalised};
 use super::{Direction, Parameter};
@@ -53,6 +53,10 @@ impl Facets {
                 break;
             }
             name = before;
+        }
+        if is_scaled(name) || is_colour(name) {
+            facets.unknown = true;
+            return facets;
         }
         let (stem, own) = split_unit(name);
         let is_value = |n: &str| vocabulary.parameter(n).is_some() || fast::heading(n).is_some();
@@ -209,7 +213,12 @@ impl Facets {
             return true;
         }
         // `経1`, `B2`, `No.3`.
-        let stem = word.trim_end_matches(|c: char| c.is_ascii_digit());
+        let mut stem = word.trim_end_matches(|c: char| c.is_ascii_digit());
+        // The longest symbol: `2HG51` is the first 2HG5.
+        let longer = |end: &usize| vocabulary.parameter(&word[..*end]).is_some();
+        if let Some(end) = (stem.len() + 1..word.len()).rev().find(longer) {
+            stem = &word[..end];
+        }
         let digits = &word[stem.len()..];
         let Some(n) = (if stem.is_empty() { None } else { counted(digits) }) else { return false };
         let stem = stem.trim_end_matches('.');
@@ -251,6 +260,11 @@ fn spelt_out(parts: &[&str]) -> String {
         |p: &[&str]| p.iter().map(|s| if *s == "percent" { "%" } else { s }).collect::<Vec<_>>().join("·");
     let above = if at == 0 { "1".to_string() } else { symbols(&parts[..at]) };
     if at >= parts.len() { above } else { format!("{above}/({})", symbols(&parts[at + 1..])) }
+}
+
+/// `b*` and `Δb*` of CIELAB, which would be B with a footnote otherwise.
+fn is_colour(name: &str) -> bool {
+    name.trim().trim_start_matches(['Δ', 'd']) == "b*"
 }
 
 #[cfg(test)]
@@ -308,6 +322,10 @@ mod tests {
         assert_eq!(index("B1"), (Some(Parameter::B), None, Some(1), false));
         assert_eq!(index("2HG5-1"), (Some(Parameter::Hg5), None, Some(1), false));
         assert_eq!(index("2HB_2"), (Some(Parameter::Hb), None, Some(2), false));
+        assert_eq!(index("2HG51"), (Some(Parameter::Hg5), None, Some(1), false));
+        assert_eq!(index("T50"), (Some(Parameter::Tm), None, None, false));
+        assert!(of("b*").unknown && of("Δb* (D65)").unknown && of("B*").parameter == Some(Parameter::B));
+        assert!(of("B×10 (gf·cm²/cm)").unknown && !of("B (10^-4 N·m)").unknown);
         assert_eq!(index("Warp-3"), (None, Some(Direction::Warp), Some(3), false));
         assert_eq!(index("No. 3"), (None, None, Some(3), false));
         assert!(of("W-17 poplin").unknown && of("Denim A").unknown && of("course wale").unknown);

@@ -2,12 +2,14 @@
 //!
 //! FAST-2 states the bending length C, FAST-3 the bias extension EB5 at 5 gf/cm. From them come the
 //! two constants that KES states too: B = W c³ · 9.81e-6 (W in g/m², c in mm, B in µN·m) and
-//! G = 123/EB5 (EB5 in %, G in N/m), the formulae of the FAST manual. Extensions at 5, 20 and
-//! 100 gf/cm and thickness at 2 and 100 gf/cm² are taken at other loads than EMT, T0 and Tm.
+//! G = 123/EB5 (EB5 in %, G in N/m), the formulae of the FAST manual. Extensions at 5 and 20 gf/cm give the
+//! tensile stiffness between the two loads, 14.7 N/m over E20 - E5. Extension at 100 gf/cm and thickness at 2 and
+//! 100 gf/cm² are taken at other loads than EMT, T0 and Tm.
 
 use super::unit_text::split_unit;
 use super::words::{folded, normalised};
 use super::{Direction, Parameter};
+use crate::quantity::STANDARD_GRAVITY;
 
 /// A FAST value from which a KES parameter follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +18,10 @@ pub(super) enum FastValue {
     BendingLength,
     /// EB5, the bias extension at 5 gf/cm.
     Eb5,
+    /// E5, the extension at 5 gf/cm.
+    E5,
+    /// E20, the extension at 20 gf/cm.
+    E20,
 }
 
 impl FastValue {
@@ -23,6 +29,8 @@ impl FastValue {
         match self {
             Self::BendingLength => "C",
             Self::Eb5 => "EB5",
+            Self::E5 => "E5",
+            Self::E20 => "E20",
         }
     }
 
@@ -30,15 +38,26 @@ impl FastValue {
     pub fn unit(self) -> &'static str {
         match self {
             Self::BendingLength => "mm",
-            Self::Eb5 => "%",
+            Self::Eb5 | Self::E5 | Self::E20 => "%",
         }
     }
 
-    /// The parameter that follows from it.
-    pub fn parameter(self) -> Parameter {
+    /// The parameter that follows from it; none of an extension along a yarn.
+    pub fn parameter(self) -> Option<Parameter> {
         match self {
-            Self::BendingLength => Parameter::B,
-            Self::Eb5 => Parameter::G,
+            Self::BendingLength => Some(Parameter::B),
+            Self::Eb5 => Some(Parameter::G),
+            Self::E5 | Self::E20 => None,
+        }
+    }
+
+    /// The load (N/m) of an extension along a yarn.
+    pub fn load(self) -> Option<f64> {
+        let gf_per_cm = STANDARD_GRAVITY * 0.1;
+        match self {
+            Self::E5 => Some(5.0 * gf_per_cm),
+            Self::E20 => Some(20.0 * gf_per_cm),
+            Self::BendingLength | Self::Eb5 => None,
         }
     }
 
@@ -48,6 +67,7 @@ impl FastValue {
             // 9.81 m/s² as printed there.
             Self::BendingLength => areal_density.map(|w| w * 9.81 * value.powi(3)),
             Self::Eb5 => (value > 0.0).then_some(1.23 / value),
+            Self::E5 | Self::E20 => None,
         }
     }
 }
@@ -61,6 +81,8 @@ pub(super) fn heading(cell: &str) -> Option<(FastValue, Option<Direction>, Optio
         "c" if symbol.trim().eq_ignore_ascii_case("c") => FastValue::BendingLength,
         "bendinglength" => FastValue::BendingLength,
         "eb5" => FastValue::Eb5,
+        "e5" => FastValue::E5,
+        "e20" => FastValue::E20,
         _ => return None,
     };
     Some((value, direction, unit))

@@ -3,12 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use super::assembled::{AboutGroup, Group, fabrics};
 use super::error::{Problem, ReadError};
 use super::fabric_file::{DRAPE_FILE, read_dialect, read_fabric_file};
 use super::file_name::{ABOUT, EXTENSIONS};
 use super::own_results::{JOURNAL, MANIFEST, OwnResults};
-use super::read::{FileContent, ReadSettings, read};
-use super::{FabricInfo, FabricInput, Inference, ResultValue};
+use super::read::{ReadSettings, read};
+use super::{FabricInfo, FabricInput};
 use crate::finding::{Finding, Place, ReadFact, UsageFact};
 use crate::platform::{self, files};
 
@@ -28,23 +29,6 @@ const FEW: usize = 16;
 
 /// Files beside the measurements of a fabric that are read with them.
 const BESIDE: [&str; 3] = ["fabric.toml", "dialect.toml", DRAPE_FILE];
-
-/// What is to be read as one fabric.
-struct Group {
-    path: PathBuf,
-    /// A folder's name; `None` for a single file, which names itself.
-    name: Option<String>,
-    files: Vec<PathBuf>,
-    /// Whether the files were named one by one.
-    named: bool,
-}
-
-/// What is known of a group before its files are read. A library of thousands of groups does not keep it.
-struct AboutGroup {
-    info: FabricInfo,
-    settings: ReadSettings,
-    findings: Vec<Finding>,
-}
 
 /// The files of a batch, found and not yet read.
 ///
@@ -440,118 +424,4 @@ fn about(folder: &Path, settings: &ReadSettings) -> Result<AboutGroup, ReadError
     let (info, conditions, findings) = read_fabric_file(folder)?;
     settings.conditions = conditions.or(&settings.conditions);
     Ok(AboutGroup { info, settings, findings })
-}
-
-/// The fabrics of a group: one, or as many as its result tables name.
-fn fabrics(group: &Group, about: &AboutGroup, contents: Vec<FileContent>) -> Vec<FabricInput> {
-    if contents.is_empty() && group.named {
-        return Vec::new(); // the files failed, and the failures say so
-    }
-    let names: BTreeSet<&String> =
-        contents.iter().flat_map(|c| c.results.iter().filter_map(|(name, _)| name.as_ref())).collect();
-    let sample = contents.iter().flat_map(|c| &c.measurements).find_map(|m| m.sample.clone());
-    let of_fab = contents.iter().find_map(|c| c.fab.as_ref()?.name.clone());
-    // One that is left out makes a table of several as well.
-    let left_out = contents.iter().flat_map(|c| c.failures.iter().filter_map(|e| e.about.fabric.as_ref()));
-    let several = names.iter().copied().chain(left_out).collect::<BTreeSet<_>>().len() > 1;
-    let only = if names.len() == 1 { names.first().map(|n| (*n).clone()) } else { None };
-    let stem = || group.path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    let name = group.name.clone().or(sample).or(only).or(of_fab).unwrap_or_else(stem);
-    let mut out: BTreeMap<String, FabricInput> = BTreeMap::new();
-    if !several {
-        out.insert(name.clone(), blank(&name, group, about));
-    }
-    for content in contents {
-        // Values without a name, and the values of a folder's only fabric, belong to the folder.
-        let mut of: BTreeMap<String, Vec<ResultValue>> = BTreeMap::new();
-        for (fabric, value) in content.results {
-            of.entry(fabric.filter(|_| several).unwrap_or_else(|| name.clone())).or_default().push(value);
-        }
-        if !content.measurements.is_empty() || content.fab.is_some() {
-            of.entry(name.clone()).or_default();
-        }
-        let decisions = content.inference;
-        let mut inference = Some(Inference { path: content.source.path.clone(), decisions });
-        // A finding of a table goes to the fabric of its cell, and one of the file to the first.
-        let (mut findings, first) = (content.findings, of.keys().next().cloned());
-        for (fabric, results) in of {
-            let input = out.entry(fabric.clone()).or_insert_with(|| blank(&fabric, group, about));
-            let of_cell = |f: &Finding| results.iter().any(|r| f.place.as_ref() == Some(&r.place));
-            let (own, others) = findings.into_iter().partition(of_cell);
-            findings = others;
-            input.findings.extend::<Vec<_>>(own);
-            input.results.extend(results);
-            input.sources.push(content.source.clone());
-            input.inference.extend(inference.take());
-        }
-        if let Some(input) = first.and_then(|name| out.get_mut(&name)) {
-            input.findings.extend(findings);
-        }
-        if let Some(input) = out.get_mut(&name) {
-            input.measurements.extend(content.measurements);
-            input.fab.extend(content.fab);
-        }
-    }
-    // What is said of the table as a whole is said once.
-    let once = |(i, mut fabric): (usize, FabricInput)| {
-        fabric.findings.retain(|f| i == 0 || !about.findings.contains(f));
-        finished(fabric)
-    };
-    out.into_values().enumerate().map(once).collect()
-}
-
-fn blank(name: &str, group: &Group, about: &AboutGroup) -> FabricInput {
-    let mut info = about.info.clone();
-    if group.name.as_deref() != Some(name) {
-        // One of several in a table: the title is the folder's, not its own.
-        info.title.clear();
-    }
-    FabricInput {
-        name: name.to_string(),
-        path: group.path.clone(),
-        info,
-        findings: about.findings.clone(),
-        ..FabricInput::default()
-    }
-}
-
-/// Orders the measurements, numbers the specimens, and says when several samples were mixed.
-fn finished(mut fabric: FabricInput) -> FabricInput {
-    if fabric.info.title.is_empty() {
-        fabric.info.title.clone_from(&fabric.name);
-    }
-    let samples: BTreeSet<&str> = fabric.measurements.iter().filter_map(|m| m.sample.as_deref()).collect();
-    if samples.len() > 1 {
-        let fact = ReadFact::SeveralSamples { samples: samples.into_iter().map(str::to_string).collect() };
-        fabric.findings.push(Finding::new(fact).at(Place::file(&fabric.path)));
-    }
-    // The areal density stands in the header of every file; once is enough.
-    let mut known: Vec<ResultValue> = Vec::new();
-    fabric.results.retain(|value| {
-        let same = |k: &ResultValue| {
-            (k.parameter, k.direction, k.mean, k.sd, k.n)
-                == (value.parameter, value.direction, value.mean, value.sd, value.n)
-        };
-        let new = !known.iter().any(same);
-        known.extend(new.then(|| value.clone()));
-        new
-    });
-    renumber(&mut fabric);
-    fabric.measurements.sort_by_key(|m| (m.test, m.direction, m.specimen));
-    fabric
-}
-
-/// Gives specimens of different files that carry the same number numbers of their own.
-fn renumber(fabric: &mut FabricInput) {
-    let mut seen: BTreeMap<_, BTreeSet<usize>> = BTreeMap::new();
-    for m in &mut fabric.measurements {
-        let taken = seen.entry((m.test, m.direction)).or_default();
-        if taken.contains(&m.specimen) {
-            let next = taken.last().map_or(1, |n| n + 1);
-            let fact = ReadFact::Renumbered { specimen: m.specimen, number: next };
-            fabric.findings.push(Finding::new(fact).at(Place::file(&m.source.path)));
-            m.specimen = next;
-        }
-        taken.insert(m.specimen);
-    }
 }

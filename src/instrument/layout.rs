@@ -13,7 +13,7 @@ use super::error::{Problem, ReadError};
 use super::label::Label;
 use super::pairs;
 use super::raw::Row;
-use super::shape::{self, Region};
+use super::shape::{self, Region, has_numbers, is_numeric};
 use super::sniff::{Number, number};
 use super::suggest;
 use super::unit_text::{is_volt, split_unit, unit};
@@ -105,6 +105,9 @@ pub(super) fn blocks<'t>(
     let mut scanner = Scanner { rows, context, at: 0, header, lists, labels: Vec::new(), findings };
     let mut blocks = Vec::new();
     let mut words: Vec<String> = Vec::new();
+    // The first row of numbers under headings that nobody knows; a remark may look like one, so that it is an error only
+    // where nothing else was read.
+    let (mut unread, mut behind) = (None, Vec::new());
     while let Some(row) = rows.get(scanner.at) {
         if row.is_blank() {
             scanner.at += 1;
@@ -119,37 +122,42 @@ pub(super) fn blocks<'t>(
         } else if scanner.labels(row) {
             scanner.at += 1;
         } else if is_numeric(row, context.decimal) {
-            return Err(scanner.unknown_layout(row, &words));
+            return Err(unknown_layout(context, row, &words));
         } else {
+            if words.len() > 1 && has_numbers(row, context.decimal) {
+                unread.get_or_insert_with(|| unknown_layout(context, row, &words));
+            }
+            if let Some(Block::Table { region, .. }) = blocks.last()
+                && shape::continues(row, region, context)
+            {
+                behind.push(row.line);
+            }
             words = row.filled().map(|(_, c)| folded(&c.text).into_owned()).collect();
             scanner.header_line(row);
             scanner.at += 1;
         }
     }
     if blocks.is_empty() {
-        return Err(context.error(0, 0, Problem::Empty));
+        return Err(unread.unwrap_or_else(|| context.error(0, 0, Problem::Empty)));
+    }
+    if let Some(line) = behind.first() {
+        let place = Place::at(context.path, *line, 0);
+        scanner.findings.push(Finding::new(ReadFact::RowsNotRead { lines: behind }).at(place));
     }
     Ok((blocks, scanner.findings))
 }
 
-fn is_numeric(row: &Row<'_>, decimal: char) -> bool {
-    row.filled().count() > 1 && row.filled().all(|(_, c)| number(&c.text, decimal) != Number::Text)
-}
-
-/// Columns beside the position of a sweep, where nothing of another test is among them.
-fn along_sweep(mut columns: Vec<Column>) -> Vec<Column> {
-    let alone =
-        |c: &Column| c.role.in_sweep().is_of_sweep() || matches!(c.role, Role::Position | Role::Ignored);
-    if columns.iter().any(|c| c.role == Role::Position) && columns.iter().all(alone) {
-        columns.iter_mut().for_each(|c| c.role = c.role.in_sweep());
-    }
-    columns
+fn unknown_layout(context: &Context<'_>, row: &Row<'_>, words: &[String]) -> ReadError {
+    let (problem, inference) = suggest::unknown_words(words, context.vocabulary);
+    let mut error = context.error(row.line, row.column(0), problem);
+    error.about.inference = inference;
+    error
 }
 
 pub(super) struct Scanner<'t, 'a> {
-    rows: &'t [Row<'t>],
+    pub(super) rows: &'t [Row<'t>],
     pub(super) context: &'a Context<'a>,
-    at: usize,
+    pub(super) at: usize,
     pub(super) header: Header,
     /// Header lines with several values, one for each column pair of the next headings.
     pub(super) lists: Vec<(Key, Vec<Entry>)>,
@@ -168,7 +176,7 @@ impl<'t> Scanner<'t, '_> {
             let role = says.role?;
             Some(Column { index, role, name, unit, line: row.line, column: cell.column, says })
         };
-        let columns: Vec<Column> = along_sweep(row.filled().filter_map(column).collect());
+        let columns: Vec<Column> = pairs::along_sweep(row.filled().filter_map(column).collect());
         let sweep = columns.iter().any(|c| c.role == Role::Position && c.unit.is_some());
         let abscissa = columns.iter().any(|c| c.role.is_abscissa());
         let ordinate = columns.iter().any(|c| !c.role.is_abscissa() && c.role != Role::Ignored);
@@ -225,6 +233,7 @@ impl<'t> Scanner<'t, '_> {
         let mut pairs = self.pairs(columns)?;
         self.distribute(&mut pairs)?;
         self.leave_out_statistics(&mut pairs);
+        self.note_words(&pairs);
         Ok(Block::Curves { pairs, rows })
     }
 
@@ -333,7 +342,7 @@ impl<'t> Scanner<'t, '_> {
         let is_error = text.starts_with(char::is_alphabetic)
             && (text.ends_with(['!', '?'])
                 || !row.filled().skip(1).filter(|(i, _)| used(*i)).all(|(_, c)| is_word(&c.text)));
-        !is_error && key.is_none_or(|k| k == Key::Remark)
+        !is_error && key.is_none_or(|k| matches!(k, Key::Remark | Key::Circumstance))
     }
 
     fn ends_data(&self, row: &Row<'_>, columns: &[Column], after_blank: bool) -> bool {
@@ -382,7 +391,21 @@ impl<'t> Scanner<'t, '_> {
             && labels.first().is_some_and(|(_, l, _)| l.is_plain())
             && labels.iter().all(|(_, l, e)| l.is_plain() || is_mean(e));
         let below = || self.rows[self.at + 1..].iter().filter(|r| !r.is_blank()).take(2);
-        if labels.len() < 2 || !complete || !below().any(|r| self.headings(r).is_some()) {
+        if labels.len() < 2 || !below().any(|r| self.headings(r).is_some()) {
+            return false;
+        }
+        if !complete {
+            let names: Vec<String> = labels.iter().map(|(_, _, e)| e.text.clone()).collect();
+            let key = |e: &Entry| self.context.vocabulary.key(&split_unit(&e.text).0);
+            let is_name = |(_, l, e): &(usize, Label, Entry)| {
+                (l.sample.is_some() || l.unknown) && key(e).is_none_or(|k| k == Key::Remark)
+            };
+            // `X1,,X2,`: names over blocks of columns, a blank beside each.
+            let over_blocks = labels.windows(2).all(|pair| pair[1].0 > pair[0].0 + 1);
+            if over_blocks && labels.iter().all(is_name) {
+                let place = Place::at(self.context.path, row.line, 0);
+                self.findings.push(Finding::new(ReadFact::ColumnsAsSpecimens { names }).at(place));
+            }
             return false;
         }
         self.labels.push(labels);
@@ -399,7 +422,7 @@ impl<'t> Scanner<'t, '_> {
         // `試料番号,1,試料番号,2`: one value for each column block.
         if let [first, rest @ ..] = &keys[..]
             && !rest.is_empty()
-            && *first != Key::Remark
+            && !matches!(first, Key::Remark | Key::Circumstance)
             && filled.len() == 2 * keys.len()
             && rest.iter().all(|k| k == first)
         {
@@ -453,29 +476,24 @@ impl<'t> Scanner<'t, '_> {
             (Some(Key::Sens), [(value, _)]) if is_direction(value) => Some(Key::Direction),
             (key, _) => key,
         };
+        self.note_factor(key, &plain, &values, line);
         match (key, values.len()) {
-            (Some(Key::Remark) | None, _) => {
+            (Some(Key::Remark | Key::Circumstance | Key::Factor) | None, _) => {
                 let text: Vec<String> = values.into_iter().map(|(t, _)| t).collect();
                 self.header.other.insert(plain, text.join(", "));
             }
             (Some(_), 0) => {}
             (Some(key), 1) => {
-                self.header.known.extend(values.into_iter().map(|v| (key, entry(v))));
+                for value in values {
+                    let entry = entry(value);
+                    self.note_contradiction(key, &entry);
+                    if key == Key::Direction {
+                        self.note_more_than_direction(&entry);
+                    }
+                    self.header.known.insert(key, entry);
+                }
             }
             (Some(key), _) => self.lists.push((key, values.into_iter().map(entry).collect())),
         }
-    }
-
-    fn unknown_layout(&self, row: &Row<'_>, words: &[String]) -> ReadError {
-        let closest = self.context.vocabulary.closest(words);
-        let found = match closest.first().filter(|_| !words.is_empty()) {
-            None => "numbers stand without a heading row".to_string(),
-            Some((name, unknown)) => {
-                format!("dialect {name:?} comes closest, but it does not know {}", unknown.join(", "))
-            }
-        };
-        let mut error = self.context.error(row.line, row.column(0), Problem::UnknownLayout { found });
-        error.about.inference = suggest::layout(words, &closest);
-        error
     }
 }

@@ -1,7 +1,9 @@
-//! What a workbook shows of its cells and the cells' values do not say: hidden rows and columns, numbers in per cent.
+//! What a workbook shows of its cells and the cells' values do not say: hidden rows and columns, numbers in per cent or struck
+//! out, formulas.
 //!
-//! A number in a cell that shows per cent is stored as its hundredth part; a row that somebody hid was not to count. The
-//! reader of cells tells neither, so that the XML of the sheets is looked at for these marks alone.
+//! A number in a cell that shows per cent is stored as its hundredth part; a row that somebody hid or struck out was not to
+//! count; a formula has a value only if a spreadsheet program has stored one. The reader of cells tells none of it, so that
+//! the XML of the sheets is looked at for these marks alone.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{Cursor, Read};
@@ -21,6 +23,16 @@ pub(super) struct Marks {
     pub hidden_rows: BTreeSet<u32>,
     pub hidden_columns: BTreeSet<u32>,
     pub percent: BTreeSet<(u32, u32)>,
+    pub struck_out: BTreeSet<(u32, u32)>,
+    /// Cells whose value is calculated and no text.
+    pub formulas: BTreeSet<(u32, u32)>,
+}
+
+/// Indices of the cell formats of an .xlsx that show per cent, and of those that strike out.
+#[derive(Default)]
+struct Styles {
+    percent: BTreeSet<usize>,
+    struck_out: BTreeSet<usize>,
 }
 
 type Archive<'b> = ZipArchive<Cursor<&'b [u8]>>;
@@ -31,12 +43,20 @@ fn part(archive: &mut Archive<'_>, name: &str) -> Option<String> {
     Some(text)
 }
 
-/// Calls `visit` for every element that begins.
+/// Calls `visit` for every element that begins. An element without an end is an error: the reader of cells waits for it for
+/// ever.
 fn elements(xml: &str, mut visit: impl FnMut(&str, &BytesStart<'_>)) -> Result<(), Problem> {
     let mut reader = Reader::from_str(xml);
+    let mut open = 0usize;
     loop {
         match reader.read_event().map_err(bad)? {
-            Event::Start(e) | Event::Empty(e) => visit(e.local_name().as_ref(), &e),
+            Event::Start(e) => {
+                open += 1;
+                visit(e.local_name().as_ref(), &e);
+            }
+            Event::Empty(e) => visit(e.local_name().as_ref(), &e),
+            Event::End(_) => open -= 1,
+            Event::Eof if open > 0 => return Err(bad("its XML ends within an element: it was cut")),
             Event::Eof => return Ok(()),
             _ => {}
         }
@@ -79,8 +99,8 @@ pub(super) fn xlsx(bytes: &[u8]) -> Result<BTreeMap<String, Marks>, Problem> {
         })?;
     }
     let styles = match part(&mut archive, "xl/styles.xml") {
-        Some(xml) => percent_styles(&xml)?,
-        None => BTreeSet::new(),
+        Some(xml) => styles_of(&xml)?,
+        None => Styles::default(),
     };
     let mut out = BTreeMap::new();
     for (name, id) in sheets {
@@ -92,23 +112,32 @@ pub(super) fn xlsx(bytes: &[u8]) -> Result<BTreeMap<String, Marks>, Problem> {
     Ok(out)
 }
 
-/// Indices of the cell formats that show per cent.
-fn percent_styles(xml: &str) -> Result<BTreeSet<usize>, Problem> {
+fn styles_of(xml: &str) -> Result<Styles, Problem> {
     // 9 and 10 are built in: 0% and 0.00%.
     let mut formats = BTreeSet::from([9u32, 10]);
-    let (mut out, mut inside, mut index) = (BTreeSet::new(), false, 0);
+    let (mut out, mut inside, mut index) = (Styles::default(), "", 0);
+    let (mut fonts, mut struck_out) = (0u32, BTreeSet::new());
     elements(xml, |name, e| match name {
         "numFmt" => {
             let id = attribute(e, "numFmtId").and_then(|t| t.parse::<u32>().ok());
             let percent = attribute(e, "formatCode").is_some_and(|c| c.contains('%'));
             formats.extend(id.filter(|_| percent));
         }
-        "cellXfs" => inside = true,
-        "cellStyles" | "dxfs" => inside = false,
-        "xf" if inside => {
-            let id = attribute(e, "numFmtId").and_then(|t| t.parse().ok()).unwrap_or(0);
-            if formats.contains(&id) {
-                out.insert(index);
+        "fonts" => inside = "fonts",
+        "cellXfs" => inside = "cellXfs",
+        "fills" | "cellStyles" | "dxfs" => inside = "",
+        "font" if inside == "fonts" => fonts += 1,
+        // The element alone says so.
+        "strike" if inside == "fonts" && attribute(e, "val").is_none_or(|v| v == "1" || v == "true") => {
+            struck_out.extend(fonts.checked_sub(1));
+        }
+        "xf" if inside == "cellXfs" => {
+            let id = |name| attribute(e, name).and_then(|t| t.parse::<u32>().ok()).unwrap_or(0);
+            if formats.contains(&id("numFmtId")) {
+                out.percent.insert(index);
+            }
+            if struck_out.contains(&id("fontId")) {
+                out.struck_out.insert(index);
             }
             index += 1;
         }
@@ -117,11 +146,12 @@ fn percent_styles(xml: &str) -> Result<BTreeSet<usize>, Problem> {
     Ok(out)
 }
 
-fn sheet(xml: &str, percent: &BTreeSet<usize>) -> Result<Marks, Problem> {
+fn sheet(xml: &str, styles: &Styles) -> Result<Marks, Problem> {
     let mut marks = Marks::default();
     let number = |e: &BytesStart<'_>, name| attribute(e, name).and_then(|t| t.parse::<u32>().ok());
     let mut row = 0u32;
     let mut column = 0u32;
+    let mut is_number = false;
     elements(xml, |name, e| match name {
         "col" if is_on(e, "hidden") => {
             if let (Some(min), Some(max)) = (number(e, "min"), number(e, "max")) {
@@ -139,9 +169,13 @@ fn sheet(xml: &str, percent: &BTreeSet<usize>) -> Result<Marks, Problem> {
             let at = attribute(e, "r").and_then(|r| column_of(&r));
             column = at.unwrap_or(column + 1);
             let style = attribute(e, "s").and_then(|s| s.parse().ok()).unwrap_or(0);
-            if percent.contains(&style) {
-                marks.percent.insert((row.saturating_sub(1), column.saturating_sub(1)));
-            }
+            let place = (row.saturating_sub(1), column.saturating_sub(1));
+            marks.percent.extend(styles.percent.contains(&style).then_some(place));
+            marks.struck_out.extend(styles.struck_out.contains(&style).then_some(place));
+            is_number = attribute(e, "t").is_none_or(|t| t == "n");
+        }
+        "f" if is_number => {
+            marks.formulas.insert((row.saturating_sub(1), column.saturating_sub(1)));
         }
         _ => {}
     })?;
@@ -209,10 +243,21 @@ mod tests {
     use super::*;
 
     #[test]
+    fn xml_that_was_cut_is_refused() {
+        assert!(elements("<a><b/><c>1</c></a>", |_, _| {}).is_ok());
+        for cut in ["<a><b/><c>1</c>", "<a><b", "<a></b>", "</a>"] {
+            assert!(elements(cut, |_, _| {}).is_err(), "{cut}");
+        }
+    }
+
+    #[test]
     fn references_and_formats() {
         assert_eq!((column_of("A1"), column_of("AB12"), column_of("12")), (Some(1), Some(28), None));
         let styles = "<styleSheet><numFmts><numFmt numFmtId=\"165\" formatCode=\"0.0%\"/></numFmts><cellStyleXfs><xf numFmtId=\"9\"/></cellStyleXfs>\
                       <cellXfs><xf numFmtId=\"0\"/><xf numFmtId=\"165\"/><xf numFmtId=\"10\"/></cellXfs><cellStyles/></styleSheet>";
-        assert_eq!(percent_styles(styles), Ok(BTreeSet::from([1, 2])));
+        assert_eq!(styles_of(styles).unwrap().percent, BTreeSet::from([1, 2]));
+        let fonts = "<styleSheet><fonts><strike/><font/><font><strike/></font><font><strike val=\"0\"/></font></fonts><fills/>\
+                     <cellXfs><xf fontId=\"0\"/><xf fontId=\"1\"/><xf fontId=\"2\"/></cellXfs></styleSheet>";
+        assert_eq!(styles_of(fonts).unwrap().struck_out, BTreeSet::from([1]));
     }
 }

@@ -37,7 +37,7 @@ impl Origin {
 }
 
 /// A file that was read: its path as given, its hash, and how its text was understood.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Source {
     /// Path as it was named to us.
     #[serde(serialize_with = "crate::finding::path_as_text")]
@@ -51,7 +51,7 @@ pub struct Source {
 }
 
 /// Test conditions in SI, from the file, else `fabric.toml`, else the standard set.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Conditions {
     /// Specimen width (m); 0.20 by default.
     pub width: f64,
@@ -76,7 +76,7 @@ fn is_zero(value: &f64) -> bool {
 }
 
 /// One specimen in one test: the raw curve in SI, in recorded order, untouched otherwise.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Measurement {
     /// Which test, and so what the axes are.
     pub test: Test,
@@ -111,7 +111,7 @@ impl Measurement {
 }
 
 /// One value of a result table, SI.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ResultValue {
     /// Which parameter.
     pub parameter: Parameter,
@@ -148,7 +148,7 @@ pub struct MeasuredResult {
 }
 
 /// What `fabric.toml` says of a fabric.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FabricInfo {
     /// Name for people; the folder's name identifies the fabric.
     pub title: String,
@@ -172,8 +172,21 @@ pub struct FabricInfo {
     pub results: Vec<MeasuredResult>,
 }
 
+/// A tensile stiffness between two loads that a table states: E5 and E20 of FAST.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StatedStiffness {
+    /// Direction of the load.
+    pub direction: Direction,
+    /// The two loads (N/m).
+    pub loads: [f64; 2],
+    /// Difference of the loads over that of the extensions (N/m).
+    pub stiffness: f64,
+    /// Cell of the extension at the greater load.
+    pub place: Place,
+}
+
 /// Everything that was read about one fabric.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FabricInput {
     /// Identifier: the folder's name, or the file's stem.
     pub name: String,
@@ -186,6 +199,9 @@ pub struct FabricInput {
     pub measurements: Vec<Measurement>,
     /// Values of result tables.
     pub results: Vec<ResultValue>,
+    /// Tensile stiffnesses of result tables.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stiffnesses: Vec<StatedStiffness>,
     /// FAB strip measurements, in file order.
     pub fab: Vec<FabFile>,
     /// Every file that was read, in name order.
@@ -198,7 +214,7 @@ pub struct FabricInput {
 }
 
 /// What was inferred from a file and why, for people (`kesf check -v`).
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Inference {
     /// Path as it was named to us.
     #[serde(serialize_with = "crate::finding::path_as_text")]

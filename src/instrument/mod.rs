@@ -5,10 +5,12 @@
 //! parameter, and raw data are never altered beyond their units.
 
 pub mod anonymise;
+mod assembled;
 mod axis;
 mod blanks;
 mod column_name;
 mod conditions;
+mod contradictions;
 mod curves;
 mod dialect;
 mod error;
@@ -32,6 +34,7 @@ mod read;
 mod result_table;
 mod shape;
 mod sniff;
+mod states;
 mod statistic;
 mod suggest;
 mod told;
@@ -56,6 +59,7 @@ pub use file_name::is_data_name;
 pub use folder::{Batch, Library, read_fabrics};
 pub use measurement::{
     Conditions, FabricInfo, FabricInput, Inference, MeasuredResult, Measurement, Origin, ResultValue, Source,
+    StatedStiffness,
 };
 pub use own_results::{JOURNAL, MANIFEST};
 pub use read::{FileContent, ReadSettings, parse, read};

@@ -27,6 +27,16 @@ pub(super) fn of_label(label: &str, vocabulary: Vocabulary<'_>) -> Option<Statis
     if label.contains(|c: char| c.is_ascii_digit()) { None } else { vocabulary.statistic_within(label) }
 }
 
+/// Columns beside the position of a sweep, where nothing of another test is among them.
+pub(super) fn along_sweep(mut columns: Vec<Column>) -> Vec<Column> {
+    let alone =
+        |c: &Column| c.role.in_sweep().is_of_sweep() || matches!(c.role, Role::Position | Role::Ignored);
+    if columns.iter().any(|c| c.role == Role::Position) && columns.iter().all(alone) {
+        columns.iter_mut().for_each(|c| c.role = c.role.in_sweep());
+    }
+    columns
+}
+
 /// Pairs of a loading and an unloading branch are one curve.
 fn joined(pairs: Vec<Pair>) -> Vec<Pair> {
     let mut out: Vec<Pair> = Vec::with_capacity(pairs.len());
@@ -151,6 +161,7 @@ impl Scanner<'_, '_> {
         for labels in std::mem::take(&mut self.labels) {
             label(pairs, &labels, self.context.vocabulary);
         }
+        self.note_direction_in_heads(pairs);
         pairs.iter_mut().for_each(named_in_heads);
         Ok(())
     }

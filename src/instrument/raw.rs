@@ -145,11 +145,11 @@ fn by_words(bytes: &[u8]) -> (&'static Encoding, &'static str) {
             break;
         }
     }
+    // A line may be as long as the file. A character that is cut there is known to nobody.
+    lines.truncate(SAMPLE);
     let known = |encoding: &'static Encoding| {
         let whole = encoding.decode_without_bom_handling_and_without_replacement(bytes);
-        whole.and_then(|_| {
-            encoding.decode_without_bom_handling_and_without_replacement(&lines).map(|t| known_letters(&t))
-        })
+        whole.map(|_| known_letters(&encoding.decode_without_bom_handling(&lines).0))
     };
     let scores = OLD.iter().map(|(e, why)| (known(e).unwrap_or(0), *e, *why));
     // Among equals the first.

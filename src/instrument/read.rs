@@ -18,7 +18,7 @@ use super::result_table::{self, Values};
 use super::sniff::{Sniffed, sniff};
 use super::vocabulary::Vocabulary;
 use super::workbook::{self, Archive};
-use super::{Measurement, Parameter, ResultValue, Source};
+use super::{Measurement, Parameter, ResultValue, Source, StatedStiffness};
 use super::{limits, web_page};
 use crate::finding::{Fact, Finding, Place, ReadFact};
 use crate::platform;
@@ -46,6 +46,8 @@ pub struct FileContent {
     pub measurements: Vec<Measurement>,
     /// Values of result tables, each with the fabric that the table names.
     pub results: Values,
+    /// Tensile stiffnesses of result tables, each with the fabric that the table names.
+    pub stiffnesses: Vec<(Option<String>, StatedStiffness)>,
     /// A FAB record.
     pub fab: Option<FabFile>,
     /// What a reader of the data must know.
@@ -192,11 +194,17 @@ fn sheets(
 ) -> Result<(), ReadError> {
     let error = |problem| ReadError::new(Place::file(path), problem);
     let decimal = settings.decimal.or_else(|| settings.dialects.iter().find_map(|d| d.decimal));
-    let workbook::Book { sheets, decimal, hidden } = workbook::sheets(bytes, decimal).map_err(error)?;
+    let workbook::Book { sheets, decimal, hidden, without_value } =
+        workbook::sheets(bytes, decimal).map_err(error)?;
     if !hidden.is_empty() {
         content.findings.push(Finding::new(ReadFact::HiddenCells { hidden }).at(Place::file(path)));
     }
+    if !without_value.is_empty() {
+        let fact = ReadFact::WithoutValue { cells: without_value };
+        content.findings.push(Finding::new(fact).at(Place::file(path)));
+    }
     let several = sheets.len() > 1;
+    let (mut with_curves, mut unread) = (Vec::new(), Vec::new());
     for sheet in &sheets {
         // The place of a cell needs its sheet: `book.xlsx[sheet]:line:column`.
         let named = PathBuf::from(format!("{}[{}]", path.display(), sheet.name));
@@ -205,18 +213,43 @@ fn sheets(
         let mut context = context(path, settings, dialect, '\t', decimal);
         context.path = at;
         context.label = Label::parse(&sheet.name, context.vocabulary).or(context.label);
-        let before = content.inference.len();
+        let (before, curves) = (content.inference.len(), content.measurements.len());
         content.inference.push(format!("sheet {:?}: {} rows", sheet.name, sheet.rows.len()));
         match table(&sheet.rows, &context, true, content) {
             // A sheet of remarks or charts among others.
             Err(e) if several && e.problem == Problem::Empty => content.inference.truncate(before),
+            // A sheet of something else: a mistake of its own costs nothing but itself, and is told.
+            Err(e) if several && matches!(e.problem, Problem::UnknownLayout { .. }) => {
+                content.inference.truncate(before);
+                unread.push(e);
+            }
             result => result?,
+        }
+        if content.measurements.len() > curves {
+            with_curves.push(sheet.name.as_str());
         }
     }
     if content.measurements.is_empty() && content.results.is_empty() {
-        return Err(error(Problem::Empty));
+        return Err(unread.into_iter().next().unwrap_or_else(|| error(Problem::Empty)));
+    }
+    content.findings.extend(unread.into_iter().map(|e| {
+        let fact = ReadFact::SheetNotUnderstood { reason: e.problem.to_string() };
+        Finding::new(fact).at(e.place)
+    }));
+    let samples = samples_of_sheets(&with_curves, Vocabulary::new(&settings.dialects));
+    if samples.len() > 1 {
+        content.findings.push(Finding::new(ReadFact::SeveralSamples { samples }).at(Place::file(path)));
     }
     Ok(())
+}
+
+/// The names that sheets have beside directions, tests and numbers; none where all have the same.
+fn samples_of_sheets(sheets: &[&str], vocabulary: Vocabulary<'_>) -> Vec<String> {
+    let stem = |name: &String| name.trim_end_matches(|c: char| !c.is_alphabetic()).to_string();
+    let samples: Vec<String> =
+        sheets.iter().filter_map(|name| Label::parse(name, vocabulary).sample).collect();
+    let stems: BTreeSet<String> = samples.iter().map(stem).collect();
+    if stems.len() > 1 { samples } else { Vec::new() }
 }
 
 /// An archive of files: each is read by itself, and a bad one costs itself only.
@@ -288,6 +321,7 @@ fn table(
             Block::Table { header, region } => {
                 let read = result_table::read(&header, &region, context, &mut content.inference)?;
                 content.results.extend(read.values);
+                content.stiffnesses.extend(read.stiffnesses);
                 content.findings.extend(read.findings);
                 content.failures.extend(read.failures);
             }

@@ -4,9 +4,14 @@
 //! section and the lines above the table say together. So `fabric,direction,B (gf·cm²/cm)`, `id,B_warp_uN_m`, two rows of
 //! heads, `parameter,unit,warp,weft`, `1 2 3 AVE` under WARP and WEFT and one row for each value are one kind of table.
 
+mod directions;
 mod fast_cells;
 mod layout;
+mod merged_cells;
 mod repeats;
+mod rows_above;
+mod states;
+mod units;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,12 +25,10 @@ use super::layout::{Context, Header};
 use super::raw::Row;
 use super::shape::{self, Region};
 use super::sniff::{Number, number};
-use super::unit_text::known_unit;
 use super::value::{is_gap, value};
 use super::words::{folded, normalised};
-use super::{Direction, Parameter, ResultValue};
-use crate::finding::{Finding, Place, ReadFact};
-use crate::quantity::{Unit, counts_angles, divides_by_length};
+use super::{Direction, Parameter, ResultValue, StatedStiffness};
+use crate::finding::Finding;
 
 /// Values with the fabric that each belongs to.
 pub(super) type Values = Vec<(Option<String>, ResultValue)>;
@@ -34,6 +37,7 @@ pub(super) type Values = Vec<(Option<String>, ResultValue)>;
 #[derive(Debug)]
 pub(super) struct Contents {
     pub values: Values,
+    pub stiffnesses: Vec<(Option<String>, StatedStiffness)>,
     pub findings: Vec<Finding>,
     /// Fabrics that are left out, each with what is wrong in one of its rows.
     pub failures: Vec<ReadError>,
@@ -59,6 +63,8 @@ struct Datum {
     inferred: bool,
     line: usize,
     column: usize,
+    /// Index of its cell.
+    cell: usize,
 }
 
 /// What a row says of its values.
@@ -66,6 +72,11 @@ struct Datum {
 struct RowFacts {
     fabric: Option<String>,
     facets: Facets,
+    /// The columns that state the direction and the parameter.
+    direction_at: Option<usize>,
+    parameter_at: Option<usize>,
+    /// Whether the row itself names its fabric.
+    names_fabric: bool,
     /// The text of the label, for messages.
     label: String,
     n: usize,
@@ -84,7 +95,7 @@ pub(super) fn read(
     context: &Context<'_>,
     log: &mut Vec<String>,
 ) -> Result<Contents, ReadError> {
-    let layout = Layout::of(region, context);
+    let layout = Layout::of(region, context)?;
     log.push(layout.described());
     let mut table = Table {
         header,
@@ -98,8 +109,13 @@ pub(super) fn read(
         derived: Vec::new(),
         several: false,
         section: region.section,
+        directions: BTreeSet::new(),
+        states: BTreeMap::new(),
         above: None,
     };
+    for text in std::mem::take(&mut table.layout.texts_of_directions) {
+        table.note_more_than_direction((table.layout.line, 0), &text);
+    }
     let rows = table.facts(region)?;
     let names: BTreeSet<&Option<String>> = rows.iter().map(|(_, facts)| &facts.fabric).collect();
     table.several = names.len() > 1 || table.layout.names_fabrics();
@@ -110,6 +126,7 @@ pub(super) fn read(
             if e.place.line == row.line { table.leave_out(facts.fabric.clone(), e) } else { Err(e) }
         })?;
     }
+    table.direction_of_the_sheet();
     let unused = table.layout.unused(region, context);
     table.ignored.extend(unused);
     table.directions_of_numbers();
@@ -133,6 +150,10 @@ struct Table<'t, 'a> {
     several: bool,
     /// The direction that a title of a section states.
     section: Option<Direction>,
+    /// Texts of directions that were met.
+    directions: BTreeSet<String>,
+    /// What each line says in columns of unknown meaning, by the index of the column.
+    states: BTreeMap<usize, BTreeMap<usize, String>>,
     /// The fabric of the row above: a name often stands in the first of its rows only.
     above: Option<String>,
 }
@@ -159,6 +180,7 @@ impl<'t> Table<'t, '_> {
     /// The rows of values with what each says; titles of sections hold for those below them.
     fn facts<'r>(&mut self, region: &Region<'r>) -> Result<Vec<(&'r Row<'r>, RowFacts)>, ReadError> {
         let mut out = Vec::new();
+        let titles = self.titles(region);
         for row in &region.rows {
             let is_remark = row.get(0).is_some_and(|t| t.starts_with('#')) && row.filled().count() == 1;
             if is_remark {
@@ -168,7 +190,12 @@ impl<'t> Table<'t, '_> {
                 self.section = Some(direction);
                 continue;
             }
-            match self.row_facts(row) {
+            if let Some(title) = titles.get(&row.line) {
+                self.above = Some(title.clone());
+                continue;
+            }
+            let facts = self.within_heads(row, region).and_then(|()| self.row_facts(row));
+            match facts {
                 Ok(facts) => out.push((*row, facts)),
                 Err(error) => {
                     let fabric = self.above.clone();
@@ -176,8 +203,20 @@ impl<'t> Table<'t, '_> {
                 }
             }
         }
+        self.fill_merged_cells(&mut out);
+        self.directions_in_names(&mut out);
         self.sort_out_summaries(&mut out);
         Ok(out)
+    }
+
+    /// A number beyond the last heading is a part of another, where the delimiter is a decimal mark as well.
+    fn within_heads(&self, row: &Row<'_>, region: &Region<'_>) -> Result<(), ReadError> {
+        let named = region.heads.iter().filter_map(|h| h.filled().last()).map(|(i, _)| i + 1).max();
+        let Some(named) = named.filter(|_| !region.down) else { return Ok(()) };
+        let beyond = row.filled().find(|(i, c)| *i >= named && shape::is_value(&c.text, self.context));
+        let Some((index, _)) = beyond else { return Ok(()) };
+        let found = format!("the row has {} cells under {named} headings", row.filled().count());
+        Err(self.context.error(row.line, row.column(index), Problem::RaggedRow { found }))
     }
 
     fn row_facts(&mut self, row: &Row<'_>) -> Result<RowFacts, ReadError> {
@@ -186,7 +225,12 @@ impl<'t> Table<'t, '_> {
         let labels = self.layout.labels.clone();
         for label in &labels {
             let Some(text) = row.get(label.index) else { continue };
+            if label.meta.is_none() && !self.layout.down {
+                self.states.entry(row.line).or_default().insert(label.index, text.to_string());
+            }
             let f = Facets::of(text, self.context.vocabulary);
+            let [had_direction, had_parameter] =
+                [facts.facets.direction.is_some(), facts.facets.names_value()];
             match label.meta {
                 Some(TableColumn::Id | TableColumn::Fabric) => {
                     // `Warp-1` under "Sample" is no fabric; `B-2` is.
@@ -198,27 +242,50 @@ impl<'t> Table<'t, '_> {
                         facts.take(&f, text);
                     } else {
                         let slot = if label.meta == Some(TableColumn::Id) { &mut id } else { &mut fabric };
-                        *slot = slot.take().or_else(|| Some(folded(text).into_owned()));
+                        let name = folded(text).into_owned();
+                        if let Some(first) = slot.as_ref().filter(|first| **first != name) {
+                            let found = format!(
+                                "the row is of {first:?} and of {name:?}: lay tables side by side under one another"
+                            );
+                            let problem = Problem::BadTable { found };
+                            return Err(self.context.error(row.line, row.column(label.index), problem));
+                        }
+                        *slot = Some(name);
                     }
                 }
                 Some(TableColumn::Direction) => {
                     facts.facets.direction = self.direction(row, label.index, text, &f)?;
+                    self.note_more_than_direction((row.line, row.column(label.index)), text);
                     facts.facets.index = facts.facets.index.or(f.index);
+                    // `Warp mean` sums up warp; `Mean` alone is of both.
+                    if facts.facets.direction.is_some() && f.statistic.is_some() {
+                        (facts.facets.statistic, facts.facets.sd) = (f.statistic, f.sd);
+                        facts.label = text.to_string();
+                    }
                 }
                 Some(TableColumn::N) => facts.n = self.repeats(row, label.index, text)?,
                 Some(TableColumn::Unit) => {
+                    self.one_unit(row, label.index, facts.facets.unit.as_deref(), Some(text))?;
                     facts.facets.unit = Some(folded(text).into_owned());
                     facts.unit_at = label.index;
                 }
                 Some(TableColumn::Status) => facts.facets.inferred |= normalised(text) == "inferred",
                 Some(TableColumn::Parameter) | None if self.layout.down => {
+                    self.one_unit(row, label.index, facts.facets.unit.as_deref(), f.unit.as_deref())?;
                     facts.take_label(&f, text, label.index);
                 }
                 _ => facts.take(&f, text),
             }
+            if !had_direction && facts.facets.direction.is_some() && f.index.is_none() {
+                facts.direction_at = Some(label.index);
+            }
+            if !had_parameter && facts.facets.names_value() {
+                facts.parameter_at = Some(label.index);
+            }
         }
         let of_header = self.header.known.get(&Key::Sample).map(|e| folded(&e.text).into_owned());
         let named = id.or(fabric);
+        facts.names_fabric = named.is_some();
         facts.fabric = named.or_else(|| self.above.clone()).or(of_header);
         self.above.clone_from(&facts.fabric);
         facts.facets.direction = facts.facets.direction.or(self.section);
@@ -278,6 +345,8 @@ impl<'t> Table<'t, '_> {
         let first = self.data.len();
         for column in &columns {
             let Some(cell) = row.get(column.index).filter(|c| !is_gap(c)) else { continue };
+            let units = [&column.facets, &facts.facets].map(|f| f.unit.as_deref());
+            self.one_unit(row, column.index, units[0], units[1])?;
             let all = column.facets.or(&facts.facets);
             let unit_place = self.unit_place(row, column, facts);
             let fabric =
@@ -325,6 +394,7 @@ impl<'t> Table<'t, '_> {
                 inferred: all.inferred,
                 line: row.line,
                 column: row.column(column.index),
+                cell: column.index,
             };
             if all.sd && !of_row && !self.layout.down {
                 deviations.push(datum);
@@ -374,80 +444,6 @@ impl<'t> Table<'t, '_> {
             self.layout.left_out_rows.insert(line, label.clone());
         } else {
             self.ignored.push(label.clone());
-        }
-    }
-
-    /// Where the unit of a value stands: in its row, else in the heads.
-    fn unit_place(&self, row: &Row<'_>, column: &Column, facts: &RowFacts) -> (usize, usize) {
-        if column.facets.unit.is_some() || !self.layout.down {
-            return column.place;
-        }
-        (row.line, row.column(facts.unit_at))
-    }
-
-    /// The unit of a value; dimensionless parameters need none.
-    fn unit(
-        &self,
-        p: Parameter,
-        text: Option<&str>,
-        (line, column): (usize, usize),
-    ) -> Result<Unit, ReadError> {
-        let error = |problem| self.context.error(line, column, problem);
-        let text = match text {
-            Some(text) if text != "-" || p.kes_unit() == "1" => text,
-            _ if p.kes_unit() == "1" || self.context.kes_units => p.kes_unit(),
-            _ => {
-                let found = p.symbol().to_string();
-                return Err(error(Problem::UnitMissing { found, expected: p.kes_unit() }));
-            }
-        };
-        let unit = known_unit(text).map_err(error)?;
-        let expected = known_unit(p.si_unit()).map_err(error)?;
-        // G in gf/cm could be per degree or per radian, a factor 57: only SI is clear without deg.
-        let per_angle = p == Parameter::G
-            && text.contains("gf")
-            && !(text.contains("deg") || text.contains("rad") || text.contains('°') || text.contains('度'));
-        let undivided = p == Parameter::W && !divides_by_length(text);
-        // An angle has no dimension, and a ratio in degrees would be 57 times too large as one in radians.
-        let angle = matches!(p.kes_unit(), "1" | "%") && counts_angles(text);
-        if unit.dimension != expected.dimension || per_angle || undivided || angle {
-            let of = p.symbol().to_string();
-            let expected = p.kes_unit();
-            return Err(error(Problem::UnitWrong { found: text.to_string(), of, expected }));
-        }
-        Ok(unit)
-    }
-
-    /// `B1, B2` and `LT-1, LT-2` of the literature: 1 is warp and 2 is weft, where no direction is stated and the numbers
-    /// are these two.
-    fn directions_of_numbers(&mut self) {
-        let numbered = self.layout.numbers_of_symbols();
-        if numbered != BTreeSet::from([1, 2]) {
-            return;
-        }
-        let of = |d: Option<Direction>, p: Option<Parameter>| {
-            d.is_some() && p.is_none_or(Parameter::is_directional)
-        };
-        let stated = self.data.iter().any(|d| of(d.direction, Some(d.parameter)))
-            || self.fast.iter().any(|f| f.direction.is_some());
-        if stated {
-            return;
-        }
-        let direction = |index: Option<usize>| match index {
-            Some(1) => Some(Direction::Warp),
-            Some(2) => Some(Direction::Weft),
-            _ => None,
-        };
-        for d in self.data.iter_mut().filter(|d| d.parameter.is_directional()) {
-            (d.direction, d.index) = (direction(d.index), None);
-        }
-        for f in &mut self.fast {
-            f.direction = direction(f.index);
-        }
-        let is_fast = self.fast.iter().any(|f| f.direction.is_some());
-        if !is_fast {
-            let place = Place::at(self.context.path, self.layout.line, 0);
-            self.findings.push(Finding::new(ReadFact::NumbersAsDirections {}).at(place));
         }
     }
 }

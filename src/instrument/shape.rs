@@ -7,7 +7,7 @@ use super::dialect::{Role, TableColumn};
 use super::facets::Facets;
 use super::layout::Context;
 use super::raw::Row;
-use super::sniff::Number;
+use super::sniff::{Number, number};
 use super::unit_text::{split_unit, unit};
 use super::value::{is_gap, value};
 use super::words::folded;
@@ -15,6 +15,9 @@ use super::{Direction, Parameter};
 
 /// The most rows of heads.
 const HEADS: usize = 5;
+
+/// The most titles of sections above one table: who writes more writes header lines.
+const TITLES: usize = 3;
 
 /// A result table: its heads and the rows below them.
 pub(super) struct Region<'t> {
@@ -46,6 +49,31 @@ enum Kind {
 /// A cell that holds a number, and perhaps its deviation.
 pub(super) fn is_value(cell: &str, context: &Context<'_>) -> bool {
     matches!(value(cell, context.decimal), (Number::Value(_) | Number::NotFinite | Number::Broken, _))
+}
+
+/// Whether a row behind a table is laid out like its first or last one: the same cells are filled, with numbers in the same
+/// places and words that are no header line in the others.
+pub(super) fn continues(row: &Row<'_>, region: &Region<'_>, context: &Context<'_>) -> bool {
+    let form = |row: &Row<'_>| -> Vec<(usize, bool)> {
+        row.filled().map(|(i, c)| (i, is_value(&c.text, context))).collect()
+    };
+    let own = form(row);
+    let is_header = row.filled().next().is_some_and(|(_, c)| {
+        let name = c.text.split([':', '=']).next().unwrap_or_default();
+        context.vocabulary.key(name.trim_start_matches('#').trim()).is_some()
+    });
+    let mut ends = [region.rows.first(), region.rows.last()].into_iter().flatten();
+    own.len() > 1 && own.iter().any(|c| c.1) && !is_header && ends.any(|r| form(r) == own)
+}
+
+/// Several numbers and nothing else.
+pub(super) fn is_numeric(row: &Row<'_>, decimal: char) -> bool {
+    row.filled().count() > 1 && row.filled().all(|(_, c)| number(&c.text, decimal) != Number::Text)
+}
+
+/// Whether numbers stand beside what may be the name of their row.
+pub(super) fn has_numbers(row: &Row<'_>, decimal: char) -> bool {
+    row.filled().filter(|(_, c)| number(&c.text, decimal) != Number::Text).count() > 1
 }
 
 /// Whether a cell stands for a unit; a dash does only among others.
@@ -214,7 +242,7 @@ fn across(heads: &[&Row<'_>], context: &Context<'_>) -> bool {
 }
 
 fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
-    let (mut end, mut first, mut section) = (at, at, None);
+    let (mut end, mut first, mut section, mut titles) = (at, at, None, 0);
     let mut found: Vec<&Row<'_>> = Vec::new();
     while let Some(row) = rows.get(end).filter(|_| found.len() < HEADS) {
         if row.is_blank() {
@@ -234,7 +262,10 @@ fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
                 }
                 found.push(row);
             }
-            Kind::Section(direction) if found.is_empty() => section = Some(direction),
+            Kind::Section(direction) if found.is_empty() && titles < TITLES => {
+                section = Some(direction);
+                titles += 1;
+            }
             _ => break,
         }
         end += 1;
@@ -299,7 +330,19 @@ pub(super) fn region<'t>(
             continue;
         }
         if !belongs(rows, i, &region, after_blank, context) {
-            break;
+            // A note between two rows: below it the table goes on.
+            let goes_on = !after_blank
+                && is_header_line(row, context)
+                && rows.get(i + 1).is_some_and(|next| {
+                    kind(next, context) == Kind::Values
+                        && !is_header_line(next, context)
+                        && fits(next, &region, context)
+                });
+            if !goes_on {
+                break;
+            }
+            i += 1;
+            continue;
         }
         region.rows.push(row);
         i += 1;

@@ -134,6 +134,11 @@ fn score(text: &str, delimiter: char, decimal: char) -> i64 {
         let mut count = |cell: &str| match number(cell, decimal) {
             Number::Value(_) | Number::NotFinite => score += 1,
             Number::Broken => score -= 10,
+            // `0,081 ± 0,003` is a number with its deviation.
+            Number::Text if cell.contains('±') => {
+                let mean = cell.split('±').next().unwrap_or_default();
+                score += i64::from(matches!(number(mean, decimal), Number::Value(_)));
+            }
             Number::Text => {}
         };
         if line.contains('"') {
@@ -200,6 +205,7 @@ mod tests {
         assert_eq!(f("a\tb\n0,5\t1,5\n"), Ok(('\t', ',')));
         assert_eq!(f("a;b, c\n1;2\n3;4\n"), Ok((';', '.')));
         assert_eq!(f("a\tb\n1\t2\n"), Ok(('\t', '.')));
+        assert_eq!(f("a;b\n0,081 ± 0,003;0,5 ± 0,1\n"), Ok((';', ',')));
     }
 
     #[test]

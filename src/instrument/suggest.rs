@@ -3,12 +3,26 @@
 use std::collections::BTreeMap;
 
 use super::dialect::Role;
+use super::error::Problem;
 use super::unit_text::{split_unit, unit};
+use super::vocabulary::Vocabulary;
 use crate::quantity::{Dimension, divides_by_length};
+
+/// What R006 says of words over a row of numbers, and what a laboratory could write so that they are known.
+pub(super) fn unknown_words(words: &[String], vocabulary: Vocabulary<'_>) -> (Problem, Vec<String>) {
+    let closest = vocabulary.closest(words);
+    let found = match closest.first().filter(|_| !words.is_empty()) {
+        None => "numbers stand without a heading row".to_string(),
+        Some((name, unknown)) => {
+            format!("dialect {name:?} comes closest, but it does not know {}", unknown.join(", "))
+        }
+    };
+    (Problem::UnknownLayout { found }, layout(words, &closest))
+}
 
 /// What the dialects know of a heading row, and a dialect file that names the rest, ready to be saved: the unit of a
 /// column often tells what it holds; where it does not, the line is left as a remark.
-pub(super) fn layout(words: &[String], closest: &[(String, Vec<String>)]) -> Vec<String> {
+fn layout(words: &[String], closest: &[(String, Vec<String>)]) -> Vec<String> {
     if words.is_empty() {
         return vec!["a dialect file that names columns without headings: column_order = [\"curvature\", \"moment\"], and [units]".into()];
     }

@@ -75,7 +75,57 @@ pub(super) fn unit(text: &str) -> Result<Unit, QuantityError> {
         if text.chars().count() > LONGEST {
             return Err(error);
         }
+        if let Some((power, rest)) = power_of_ten(text) {
+            return unit(rest).map(|unit| Unit { factor: power * unit.factor, ..unit });
+        }
         spellings(text).iter().find_map(|s| Unit::parse(s).ok()).ok_or(error)
+    })
+}
+
+/// `10^-4 N·m²/m`, `×10⁻³ gf·cm/cm`: a power of ten and the unit that it multiplies.
+fn power_of_ten(text: &str) -> Option<(f64, &str)> {
+    const MARKS: [char; 6] = ['×', '*', '·', '⋅', '.', ' '];
+    let rest = text.trim_start_matches(MARKS);
+    let rest = rest.strip_prefix("x ").or(rest.strip_prefix("x10").map(|_| &rest[1..])).unwrap_or(rest);
+    let rest = rest.strip_prefix("10")?;
+    let raised = rest.strip_prefix("**").or(rest.strip_prefix('^'));
+    // `100 gf/cm` and `103 N` are no powers: they say so by a mark, a sign or raised digits.
+    if raised.is_none() && rest.starts_with(|c: char| c.is_ascii_digit()) {
+        return None;
+    }
+    let rest = raised.unwrap_or(rest);
+    let is_exponent = |c: char| c.is_ascii_digit() || "-−–+⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺".contains(c);
+    let end = rest.find(|c| !is_exponent(c)).unwrap_or(rest.len());
+    let exponent: i32 = folded(&rest[..end])
+        .chars()
+        .filter_map(|c| match c {
+            '⁻' | '−' | '–' => Some('-'),
+            '⁺' => None,
+            c => Some(SUPERSCRIPTS.iter().position(|s| *s == c).map_or(c, |n| (b'0' + n as u8) as char)),
+        })
+        .collect::<String>()
+        .parse()
+        .ok()
+        .filter(|n: &i32| n.abs() <= 30)?;
+    let unit = rest[end..].trim_start_matches(MARKS);
+    (!unit.is_empty()).then(|| (10f64.powi(exponent), unit))
+}
+
+const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+
+/// Whether a name is multiplied by a power of ten, `B×10` or `10*moment`: nobody can say whether the numbers are so many times
+/// the value, or are to be multiplied.
+pub(super) fn is_scaled(name: &str) -> bool {
+    let text = folded(name);
+    let is_mark = |c: char| matches!(c, '×' | '*' | '·' | '⋅');
+    text.match_indices("10").any(|(at, _)| {
+        let before = text[..at].trim_end();
+        let after =
+            text[at + 2..].trim_start_matches(|c: char| c.is_ascii_digit() || "^-−⁻⁰¹²³⁴⁵⁶⁷⁸⁹".contains(c));
+        let by_letter = before.strip_suffix(['x', 'X']).is_some_and(|b| b.ends_with(' '));
+        before.ends_with(is_mark)
+            || by_letter
+            || (before.is_empty() && after.trim_start().starts_with(is_mark))
     })
 }
 
@@ -161,6 +211,28 @@ mod tests {
         assert_eq!(split("bending moment"), ("bending moment".to_string(), None));
         assert_eq!(split("moment (gf·cm/N").1, None);
         assert_eq!(split("force (front) gf/cm"), pair("force (front)", "gf/cm"));
+    }
+
+    #[test]
+    fn powers_of_ten() {
+        for (text, factor) in [
+            ("10^-4 N·m²/m", 1e-4),
+            ("×10⁻⁴ N·m²/m", 1e-4),
+            ("x10^-5 N·m", 1e-5),
+            ("10⁻³ gf·cm/cm", 1e-3 * 9.80665e-3),
+        ] {
+            let found = unit(text).unwrap().factor;
+            assert!((found / factor - 1.0).abs() < 1e-12, "{text}: {found}");
+        }
+        for text in ["10^-400 N", "10 N", "100 gf/cm", "103 N", "1000 N/m"] {
+            assert!(unit(text).is_err(), "{text}");
+        }
+        for name in ["B×10", "B *10", "WC × 10", "moment x10", "10*moment", "B ·10³"] {
+            assert!(is_scaled(name), "{name}");
+        }
+        for name in ["B10", "K 10", "X10", "box10", "2HG 10", "B"] {
+            assert!(!is_scaled(name), "{name}");
+        }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::hash::Hash;
 use std::sync::OnceLock;
 
-use super::dialect::{BranchColumn, Dialect, Key, Role, Statistic, TableColumn, dialects};
+use super::dialect::{BranchColumn, Dialect, DirectionWord, Key, Role, Statistic, TableColumn, dialects};
 use super::unit_text::split_unit;
 use super::words::{folded, normalised};
 use super::{Direction, Parameter, Test};
@@ -19,6 +19,7 @@ struct Index {
     columns: HashMap<&'static str, Role>,
     keys: HashMap<&'static str, Key>,
     directions: HashMap<&'static str, Direction>,
+    direction_words: HashMap<&'static str, DirectionWord>,
     tests: HashMap<&'static str, Test>,
     branches: HashMap<&'static str, BranchColumn>,
     table: HashMap<&'static str, TableColumn>,
@@ -47,6 +48,7 @@ fn index() -> &'static Index {
         columns: collect(|d| &d.columns, |k| Some(*k)),
         keys: collect(|d| &d.keys, |k| Some(*k)),
         directions: collect(|d| &d.directions, |k| Some(*k)),
+        direction_words: collect(|d| &d.direction_words, |k| Some(*k)),
         tests: collect(|d| &d.tests, |k| Some(*k)),
         branches: collect(|d| &d.branches, |k| Some(*k)),
         table: collect(|d| &d.table, |k| Some(*k)),
@@ -64,6 +66,14 @@ pub(super) struct Vocabulary<'a> {
 /// Whether a word may be looked for within another: short ones stand in many words of other meaning.
 fn long_enough(word: &str) -> bool {
     word.chars().any(|c| c >= '\u{1100}') || word.chars().nth(3).is_some()
+}
+
+/// Words between blanks and marks.
+fn words_of(text: &str) -> impl Iterator<Item = String> {
+    let folded = folded(text).into_owned();
+    let words: Vec<String> =
+        folded.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).map(String::from).collect();
+    words.into_iter()
 }
 
 impl<'a> Vocabulary<'a> {
@@ -148,8 +158,51 @@ impl<'a> Vocabulary<'a> {
         self.find(name, false, |d| &d.keys, &index().keys)
     }
 
+    /// The direction that a text names; none of one that names two, or says that it is across one.
     pub fn direction(self, text: &str) -> Option<Direction> {
-        self.find(text, true, |d| &d.directions, &index().directions)
+        self.direction_exactly(text).or_else(|| {
+            let found = self.find(text, true, |d| &d.directions, &index().directions)?;
+            (!self.names_another(text, found) && !self.is_across(text)).then_some(found)
+        })
+    }
+
+    fn direction_word(self, word: &str) -> Option<DirectionWord> {
+        self.find(word, false, |d| &d.direction_words, &index().direction_words)
+    }
+
+    /// `perpendicular to the warp`, `not warp`.
+    fn is_across(self, text: &str) -> bool {
+        let across = |word: &str| self.direction_word(word) == Some(DirectionWord::Across);
+        let plain = normalised(text);
+        // Chinese, Japanese and Korean have no blanks around such a word.
+        let wide: Vec<char> = plain.chars().collect();
+        let mut pairs = wide.windows(2).filter(|pair| pair.iter().all(|c| *c >= '\u{1100}'));
+        words_of(text).any(|word| across(&word)) || pairs.any(|pair| across(&pair.iter().collect::<String>()))
+    }
+
+    /// Whether a text says more than the direction that it names: `warp before washing`.
+    pub fn says_more_than_direction(self, text: &str) -> bool {
+        let is_direction = |word: &str| {
+            self.direction(word).is_some()
+                || self.key(word) == Some(Key::Direction)
+                || self.table_column(word) == Some(TableColumn::Direction)
+        };
+        let means_nothing = |word: &str| {
+            word.chars().count() < 3
+                || word.chars().all(|c| c.is_ascii_digit())
+                || self.direction_word(word) == Some(DirectionWord::Along)
+        };
+        self.direction_exactly(text).is_none()
+            && words_of(text).any(|word| !is_direction(&word) && !means_nothing(&word))
+    }
+
+    /// Whether a word of a text, or a single character of Chinese or Japanese, is another direction.
+    fn names_another(self, text: &str, direction: Direction) -> bool {
+        let text = folded(text);
+        let is_another = |word: &str| self.direction_exactly(word).is_some_and(|other| other != direction);
+        let mut words = text.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty());
+        let mut wide = text.chars().filter(|c| *c >= '\u{2e80}');
+        words.any(is_another) || wide.any(|c| is_another(c.encode_utf8(&mut [0; 4])))
     }
 
     /// The direction that a whole word names.
@@ -181,8 +234,8 @@ impl<'a> Vocabulary<'a> {
 
     /// How a label says that a row or column sums up others: the whole label, and no word within it.
     pub fn statistic(self, label: &str) -> Option<Statistic> {
-        // Most labels are numbers.
-        if label.trim_start().starts_with(|c: char| c.is_ascii_digit()) {
+        // Most labels are numbers; `95 % CI` is not.
+        if !label.chars().any(|c| c.is_alphabetic() || c == '±') {
             return None;
         }
         self.find(label, false, |d| &d.statistics, &index().statistics)
@@ -276,7 +329,7 @@ fn weight(word: &str, written: &str) -> usize {
     while at < n {
         let longest = (2..=WITHIN.min(n - at)).rev().find(|k| {
             let part = &word[starts[at]..starts[at + k]];
-            known(part) && part.chars().all(|c| c >= '\u{1100}')
+            part.chars().all(|c| c >= '\u{1100}') && known(part)
         });
         sum += longest.map_or(0, |k| k * k);
         at += longest.unwrap_or(1);

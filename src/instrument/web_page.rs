@@ -10,6 +10,8 @@ use super::raw::{Cell, Row};
 
 /// Columns over which one cell of a head may stand.
 const SPAN: usize = 1024;
+/// Rows over which one cell may stand.
+const ROWS: usize = 65_536;
 
 /// Whether a text is a web page or an XML workbook with a table.
 pub(super) fn is_page(text: &str) -> bool {
@@ -32,7 +34,7 @@ pub(super) fn rows(text: &str) -> Result<Vec<Row<'static>>, Problem> {
     let config = reader.config_mut();
     // Pages leave tags open, close others twice, and write & as it is.
     (config.check_end_names, config.allow_unmatched_ends, config.allow_dangling_amp) = (false, true, true);
-    let mut page = Page { rows: Vec::new(), cells: Vec::new(), cell: None, span: 1 };
+    let mut page = Page::default();
     loop {
         match reader.read_event().map_err(bad)? {
             Event::Start(e) => page.open(&e),
@@ -72,12 +74,16 @@ pub(super) fn rows(text: &str) -> Result<Vec<Row<'static>>, Problem> {
     Ok(page.rows)
 }
 
+#[derive(Default)]
 struct Page {
     rows: Vec<Row<'static>>,
     cells: Vec<String>,
     /// The text of the open cell.
     cell: Option<String>,
-    span: usize,
+    /// The columns and rows over which it stands.
+    span: [usize; 2],
+    /// For each column, the rows that a cell above still stands over, the open row with it.
+    hanging: Vec<usize>,
 }
 
 fn attribute(e: &BytesStart<'_>, name: &str) -> Option<usize> {
@@ -89,7 +95,12 @@ fn attribute(e: &BytesStart<'_>, name: &str) -> Option<usize> {
 impl Page {
     fn open(&mut self, e: &BytesStart<'_>) {
         match e.local_name().as_ref().to_ascii_lowercase().as_str() {
-            "table" if !self.rows.is_empty() => self.blank(),
+            "table" => {
+                self.hanging.clear();
+                if !self.rows.is_empty() {
+                    self.blank();
+                }
+            }
             "tr" | "row" => self.end_row(),
             "td" | "th" | "cell" => {
                 self.end_cell();
@@ -99,7 +110,11 @@ impl Page {
                     self.cells.resize(at, String::new());
                 }
                 let merged = attribute(e, "MergeAcross").map(|n| n + 1);
-                self.span = attribute(e, "colspan").or(merged).unwrap_or(1).clamp(1, SPAN);
+                let columns = attribute(e, "colspan").or(merged).unwrap_or(1);
+                let merged = attribute(e, "MergeDown").map(|n| n + 1);
+                let rows = attribute(e, "rowspan").or(merged).unwrap_or(1);
+                self.span = [columns.clamp(1, SPAN), rows.clamp(1, ROWS)];
+                self.skip_hanging();
                 self.cell = Some(String::new());
             }
             "br" | "p" | "div" => self.add(" "),
@@ -124,9 +139,22 @@ impl Page {
     fn end_cell(&mut self) {
         if let Some(text) = self.cell.take() {
             let words: Vec<&str> = text.split_whitespace().collect();
+            let [columns, rows] = self.span;
+            let from = self.cells.len();
             self.cells.push(words.join(" "));
-            let end = self.cells.len() + self.span - 1;
-            self.cells.resize(end.min(SPAN), String::new());
+            let end = (from + columns).min(SPAN).max(from + 1);
+            self.cells.resize(end, String::new());
+            if rows > 1 {
+                self.hanging.resize(self.hanging.len().max(end), 0);
+                self.hanging[from..end].fill(rows);
+            }
+        }
+    }
+
+    /// Leaves the columns empty that a cell above stands over.
+    fn skip_hanging(&mut self) {
+        while self.hanging.get(self.cells.len()).is_some_and(|rows| *rows > 0) {
+            self.cells.push(String::new());
         }
     }
 
@@ -136,6 +164,7 @@ impl Page {
             let cell = |(i, text): (usize, String)| Cell { text: Cow::Owned(text), column: i + 1 };
             let cells = std::mem::take(&mut self.cells).into_iter().enumerate().map(cell).collect();
             self.rows.push(Row { line: self.rows.len() + 1, cells, in_cells: true });
+            self.hanging.iter_mut().for_each(|rows| *rows = rows.saturating_sub(1));
         }
     }
 
@@ -156,6 +185,22 @@ mod tests {
         let texts: Vec<Vec<&str>> =
             rows.iter().map(|r| r.cells.iter().map(|c| c.text.as_ref()).collect()).collect();
         assert_eq!(texts, [vec!["Warp", "", "a & b"], vec!["K (1/cm)", "M", "1 2"], vec![], vec!["x"]]);
+    }
+
+    #[test]
+    fn cells_that_stand_over_several_rows() {
+        let page = "<table><tr><th rowspan=2>Fabric<th colspan=2>B<th rowspan=2>T0<tr><th>Warp<th>Weft\
+                    <tr><td rowspan=2>F1<td>1<td>2<td>3<tr><td>4<td>5<td>6</table>";
+        let rows = rows(page).unwrap();
+        let texts: Vec<Vec<&str>> =
+            rows.iter().map(|r| r.cells.iter().map(|c| c.text.as_ref()).collect()).collect();
+        let expected = [
+            vec!["Fabric", "B", "", "T0"],
+            vec!["", "Warp", "Weft"],
+            vec!["F1", "1", "2", "3"],
+            vec!["", "4", "5", "6"],
+        ];
+        assert_eq!(texts, expected);
     }
 
     #[test]

@@ -22,6 +22,10 @@ pub(super) fn normalised(text: &str) -> String {
         // The sign that stands for "number".
         return if plain.is_empty() && text.contains('#') { "no".to_string() } else { plain };
     }
+    // The sign that stands for the deviation.
+    if text.trim() == "±" {
+        return "sd".to_string();
+    }
     // `n°` and `N.º` are "no", as their letters say.
     let text = text.replace("n°", "no").replace("N°", "no");
     // Only accents of the Latin block go: the voicing marks of kana are part of the word.

@@ -11,6 +11,7 @@ use super::limits;
 use super::marks::{self, Marks};
 use super::raw::{Cell, Row};
 use super::sniff::{Number, number};
+use crate::platform::guarded;
 
 /// The cells of one worksheet; line is the row and column the column of the sheet, from 1.
 pub(super) struct Sheet {
@@ -34,8 +35,10 @@ pub(super) struct Book {
     pub sheets: Vec<Sheet>,
     /// Decimal mark of numbers that are kept as text.
     pub decimal: char,
-    /// What was left out because it is hidden, for people.
+    /// What was left out because it is hidden or struck out, for people.
     pub hidden: Vec<String>,
+    /// Cells of formulas without a stored value, for people.
+    pub without_value: Vec<String>,
 }
 
 /// Kinds of archives.
@@ -72,12 +75,15 @@ pub(super) fn is_workbook(bytes: &[u8]) -> bool {
 /// # Errors
 /// `R021`.
 pub(super) fn sheets(bytes: &[u8], decimal: Option<char>) -> Result<Book, Problem> {
-    let mut hidden = Vec::new();
-    let cells = match archive(bytes) {
-        Some(Archive::Ods) => ods(bytes, &mut hidden)?,
-        Some(_) => xlsx(bytes, &mut hidden)?,
-        None => xls(bytes, &mut hidden)?,
-    };
+    let mut left = LeftOut::default();
+    // Damaged records are more than the crates that read them expect.
+    let read = guarded(|| match archive(bytes) {
+        Some(Archive::Ods) => ods(bytes, &mut left),
+        Some(_) => xlsx(bytes, &mut left),
+        None => xls(bytes, &mut left),
+    });
+    let cells =
+        read.unwrap_or_else(|| Err(bad("it is damaged: a record of it is not as the format has it")))?;
     if cells.iter().map(|(_, c)| places(c)).sum::<usize>() > limits::CELLS {
         return Err(limits::too_many_cells());
     }
@@ -92,7 +98,7 @@ pub(super) fn sheets(bytes: &[u8], decimal: Option<char>) -> Result<Book, Proble
     let decimal = decimal.unwrap_or(if comma { ',' } else { '.' });
     let sheet = |(name, cells): (String, Cells)| Sheet { name, rows: rows(cells, decimal) };
     let sheets = cells.into_iter().filter(|(_, c)| !c.is_empty()).map(sheet).collect();
-    Ok(Book { sheets, decimal, hidden })
+    Ok(Book { sheets, decimal, hidden: left.hidden, without_value: left.without_value })
 }
 
 /// The decimal mark of rows of texts: `,` if only that makes numbers of them.
@@ -193,8 +199,34 @@ fn visible(sheets: &[calamine::Sheet], hidden: &mut Vec<String>) -> Vec<String> 
     shown.into_iter().map(|s| s.name.clone()).collect()
 }
 
-/// Leaves out hidden cells and makes numbers that show per cent what they show.
-fn apply(name: &str, cells: &mut Cells, marks: &Marks, hidden: &mut Vec<String>) {
+/// What is said of the cells that are not read.
+#[derive(Default)]
+struct LeftOut {
+    hidden: Vec<String>,
+    without_value: Vec<String>,
+}
+
+/// The first cells of a list, as a spreadsheet program names them.
+fn cells_text(cells: &[(u32, u32)]) -> String {
+    let name = |(row, column): &(u32, u32)| {
+        let mut letters = String::new();
+        let mut rest = column + 1;
+        while rest > 0 {
+            let letter = u8::try_from((rest - 1) % 26).unwrap_or(0);
+            letters.insert(0, char::from(b'A' + letter));
+            rest = (rest - 1) / 26;
+        }
+        format!("{letters}{}", row + 1)
+    };
+    let first: Vec<String> = cells.iter().take(6).map(name).collect();
+    let more = cells.len().saturating_sub(6);
+    let s = if cells.len() > 1 { "s" } else { "" };
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    format!("cell{s} {}{more}", first.join(", "))
+}
+
+/// Leaves out cells that are hidden or struck out, and makes numbers that show per cent what they show.
+fn apply(name: &str, cells: &mut Cells, marks: &Marks, left: &mut LeftOut) {
     let is_hidden = |(r, c): &(u32, u32)| marks.hidden_rows.contains(r) || marks.hidden_columns.contains(c);
     let rows: std::collections::BTreeSet<u32> =
         cells.keys().filter(|(r, _)| marks.hidden_rows.contains(r)).map(|(r, _)| r + 1).collect();
@@ -206,10 +238,22 @@ fn apply(name: &str, cells: &mut Cells, marks: &Marks, hidden: &mut Vec<String>)
     for (what, numbers) in [("row", &rows), ("column", &columns)] {
         if !numbers.is_empty() {
             let s = if numbers.len() > 1 { "s" } else { "" };
-            hidden.push(format!("{what}{s} {} of sheet {name:?}", list(numbers)));
+            left.hidden.push(format!("{what}{s} {} of sheet {name:?}", list(numbers)));
         }
     }
     cells.retain(|at, _| !is_hidden(at));
+    let struck_out: Vec<(u32, u32)> =
+        cells.keys().filter(|at| marks.struck_out.contains(at)).copied().collect();
+    if !struck_out.is_empty() {
+        left.hidden.push(format!("{}, struck out, of sheet {name:?}", cells_text(&struck_out)));
+        cells.retain(|at, _| !marks.struck_out.contains(at));
+    }
+    let shown = |at: &&(u32, u32)| !is_hidden(at) && !marks.struck_out.contains(at);
+    let without: Vec<(u32, u32)> =
+        marks.formulas.iter().filter(shown).filter(|at| !cells.contains_key(at)).copied().collect();
+    if !without.is_empty() {
+        left.without_value.push(format!("{} of sheet {name:?}", cells_text(&without)));
+    }
     for at in &marks.percent {
         if let Some(Value::Number(n)) = cells.get_mut(at) {
             // 0.062 shows as 6.2 %; the product must not show the binary fraction.
@@ -219,43 +263,44 @@ fn apply(name: &str, cells: &mut Cells, marks: &Marks, hidden: &mut Vec<String>)
     }
 }
 
-fn xlsx(bytes: &[u8], hidden: &mut Vec<String>) -> Result<Vec<(String, Cells)>, Problem> {
+fn xlsx(bytes: &[u8], left: &mut LeftOut) -> Result<Vec<(String, Cells)>, Problem> {
     limits::archive(bytes)?;
     let mut book = Xlsx::new(Cursor::new(bytes)).map_err(bad)?;
     let mut marks = marks::xlsx(bytes)?;
     let mut out = Vec::new();
-    for name in visible(book.sheets_metadata(), hidden) {
+    for name in visible(book.sheets_metadata(), &mut left.hidden) {
         let mut cells = Cells::new();
         // Cell by cell: a range would allocate the whole rectangle up to a stray last cell.
         let mut reader = book.worksheet_cells_reader(&name).map_err(bad)?;
         while let Some(cell) = reader.next_cell().map_err(bad)? {
             insert(&mut cells, cell.get_position(), cell.get_value().clone())?;
         }
-        apply(&name, &mut cells, &marks.remove(&name).unwrap_or_default(), hidden);
+        apply(&name, &mut cells, &marks.remove(&name).unwrap_or_default(), left);
         out.push((name, cells));
     }
     Ok(out)
 }
 
-fn ods(bytes: &[u8], hidden: &mut Vec<String>) -> Result<Vec<(String, Cells)>, Problem> {
+fn ods(bytes: &[u8], left: &mut LeftOut) -> Result<Vec<(String, Cells)>, Problem> {
     limits::archive(bytes)?;
-    let mut book = Ods::new(Cursor::new(bytes)).map_err(bad)?;
+    // First, as it refuses XML that was cut.
     let mut marks = marks::ods(bytes)?;
+    let mut book = Ods::new(Cursor::new(bytes)).map_err(bad)?;
     let mut out = Vec::new();
-    for name in visible(book.sheets_metadata(), hidden) {
+    for name in visible(book.sheets_metadata(), &mut left.hidden) {
         let range = book.worksheet_range(&name).map_err(bad)?;
         let mut cells = used(&range)?;
-        apply(&name, &mut cells, &marks.remove(&name).unwrap_or_default(), hidden);
+        apply(&name, &mut cells, &marks.remove(&name).unwrap_or_default(), left);
         out.push((name, cells));
     }
     Ok(out)
 }
 
-fn xls(bytes: &[u8], hidden: &mut Vec<String>) -> Result<Vec<(String, Cells)>, Problem> {
+fn xls(bytes: &[u8], left: &mut LeftOut) -> Result<Vec<(String, Cells)>, Problem> {
     limits::compound(bytes)?;
     let mut book = Xls::new(Cursor::new(bytes)).map_err(bad)?;
     let mut out = Vec::new();
-    for name in visible(book.sheets_metadata(), hidden) {
+    for name in visible(book.sheets_metadata(), &mut left.hidden) {
         let range = book.worksheet_range(&name).map_err(bad)?;
         out.push((name, used(&range)?));
     }

@@ -11,7 +11,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use drape_method::{CUSICK, CUSICK_DISC, DrapeMethod, JIS};
-pub use parameter::{Direction, Key, Parameter};
+pub use parameter::{Direction, HAND, Key, Parameter};
 pub use relation::Relation;
 
 /// The KES-F test that a curve comes from.

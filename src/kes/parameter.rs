@@ -1,8 +1,9 @@
 //! The KES parameters: symbol, units, which instrument, which directions.
 
+use std::borrow::Cow;
 use std::fmt;
 
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -134,6 +135,27 @@ parameters! {
     Smd: "SMD", "um", "m", Some(Roughness), true;
 }
 
+/// The parameters of a fabric's hand (Kawabata, *The Standardization and Analysis of Hand Evaluation*, 1980), and
+/// whether the hand equations take their logarithm.
+pub const HAND: [(Parameter, bool); 16] = [
+    (Parameter::Lt, false),
+    (Parameter::Wt, true),
+    (Parameter::Rt, false),
+    (Parameter::B, true),
+    (Parameter::Hb, true),
+    (Parameter::G, true),
+    (Parameter::Hg, true),
+    (Parameter::Hg5, true),
+    (Parameter::Lc, false),
+    (Parameter::Wc, true),
+    (Parameter::Rc, false),
+    (Parameter::Miu, false),
+    (Parameter::Mmd, true),
+    (Parameter::Smd, true),
+    (Parameter::T0, true),
+    (Parameter::W, true),
+];
+
 impl Parameter {
     /// SI value of one KES unit.
     pub fn kes_factor(self) -> f64 {
@@ -144,6 +166,11 @@ impl Parameter {
     /// The parameter of a symbol, in any letter case.
     pub fn from_symbol(symbol: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|p| p.symbol().eq_ignore_ascii_case(symbol.trim()))
+    }
+
+    /// Whether the hand equations take its logarithm; `None` of a parameter that is none of [`HAND`].
+    pub fn takes_logarithm(self) -> Option<bool> {
+        HAND.into_iter().find(|(parameter, _)| *parameter == self).map(|(_, log)| log)
     }
 }
 
@@ -156,6 +183,18 @@ impl fmt::Display for Parameter {
 impl Serialize for Parameter {
     fn serialize<S: serde::Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
         s.serialize_str(self.symbol())
+    }
+}
+
+/// A symbol.
+impl JsonSchema for Parameter {
+    fn schema_name() -> Cow<'static, str> {
+        "Parameter".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let symbols: Vec<_> = Self::ALL.iter().map(|parameter| parameter.symbol()).collect();
+        json_schema!({ "type": "string", "enum": symbols })
     }
 }
 

@@ -63,13 +63,13 @@ impl Relation {
     ///
     /// Definitions hold to a quarter: of a table the mean of products is compared with the product of means. Residual
     /// strains lie below half of the maximum (beyond it the loop would be all friction) and above a five-hundredth of
-    /// it (below, less than an instrument tells). Fibres have 900 (polypropylene) to 2600 kg/m³ (glass), textile
+    /// it (below, less than an instrument tells); Tm lies below T0 by more than a two-hundredth for the same reason. Fibres have 900 (polypropylene) to 2600 kg/m³ (glass), textile
     /// fibres up to 1600 (Morton and Hearle, Physical Properties of Textile Fibres, 4th ed., 2008, ch. 5); the lightest
     /// fabrics are three hundredths fibre. Friction at 5° lies at or above that at 0.5° (Kawabata 1980).
     pub fn range(self) -> [f64; 2] {
         match self {
             Self::TensileEnergy | Self::CompressionEnergy | Self::Compressibility => [0.75, 1.33],
-            Self::CompressedThickness => [0.1, 1.0],
+            Self::CompressedThickness => [0.1, 0.995],
             Self::ResidualCurvature | Self::ResidualAngle => [0.002, 0.5],
             Self::ShearHysteresis => [0.7, 10.0],
             Self::Density => [30.0, 1600.0],

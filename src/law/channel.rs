@@ -10,7 +10,7 @@ use super::{Backbone, Elastic, LawError, Widening};
 pub const MAX_SLIDERS: usize = 12;
 
 /// An elastic-slider element: a spring of which the deformation never exceeds a level.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Slider {
     /// Stiffness w of the spring (stress per strain).
@@ -20,7 +20,7 @@ pub struct Slider {
 }
 
 /// Sliders whose levels widen alike.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Family {
     /// How their slip levels grow with the strain.
@@ -30,7 +30,7 @@ pub struct Family {
 }
 
 /// A law `σ = E(e) + Σ w_j t_j` with its memory `t_j` in [`State`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "Parts", into = "Parts")]
 pub struct Channel {
     backbone: Backbone,
@@ -39,7 +39,7 @@ pub struct Channel {
 }
 
 /// A channel as it is written to a file.
-#[derive(Serialize, Deserialize)]
+#[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct Parts {
     backbone: Backbone,

@@ -16,6 +16,12 @@ use super::error::LibraryError;
 /// What the cure of bounds that are not understood begins with.
 const EXAMPLE: &str = "they are like `thickness < 0.4 and B_warp < 0.08`";
 
+/// Bytes of a condition. Nobody types more, and one without end would be deeper than a thread can go.
+const MOST: usize = 4096;
+/// Steps into brackets and operands. The parser reads a `NOT` that it does not understand again as a name, so that its time
+/// doubles with each one inside another: 50 steps, its own limit, took five seconds for 1280 bytes.
+const DEEPEST: usize = 24;
+
 /// Bounds that were understood, for a library of certain columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bounds {
@@ -72,8 +78,11 @@ impl Bounds {
         // Of the dialects, this one knows names that begin with a figure, such as 2HB_warp.
         let failed = |problem: String, at: Location| bounds(&problem, at, EXAMPLE.into());
         let nowhere = Location::empty();
-        let mut parser =
-            Parser::new(&HiveDialect {}).try_with_sql(text).map_err(|e| failed(e.to_string(), nowhere))?;
+        if text.len() > MOST {
+            return Err(failed(format!("{} bytes are more than {MOST}", text.len()), nowhere));
+        }
+        let parser = Parser::new(&HiveDialect {}).with_recursion_limit(DEEPEST);
+        let mut parser = parser.try_with_sql(text).map_err(|e| failed(e.to_string(), nowhere))?;
         let tree = parser.parse_expr().map_err(|e| failed(e.to_string(), nowhere))?;
         let next = parser.peek_token();
         if next.token != Token::EOF {
@@ -316,6 +325,24 @@ mod tests {
             let bounds = Bounds::parse(text, &table.schema()).unwrap();
             assert_eq!([0, 1, 2].map(|row| bounds.hold(&table, row)), expected, "{text}");
         }
+    }
+
+    #[test]
+    fn a_condition_without_end_is_refused_and_a_long_one_is_not() {
+        let long = |terms: usize| format!("thickness < 0.4{}", " and 1<2".repeat(terms));
+        let table = table();
+        assert!(Bounds::parse(&long(500), &table.schema()).unwrap().hold(&table, 0));
+        let error = Bounds::parse(&long(20_000), &table.schema()).unwrap_err().to_string();
+        assert!(error.contains("more than 4096"), "{error}");
+    }
+
+    #[test]
+    fn brackets_within_brackets_are_understood_to_a_depth() {
+        let table = table();
+        let nested = |depth: usize| format!("{}thickness < 0.4{}", "not (".repeat(depth), ")".repeat(depth));
+        assert!(Bounds::parse(&nested(8), &table.schema()).unwrap().hold(&table, 0));
+        let error = Bounds::parse(&nested(60), &table.schema()).unwrap_err().to_string();
+        assert!(error.contains("recursion limit"), "{error}");
     }
 
     #[test]

@@ -10,7 +10,8 @@ use parquet::arrow::arrow_reader::{ParquetRecordBatchReaderBuilder, RowSelection
 use parquet::errors::ParquetError;
 
 use super::error::LibraryError;
-use crate::platform::files;
+use crate::platform::{files, guarded};
+use crate::report::arrow::DAMAGED;
 
 /// Rows that are in memory at once.
 const PIECE: usize = 1 << 13;
@@ -53,9 +54,10 @@ impl LibraryFile {
         let builder = builder(&self.path)?;
         let mask = ProjectionMask::columns(builder.parquet_schema(), columns.iter().copied());
         let failed = |e: ParquetError| broken(&self.path, &e.to_string());
-        let reader = builder.with_projection(mask).with_batch_size(PIECE).build().map_err(failed)?;
+        let reader = builder.with_projection(mask).with_batch_size(PIECE);
+        let mut reader = whole(&self.path, || reader.build().map_err(failed))?;
         let mut first = 0;
-        for piece in reader {
+        while let Some(piece) = whole(&self.path, || Ok(reader.next()))? {
             let piece = piece.map_err(|e| broken(&self.path, &e.to_string()))?;
             work(&piece, first);
             first += piece.num_rows();
@@ -74,17 +76,25 @@ impl LibraryFile {
                 .unwrap_or_default();
         let ranges = numbers.iter().map(|number| *number..*number + 1);
         let selection = RowSelection::from_consecutive_ranges(ranges, count);
-        let reader = builder.with_row_selection(selection).build();
         let failed = |problem: String| broken(&self.path, &problem);
-        let pieces = reader.map_err(|e| failed(e.to_string()))?.collect::<Result<Vec<_>, _>>();
-        concat_batches(&self.schema, &pieces.map_err(|e| failed(e.to_string()))?)
-            .map_err(|e| failed(e.to_string()))
+        let pieces = whole(&self.path, || {
+            let reader = builder.with_row_selection(selection).build();
+            let pieces = reader.map_err(|e| failed(e.to_string()))?.collect::<Result<Vec<_>, _>>();
+            pieces.map_err(|e| failed(e.to_string()))
+        })?;
+        concat_batches(&self.schema, &pieces).map_err(|e| failed(e.to_string()))
     }
 }
 
 fn builder(path: &Path) -> Result<ParquetRecordBatchReaderBuilder<files::File>, LibraryError> {
     let file = files::open(path).map_err(|e| broken(path, &e.to_string()))?;
-    ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| broken(path, &e.to_string()))
+    let made = || ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| broken(path, &e.to_string()));
+    whole(path, made)
+}
+
+/// What is read of a file, whose damage may be more than the crate that reads it expects.
+fn whole<T>(path: &Path, read: impl FnOnce() -> Result<T, LibraryError>) -> Result<T, LibraryError> {
+    guarded(read).unwrap_or_else(|| Err(broken(path, DAMAGED)))
 }
 
 fn broken(path: &Path, problem: &str) -> LibraryError {

@@ -12,8 +12,8 @@ use super::bounds::Bounds;
 use super::build::rows_of_parameters;
 use super::error::LibraryError;
 use super::file::LibraryFile;
-use super::space::{Axis, FEWEST, Point, SPACE, Usual, Values, column, columns, distance, point};
-use crate::instrument::Parameter;
+use super::space::{Axis, FEWEST, Point, Usual, Values, column, columns, distance, point, sources};
+use crate::kes::{HAND, Parameter};
 use crate::report::arrow::{Metadata, UNIT};
 use crate::report::table::{FabricRow, TableError, UnitSystem, in_unit};
 
@@ -81,9 +81,12 @@ impl LibraryFile {
         let named = if let Like::Named(name) = like { Some(name.as_str()) } else { None };
         self.scan(&self.names(question), |piece, first| {
             let names = piece.column_by_name("fabric").and_then(|c| c.as_string_opt::<i32>());
+            let numbers = sources(|name| piece.column_by_name(name)?.as_primitive_opt::<Float64Type>());
             for row in 0..piece.num_rows() {
                 let name = names.filter(|names| names.is_valid(row)).map_or("", |names| names.value(row));
-                let point = point(|column| number(piece, column, row));
+                let point = point(&numbers, |column| {
+                    column.filter(|column| column.is_valid(row)).map(|column| column.value(row))
+                });
                 // What is asked for does not change what is usual in the library.
                 usual.add(&point);
                 if named == Some(name) {
@@ -119,8 +122,7 @@ impl LibraryFile {
 
     /// The columns that a comparison needs.
     fn names<'q>(&'q self, question: &'q Question) -> Vec<&'q str> {
-        let of_space: BTreeSet<String> =
-            SPACE.iter().flat_map(|(parameter, _)| columns(*parameter)).collect();
+        let of_space: BTreeSet<String> = HAND.iter().flat_map(|(parameter, _)| columns(*parameter)).collect();
         let fields = self.schema().fields().iter().map(|field| field.name().as_str());
         let space = fields.filter(|name| of_space.contains(*name));
         let bounds = question.bounds.iter().flat_map(Bounds::columns);
@@ -159,11 +161,6 @@ impl LibraryFile {
     }
 }
 
-fn number(table: &RecordBatch, name: &str, row: usize) -> Option<f64> {
-    let numbers = table.column_by_name(name)?.as_primitive_opt::<Float64Type>()?;
-    numbers.is_valid(row).then(|| numbers.value(row))
-}
-
 impl Like {
     /// The parameters in SI of a table of one fabric.
     ///
@@ -181,5 +178,5 @@ fn point_of(rows: &[FabricRow]) -> Point {
         Some((column(&row.parameter, row.direction.as_deref()), in_unit(row.mean?, factor)))
     };
     let values: Values = rows.iter().filter_map(value).collect();
-    point(|name| values.get(name).copied())
+    point(&sources(|name| values.get(name).copied()), |value| *value)
 }

@@ -22,4 +22,4 @@ pub use build::{Shelf, Stored};
 pub use error::LibraryError;
 pub use file::LibraryFile;
 pub use find::{Answer, Like, Question};
-pub use space::{Axis, FEWEST, SPACE};
+pub use space::{Axis, FEWEST};

@@ -1,40 +1,21 @@
 //! The space that fabrics are compared in.
 
+use schemars::JsonSchema;
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::kes::{Direction, Parameter};
-
-/// The parameters of a fabric's hand (Kawabata, *The Standardization and Analysis of Hand Evaluation*, 1980), and
-/// whether their logarithm is taken.
-pub const SPACE: [(Parameter, bool); 16] = [
-    (Parameter::Lt, false),
-    (Parameter::Wt, true),
-    (Parameter::Rt, false),
-    (Parameter::B, true),
-    (Parameter::Hb, true),
-    (Parameter::G, true),
-    (Parameter::Hg, true),
-    (Parameter::Hg5, true),
-    (Parameter::Lc, false),
-    (Parameter::Wc, true),
-    (Parameter::Rc, false),
-    (Parameter::Miu, false),
-    (Parameter::Mmd, true),
-    (Parameter::Smd, true),
-    (Parameter::T0, true),
-    (Parameter::W, true),
-];
+use crate::kes::{Direction, HAND, Parameter};
+use crate::quantity::Moments;
 
 /// Fewest parameters that two fabrics must share to be compared.
 pub const FEWEST: usize = 3;
 
 /// A fabric in the space; not a number where it has no value.
-pub(super) type Point = [f64; SPACE.len()];
+pub(super) type Point = [f64; HAND.len()];
 
 /// What is usual in a library for a parameter.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Axis {
     /// The parameter.
     pub parameter: Parameter,
@@ -48,17 +29,9 @@ pub struct Axis {
     pub sd: Option<f64>,
 }
 
-/// Means and sums of squares, updated value by value (Welford 1962).
-#[derive(Clone, Copy, Debug, Default)]
-struct Moments {
-    n: u64,
-    mean: f64,
-    squares: f64,
-}
-
 /// The moments of the axes over a library.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Usual([Moments; SPACE.len()]);
+pub(super) struct Usual([Moments; HAND.len()]);
 
 /// Name of the column of a parameter or modulus in a direction.
 pub(super) fn column(parameter: &str, direction: Option<&str>) -> String {
@@ -72,18 +45,22 @@ pub(super) fn columns(parameter: Parameter) -> [String; 3] {
     [of(Direction::Warp), of(Direction::Weft), column(parameter.symbol(), None)]
 }
 
-/// The point of values by the names of their columns: the mean of the two directions where one is known, else the
-/// fabric as a whole.
-pub(super) fn point(value: impl Fn(&str) -> Option<f64>) -> Point {
-    SPACE.map(|(parameter, log10)| {
-        let [warp, weft, whole] = columns(parameter).map(|name| value(&name));
-        coordinate([warp, weft, whole], log10)
-    })
+/// What stands for the columns that a point is made of, by their names.
+pub(super) type Sources<T> = [[T; 3]; HAND.len()];
+
+/// Finds what stands for each of the columns.
+pub(super) fn sources<T>(of: impl Fn(&str) -> T) -> Sources<T> {
+    HAND.map(|(parameter, _)| columns(parameter).map(|name| of(&name)))
 }
 
-/// A coordinate of the values of the two directions and of the fabric as a whole. A value that is not above 0 has no
-/// logarithm and is not compared.
-pub(super) fn coordinate([warp, weft, whole]: [Option<f64>; 3], log10: bool) -> f64 {
+/// The point of values in these columns.
+pub(super) fn point<T>(sources: &Sources<T>, value: impl Fn(&T) -> Option<f64>) -> Point {
+    std::array::from_fn(|axis| coordinate(sources[axis].each_ref().map(&value), HAND[axis].1))
+}
+
+/// A coordinate: the mean of the two directions where one is known, else the fabric as a whole. A value that is not
+/// above 0 has no logarithm and is not compared.
+fn coordinate([warp, weft, whole]: [Option<f64>; 3], log10: bool) -> f64 {
     let mean = match (warp, weft) {
         (Some(a), Some(b)) => Some((a + b) / 2.0),
         (one, None) | (None, one) => one,
@@ -99,10 +76,7 @@ impl Usual {
     /// Counts a fabric.
     pub fn add(&mut self, point: &Point) {
         for (moments, value) in self.0.iter_mut().zip(point).filter(|(_, value)| value.is_finite()) {
-            moments.n += 1;
-            let before = value - moments.mean;
-            moments.mean += before / moments.n as f64;
-            moments.squares += before * (value - moments.mean);
+            moments.add(*value);
         }
     }
 
@@ -113,9 +87,9 @@ impl Usual {
             log10: *log10,
             n: m.n,
             mean: m.mean,
-            sd: (m.n > 1).then(|| (m.squares / (m.n - 1) as f64).sqrt()),
+            sd: m.sd(),
         };
-        SPACE.iter().zip(&self.0).map(axis).collect()
+        HAND.iter().zip(&self.0).map(axis).collect()
     }
 }
 
@@ -153,7 +127,8 @@ mod tests {
     fn distances_are_in_standard_deviations() {
         let mut usual = Usual::default();
         let of = |t: f64, b: f64| {
-            point(|name| [("T0", t), ("B_warp", b)].iter().find(|c| c.0 == name).map(|c| c.1))
+            let values = sources(|name| [("T0", t), ("B_warp", b)].iter().find(|c| c.0 == name).map(|c| c.1));
+            point(&values, |value| *value)
         };
         // log10 of T0: 0, 1, 2: mean 1, SD 1. B is the same everywhere and says nothing.
         let points = [of(1.0, 5.0), of(10.0, 5.0), of(100.0, 5.0)];

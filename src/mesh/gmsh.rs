@@ -145,7 +145,7 @@ impl<'a> Reader<'a> {
             for _ in 0..count {
                 let row = self.numbers::<f64>(start + 1)?;
                 let physical = row[start] as usize;
-                let Some(tags) = row.get(start + 1..start + 1 + physical) else {
+                let Some(tags) = row[start + 1..].get(..physical) else {
                     return Err(self.error(format!("{physical} physical tags announced, fewer given")));
                 };
                 file.physical

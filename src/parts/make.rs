@@ -11,6 +11,7 @@ use super::error::PartError;
 use super::evaluation::evaluate;
 use super::merge::{files_of, listed};
 use super::part::{Part, Table, key_of};
+use crate::finding::FailureKind;
 use crate::instrument::Library;
 use crate::platform::files;
 use crate::report::OutputError;
@@ -39,12 +40,16 @@ pub struct Done {
     pub kept: bool,
     /// Number of fabrics that gave something.
     pub fabrics: usize,
+    /// Number of fabrics and cases with constants of their own that gave something; of a part that was there, of rows.
+    pub useful: usize,
     /// Rows of the results.
     pub rows: usize,
     /// Rows of the findings.
     pub findings: usize,
     /// Rows of the failures.
     pub failures: usize,
+    /// How many of them are numerical.
+    pub numerical: usize,
     /// Whether a check of a case does not hold; not known of a part that was there.
     pub fails_a_check: bool,
 }
@@ -79,9 +84,11 @@ pub fn make(request: &Request, share: Share, observer: &Observer) -> Result<Done
     Ok(Done {
         kept: false,
         fabrics: evaluation.fabrics,
+        useful: evaluation.useful,
         rows: evaluation.results.len(),
         findings: evaluation.findings.len(),
         failures: evaluation.failures.len(),
+        numerical: numerical(evaluation.failures.iter().map(|row| row.code.as_str())),
         fails_a_check: evaluation.fails_a_check,
     })
 }
@@ -90,21 +97,34 @@ impl Done {
     /// Of a part that was there.
     fn of(part: &Part) -> Self {
         let names: BTreeSet<&str> = fabrics(part.table(Table::Results)).collect();
+        let rows = part.table(Table::Results).num_rows();
         Self {
             kept: true,
             fabrics: names.into_iter().filter(|name| !name.is_empty()).count(),
-            rows: part.table(Table::Results).num_rows(),
+            useful: rows,
+            rows,
             findings: part.table(Table::Findings).num_rows(),
             failures: part.table(Table::Failures).num_rows(),
+            numerical: numerical(texts(part.table(Table::Failures), "code")),
             fails_a_check: false,
         }
     }
 }
 
+/// How many of some failures are numerical.
+fn numerical<'c>(codes: impl Iterator<Item = &'c str>) -> usize {
+    codes.filter(|code| FailureKind::of_code(code) == FailureKind::Numerics).count()
+}
+
 /// Names of the fabrics of the rows of a table.
 pub(super) fn fabrics(table: &RecordBatch) -> impl Iterator<Item = &str> {
-    let names = table.column_by_name("fabric").and_then(|column| column.as_string_opt::<i32>());
-    names.into_iter().flat_map(|names| (0..names.len()).map(|at| names.value(at)))
+    texts(table, "fabric")
+}
+
+/// A column of texts.
+fn texts<'t>(table: &'t RecordBatch, column: &str) -> impl Iterator<Item = &'t str> + use<'t> {
+    let texts = table.column_by_name(column).and_then(|column| column.as_string_opt::<i32>());
+    texts.into_iter().flat_map(|texts| (0..texts.len()).map(|at| texts.value(at)))
 }
 
 /// Whether there is a table that this program did not write.

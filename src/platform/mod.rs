@@ -7,8 +7,11 @@
 mod clock;
 mod deadline;
 pub mod files;
+mod guard;
 mod parallel;
 
 pub use clock::Stopwatch;
 pub use deadline::{over, within};
+pub(crate) use guard::guarded;
+pub use guard::is_guarded;
 pub use parallel::{Items, map, map_several, run_all, try_map};

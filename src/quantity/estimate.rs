@@ -47,10 +47,28 @@ impl Estimate {
     }
 }
 
+/// The number of repeats; `None` of one with a deviation: that is of repeats whose number nobody stated.
+pub fn stated_repeats(n: u64, sd: Option<f64>) -> Option<u64> {
+    (n != 1 || sd.is_none()).then_some(n)
+}
+
+/// The number of repeats for people.
+pub fn repeats_text(n: u64, sd: Option<f64>) -> String {
+    stated_repeats(n, sd).map_or("not stated".into(), |n| n.to_string())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
+
+    #[test]
+    fn a_deviation_of_one_value_is_of_repeats_that_nobody_counted() {
+        assert_eq!(
+            [(1, None), (1, Some(0.1)), (3, Some(0.1))].map(|(n, sd)| repeats_text(n, sd)),
+            ["1", "not stated", "3"]
+        );
+    }
 
     #[test]
     fn mean_spread_and_interval_of_three() {

@@ -6,6 +6,7 @@
 
 mod curve;
 mod estimate;
+mod moments;
 mod polygon;
 mod propagation;
 mod sobol;
@@ -14,7 +15,8 @@ mod thinned;
 mod unit;
 
 pub use curve::Curve;
-pub use estimate::Estimate;
+pub use estimate::{Estimate, repeats_text, stated_repeats};
+pub use moments::Moments;
 pub use polygon::{polygon_area, polygon_centre};
 pub use propagation::{Band, Bands, NoSpread};
 pub use sobol::{Population, Sampled, sampled, sobol_points};

@@ -1,23 +1,30 @@
 //! First-order (delta) propagation of the spread of measured inputs to what is computed from them.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Deserializer, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::Estimate;
 
 /// A standard uncertainty and the 95 % interval that follows from it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Band {
     /// Standard uncertainty, in the unit of the quantity.
     pub standard: f64,
     /// Half the width of the two-sided 95 % interval (Student t): value ± this.
     pub half_width: f64,
-    /// Effective degrees of freedom (Welch-Satterthwaite); infinite where nothing is uncertain.
+    /// Effective degrees of freedom (Welch-Satterthwaite); infinite where nothing is uncertain, which is `null` in JSON.
+    #[serde(deserialize_with = "null_is_infinite")]
+    #[schemars(with = "Option<f64>")]
     pub degrees_of_freedom: f64,
 }
 
+fn null_is_infinite<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::INFINITY))
+}
+
 /// The two questions that a band may answer.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Bands {
     /// Where the value of the mean fabric lies: each input has the standard error SD/√n.
     pub mean_fabric: Band,

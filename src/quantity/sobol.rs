@@ -1,5 +1,6 @@
 //! Spread of measured inputs through a function that is not linear: scrambled Sobol points.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -17,7 +18,7 @@ pub enum Population {
 }
 
 /// A result over a sample of the inputs.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Sampled {
     /// Median.
     pub median: f64,

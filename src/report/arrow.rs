@@ -16,9 +16,13 @@ use parquet::file::properties::WriterProperties;
 
 use super::table::{Row, TableError, Values};
 use super::table_stream::refused;
+use crate::platform::guarded;
 
 /// Rows of a row group of a table that is written row by row: what is held in memory at once.
 pub(super) const GROUP: usize = 16_384;
+
+/// What is said of a file whose reader panics.
+pub(crate) const DAMAGED: &str = "it is damaged: a part of it is not as the format has it";
 
 /// Where the unit of a column is written.
 pub const UNIT: &str = "unit";
@@ -128,6 +132,11 @@ pub fn write_pieces<'p>(
 /// # Errors
 /// Those of the reader, for bytes that are no whole file.
 pub fn read(bytes: Bytes) -> Result<(Metadata, RecordBatch), ParquetError> {
+    // Numbers of a damaged head are more than the crate expects.
+    guarded(|| whole(bytes)).unwrap_or_else(|| Err(ParquetError::General(DAMAGED.into())))
+}
+
+fn whole(bytes: Bytes) -> Result<(Metadata, RecordBatch), ParquetError> {
     let reader = ParquetRecordBatchReaderBuilder::try_new(bytes)?;
     let schema = reader.schema().clone();
     let plain = Arc::new(schema.as_ref().clone().with_metadata(Metadata::default()));

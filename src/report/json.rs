@@ -2,39 +2,43 @@
 //!
 //! Numbers that are not finite become `null`, as JSON has no other word for them.
 
-use std::collections::BTreeMap;
+use std::borrow::Cow;
 
+use indexmap::IndexMap;
 use nalgebra::{Matrix2, Matrix3};
-use serde::Serialize;
-use serde_json::{Map, Value, json};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::characterise::{FabricSheet, FrictionLaw, LawBand, MeanBranch, Settings, ValueStatus};
-use crate::constitutive::{Entry, Input, Used, entries};
+use crate::constitutive::{Constitutive, Entry, Used, entries};
 use crate::finding::{Fields, Finding};
-use crate::instrument::Parameter;
+use crate::instrument::{Direction, Origin, Parameter, Test};
 use crate::quantity::{Curve, Estimate};
-use crate::section::ShellSection;
 
 /// `kesf.sheet/1`: the parameters of fabrics.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SheetDocument {
     /// `kesf.sheet/1`.
-    pub schema: &'static str,
-    /// Version of this program.
-    pub version: &'static str,
+    #[schemars(extend("const" = "kesf.sheet/1"))]
+    pub schema: Cow<'static, str>,
+    /// Version of the program that wrote it.
+    #[serde(default)]
+    pub version: Cow<'static, str>,
     /// Every file behind the sheets.
+    #[serde(default)]
     pub inputs: Vec<InputEntry>,
     /// One entry per fabric.
     pub fabrics: Vec<SheetEntry>,
     /// What a reader must know.
+    #[serde(default)]
     pub findings: Vec<FindingEntry>,
     /// Windows and readings behind the values, in words.
-    #[serde(skip_serializing_if = "Map::is_empty")]
-    pub settings: Map<String, Value>,
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub settings: IndexMap<String, String>,
 }
 
 /// A file and its hash.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 pub struct InputEntry {
     /// As it was named to us, with `/`.
     pub path: String,
@@ -43,41 +47,133 @@ pub struct InputEntry {
 }
 
 /// One fabric of a [`SheetDocument`].
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SheetEntry {
     /// Identifier.
     pub name: String,
     /// Name for people.
     pub title: String,
-    /// `measured`, `published` or `synthetic`.
-    pub origin: &'static str,
-    /// What people state of the fabric where an instrument may have measured too: `areal_density` (kg/m²) and
-    /// `thickness` (m), as numbers.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub stated: BTreeMap<&'static str, f64>,
-    /// By symbol: `{"mean","sd","n","unit","cv","ci95","status"}`, or one such object each for `warp`, `weft`, `bias` and
-    /// `fabric` (a directional parameter known for the fabric as a whole only).
-    pub parameters: Map<String, Value>,
+    /// Where the data come from.
+    pub origin: Origin,
+    /// What people state of the fabric where an instrument may have measured too.
+    #[serde(default, skip_serializing_if = "Stated::is_empty")]
+    pub stated: Stated,
+    /// By symbol.
+    pub parameters: IndexMap<String, ParameterEntry>,
     /// Tensile moduli (N/m) by name and direction.
-    pub moduli: Map<String, Value>,
+    pub moduli: IndexMap<String, IndexMap<Direction, ValueEntry>>,
     /// Friction laws (SI; see [`FrictionLaw`]): test, direction, specimen, what the law rests on, its
     /// backbone and sliders, how well it fits, and the parameters of its simulated cycle.
+    #[serde(default)]
     pub friction: Vec<FrictionLaw>,
-    /// The mean loop of the laws of each test over the specimens, run by run, with the 95 % bands of the
-    /// mean fabric and of one more specimen (SI; every run a curve of abscissae `x` and ordinates `y`).
-    pub friction_bands: Vec<Value>,
-    /// By symbol and direction: the parameter re-extracted from the simulated cycles of the laws
-    /// (`"simulated"`) beside the `"measured"` one, and whether the laws rest on loops.
-    pub re_extracted: Map<String, Value>,
+    /// The mean loop of the laws of each test over the specimens, with its bands.
+    #[serde(default)]
+    pub friction_bands: Vec<LawBandEntry>,
+    /// By symbol and direction: what the laws give back.
+    #[serde(default)]
+    pub re_extracted: IndexMap<String, IndexMap<String, ReExtractedEntry>>,
+}
+
+/// What people state of a fabric (SI).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Stated {
+    /// Areal density (kg/m²).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub areal_density: Option<f64>,
+    /// Thickness (m).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub thickness: Option<f64>,
+}
+
+impl Stated {
+    fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// A parameter of the fabric as a whole; or by `warp`, `weft`, `bias` and `fabric` (a directional parameter that is
+/// known for the fabric as a whole only).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum ParameterEntry {
+    /// Of the fabric.
+    Whole(ValueEntry),
+    /// By direction.
+    Directions(IndexMap<String, ValueEntry>),
+}
+
+/// A value of a sheet.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ValueEntry {
+    /// The value.
+    #[serde(flatten)]
+    pub estimate: EstimateEntry,
+    /// How it was had.
+    #[serde(default)]
+    pub status: ValueStatus,
+}
+
+/// A mean over repeats with its spread.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct EstimateEntry {
+    /// Mean, in the unit.
+    pub mean: Option<f64>,
+    /// Sample standard deviation.
+    pub sd: Option<f64>,
+    /// Number of repeats.
+    pub n: usize,
+    /// SI unit.
+    pub unit: Cow<'static, str>,
+    /// Coefficient of variation (1).
+    #[serde(default)]
+    pub cv: Option<f64>,
+    /// Half the width of the 95 % interval of the mean (Student t).
+    #[serde(default)]
+    pub ci95: Option<f64>,
+}
+
+/// The mean loop of the laws of a test (SI).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LawBandEntry {
+    /// The test.
+    pub test: Test,
+    /// Yarn direction; `null` for compression.
+    pub direction: Option<Direction>,
+    /// Number of laws, one a specimen.
+    pub n: usize,
+    /// The runs of the cycle in order.
+    pub runs: Vec<RunEntry>,
+}
+
+/// A run of a cycle: every fifth point.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RunEntry {
+    /// The mean.
+    pub mean: Curve,
+    /// Both ends of the 95 % band of the mean fabric.
+    pub mean_fabric: [Curve; 2],
+    /// Both ends of the 95 % band of one more specimen.
+    pub next_specimen: [Curve; 2],
+}
+
+/// A parameter that was evaluated in the simulated cycles of the laws, beside the measured one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ReExtractedEntry {
+    /// Of the simulated cycles.
+    pub simulated: EstimateEntry,
+    /// Of the sheet.
+    pub measured: EstimateEntry,
+    /// Whether the laws rest on loops.
+    pub from_loops: bool,
 }
 
 /// A finding of a document.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FindingEntry {
     /// The fabric it belongs to, where its place does not say so.
     pub fabric: Option<String>,
     /// Code for `kesf explain`.
-    pub code: &'static str,
+    pub code: Cow<'static, str>,
     /// One sentence.
     pub message: String,
     /// What the sentence is made of, by name; numbers are SI.
@@ -89,28 +185,31 @@ pub struct FindingEntry {
 }
 
 /// `kesf.section/1`: shell sections with the assumptions behind them.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SectionDocument {
     /// `kesf.section/1`.
-    pub schema: &'static str,
-    /// Version of this program.
-    pub version: &'static str,
+    #[schemars(extend("const" = "kesf.section/1"))]
+    pub schema: Cow<'static, str>,
+    /// Version of the program that wrote it.
+    #[serde(default)]
+    pub version: Cow<'static, str>,
     /// Unit of each key of a section.
-    pub units: BTreeMap<&'static str, &'static str>,
+    #[serde(default)]
+    pub units: IndexMap<Cow<'static, str>, Cow<'static, str>>,
     /// One entry per section.
     pub sections: Vec<SectionEntry>,
 }
 
 /// One section of a [`SectionDocument`]; material axes, x = warp.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SectionEntry {
     /// The fabric, or the case that states the section.
     pub fabric: String,
-    /// `measured`, `published` or `synthetic`.
-    pub origin: &'static str,
-    /// Membrane stiffness, rows (N/m).
+    /// Where the data come from.
+    pub origin: Origin,
+    /// Membrane stiffness, rows (N/m), of [ε_x, ε_y, γ_xy].
     pub d_m: [[f64; 3]; 3],
-    /// Bending stiffness, rows (N·m).
+    /// Bending stiffness, rows (N·m), of [κ_x, κ_y, κ_xy] with the engineering twist.
     pub d_b: [[f64; 3]; 3],
     /// Transverse shear stiffness, rows (N/m).
     pub d_s: [[f64; 2]; 2],
@@ -118,10 +217,20 @@ pub struct SectionEntry {
     pub areal_density: f64,
     /// Thickness (m).
     pub thickness: f64,
-    /// How the constants were found, as an object.
-    pub assumptions: Value,
+    /// How the constants were found, in the order of use.
+    pub assumptions: IndexMap<String, AssumptionEntry>,
     /// Entries on and above the diagonals with their bands, in their own units.
+    #[serde(default)]
     pub uncertainty: Vec<Entry>,
+}
+
+/// How a constant of a section was found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct AssumptionEntry {
+    /// The value that is used.
+    pub value: String,
+    /// Where it comes from.
+    pub source: String,
 }
 
 /// The document of some sheets, and of the settings that they were evaluated with.
@@ -131,32 +240,19 @@ pub fn sheet_document<'a>(
 ) -> SheetDocument {
     let settings = settings.map(Settings::describe).unwrap_or_default();
     let mut document = SheetDocument {
-        schema: "kesf.sheet/1",
-        version: env!("CARGO_PKG_VERSION"),
+        schema: "kesf.sheet/1".into(),
+        version: env!("CARGO_PKG_VERSION").into(),
         inputs: Vec::new(),
         fabrics: Vec::new(),
         findings: Vec::new(),
-        settings: settings.into_iter().map(|(name, value)| (name.to_string(), value.into())).collect(),
+        settings: settings.into_iter().map(|(name, value)| (name.to_string(), value)).collect(),
     };
     for sheet in sheets {
         document.inputs.extend(
             sheet.sources.iter().map(|s| InputEntry { path: slashes(&s.path), sha256: s.sha256.clone() }),
         );
         document.findings.extend(sheet.findings.iter().map(|f| FindingEntry::new(Some(&sheet.name), f)));
-        document.fabrics.push(SheetEntry {
-            name: sheet.name.clone(),
-            title: sheet.info.title.clone(),
-            origin: sheet.info.origin.name(),
-            stated: [("areal_density", sheet.info.areal_density), ("thickness", sheet.info.thickness)]
-                .into_iter()
-                .filter_map(|(name, value)| Some((name, value?)))
-                .collect(),
-            parameters: parameters(sheet),
-            moduli: moduli(sheet),
-            friction: sheet.laws.clone(),
-            friction_bands: sheet.law_bands().iter().map(band).collect(),
-            re_extracted: re_extracted(sheet),
-        });
+        document.fabrics.push(SheetEntry::new(sheet));
     }
     // Two fabrics may come from one file.
     document.inputs.sort();
@@ -164,40 +260,33 @@ pub fn sheet_document<'a>(
     document
 }
 
-/// The document of some sections: the fabric, section, measured inputs and assumptions of each.
+/// The document of the sections of some fabrics.
 pub fn section_document<'a>(
-    sections: impl IntoIterator<Item = (&'a FabricSheet, &'a ShellSection, &'a [Input], Value)>,
+    sections: impl IntoIterator<Item = (&'a FabricSheet, &'a Constitutive)>,
 ) -> SectionDocument {
-    let entry = |(sheet, section, inputs, assumptions): (&FabricSheet, &ShellSection, &[Input], Value)| {
-        SectionEntry {
-            fabric: sheet.name.clone(),
-            origin: sheet.info.origin.name(),
-            d_m: rows3(&section.d_m),
-            d_b: rows3(&section.d_b),
-            d_s: rows2(&section.d_s),
-            areal_density: section.areal_density,
-            thickness: section.thickness,
-            assumptions,
-            uncertainty: entries(section, inputs),
-        }
+    let entry = |(sheet, made): (&FabricSheet, &Constitutive)| SectionEntry {
+        fabric: sheet.name.clone(),
+        origin: sheet.info.origin,
+        d_m: rows3(&made.section.d_m),
+        d_b: rows3(&made.section.d_b),
+        d_s: rows2(&made.section.d_s),
+        areal_density: made.section.areal_density,
+        thickness: made.section.thickness,
+        assumptions: made.used.iter().map(assumption).collect(),
+        uncertainty: entries(&made.section, &made.inputs),
     };
+    let units =
+        [("areal_density", "kg/m²"), ("d_b", "N·m"), ("d_m", "N/m"), ("d_s", "N/m"), ("thickness", "m")];
     SectionDocument {
-        schema: "kesf.section/1",
-        version: env!("CARGO_PKG_VERSION"),
-        units: BTreeMap::from([
-            ("d_m", "N/m"),
-            ("d_b", "N·m"),
-            ("d_s", "N/m"),
-            ("areal_density", "kg/m²"),
-            ("thickness", "m"),
-        ]),
+        schema: "kesf.section/1".into(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        units: units.map(|(key, unit)| (key.into(), unit.into())).into(),
         sections: sections.into_iter().map(entry).collect(),
     }
 }
 
-/// `{"tensile modulus": {"value": .., "source": ..}, ..}` in the order of use.
-pub fn assumptions(used: &[Used]) -> Value {
-    used.iter().map(|u| (u.name.to_string(), json!({"value": u.value, "source": u.source}))).collect()
+fn assumption(used: &Used) -> (String, AssumptionEntry) {
+    (used.name.to_string(), AssumptionEntry { value: used.value.clone(), source: used.source.clone() })
 }
 
 /// A document as text: two blanks of indentation and a final newline.
@@ -210,90 +299,104 @@ pub fn text<T: Serialize>(document: &T) -> Result<String, serde_json::Error> {
     Ok(text)
 }
 
-/// Every fifth point of a band, 21 a run.
-fn band(band: &LawBand) -> Value {
-    let thinned = |c: &Curve| {
-        json!({
-            "x": c.x.iter().step_by(5).collect::<Vec<_>>(), "y": c.y.iter().step_by(5).collect::<Vec<_>>(),
-        })
-    };
-    let run = |b: &MeanBranch| {
-        json!({
-            "mean": thinned(&b.mean),
-            "mean_fabric": [thinned(&b.low), thinned(&b.high)],
-            "next_specimen": b.next_specimen.each_ref().map(thinned),
-        })
-    };
-    json!({
-        "test": band.test, "direction": band.direction, "n": band.n,
-        "runs": band.branches.iter().map(run).collect::<Vec<_>>(),
-    })
+impl SheetEntry {
+    fn new(sheet: &FabricSheet) -> Self {
+        let info = &sheet.info;
+        Self {
+            name: sheet.name.clone(),
+            title: info.title.clone(),
+            origin: info.origin,
+            stated: Stated { areal_density: info.areal_density, thickness: info.thickness },
+            parameters: parameters(sheet),
+            moduli: moduli(sheet),
+            friction: sheet.laws.clone(),
+            friction_bands: sheet.law_bands().iter().map(LawBandEntry::new).collect(),
+            re_extracted: re_extracted(sheet),
+        }
+    }
 }
 
-fn parameters(sheet: &FabricSheet) -> Map<String, Value> {
-    let mut all = Map::new();
-    for &parameter in Parameter::ALL {
-        let mut found = sheet.values.iter().filter(|(key, _)| key.parameter == parameter).peekable();
-        if found.peek().is_none() {
-            continue;
+impl LawBandEntry {
+    fn new(band: &LawBand) -> Self {
+        let runs = band.branches.iter().map(RunEntry::new).collect();
+        Self { test: band.test, direction: band.direction, n: band.n, runs }
+    }
+}
+
+impl RunEntry {
+    /// Every fifth point, 21 a run.
+    fn new(branch: &MeanBranch) -> Self {
+        let thinned = |c: &Curve| Curve::from_points(c.x.iter().copied().zip(c.y.iter().copied()).step_by(5));
+        Self {
+            mean: thinned(&branch.mean),
+            mean_fabric: [thinned(&branch.low), thinned(&branch.high)],
+            next_specimen: branch.next_specimen.each_ref().map(thinned),
         }
+    }
+}
+
+impl EstimateEntry {
+    fn new(e: &Estimate, unit: &'static str) -> Self {
+        let finite = |value: f64| value.is_finite().then_some(value);
+        Self {
+            mean: finite(e.mean),
+            sd: e.sd.and_then(finite),
+            n: e.n,
+            unit: unit.into(),
+            cv: e.cv().and_then(finite),
+            ci95: e.ci95().and_then(finite),
+        }
+    }
+}
+
+fn parameters(sheet: &FabricSheet) -> IndexMap<String, ParameterEntry> {
+    let entry = |&parameter: &Parameter| {
         let unit = parameter.si_unit();
-        if !parameter.is_directional() {
-            found.for_each(|(key, e)| {
-                all.insert(parameter.symbol().into(), value(e, unit, sheet.status(*key)));
-            });
-            continue;
-        }
-        let directions: Map<String, Value> = found
-            .map(|(key, e)| {
-                let direction = key.direction.map_or("fabric", |d| d.name());
-                (direction.to_string(), value(e, unit, sheet.status(*key)))
-            })
-            .collect();
-        all.insert(parameter.symbol().into(), directions.into());
-    }
-    all
+        let found = sheet.values.iter().filter(|(key, _)| key.parameter == parameter);
+        let mut found = found.map(|(key, e)| {
+            let estimate = EstimateEntry::new(e, unit);
+            (key.direction, ValueEntry { estimate, status: sheet.status(*key) })
+        });
+        let entry = if parameter.is_directional() {
+            let directions: IndexMap<String, ValueEntry> =
+                found.map(|(direction, value)| (of_fabric(direction).to_string(), value)).collect();
+            (!directions.is_empty()).then_some(ParameterEntry::Directions(directions))
+        } else {
+            found.next().map(|(_, value)| ParameterEntry::Whole(value))
+        };
+        Some((parameter.symbol().to_string(), entry?))
+    };
+    Parameter::ALL.iter().filter_map(entry).collect()
 }
 
-fn moduli(sheet: &FabricSheet) -> Map<String, Value> {
-    let mut all: Map<String, Value> = Map::new();
+/// The name of a direction, or `fabric`.
+fn of_fabric(direction: Option<Direction>) -> &'static str {
+    direction.map_or("fabric", Direction::name)
+}
+
+fn moduli(sheet: &FabricSheet) -> IndexMap<String, IndexMap<Direction, ValueEntry>> {
+    let mut all: IndexMap<String, IndexMap<Direction, ValueEntry>> = IndexMap::new();
     for ((name, direction), e) in &sheet.moduli {
-        let entry = all.entry(name.clone()).or_insert_with(|| Map::new().into());
-        if let Value::Object(directions) = entry {
-            let status = sheet.modulus_status(name, *direction);
-            directions.insert(direction.name().into(), value(e, "N/m", status));
-        }
+        let status = sheet.modulus_status(name, *direction);
+        let value = ValueEntry { estimate: EstimateEntry::new(e, "N/m"), status };
+        all.entry(name.clone()).or_default().insert(*direction, value);
     }
     all
 }
 
-fn re_extracted(sheet: &FabricSheet) -> Map<String, Value> {
-    let mut all: Map<String, Value> = Map::new();
+fn re_extracted(sheet: &FabricSheet) -> IndexMap<String, IndexMap<String, ReExtractedEntry>> {
+    let mut all: IndexMap<String, IndexMap<String, ReExtractedEntry>> = IndexMap::new();
     for r in sheet.re_extracted() {
         let unit = r.key.parameter.si_unit();
-        let direction = r.key.direction.map_or("fabric", |d| d.name());
-        let pair = json!({
-            "simulated": estimate(&r.simulated, unit),
-            "measured": estimate(&r.measured, unit),
-            "from_loops": r.from_loops,
-        });
-        let entry = all.entry(r.key.parameter.symbol()).or_insert_with(|| Map::new().into());
-        if let Value::Object(directions) = entry {
-            directions.insert(direction.into(), pair);
-        }
+        let entry = ReExtractedEntry {
+            simulated: EstimateEntry::new(&r.simulated, unit),
+            measured: EstimateEntry::new(&r.measured, unit),
+            from_loops: r.from_loops,
+        };
+        let symbol = r.key.parameter.symbol().to_string();
+        all.entry(symbol).or_default().insert(of_fabric(r.key.direction).to_string(), entry);
     }
     all
-}
-
-/// A value of the sheet, with its status.
-fn value(e: &Estimate, unit: &str, status: ValueStatus) -> Value {
-    let mut value = estimate(e, unit);
-    value["status"] = status.name().into();
-    value
-}
-
-fn estimate(e: &Estimate, unit: &str) -> Value {
-    json!({ "mean": e.mean, "sd": e.sd, "n": e.n, "unit": unit, "cv": e.cv(), "ci95": e.ci95() })
 }
 
 impl FindingEntry {
@@ -302,7 +405,7 @@ impl FindingEntry {
         let place = finding.place.as_ref();
         Self {
             fabric: fabric.map(str::to_string),
-            code: finding.code(),
+            code: finding.code().into(),
             message: finding.message(),
             fields: finding.fields(),
             path: place.map(|p| slashes(&p.path)),
@@ -326,75 +429,4 @@ fn rows2(m: &Matrix2<f64>) -> [[f64; 2]; 2] {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::characterise::Key;
-    use crate::finding::EvaluationFact;
-    use crate::finding::Place;
-    use crate::instrument::{Direction, Source};
-
-    #[test]
-    fn a_sheet_has_the_keys_of_the_contract_in_their_order() {
-        let mut sheet = FabricSheet { name: "poplin".into(), ..FabricSheet::default() };
-        let mut put = |parameter, direction, e| drop(sheet.values.insert(Key { parameter, direction }, e));
-        put(Parameter::W, None, Estimate::single(0.15));
-        let b = Estimate { mean: 5e-6, sd: Some(1e-7), n: 3, values: vec![] };
-        put(Parameter::B, Some(Direction::Weft), Estimate::single(3e-6));
-        put(Parameter::B, Some(Direction::Warp), b);
-        put(Parameter::Lt, None, Estimate::single(f64::NAN));
-        sheet.moduli.insert(("secant".into(), Direction::Warp), Estimate::single(9e3));
-        let source = Source { path: "p/b.csv".into(), sha256: "00".into(), ..Source::default() };
-        sheet.sources = vec![source.clone(), source];
-        let (own, other) = (Direction::Warp, Direction::Weft);
-        let fact = EvaluationFact::OtherDirection { parameter: Parameter::B, own, other, specimen: 2 };
-        sheet.findings = vec![Finding::new(fact).at(Place::at("p/b.csv", 3, 0))];
-        let text = text(&sheet_document([&sheet], Some(&Settings::default()))).unwrap();
-        assert!(text.ends_with("}\n"));
-        let v: Value = serde_json::from_str(&text).unwrap();
-        let keys: Vec<&String> = v.as_object().unwrap().keys().collect();
-        assert_eq!(keys, ["schema", "version", "inputs", "fabrics", "findings", "settings"]);
-        assert_eq!(v["inputs"], json!([{ "path": "p/b.csv", "sha256": "00" }]));
-        let parameters = &v["fabrics"][0]["parameters"];
-        let symbols: Vec<&String> = parameters.as_object().unwrap().keys().collect();
-        assert_eq!(symbols, ["LT", "B", "W"], "the order of sheets");
-        let b = &parameters["B"]["warp"];
-        assert_eq!((&b["mean"], &b["sd"], &b["n"]), (&json!(5e-6), &json!(1e-7), &json!(3)));
-        assert_eq!(b["unit"], "N·m");
-        assert!((b["cv"].as_f64().unwrap() - 0.02).abs() < 1e-15);
-        // t(0.975, 2) = 4.30265273 (tables).
-        assert!((b["ci95"].as_f64().unwrap() / (4.302_652_73e-7 / 3f64.sqrt()) - 1.0).abs() < 1e-7);
-        assert_eq!(v["settings"]["G fitted over"], "0.5 deg .. 2.5 deg");
-        assert_eq!(parameters["B"]["weft"]["sd"], Value::Null);
-        assert_eq!(parameters["W"]["mean"], json!(0.15));
-        assert_eq!(parameters["LT"]["fabric"]["mean"], Value::Null);
-        assert_eq!(v["fabrics"][0]["moduli"]["secant"]["warp"]["mean"], json!(9e3));
-        assert_eq!(v["findings"][0]["line"], json!(3));
-        assert_eq!(
-            v["findings"][0]["fields"],
-            json!({ "parameter": "B", "own": "warp", "other": "weft", "specimen": 2 })
-        );
-    }
-
-    #[test]
-    fn a_section_is_written_by_rows() {
-        let section = ShellSection {
-            d_m: Matrix3::new(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0),
-            d_b: Matrix3::identity(),
-            d_s: Matrix2::new(1.0, 2.0, 3.0, 4.0),
-            areal_density: 0.2,
-            thickness: 4e-4,
-        };
-        let document = section_document([(
-            &FabricSheet { name: "poplin".into(), ..Default::default() },
-            &section,
-            &[][..],
-            json!({ "poisson": "geometric" }),
-        )]);
-        let v = serde_json::to_value(&document).unwrap();
-        assert_eq!(v["schema"], "kesf.section/1");
-        assert_eq!(v["sections"][0]["d_m"], json!([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 9.0]]));
-        assert_eq!(v["sections"][0]["d_s"], json!([[1.0, 2.0], [3.0, 4.0]]));
-        assert_eq!(v["sections"][0]["assumptions"]["poisson"], "geometric");
-        assert_eq!(v["units"]["d_b"], "N·m");
-    }
-}
+mod tests;

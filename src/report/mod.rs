@@ -10,9 +10,12 @@ pub mod arrow_text;
 pub mod cards;
 #[cfg(feature = "polars")]
 pub mod frame;
+#[cfg(feature = "results")]
+pub mod gltf;
 pub mod html;
 pub mod json;
 mod output_folder;
+pub mod population;
 pub mod read_back;
 pub mod table;
 mod table_stream;

@@ -49,6 +49,26 @@ pub fn with_spread(estimate: &Estimate, factor: f64) -> String {
     }
 }
 
+/// Mean and standard deviation: the SD with two significant digits and the mean to the same place, and where there is no
+/// spread as [`concise`]. The script of the page writes the same texts (`spread` in page.js).
+pub fn mean_and_spread(mean: f64, sd: Option<f64>) -> String {
+    let Some(sd) = sd.filter(|sd| sd.is_finite() && *sd > 0.0) else { return concise(mean) };
+    let exponent = plain_exponent(mean);
+    let (mean, sd) = (mean / 10f64.powi(exponent), sd / 10f64.powi(exponent));
+    let decimals = usize::try_from(1 - decade(sd)).unwrap_or(0).min(8);
+    let text = format!("{} ± {}", fixed(mean, decimals), fixed(sd, decimals));
+    if exponent == 0 { text } else { format!("({text}) × {}", power_of_ten(exponent)) }
+}
+
+/// A value to four significant digits at most, without zeros at its end: what was printed as 0.067 is not 0.06700.
+pub fn concise(value: f64) -> String {
+    let text = significant(value, 4);
+    let (digits, power) = text.split_at(text.find(" × ").unwrap_or(text.len()));
+    let digits =
+        if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits };
+    format!("{digits}{power}")
+}
+
 /// The power of ten to take out of a value so that it is readable; 0 where plain digits are.
 pub fn plain_exponent(value: f64) -> i32 {
     if value == 0.0 || !value.is_finite() || (-3..6).contains(&decade(value)) { 0 } else { decade(value) }
@@ -126,6 +146,15 @@ mod tests {
         assert_eq!(with_spread(&Estimate::single(61.2345), 1.0), "61.23");
         let e = Estimate { mean: 52.0, sd: Some(0.0), n: 3, values: vec![] };
         assert_eq!(with_spread(&e, 1.0), "52");
+    }
+
+    #[test]
+    fn digits_follow_the_spread_or_what_was_printed() {
+        assert_eq!(mean_and_spread(0.05214, Some(0.00134)), "0.0521 ± 0.0013");
+        assert_eq!(mean_and_spread(8.474e-6, Some(2.1e-7)), "(8.47 ± 0.21) × 10⁻⁶");
+        assert_eq!(mean_and_spread(5.944, None), "5.944");
+        assert_eq!(mean_and_spread(52.0, Some(0.0)), "52");
+        assert_eq!([0.067, 2.5e-4, -1200.0, 0.0].map(concise), ["0.067", "2.5 × 10⁻⁴", "−1200", "0"]);
     }
 
     #[test]

@@ -2,10 +2,12 @@
 // The report as a tool: the table of parameters sorts and filters, curves are drawn and read, fabrics are compared.
 // Everything works on the data in the page; nothing is fetched, and without this script the page is still readable.
 "use strict";
-(() => {
+const report = (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
   const state = { si: false };
   const redraw = []; // what is to be drawn again when units change
+  const followers = []; // what is told which rows the table shows
+  const fillers = []; // what fills the parts of fabrics once they are open
 
   // ---- small helpers ------------------------------------------------------------------------------------------
 
@@ -30,6 +32,10 @@
     const box = element("input", { type: "checkbox", checked, change: () => change(box.checked) });
     return element("label", {}, box, " ", text);
   };
+  const button = (text, label, click) => element("button", { type: "button", "aria-label": label, click }, text);
+  const counted = (n, what) => `${n} ${what}${n === 1 ? "" : "s"}`;
+  /** A name that is broken after its underscores rather than within a word. */
+  const breakable = (name) => name.split(/(?<=_)/).flatMap((part, i) => (i ? [document.createElement("wbr"), part] : [part]));
   const fieldset = (title, ...children) => element("fieldset", {}, element("legend", {}, title), ...children);
 
   // ---- numbers as report::number and html::parameters write them ------------------------------------------------
@@ -46,9 +52,14 @@
     if (e >= -3 && e < 6) return fixed(v, Math.max(0, digits - 1 - e));
     return fixed(v / 10 ** e, digits - 1) + " × " + power(e);
   }
+  /** Four digits at most, without zeros at the end: what was printed as 0.067 is not 0.06700. */
+  function concise(v) {
+    const [digits, ...rest] = significant(v).split(" × ");
+    return [digits.includes(".") ? digits.replace(/\.?0+$/, "") : digits, ...rest].join(" × ");
+  }
   /** Mean ± SD: the SD with two digits, the mean to the same place. */
   function spread(mean, sd) {
-    if (!(sd > 0)) return significant(mean);
+    if (!(sd > 0)) return concise(mean);
     let e = mean === 0 ? 0 : decade(mean);
     if (e >= -3 && e < 6) e = 0;
     const [m, s] = e === 0 ? [mean, sd] : [mean / 10 ** e, sd / 10 ** e];
@@ -66,8 +77,10 @@
 
   const table = document.getElementById("parameters");
   const PAGE = 100; // rows that are shown at once
-  const rows = []; // { fabric, row, cells } in the order of the data
-  const view = { column: -1, descending: false, limit: PAGE, hiddenTests: new Set(), hiddenDirections: new Set() };
+  const FIRST = 2; // columns before those of the parameters: name and origin
+  const [NAME, ORIGIN] = [-2, -1]; // what the table is sorted by, where it is no parameter
+  const rows = []; // { fabric, row } in the order of the data
+  const view = { column: NAME, descending: false, limit: PAGE, hiddenTests: new Set(), hiddenDirections: new Set() };
   const controls = {};
 
   function columnIsShown(column) {
@@ -81,6 +94,8 @@
     const values = Object.values(fabric.values);
     const status = controls.status.value;
     if (status && !values.some((v) => v.status === status)) return false;
+    const origin = controls.origin.value;
+    if (origin && fabric.origin !== origin) return false;
     const [from, to] = [controls.from.value, controls.to.value];
     if (from === "" && to === "") return true;
     const value = fabric.values[controls.column.value];
@@ -92,12 +107,10 @@
   /** Rows that pass the filters, in the chosen order; fabrics without the value come last either way. */
   function chosenRows() {
     const chosen = rows.filter((r) => fabricIsShown(r.fabric));
-    if (view.column < 0) {
-      if (view.descending) chosen.reverse();
-      return chosen;
-    }
-    const mean = (r) => r.fabric.values[view.column]?.mean;
     const sign = view.descending ? -1 : 1;
+    if (view.column === NAME) return view.descending ? chosen.reverse() : chosen;
+    if (view.column === ORIGIN) return chosen.sort((a, b) => sign * a.fabric.origin.localeCompare(b.fabric.origin));
+    const mean = (r) => r.fabric.values[view.column]?.mean;
     return chosen.sort((a, b) => {
       const [x, y] = [mean(a), mean(b)];
       if (x === undefined || y === undefined) return (x === undefined) - (y === undefined);
@@ -112,19 +125,20 @@
     body.replaceChildren(...shown.map((r) => r.row));
     const heads = [...table.tHead.rows[0].cells];
     heads.forEach((head, i) => {
-      const order = i - 1 !== view.column ? "none" : view.descending ? "descending" : "ascending";
+      const order = i - FIRST !== view.column ? "none" : view.descending ? "descending" : "ascending";
       head.setAttribute("aria-sort", order);
     });
     controls.count.textContent = `${chosen.length} of ${rows.length} fabrics`;
     controls.more.hidden = chosen.length <= view.limit;
+    followers.forEach((follow) => follow(chosen));
   }
 
   function showColumns() {
     const heads = table.tHead.rows[0].cells;
     data.columns.forEach((column, i) => {
       const hidden = !columnIsShown(column);
-      heads[i + 1].hidden = hidden;
-      rows.forEach((r) => { r.row.cells[i + 1].hidden = hidden; });
+      heads[i + FIRST].hidden = hidden;
+      rows.forEach((r) => { r.row.cells[i + FIRST].hidden = hidden; });
     });
   }
 
@@ -132,12 +146,12 @@
     document.documentElement.classList.toggle("units-si", state.si);
     const heads = table?.tHead.rows[0].cells ?? [];
     data.columns.forEach((column, i) => {
-      heads[i + 1].querySelector("small").textContent = unit(column);
+      heads[i + FIRST].querySelector("small").textContent = unit(column);
       for (const { fabric, row } of rows) {
         const value = fabric.values[i];
         if (!value) continue;
         const by = factor(column);
-        row.cells[i + 1].firstChild.nodeValue = spread(value.mean / by, value.sd == null ? null : value.sd / by);
+        row.cells[i + FIRST].firstChild.nodeValue = spread(value.mean / by, value.sd == null ? null : value.sd / by);
       }
     });
     redraw.forEach((draw) => draw());
@@ -158,14 +172,14 @@
 
   /** One observation a line, of what is shown, in the chosen units; columns named as in fabrics.csv. */
   function csvText() {
-    const lines = [["fabric", "parameter", "direction", "mean", "sd", "n", "unit", "status"]];
+    const lines = [["fabric", "parameter", "direction", "mean", "sd", "n", "unit", "status", "origin"]];
     for (const { fabric } of chosenRows()) {
       data.columns.forEach((column, i) => {
         const value = fabric.values[i];
         if (!value || !columnIsShown(column)) return;
         const [mean, sd] = [value.mean, value.sd].map((v) => (v == null ? "" : converted(v, factor(column))));
         const written = unit(column) || "1";
-        lines.push([fabric.name, column.symbol, column.direction, mean, sd, value.n, written, value.status]);
+        lines.push([fabric.name, column.symbol, column.direction, mean, sd, value.n, written, value.status, fabric.origin]);
       });
     }
     return lines.map((line) => line.map(csvCell).join(",") + "\r\n").join("");
@@ -174,21 +188,33 @@
   /** What is shown as a table for a spreadsheet: means, tab-separated. */
   function copyText() {
     const columns = data.columns.map((column, i) => [column, i]).filter(([column]) => columnIsShown(column));
-    const head = ["fabric", ...columns.map(([c]) => label(c) + (unit(c) ? ` (${unit(c)})` : ""))];
+    const head = ["fabric", "origin", ...columns.map(([c]) => label(c) + (unit(c) ? ` (${unit(c)})` : ""))];
     const lines = chosenRows().map(({ fabric }) => [
       fabric.name,
+      fabric.origin,
       ...columns.map(([c, i]) => (fabric.values[i] ? converted(fabric.values[i].mean, factor(c)) : "")),
     ]);
     const cell = (v) => (typeof v === "number" ? String(v) : csvCell(v.replaceAll("\t", " ")));
     return [head, ...lines].map((line) => line.map(cell).join("\t")).join("\n") + "\n";
   }
 
-  function download() {
-    // The mark at the start tells Excel that the text is UTF-8.
-    const url = URL.createObjectURL(new Blob(["\ufeff" + csvText()], { type: "text/csv;charset=utf-8" }));
-    const name = `parameters_${state.si ? "si" : "kes"}.csv`;
+  function download(content, type, ending) {
+    const url = URL.createObjectURL(new Blob([content], { type }));
+    const name = `parameters_${state.si ? "si" : "kes"}.${ending}`;
     element("a", { href: url, download: name }).click();
     setTimeout(() => URL.revokeObjectURL(url), 1000);
+  }
+
+  // The mark at the start tells Excel that the text is UTF-8.
+  const downloadCsv = () => download("\ufeff" + csvText(), "text/csv;charset=utf-8", "csv");
+
+  const XLSX = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet";
+  const workbooks = document.getElementById("workbooks");
+
+  /** The workbook that the program made: every fabric of the page, in the chosen units. */
+  function downloadXlsx() {
+    const base64 = JSON.parse(workbooks.textContent)[state.si ? "si" : "kes"];
+    download(Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)), XLSX, "xlsx");
   }
 
   async function copy(button) {
@@ -223,9 +249,11 @@
     const again = () => { view.limit = PAGE; showTable(); };
     const option = (value, text) => element("option", { value }, text);
     const statuses = ["inferred", "assumed", "doubtful"].map((s) => option(s, `with ${s} values`));
+    const origins = [...new Set(data.fabrics.map((f) => f.origin))].filter(Boolean).map((o) => option(o, `${o} fabrics`));
     Object.assign(controls, {
       search: element("input", { type: "search", placeholder: "Search fabrics", "aria-label": "Search fabrics", input: again }),
       status: element("select", { "aria-label": "Status", change: again }, option("", "any status"), ...statuses),
+      origin: element("select", { "aria-label": "Origin", change: again }, option("", "any origin"), ...origins),
       column: element("select", { "aria-label": "Parameter to filter by", change: again },
         ...data.columns.map((c, i) => option(i, label(c)))),
       from: element("input", { type: "number", step: "any", placeholder: "from", "aria-label": "from, in the chosen unit", input: again }),
@@ -239,18 +267,20 @@
     const directions = [...new Set(data.columns.map((c) => c.direction ?? "whole"))];
     const copyButton = element("button", { type: "button", click: () => copy(copyButton) }, "Copy");
     table.parentElement.before(
-      element("div", { class: "controls" }, unitSwitch(), controls.search, controls.status,
+      element("div", { class: "controls" }, unitSwitch(), controls.search, controls.origin, controls.status,
         fieldset("Range", controls.column, controls.from, controls.to)),
       element("div", { class: "controls" }, toggles("Tests", tests, view.hiddenTests),
         toggles("Directions", directions, view.hiddenDirections), copyButton,
-        element("button", { type: "button", click: download }, "Download CSV"), controls.count));
+        element("button", { type: "button", click: downloadCsv }, "Download CSV"),
+        ...(workbooks ? [element("button", { type: "button", click: downloadXlsx }, "Download XLSX (all fabrics)")] : []),
+        controls.count));
     table.parentElement.after(controls.more);
   }
 
   function startTable() {
     [...table.tBodies[0].rows].forEach((row, i) => rows.push({ fabric: data.fabrics[i], row }));
     [...table.tHead.rows[0].cells].forEach((head, i) => {
-      const button = element("button", { type: "button", click: () => sortBy(i - 1) }, head.firstChild.nodeValue);
+      const button = element("button", { type: "button", click: () => sortBy(i - FIRST) }, head.firstChild.nodeValue);
       head.firstChild.replaceWith(button);
     });
     tableControls();
@@ -263,6 +293,7 @@
     const id = location.hash.slice(1);
     const part = id && document.getElementById(id);
     if (part instanceof HTMLDetailsElement) {
+      part.hidden = false; // a link leads to what a filter left out, too
       part.open = true;
       part.scrollIntoView();
     }
@@ -286,208 +317,22 @@
     return [low - margin, high + margin];
   }
 
-  // ---- curves of tests ----------------------------------------------------------------------------------------
-
-  const FRAME = { width: 640, height: 420, left: 66, right: 12, top: 10, bottom: 46 };
-  const dashes = { warp: "", weft: "7 4", bias: "2 3" };
-
-  /** A chart of one test: measured loops, windows of the fits, simulated curves; hover, zoom, switches. */
-  class Chart {
-    constructor(curves, fabric) {
-      this.curves = curves;
-      this.zoom = null;
-      this.traces = [
-        ...curves.specimens.map((s) => ({
-          name: `${s.direction ? s.direction + ", " : ""}specimen ${s.specimen}`, direction: s.direction,
-          lines: s.branches, windows: s.windows, on: true, simulated: false })),
-        ...curves.simulated.map((s) => ({
-          name: `${s.direction ? s.direction + ", " : ""}${s.label}`, direction: s.direction,
-          lines: [s.line], windows: [], on: true, simulated: true, friction: s.label.endsWith("friction") })),
-      ];
-      const name = `${curves.test} of ${fabric.name}: ${curves.specimens.length} measured specimens, ` +
-        `${curves.simulated.length} simulated curves. Arrow keys read values, plus and minus zoom, 0 resets.`;
-      this.svg = shape("svg", { viewBox: `0 0 ${FRAME.width} ${FRAME.height}`, role: "application",
-        "aria-label": name, tabindex: "0" });
-      this.reading = element("div", { class: "reading", role: "status" });
-      this.at = 0; // the point that the keyboard reads
-      this.listen();
-      const keys = element("div", { class: "keys" }, ...this.traces.map((t) => this.key(t)));
-      this.windows = true;
-      if (curves.specimens.some((s) => s.windows.length)) {
-        keys.append(checkbox("windows of the fits", true, (on) => { this.windows = on; this.draw(); }));
-      }
-      const remark = curves.specimens.length ? "" : " (no curve recorded, simulated only)";
-      this.node = element("div", { class: "chart" },
-        element("h4", {}, curves.test + remark), this.svg, this.reading, keys);
-      redraw.push(() => this.draw());
-      this.draw();
-    }
-    key(trace) {
-      const sample = shape("svg", { viewBox: "0 0 32 10", "aria-hidden": "true" },
-        shape("path", { d: "M0 5H32", ...this.stroke(trace) }));
-      const switched = checkbox(trace.name, true, (on) => { trace.on = on; this.draw(); });
-      switched.insertBefore(sample, switched.lastChild);
-      return switched;
-    }
-    stroke(trace) {
-      const kind = (trace.simulated ? " simulated" : "") + (trace.friction ? " friction" : "");
-      return { class: `curve ${trace.direction ?? "none"}${kind}`, "stroke-dasharray": trace.simulated ? null : dashes[trace.direction] };
-    }
-    get axes() { return this.curves.axes.map((a) => ({ quantity: a.quantity, unit: (state.si ? a.si : a.kes)[0], by: (state.si ? a.si : a.kes)[1] })); }
-    /** Ranges in SI: those of everything that is switched on, or the zoom. */
-    ranges() {
-      if (this.zoom) return this.zoom;
-      const on = this.traces.filter((t) => t.on).flatMap((t) => t.lines);
-      if (!on.length) return [[0, 1], [0, 1]];
-      return [extent(on.flatMap((l) => l.x)), extent(on.flatMap((l) => l.y))];
-    }
-    place([rx, ry]) {
-      const w = FRAME.width - FRAME.left - FRAME.right, h = FRAME.height - FRAME.top - FRAME.bottom;
-      return {
-        x: (v) => FRAME.left + ((v - rx[0]) / (rx[1] - rx[0])) * w,
-        y: (v) => FRAME.top + h - ((v - ry[0]) / (ry[1] - ry[0])) * h,
-        backX: (p) => rx[0] + ((p - FRAME.left) / w) * (rx[1] - rx[0]),
-        backY: (p) => ry[0] + ((FRAME.top + h - p) / h) * (ry[1] - ry[0]),
-      };
-    }
-    draw() {
-      const ranges = this.ranges(), at = this.place(ranges), axes = this.axes;
-      this.scale = at;
-      const parts = [this.frame(ranges, at, axes)];
-      const inside = shape("svg", { x: FRAME.left, y: FRAME.top, width: FRAME.width - FRAME.left - FRAME.right,
-        height: FRAME.height - FRAME.top - FRAME.bottom,
-        viewBox: `${FRAME.left} ${FRAME.top} ${FRAME.width - FRAME.left - FRAME.right} ${FRAME.height - FRAME.top - FRAME.bottom}` });
-      const path = (l) => "M" + l.x.map((x, i) => `${at.x(x).toFixed(1)} ${at.y(l.y[i]).toFixed(1)}`).join("L");
-      const on = this.traces.filter((t) => t.on);
-      if (this.windows) inside.append(...this.shaded(on.flatMap((t) => t.windows), at));
-      for (const t of on) {
-        if (this.windows) inside.append(...t.windows.map((w) => this.fit(w, at)));
-        for (const l of t.lines) if (l.x.length) inside.append(shape("path", { d: path(l), ...this.stroke(t) }));
-      }
-      this.cursor = shape("g", {});
-      inside.append(this.cursor);
-      this.svg.replaceChildren(...parts, inside);
-    }
-    /** The line of a fit, or the bar of a width that is read at one abscissa. */
-    fit([symbol, [from, to], [low, high]], at) {
-      return shape("path", { class: "fit", d: `M${at.x(from)} ${at.y(low)}L${at.x(to)} ${at.y(high)}` }, shape("title", {}, symbol));
-    }
-    /** The windows of the fits, once each: specimens share them. */
-    shaded(windows, at) {
-      const bands = new Map();
-      for (const [symbol, [from, to]] of windows) {
-        if (from === to) continue;
-        const [left, right] = [at.x(from), at.x(to)].sort((a, b) => a - b);
-        bands.set(`${left.toFixed(0)} ${right.toFixed(0)}`, [symbol, left, right]);
-      }
-      const height = FRAME.height - FRAME.top - FRAME.bottom;
-      return [...bands.values()].map(([symbol, left, right]) => shape("rect",
-        { class: "window", x: left, y: FRAME.top, width: right - left, height }, shape("title", {}, `window of ${symbol}`)));
-    }
-    frame(ranges, at, axes) {
-      const group = shape("g", {});
-      const [right, bottom] = [FRAME.width - FRAME.right, FRAME.height - FRAME.bottom];
-      ranges.forEach((range, i) => {
-        const by = axes[i].by;
-        const [values, decimals] = ticks([range[0] / by, range[1] / by], i ? 6 : 7);
-        for (const v of values) {
-          const p = i ? at.y(v * by) : at.x(v * by);
-          group.append(shape("path", { class: "grid", d: i ? `M${FRAME.left} ${p}H${right}` : `M${p} ${FRAME.top}V${bottom}` }),
-            shape("text", i ? { x: FRAME.left - 6, y: p + 4, "text-anchor": "end" } : { x: p, y: bottom + 16, "text-anchor": "middle" },
-              fixed(v, decimals)));
-        }
-      });
-      const named = (a) => a.quantity + (a.unit ? ` (${a.unit})` : "");
-      group.append(shape("rect", { class: "axis", x: FRAME.left, y: FRAME.top, width: right - FRAME.left, height: bottom - FRAME.top }),
-        shape("text", { class: "soft", x: (FRAME.left + right) / 2, y: FRAME.height - 8, "text-anchor": "middle" }, named(axes[0])),
-        shape("text", { class: "soft", x: 0, y: 0, transform: `translate(14 ${(FRAME.top + bottom) / 2}) rotate(-90)`, "text-anchor": "middle" }, named(axes[1])));
-      return group;
-    }
-    /** Every point that is shown: trace, SI values. */
-    points() {
-      const found = [];
-      for (const t of this.traces.filter((t) => t.on)) for (const l of t.lines) l.x.forEach((x, i) => found.push([t, x, l.y[i]]));
-      return found;
-    }
-    read([trace, x, y]) {
-      const values = this.axes.map((a, i) => `${a.quantity} ${significant((i ? y : x) / a.by)}${a.unit ? " " + a.unit : ""}`);
-      this.reading.textContent = `${trace.name}: ${values.join(", ")}`;
-      this.cursor.replaceChildren(shape("circle", { cx: this.scale.x(x), cy: this.scale.y(y), r: 5, class: `curve ${trace.direction ?? "none"}` }));
-    }
-    /** Where a pointer is, in the units of the drawing. */
-    pointer(event) {
-      const box = this.svg.getBoundingClientRect();
-      return [(event.clientX - box.left) * (FRAME.width / box.width), (event.clientY - box.top) * (FRAME.height / box.height)];
-    }
-    hover([px, py]) {
-      let best = null, distance = 30 ** 2;
-      for (const point of this.points()) {
-        const d = (this.scale.x(point[1]) - px) ** 2 + (this.scale.y(point[2]) - py) ** 2;
-        if (d < distance) [best, distance] = [point, d];
-      }
-      if (best) this.read(best);
-    }
-    listen() {
-      let start = null;
-      this.svg.addEventListener("pointerdown", (e) => {
-        if (e.button !== 0 || e.pointerType === "touch") return;
-        start = this.pointer(e);
-        this.svg.setPointerCapture(e.pointerId);
-      });
-      this.svg.addEventListener("pointermove", (e) => {
-        const here = this.pointer(e);
-        if (!start) return this.hover(here);
-        const [x, y, w, h] = [0, 1].map((i) => Math.min(start[i], here[i])).concat([0, 1].map((i) => Math.abs(start[i] - here[i])));
-        this.cursor.replaceChildren(shape("rect", { class: "box", x, y, width: w, height: h }));
-      });
-      this.svg.addEventListener("pointerup", (e) => {
-        if (!start) return;
-        const [from, end] = [start, this.pointer(e)];
-        start = null;
-        if (Math.abs(from[0] - end[0]) < 8 || Math.abs(from[1] - end[1]) < 8) return this.cursor.replaceChildren();
-        const sorted = (a, b) => [Math.min(a, b), Math.max(a, b)];
-        this.zoom = [sorted(this.scale.backX(from[0]), this.scale.backX(end[0])), sorted(this.scale.backY(from[1]), this.scale.backY(end[1]))];
-        this.draw();
-      });
-      this.svg.addEventListener("dblclick", () => { this.zoom = null; this.draw(); });
-      this.svg.addEventListener("keydown", (e) => this.press(e));
-    }
-    press(event) {
-      const step = { ArrowRight: 1, ArrowLeft: -1, ArrowUp: 10, ArrowDown: -10 }[event.key];
-      const points = this.points();
-      if (step && points.length) {
-        this.at = (this.at + step + points.length) % points.length;
-        this.read(points[this.at]);
-      } else if (event.key === "0") {
-        this.zoom = null;
-        this.draw();
-      } else if (event.key === "+" || event.key === "-") {
-        const by = event.key === "+" ? 0.25 : -0.5;
-        this.zoom = this.ranges().map(([a, b]) => [a + by * (b - a), b - by * (b - a)]);
-        this.draw();
-      } else return;
-      event.preventDefault();
-    }
-  }
-
-  /** Charts are made when their fabric is opened: a page of many fabrics begins at once. */
-  function startCurves() {
-    for (const place of document.querySelectorAll(".curves")) {
-      const index = Number(place.dataset.fabric);
-      const fill = () => {
-        if (place.childElementCount || !place.closest("details").open) return;
-        const mine = data.curves.filter((c) => c.fabric === index);
-        place.append(element("p", {}, "Drag to zoom, double click to reset; the nearest point is read below the chart. Dashed and thick: simulated."),
-          element("div", { class: "charts" }, ...mine.map((c) => new Chart(c, data.fabrics[index]).node)));
-      };
-      place.closest("details").addEventListener("toggle", fill);
-      fill();
-    }
+  const LARGEST = 640, SMALLEST = 280; // units of a drawing, as many as its place has pixels: text is then as large as that around it
+  const wide = (place) => Math.round(Math.min(LARGEST, Math.max(SMALLEST, place.clientWidth || LARGEST)));
+  const tall = (width) => Math.max(SMALLEST, Math.round(0.66 * width));
+  /** Draws again when the width of a place has changed. */
+  function fitted(place, draw) {
+    let known = wide(place);
+    new ResizeObserver(() => {
+      if (!place.clientWidth || wide(place) === known) return;
+      known = wide(place);
+      draw();
+    }).observe(place);
   }
 
   // ---- control chart and nearest fabrics ----------------------------------------------------------------------
 
-  const LEAST_POPULATION = 3; // fabrics behind a mean and SD
+  const LEAST_POPULATION = 5; // fabrics behind a mean and SD, as behind a correlation: of n fabrics no |z| is above (n - 1)/√n
   const LEAST_SHARED = 3; // parameters behind a distance
 
   /** The 16 parameters of the hand equations that occur: mean and SD of the population and z of each fabric. */
@@ -495,9 +340,10 @@
     const symbols = [...new Set(data.columns.filter((c) => c.log !== null).map((c) => c.symbol))];
     return symbols.map((symbol) => {
       const columns = data.columns.map((c, i) => [c, i]).filter(([c]) => c.symbol === symbol);
-      const log = columns[0][0].log;
       const place = (direction) => columns.find(([c]) => c.direction === direction)?.[1];
       const mean = (fabric, direction) => fabric.values[place(direction)]?.mean;
+      const given = data.population?.parameters.find((p) => p.symbol === symbol);
+      const log = given ? given.log : columns[0][0].log;
       const values = data.fabrics.map((fabric) => {
         const [warp, weft] = [mean(fabric, "warp"), mean(fabric, "weft")];
         const value = warp !== undefined && weft !== undefined ? (warp + weft) / 2 : mean(fabric, null);
@@ -505,13 +351,18 @@
         // In KES units, as the equations take them; the z does not depend on it.
         return log ? Math.log10(value / columns[0][0].factor) : value / columns[0][0].factor;
       });
+      const name = (log ? "log " : "") + symbol;
+      if (data.population) {
+        const z = given ? values.map((v) => (v === undefined ? undefined : (v - given.mean) / given.sd)) : [];
+        return { name, n: given?.n, usable: Boolean(given), z, values };
+      }
       const known = values.filter((v) => v !== undefined);
       const n = known.length;
       const average = known.reduce((a, b) => a + b, 0) / n;
       const sd = Math.sqrt(known.reduce((a, b) => a + (b - average) ** 2, 0) / (n - 1));
       const usable = n >= LEAST_POPULATION && sd > 1e-9 * Math.abs(average || 1);
       const z = usable ? values.map((v) => (v === undefined ? undefined : (v - average) / sd)) : [];
-      return { name: (log ? "log " : "") + symbol, n, usable, z };
+      return { name, n, usable, z, values };
     });
   }
 
@@ -533,9 +384,12 @@
     if (!place) return;
     const all = standardised();
     const parameters = all.filter((p) => p.usable);
-    const unusable = all.filter((p) => !p.usable).map((p) => `${p.name} (n ${p.n})`);
+    const named = (p) => p.name + (p.n === undefined ? "" : ` (n ${p.n})`);
+    const unusable = all.filter((p) => !p.usable).map(named).join(", ");
+    const source = data.population?.source;
     if (!parameters.length) {
-      place.append(element("p", {}, `A control chart needs a parameter that ${LEAST_POPULATION} fabrics have.`));
+      place.append(element("p", {}, source ? `No parameter of the population (${source}) is known of these fabrics.`
+        : `A control chart needs a parameter that ${LEAST_POPULATION} fabrics have.`));
       return;
     }
     const known = (i) => parameters.filter((p) => p.z[i] !== undefined).length;
@@ -545,15 +399,23 @@
       ...data.fabrics.map((f, i) => element("option", { value: i, selected: k < 2 && order[k] === i }, f.name))));
     const chart = element("div", { class: "chart" }), lists = element("div", {});
     place.append(element("p", {}, "The parameters of the hand equations (Kawabata 1980), mean of warp and weft, logarithms where the " +
-        "equations take them, as standard deviations from a population. The population is the fabrics of this run " +
-        `(n = ${data.fabrics.length}; n of each parameter stands beside it), no reference of a trade.` +
-        (unusable.length ? ` Left out, with fewer than ${LEAST_POPULATION} different values: ${unusable.join(", ")}.` : "")),
+        "equations take them, as standard deviations from a population. " + populationText(unusable) + " The nearest fabrics are looked for on this page."),
       element("div", { class: "controls" }, ...selects), chart, lists);
+    fitted(chart, show);
 
+    function populationText(unusable) {
+      if (source) {
+        return `The population was given with the run: ${source}; n of each parameter stands beside it where it is known.` +
+          (unusable ? ` Left out, as the population lacks them: ${unusable}.` : "");
+      }
+      const whole = data.fabrics_of_run ? ` of the ${data.fabrics_of_run} of the run` : "";
+      return `The population is the fabrics of this page (n = ${data.fabrics.length}${whole}; n of each parameter stands beside it), ` +
+        "no reference of a trade." + (unusable ? ` Left out, with fewer than ${LEAST_POPULATION} different values: ${unusable}.` : "");
+    }
     function show() {
       const chosen = selects.map((s) => s.value).map((v, k) => [v, k]).filter(([v]) => v !== "").map(([v, k]) => [Number(v), k]);
       const reach = Math.max(3, ...parameters.flatMap((p) => chosen.map(([i]) => Math.abs(p.z[i] ?? 0)))) + 0.2;
-      const width = 640, left = 118, right = 14, step = 26, bottom = 12 + parameters.length * step;
+      const width = wide(chart), left = 118, right = 14, step = 26, bottom = 12 + parameters.length * step;
       const x = (z) => left + ((z + reach) / (2 * reach)) * (width - left - right);
       const y = (row) => 12 + (row + 0.5) * step;
       const parts = [];
@@ -561,7 +423,7 @@
         parts.push(shape("path", { class: z ? "grid" : "axis", d: `M${x(z)} 8V${bottom}` }),
           shape("text", { x: x(z), y: bottom + 16, "text-anchor": "middle" }, fixed(z, 0)));
       }
-      parameters.forEach((p, row) => parts.push(shape("text", { x: left - 8, y: y(row) + 4, "text-anchor": "end" }, `${p.name} (n ${p.n})`)));
+      parameters.forEach((p, row) => parts.push(shape("text", { x: left - 8, y: y(row) + 4, "text-anchor": "end" }, named(p))));
       for (const [i, k] of chosen) {
         const points = parameters.map((p, row) => [p.z[i], row]).filter(([z]) => z !== undefined).map(([z, row]) => [x(z), y(row), z]);
         parts.push(shape("path", { class: `line p${k} ${["", "second", "third", ""][k]}`, d: "M" + points.map((p) => `${p[0]} ${p[1]}`).join("L") }));
@@ -569,7 +431,7 @@
           parts.push(shape("circle", { class: `p${k}`, cx: px, cy: py, r: 4 }, shape("title", {}, `${data.fabrics[i].name}: ${fixed(z, 2)} SD`)));
         }
       }
-      parts.push(shape("text", { class: "soft", x: (left + width - right) / 2, y: bottom + 34, "text-anchor": "middle" }, "standard deviations from the mean of the population"));
+      parts.push(shape("text", { class: "soft", x: (left + width - right) / 2, y: bottom + 34, "text-anchor": "middle" }, source ? `standard deviations from the mean of: ${source}` : "standard deviations from the mean of the population"));
       const names = chosen.map(([i]) => data.fabrics[i].name).join(", ");
       const key = ([i, k]) => element("span", {}, shape("svg", { viewBox: "0 0 32 10", "aria-hidden": "true" },
         shape("path", { class: `line p${k} ${["", "second", "third", ""][k]}`, d: "M0 5H32" })), " " + data.fabrics[i].name);
@@ -594,8 +456,9 @@
   }
 
   if (table) startTable();
-  startCurves();
   startControlChart();
   window.addEventListener("hashchange", openLinked);
   openLinked();
+  return { data, state, table, redraw, followers, fillers, element, shape, checkbox, button, counted, breakable, fixed, significant, spread, factor, unit, label,
+    columnIsShown, chosenRows, ticks, extent, wide, tall, fitted, standardised };
 })();

@@ -1,18 +1,19 @@
 //! `kesf.sheet/1`, `kesf.section/1` and `kesf.fabric/1` read back: what other people keep of a fabric is enough to go on with.
 //!
-//! Friction laws, curves and findings are not read: they come from measurements.
-
-use std::borrow::Cow;
-use std::collections::BTreeMap;
+//! Curves and findings are not read: they are those of measurements, which stay with the files that are named.
 
 use nalgebra::{Matrix2, Matrix3};
 use serde::Deserialize;
 
-use crate::characterise::{FabricSheet, Key, ValueStatus};
+use crate::characterise::{FabricSheet, Key};
 use crate::constitutive::{Constitutive, Used};
 use crate::finding::errors;
 use crate::instrument::{Direction, FabricInfo, Origin, Parameter};
 use crate::quantity::Estimate;
+use crate::report::json::{
+    AssumptionEntry, EstimateEntry, ParameterEntry, SectionDocument, SectionEntry, SheetDocument, SheetEntry,
+    Stated,
+};
 use crate::section::{SectionError, ShellSection};
 
 errors! {
@@ -66,20 +67,18 @@ pub fn read(bytes: &[u8]) -> Result<Option<Document>, DocumentError> {
     let Ok(Schema { schema }) = serde_json::from_slice(bytes) else { return Ok(None) };
     match schema.as_str() {
         "kesf.sheet/1" => {
-            let document: Sheets = serde_json::from_slice(bytes)?;
-            Ok(Some(Document::Sheets(
-                document.fabrics.into_iter().map(Sheet::read).collect::<Result<_, _>>()?,
-            )))
+            let document: SheetDocument = serde_json::from_slice(bytes)?;
+            Ok(Some(Document::Sheets(document.fabrics.into_iter().map(sheet).collect::<Result<_, _>>()?)))
         }
         "kesf.section/1" => {
-            let document: Sections = serde_json::from_slice(bytes)?;
-            let read = document.sections.into_iter().map(Section::read).collect::<Result<_, _>>()?;
+            let document: SectionDocument = serde_json::from_slice(bytes)?;
+            let read = document.sections.into_iter().map(section).collect::<Result<_, _>>()?;
             Ok(Some(Document::Sections(read)))
         }
         "kesf.fabric/1" => {
-            let Open { sheet, section } = serde_json::from_slice(bytes)?;
-            let sheets = sheet.fabrics.into_iter().map(Sheet::read);
-            let sections = section.sections.into_iter().map(Section::read);
+            let open: Open = serde_json::from_slice(bytes)?;
+            let sheets = open.sheet.fabrics.into_iter().map(sheet);
+            let sections = open.section.sections.into_iter().map(section);
             let read = sheets.zip(sections).map(|(sheet, section)| Ok((sheet?, section?.1)));
             Ok(Some(Document::Sections(read.collect::<Result<_, DocumentError>>()?)))
         }
@@ -87,153 +86,85 @@ pub fn read(bytes: &[u8]) -> Result<Option<Document>, DocumentError> {
     }
 }
 
-/// The open fabric file: a sheet and its section; curves and laws are not read.
+/// The open fabric file: a sheet and its section; curves are not read.
 #[derive(Deserialize)]
 struct Open {
-    sheet: Sheets,
-    section: Sections,
+    sheet: SheetDocument,
+    section: SectionDocument,
 }
 
-#[derive(Deserialize)]
-struct Sheets {
-    fabrics: Vec<Sheet>,
-}
-
-#[derive(Deserialize)]
-struct Sheet {
-    name: String,
-    title: String,
-    origin: Origin,
-    #[serde(default)]
-    stated: Stated,
-    parameters: BTreeMap<String, Measured>,
-    moduli: BTreeMap<String, BTreeMap<Direction, Mean>>,
-}
-
-/// What people state (SI).
-#[derive(Default, Deserialize)]
-struct Stated {
-    areal_density: Option<f64>,
-    thickness: Option<f64>,
-}
-
-/// A parameter of the fabric as a whole, or by direction.
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Measured {
-    Whole(Mean),
-    Directions(BTreeMap<String, Mean>),
-}
-
-#[derive(Deserialize)]
-struct Mean {
-    mean: f64,
-    sd: Option<f64>,
-    n: usize,
-    unit: String,
-    #[serde(default)]
-    status: ValueStatus,
-}
-
-impl Mean {
-    fn read(self, unit: &str, fabric: &str, of: &str) -> Result<Estimate, DocumentError> {
-        if self.unit == unit {
-            return Ok(Estimate { mean: self.mean, sd: self.sd, n: self.n, values: Vec::new() });
-        }
-        let what = format!("{of} in {} where {unit} was expected", self.unit);
-        Err(DocumentError::Content { fabric: fabric.into(), what })
-    }
-}
-
-impl Sheet {
-    fn read(self) -> Result<FabricSheet, DocumentError> {
-        let name = self.name;
-        let unknown = |what: String| DocumentError::Content { fabric: name.clone(), what };
-        let Stated { areal_density, thickness } = self.stated;
-        let info = FabricInfo { areal_density, thickness, ..info(self.title, self.origin) };
-        let mut sheet = FabricSheet { name: name.clone(), info, ..Default::default() };
-        for (symbol, measured) in self.parameters {
-            let parameter = Parameter::from_symbol(&symbol)
-                .ok_or_else(|| unknown(format!("`{symbol}`, which is not a parameter")))?;
-            let means = match measured {
-                Measured::Whole(mean) => vec![("fabric".to_string(), mean)],
-                Measured::Directions(means) => means.into_iter().collect(),
-            };
-            for (of, mean) in means {
-                let direction =
-                    match of.as_str() {
-                        "fabric" => None,
-                        _ => Some(Direction::ALL.into_iter().find(|d| d.name() == of).ok_or_else(|| {
+fn sheet(entry: SheetEntry) -> Result<FabricSheet, DocumentError> {
+    let name = entry.name;
+    let unknown = |what: String| DocumentError::Content { fabric: name.clone(), what };
+    let Stated { areal_density, thickness } = entry.stated;
+    let info = FabricInfo { areal_density, thickness, ..info(entry.title, entry.origin) };
+    let mut sheet = FabricSheet { name: name.clone(), info, laws: entry.friction, ..Default::default() };
+    for (symbol, values) in entry.parameters {
+        let parameter = Parameter::from_symbol(&symbol)
+            .ok_or_else(|| unknown(format!("`{symbol}`, which is not a parameter")))?;
+        let values = match values {
+            ParameterEntry::Whole(value) => vec![("fabric".to_string(), value)],
+            ParameterEntry::Directions(values) => values.into_iter().collect(),
+        };
+        for (of, value) in values {
+            let direction =
+                match of.as_str() {
+                    "fabric" => None,
+                    _ => {
+                        let known = Direction::ALL.into_iter().find(|d| d.name() == of);
+                        Some(known.ok_or_else(|| {
                             unknown(format!("{symbol} of `{of}`, which is not a direction"))
-                        })?),
-                    };
-                let (key, status) = (Key { parameter, direction }, mean.status);
-                sheet.values.insert(key, mean.read(parameter.si_unit(), &name, &symbol)?);
-                sheet.statuses.insert(key, status);
-            }
+                        })?)
+                    }
+                };
+            let key = Key { parameter, direction };
+            sheet.values.insert(key, estimate(value.estimate, parameter.si_unit(), &name, &symbol)?);
+            sheet.statuses.insert(key, value.status);
         }
-        for (modulus, means) in self.moduli {
-            for (direction, mean) in means {
-                let (key, status) = ((modulus.clone(), direction), mean.status);
-                sheet.moduli.insert(key.clone(), mean.read("N/m", &name, &modulus)?);
-                sheet.modulus_statuses.insert(key, status);
-            }
+    }
+    for (modulus, values) in entry.moduli {
+        for (direction, value) in values {
+            let key = (modulus.clone(), direction);
+            sheet.moduli.insert(key.clone(), estimate(value.estimate, "N/m", &name, &modulus)?);
+            sheet.modulus_statuses.insert(key, value.status);
         }
-        Ok(sheet)
     }
+    Ok(sheet)
 }
 
-#[derive(Deserialize)]
-struct Sections {
-    sections: Vec<Section>,
-}
-
-#[derive(Deserialize)]
-struct Section {
-    fabric: String,
-    origin: Origin,
-    d_m: [[f64; 3]; 3],
-    d_b: [[f64; 3]; 3],
-    d_s: [[f64; 2]; 2],
-    areal_density: f64,
-    thickness: f64,
-    /// A map keeps the order of the document.
-    assumptions: serde_json::Map<String, serde_json::Value>,
-}
-
-#[derive(Deserialize)]
-struct Assumption {
-    value: String,
-    source: String,
-}
-
-impl Section {
-    fn read(self) -> Result<(FabricSheet, Constitutive), DocumentError> {
-        let used = |(name, assumption): (String, serde_json::Value)| {
-            let Assumption { value, source } = serde_json::from_value(assumption)?;
-            Ok(Used { name: Cow::Owned(name), value, source })
-        };
-        let section = ShellSection {
-            d_m: Matrix3::from_fn(|r, c| self.d_m[r][c]),
-            d_b: Matrix3::from_fn(|r, c| self.d_b[r][c]),
-            d_s: Matrix2::from_fn(|r, c| self.d_s[r][c]),
-            areal_density: self.areal_density,
-            thickness: self.thickness,
-        };
-        let made = Constitutive {
-            section: section.checked()?,
-            law: None,
-            used: self.assumptions.into_iter().map(used).collect::<Result<_, serde_json::Error>>()?,
-            inputs: Vec::new(),
-            findings: Vec::new(),
-        };
-        let sheet = FabricSheet {
-            info: info(self.fabric.clone(), self.origin),
-            name: self.fabric,
-            ..Default::default()
-        };
-        Ok((sheet, made))
+/// An estimate that has a mean, in this unit.
+fn estimate(entry: EstimateEntry, unit: &str, fabric: &str, of: &str) -> Result<Estimate, DocumentError> {
+    let wrong = |what: String| DocumentError::Content { fabric: fabric.into(), what };
+    if entry.unit != unit {
+        return Err(wrong(format!("{of} in {} where {unit} was expected", entry.unit)));
     }
+    let mean = entry.mean.ok_or_else(|| wrong(format!("{of} without a mean")))?;
+    Ok(Estimate { mean, sd: entry.sd, n: entry.n, values: Vec::new() })
+}
+
+fn section(entry: SectionEntry) -> Result<(FabricSheet, Constitutive), DocumentError> {
+    let section = ShellSection {
+        d_m: Matrix3::from_fn(|r, c| entry.d_m[r][c]),
+        d_b: Matrix3::from_fn(|r, c| entry.d_b[r][c]),
+        d_s: Matrix2::from_fn(|r, c| entry.d_s[r][c]),
+        areal_density: entry.areal_density,
+        thickness: entry.thickness,
+    };
+    let used =
+        |(name, AssumptionEntry { value, source }): (String, _)| Used { name: name.into(), value, source };
+    let made = Constitutive {
+        section: section.checked()?,
+        law: None,
+        used: entry.assumptions.into_iter().map(used).collect(),
+        inputs: Vec::new(),
+        findings: Vec::new(),
+    };
+    let sheet = FabricSheet {
+        info: info(entry.fabric.clone(), entry.origin),
+        name: entry.fabric,
+        ..Default::default()
+    };
+    Ok((sheet, made))
 }
 
 fn info(title: String, origin: Origin) -> FabricInfo {
@@ -244,7 +175,7 @@ fn info(title: String, origin: Origin) -> FabricInfo {
 mod tests {
     use super::*;
     use crate::constitutive::{Assumptions, section};
-    use crate::report::json::{assumptions, section_document, sheet_document, text};
+    use crate::report::json::{section_document, sheet_document, text};
 
     fn sheet() -> FabricSheet {
         let mut sheet = FabricSheet {
@@ -283,8 +214,7 @@ mod tests {
     #[test]
     fn a_section_comes_back_to_the_last_digit() {
         let made = section(&sheet(), &Assumptions::default()).unwrap();
-        let document =
-            section_document([(&sheet(), &made.section, &made.inputs[..], assumptions(&made.used))]);
+        let document = section_document([(&sheet(), &made)]);
         let Some(Document::Sections(read)) = super::read(text(&document).unwrap().as_bytes()).unwrap() else {
             panic!("no sections")
         };

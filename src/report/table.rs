@@ -114,7 +114,7 @@ numbers!(f64, u64, Option<f64>, Option<u64>);
 macro_rules! row {
     ($(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident: $type:ty,)* }) => {
         $(#[$doc])*
-        #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+        #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
         pub struct $name {
             $($(#[$field_doc])* pub $field: $type,)*
         }
@@ -358,6 +358,26 @@ pub fn fabric_rows(sheet: &FabricSheet, units: UnitSystem) -> Vec<FabricRow> {
         row(format!("E {name}"), Some(*direction), e, units.of_modulus(), status)
     });
     values.chain(moduli).collect()
+}
+
+impl FabricRow {
+    /// A row of SI in other units.
+    #[must_use]
+    pub fn in_units(&self, units: UnitSystem) -> Self {
+        let (unit, factor) = match Parameter::from_symbol(&self.parameter) {
+            Some(parameter) => units.of(parameter),
+            None if self.parameter.starts_with("E ") => units.of_modulus(),
+            None => return self.clone(),
+        };
+        let shown = |value: f64| in_unit(value, factor);
+        Self {
+            mean: self.mean.map(shown),
+            sd: self.sd.map(shown),
+            ci95: self.ci95.map(shown),
+            unit: unit.into(),
+            ..self.clone()
+        }
+    }
 }
 
 /// Probes and energies against load factor or time; none of analyses without either.

@@ -1,5 +1,7 @@
 //! Workbooks (.xlsx) for spreadsheet programs: fabrics side by side, statistics, predictions, findings.
 
+use std::collections::BTreeMap;
+
 use rust_xlsxwriter::{Color, DocProperties, ExcelDateTime, Format, Workbook, Worksheet, XlsxError};
 use serde_json::Value;
 
@@ -27,12 +29,27 @@ pub fn workbook(tables: &Tables<'_>) -> Result<Vec<u8>, TableError> {
     build(tables).map_err(|e| TableError::Encode { format: "XLSX", problem: e.to_string() })
 }
 
-fn build(tables: &Tables<'_>) -> Result<Vec<u8>, XlsxError> {
+/// A workbook of parameters alone, side by side and with their statistics; `origins` are those of the fabrics by name.
+///
+/// # Errors
+/// Those of [`workbook()`].
+pub fn parameters(fabrics: &[FabricRow], origins: &BTreeMap<&str, &str>) -> Result<Vec<u8>, TableError> {
+    let saved = begun(fabrics, origins).and_then(|mut book| book.save_to_buffer());
+    saved.map_err(|e| TableError::Encode { format: "XLSX", problem: e.to_string() })
+}
+
+/// A workbook with the sheets of parameters.
+fn begun(fabrics: &[FabricRow], origins: &BTreeMap<&str, &str>) -> Result<Workbook, XlsxError> {
     let mut book = Workbook::new();
     // The same input gives the same bytes: the earliest date that an archive can hold.
     book.set_properties(&DocProperties::new().set_creation_datetime(&ExcelDateTime::from_ymd(1980, 1, 1)?));
-    side_by_side(book.add_worksheet().set_name("fabrics")?, tables.fabrics)?;
-    tidy(book.add_worksheet().set_name("statistics")?, tables.fabrics)?;
+    side_by_side(book.add_worksheet().set_name("fabrics")?, fabrics, origins)?;
+    tidy(book.add_worksheet().set_name("statistics")?, fabrics)?;
+    Ok(book)
+}
+
+fn build(tables: &Tables<'_>) -> Result<Vec<u8>, XlsxError> {
+    let mut book = begun(tables.fabrics, &BTreeMap::new())?;
     if !tables.predictions.is_empty() {
         tidy(book.add_worksheet().set_name("predictions")?, tables.predictions)?;
     }
@@ -49,8 +66,13 @@ struct Line<'a> {
     remarks: Vec<String>,
 }
 
-/// One line a fabric, one column a parameter and direction; the last column names the values that are not measured.
-fn side_by_side(sheet: &mut Worksheet, rows: &[FabricRow]) -> Result<(), XlsxError> {
+/// One line a fabric, one column a parameter and direction; the last columns name the origin of the fabric, where it is
+/// known, and the values that are not measured.
+fn side_by_side(
+    sheet: &mut Worksheet,
+    rows: &[FabricRow],
+    origins: &BTreeMap<&str, &str>,
+) -> Result<(), XlsxError> {
     let mut columns: Vec<String> = Vec::new();
     let mut lines: Vec<Line> = Vec::new();
     for row in rows {
@@ -74,16 +96,21 @@ fn side_by_side(sheet: &mut Worksheet, rows: &[FabricRow]) -> Result<(), XlsxErr
         });
         cells.push((at, mean));
     }
-    let headings = ["fabric"].into_iter().chain(columns.iter().map(String::as_str)).chain(["remarks"]);
+    let last: &[&str] = if origins.is_empty() { &["remarks"] } else { &["origin", "remarks"] };
+    let headings =
+        ["fabric"].into_iter().chain(columns.iter().map(String::as_str)).chain(last.iter().copied());
     head(sheet, headings)?;
     for (line, Line { fabric, cells, remarks }) in (1u32..).zip(&lines) {
         sheet.write_string(line, 0, *fabric)?;
         for (at, mean) in cells {
             sheet.write_number(line, column(at + 1)?, *mean)?;
         }
-        sheet.write_string(line, column(columns.len() + 1)?, remarks.join("; "))?;
+        if let Some(origin) = origins.get(fabric) {
+            sheet.write_string(line, column(columns.len() + 1)?, *origin)?;
+        }
+        sheet.write_string(line, column(columns.len() + last.len())?, remarks.join("; "))?;
     }
-    finish(sheet, lines.len(), columns.len() + 2)
+    finish(sheet, lines.len(), columns.len() + 1 + last.len())
 }
 
 /// The rows as they stand in the other files.
@@ -162,9 +189,9 @@ mod tests {
         let tables = Tables { fabrics: &fabrics, problems: &[problem], ..Tables::default() };
         let bytes = workbook(&tables).unwrap();
         assert_eq!(bytes, workbook(&tables).unwrap());
-        let mut book: Xlsx<_> = calamine::open_workbook_from_rs(Cursor::new(bytes)).unwrap();
-        assert_eq!(book.sheet_names(), ["fabrics", "statistics", "findings"]);
-        let sheet = book.worksheet_range("fabrics").unwrap();
+        let mut sheets: Xlsx<_> = calamine::open_workbook_from_rs(Cursor::new(bytes)).unwrap();
+        assert_eq!(sheets.sheet_names(), ["fabrics", "statistics", "findings"]);
+        let sheet = sheets.worksheet_range("fabrics").unwrap();
         let cell = |r, c| sheet.get_value((r, c)).cloned().unwrap_or(Data::Empty);
         assert_eq!(cell(0, 1), Data::String("B warp (N·m)".into()));
         assert_eq!(cell(1, 0), Data::String("=1+1".into()));
@@ -172,9 +199,16 @@ mod tests {
         assert_eq!((cell(2, 1), cell(2, 2)), (Data::Empty, Data::Float(1.5e-6)));
         assert_eq!(cell(1, 3), Data::String("B weft is doubtful".into()));
         assert_eq!(cell(3, 3), Data::String("R004".into()));
-        let sheet = book.worksheet_range("statistics").unwrap();
+        let of_parameters = super::parameters(&fabrics, &[("knit", "synthetic")].into()).unwrap();
+        let mut book: Xlsx<_> = calamine::open_workbook_from_rs(Cursor::new(of_parameters)).unwrap();
+        assert_eq!(book.sheet_names(), ["fabrics", "statistics"]);
+        let with_origins = book.worksheet_range("fabrics").unwrap();
+        let cell = |r, c| with_origins.get_value((r, c)).cloned().unwrap_or(Data::Empty);
+        assert_eq!((cell(0, 3), cell(0, 4)), (Data::String("origin".into()), Data::String("remarks".into())));
+        assert_eq!((cell(1, 3), cell(2, 3)), (Data::Empty, Data::String("synthetic".into())));
+        let sheet = sheets.worksheet_range("statistics").unwrap();
         assert_eq!(sheet.get_value((1, 5)), Some(&Data::Float(3.0)));
-        let sheet = book.worksheet_range("findings").unwrap();
+        let sheet = sheets.worksheet_range("findings").unwrap();
         assert_eq!(sheet.get_value((1, 1)), Some(&Data::String("K003".into())));
     }
 }

@@ -6,6 +6,7 @@ use std::fs;
 use std::io::{self, BufWriter, Write as _};
 use std::path::{Component, Path, PathBuf};
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use tempfile::NamedTempFile;
@@ -188,9 +189,11 @@ pub fn hash(bytes: &[u8]) -> String {
     hexadecimal(&digest(bytes))
 }
 
-#[derive(Deserialize)]
+/// `kesf.manifest/1`: what this program wrote into a folder.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct Manifest {
+pub(crate) struct Manifest {
+    #[schemars(extend("const" = "kesf.manifest/1"))]
     schema: String,
     /// Name in the folder (with `/`) and SHA-256 of what was written.
     files: BTreeMap<Box<str>, String>,

@@ -41,7 +41,7 @@ impl Kind {
         let (text, hint) = match self {
             Self::Solve => (
                 "there is no case with a [sheet] in the inputs",
-                "name a case file; a [virtual_test] belongs to `kesf compare`",
+                "name a case file; a [virtual_test] or a [bending_test] belongs to `kesf compare`",
             ),
             Self::Compare => (
                 "there is no case with a [virtual_test] or a [bending_test] in the inputs",

@@ -1,10 +1,12 @@
 //! Fabrics as material files of other programs.
 
+use schemars::JsonSchema;
 use std::collections::BTreeSet;
 
 use serde::Serialize;
 
 use super::failure::Failure;
+use super::file_name::{file_name, is_device, on_disk};
 use super::folder::Sink;
 use super::observer::Observer;
 use super::section::Sectioned;
@@ -12,7 +14,7 @@ use crate::finding::Place;
 use crate::report::cards::{Material, Target, card, named};
 
 /// The material file of a fabric.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Card {
     /// Its name.
     pub fabric: String,
@@ -69,11 +71,14 @@ pub fn write_cards(cards: &[Card], sink: &dyn Sink, observer: &Observer) -> (Vec
     (names, failures)
 }
 
-/// The name of a file, or with a number behind that of the fabric: it may come from a folder and from a document.
+/// The name of a file, or with a number behind that of the fabric: it may come from a folder and from a document, which
+/// may have any name.
 fn free_name(fabric: &str, ending: &str, taken: &mut BTreeSet<String>) -> String {
+    let bare = file_name(fabric);
+    let fabric = if bare.is_empty() || is_device(&bare) { format!("fabric-{bare}") } else { bare };
     let mut free = format!("{fabric}.{ending}");
     let mut number = 1;
-    while !taken.insert(free.clone()) {
+    while !taken.insert(on_disk(&free)) {
         number += 1;
         free = format!("{fabric}-{number}.{ending}");
     }
@@ -84,6 +89,16 @@ fn free_name(fabric: &str, ending: &str, taken: &mut BTreeSet<String>) -> String
 mod tests {
     use super::*;
     use crate::results::MemorySink;
+
+    #[test]
+    fn every_name_is_one_of_windows_and_macos() {
+        let card = |name: &str| Card { fabric: name.into(), target: "u3m", text: name.into() };
+        let sink = MemorySink::default();
+        let cards = ["../out", "NUL", "Poplin", "poplin", "a:b."].map(card);
+        let (names, failures) = write_cards(&cards, &sink, &Observer::default());
+        assert_eq!(names, ["-out.u3m", "fabric-NUL.u3m", "Poplin.u3m", "poplin-2.u3m", "a-b.u3m"]);
+        assert_eq!(failures, Vec::new());
+    }
 
     #[test]
     fn two_fabrics_of_one_name_have_a_file_each() {

@@ -1,5 +1,6 @@
 //! Inputs that were read and checked, and nothing more.
 
+use schemars::JsonSchema;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -13,6 +14,7 @@ use super::work::{named_fabric, no_such_fabric};
 use crate::finding::{Finding, Place};
 use crate::instrument::{FabricInput, Inference, Source};
 use crate::platform::files;
+use crate::solve::Options;
 use crate::study::{Case, StudyError, validate};
 
 /// What is in the inputs.
@@ -27,8 +29,9 @@ pub struct Checked {
 }
 
 /// `kesf.check/1`.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct CheckDocument {
+    #[schemars(extend("const" = "kesf.check/1"))]
     schema: &'static str,
     fabrics: Vec<FabricEntry>,
     cases: Vec<CaseEntry>,
@@ -36,7 +39,7 @@ pub struct CheckDocument {
     inference: Vec<Inference>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct FabricEntry {
     name: String,
     path: String,
@@ -46,23 +49,29 @@ struct FabricEntry {
     findings: Vec<Finding>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct CaseEntry {
     name: String,
     path: String,
     title: String,
 }
 
-/// Reads every fabric and builds every case of the inputs, and computes nothing. What fails and what is found goes to
-/// the observer.
+/// Reads every fabric and builds every case of the inputs, and computes nothing: a case that would need more `memory`
+/// (bytes) fails. What fails and what is found goes to the observer.
 ///
 /// # Errors
 /// O055 if there is nothing in the inputs, and those of [`Reading::each`].
-pub fn check(inputs: &[Input], reading: &Reading, observer: &Observer) -> Result<Checked, Failure> {
+pub fn check(
+    inputs: &[Input],
+    reading: &Reading,
+    memory: u64,
+    observer: &Observer,
+) -> Result<Checked, Failure> {
     let (read, mut failures) = inputs::cases(inputs);
+    let options = Options { memory_limit: memory, ..Options::default() };
     let mut cases = Vec::new();
     for case in read {
-        match validate(&case) {
+        match validate(&case, &options) {
             Ok(_) => cases.push(case),
             Err(error) => failures.push(located(&case, error)),
         }

@@ -1,6 +1,6 @@
 //! Aligned columns for people: text to the left, numbers to the right, two blanks between.
 
-use crate::report::html::Block;
+use crate::report::html::{Block, Cell};
 
 /// A table of text.
 #[derive(Clone, Debug)]
@@ -36,10 +36,11 @@ impl Columns {
         (!self.is_empty()).then_some(self)
     }
 
-    /// The same table for a page.
+    /// The same table for a page, of fabrics.
     pub fn block(&self, caption: &str) -> Block {
-        let (header, rows) = (self.rows[0].clone(), self.rows[1..].to_vec());
-        Block::Table { caption: caption.into(), header, rows }
+        let cells = |row: &Vec<String>| row.iter().map(Cell::from).collect();
+        let (header, rows) = (self.rows[0].clone(), self.rows[1..].iter().map(cells).collect());
+        Block::Table { caption: caption.into(), header, rows, of_fabrics: true }
     }
 
     /// The text, with a final newline.

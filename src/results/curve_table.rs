@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use crate::finding::errors;
-use crate::instrument::{Direction, FabricInput, Measurement, Source, Test, standard_conditions};
+use crate::instrument::{Direction, FabricInput, Measurement, Source, Test};
 use crate::quantity::{Curve, Unit};
 use crate::report::table::{CurveRow, UnitSystem, curve_units};
 
@@ -66,19 +66,14 @@ fn fabric(name: &str, curves: BTreeMap<Name, Points>) -> Result<FabricInput, Cur
         if let Some(pair) = points.windows(2).find(|pair| pair[0].0 == pair[1].0) {
             return Err(failed(pair[1].1, format!("index {} is there twice", pair[1].0)));
         }
+        let curve = Curve {
+            x: points.iter().map(|point| point.2).collect(),
+            y: points.iter().map(|point| point.3).collect(),
+        };
         measurements.push(Measurement {
-            test,
-            sample: None,
-            direction,
-            specimen: specimen as usize,
-            conditions: standard_conditions(test),
-            curve: Curve {
-                x: points.iter().map(|point| point.2).collect(),
-                y: points.iter().map(|point| point.3).collect(),
-            },
             lines: points.iter().map(|point| point.1).collect(),
             source: source.clone(),
-            metadata: BTreeMap::new(),
+            ..Measurement::of_curve(test, direction, specimen as usize, curve)
         });
     }
     let path = PathBuf::from(name);

@@ -1,8 +1,10 @@
 //! A drape: rows, document, charts and text.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::columns::Columns;
+use super::deflected::Deflected;
 use super::failure::Failure;
 use super::folder::Folder;
 use super::sampled::{self, SamplingEntry};
@@ -17,7 +19,7 @@ use crate::report::vtu::{MeshField, vtu};
 use crate::study::{Drape, DrapeState, measured_drape};
 
 /// The chart of simulated against measured coefficients of all fabrics.
-const PARITY: &str = "drape_parity.png";
+const PARITY: &str = "drape_parity";
 
 /// The measured coefficient of the task's fabric (0 to 1) and its method.
 fn measured<'a>(task: &'a Task) -> Option<(f64, &'a str)> {
@@ -65,7 +67,7 @@ pub(super) fn table<'a, 'f: 'a, 'c: 'a>(
 }
 
 /// An entry of `kesf.solution/1`: a drape (SI).
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct DrapeEntry {
     case: String,
     fabric: Option<String>,
@@ -75,12 +77,12 @@ pub struct DrapeEntry {
     findings: Vec<Finding>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct DrapeResults {
     drape: DrapeValues,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct DrapeValues {
     law: &'static str,
     /// Of the state of lowest energy on the finest mesh, 0 to 1.
@@ -96,13 +98,13 @@ struct DrapeValues {
     outline: OutlineEntry,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct MeasuredDrape {
     value: f64,
     method: String,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct StateEntry {
     start_folds: usize,
     elements: usize,
@@ -118,14 +120,14 @@ struct StateEntry {
     iterations: usize,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct FailedStart {
     start_folds: usize,
     code: &'static str,
 }
 
 /// Distances of the outline from the axis of the disc, one a degree.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct OutlineEntry {
     unit: &'static str,
     step_deg: u32,
@@ -237,6 +239,7 @@ pub(super) fn point(task: &Task, d: &Drape) -> Option<DrapePoint> {
         simulated: 100.0 * d.finest.coefficient,
         simulated_half_width: None,
         simulated_band: Some(d.band().map(|b| 100.0 * b)),
+        is_closed_loop: false,
     };
     Some(DrapePoint { law: task.case.law(), point })
 }
@@ -265,16 +268,21 @@ pub(crate) fn bracket(points: &[DrapePoint]) -> Option<Columns> {
     table.filled()
 }
 
-/// Writes `drape_parity.png`, if there is anything to compare; its name if so.
+/// Writes the chart `drape_parity`, if there is anything to compare; its name if so.
 pub(crate) fn write_parity(folder: &Folder, points: &[DrapePoint]) -> Result<Option<String>, Failure> {
     let subtitle = "point: state of lowest energy, bar: all states found; the friction that elastic cloth lacks would raise its points";
     let points: Vec<ParityPoint> = points.iter().map(|p| p.point.clone()).collect();
-    let drawn =
-        folder.chart(PARITY, || chart::parity(&points, "Drape, simulated against measured", subtitle))?;
-    Ok(drawn.then(|| PARITY.to_string()))
+    folder.chart(PARITY, || chart::parity(&points, "Drape, simulated against measured", subtitle))
 }
 
-/// Writes `<stem>.vtu`, `.png` (shadow) and `_view.png`; the charts that there are.
+/// The sheet before and after.
+pub(super) fn deflected(task: &Task, d: &Drape) -> Deflected {
+    let nodes = d.solution.state.position.iter().zip(&d.model.mesh.nodes);
+    let displacement = nodes.map(|(now, rest)| [now.x - rest.x, now.y - rest.y, now.z - rest.z]).collect();
+    Deflected::new(task, &d.model, displacement)
+}
+
+/// Writes `<stem>.vtu` and the charts `<stem>` (shadow) and `<stem>_view`; those charts that there are.
 pub(super) fn write(task: &Task, d: &Drape, folder: &Folder) -> Result<Vec<String>, Failure> {
     let stem = task.stem();
     let position: Vec<[f64; 3]> = d.solution.state.position.iter().map(|p| [p.x, p.y, p.z]).collect();
@@ -295,13 +303,8 @@ pub(super) fn write(task: &Task, d: &Drape, folder: &Folder) -> Result<Vec<Strin
     let mut drawn = Vec::new();
     if folder.charts() {
         let plot = plot(task, d, &position);
-        let (shadow, view) = (format!("{stem}.png"), format!("{stem}_view.png"));
-        if folder.chart(&shadow, || chart::drape_shadow(&plot))? {
-            drawn.push(shadow);
-        }
-        if folder.chart(&view, || chart::drape_view(&plot))? {
-            drawn.push(view);
-        }
+        drawn.extend(folder.chart(&stem, || chart::drape_shadow(&plot))?);
+        drawn.extend(folder.chart(&format!("{stem}_view"), || chart::drape_view(&plot))?);
     }
     Ok(drawn)
 }
@@ -330,7 +333,7 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
             law(task),
             if s.negative_pivots == 0 { "stable" } else { "UNSTABLE" }
         ),
-        origin: task.origin(),
+        origin: task.simulated_from(),
         nodes,
         quads: &d.model.mesh.quads,
         disc_radius: d.disc_radius,

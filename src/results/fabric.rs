@@ -1,7 +1,10 @@
 //! What a batch keeps of a fabric once its files are written.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
+use super::deflected::PageSheet;
 use super::draped::DrapePoint;
 use super::failure::Failure;
 use super::folder::Folder;
@@ -9,6 +12,7 @@ use super::inputs::Fabric;
 use super::observer::Observer;
 use super::outcome::Outcome;
 use super::overview;
+use super::rests_on::DOUBTFUL;
 use super::simulate::simulate;
 use super::task::Task;
 use super::tested::{self, Tested};
@@ -16,10 +20,11 @@ use super::{friction, page_curves, solved};
 use crate::characterise::FabricSheet;
 use crate::constitutive::{Assumptions, section};
 use crate::finding::{Finding, Place};
+use crate::instrument::FabricInfo;
 use crate::platform::Stopwatch;
 use crate::report::chart::ParityPoint;
-use crate::report::html::{Figure, TestCurves};
-use crate::report::json::{assumptions, section_document, sheet_document};
+use crate::report::html::{Figure, Shape, TestCurves};
+use crate::report::json::{section_document, sheet_document};
 use crate::report::table::{FabricRow, PredictionRow, ProblemRow, UnitSystem, fabric_rows, problem_row};
 use crate::study::{CaseResult, Status};
 
@@ -40,8 +45,19 @@ pub struct FabricReport {
     pub relative_deflections: Vec<(String, f64)>,
     /// Title, weave, composition and origin, for people.
     pub about: String,
+    /// What `fabric.toml` says; nothing of a fabric that could not be read.
+    #[serde(default)]
+    pub info: Option<FabricInfo>,
     /// Curves of its tests, thinned for the page.
     pub curves: Vec<TestCurves>,
+    /// Deflected sheets for the page.
+    pub shapes: Vec<Shape>,
+    /// How many are too large for it.
+    #[serde(default)]
+    pub sheets_too_large: usize,
+    /// Codes of what gave a row of `rows`, by its place, a status other than measured.
+    #[serde(default)]
+    pub causes: BTreeMap<usize, Vec<String>>,
     /// `ok`, or what is the matter.
     pub status: String,
     /// Rows of `fabrics.csv`.
@@ -60,6 +76,9 @@ pub struct FabricReport {
     pub findings: Vec<Finding>,
     /// What failed.
     pub failures: Vec<Failure>,
+    /// Files of its folder that could not be read, which the batch knows.
+    #[serde(skip)]
+    pub(crate) unread: Vec<Failure>,
     /// Whether a case took longer than it may.
     #[serde(skip)]
     pub(super) hurried: bool,
@@ -78,8 +97,10 @@ impl FabricReport {
             cells: overview::cells(sheet),
             status: "ok".into(),
             rows: fabric_rows(sheet, UnitSystem::Si),
+            causes: causes(sheet),
             findings: sheet.findings.clone(),
             about: about(sheet),
+            info: Some(sheet.info.clone()),
             ..Self::default()
         };
         report
@@ -87,9 +108,8 @@ impl FabricReport {
         match section(sheet, &Assumptions::default()) {
             Ok(made) => {
                 report.findings.extend(made.findings.iter().cloned());
-                let entry = (sheet, &made.section, &made.inputs[..], assumptions(&made.used));
                 let name = format!("{}/section.json", sheet.name);
-                report.keep_failure(folder.json(&name, &section_document([entry])));
+                report.keep_failure(folder.json(&name, &section_document([(sheet, &made)])));
                 report.simulate(sheet, tasks, folder, observer);
             }
             Err(error) => {
@@ -117,6 +137,11 @@ impl FabricReport {
         }
     }
 
+    /// `measured`, `published` or `synthetic`; empty of a fabric that could not be read.
+    pub(super) fn origin(&self) -> &'static str {
+        self.info.as_ref().map_or("", |info| info.origin.name())
+    }
+
     /// Whether another run could not find more: nothing failed for want of time, memory or a place to write to.
     pub(super) fn is_final(&self) -> bool {
         let of_machine = |f: &Failure| f.code.starts_with('O') || OF_MACHINE.contains(&&*f.code);
@@ -127,6 +152,12 @@ impl FabricReport {
     pub fn problems(&self) -> impl Iterator<Item = ProblemRow> {
         let row = |f| ProblemRow { fabric: Some(self.name.clone()), ..problem_row(f, &self.name) };
         self.findings.iter().map(row)
+    }
+
+    /// Codes of what makes its values doubtful.
+    pub fn doubted(&self) -> impl Iterator<Item = &String> {
+        let is_doubtful = |at: &usize| self.rows.get(*at).is_some_and(|row| row.status == DOUBTFUL);
+        self.causes.iter().filter(move |(at, _)| is_doubtful(at)).flat_map(|(_, codes)| codes)
     }
 
     fn keep_failure(&mut self, result: Result<(), Failure>) {
@@ -142,6 +173,9 @@ impl FabricReport {
             self.hurried |= watch.seconds() > task.limits().seconds;
             let written = simulated_task.and_then(|outcome| {
                 let figures = outcome.write(task, folder)?;
+                if folder.fields() {
+                    self.add_sheet(outcome.shape(task)?);
+                }
                 Ok((outcome, figures))
             });
             match written {
@@ -167,6 +201,14 @@ impl FabricReport {
         self.figures.extend(figures);
         if let Outcome::Solved(result) = outcome {
             self.add_deflection(result);
+        }
+    }
+
+    fn add_sheet(&mut self, sheet: Option<PageSheet>) {
+        match sheet {
+            Some(PageSheet::Shown(shape)) => self.shapes.push(*shape),
+            Some(PageSheet::TooLarge) => self.sheets_too_large += 1,
+            None => {}
         }
     }
 
@@ -215,6 +257,15 @@ impl FabricReport {
             });
         }
     }
+}
+
+/// See [`FabricReport::causes`]; in the order of [`fabric_rows`].
+fn causes(sheet: &FabricSheet) -> BTreeMap<usize, Vec<String>> {
+    let of_values = sheet.values.keys().map(|key| sheet.causes(*key));
+    let of_moduli = sheet.moduli.keys().map(|(name, direction)| sheet.modulus_causes(name, *direction));
+    let texts = |codes: Vec<&str>| codes.into_iter().map(String::from).collect();
+    let of_rows = of_values.chain(of_moduli).enumerate();
+    of_rows.filter(|(_, codes)| !codes.is_empty()).map(|(at, codes)| (at, texts(codes))).collect()
 }
 
 /// What `fabric.toml` says of it in a line.

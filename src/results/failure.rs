@@ -1,5 +1,6 @@
 //! Why an input or a task gave no result: one line, whatever layer it comes from.
 
+use schemars::JsonSchema;
 use std::error::Error;
 use std::fmt;
 
@@ -27,7 +28,7 @@ pub struct Failure {
 }
 
 /// `error` of a JSON line on standard error, and an entry of `failures` of a document.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct FailureEntry {
     /// Code for `kesf explain`.
     pub code: String,

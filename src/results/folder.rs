@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::failure::Failure;
 #[cfg(feature = "parquet")]
 use crate::report::ParquetTable;
-use crate::report::chart::ChartError;
+use crate::report::chart::{Chart, ChartError, Format};
 use crate::report::json::text;
 use crate::report::table::{Row, csv, marked};
 use crate::report::{CsvTable, OutputError, OutputFolder, Pending, is_hidden};
@@ -178,6 +178,7 @@ impl<R: Row> Table<'_, R> {
 pub struct Folder<'s> {
     sink: &'s dyn Sink,
     charts: bool,
+    formats: Vec<Format>,
     bom: bool,
     fields: bool,
     /// Names of what was written, where somebody wants to know.
@@ -185,9 +186,15 @@ pub struct Folder<'s> {
 }
 
 impl<'s> Folder<'s> {
-    /// A folder with or without charts; with fields.
+    /// A folder with or without charts (PNG); with fields.
     pub fn new(sink: &'s dyn Sink, charts: bool) -> Self {
-        Self { sink, charts, bom: false, fields: true, names: None }
+        Self { sink, charts, formats: vec![Format::Png], bom: false, fields: true, names: None }
+    }
+
+    /// The same, whose charts are files of these formats.
+    #[must_use]
+    pub fn with_formats(self, formats: &[Format]) -> Self {
+        Self { formats: formats.to_vec(), ..self }
     }
 
     /// The same, whose CSV tables begin with the mark by which Excel knows UTF-8 if `bom` is true.
@@ -204,7 +211,7 @@ impl<'s> Folder<'s> {
 
     /// The same folder, for files whose names are listed.
     pub(crate) fn listing(&self) -> Self {
-        Self { names: Some(Mutex::default()), ..*self }
+        Self { names: Some(Mutex::default()), formats: self.formats.clone(), ..*self }
     }
 
     /// Names of the files of a [`listing`](Self::listing), in the order of writing.
@@ -281,26 +288,49 @@ impl<'s> Folder<'s> {
         self.write(name, &if self.bom { marked(table) } else { table })
     }
 
-    /// Draws and writes a chart where charts are wanted; whether there is one. Without data there is none, and without
-    /// the feature `charts` nothing is drawn.
+    /// Draws a chart where charts are wanted and writes it in every format, its name with the ending of each; the name
+    /// of the one that a page shows, if there is one. Without data there is none, and without the feature `charts`
+    /// nothing is drawn.
     pub(crate) fn chart(
         &self,
-        name: &str,
-        draw: impl FnOnce() -> Result<Vec<u8>, ChartError>,
-    ) -> Result<bool, Failure> {
+        stem: &str,
+        draw: impl FnOnce() -> Result<Chart, ChartError>,
+    ) -> Result<Option<String>, Failure> {
         if !cfg!(feature = "charts") || !self.charts {
-            return Ok(false);
+            return Ok(None);
         }
-        match draw() {
-            Err(ChartError::NothingToDraw { .. }) => Ok(false),
-            picture => self.write(name, &picture?).map(|()| true),
+        let chart = match draw() {
+            Err(ChartError::NothingToDraw { .. }) => return Ok(None),
+            chart => chart?,
+        };
+        let name = |format: Format| format!("{stem}.{}", format.ending());
+        for &format in &self.formats {
+            self.write(&name(format), &chart.file(format)?)?;
         }
+        // In the order of `Format`: what browsers show comes first.
+        Ok(Format::ALL.iter().find(|format| self.formats.contains(format)).map(|format| name(*format)))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::chart::{self, ParityPoint};
+
+    fn point() -> ParityPoint {
+        ParityPoint {
+            label: "poplin".into(),
+            group: "warp".into(),
+            quantity: "B".into(),
+            unit: "N·m".into(),
+            measured: 1.0,
+            measured_half_width: None,
+            simulated: 2.0,
+            simulated_half_width: None,
+            simulated_band: None,
+            is_closed_loop: false,
+        }
+    }
 
     #[test]
     fn a_chart_is_written_where_it_is_wanted_and_has_data() {
@@ -312,9 +342,15 @@ mod tests {
                 missing: "a curve".into(),
             })
         };
-        assert!(!Folder::new(&sink, false).chart("a.png", || Ok(vec![1])).unwrap());
-        assert!(!Folder::new(&sink, true).chart("b.png", nothing).unwrap());
-        assert!(Folder::new(&sink, true).chart("c.png", || Ok(vec![1])).unwrap());
-        assert_eq!(sink.into_files().into_keys().collect::<Vec<_>>(), ["c.png"]);
+        let parity = || chart::parity(&[point()], "title", "subtitle");
+        assert_eq!(Folder::new(&sink, false).chart("a", parity).unwrap(), None);
+        assert_eq!(Folder::new(&sink, true).chart("b", nothing).unwrap(), None);
+        assert_eq!(Folder::new(&sink, true).chart("c", parity).unwrap().unwrap(), "c.png");
+        let drawn = Folder::new(&sink, true).with_formats(&[Format::Svg]).chart("d", parity).unwrap();
+        assert_eq!(drawn.unwrap(), "d.svg");
+        let both = Folder::new(&sink, true).with_formats(&[Format::Svg, Format::Png]);
+        assert_eq!(both.chart("e", parity).unwrap().unwrap(), "e.png");
+        let files = sink.into_files().into_keys();
+        assert_eq!(files.collect::<Vec<_>>(), ["c.png", "d.svg", "e.png", "e.svg"]);
     }
 }

@@ -7,7 +7,7 @@ use crate::characterise::{Basis, FabricSheet};
 use crate::instrument::{Direction, Parameter, Shape, Test};
 use crate::quantity::significant;
 use crate::report::chart::{self, ParityPoint};
-use crate::report::html::Figure;
+use crate::report::html::{Figure, FigureKind};
 use crate::report::table::UnitSystem;
 
 /// One line a law, then one line a parameter that is re-extracted from its simulated cycle; empty for
@@ -51,16 +51,16 @@ pub(super) fn text(sheet: &FabricSheet, units: UnitSystem) -> String {
     format!("\n{}{values}", laws.text())
 }
 
-/// Charts of re-extracted against measured parameters over all fabrics: file, title, parameters.
+/// Charts of re-extracted against measured parameters over all fabrics: name, title, parameters.
 /// Four panels are what a page has room for.
 const PARITY: [(&str, &str, [Parameter; 4]); 2] = [
     (
-        "friction_stiffness.png",
+        "friction_stiffness",
         "Friction laws: stiffness and width",
         [Parameter::B, Parameter::Hb, Parameter::G, Parameter::Hg],
     ),
     (
-        "friction_energy.png",
+        "friction_energy",
         "Friction laws: energy and resilience",
         [Parameter::Wt, Parameter::Rt, Parameter::Wc, Parameter::Rc],
     ),
@@ -71,25 +71,34 @@ pub(crate) fn write_parity(folder: &Folder, points: &[ParityPoint]) -> Result<Ve
     let subtitle =
         "read from the simulated cycle of each friction law, by the evaluation of instrument files";
     let mut drawn = Vec::new();
-    for (file, title, parameters) in PARITY {
+    for (stem, title, parameters) in PARITY {
         let is_of_page = |p: &&ParityPoint| parameters.iter().any(|q| q.symbol() == p.quantity);
         let points: Vec<ParityPoint> = points.iter().filter(is_of_page).cloned().collect();
-        if folder.chart(file, || chart::parity(&points, title, subtitle))? {
-            drawn.push(Figure { caption: title.into(), picture: file.into() });
+        if let Some(picture) = folder.chart(stem, || chart::parity(&points, title, subtitle))? {
+            let alt = format!(
+                "{title}: one point a fabric and parameter, {} in all, on the line where simulated equals measured.",
+                points.len()
+            );
+            drawn.push(Figure { caption: title.into(), alt, picture, kind: FigureKind::Overview });
         }
     }
     Ok(drawn)
 }
 
-/// Writes `<fabric>/friction_bending.png` ...: laws beside the loops behind them; those that there are.
+/// Writes the charts `<fabric>/friction_bending` ...: laws beside the loops behind them; those that there are.
 pub(super) fn write_charts(folder: &Folder, sheet: &FabricSheet) -> Result<Vec<Figure>, Failure> {
     let mut drawn = Vec::new();
     let looped = Test::ALL.into_iter().filter(|test| test.shape() != Shape::Sweep);
     for test in looped.map(Some).chain([None]) {
         let what = test.map_or("strips", Test::name);
-        let picture = format!("{}/friction_{what}.png", sheet.name);
-        if folder.chart(&picture, || chart::friction(sheet, test))? {
-            drawn.push(Figure { caption: format!("friction: {what}"), picture });
+        let stem = format!("{}/friction_{what}", sheet.name);
+        if let Some(picture) = folder.chart(&stem, || chart::friction(sheet, test))? {
+            let alt = format!(
+                "Laws of friction of {}, {what}: the loops of the laws over the measured ones.",
+                sheet.name
+            );
+            let caption = format!("friction: {what}");
+            drawn.push(Figure { caption, alt, picture, kind: FigureKind::Friction });
         }
     }
     Ok(drawn)
@@ -105,7 +114,11 @@ pub(super) fn parity_points(sheet: &FabricSheet) -> Vec<ParityPoint> {
             let p = r.key.parameter;
             ParityPoint {
                 label: sheet.name.clone(),
-                group: if r.from_loops { "from a loop" } else { "assumed spectrum" }.into(),
+                group: format!(
+                    "{}, {} data",
+                    if r.from_loops { "from a loop" } else { "assumed spectrum" },
+                    sheet.info.origin.name()
+                ),
                 quantity: p.symbol().into(),
                 unit: p.kes_unit().into(),
                 measured: r.measured.mean / p.kes_factor(),
@@ -113,6 +126,7 @@ pub(super) fn parity_points(sheet: &FabricSheet) -> Vec<ParityPoint> {
                 simulated: r.simulated.mean / p.kes_factor(),
                 simulated_half_width: None,
                 simulated_band: None,
+                is_closed_loop: false,
             }
         })
         .collect()

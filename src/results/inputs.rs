@@ -1,5 +1,6 @@
 //! What inputs name: fabrics (folders and files) and cases (`.toml`), on disk or in memory.
 
+use schemars::JsonSchema;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -90,7 +91,7 @@ pub struct Reading {
 }
 
 /// `options.evaluation` of `kesf.run/1`: a [`Reading`] with the hashes of the files that it names.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ReadingEntry {
     settings: Option<FileEntry>,
     dialect: Option<FileEntry>,
@@ -100,7 +101,7 @@ pub struct ReadingEntry {
 }
 
 /// A file with its hash.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct FileEntry {
     /// As it was named to us.
     pub path: String,
@@ -291,6 +292,7 @@ fn fabric_in_memory(path: &Path, bytes: &[u8], settings: &ReadSettings) -> InMem
         path: path.to_path_buf(),
         measurements: content.measurements,
         results,
+        stiffnesses: content.stiffnesses.into_iter().map(|(_, stiffness)| stiffness).collect(),
         fab: content.fab.into_iter().collect(),
         inference: vec![Inference { path: path.to_path_buf(), decisions: content.inference }],
         sources: vec![content.source],
@@ -397,18 +399,30 @@ pub fn unread(fabrics: &[Fabric], failures: &[Failure]) -> Vec<FabricRow> {
 
 /// The same of fabrics by their folder or file and their name.
 pub(crate) fn unread_of(fabrics: &[(&Path, &str)], failures: &[Failure]) -> Vec<FabricRow> {
-    failures.iter().filter_map(|failure| unread_row(fabrics, failure)).collect()
+    let row = |(fabric, failure): (String, &Failure)| FabricRow {
+        fabric,
+        status: failure.code.to_string(),
+        ..FabricRow::default()
+    };
+    unread_by_fabric(fabrics, failures).map(row).collect()
 }
 
-fn unread_row(fabrics: &[(&Path, &str)], failure: &Failure) -> Option<FabricRow> {
+/// What could not be read, with the fabric that it is of.
+pub(crate) fn unread_by_fabric<'f>(
+    fabrics: &[(&Path, &str)],
+    failures: &'f [Failure],
+) -> impl Iterator<Item = (String, &'f Failure)> {
+    failures.iter().filter_map(|failure| Some((fabric_of(fabrics, failure)?, failure)))
+}
+
+fn fabric_of(fabrics: &[(&Path, &str)], failure: &Failure) -> Option<String> {
     let path = &failure.place.as_ref().filter(|_| failure.code.starts_with('R'))?.path;
     let mut inside =
         fabrics.iter().filter(|(folder, _)| path.starts_with(folder) && files::is_folder(folder));
     // A file of a folder of several fabrics is nobody's in particular.
     let own = inside.next().filter(|_| inside.next().is_none()).map(|(_, name)| (*name).to_string());
     let stem = || path.file_stem().map(|s| s.to_string_lossy().into_owned());
-    let fabric = failure.fabric.as_deref().map(str::to_string).or(own).or_else(stem)?;
-    Some(FabricRow { fabric, status: failure.code.to_string(), ..FabricRow::default() })
+    failure.fabric.as_deref().map(str::to_string).or(own).or_else(stem)
 }
 
 /// Paths as people read them: a name from an old share may be no UTF-8, which JSON could not hold.

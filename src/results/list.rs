@@ -1,6 +1,7 @@
 //! What the program knows, as lists.
 
 use indexmap::IndexMap;
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -8,8 +9,8 @@ use super::columns::Columns;
 use crate::finding::explanations;
 use crate::instrument::dialects;
 use crate::quantity::UNITS;
-use crate::report::cards::{EXPORTERS, Target};
-use crate::schema;
+use crate::report::cards::{EXPORTERS, NOT_WRITTEN, Target};
+use crate::schema::SchemaFile;
 
 /// Headings and rows of a list.
 pub struct List {
@@ -20,8 +21,9 @@ pub struct List {
 }
 
 /// `kesf.list/1`.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ListDocument {
+    #[schemars(extend("const" = "kesf.list/1"))]
     schema: &'static str,
     /// Objects with the headings as keys.
     items: Vec<IndexMap<&'static str, Value>>,
@@ -103,12 +105,13 @@ pub fn known_dialects() -> List {
     List { headings: &["name", "title"], rows }
 }
 
-/// Programs that a fabric can be handed to.
+/// Programs that a fabric can be handed to, and those for which nothing is written, with the reason.
 pub fn exports() -> List {
     let row =
         |t: &Target| vec![json!(t.name), json!(format!(".{}", t.ending)), json!(t.title), json!(t.holds)];
     let headings = &["name", "ending", "what is written", "what it can hold of a fabric"];
-    List { headings, rows: EXPORTERS.iter().map(row).collect() }
+    let none = |(name, why): &(&str, &str)| vec![json!(name), json!("-"), json!("nothing"), json!(why)];
+    List { headings, rows: EXPORTERS.iter().map(row).chain(NOT_WRITTEN.iter().map(none)).collect() }
 }
 
 /// Unit symbols with their SI values.
@@ -130,9 +133,9 @@ fn dimension(kg: i8, m: i8, s: i8) -> String {
     if factors.is_empty() { "1".into() } else { factors.join("·") }
 }
 
-/// JSON Schemas of the files that the program reads.
-pub fn schemas() -> List {
-    let rows = schema::schemas().into_iter().map(|file| vec![json!(file.name), json!(file.title)]);
+/// JSON Schemas.
+pub fn schemas(files: &[SchemaFile]) -> List {
+    let rows = files.iter().map(|file| vec![json!(file.name), json!(file.title)]);
     List { headings: &["name", "title"], rows: rows.collect() }
 }
 

@@ -14,11 +14,13 @@ mod catalogue;
 mod checked;
 mod columns;
 mod curve_table;
+mod deflected;
 #[cfg(feature = "pictures")]
 mod drape_picture;
 mod draped;
 mod fabric;
 mod failure;
+mod file_name;
 mod folder;
 mod friction;
 mod init;
@@ -30,9 +32,12 @@ mod outcome;
 mod overview;
 mod page;
 mod page_curves;
+mod page_fabric;
 mod page_problems;
 mod page_values;
+mod population;
 mod record;
+mod rests_on;
 mod sampled;
 mod section;
 mod shard;
@@ -59,14 +64,15 @@ pub use failure::{Failure, FailureEntry};
 pub(crate) use folder::Table;
 pub use folder::{Folder, MemorySink, Sink, SinkFile};
 pub use init::{Begun, FIRST_CASE, init};
-pub(crate) use inputs::unread_of;
 pub use inputs::{
     Curves, Fabric, FileEntry, Input, Read, Reading, ReadingEntry, cases, nothing_to_read, paths_of_several,
     readable, unread, without_cases,
 };
+pub(crate) use inputs::{unread_by_fabric, unread_of};
 pub use names::distinguish_fabrics;
 pub use observer::{Event, Found, Observer};
-pub use outcome::{ComparisonEntry, Document, Outcome, Solution};
+pub use outcome::{ComparisonDocument, ComparisonEntry, Document, Outcome, Solution, SolutionDocument};
+pub use population::population;
 pub(crate) use record::{Record, hash_of};
 pub use sampled::{InputEntry, SamplingEntry};
 pub use section::{Sectioned, section_text, sections, sections_with};

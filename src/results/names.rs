@@ -3,38 +3,39 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use super::file_name::{file_name, is_device, on_disk};
 use super::inputs::Fabric;
 use crate::finding::{Finding, Place, Renaming, UsageFact};
 use crate::kes::Test;
 use crate::study::Case;
 
-/// A name that a folder can have, here and under Windows: nothing of it leads into another, and no file or device
-/// is called so.
+/// A name that the folder of a fabric can have: nothing of it leads into another, and no file or device is called so.
 fn folder_name(name: &str) -> String {
-    let flat = name.replace(['/', '\\'], "-");
-    let bare = flat.trim_matches('.').trim();
+    let bare = file_name(name);
     if bare.is_empty() {
         return "fabric".into();
     }
     let lower = bare.to_lowercase();
-    let stem = lower.split('.').next().unwrap_or_default();
-    let port =
-        |kind| stem.strip_prefix(kind).is_some_and(|n| n.len() == 1 && n.as_bytes()[0].is_ascii_digit());
-    let device = ["con", "prn", "aux", "nul"].contains(&stem) || port("com") || port("lpt");
     let page = lower.starts_with("fabrics-") && lower.ends_with(".html");
-    if device || page || OF_RUN.contains(&lower.as_str()) { format!("fabric-{bare}") } else { bare.into() }
+    let chart = lower.rsplit_once('.').is_some_and(|(stem, ending)| {
+        CHARTS_OF_RUN.contains(&stem) && ["png", "svg", "pdf"].contains(&ending)
+    });
+    if is_device(&bare) || page || chart || OF_RUN.contains(&lower.as_str()) {
+        format!("fabric-{bare}")
+    } else {
+        bare
+    }
 }
 
-/// What `run` puts beside the folders of the fabrics.
-const OF_RUN: [&str; 12] = [
+/// The charts that `run` puts beside the folders of the fabrics, without their endings.
+const CHARTS_OF_RUN: [&str; 4] = ["drape_parity", "friction_energy", "friction_stiffness", "parity"];
+
+/// What else it puts there.
+const OF_RUN: [&str; 8] = [
     "cases",
-    "drape_parity.png",
     "fabrics.csv",
     "fabrics.parquet",
-    "friction_energy.png",
-    "friction_stiffness.png",
     "index.html",
-    "parity.png",
     "predictions.csv",
     "predictions.parquet",
     "problems.csv",
@@ -49,28 +50,46 @@ fn is_reserved(name: &str) -> bool {
         || name.starts_with("friction_")
 }
 
-/// Numbers cases that share a name, so that the files of none take the place of another's.
+/// A name that the files of a case can begin with.
+fn case_name(name: &str) -> String {
+    let bare = file_name(name);
+    if bare.is_empty() || is_device(&bare) { format!("case-{bare}") } else { bare }
+}
+
+/// Numbers cases that share a name, so that the files of none take the place of another's, and names those anew whose
+/// name no file can have.
 pub(super) fn distinguish_cases(cases: &mut [Case]) -> Vec<Finding> {
-    let own: BTreeSet<String> = cases.iter().map(|c| c.name.to_lowercase()).collect();
-    let (mut seen, mut findings) = (BTreeSet::new(), Vec::new());
+    let mut findings = Vec::new();
+    for case in &mut *cases {
+        let name = case_name(&case.name);
+        if name != case.name {
+            findings.push(rename_case(case, name, Renaming::CaseFile));
+        }
+    }
+    let own: BTreeSet<String> = cases.iter().map(|c| on_disk(&c.name)).collect();
+    let mut seen = BTreeSet::new();
     for case in cases {
         let reserved = case.fabric().is_some() && is_reserved(&case.name);
-        if !reserved && seen.insert(case.name.to_lowercase()) {
+        if !reserved && seen.insert(on_disk(&case.name)) {
             continue;
         }
         let numbered = |n: usize| format!("{}-{n}", case.name);
         let free = |name: &String| {
-            let name = name.to_lowercase();
+            let name = on_disk(name);
             !own.contains(&name) && !seen.contains(&name)
         };
         let Some(name) = (2..).map(numbered).find(free) else { continue };
+        seen.insert(on_disk(&name));
         let because = if reserved { Renaming::CaseReserved } else { Renaming::CaseTwice };
-        let fact = UsageFact::Renamed { name: case.name.clone(), renamed: name.clone(), because };
-        findings.push(Finding::new(fact).at(Place::file(&case.path)));
-        seen.insert(name.to_lowercase());
-        case.name = name;
+        findings.push(rename_case(case, name, because));
     }
     findings
+}
+
+fn rename_case(case: &mut Case, renamed: String, because: Renaming) -> Finding {
+    let fact = UsageFact::Renamed { name: case.name.clone(), renamed: renamed.clone(), because };
+    case.name = renamed;
+    Finding::new(fact).at(Place::file(&case.path))
 }
 
 /// The name of a fabric before and after it was made one that no other has.
@@ -104,21 +123,21 @@ pub(super) fn distinguish<'p>(fabrics: &mut [Named], path: impl Fn(usize) -> &'p
             fabric.rename(path(at), name, Renaming::FabricFolder);
         }
     }
-    // Names that differ in case only are one folder under Windows and macOS.
+    // Names that differ in case only, or in how their accents are written, are one folder under Windows or macOS.
     let mut own: BTreeMap<String, usize> = BTreeMap::new();
     for fabric in fabrics.iter() {
-        *own.entry(fabric.name.to_lowercase()).or_default() += 1;
+        *own.entry(on_disk(&fabric.name)).or_default() += 1;
     }
     if own.len() == fabrics.len() {
         return;
     }
     let mut seen: BTreeMap<String, usize> = BTreeMap::new();
     for (at, fabric) in fabrics.iter_mut().enumerate() {
-        let count = seen.entry(fabric.name.to_lowercase()).or_default();
+        let count = seen.entry(on_disk(&fabric.name)).or_default();
         *count += 1;
         if *count > 1 {
             let mut name = format!("{}-{count}", fabric.name);
-            while own.contains_key(&name.to_lowercase()) {
+            while own.contains_key(&on_disk(&name)) {
                 *count += 1;
                 name = format!("{}-{count}", fabric.name);
             }

@@ -1,8 +1,10 @@
 //! What a task gives, whatever its kind: the one place that tells the kinds apart.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::bent::{self, BendingEntry};
+use super::deflected::{Deflected, PageSheet};
 use super::draped::{self, DrapeEntry, DrapePoint};
 use super::failure::Failure;
 use super::folder::Folder;
@@ -11,11 +13,15 @@ use super::solved::{self, SolutionEntry};
 use super::task::Task;
 use super::tested::{self, TestEntry, Tested};
 use crate::finding::Finding;
+use crate::quantity::significant;
 use crate::report::chart::ParityPoint;
-use crate::report::html::Figure;
+use crate::report::html::{Figure, FigureKind};
 use crate::report::table::PredictionRow;
 use crate::study::bending::BendingResult;
 use crate::study::{CaseResult, Drape, Status};
+
+/// Most values that are told with a picture.
+const VALUES_SEEN: usize = 4;
 
 /// The result of a task.
 #[derive(Clone, Debug)]
@@ -31,27 +37,35 @@ pub enum Outcome {
 }
 
 /// A document with the outcome of a task or of several.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Document {
-    /// `kesf.solution/1`.
-    Solutions {
-        /// `kesf.solution/1`.
-        schema: &'static str,
-        /// One a task.
-        solutions: Vec<Solution>,
-    },
-    /// `kesf.comparison/1`.
-    Comparisons {
-        /// `kesf.comparison/1`.
-        schema: &'static str,
-        /// One a direction.
-        comparisons: Vec<ComparisonEntry>,
-    },
+    /// Of cases with a sheet.
+    Solutions(SolutionDocument),
+    /// Of tests.
+    Comparisons(ComparisonDocument),
+}
+
+/// `kesf.solution/1`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct SolutionDocument {
+    #[schemars(extend("const" = "kesf.solution/1"))]
+    schema: &'static str,
+    /// One a task.
+    solutions: Vec<Solution>,
+}
+
+/// `kesf.comparison/1`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ComparisonDocument {
+    #[schemars(extend("const" = "kesf.comparison/1"))]
+    schema: &'static str,
+    /// One a direction.
+    comparisons: Vec<ComparisonEntry>,
 }
 
 /// An entry of `kesf.solution/1`.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Solution {
     /// A solved case.
@@ -61,7 +75,7 @@ pub enum Solution {
 }
 
 /// An entry of `kesf.comparison/1`.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ComparisonEntry {
     /// A simulated KES test.
@@ -73,12 +87,12 @@ pub enum ComparisonEntry {
 impl Document {
     /// `kesf.solution/1`.
     pub(super) fn solutions(solutions: Vec<Solution>) -> Self {
-        Self::Solutions { schema: "kesf.solution/1", solutions }
+        Self::Solutions(SolutionDocument { schema: "kesf.solution/1", solutions })
     }
 
     /// `kesf.comparison/1`.
     pub(super) fn comparisons(comparisons: Vec<ComparisonEntry>) -> Self {
-        Self::Comparisons { schema: "kesf.comparison/1", comparisons }
+        Self::Comparisons(ComparisonDocument { schema: "kesf.comparison/1", comparisons })
     }
 }
 
@@ -136,18 +150,73 @@ impl Outcome {
     pub fn write(&self, task: &Task, folder: &Folder) -> Result<Vec<Figure>, Failure> {
         let stem = task.stem();
         folder.json(&format!("{stem}.json"), &self.document(task))?;
-        let chart = format!("{stem}.png");
+        if let Some(sheet) = self.deflected(task).filter(|_| folder.fields()) {
+            sheet.write(folder)?;
+        }
         let drawn = match self {
-            Self::Solved(result) => {
-                solved::write(task, result, folder)?.then_some(chart).into_iter().collect()
-            }
+            Self::Solved(result) => solved::write(task, result, folder)?.into_iter().collect(),
             Self::Draped(drape) => draped::write(task, drape, folder)?,
-            Self::Tested(tested) => {
-                tested::write_chart(task, tested, folder)?.then_some(chart).into_iter().collect()
-            }
+            Self::Tested(tested) => tested::write_chart(task, tested, folder)?.into_iter().collect(),
             Self::Bent(result, _) => bent::write_charts(task, result, folder)?,
         };
-        Ok(drawn.into_iter().map(|picture| Figure { caption: task.case.title.clone(), picture }).collect())
+        let kind = self.figure_kind(task);
+        let figure = |picture: String| Figure {
+            caption: task.case.title.clone(),
+            alt: self.seen(task, &picture),
+            picture,
+            kind,
+        };
+        Ok(drawn.into_iter().map(figure).collect())
+    }
+
+    /// What its charts are of.
+    fn figure_kind(&self, task: &Task) -> FigureKind {
+        if task.fabric.is_none() {
+            return FigureKind::Benchmark;
+        }
+        match self {
+            Self::Draped(_) => FigureKind::Drape,
+            Self::Bent(..) => FigureKind::Cantilever,
+            // A strip that bends far, as in the test.
+            Self::Solved(result) if result.path.is_some() => FigureKind::Cantilever,
+            Self::Solved(_) => FigureKind::Plate,
+            Self::Tested(_) => FigureKind::Test,
+        }
+    }
+
+    /// What is seen in one of its charts, for readers who do not see it.
+    fn seen(&self, task: &Task, picture: &str) -> String {
+        let what = match self {
+            Self::Draped(_) if picture.contains("_view.") => "the draped sheet from the side",
+            Self::Draped(_) => "the shadow of the draped sheet from above",
+            Self::Bent(..) => "the shape of a strip under its own weight",
+            Self::Solved(_) => "the deflection of a sheet",
+            Self::Tested(_) => "the simulated test beside the measured curves",
+        };
+        let of = task.fabric_name().map_or(String::new(), |name| format!(", {name}"));
+        let told = |row: &PredictionRow| {
+            let unit = if row.unit == "1" { String::new() } else { format!(" {}", row.unit) };
+            let number = |v: f64| if v.fract() == 0.0 { v.to_string() } else { significant(v) };
+            row.simulated.map(|v| format!("{} {}{unit}", row.quantity.replace('_', " "), number(v)))
+        };
+        let values: Vec<String> = self.rows(task).iter().filter_map(told).take(VALUES_SEEN).collect();
+        let values = if values.is_empty() { String::new() } else { format!("; {}", values.join(", ")) };
+        format!("{}{of}: {what}{values}.", task.case.title)
+    }
+
+    /// The sheet before and after.
+    fn deflected(&self, task: &Task) -> Option<Deflected> {
+        match self {
+            Self::Solved(result) => solved::deflected(task, result),
+            Self::Draped(drape) => Some(draped::deflected(task, drape)),
+            Self::Tested(_) | Self::Bent(..) => None,
+        }
+    }
+
+    /// What the page shows of the sheet.
+    pub(super) fn shape(&self, task: &Task) -> Result<Option<PageSheet>, Failure> {
+        let is_drape = matches!(self, Self::Draped(_));
+        self.deflected(task).map(|sheet| sheet.shape(is_drape)).transpose()
     }
 
     /// What a reader of the outcome must know.
@@ -189,7 +258,7 @@ impl Outcome {
     /// Points of the chart of simulated against measured stiffness.
     pub(super) fn parity_points(&self, task: &Task) -> Vec<ParityPoint> {
         match self {
-            Self::Tested(tested) => tested.iter().filter_map(|t| tested::parity_point(task, t)).collect(),
+            Self::Tested(tested) => tested::parity_points(task, tested),
             Self::Solved(_) | Self::Draped(_) | Self::Bent(..) => Vec::new(),
         }
     }

@@ -3,7 +3,7 @@
 use super::columns::Columns;
 use super::fabric::FabricReport;
 use super::sheet_text::mark;
-use crate::case::Case;
+use crate::case::{Analysis, BendingTest, Case, Problem};
 use crate::characterise::{FabricSheet, Key};
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::significant;
@@ -23,6 +23,9 @@ pub(super) const HEADINGS: [&str; 9] = [
 
 /// Units of the columns that do not name theirs.
 pub(super) const CAPTION: &str = "B in gf·cm²/cm, G in gf/(cm·deg); E is the tangent at low load, or the secant where that is written; ? is doubtful, * rests on an assumption, ~ is inferred";
+
+/// What the columns of predictions are.
+const PREDICTIONS: &str = "drape coefficients in %, bending lengths of cantilevers in mm, largest deflections in mm or over the bending thickness t_b (a linear solve means something below 0.3)";
 
 /// B, G, E, T, W: KES units, except E in N/m.
 pub(super) fn cells(sheet: &FabricSheet) -> Vec<String> {
@@ -56,39 +59,155 @@ fn modulus(sheet: &FabricSheet, direction: Direction) -> String {
     found.unwrap_or("-".into())
 }
 
-/// One line a fabric, one column of deflections a case.
+/// A column of predictions.
+enum Prediction<'c> {
+    /// The coefficient of a drape.
+    Drape(&'c str),
+    /// The bending length of a cantilever.
+    BendingLength(&'c str, Direction),
+    /// Largest deflection over the bending thickness: what a linear solve can say of any cloth.
+    Relative(&'c str),
+    /// Largest deflection.
+    Deflection(&'c str),
+}
+
+impl<'c> Prediction<'c> {
+    /// Columns of a case.
+    fn of(case: &'c Case) -> Vec<Self> {
+        if case.fabric().is_none() {
+            return Vec::new();
+        }
+        let name = case.name.as_str();
+        match &case.problem {
+            Problem::Drape(_) => vec![Self::Drape(name)],
+            Problem::BendingTest(BendingTest::Cantilever(_)) => [Direction::Warp, Direction::Weft]
+                .map(|direction| Self::BendingLength(name, direction))
+                .into(),
+            Problem::Sheet(sheet) if matches!(sheet.analysis, Analysis::Linear(_)) => {
+                vec![Self::Relative(name)]
+            }
+            Problem::Sheet(_) => vec![Self::Deflection(name)],
+            Problem::BendingTest(BendingTest::HeartLoop { .. } | BendingTest::FabBendLoop { .. })
+            | Problem::InstrumentTest(_) => Vec::new(),
+        }
+    }
+
+    /// What a laboratory measures stands before what it does not.
+    fn rank(&self) -> u8 {
+        match self {
+            Self::Drape(_) => 0,
+            Self::BendingLength(..) => 1,
+            Self::Relative(_) | Self::Deflection(_) => 2,
+        }
+    }
+
+    fn heading(&self) -> String {
+        match self {
+            Self::Drape(case) => format!("{case} (%)"),
+            Self::BendingLength(case, direction) => format!("{case} {direction} (mm)"),
+            Self::Relative(case) => format!("{case} (w/t_b)"),
+            Self::Deflection(case) => format!("w_max {case} (mm)"),
+        }
+    }
+
+    fn cell(&self, report: &FabricReport) -> String {
+        let of_case = |list: &[(String, f64)], case: &str| {
+            list.iter().find(|(name, _)| name == case).map(|(_, value)| *value)
+        };
+        let predicted = |case: &str, quantity: &str| {
+            let row = report.predictions.iter().find(|row| row.case == case && row.quantity == quantity);
+            row.and_then(|row| row.simulated)
+        };
+        let value = match self {
+            Self::Drape(case) => predicted(case, "drape_coefficient").map(|part| 1e2 * part),
+            Self::BendingLength(case, direction) => {
+                predicted(case, &format!("bending_length {direction}")).map(|length| 1e3 * length)
+            }
+            Self::Relative(case) => of_case(&report.relative_deflections, case),
+            Self::Deflection(case) => of_case(&report.deflections, case).map(|w| 1e3 * w),
+        };
+        value.map_or("-".into(), significant)
+    }
+}
+
+/// One line a fabric, with columns of what its cases predict.
 pub(crate) struct Overview<'c> {
-    cases: Vec<&'c str>,
+    predictions: Vec<Prediction<'c>>,
     table: Columns,
 }
 
 impl<'c> Overview<'c> {
     /// A table for these cases, yet without fabrics.
     pub fn new(cases: impl Iterator<Item = &'c Case>) -> Self {
-        let cases: Vec<&str> =
-            cases.filter(|c| c.sheet().is_some() && c.fabric().is_some()).map(|c| c.name.as_str()).collect();
-        let deflections = cases.iter().map(|c| format!("w_max {c} (mm)"));
-        let headings =
-            HEADINGS.map(String::from).into_iter().chain(deflections).chain(["status".to_string()]);
-        Self { table: Columns::new(headings), cases }
+        let mut predictions: Vec<Prediction> = cases.flat_map(Prediction::of).collect();
+        predictions.sort_by_key(Prediction::rank);
+        let predicted = predictions.iter().map(Prediction::heading);
+        let headings = HEADINGS.map(String::from).into_iter().chain(predicted).chain(["status".to_string()]);
+        Self { table: Columns::new(headings), predictions }
     }
 
     /// Adds a fabric.
     pub fn row(&mut self, report: &FabricReport) {
         let mut row = vec![report.name.clone()];
         row.extend(report.cells.iter().cloned());
-        row.extend(self.cases.iter().map(|case| deflection(report, case)));
+        row.extend(self.predictions.iter().map(|prediction| prediction.cell(report)));
         row.push(report.status.clone());
         self.table.row(row);
     }
 
     /// The table.
     pub fn table(self) -> Columns {
-        self.table.with_note(CAPTION)
+        let caption =
+            if self.predictions.is_empty() { CAPTION.into() } else { format!("{CAPTION}; {PREDICTIONS}") };
+        self.table.with_note(&caption)
     }
 }
 
-fn deflection(report: &FabricReport, case: &str) -> String {
-    let found = report.deflections.iter().find(|(name, _)| name == case);
-    found.map_or("-".into(), |(_, w)| significant(1e3 * w))
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::report::table::PredictionRow;
+
+    fn case(file: &str) -> Case {
+        Case::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(file)).unwrap()
+    }
+
+    #[test]
+    fn what_a_laboratory_measures_stands_first() {
+        let cases = ["seed_clamped.toml", "cantilever.toml", "drape.toml", "virtual_shear.toml"].map(case);
+        let mut overview = Overview::new(cases.iter());
+        let row = |case: &str, quantity: &str, simulated: f64| PredictionRow {
+            case: case.into(),
+            quantity: quantity.into(),
+            simulated: Some(simulated),
+            ..PredictionRow::default()
+        };
+        overview.row(&FabricReport {
+            name: "poplin".into(),
+            cells: vec!["-".into(); HEADINGS.len() - 1],
+            predictions: vec![
+                row("drape", "drape_coefficient", 0.5),
+                row("cantilever", "bending_length warp", 0.02),
+            ],
+            relative_deflections: vec![("seed_clamped".into(), 1e-5)],
+            status: "ok".into(),
+            ..FabricReport::default()
+        });
+        let text = overview.table().text();
+        let head = text.lines().next().unwrap();
+        let order = [
+            "W (mg/cm²)",
+            "drape (%)",
+            "cantilever warp (mm)",
+            "cantilever weft (mm)",
+            "seed_clamped (w/t_b)",
+            "status",
+        ];
+        let places: Vec<usize> = order.iter().map(|name| head.find(name).unwrap()).collect();
+        assert!(places.is_sorted(), "{text}");
+        let values: Vec<&str> = text.lines().nth(1).unwrap().split_whitespace().rev().take(5).collect();
+        assert_eq!(values, ["ok", "1.000e-5", "-", "20.00", "50.00"], "{text}");
+    }
 }

@@ -2,12 +2,22 @@
 
 use super::draped::{self, DrapePoint};
 use super::fabric::FabricReport;
-use super::page_problems::BEYOND_LINEAR;
-use super::page_values::{doubtful, leading, plates, tests};
+use super::page_fabric::{fabric_block, figures_block};
+use super::page_values::{doubtful, leading, plates};
 use super::solved::status;
 use super::task::Task;
 use crate::quantity::significant;
-use crate::report::html::{Block, Figure, POINTS, Page, PageData, ProblemGroup, Section, without_folders};
+use crate::report::chart::Format;
+use crate::report::html::{
+    Block, FabricValues, Figure, Page, PageData, ProblemGroup, Section, Shape, Shapes, Workbooks,
+    without_folders,
+};
+use crate::report::population::Population;
+#[cfg(feature = "workbook")]
+use crate::report::{
+    table::{FabricRow, UnitSystem},
+    workbook,
+};
 use crate::study::CaseResult;
 
 /// Above the table of drapes.
@@ -31,11 +41,17 @@ pub(crate) struct Benchmark<'a, 'w> {
 pub(crate) struct Head<'a> {
     /// How many there are.
     pub fabrics: usize,
+    /// How many inputs could not be read, and how many results could not be made.
+    pub failed: [usize; 2],
     /// Charts.
     pub figures: Vec<Figure>,
     /// Everything that failed or was found.
     pub problems: Vec<ProblemGroup>,
     pub drapes: &'a [DrapePoint],
+    /// What fabrics are compared with; none for themselves.
+    pub population: Option<&'a Population>,
+    /// Files of each chart; none where no charts are drawn.
+    pub formats: &'a [Format],
     /// Pages with the fabrics, where there are too many for this one.
     pub pages: &'a [String],
 }
@@ -52,40 +68,95 @@ pub(crate) fn page(reports: &[FabricReport], benchmarks: &[Benchmark], head: Hea
         section("Problems and doubtful values", problem_blocks(reports, head.problems)),
         section("Predictions", predictions),
         fabrics(reports),
-        side_by_side(reports),
+        side_by_side(reports, head.population),
         section("Cases with constants of their own", benchmarks.iter().flat_map(benchmark_blocks).collect()),
-        section("Files", vec![files()]),
+        section("Files", other_formats(head.formats).into_iter().chain([files()]).collect()),
     ];
-    made_of(sections, "KES-F results".into(), head.fabrics, reports)
+    let lead = counts(head.fabrics, head.failed);
+    made_of(sections, "KES-F results".into(), &lead, reports, head.population)
 }
 
-/// A page of some of the fabrics; `number` counts from 1.
-pub(crate) fn fabrics_page(reports: &[FabricReport], number: usize) -> Page {
+/// A page of some of the `all` fabrics; `number` counts from 1.
+pub(crate) fn fabrics_page(
+    reports: &[FabricReport],
+    number: usize,
+    all: usize,
+    population: Option<&Population>,
+) -> Page {
     let sections = [
         parameters(reports),
-        section("Doubtful values", doubtful(reports).into_iter().collect()),
+        section("Doubtful values", doubtful(reports, "index.html").into_iter().collect()),
         section("Predictions", leading(reports).into_iter().chain(plates(reports)).collect()),
         fabrics(reports),
-        side_by_side(reports),
+        side_by_side(reports, population),
         section("All fabrics", vec![Block::Files(vec!["index.html".into()])]),
     ];
-    made_of(sections, format!("KES-F results, page {number}"), reports.len(), reports)
+    let unread = reports.iter().map(|r| r.unread.len()).sum();
+    let undone = reports.iter().map(|r| r.failures.len()).sum();
+    let lead = counts(reports.len(), [unread, undone]);
+    let mut page = made_of(sections, format!("KES-F results, page {number}"), &lead, reports, population);
+    page.data.fabrics_of_run = Some(all);
+    page
 }
 
 /// A page of the sections that hold something.
 fn made_of(
     sections: impl IntoIterator<Item = Section>,
     title: String,
-    fabrics: usize,
+    counts: &str,
     reports: &[FabricReport],
+    population: Option<&Population>,
 ) -> Page {
     let version = env!("CARGO_PKG_VERSION");
+    let data = PageData { population: population.cloned(), ..data(reports) };
     Page {
         title,
-        lead: format!("{fabrics} fabrics; kesf {version}; inputs and their hashes are in run.json."),
+        lead: format!(
+            "{counts}; kesf {version}; inputs and their hashes are in run.json.{}",
+            sheets_left_out(&data.shapes)
+        ),
         sections: sections.into_iter().filter(|s| !s.blocks.is_empty()).collect(),
-        data: data(reports),
+        data,
+        workbooks: workbooks(reports),
     }
+}
+
+/// How many fabrics there are, and what failed.
+fn counts(fabrics: usize, [unread, undone]: [usize; 2]) -> String {
+    let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    let mut parts = vec![counted(fabrics, "fabric")];
+    parts.extend((unread > 0).then(|| format!("{} failed", counted(unread, "input"))));
+    parts.extend((undone > 0).then(|| format!("{} could not be made", counted(undone, "result"))));
+    parts.join(", ")
+}
+
+/// A sentence on sheets that are not in the page.
+fn sheets_left_out(shapes: &Shapes) -> String {
+    match shapes.left_out.len() {
+        0 => String::new(),
+        missing => format!(
+            " {missing} of {} deflected sheets do not turn in this page, to keep it small; their files (.glb) are in the folder \
+             of results.",
+            shapes.count()
+        ),
+    }
+}
+
+/// The table of parameters to be taken away. A table that no sheet can hold is in the CSV files alone.
+#[cfg(feature = "workbook")]
+fn workbooks(reports: &[FabricReport]) -> Option<Workbooks> {
+    let rows = |units: UnitSystem| -> Vec<FabricRow> {
+        reports.iter().flat_map(|r| &r.rows).map(|row| row.in_units(units)).collect()
+    };
+    let origins = reports.iter().map(|r| (r.name.as_str(), r.origin())).collect();
+    let [kes, si] =
+        [UnitSystem::Kes, UnitSystem::Si].map(|units| workbook::parameters(&rows(units), &origins));
+    (!reports.is_empty()).then_some(Workbooks { kes: kes.ok()?, si: si.ok()? })
+}
+
+#[cfg(not(feature = "workbook"))]
+fn workbooks(_: &[FabricReport]) -> Option<Workbooks> {
+    None
 }
 
 fn section(heading: &str, blocks: Vec<Block>) -> Section {
@@ -110,7 +181,7 @@ fn links(pages: &[String]) -> Vec<Block> {
 }
 
 fn problem_blocks(reports: &[FabricReport], problems: Vec<ProblemGroup>) -> Vec<Block> {
-    let mut blocks: Vec<Block> = doubtful(reports).into_iter().collect();
+    let mut blocks: Vec<Block> = doubtful(reports, "").into_iter().collect();
     if problems.is_empty() {
         blocks.push(Block::Text("Nothing was found that a reader of the results must know.".into()));
     } else {
@@ -120,7 +191,13 @@ fn problem_blocks(reports: &[FabricReport], problems: Vec<ProblemGroup>) -> Vec<
 }
 
 fn data(reports: &[FabricReport]) -> PageData {
-    let fabrics = reports.iter().map(|r| (r.name.as_str(), without_folders(&r.about)));
+    let fabrics = reports.iter().map(|r| FabricValues {
+        name: r.name.clone(),
+        about: without_folders(&r.about),
+        origin: r.origin().into(),
+        failed: r.unread.len() + r.failures.len(),
+        ..FabricValues::default()
+    });
     let mut data = PageData::of_rows(fabrics, reports.iter().flat_map(|r| &r.rows));
     for (fabric, report) in reports.iter().enumerate() {
         data.curves.extend(report.curves.iter().cloned().map(|curves| {
@@ -129,16 +206,40 @@ fn data(reports: &[FabricReport]) -> PageData {
             curves
         }));
     }
+    let of_fabric = |(fabric, report): (usize, &FabricReport)| -> Vec<Shape> {
+        report.shapes.iter().cloned().map(|shape| Shape { fabric, ..shape }).collect()
+    };
+    data.shapes = Shapes::of(reports.iter().enumerate().flat_map(of_fabric));
+    let too_large =
+        |(fabric, report): (usize, &FabricReport)| std::iter::repeat_n(fabric, report.sheets_too_large);
+    data.shapes.left_out.extend(reports.iter().enumerate().flat_map(too_large));
     data
 }
 
+/// Where the charts are in other formats than that of the page.
+fn other_formats(formats: &[Format]) -> Option<Block> {
+    let named: Vec<String> = formats.iter().map(|format| format.ending().to_uppercase()).collect();
+    let text = || {
+        format!(
+            "Every chart is in the folder of results as {}, under the same name with another ending.",
+            named.join(" and ")
+        )
+    };
+    (named.len() > 1).then(|| Block::Text(text()))
+}
+
 fn files() -> Block {
-    let written = FILES.into_iter().filter(|file| cfg!(feature = "tables") || !file.ends_with(".parquet"));
+    let written = FILES.into_iter().filter(|file| cfg!(feature = "parquet") || !file.ends_with(".parquet"));
     Block::Files(written.map(String::from).collect())
 }
 
-fn side_by_side(reports: &[FabricReport]) -> Section {
-    section("Fabrics side by side", if reports.len() < 2 { Vec::new() } else { vec![Block::ControlChart] })
+fn side_by_side(reports: &[FabricReport], population: Option<&Population>) -> Section {
+    // A single fabric has nothing to be compared with but a population from elsewhere.
+    let least = if population.is_some() { 1 } else { 2 };
+    section(
+        "Fabrics side by side",
+        if reports.len() < least { Vec::new() } else { vec![Block::ControlChart] },
+    )
 }
 
 fn benchmark_blocks(benchmark: &Benchmark) -> Vec<Block> {
@@ -153,62 +254,21 @@ fn benchmark_blocks(benchmark: &Benchmark) -> Vec<Block> {
     blocks
 }
 
-fn figures_block(figures: Vec<Figure>) -> Option<Block> {
-    (!figures.is_empty()).then_some(Block::Figures(figures))
-}
-
-fn fabric_block(place: usize, report: &FabricReport) -> Block {
-    let mut blocks: Vec<Block> = tests(report).into_iter().collect();
-    let (drawn, pictures): (Vec<Figure>, Vec<Figure>) =
-        report.figures.iter().cloned().partition(|figure| is_drawn(report, figure));
-    if !report.curves.is_empty() {
-        blocks.push(Block::Curves(place));
-        blocks.push(Block::Text(format!(
-            "Curves: corrected records, at most {POINTS} points a branch (Ramer-Douglas-Peucker), five digits; \
-             parameters and pictures rest on all samples, which `kesf read` writes."
-        )));
-    }
-    if !drawn.is_empty() {
-        blocks.push(Block::Text("The same as pictures for print:".into()));
-        blocks.push(Block::Files(drawn.into_iter().map(|figure| figure.picture).collect()));
-    }
-    // What a laboratory measures leads, plates come last.
-    let (first, last): (Vec<Figure>, Vec<Figure>) = pictures.into_iter().partition(|figure| {
-        let is_linear = |(case, _): &(String, f64)| is_named(figure, case);
-        !report.relative_deflections.iter().any(is_linear)
-    });
-    blocks.extend(figures_block(first.into_iter().chain(last).collect()));
-    let findings: Vec<_> = report.findings.iter().filter(|f| f.code() != BEYOND_LINEAR).cloned().collect();
-    if !findings.is_empty() {
-        blocks.push(Block::Findings(findings));
-    }
-    Block::Fabric { name: report.name.clone(), about: report.about.clone(), blocks }
-}
-
-/// Whether the script draws the same from records: charts of tests, and of simulated tests on them.
-fn is_drawn(report: &FabricReport, figure: &Figure) -> bool {
-    report.curves.iter().filter(|curves| !curves.specimens.is_empty()).any(|curves| {
-        is_named(figure, &curves.test) || curves.simulated.iter().any(|line| is_named(figure, &line.case))
-    })
-}
-
-/// Whether the picture is `<fabric>/<stem>.png`.
-fn is_named(figure: &Figure, stem: &str) -> bool {
-    figure.picture.rsplit('/').next().and_then(|file| file.strip_suffix(".png")) == Some(stem)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn pictures_that_the_script_draws_are_links() {
-        let sheet = crate::characterise::FabricSheet { name: "a".into(), ..Default::default() };
-        let curves = super::super::page_curves::curves(&sheet, &[]);
-        assert!(curves.is_empty(), "nothing was recorded");
-        let figures = vec![Figure { caption: "bending".into(), picture: "a/bending.png".into() }];
-        let report = FabricReport { name: "a".into(), figures, ..FabricReport::default() };
-        let Block::Fabric { blocks, .. } = fabric_block(0, &report) else { panic!("a fabric") };
-        assert!(matches!(blocks.as_slice(), [Block::Figures(_)]), "{blocks:?}");
+    fn what_failed_is_counted_above() {
+        assert_eq!(counts(7, [2, 0]), "7 fabrics, 2 inputs failed");
+        assert_eq!(counts(1, [0, 1]), "1 fabric, 1 result could not be made");
+    }
+
+    /// Mean and standard deviation of a page of 200 fabrics are none of the run.
+    #[test]
+    fn a_page_of_some_fabrics_says_of_how_many() {
+        let reports = ["a", "b"].map(|name| FabricReport { name: name.into(), ..FabricReport::default() });
+        let text = crate::report::html::html(&fabrics_page(&reports, 2, 400, None));
+        assert!(text.contains("\"fabrics_of_run\":400"), "the script tells it");
     }
 }

@@ -42,8 +42,9 @@ fn specimen(specimen: &SpecimenResult) -> SpecimenCurves {
 
 fn simulated_line(tested: &Tested) -> SimulatedLine {
     let how = if tested.simulated.cycle.is_some() { "with friction" } else { "elastic" };
+    let on = tested.assumed.as_ref().map_or(String::new(), |assumed| format!(" on {assumed}"));
     SimulatedLine {
-        label: format!("simulated, {how}"),
+        label: format!("simulated{on}, {how}"),
         case: tested.case.clone(),
         direction: tested.simulated.direction.map(|d| d.name().to_string()),
         line: Line::of(&tested.curve),

@@ -9,12 +9,19 @@ use crate::report::table::ProblemRow;
 /// Of a linear solve beyond its meaning: it holds of cloth as such and is said once.
 pub(super) const BEYOND_LINEAR: &str = "S101";
 
+/// Of a value that no fabric has: it is nearly always a mistake in a unit.
+const IMPLAUSIBLE: &str = "K011";
+
 /// Most lines and names of a code that are kept; all of them are in `problems.csv`.
 const KEPT: usize = 1000;
 
 /// Gathers the rows of `problems.csv`, and keeps what the page shows of them.
 #[derive(Default)]
-pub(crate) struct Problems(Vec<OfCode>);
+pub(crate) struct Problems {
+    groups: Vec<OfCode>,
+    /// Codes of what makes values doubtful.
+    speak_against: BTreeSet<String>,
+}
 
 /// The problems of one code.
 #[derive(Default)]
@@ -31,24 +38,38 @@ struct OfCode {
 impl Problems {
     /// Adds a row.
     pub fn add(&mut self, row: &ProblemRow) {
-        let at = self.0.iter().position(|group| group.code == row.code).unwrap_or_else(|| {
-            self.0.push(OfCode { code: row.code.clone(), ..OfCode::default() });
-            self.0.len() - 1
+        let at = self.groups.iter().position(|group| group.code == row.code).unwrap_or_else(|| {
+            self.groups.push(OfCode { code: row.code.clone(), ..OfCode::default() });
+            self.groups.len() - 1
         });
-        self.0[at].add(row);
+        self.groups[at].add(row);
     }
 
-    /// The groups: what failed first, then in the order of the rows; linear solves beyond their meaning last.
+    /// Codes of what makes values doubtful.
+    pub fn speak_against<'a>(&mut self, codes: impl Iterator<Item = &'a String>) {
+        for code in codes {
+            if !self.speak_against.contains(code) {
+                self.speak_against.insert(code.clone());
+            }
+        }
+    }
+
+    /// The groups: what failed first, then implausible values and what else makes values doubtful, then in the order of the
+    /// rows; linear solves beyond their meaning last.
     /// `fabrics` are the names of all fabrics in the order of their pages, `page` that of the page of each place among them.
-    pub fn groups(mut self, fabrics: &[String], page: impl Fn(usize) -> String) -> Vec<ProblemGroup> {
+    pub fn groups(self, fabrics: &[String], page: impl Fn(usize) -> String) -> Vec<ProblemGroup> {
         let is_error = |code: &str| explain(code).is_some_and(|e| e.kind == "error");
-        self.0.sort_by_key(|group| (group.code == BEYOND_LINEAR, !is_error(&group.code)));
+        let Self { mut groups, speak_against } = self;
+        groups.sort_by_key(|group| {
+            let code = group.code.as_str();
+            (code == BEYOND_LINEAR, !is_error(code), code != IMPLAUSIBLE, !speak_against.contains(code))
+        });
         let place: BTreeMap<&String, usize> =
             fabrics.iter().enumerate().map(|(at, name)| (name, at)).collect();
-        for line in self.0.iter_mut().flat_map(|group| &mut group.lines) {
+        for line in groups.iter_mut().flat_map(|group| &mut group.lines) {
             line.page = line.fabric.as_ref().and_then(|name| place.get(name)).map(|at| page(*at));
         }
-        self.0.into_iter().map(|group| group.made(fabrics.len())).collect()
+        groups.into_iter().map(|group| group.made(fabrics.len())).collect()
     }
 }
 
@@ -116,6 +137,16 @@ mod tests {
             groups.iter().map(|g| (g.code.as_str(), g.count.as_str(), g.lines.len())).collect();
         let beyond = ("S101", "2 of 3 fabrics, in cases/plate.toml", 0);
         assert_eq!(told, [("R002", "once", 1), ("K011", "1 of 3 fabrics", 2), beyond]);
+    }
+
+    #[test]
+    fn what_makes_values_doubtful_comes_before_what_was_assumed() {
+        let mut problems = Problems::default();
+        ["K040", "K001", "K002", "K011"].iter().for_each(|code| problems.add(&row(code, Some("a"))));
+        problems.speak_against(["K002".to_string(), "K011".to_string()].iter());
+        let groups = problems.groups(&["a".to_string()], |_| String::new());
+        let codes: Vec<&str> = groups.iter().map(|g| g.code.as_str()).collect();
+        assert_eq!(codes, ["K011", "K002", "K040", "K001"]);
     }
 
     #[test]

@@ -4,10 +4,11 @@
 use std::collections::BTreeMap;
 
 use super::fabric::FabricReport;
+use super::rests_on::{DOUBTFUL, OF_PLATE, remark};
 use crate::instrument::Parameter;
 use crate::quantity::significant;
-use crate::report::html::Block;
-use crate::report::number::unit_text;
+use crate::report::html::{Block, Cell, DoubtfulValue};
+use crate::report::number::{self, concise, unit_text};
 use crate::report::table::{FabricRow, PredictionRow, UnitSystem};
 
 /// Above the table of what a laboratory measures.
@@ -17,6 +18,9 @@ const LEADING: &str = "What a laboratory measures: drape, and the bending length
 /// Above the table of plates.
 const PLATES: &str = "Linear solves, normalised: largest deflection over the bending thickness √(12 B / D_m). A linear \
                       solve is meaningful below 0.3; above, the number says how stiff a sheet is, not what shape it takes.";
+
+/// Deflection over the bending thickness below which a linear solve is meaningful.
+const MEANINGFUL: f64 = 0.3;
 
 /// Whether a laboratory measures the quantity of a row by a test that is no KES test.
 fn leads(row: &PredictionRow) -> bool {
@@ -55,15 +59,23 @@ pub(super) fn leading(reports: &[FabricReport]) -> Option<Block> {
         format!("{}{unit}, {case}", quantity.replace('_', " "))
     });
     let line = |report: &FabricReport| {
-        let of: BTreeMap<_, _> = rows(report).iter().map(|row| (key(row), shown(row))).collect();
+        let cell = |row: &PredictionRow| Cell { text: shown(row), remark: rests_on(report, &row.quantity) };
+        let of: BTreeMap<_, _> = rows(report).iter().map(|row| (key(row), cell(row))).collect();
         let cells = columns.iter().map(|(key, _)| of.get(key).cloned().unwrap_or("-".into()));
-        std::iter::once(report.name.clone()).chain(cells).collect()
+        std::iter::once(Cell::from(&report.name)).chain(cells).collect()
     };
     (!columns.is_empty()).then(|| Block::Table {
         caption: LEADING.into(),
         header: std::iter::once("fabric".to_string()).chain(header).collect(),
         rows: reports.iter().map(line).collect(),
+        of_fabrics: true,
     })
+}
+
+/// `rests on a doubtful B warp`; nothing where there is nothing to say.
+fn rests_on(report: &FabricReport, quantity: &str) -> String {
+    let remark = remark(&report.rows, &report.findings, quantity);
+    if remark.is_empty() { remark } else { format!("rests on {remark}") }
 }
 
 /// The unit in which a leading quantity is read.
@@ -99,81 +111,111 @@ pub(super) fn plates(reports: &[FabricReport]) -> Option<Block> {
     let line = |report: &FabricReport| {
         let of = |case: &&str| {
             let found = report.relative_deflections.iter().find(|(name, _)| name == case);
-            found.map_or("-".to_string(), |(_, value)| significant(*value))
+            found.map_or("-".into(), |(_, value)| plate(report, *value))
         };
-        std::iter::once(report.name.clone()).chain(cases.iter().map(of)).collect()
+        std::iter::once(Cell::from(&report.name)).chain(cases.iter().map(of)).collect()
     };
     (!cases.is_empty()).then(|| Block::Table {
         caption: PLATES.into(),
         header: std::iter::once("fabric").chain(cases.iter().copied()).map(String::from).collect(),
         rows: reports.iter().map(line).collect(),
+        of_fabrics: true,
     })
+}
+
+/// A deflection over the bending thickness, with what speaks against it.
+fn plate(report: &FabricReport, value: f64) -> Cell {
+    let beyond = (value.abs() > MEANINGFUL).then(|| format!("above {MEANINGFUL}"));
+    let resting = Some(rests_on(report, OF_PLATE)).filter(|text| !text.is_empty());
+    let remarks: Vec<String> = beyond.into_iter().chain(resting).collect();
+    Cell { text: significant(value), remark: remarks.join("; ") }
 }
 
 /// Measured against simulated, every KES test of the fabric.
 pub(super) fn tests(report: &FabricReport) -> Option<Block> {
     let rows: Vec<Vec<[String; 2]>> =
-        report.predictions.iter().filter(|row| is_of_test(row)).map(test_row).collect();
+        report.predictions.iter().filter(|row| is_of_test(row)).map(|row| test_row(report, row)).collect();
     (!rows.is_empty()).then(|| Block::Units {
         caption: "Measured against simulated. The section is made of the measured stiffness, so agreement there shows \
                   that the simulated test reads it back; a difference is of clamps, edges and friction."
             .into(),
-        header: ["quantity", "measured", "simulated", "difference", "95 % band", "unit", "case"]
+        header: ["quantity", "measured", "simulated", "difference", "95 % band", "unit", "case", "remark"]
             .map(String::from)
             .to_vec(),
         rows,
     })
 }
 
-fn test_row(row: &PredictionRow) -> Vec<[String; 2]> {
+fn test_row(report: &FabricReport, row: &PredictionRow) -> Vec<[String; 2]> {
     let parameter = symbol(row).flatten();
     let [kes, si] = [UnitSystem::Kes, UnitSystem::Si]
         .map(|system| parameter.map_or(system.of_modulus(), |p| system.of(p)));
-    let both = |value: Option<f64>| {
-        [kes.1, si.1].map(|factor| value.map_or("-".into(), |v| significant(v / factor)))
+    let both = |value: Option<f64>, text: fn(f64) -> String| {
+        [kes.1, si.1].map(|factor| value.map_or("-".into(), |v| text(v / factor)))
     };
+    let computed = |value: f64| number::significant(value, 4);
     let same = |text: String| [text.clone(), text];
     let band = row.simulated_low.zip(row.simulated_high);
     vec![
         same(row.quantity.clone()),
-        both(row.measured),
-        both(row.simulated),
+        both(row.measured, concise),
+        both(row.simulated, computed),
         same(row.error.map_or("-".into(), percent)),
         [kes.1, si.1].map(|factor| {
-            let end = |v: f64| significant(v / factor);
+            let end = |v: f64| computed(v / factor);
             band.map_or("-".into(), |(low, high)| format!("{} to {}", end(low), end(high)))
         }),
         [kes.0, si.0].map(unit_text),
         same(row.case.clone()),
+        same(test_remark(report, row)),
     ]
 }
 
-/// Values that a finding speaks against or that rest on an assumption.
-pub(super) fn doubtful(reports: &[FabricReport]) -> Option<Block> {
-    let is_meant = |row: &&FabricRow| matches!(row.status.as_str(), "doubtful" | "assumed");
-    let rows: Vec<Vec<[String; 2]>> =
-        reports.iter().flat_map(|r| &r.rows).filter(is_meant).map(doubtful_row).collect();
-    (!rows.is_empty()).then(|| Block::Units {
-        caption: "Values not to be relied on as they stand; why, and what to do, stands below.".into(),
-        header: ["fabric", "parameter", "mean", "unit", "n", "status"].map(String::from).to_vec(),
-        rows,
-    })
+/// What a measured value is of, and what a simulated one rests on.
+fn test_remark(report: &FabricReport, row: &PredictionRow) -> String {
+    let (symbol, direction) = row.quantity.split_once(' ').unwrap_or((&row.quantity, ""));
+    let has = |along: Option<&str>| {
+        report.rows.iter().any(|r| r.parameter == symbol && r.direction.as_deref() == along)
+    };
+    let is_of_both = row.measured.is_some() && has(None) && !has(Some(direction)) && !direction.is_empty();
+    let both = is_of_both.then(|| "measured for warp and weft together".to_string());
+    let resting = Some(rests_on(report, &row.quantity)).filter(|text| !text.is_empty());
+    both.into_iter().chain(resting).collect::<Vec<_>>().join("; ")
 }
 
-fn doubtful_row(row: &FabricRow) -> Vec<[String; 2]> {
+/// Values that a finding speaks against, then those that rest on an assumption; `page` is that of the problems, empty for
+/// the page itself.
+pub(super) fn doubtful(reports: &[FabricReport], page: &str) -> Option<Block> {
+    let of = |status: &'static str| {
+        reports.iter().flat_map(move |report| {
+            let rows = report.rows.iter().enumerate().filter(move |(_, row)| row.status == status);
+            rows.map(move |(at, row)| DoubtfulValue {
+                causes: report.causes.get(&at).cloned().unwrap_or_default(),
+                page: page.into(),
+                ..doubtful_value(row)
+            })
+        })
+    };
+    let values: Vec<DoubtfulValue> = of(DOUBTFUL).chain(of("assumed")).collect();
+    (!values.is_empty()).then_some(Block::Doubtful(values))
+}
+
+fn doubtful_value(row: &FabricRow) -> DoubtfulValue {
     let parameter = Parameter::from_symbol(&row.parameter);
-    let [kes, si] = [UnitSystem::Kes, UnitSystem::Si]
-        .map(|system| parameter.map_or(system.of_modulus(), |p| system.of(p)));
-    let same = |text: String| [text.clone(), text];
     let direction = row.direction.as_deref().map_or(String::new(), |d| format!(" {d}"));
-    vec![
-        same(row.fabric.clone()),
-        same(format!("{}{direction}", row.parameter)),
-        [kes.1, si.1].map(|factor| row.mean.map_or("-".into(), |mean| significant(mean / factor))),
-        [kes.0, si.0].map(unit_text),
-        same(row.n.to_string()),
-        same(row.status.clone()),
-    ]
+    let mean = [UnitSystem::Kes, UnitSystem::Si].map(|system| {
+        let (unit, factor) = parameter.map_or(system.of_modulus(), |p| system.of(p));
+        let mean = row.mean.map_or("-".into(), |mean| concise(mean / factor));
+        format!("{mean} {}", unit_text(unit)).trim_end().to_string()
+    });
+    DoubtfulValue {
+        fabric: row.fabric.clone(),
+        parameter: format!("{}{direction}", row.parameter),
+        mean,
+        n: row.n,
+        status: row.status.clone(),
+        ..DoubtfulValue::default()
+    }
 }
 
 /// A relative error; what is below what the text shows is no difference.
@@ -220,17 +262,42 @@ mod tests {
             header,
             ["fabric", "drape coefficient (%), drape", "bending length warp (mm), cantilever"]
         );
-        assert_eq!(rows, [["poplin", "62.00 (measured 50.00)", "21.20"]]);
+        assert_eq!(rows, [["poplin", "62.00 (measured 50.00)", "21.20"].map(Cell::from)]);
         let Some(Block::Table { header, rows, .. }) = plates(&reports) else { panic!("a table") };
         assert_eq!(
             (header, rows),
-            (vec!["fabric".into(), "seed_clamped".into()], vec![vec!["poplin".into(), "0.01200".into()]])
+            (
+                vec!["fabric".into(), "seed_clamped".into()],
+                vec![["poplin", "0.01200"].map(Cell::from).to_vec()]
+            )
         );
         let Some(Block::Units { rows, .. }) = tests(&reports[0]) else { panic!("a table") };
         assert_eq!(rows.len(), 1);
         // One gf·cm²/cm is 9.80665e-5 N·m.
-        assert_eq!(rows[0][1], ["0.1000", "9.807e-6"]);
+        assert_eq!(rows[0][1], ["0.1", "9.807 × 10⁻⁶"]);
         assert_eq!(rows[0][5], ["gf·cm²/cm", "N·m"]);
+    }
+
+    /// A linear solve beyond its meaning, a doubtful input and a value of the fabric as a whole are marked where they stand.
+    #[test]
+    fn what_speaks_against_a_prediction_stands_beside_it() {
+        let b = FabricRow { parameter: "B".into(), status: DOUBTFUL.into(), ..FabricRow::default() };
+        let report = FabricReport {
+            rows: vec![b],
+            relative_deflections: vec![("self_weight".into(), 710.0)],
+            predictions: vec![
+                row("cantilever", "bending_length warp", 0.0212, None, "m"),
+                row("virtual_bending", "B warp", 9.8e-6, Some(9.8e-6), "N·m"),
+            ],
+            ..FabricReport::default()
+        };
+        let reports = [report];
+        let Some(Block::Table { rows, .. }) = leading(&reports) else { panic!("a table") };
+        assert_eq!(rows[0][1].remark, "rests on a doubtful B");
+        let Some(Block::Table { rows, .. }) = plates(&reports) else { panic!("a table") };
+        assert_eq!(rows[0][1].remark, "above 0.3; rests on a doubtful B");
+        let Some(Block::Units { rows, .. }) = tests(&reports[0]) else { panic!("a table") };
+        assert_eq!(rows[0][7][0], "measured for warp and weft together; rests on a doubtful B");
     }
 
     #[test]
@@ -244,11 +311,15 @@ mod tests {
             ..FabricRow::default()
         };
         let report = |rows: [FabricRow; 2]| [FabricReport { rows: rows.to_vec(), ..FabricReport::default() }];
-        assert!(doubtful(&report([row("measured"), row("inferred")])).is_none());
-        let Some(Block::Units { rows, .. }) = doubtful(&report([row("measured"), row("doubtful")])) else {
-            panic!("a table")
-        };
-        assert_eq!(rows.len(), 1);
-        assert_eq!(rows[0][2], ["0.5000", "5.000e-4"]);
+        assert!(doubtful(&report([row("measured"), row("inferred")]), "").is_none());
+        let mut reports = report([row("assumed"), row("doubtful")]);
+        reports[0].causes = [(1, vec!["K011".to_string()])].into();
+        let Some(Block::Doubtful(values)) = doubtful(&reports, "") else { panic!("values") };
+        assert_eq!(values.iter().map(|v| v.status.as_str()).collect::<Vec<_>>(), ["doubtful", "assumed"]);
+        assert_eq!(values[0].mean, ["0.5 mm", "5 × 10⁻⁴ m"]);
+        assert_eq!(
+            (values[0].causes.as_slice(), values[1].causes.len()),
+            (["K011".to_string()].as_slice(), 0)
+        );
     }
 }

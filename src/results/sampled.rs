@@ -1,6 +1,7 @@
 //! Bands from sampled inputs: table, document and notes of charts.
 
 use indexmap::IndexMap;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::columns::Columns;
@@ -52,7 +53,7 @@ pub(super) fn interval(band: Option<Sampled>, factor: f64) -> String {
 }
 
 /// `uncertainty` of an entry of a document, by sampling.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct SamplingEntry {
     method: &'static str,
     points: u32,
@@ -64,7 +65,7 @@ pub struct SamplingEntry {
 }
 
 /// A measured input (SI).
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct InputEntry {
     name: String,
     mean: f64,
@@ -72,7 +73,7 @@ pub struct InputEntry {
     n: usize,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct QuantityEntry {
     value: f64,
     unit: &'static str,

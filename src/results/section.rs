@@ -16,7 +16,7 @@ use crate::constitutive::{Assumptions, Constitutive, InputSource, Used, entries,
 use crate::finding::{EvaluationFact, Fact, Place};
 use crate::instrument::{FabricInfo, Origin};
 use crate::platform::files;
-use crate::quantity::{Bands, significant};
+use crate::quantity::{Bands, repeats_text, significant};
 use crate::report::cards::{self, read::StatedSection};
 use crate::report::read_back::{self, Document};
 
@@ -237,7 +237,7 @@ fn repeats(sheet: &FabricSheet, c: &Constitutive) -> Columns {
             input.name.clone(),
             significant(e.mean),
             e.sd.map_or("-".into(), significant),
-            e.n.to_string(),
+            repeats_text(e.n as u64, e.sd),
             outlier.unwrap_or_default(),
         ]);
     }

@@ -6,7 +6,7 @@ use super::columns::Columns;
 use super::friction;
 use crate::characterise::{FabricSheet, Key, Settings, ValueStatus};
 use crate::instrument::{Direction, Parameter};
-use crate::quantity::{Estimate, significant};
+use crate::quantity::{Estimate, repeats_text, significant, stated_repeats};
 use crate::report::table::{UnitSystem, fabric_rows};
 
 /// One line a parameter: `mean ± SD (n)` in each direction.
@@ -68,7 +68,7 @@ pub fn statistics_text(sheet: &FabricSheet, units: UnitSystem) -> String {
             number(row.sd),
             number(row.cv.map(|cv| 100.0 * cv)),
             ends.map(|[low, high]| format!("{low} to {high}")).unwrap_or_default(),
-            row.n.to_string(),
+            repeats_text(row.n, row.sd),
             row.unit,
             row.status,
         ]);
@@ -84,7 +84,8 @@ pub fn evaluation_text(settings: &Settings) -> String {
 
 fn estimate(e: &Estimate, factor: f64, status: ValueStatus) -> String {
     let spread = e.sd.map(|sd| format!(" ± {}", significant(sd / factor))).unwrap_or_default();
-    format!("{}{spread} ({}){}", significant(e.mean / factor), e.n, mark(status))
+    let n = stated_repeats(e.n as u64, e.sd).map_or("n?".into(), |n| n.to_string());
+    format!("{}{spread} ({n}){}", significant(e.mean / factor), mark(status))
 }
 
 /// What stands behind a value that is not plainly measured.

@@ -3,6 +3,7 @@
 use super::failure::Failure;
 use super::observer::Observer;
 use super::outcome::Outcome;
+use super::rests_on::assumed_of_test;
 use super::task::Task;
 use super::tested::Tested;
 use crate::case::{BendingTest, InstrumentTest, Problem, ShellSpecimen};
@@ -131,7 +132,8 @@ fn test_specimen(task: &Task, specimen: &ShellSpecimen, sheet: &FabricSheet) -> 
             let options = task.options().single();
             curve.cycle = study::simulate_cycle(specimen, direction, sheet, made, &options)?;
         }
-        tested.push(Tested::new(task.case, sheet, curve));
+        let assumed = made.as_ref().and_then(|made| assumed_of_test(curve.test, &made.findings));
+        tested.push(Tested { assumed, ..Tested::new(task.case, sheet, curve) });
     }
     Ok(tested)
 }

@@ -161,6 +161,11 @@ impl Task<'_, '_> {
         self.fabric.map_or_else(String::new, |f| format!("{} data", f.info.origin.name()))
     }
 
+    /// What a picture says in which nothing is measured, e.g. `simulated from published data`; nothing without a fabric.
+    pub(super) fn simulated_from(&self) -> String {
+        if self.fabric.is_none() { String::new() } else { format!("simulated from {}", self.origin()) }
+    }
+
     /// The section, with the assumptions where it comes from a sheet.
     ///
     /// # Errors

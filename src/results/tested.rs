@@ -1,5 +1,6 @@
 //! A simulated KES test beside its measurement: rows, document, charts and text.
 
+use schemars::JsonSchema;
 use std::collections::BTreeMap;
 
 use indexmap::IndexMap;
@@ -15,7 +16,7 @@ use crate::instrument::{Direction, Parameter, Test};
 use crate::law::Mode;
 use crate::quantity::{Band, Curve, Estimate, significant};
 use crate::report::chart::{self, ParityPoint, SimulatedCurve};
-use crate::report::html::Figure;
+use crate::report::html::{Figure, FigureKind};
 use crate::report::table::{PredictionRow, relative_error};
 use crate::study::{
     Case, Comparison, EdgeEffect, Prediction, VirtualCurve, VirtualLoop, compare_curves, measured_curve,
@@ -36,6 +37,8 @@ pub struct Tested {
     pub comparison: Option<Comparison>,
     /// The stiffness that the test is meant to measure; none of compression.
     pub stiffness: Option<Stiffness>,
+    /// `an assumed E`, where the section has a stand-in for this stiffness.
+    pub assumed: Option<String>,
 }
 
 /// The stiffness that a test measures.
@@ -47,6 +50,8 @@ pub struct Stiffness {
     pub unit: &'static str,
     /// The estimate in the sheet.
     pub measured: Option<Estimate>,
+    /// Whether the sheet has it for warp and weft together only.
+    pub is_of_both: bool,
 }
 
 impl Tested {
@@ -65,6 +70,7 @@ impl Tested {
             curve,
             comparison: compare_curves(sheet, &simulated),
             stiffness: stiffness(case, sheet, test, direction),
+            assumed: None,
             simulated,
         }
     }
@@ -97,20 +103,21 @@ fn stiffness(
     direction: Option<Direction>,
 ) -> Option<Stiffness> {
     let parameter = |p: Parameter| sheet.get(p, direction).or_else(|| sheet.get(p, None)).cloned();
-    let (symbol, unit, measured) = match test {
+    let is_of_both = |p: Parameter| sheet.get(p, direction).is_none() && sheet.get(p, None).is_some();
+    let (symbol, unit, measured, is_of_both) = match test {
         Test::Tensile => {
             let name = case.assumptions().map_or(Modulus::TangentLow, |a| a.modulus).name();
-            ("E", "N/m", direction.and_then(|d| sheet.moduli.get(&(name, d)).cloned()))
+            ("E", "N/m", direction.and_then(|d| sheet.moduli.get(&(name, d)).cloned()), false)
         }
-        Test::Shear => ("G", "N/m", parameter(Parameter::G)),
-        Test::Bending => ("B", "N·m", parameter(Parameter::B)),
+        Test::Shear => ("G", "N/m", parameter(Parameter::G), is_of_both(Parameter::G)),
+        Test::Bending => ("B", "N·m", parameter(Parameter::B), is_of_both(Parameter::B)),
         Test::Compression | Test::Friction | Test::Roughness => return None,
     };
-    Some(Stiffness { symbol, unit, measured })
+    Some(Stiffness { symbol, unit, measured, is_of_both })
 }
 
 /// An entry of `kesf.comparison/1`: a simulated KES test.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct TestEntry {
     name: String,
     case: String,
@@ -130,7 +137,7 @@ pub struct TestEntry {
     measured: Option<Vec<f64>>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct StiffnessEntry {
     symbol: &'static str,
     unit: &'static str,
@@ -143,7 +150,7 @@ struct StiffnessEntry {
 }
 
 /// A parameter of a simulated cycle beside the measured one (SI).
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct CycleEntry {
     simulated: f64,
     measured: Option<f64>,
@@ -208,7 +215,7 @@ pub(super) fn rows(task: &Task, t: &Tested) -> Vec<PredictionRow> {
             .map(|(parameter, value)| cycle_row(task, t, *parameter, *value))
             .collect();
     }
-    let Some(Stiffness { symbol, unit, measured }) = &t.stiffness else { return Vec::new() };
+    let Some(Stiffness { symbol, unit, measured, .. }) = &t.stiffness else { return Vec::new() };
     let (simulated, band) = (t.simulated.apparent, t.band());
     let mean = measured.as_ref().map(|e| e.mean);
     vec![PredictionRow {
@@ -235,8 +242,16 @@ fn cycle_row(task: &Task, t: &Tested, parameter: Parameter, value: f64) -> Predi
     }
 }
 
-/// The point of the chart of simulated against measured stiffness.
-pub(super) fn parity_point(task: &Task, t: &Tested) -> Option<ParityPoint> {
+/// Points of the chart of simulated against measured stiffness, one a direction; one alone where the measured value is that
+/// of warp and weft together.
+pub(super) fn parity_points(task: &Task, tested: &[Tested]) -> Vec<ParityPoint> {
+    let is_of_both = |t: &Tested| t.stiffness.as_ref().is_some_and(|stiffness| stiffness.is_of_both);
+    let is_first = |at: usize| !tested[..at].iter().any(is_of_both);
+    let counted = tested.iter().enumerate().filter(|(at, t)| !is_of_both(t) || is_first(*at));
+    counted.filter_map(|(_, t)| parity_point(task, t)).collect()
+}
+
+fn parity_point(task: &Task, t: &Tested) -> Option<ParityPoint> {
     let stiffness = t.stiffness.as_ref().filter(|_| t.simulated.cycle.is_none())?;
     let measured = stiffness.measured.as_ref()?;
     let quantity = match stiffness.symbol {
@@ -246,7 +261,7 @@ pub(super) fn parity_point(task: &Task, t: &Tested) -> Option<ParityPoint> {
     };
     Some(ParityPoint {
         label: task.fabric_name().unwrap_or_default().into(),
-        group: t.direction().into(),
+        group: format!("{}, {}", if stiffness.is_of_both { "both" } else { t.direction() }, task.origin()),
         quantity: quantity.into(),
         unit: stiffness.unit.into(),
         measured: measured.mean,
@@ -254,18 +269,23 @@ pub(super) fn parity_point(task: &Task, t: &Tested) -> Option<ParityPoint> {
         simulated: t.simulated.apparent,
         simulated_half_width: t.band().map(|b| b.half_width),
         simulated_band: None,
+        is_closed_loop: true,
     })
 }
 
-/// Writes `<fabric>/<case>.png`, the simulated curves on the measured ones; whether there is one.
-pub(super) fn write_chart(task: &Task, tested: &[Tested], folder: &Folder) -> Result<bool, Failure> {
-    let (Some(sheet), Some(first)) = (task.fabric, tested.first()) else { return Ok(false) };
+/// Writes the chart `<fabric>/<case>`, the simulated curves on the measured ones; its name, if there is one.
+pub(super) fn write_chart(
+    task: &Task,
+    tested: &[Tested],
+    folder: &Folder,
+) -> Result<Option<String>, Failure> {
+    let (Some(sheet), Some(first)) = (task.fabric, tested.first()) else { return Ok(None) };
     let test = first.simulated.test;
     let curves = curves(Some(task), tested.iter(), test);
-    folder.chart(&format!("{}.png", task.stem()), || chart::of_test(sheet, test, &curves))
+    folder.chart(&task.stem(), || chart::of_test(sheet, test, &curves))
 }
 
-/// Writes `<fabric>/tensile.png` ..., with the simulated curves of its cases on top; those that there are. Cycles
+/// Writes the charts `<fabric>/tensile` ..., with the simulated curves of its cases on top; those that there are. Cycles
 /// with friction have charts of their own.
 pub(super) fn write_fabric_charts(
     sheet: &FabricSheet,
@@ -275,9 +295,18 @@ pub(super) fn write_fabric_charts(
     let mut drawn = Vec::new();
     for test in Test::ALL {
         let curves = curves(None, tested.iter().filter(|t| t.simulated.cycle.is_none()), test);
-        let picture = format!("{}/{}.png", sheet.name, test.name());
-        if folder.chart(&picture, || chart::of_test(sheet, test, &curves))? {
-            drawn.push(Figure { caption: test.name().into(), picture });
+        let stem = format!("{}/{}", sheet.name, test.name());
+        if let Some(picture) = folder.chart(&stem, || chart::of_test(sheet, test, &curves))? {
+            let specimens = sheet.specimens.iter().filter(|s| s.measurement.test == test).count();
+            let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+            let alt = format!(
+                "Chart of the {} test of {}: {} and {}.",
+                test.name(),
+                sheet.name,
+                counted(specimens, "measured specimen"),
+                counted(curves.len(), "simulated curve")
+            );
+            drawn.push(Figure { caption: test.name().into(), alt, picture, kind: FigureKind::Test });
         }
     }
     Ok(drawn)
@@ -299,8 +328,9 @@ fn curve(task: Option<&Task>, t: &Tested) -> SimulatedCurve {
         Some(Mode::Elastic | Mode::Friction) => "with friction",
     };
     let comparison = t.comparison.as_ref();
+    let on = t.assumed.as_ref().map_or(String::new(), |assumed| format!(", on {assumed}"));
     SimulatedCurve {
-        label: label.into(),
+        label: format!("{label}{on}"),
         direction: t.simulated.direction,
         curve: t.curve.clone(),
         rmse: comparison.map(|c| c.rmse),
@@ -363,7 +393,7 @@ pub(super) fn text(compared: &[(&Task, &Tested)]) -> String {
 fn text_row(task: &Task, t: &Tested) -> Vec<String> {
     let mut cells = vec![t.name.clone(), task.fabric_name().unwrap_or_default().to_string()];
     match &t.stiffness {
-        Some(Stiffness { symbol, unit, measured }) => cells.extend([
+        Some(Stiffness { symbol, unit, measured, .. }) => cells.extend([
             symbol.to_string(),
             significant(t.simulated.apparent),
             or_dash(t.band().map(|b| b.half_width)),

@@ -227,7 +227,7 @@ pub(crate) fn without_fabric_named(
     } else if lacks_law {
         (
             format!("{name} is for fabrics with a friction law of bending, and none has one"),
-            "add FB2 loops, or 2HB beside B in a result table, or take law = \"elastic\"",
+            "add FB2 loops, or 2HB beside B in a result table, or compute without friction (`law = \"elastic\"` in the case)",
         )
     } else {
         (

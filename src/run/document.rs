@@ -1,5 +1,6 @@
 //! `run.json`: version, options and the hashes of what was read.
 
+use schemars::JsonSchema;
 use std::cell::RefCell;
 
 use serde::ser::SerializeSeq;
@@ -11,31 +12,39 @@ use crate::instrument::Source;
 use crate::results::{Failure, FileEntry, Job, ReadingEntry, readable};
 
 /// `kesf.run/1`. The lists of files are written as they come: of a large library they are long.
-#[derive(Serialize)]
-pub(super) struct RunDocument<'d> {
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct RunDocument<'d> {
+    #[schemars(extend("const" = "kesf.run/1"))]
     schema: &'static str,
     version: &'static str,
     options: OptionsEntry,
     /// Files of measurements.
+    #[schemars(with = "Vec<Source>")]
     inputs: Streamed<'d, Source>,
     /// Files about fabrics.
+    #[schemars(with = "Vec<FileEntry>")]
     fabrics: Streamed<'d, FileEntry>,
     cases: Vec<CaseEntry>,
     #[serde(skip_serializing_if = "Option::is_none")]
     date: Option<String>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct OptionsEntry {
     inputs: Vec<String>,
     charts: bool,
+    /// Of charts.
+    formats: Vec<&'static str>,
+    /// Source of the population that the page compares fabrics with.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    population: Option<String>,
     drape: bool,
     strict: bool,
     solver: Option<SolverChoice>,
     evaluation: ReadingEntry,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct CaseEntry {
     name: String,
     #[serde(flatten)]
@@ -74,6 +83,8 @@ pub(super) fn document<'d>(
         options: OptionsEntry {
             inputs: inputs.into_iter().map(|path| path.into_owned()).collect(),
             charts: settings.charts,
+            formats: settings.formats.iter().map(|format| format.ending()).collect(),
+            population: settings.population.as_ref().map(|population| population.source.clone()),
             drape: settings.drape,
             strict: settings.strict,
             solver: job.solver,

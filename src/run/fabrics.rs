@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use serde_json::json;
 
@@ -64,8 +63,8 @@ pub(super) struct Workshop<'c> {
     base: String,
     fresh: bool,
     with_fields: bool,
-    /// Set when the results cannot be written: what is still to do is left.
-    ended: AtomicBool,
+    /// Why the results cannot be written: what is still to do is left, for that reason.
+    ended: OnceLock<Failure>,
 }
 
 impl<'c> Workshop<'c> {
@@ -79,9 +78,10 @@ impl<'c> Workshop<'c> {
         let of_fabrics = work.cases.iter().filter(|case| case.section().is_none());
         let jobs = of_fabrics.map(|case| CaseWork::new(case, work)).collect::<Result<_, _>>()?;
         let base = json!({
-            "record": 1,
+            "record": 2,
             "program": settings.program.as_deref().unwrap_or(env!("CARGO_PKG_VERSION")),
             "charts": settings.charts,
+            "formats": settings.formats.iter().map(|format| format.ending()).collect::<Vec<_>>(),
             "bom": settings.bom,
             "evaluation": job.reading.entry(),
         });
@@ -93,7 +93,7 @@ impl<'c> Workshop<'c> {
             base: hash_of(&base)?,
             fresh: settings.fresh,
             with_fields: folder.fields(),
-            ended: AtomicBool::new(false),
+            ended: OnceLock::new(),
         })
     }
 
@@ -114,26 +114,29 @@ impl<'c> Workshop<'c> {
         if finished.iter().all(|found| matches!(found, Ok(Some(_)))) {
             return finished.into_iter().flatten().flatten().map(Ok).collect();
         }
-        if self.is_over() {
-            return vec![Err(Failure::interrupted())];
+        if let Err(failure) = self.go_on() {
+            return vec![Err(failure)];
         }
         let fabrics = self.work.catalogue.fabrics(unit.clone()).into_iter();
         let all = unit.zip(fabrics).zip(finished).collect();
         map_several(all, |((at, fabric), finished)| match finished {
             Ok(Some(made)) => Ok(made),
             Err(failure) => Err(failure),
-            Ok(None) if self.is_over() => Err(Failure::interrupted()),
             Ok(None) => {
+                self.go_on()?;
                 let made = self.make(at, fabric);
-                self.ended.fetch_or(made.is_err(), Ordering::Relaxed);
+                if let Err(failure) = &made {
+                    self.ended.get_or_init(|| failure.clone());
+                }
                 self.observer.step();
                 made
             }
         })
     }
 
-    fn is_over(&self) -> bool {
-        self.ended.load(Ordering::Relaxed) || self.observer.go_on().is_err()
+    /// The failure of another fabric that ended the run, or that it was cancelled.
+    fn go_on(&self) -> Result<(), Failure> {
+        self.ended.get().map_or_else(|| self.observer.go_on(), |failure| Err(failure.clone()))
     }
 
     /// Hash of all that the results of a fabric depend on.

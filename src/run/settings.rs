@@ -1,5 +1,8 @@
 //! What is made of the results of a run.
 
+use crate::report::chart::Format;
+use crate::report::population::Population;
+
 /// Fabrics up to which fields are written where nobody says anything: they are nine tenths of a large folder.
 const WITH_FIELDS: usize = 100;
 
@@ -31,6 +34,10 @@ impl FieldFiles {
 pub struct RunSettings {
     /// Whether charts are drawn.
     pub charts: bool,
+    /// What kinds of files charts become.
+    pub formats: Vec<Format>,
+    /// What the page compares fabrics with; none for themselves.
+    pub population: Option<Population>,
     /// When fields are written.
     pub fields: FieldFiles,
     /// Whether drape cases are solved too: a minute or so for each fabric.
@@ -54,6 +61,8 @@ impl Default for RunSettings {
     fn default() -> Self {
         Self {
             charts: true,
+            formats: vec![Format::Png],
+            population: None,
             fields: FieldFiles::Auto,
             drape: false,
             fresh: false,

@@ -1,6 +1,7 @@
 //! Tables, pages and charts over all fabrics, from their records: one in memory at a time.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use super::document::document;
 use super::fabrics::Made;
@@ -13,14 +14,14 @@ use crate::instrument::Source;
 use crate::platform::files;
 use crate::report::CsvTable;
 use crate::report::chart::{self, ParityPoint};
-use crate::report::html::{Figure, html};
+use crate::report::html::{Figure, FigureKind, html};
 use crate::report::table::{FabricRow, PredictionRow, ProblemRow, problem_row};
 #[cfg(feature = "workbook")]
 use crate::report::workbook;
 use crate::results::{
     Benchmark, Columns, DrapePoint, FABRICS_OF_PAGE, FabricReport, Failure, FileEntry, Folder, Head, Job,
-    Observer, Overview, Problems, Record, SinkFile, Table, bracket, checks, fabrics_page, page, unread_of,
-    write_drape_parity, write_friction_parity,
+    Observer, Overview, Problems, Record, SinkFile, Table, bracket, checks, fabrics_page, page,
+    unread_by_fabric, unread_of, write_drape_parity, write_friction_parity,
 };
 
 /// Fabrics that the overview for people lists; all of them are in `fabrics.csv`.
@@ -30,6 +31,7 @@ pub(super) const LISTED: usize = 200;
 pub(super) struct Results<'r, 'w> {
     pub work: &'w RunWork,
     pub folder: &'r Folder<'r>,
+    pub settings: &'r RunSettings,
     pub made: &'r [Made],
     pub own: &'r [Own<'w>],
     /// Of inputs and tasks.
@@ -74,17 +76,12 @@ struct Kept {
 
 impl Results<'_, '_> {
     /// Writes everything that is about all fabrics; the tables for people.
-    pub fn write(
-        &self,
-        job: &Job,
-        settings: &RunSettings,
-        observer: &Observer,
-    ) -> Result<Vec<Columns>, Failure> {
-        let lost = self.unread();
+    pub fn write(&self, job: &Job, observer: &Observer) -> Result<Vec<Columns>, Failure> {
+        let mut lost = self.unread();
         let mut tables = self.begin()?;
         #[cfg(feature = "workbook")]
         {
-            tables.workbook = settings.workbook.then(Rows::default);
+            tables.workbook = self.settings.workbook.then(Rows::default);
         }
         self.add_problems(&mut tables)?;
         let mut overview = Overview::new(self.cases.iter().copied());
@@ -94,8 +91,9 @@ impl Results<'_, '_> {
             let mut report = self.record(at)?.report;
             report.findings.iter().for_each(|finding| observer.found_in_batch(finding));
             tables.add(&report)?;
-            if let Some(status) = lost.get(report.name.as_str()).filter(|_| report.status == "ok") {
-                report.status.clone_from(status);
+            report.unread = lost.remove(&report.name).unwrap_or_default();
+            if let Some(failure) = report.unread.first().filter(|_| report.status == "ok") {
+                report.status = failure.code.to_string();
             }
             if at < LISTED {
                 overview.row(&report);
@@ -106,7 +104,7 @@ impl Results<'_, '_> {
             own.findings().into_iter().for_each(|finding| observer.found_in_batch(finding));
         }
         let problems = self.finish(tables)?;
-        self.write_document(job, settings)?;
+        self.write_document(job)?;
         let benchmarks: Vec<Benchmark> = self.own.iter().filter_map(Own::benchmark).collect();
         let bracket = bracket(&kept.drapes);
         self.write_pages(kept, &benchmarks, problems)?;
@@ -119,17 +117,24 @@ impl Results<'_, '_> {
         record(self.folder, self.work, self.made, at)
     }
 
-    /// Status of the fabrics of which a file could not be read.
-    fn unread(&self) -> BTreeMap<String, String> {
-        let rows = self.unread_rows().into_iter().rev();
-        rows.map(|row| (row.fabric, row.status)).collect()
+    /// What could not be read of each fabric.
+    fn unread(&self) -> BTreeMap<String, Vec<Failure>> {
+        let mut unread: BTreeMap<String, Vec<Failure>> = BTreeMap::new();
+        for (fabric, failure) in unread_by_fabric(&self.known(), &self.work.failures) {
+            unread.entry(fabric).or_default().push(failure.clone());
+        }
+        unread
+    }
+
+    /// Folders or files of the fabrics, and their names.
+    fn known(&self) -> Vec<(&Path, &str)> {
+        let fabrics = &self.work.catalogue;
+        (0..fabrics.len()).map(|at| (fabrics.path(at), fabrics.name(at))).collect()
     }
 
     /// Rows of inputs that could not be read.
     pub fn unread_rows(&self) -> Vec<FabricRow> {
-        let fabrics = &self.work.catalogue;
-        let known: Vec<_> = (0..fabrics.len()).map(|at| (fabrics.path(at), fabrics.name(at))).collect();
-        unread_of(&known, &self.work.failures)
+        unread_of(&self.known(), &self.work.failures)
     }
 
     /// Rows of findings that belong to no fabric.
@@ -197,7 +202,11 @@ impl Results<'_, '_> {
         let reports = std::mem::take(&mut kept.reports);
         let number = kept.pages.len() + 1;
         let name = name_of_page(number);
-        self.folder.write(&name, html(&fabrics_page(&reports, number)).as_bytes())?;
+        self.folder.write(
+            &name,
+            html(&fabrics_page(&reports, number, self.made.len(), self.settings.population.as_ref()))
+                .as_bytes(),
+        )?;
         kept.pages.push(name);
         Ok(())
     }
@@ -218,7 +227,12 @@ impl Results<'_, '_> {
         let page_of =
             |at: usize| if pages.is_empty() { String::new() } else { name_of_page(at / FABRICS_OF_PAGE + 1) };
         let problems = problems.groups(&names, page_of);
-        let head = Head { fabrics, figures, problems, drapes: &drapes, pages: &pages };
+        let RunSettings { charts, formats, population, .. } = self.settings;
+        let (formats, population) = (if *charts { formats.as_slice() } else { &[] }, population.as_ref());
+        let unread = self.work.failures.len();
+        let failed = [unread, self.failures.len().saturating_sub(unread)];
+        let head =
+            Head { fabrics, failed, figures, problems, drapes: &drapes, population, formats, pages: &pages };
         self.folder.write("index.html", html(&page(&reports, benchmarks, head)).as_bytes())
     }
 
@@ -226,10 +240,10 @@ impl Results<'_, '_> {
     fn write_parity(&self, kept: &Kept) -> Result<Vec<Figure>, Failure> {
         let (folder, mut figures) = (self.folder, Vec::new());
         // The section is made of the measured value, so this is a closed loop and must say so.
-        let subtitle = "closed loop: the measured stiffness, seen again through a simulated test (clamps, edges, element)";
+        let subtitle = "closed loop: the measured stiffness through a simulated test (clamps, edges); both: one value for warp and weft together";
         let draw = || chart::parity(&kept.parity, "Simulated against measured", subtitle);
-        if folder.chart("parity.png", draw)? {
-            figures.push(figure("Simulated against measured stiffness", "parity.png"));
+        if let Some(picture) = folder.chart("parity", draw)? {
+            figures.push(figure("Simulated against measured stiffness", &picture));
         }
         figures.extend(write_friction_parity(folder, &kept.re_extracted)?);
         if let Some(picture) = write_drape_parity(folder, &kept.drapes)? {
@@ -238,7 +252,7 @@ impl Results<'_, '_> {
         Ok(figures)
     }
 
-    fn write_document(&self, job: &Job, settings: &RunSettings) -> Result<(), Failure> {
+    fn write_document(&self, job: &Job) -> Result<(), Failure> {
         let fabrics = &self.work.catalogue;
         let sources = (0..self.made.len()).flat_map(|at| match self.record(at) {
             Ok(record) => record.sources.into_iter().map(Ok::<Source, Failure>).collect(),
@@ -246,7 +260,8 @@ impl Results<'_, '_> {
         });
         let stated = (0..fabrics.len()).map(|at| fabrics.path(at).join("fabric.toml"));
         let stated = stated.filter(|path| files::is_file(path)).map(|path| Ok(FileEntry::of(&path)));
-        self.folder.stream("run.json", &document(job, settings, self.cases.iter().copied(), sources, stated))
+        self.folder
+            .stream("run.json", &document(job, self.settings, self.cases.iter().copied(), sources, stated))
     }
 }
 
@@ -266,6 +281,7 @@ impl Tables<'_> {
     fn add(&mut self, report: &FabricReport) -> Result<(), Failure> {
         report.rows.iter().try_for_each(|row| self.fabric(row))?;
         report.predictions.iter().try_for_each(|row| self.prediction(row))?;
+        self.shown.speak_against(report.doubted());
         report.problems().try_for_each(|row| self.problem(row))
     }
 
@@ -296,5 +312,6 @@ fn name_of_page(number: usize) -> String {
 }
 
 fn figure(caption: &str, picture: &str) -> Figure {
-    Figure { caption: caption.into(), picture: picture.into() }
+    let alt = format!("{caption}: one point a fabric and parameter, on the line where both are equal.");
+    Figure { caption: caption.into(), alt, picture: picture.into(), kind: FigureKind::Overview }
 }

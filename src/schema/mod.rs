@@ -22,7 +22,7 @@ use crate::quantity::Unit;
 /// A JSON Schema (draft 7, which editors of TOML know) with the name of its file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SchemaFile {
-    /// Name without an ending: `case`, `dialect`, `fabric`, `open-fabric`, `settings`.
+    /// Name without an ending, such as `case`.
     pub name: &'static str,
     /// What files it is of.
     pub title: &'static str,
@@ -36,6 +36,16 @@ impl SchemaFile {
             .with_transform(RecursiveTransform(on_one_line))
             .with_transform(without_null)
             .with_transform(RecursiveTransform(with_units));
+        let mut schema = settings.into_generator().into_root_schema_for::<T>().to_value();
+        schema["title"] = json!(title);
+        Self { name, title, schema }
+    }
+
+    /// The schema of what is serialised, and of what is read of it.
+    #[cfg(feature = "results")]
+    pub(crate) fn of_document<T: JsonSchema>(name: &'static str, title: &'static str) -> Self {
+        let settings =
+            SchemaSettings::draft07().for_serialize().with_transform(RecursiveTransform(on_one_line));
         let mut schema = settings.into_generator().into_root_schema_for::<T>().to_value();
         schema["title"] = json!(title);
         Self { name, title, schema }

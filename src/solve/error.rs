@@ -130,12 +130,12 @@ impl StepLimit {
         match self {
             Self::Tolerance => "loosen the tolerance, or ramp the load instead of a step",
             Self::Convergence => {
-                "Newton's method does not converge in shorter ones either; take a smaller step from the start, damping, \
-                 or a spectral_radius, such as 0.8"
+                "Newton's method does not converge in shorter ones either; take a spectral_radius, such as 0.8, \
+                 damping, or a smaller step from the start"
             }
             Self::Energy => {
-                "the energies of the motion do not balance in shorter ones either; take a smaller step from the start, \
-                 damping, or a spectral_radius, such as 0.8"
+                "the energies of the motion do not balance in shorter ones either; take a spectral_radius, such as 0.8, \
+                 in the place of damping, or a smaller step from the start"
             }
         }
     }
@@ -154,6 +154,9 @@ impl SolveError {
 
     /// What a failed factorisation means for a model.
     pub(super) fn of(error: FactorError, model: &Model, group: DofGroup) -> Self {
+        if let FactorError::OutOfTime { seconds } = error {
+            return Self::OutOfTime { seconds };
+        }
         let FactorError::NotPositiveDefinite { node, dof, .. } = error else { return Self::Factor(error) };
         let p = model.mesh.nodes[node];
         let hint = if model.section.d_b[(2, 2)] == 0.0 {

@@ -147,6 +147,7 @@ impl<'a> Equations<'a> {
         let mut matrix = assemble(self.model, self.group, self.pattern, &terms, &self.is_held)
             .map_err(ModelError::from)?;
         unit_rows(&mut matrix, &self.is_held);
+        SolveError::in_time()?;
         Ok(matrix)
     }
 

@@ -13,7 +13,7 @@ use super::linear::Options;
 use super::plan::Plan;
 use super::sparse::BlockMatrix;
 use crate::element::Mass;
-use crate::model::{DofGroup, Model, ModelError};
+use crate::model::{Dof, DofGroup, Model, ModelError};
 
 /// One mode of vibration.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,17 +93,18 @@ fn group_modes(
     unit_rows(&mut stiffness, &held);
     let threads = analysis.worth(options.threads);
     let factor = analysis.factorise(&stiffness, threads).map_err(|e| SolveError::of(e, model, group))?;
-    let (columns, with_mass) =
-        (count.saturating_mul(2).max(count.saturating_add(8)), massive_dofs(&mass, &held));
+    let columns = count.saturating_mul(2).max(count.saturating_add(8));
+    let Massive { with_mass, translations } = Massive::of(&mass, group, &held);
     if with_mass == 0 {
         return Ok(Vec::new());
     }
-    let (values, vectors) = if columns.saturating_mul(2) > with_mass {
+    let (values, vectors) = if columns.saturating_mul(2) > translations {
         // Stiffness, mass, their roots and the vectors, all dense.
         let entries = (with_mass as f64).powi(2);
         SolveError::in_memory(5.0 * entries * size_of::<f64>() as f64, options.memory_limit)?;
         // Iterating on most of the space costs more than all of it at once, and cannot end well: columns
-        // that hold all modes but few become dependent in the first round.
+        // that hold all modes but few become dependent in the first round. Those of rotary inertia, which is t²/12 of
+        // the mass, are too far away to be held beside the others.
         dense::eigen(&stiffness, &mass, &held).map_err(|e| SolveError::of(e, model, group))?
     } else {
         subspace(&factor, &mass, &held, count, columns)?
@@ -182,9 +183,22 @@ fn times(matrix: &BlockMatrix, x: &DMatrix<f64>) -> DMatrix<f64> {
     y
 }
 
-/// Free dofs with mass: there are that many modes of finite frequency.
-fn massive_dofs(mass: &BlockMatrix, held: &[bool]) -> usize {
-    (0..held.len()).filter(|&k| !held[k] && mass.values[mass.diagonal(k)] > 0.0).count()
+/// Free dofs with mass.
+struct Massive {
+    /// All of them: there are that many modes of finite frequency.
+    with_mass: usize,
+    /// The displacements among them.
+    translations: usize,
+}
+
+impl Massive {
+    fn of(mass: &BlockMatrix, group: DofGroup, held: &[bool]) -> Self {
+        let dofs = group.dofs();
+        let is_massive = |k: &usize| !held[*k] && mass.values[mass.diagonal(*k)] > 0.0;
+        let massive: Vec<usize> = (0..held.len()).filter(is_massive).collect();
+        let is_translation = |k: &&usize| matches!(dofs[**k % dofs.len()], Dof::U | Dof::V | Dof::W);
+        Self { with_mass: massive.len(), translations: massive.iter().filter(is_translation).count() }
+    }
 }
 
 /// A hundredth of the order of the lowest eigenvalue: stiffness over mass at the size of the sheet.

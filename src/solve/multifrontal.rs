@@ -59,6 +59,18 @@ impl Drop for Numeric {
     }
 }
 
+/// Fronts between two looks at the clock, and the operations of a front before which it is looked at too.
+const FRONTS_IN_TIME: usize = 256;
+const WORK_IN_TIME: f64 = 1e6;
+
+/// Why an elimination ended before its last front.
+enum Halt {
+    /// The pivot of a front.
+    Pivot(usize, BadPivot),
+    /// It took longer than it may (s).
+    OutOfTime(f64),
+}
+
 /// A part of the tree that one thread eliminates without waiting: a subtree, or one of the
 /// fronts above the subtrees.
 struct Task<'a> {
@@ -104,7 +116,11 @@ impl Symbolic {
         };
         // Also on failure: the panels go back when this is dropped.
         let numeric = Numeric { symbolic: Arc::clone(self), l };
-        let Err((s, pivot)) = result else { return Ok(numeric) };
+        let (s, pivot) = match result {
+            Ok(()) => return Ok(numeric),
+            Err(Halt::OutOfTime(seconds)) => return Err(FactorError::OutOfTime { seconds }),
+            Err(Halt::Pivot(s, pivot)) => (s, pivot),
+        };
         let (tree, b) = (&self.tree, self.tree.block);
         let node = tree.node_at[tree.supernodes[s].begin + pivot.row / b] as usize;
         Err(form.bad_pivot(node, pivot.row % b, pivot.value))
@@ -127,7 +143,7 @@ impl Symbolic {
         lock(&self.workspaces).pop().unwrap_or_else(|| Workspace::new(self.width))
     }
 
-    fn eliminate_all(&self, input: Input<'_>, l: &mut [f64]) -> Result<(), (usize, BadPivot)> {
+    fn eliminate_all(&self, input: Input<'_>, l: &mut [f64]) -> Result<(), Halt> {
         let mut workspace = self.workspace();
         let last = self.tree.supernodes.len().saturating_sub(1);
         let result = self.eliminate_range((0, last), input, l, Vec::new(), &mut workspace);
@@ -144,14 +160,18 @@ impl Symbolic {
         mut panels: &mut [f64],
         mut waiting: Vec<Update>,
         workspace: &mut Workspace,
-    ) -> Result<Vec<Update>, (usize, BadPivot)> {
+    ) -> Result<Vec<Update>, Halt> {
         for (s, node) in self.tree.supernodes.iter().enumerate().take(last + 1).skip(first) {
+            let looks = s % FRONTS_IN_TIME == 0 || node.work > WORK_IN_TIME;
+            if let Some(seconds) = looks.then(platform::over).flatten() {
+                return Err(Halt::OutOfTime(seconds));
+            }
             let (panel, rest) =
                 panels.split_at_mut(node.width * (node.width + node.border) * self.tree.block.pow(2));
             panels = rest;
             let children = waiting.len() - node.children;
             let update = eliminate(&self.tree, node, input, panel, &waiting[children..], workspace)
-                .map_err(|pivot| (s, pivot))?;
+                .map_err(|pivot| Halt::Pivot(s, pivot))?;
             waiting.drain(children..).for_each(|(_, update)| workspace.give(update));
             if node.parent.is_some() {
                 waiting.push((s, update));
@@ -160,14 +180,9 @@ impl Symbolic {
         Ok(waiting)
     }
 
-    fn eliminate_tasks(
-        &self,
-        input: Input<'_>,
-        l: &mut [f64],
-        threads: usize,
-    ) -> Result<(), (usize, BadPivot)> {
+    fn eliminate_tasks(&self, input: Input<'_>, l: &mut [f64], threads: usize) -> Result<(), Halt> {
         let tasks = self.tasks(l);
-        let failed: Mutex<Option<(usize, BadPivot)>> = Mutex::new(None);
+        let failed: Mutex<Option<Halt>> = Mutex::new(None);
         let run = |mut t: usize| {
             let mut workspace = self.workspace();
             loop {
@@ -185,12 +200,17 @@ impl Symbolic {
                         }
                         t = parent;
                     }
-                    Err((s, pivot)) => {
-                        // The first in order of elimination, whoever comes first: no front
-                        // below it has failed, so it is always reached.
+                    Err(halt) => {
+                        // The first in order of elimination, whoever comes first: no front below it has failed, so it is
+                        // always reached. Without time nothing is.
                         let mut failed = lock(&failed);
-                        if failed.as_ref().is_none_or(|(first, _)| s < *first) {
-                            *failed = Some((s, pivot));
+                        let comes_first = match (&halt, &*failed) {
+                            (Halt::OutOfTime(_), _) | (_, None) => true,
+                            (Halt::Pivot(s, _), Some(Halt::Pivot(first, _))) => s < first,
+                            (Halt::Pivot(..), Some(Halt::OutOfTime(_))) => false,
+                        };
+                        if comes_first {
+                            *failed = Some(halt);
                         }
                         break;
                     }

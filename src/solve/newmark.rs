@@ -2,6 +2,7 @@
 
 pub(super) mod adaptive;
 
+use schemars::JsonSchema;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -83,7 +84,7 @@ pub struct Settings {
 }
 
 /// Energies of the sheet at one instant (J).
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, JsonSchema)]
 pub struct Energy {
     /// ½ u̇ᵀ M u̇.
     pub kinetic: f64,

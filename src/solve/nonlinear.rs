@@ -18,7 +18,7 @@
 //! [`continue_from`] takes the sheet on from one of these states to other loads and supports.
 //!
 //! The sheet is linear elastic in the frames of its elements, or its cells follow laws with friction
-//! ([`SheetLaw`]): each step is then the minimum of a convex potential of the cells, from a memory
+//! ([`SheetLaw`](crate::section::SheetLaw)): each step is then the minimum of a convex potential of the cells, from a memory
 //! that is kept when the step has converged and restored when it is tried again.
 //!
 //! Loads are dead: they keep their direction and size, pressure the normals and areas at rest; only a
@@ -29,116 +29,41 @@
 //! tangent then converges linearly; hold a plane of symmetry by both of its rotations.
 
 mod arc;
+mod descent;
 mod drive;
 pub mod dynamics;
 mod error;
 mod flow;
 mod load_steps;
 mod newton;
+mod progress;
+mod settings;
 mod sheet;
 mod stability;
+mod state;
 mod system;
 
 use std::ops::ControlFlow;
 
-use nalgebra::{Point3, UnitQuaternion};
-
 pub use arc::{ArcLength, follow};
+pub use descent::descend_from;
 pub use drive::{Leg, drive};
 pub use error::{NonlinearError, Obstacle};
 pub use flow::{Flow, relax, relax_from};
 pub use load_steps::{Carried, LoadStep, continue_from};
+use progress::Progress;
+pub use progress::{Solution, Step};
+pub use settings::{Perturbation, Settings};
 pub use stability::{Stability, lost_directions};
+pub use state::{Memory, State};
+pub use system::plan;
 
 use self::flow::noise;
-use self::newton::{Converged, Drag, Failure, longest_travel, newton};
-use self::system::{Balance, System};
+use self::newton::{Drag, longest_travel, newton};
+use self::system::System;
 use super::linear::Options;
 use super::plan::Plan;
-use crate::law;
-use crate::mesh::QuadMesh;
-use crate::model::{DofGroup, Model};
-use crate::section::SheetLaw;
-
-/// Places and rotations of the nodes under a part of the load.
-#[derive(Clone, Debug, PartialEq)]
-pub struct State {
-    /// Where the nodes are (m).
-    pub position: Vec<Point3<f64>>,
-    /// How they have turned since the rest.
-    pub rotation: Vec<UnitQuaternion<f64>>,
-    /// Factor of the loads and held values.
-    pub factor: f64,
-    /// What a law with friction remembers.
-    pub memory: Memory,
-}
-
-/// What a sheet with friction remembers of the equilibria that it has been through.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Memory {
-    /// That of the laws of each smoothing cell, in the order of elements and cells; empty for new
-    /// cloth, and without a law.
-    pub cells: Vec<[law::State; 6]>,
-    /// Energy lost since the rest (J).
-    pub dissipated: f64,
-}
-
-impl State {
-    /// The sheet at rest.
-    pub fn rest(mesh: &QuadMesh) -> Self {
-        Self {
-            position: mesh.nodes.clone(),
-            rotation: vec![UnitQuaternion::identity(); mesh.nodes.len()],
-            factor: 0.0,
-            memory: Memory::default(),
-        }
-    }
-
-    /// Displacements and rotation vectors, six a node (m, rad); a rotation vector is at most π long.
-    pub fn displacement(&self, mesh: &QuadMesh) -> Vec<f64> {
-        let nodes = self.position.iter().zip(&mesh.nodes).zip(&self.rotation);
-        nodes
-            .flat_map(|((now, rest), turn)| {
-                let (u, r) = (now - rest, turn.scaled_axis());
-                [u.x, u.y, u.z, r.x, r.y, r.z]
-            })
-            .collect()
-    }
-}
-
-/// How to solve.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
-    /// Unbalanced forces that are accepted, relative to the loads or reactions.
-    pub tolerance: f64,
-    /// Iterations in a step before it counts as failed.
-    pub iterations: usize,
-    /// The first step of the load factor; 1 takes the whole load at once.
-    pub first_step: f64,
-    /// The largest step of the load factor.
-    pub largest_step: f64,
-    /// Factors of loads and held values to go to in turn: 1, or there and back for a law with friction.
-    pub path: Vec<f64>,
-    /// A step that has been halved below this one ends the search.
-    pub smallest_step: f64,
-    /// Laws with friction in the place of diagonal entries of the section.
-    pub law: Option<SheetLaw>,
-}
-
-impl Default for Settings {
-    /// Tolerance 1e-8, at most 25 iterations a step, the whole load at once, linear elastic.
-    fn default() -> Self {
-        Self {
-            tolerance: 1e-8,
-            iterations: 25,
-            first_step: 1.0,
-            largest_step: 1.0,
-            smallest_step: 1e-5,
-            path: vec![1.0],
-            law: None,
-        }
-    }
-}
+use crate::model::Model;
 
 /// A way to an equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -154,120 +79,6 @@ pub enum Method {
     Stable,
 }
 
-/// Random loads that break the symmetry of a model; they are taken away before the end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Perturbation {
-    /// Their size relative to the mean load per area.
-    pub size: f64,
-    /// Seed of the random numbers.
-    pub seed: u64,
-}
-
-/// An equilibrium on the way, handed to the observer.
-#[derive(Clone, Copy, Debug)]
-pub struct Step<'a> {
-    /// Number of the step, from 1.
-    pub number: usize,
-    /// Iterations that it took.
-    pub iterations: usize,
-    /// Attempts that failed since the step before, each answered by a shorter step.
-    pub cut_backs: usize,
-    /// Unbalanced forces relative to loads or reactions.
-    pub residual: f64,
-    /// Energy stored (J); what friction has lost is in the memory of the state.
-    pub energy: f64,
-    /// The nodes.
-    pub state: &'a State,
-    /// Forces and moments of the supports on the sheet, six a node; 0 at free dofs.
-    pub reaction: &'a [f64],
-}
-
-/// Where a search ended.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Solution {
-    /// The nodes; the factor is below 1 if the observer stopped the search.
-    pub state: State,
-    /// Forces and moments of the supports on the sheet, six a node; 0 at free dofs.
-    pub reaction: Vec<f64>,
-    /// Energy stored (J); what friction has lost is in the memory of the state.
-    pub energy: f64,
-    /// Unbalanced forces relative to loads or reactions.
-    pub residual: f64,
-    /// Steps that converged.
-    pub steps: usize,
-    /// Iterations of all steps, failed ones included.
-    pub iterations: usize,
-    /// Whether the equilibrium is stable.
-    pub stability: Stability,
-    /// Factors of the last stable equilibria before those that were left because they were not; of [`Method::Stable`] only.
-    pub left: Vec<f64>,
-}
-
-/// What a search has done so far.
-#[derive(Default)]
-struct Progress {
-    steps: usize,
-    iterations: usize,
-    /// Failed attempts since the last step.
-    cut_backs: usize,
-    /// Failed attempts of the whole search.
-    failed: usize,
-}
-
-/// Attempts of a search that may fail: one that converges has failed a few times, or a few dozen.
-const MOST_FAILED: usize = 10_000;
-
-impl Progress {
-    /// Counts an attempt that failed; the last that a search may have says so.
-    fn cut_back(&mut self, failure: Failure) -> Failure {
-        self.iterations += failure.iterations;
-        self.cut_backs += 1;
-        self.failed += 1;
-        if self.failed < MOST_FAILED || failure.is_final() {
-            return failure;
-        }
-        Failure { obstacle: Obstacle::CutBacks(self.failed), ..failure }
-    }
-
-    /// Counts a step and shows it.
-    fn show(
-        &mut self,
-        system: &System<'_>,
-        step: &Converged,
-        observe: &mut impl FnMut(&Step<'_>) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        self.steps += 1;
-        self.iterations += step.iterations;
-        observe(&Step {
-            number: self.steps,
-            iterations: step.iterations,
-            cut_backs: std::mem::take(&mut self.cut_backs),
-            residual: step.balance.relative_residual(),
-            energy: step.balance.energy,
-            state: &step.state,
-            reaction: &system.reactions(&step.balance),
-        })
-    }
-
-    fn finish(
-        self,
-        system: &System<'_>,
-        state: State,
-        balance: &Balance,
-    ) -> Result<Solution, NonlinearError> {
-        Ok(Solution {
-            reaction: system.reactions(balance),
-            energy: balance.energy,
-            residual: balance.relative_residual(),
-            steps: self.steps,
-            iterations: self.iterations,
-            stability: stability::check(system, &state, balance)?.0,
-            left: Vec::new(),
-            state,
-        })
-    }
-}
-
 /// Grows loads and held values from 0 along the path of the settings in adaptive steps and shows every
 /// equilibrium to `observe`, which may stop.
 ///
@@ -280,14 +91,6 @@ pub fn solve(
     observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
     search(model, &plan(model, options)?, settings, &Method::Newton(None), options, observe)
-}
-
-/// What depends on the mesh, the bodies and the hard supports only, shared by every model on them.
-///
-/// # Errors
-/// M009, M010 for supports and bodies; N002 for memory.
-pub fn plan(model: &Model, options: &Options) -> Result<Plan, NonlinearError> {
-    Ok(Plan::direct(model, &[DofGroup::Shell], options)?)
 }
 
 /// [`solve`], [`follow`] or [`relax`] with a plan that was made before by [`plan`], for a model with the

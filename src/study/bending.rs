@@ -20,9 +20,6 @@ pub use cantilever::{CHORD_ANGLE_DEG, Cantilever, WithFriction, cantilever};
 pub use fab::{Agreement, BendLoop, BendLoops, Elastic, FabSettings, Friction, Simulated, bend_loops};
 pub use heart::{HeartLoop, heart_cells, heart_loop};
 
-/// Elements along a strip where a case says nothing.
-const CELLS: usize = 32;
-
 /// What a bending test gives, by direction.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BendingResult {
@@ -44,7 +41,7 @@ pub fn simulate_cantilever(
     sheet: &FabricSheet,
     section: &ShellSection,
 ) -> Result<BendingResult, StudyError> {
-    let (width, cells) = (strip.width.map(Length::si), strip.cells.unwrap_or(CELLS));
+    let (width, cells) = (strip.width.map(Length::si), strip.cells.unwrap_or(strip::CELLS));
     let along = |direction| {
         let law = sheet.mean_law(Test::Bending, Some(direction));
         cantilever(section, direction, law.as_ref(), width, cells)

@@ -88,7 +88,7 @@ pub fn compare_curves(sheet: &FabricSheet, simulated: &VirtualCurve) -> Option<C
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::instrument::{Conditions, Measurement, Source};
+    use crate::instrument::Measurement;
     use approx::assert_relative_eq;
 
     /// y = 2 x measured, y = 3 x simulated on x = 0, 1, 2: residuals 0, 1, 2 by hand.
@@ -96,17 +96,7 @@ mod tests {
     fn figures_of_merit_by_hand() {
         let curve = Curve::from_points([(0.0, 0.0), (1.0, 2.0), (2.0, 4.0)]);
         let specimen = SpecimenResult {
-            measurement: Measurement {
-                test: Test::Bending,
-                sample: None,
-                direction: Some(Direction::Warp),
-                specimen: 1,
-                conditions: Conditions::default(),
-                curve: curve.clone(),
-                lines: vec![1, 2, 3],
-                source: Source::default(),
-                metadata: Default::default(),
-            },
+            measurement: Measurement::of_curve(Test::Bending, Some(Direction::Warp), 1, curve.clone()),
             branches: vec![Branch { cycle: 0, outgoing: true, curve }],
             correction: [0.0; 2],
             windows: Vec::new(),

@@ -1,39 +1,13 @@
 //! What the mesh leaves open in a result: the case on coarser meshes, and what its values approach.
 
-use serde::Serialize;
-
 use super::checked::lookup;
+use super::mesh_series::{Convergence, MeshSeries};
 use super::result::CaseResult;
 use super::{Case, StudyError};
 use crate::case::{Analysis, Modal, ProbePoint, SheetProblem, unit_of};
 use crate::fields::{Extrapolation, Resultants};
 use crate::finding::{CoarseQuantity, Finding, Place, StudyFact};
 use crate::model::Dof;
-
-/// A case on its own mesh and on coarser ones.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Convergence {
-    /// `cells` of the meshes, coarsest first.
-    pub cells: Vec<[usize; 2]>,
-    /// The results, as in the checks of a case, less those that are 0 by symmetry or not solved for.
-    pub quantities: Vec<MeshSeries>,
-}
-
-/// One result on each mesh.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct MeshSeries {
-    /// `w_max`, `PROBE.w`, `strain_energy`, `frequency_1` ...
-    pub quantity: String,
-    /// SI unit of the values.
-    pub unit: &'static str,
-    /// Its values, coarsest mesh first.
-    pub values: Vec<f64>,
-    /// What they approach.
-    pub extrapolation: Extrapolation,
-    /// The largest value of its kind in the whole sheet, on the finest mesh.
-    #[serde(skip)]
-    size: f64,
-}
 
 /// A value is 0 below this part of the largest of its kind in the sheet.
 const ROUNDING: f64 = 1e-9;
@@ -64,11 +38,6 @@ impl Convergence {
         Ok(Self { cells, quantities: names(problem).into_iter().filter_map(series).collect() })
     }
 
-    /// The series of a quantity.
-    pub fn get(&self, quantity: &str) -> Option<&MeshSeries> {
-        self.quantities.iter().find(|q| q.quantity == quantity)
-    }
-
     /// What the mesh leaves too open.
     pub(super) fn finding(&self, case: &Case) -> Option<Finding> {
         let open = |q: &&MeshSeries| q.left() > COARSE && q.finest().abs() > SMALL * q.size;
@@ -77,18 +46,6 @@ impl Convergence {
             .collect();
         (self.quantities.is_empty() || !quantities.is_empty())
             .then(|| Finding::new(StudyFact::CoarseMesh { quantities }).at(Place::file(&case.path)))
-    }
-}
-
-impl MeshSeries {
-    /// The value on the finest mesh.
-    pub fn finest(&self) -> f64 {
-        self.values.last().copied().unwrap_or(f64::NAN)
-    }
-
-    /// Part of the value on the finest mesh by which it may be off: the grid convergence index.
-    pub fn left(&self) -> f64 {
-        self.extrapolation.index / self.finest().abs()
     }
 }
 
@@ -250,8 +207,8 @@ at = ["0 m", "0.5 m"]
         let rim = "[[loads]]\nkind = \"pressure\"\nvalue = \"0.001 Pa\"\n[[probes]]\nname = \"rim\"\nat = [\"0.4975 m\", \"0 m\"]\n";
         let at_angle = rim.replace("[\"0.4975 m\", \"0 m\"]", "[\"0.455 m\", \"0.19 m\"]");
         let case = |more: &str| Case::parse(Path::new("c.toml"), &format!("{disc}{at_angle}{more}")).unwrap();
-        crate::study::validate(&case("")).unwrap();
-        let e = crate::study::validate(&case("[convergence]\n")).unwrap_err();
+        crate::study::validate(&case(""), &Options::default()).unwrap();
+        let e = crate::study::validate(&case("[convergence]\n"), &Options::default()).unwrap_err();
         assert!(e.to_string().contains("cells = [2, 2]") && e.to_string().contains("rim"), "{e}");
     }
 

@@ -3,8 +3,7 @@
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
-use serde::Serialize;
-
+use super::history::History;
 use super::limits::largest_displacement;
 use super::nonlinear::largest_w;
 use super::result::Outcome;
@@ -16,28 +15,9 @@ use crate::finding::{Fact, Finding, Located, Place, StudyFact};
 use crate::mesh::QuadMesh;
 use crate::model::Model;
 use crate::platform;
-use crate::solve::newmark::{self, Energy, Instant, Rayleigh};
+use crate::solve::newmark::{self, Instant, Rayleigh};
 use crate::solve::nonlinear::dynamics::{Dynamics, integrate_with};
 use crate::solve::{self, Solution};
-
-/// A dynamic analysis in time.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct History {
-    /// Instants (s), the start included.
-    pub time: Vec<f64>,
-    /// Deflection w of each probe at each instant (m), in the order of the case's probes.
-    pub probes: Vec<Vec<f64>>,
-    /// Displacement (u, v, w) of each probe at each instant (m), in the same order.
-    pub probe_displacements: Vec<Vec<[f64; 3]>>,
-    /// Energies at each instant (J).
-    pub energy: Vec<Energy>,
-    /// The largest |w| anywhere at any instant, with its sign (m).
-    pub w_max: f64,
-    /// The largest displacement in any direction, anywhere at any instant (m).
-    pub displacement_max: f64,
-    /// What the energy balance misses at most, over the largest work of the loads.
-    pub imbalance: f64,
-}
 
 /// Above this part of the largest work a balance of energies that does not close is worth a word.
 const IMBALANCE_LIMIT: f64 = 0.05;
@@ -152,6 +132,10 @@ pub(super) fn dynamics(
         None
     };
     watch.not_stopped()?;
+    // A motion that ran out of time within a step ends there, and nobody was asked.
+    if record.history.time.last().is_some_and(|time| *time < (1.0 - 1e-6) * settings.duration) {
+        record.over = record.over.or_else(platform::over);
+    }
     let Record { mut history, solution, over, .. } = record;
     let work = history.energy.iter().map(|e| e.work.abs()).fold(f64::MIN_POSITIVE, f64::max);
     history.imbalance = history.energy.iter().map(|e| e.imbalance().abs()).fold(0.0, f64::max) / work;

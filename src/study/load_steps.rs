@@ -1,6 +1,7 @@
 //! The `[[steps]]` of a case, one after the other.
 
-use super::nonlinear::{LoadStepEnd, Record, check_perturbation, conclude, helped, turned_about_more};
+use super::load_path::LoadStepEnd;
+use super::nonlinear::{Record, check_perturbation, conclude, helped, turned_about_more};
 use super::result::Outcome;
 use super::{PreparedCase, StudyError, Watch};
 use crate::case::{MethodChoice, SheetStep};

@@ -119,11 +119,11 @@ impl<'a> PreparedCase<'a> {
 ///
 /// # Errors
 /// See [`StudyError`].
-pub fn validate(case: &Case) -> Result<(), StudyError> {
+pub fn validate(case: &Case, options: &Options) -> Result<(), StudyError> {
     let section = case.problem.section();
     let section = section.map(|table| placed(case, table, build::section(&table.value))).transpose()?;
     let section = section.unwrap_or_else(stand_in);
-    within_limits(case, &case.options(&Options::default())?)?;
+    within_limits(case, &case.options(options)?)?;
     match &case.problem {
         Problem::Sheet(problem) => {
             let model = build::model_on(case, problem, &problem.sheet, section)?;

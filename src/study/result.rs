@@ -1,13 +1,14 @@
 //! What a solved case holds.
 
+use schemars::JsonSchema;
 use std::sync::{Arc, OnceLock};
 
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::convergence::Convergence;
-use super::dynamics::History;
-use super::nonlinear::{LoadPath, LoadStepEnd};
+use super::history::History;
+use super::load_path::{LoadPath, LoadStepEnd};
+use super::mesh_series::Convergence;
 use super::uncertainty::Uncertainty;
 use crate::case::Reference;
 use crate::element::Mass;
@@ -22,7 +23,7 @@ use crate::solve::nonlinear::State;
 use crate::solve::{self, Factors, Solution};
 
 /// How a case ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
     /// Solved; every check holds.
@@ -47,7 +48,7 @@ pub struct Probe {
 }
 
 /// A check with its outcome.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct CheckResult {
     /// What was checked.
     pub quantity: String,

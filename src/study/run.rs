@@ -3,11 +3,11 @@
 use std::sync::{Arc, OnceLock};
 
 use super::checked::check;
-use super::convergence::Convergence;
 use super::dynamics::{dynamics, is_out_of_time, rayleigh};
 use super::finite::finite;
 use super::limits::{Beyond, buckles, findings, is_compressed};
 use super::load_steps::load_steps;
+use super::mesh_series::Convergence;
 use super::nonlinear::{equilibrium, largest_w};
 use super::result::{CaseResult, Kept, Outcome, Probe, Status};
 use super::uncertainty::{linear_uncertainty, modal_uncertainty};

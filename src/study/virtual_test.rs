@@ -9,6 +9,7 @@
 //! ([`Prediction`]); those of a straight line widen from the origin in proportion.
 
 use nalgebra::Vector3;
+use schemars::JsonSchema;
 
 use super::effort::within_limits;
 use super::prepared::stand_in;
@@ -55,7 +56,7 @@ pub struct VirtualCurve {
 }
 
 /// How far the stiffness of a specimen is from that of the sheet.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, JsonSchema)]
 pub struct EdgeEffect {
     /// Stiffness of the specimen over the ideal one, without a tension across.
     pub ratio: f64,
@@ -68,7 +69,7 @@ pub struct EdgeEffect {
 }
 
 /// A tension across a sheared specimen.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, JsonSchema)]
 pub struct Tension {
     /// Its size per width (N/m): what it adds to the shear stiffness where the yarns carry it, W tan φ.
     pub value: f64,

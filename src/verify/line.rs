@@ -1,5 +1,6 @@
 //! A line of the suite: a problem, its reference, and how it came out.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::error::VerifyError;
@@ -48,7 +49,7 @@ pub enum Tolerance {
 }
 
 /// Where a reference comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
     /// A closed form, a convergent series, or a property that follows from theory.

@@ -1,5 +1,6 @@
 //! Checked lines as a table and as a document.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::line::{Kind, Line, Outcome, RESIDUAL, Tolerance};
@@ -140,8 +141,9 @@ fn digits(value: f64) -> String {
 }
 
 /// `kesf.verify/1`.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Document {
+    #[schemars(extend("const" = "kesf.verify/1"))]
     schema: &'static str,
     lines: Vec<LineEntry>,
     failed: usize,
@@ -151,7 +153,7 @@ pub struct Document {
 }
 
 /// A line of the suite with its value, reference and outcome.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct LineEntry {
     id: String,
     quantity: String,

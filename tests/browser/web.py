@@ -184,7 +184,8 @@ def words(card):
 
 def exporters(kesf):
     listed = subprocess.run([kesf, "list", "exports", "--json"], capture_output=True, text=True, check=True).stdout
-    return json.loads(listed)["items"]
+    # Those without an ending are not written.
+    return [item for item in json.loads(listed)["items"] if item["ending"] != "-"]
 
 
 def first_chart(browser, address, work):
@@ -289,6 +290,35 @@ def bad_files(browser, address, kesf, work):
     page.context.close()
 
 
+def over_the_report(browser, address, work):
+    """What is dropped on the frame of the report is taken and the example goes; what is too large stays told."""
+    page = opened(browser, address)
+    cases_on(page, False)
+    worked(page, page.get_by_role("button", name="Load the example").click)
+    page.locator("#report").scroll_into_view_if_needed()
+    box = page.locator("#report").bounding_box()
+    record = work / "kesf_data/poplin/poplin_warp_FB2_1.csv"
+    session = page.context.new_cdp_session(page)
+    data = {"items": [], "files": [str(record)], "dragOperationsMask": 1}
+    inside = (box["x"] + 100, box["y"] + 60)
+
+    def drag():
+        for kind, (x, y) in (("dragEnter", (5, 5)), ("dragOver", (5, 5)), ("dragOver", inside), ("dragOver", inside), ("drop", inside)):
+            session.send("Input.dispatchDragEvent", {"type": kind, "x": x, "y": y, "data": data})
+            page.wait_for_timeout(50)
+
+    status = worked(page, drag)
+    check("a drop on the report is taken, without the example", status.startswith("Done: 1 fabric, 0 errors"), status)
+    large = work / "large.csv"
+    with large.open("wb") as file:
+        file.truncate(501 * MB)
+    status = worked(page, lambda: page.locator("#files").set_input_files([str(large), str(record)]))
+    said = texts(page)
+    check("what is too large is told when the rest is done", any("large.csv: the page takes files of up to 500 MB" in line for line in said), said)
+    check("and counted", status.startswith("Done: 1 fabric, 1 error"), status)
+    page.context.close()
+
+
 def archives(browser, address, work):
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -362,6 +392,7 @@ def main(path, kesf, work, pictures=None):
         settings(browser, address, kesf, work, SETTINGS)
         archives(browser, address, work)
         bad_files(browser, address, kesf, work)
+        over_the_report(browser, address, work)
         served(browser, path)
         looked_at(browser, address, work, pictures)
         same_digits(browser, address, kesf, work)

@@ -102,7 +102,7 @@ fn assert_specimen(picture: &Picture, specimens: &[Vec<Point>], color: Color, ex
 
 fn assert_test(name: &str, test: Test, numbers: [[&str; 2]; 2], units: [f64; 2]) {
     let Some(sheet) = poplin(name) else { return };
-    let picture = Picture::decode(&of_test(&sheet, test, &[]).unwrap());
+    let picture = Picture::decode(&of_test(&sheet, test, &[]).unwrap().png().unwrap());
     let scales = [picture.x_scale(numbers[0], BELOW), picture.y_scale(numbers[1], BESIDE)];
     let curves = |direction| specimens(&sheet, test, direction, units, scales);
     if test == Test::Compression {
@@ -153,7 +153,7 @@ fn a_simulated_curve_lies_over_the_measured_one() {
         curve: Curve::from_points(ends),
         ..SimulatedCurve::default()
     };
-    let picture = Picture::decode(&bending(&sheet, &[simulated]).unwrap());
+    let picture = Picture::decode(&bending(&sheet, &[simulated]).unwrap().png().unwrap());
     let scales = [picture.x_scale(["−2.0", "0.0"], BELOW), picture.y_scale(["0.20", "0.00"], BESIDE)];
     let line = along(&on_page(ends.map(|(k, m)| (k / 100.0, m / MOMENT)), scales));
     assert_line(&picture, &line, darker(BLUE, 0.55), 0.9);
@@ -169,7 +169,7 @@ fn a_friction_law_runs_along_its_loop() {
     let law = sheet.law(Test::Compression, None).unwrap();
     let traces = law.traces(&sheet);
     let fitted = traces.iter().find(|t| t.fitted).unwrap();
-    let picture = Picture::decode(&friction(&sheet, Some(Test::Compression)).unwrap());
+    let picture = Picture::decode(&friction(&sheet, Some(Test::Compression)).unwrap().png().unwrap());
     let scales = [
         picture.x_scale(["0.34", "0.48"], [120, 890, 1400, 945]),
         picture.y_scale(["10", "40"], [60, 190, 160, 900]),
@@ -193,7 +193,7 @@ fn parity_points_are_where_the_numbers_are() {
         ..ParityPoint::default()
     };
     let points: Vec<ParityPoint> = (0..9).map(point).collect();
-    let picture = Picture::decode(&parity(&points, "Simulated against measured", "").unwrap());
+    let picture = Picture::decode(&parity(&points, "Simulated against measured", "").unwrap().png().unwrap());
     let scales = [
         picture.x_scale(["2", "8"], [150, 1150, 1400, 1350]),
         picture.y_scale(["2", "8"], [60, 200, 167, 1250]),
@@ -243,7 +243,7 @@ fn a_field_is_coloured_by_its_values() {
         profile: Curve::from_points(line.iter().copied()),
         ..FieldPlot::default()
     };
-    let picture = Picture::decode(&field(&plot).unwrap());
+    let picture = Picture::decode(&field(&plot).unwrap().png().unwrap());
     let map = [
         picture.x_scale(["4", "16"], [120, 1040, 1020, 1200]),
         picture.y_scale(["4", "16"], [60, 200, 157, 1100]),
@@ -284,7 +284,7 @@ fn a_strip_from_the_side_is_where_its_shape_is() {
         values: vec![],
     };
     let plot = ProfilePlot { title: "Strip".into(), lines: vec![line], ..ProfilePlot::default() };
-    let picture = Picture::decode(&profile(&plot).unwrap());
+    let picture = Picture::decode(&profile(&plot).unwrap().png().unwrap());
     let scales = [
         picture.x_scale(["20", "60"], [120, 1240, 1400, 1300]),
         picture.y_scale(["−40", "−20"], [50, 190, 147, 1260]),
@@ -322,7 +322,7 @@ fn the_shadow_of_a_draped_sheet_ends_at_its_outline() {
         outline: &outline,
         ..DrapePlot::default()
     };
-    let picture = Picture::decode(&drape_shadow(&plot).unwrap());
+    let picture = Picture::decode(&drape_shadow(&plot).unwrap().png().unwrap());
     // There are no axes: the scale comes from the box around the outline, the same across and up.
     let points: Vec<Point> = nodes[around..].iter().map(|p| (p[0], p[1])).collect();
     let bounds = |of: fn(&Point) -> f64| {

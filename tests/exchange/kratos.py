@@ -59,8 +59,7 @@ def solve(path, problem):
     )
     strategy.SetEchoLevel(0)
     strategy.Initialize()
-    for step in range(1, problem.steps + 1):
-        share = step / problem.steps
+    for step, share in enumerate(problem.shares(), 1):
         part.CloneTimeStep(float(step))
         pull = km.Array3([share * a for a in problem.acceleration])
         for node in part.Nodes:

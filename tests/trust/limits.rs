@@ -95,6 +95,13 @@ fn more_memory_than_there_is_is_refused_before_it_is_taken() {
     assert!([0, 1].contains(&within.0), "{}", within.1);
     assert_eq!(beyond.0, 2, "{}", beyond.1);
     assert!(beyond.1.contains("N011"), "{}", beyond.1);
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "hostile.toml", &plate);
+    let path = folder.path().join("hostile.toml");
+    for (limit, exit) in [("1 GB", 0), ("1 MB", 2)] {
+        let checked = run(&["check", path.to_str().unwrap(), "--memory-limit", limit]);
+        assert_eq!(code(&checked), exit, "{limit}: {}", stderr(&checked));
+    }
 }
 
 /// A mesh that does not fit into the address space of the process is refused and no abort.
@@ -142,6 +149,10 @@ fn every_computation_ends_in_the_time_that_it_may_take() {
         // A step of the largest of them takes its time on a machine that is shared.
         assert!(seconds < 60.0, "{what}: {seconds} s");
     }
+    // Assembly and factorisation of a linear case are asked, too.
+    let (exit, told) = solve(&case("[300, 300]", &push), &["--time-limit", "50 ms"]);
+    assert_eq!(exit, 3, "{told}");
+    assert!(told.contains("N010"), "{told}");
     let kept = tempfile::tempdir().unwrap();
     let folder = kept.path().to_str().unwrap();
     let (_, told) = solve(&motion(""), &["--time-limit", "1 s", "-o", folder]);

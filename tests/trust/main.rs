@@ -10,6 +10,7 @@ mod factors;
 mod folders;
 mod limits;
 mod memory;
+mod names;
 mod resume;
 mod same;
 

@@ -17,7 +17,9 @@
   // Larger files are the command's: WebAssembly has 4 GB for a file, its copy and everything else.
   const LARGEST = 500e6;
   const WAIT = 500;
-  const state = { dropped: [], example: false, worker: null, engine: null, module: null, job: 0, busy: false, steps: 0, files: [], page: "", frame: null };
+  // Milliseconds after the last sign of a drag: it is over, or has left the window.
+  const DRAG = 1000;
+  const state = { dropped: [], refused: [], example: false, worker: null, engine: null, module: null, job: 0, busy: false, steps: 0, files: [], page: "", frame: null };
 
   const bytes = (id) => Uint8Array.from(atob(place(id).textContent.trim()), (c) => c.charCodeAt(0));
 
@@ -148,12 +150,12 @@
     place("understood").hidden = false;
     const fabrics = checked ? checked.fabrics : [];
     const errors = said.filter((line) => line.kind === "error");
-    state.count = { fabrics: fabrics.length, cases: checked ? checked.cases.length : 0, errors: errors.length };
+    state.count = { fabrics: fabrics.length, cases: checked ? checked.cases.length : 0, errors: errors.length + state.refused.length };
     const inFabric = new Set(fabrics.flatMap((fabric) => fabric.files.map((file) => file.path)));
     const general = said.filter((line) => line.kind === "error" || !inFabric.has(line.file));
     const passed = (passedBy || []).length
       ? [element("p", { class: "soft" }, `Passed by, as files that are named like no measurement: ${passedBy.join(", ")}.`)] : [];
-    place("messages").replaceChildren(...messages(general), ...passed);
+    place("messages").replaceChildren(...messages([...state.refused.map((text) => ({ kind: "error", text })), ...general]), ...passed);
     const how = new Map((checked ? checked.inference : []).map(({ path, decisions }) => [path, decisions]));
     const unread = [...how.keys()].filter((path) => !inFabric.has(path));
     place("fabrics").replaceChildren(
@@ -240,13 +242,17 @@
 
   function add(files) {
     const tooLarge = files.filter(({ file }) => file.size > LARGEST);
+    const taken = files.filter((entry) => !tooLarge.includes(entry));
     const known = new Map(state.dropped.map((entry) => [entry.path, entry]));
-    for (const entry of files) if (!tooLarge.includes(entry)) known.set(entry.path, entry);
+    for (const entry of taken) known.set(entry.path, entry);
     state.dropped = [...known.values()];
+    // Kept, because the work on the other files says things of its own.
+    const refused = tooLarge.map(({ path }) => `${path}: the page takes files of up to ${size(LARGEST)}; give it to the command.`);
+    state.refused.push(...refused.filter((text) => !state.refused.includes(text)));
+    // The example is to be looked at by itself.
+    if (taken.length) state.example = false;
     work();
-    if (tooLarge.length) {
-      say(`${tooLarge.map(({ path }) => path).join(", ")}: the page takes files of up to ${size(LARGEST)}; give them to the command.`);
-    }
+    if (refused.length && !taken.length) say(refused.join(" "));
   }
 
   // Folders of a drop, file by file; a browser gives at most 100 entries at a time.
@@ -267,6 +273,8 @@
 
   async function dropped(transfer) {
     performance.mark("kesf-dropped");
+    // The browser empties the transfer once the event is over.
+    const files = [...transfer.files].map((file) => ({ path: file.name, file }));
     const entries = [...transfer.items].map((item) => item.webkitGetAsEntry && item.webkitGetAsEntry());
     if (entries.length && entries.every(Boolean)) {
       try {
@@ -278,13 +286,13 @@
         }
       }
     }
-    add([...transfer.files].map((file) => ({ path: file.name, file })));
+    add(files);
   }
 
   function forget() {
     if (state.busy) begin();
     busy(false);
-    Object.assign(state, { dropped: [], example: false, job: state.job + 1, count: null });
+    Object.assign(state, { dropped: [], refused: [], example: false, job: state.job + 1, count: null });
     for (const id of ["understood", "results", "forget"]) place(id).hidden = true;
     say("");
   }
@@ -295,10 +303,19 @@
       event.preventDefault();
       place("drop").classList.toggle("over", is);
     };
+    // The frame of the report would take a drag for itself, and nobody would hear of it.
+    let last = 0;
+    const dragged = () => {
+      document.body.classList.add("dragged");
+      clearTimeout(last);
+      last = setTimeout(() => document.body.classList.remove("dragged"), DRAG);
+    };
+    for (const kind of ["dragenter", "dragover"]) zone.addEventListener(kind, dragged);
     zone.addEventListener("dragover", over(true));
     zone.addEventListener("dragleave", over(false));
     zone.addEventListener("drop", (event) => {
       over(false)(event);
+      document.body.classList.remove("dragged");
       dropped(event.dataTransfer);
     });
     for (const [button, input] of [["pick-files", "files"], ["pick-folder", "folder"]]) {

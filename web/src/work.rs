@@ -114,7 +114,7 @@ pub fn check(options: &str) -> Result<CheckAnswer, Failure> {
     let said = Said::default();
     let event = |event: kesf::results::Event<'_>| said.hear(event);
     let observer = Observer { event: &event, cancelled: &|| false };
-    let checked = checked_of(&inputs(), &form.reading(), &observer)?;
+    let checked = checked_of(&inputs(), &form.reading(), MEMORY, &observer)?;
     let looked_at: BTreeSet<PathBuf> = checked.files().into_iter().collect();
     let about = |path: &PathBuf| path.extension().is_some_and(|e| e == "toml");
     let passed_by =

@@ -150,7 +150,8 @@ def find(
     assume_kes_units: bool = False,
 ) -> dict[str, list[str]]:
     """The folder or file of each fabric below the inputs, with its measurement files: what can be divided among several
-    machines. Nothing is read; a file may turn out to hold several fabrics.
+    machines. Nothing is read; a file may turn out to hold several fabrics. A folder that cannot be opened, or whose
+    ``fabric.toml`` or ``dialect.toml`` cannot be read, has that in the place of its files: evaluating it tells why.
 
     >>> import kesf
     >>> len(kesf.find("kesf_data")["kesf_data/poplin"])

@@ -1,6 +1,7 @@
 //! Friction and rigidity of a bending loop without a fit.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::identify::Path;
 use super::loop_fit::line;
@@ -11,7 +12,7 @@ use super::loop_fit::line;
 /// By Masing's rule the branch that comes up from the lowest curvature `-k` is `M_down` there and
 /// `2 H` above it: `H(u) = [M_up(-k + 2u) - M_down(-k + 2u)] / 2` levels off at Y. Within 2 to 9 %
 /// of 2HB/2 and 1.5 % of the elastic slope.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ClosedForm {
     /// Y, half of 2HB (N).
     pub moment: f64,

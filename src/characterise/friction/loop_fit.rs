@@ -1,8 +1,9 @@
 //! How well a law follows a measured loop, beside a straight line.
 
+use schemars::JsonSchema;
 use std::ops::Range;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::identify::Path;
 
@@ -10,7 +11,7 @@ use super::identify::Path;
 const NO_LOOP: f64 = 1e-4;
 
 /// A law beside the loop that it was identified from.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LoopFit {
     /// The fitted cycle.
     pub fitted: CycleFit,
@@ -23,7 +24,7 @@ pub struct LoopFit {
 }
 
 /// Simulated beside measured stress over one cycle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CycleFit {
     /// Cycle, from 0.
     pub cycle: usize,

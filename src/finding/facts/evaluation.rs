@@ -107,6 +107,16 @@ super::facts! {
             criterion: String,
         } = "{key}: {} stands apart from the other {others} ({criterion}); it is kept in the mean",
             repeat_name(*repeat, *in_table);
+        /// Repeats that differ by more than those of one cloth do.
+        "K063" NoRepeats {
+            /// The value.
+            key: Key,
+            /// The smallest repeat (SI).
+            lowest: f64,
+            /// The largest (SI).
+            highest: f64,
+        } = "{key}: its repeats go from {:.4} to {:.4} {}, which those of one cloth do not: name the fabrics if they are several",
+            lowest / key.parameter.kes_factor(), highest / key.parameter.kes_factor(), key.parameter.kes_unit();
         /// A value that no woven apparel fabric has.
         "K011" Implausible {
             /// The value.
@@ -194,6 +204,11 @@ super::facts! {
             maximum: f64,
         } = "tensile moduli come from the table's EMT, taken at {:.4} gf/cm; the low-load tangent cannot be known from a table",
             maximum / Parameter::Hg.kes_factor();
+        /// A tensile stiffness of FAST.
+        "K061" StiffnessOfFast {
+            /// The direction of the load.
+            direction: Direction,
+        } = "tangent_low along the {direction} is that of FAST, 14.7 N/m over E20 - E5";
         /// T0 from fabric.toml.
         "K021" StatedThickness {} = "T0 is the thickness of fabric.toml, whose pressure is not known";
         /// Samples that are not numbers.
@@ -363,7 +378,16 @@ super::facts! {
             /// The samples before which it does.
             samples: Samples,
         } = "{record}: {}", jump(record.test, *axis, *step, *times, samples);
-        /// A copy of another record.
+        /// One record under two directions.
+        "K062" SameRecord {
+            /// The later one.
+            record: RecordName,
+            /// The other.
+            other: RecordName,
+            /// Where that was read.
+            place: Place,
+        } = "{record}: its samples are those of {other} ({place}), number by number: one of the two is not what it is called";
+        /// A record that is a copy of another.
         "K047" Copy {
             /// The copy.
             record: RecordName,
@@ -398,7 +422,7 @@ fn correction(test: Test, axis: RecordAxis, taken_off: f64, limit: f64) -> Strin
     let from = match test {
         Test::Tensile => " the force",
         Test::Compression => " the pressure",
-        _ => "",
+        Test::Shear | Test::Bending | Test::Friction | Test::Roughness => "",
     };
     format!("a zero offset of {} was taken off{from}", in_unit(taken_off, ordinate))
 }

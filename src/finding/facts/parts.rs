@@ -138,6 +138,8 @@ pub struct CoarseQuantity {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Renaming {
+    /// No file can have the name of the case.
+    CaseFile,
     /// A case: a file of every fabric has that name.
     CaseReserved,
     /// A case: another one has that name.

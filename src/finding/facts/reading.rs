@@ -1,7 +1,7 @@
 //! Facts of files.
 
 use super::parts::{Divisor, LeftOutLine};
-use crate::kes::{Direction, Parameter, Test};
+use crate::kes::{Direction, Key, Parameter, RecordName, Test};
 use crate::quantity::{STANDARD_GRAVITY, without_rounding};
 
 super::facts! {
@@ -89,7 +89,7 @@ super::facts! {
         "R113" HiddenCells {
             /// Which ones.
             hidden: Vec<String>,
-        } = "what the workbook hides is left out: {}", hidden.join("; ");
+        } = "what the workbook hides or strikes out is left out: {}", hidden.join("; ");
         /// Headings that stand again where a curve is closed.
         "R114" HeadingsAgain {} =
             "the headings stand again where the curve is back at its start: what follows is taken as another specimen";
@@ -103,10 +103,112 @@ super::facts! {
             /// The column of the abscissa.
             abscissa: String,
         } = "{ordinate:?} has the opposite sign of {abscissa:?}: it was turned";
+        /// Two lines of one header.
+        "R118" StatedTwice {
+            /// What the first says.
+            first: String,
+            /// Its line.
+            first_line: usize,
+            /// What this one says.
+            second: String,
+        } = "{second:?} is stated here and {first:?} in line {first_line}: the later one was taken; keep the one that holds";
+        /// Ordinates of one kind under different names.
+        "R119" ColumnsAsSpecimens {
+            /// Names of the columns.
+            names: Vec<String>,
+        } = "the columns {} are read as specimens of one fabric; separate them if they are other fabrics, or if one was calculated from \
+             another", names.join(", ");
+        /// A value in several tables.
+        "R120" SeveralTables {
+            /// The parameters with their directions, the one that is told of first.
+            keys: Vec<Key>,
+            /// Where that stands first.
+            first: String,
+        } = "{} stands here and at {first}, in tables, sheets or files of one fabric: they are averaged; remove all but one, or \
+             name the fabric or the direction of each", several_keys(keys);
+        /// Numbers behind symbols that are no directions.
+        "R121" NumbersAsSpecimens {
+            /// The parameters, without a direction.
+            keys: Vec<Key>,
+        } = "the numbers behind the symbols are taken as those of specimens, and no direction is stated ({}): name the \
+             direction of each column, or add a column `direction`", several_keys(keys);
+        /// A factor that a header states.
+        "R122" StatedFactor {
+            /// What it is called.
+            name: String,
+            /// Its value, as it stands.
+            value: String,
+        } = "the header states `{name}: {value}`, which was not applied: remove the line if the numbers are already those \
+             of the cloth, else correct them";
+        /// A sheet with numbers under headings that are not known.
+        "R123" SheetNotUnderstood {
+            /// What was met.
+            reason: String,
+        } = "this sheet holds numbers that were not read: {reason}; remove or hide the sheet if it holds something else, \
+             or write a dialect file that names its columns";
+        /// A direction among words that are not understood.
+        "R125" MoreThanDirection {
+            /// The text.
+            text: String,
+            /// What is taken of it.
+            direction: Direction,
+        } = "{text:?} is read as the direction {direction}, and what else it says is not understood: give rows or records of \
+             different states different fabrics";
+        /// Rows that are averaged although a column tells them apart.
+        "R126" ColumnOfStates {
+            /// Heading of the column.
+            column: String,
+            /// Two of its entries.
+            entries: [String; 2],
+            /// The values that are averaged.
+            keys: Vec<Key>,
+        } = "rows that differ in the column {column:?} ({:?} and {:?}) are averaged as repeats: make that a part of the name of the \
+             fabric if they are of different states", entries[0], entries[1];
+        /// Records that are averaged although their headers tell them apart.
+        "R127" RecordsOfStates {
+            /// The line of the header.
+            name: String,
+            /// Two of its entries.
+            entries: [String; 2],
+            /// The first of the records.
+            record: RecordName,
+        } = "records whose headers say {name:?} {:?} and {:?} are averaged as repeats: give each state a fabric of its own",
+            entries[0], entries[1];
+        /// Rows behind a table that look like its rows.
+        "R128" RowsNotRead {
+            /// Their lines.
+            lines: Vec<usize>,
+        } = "rows with numbers behind the end of the table were not read: line{} {}; give them the headings again, or remove \
+             what stands between", if lines.len() == 1 { "" } else { "s" }, lines_text(lines);
+        /// Formulas whose values were never stored.
+        "R129" WithoutValue {
+            /// Which ones.
+            cells: Vec<String>,
+        } = "formulas without a stored value are read as blank: {}; open the workbook in a spreadsheet program and save it",
+            cells.join("; ");
+        /// Blank cells below a direction or a parameter.
+        "R124" MergedCells {} = "blank cells are read as the direction or parameter above them, as of merged cells: fill them in \
+             if they are something else";
         /// A fabric that the file calls a knit.
         "R117" KnitDirections {} =
             "the fabric is a knit: warp stands for wale and weft for course in all that follows";
     }
+}
+
+/// `B warp`, or `B warp with 3 more`.
+fn several_keys(keys: &[Key]) -> String {
+    let first = keys.first().map(Key::to_string).unwrap_or_default();
+    match keys.len() {
+        0 | 1 => first,
+        n => format!("{first} with {} more", n - 1),
+    }
+}
+
+/// The first lines of a list.
+fn lines_text(lines: &[usize]) -> String {
+    let first: Vec<String> = lines.iter().take(10).map(usize::to_string).collect();
+    let more = lines.len().saturating_sub(10);
+    format!("{}{}", first.join(", "), if more > 0 { format!(" and {more} more") } else { String::new() })
 }
 
 fn unusable(names: &[String], reason: Option<&str>) -> String {

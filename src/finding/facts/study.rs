@@ -77,7 +77,7 @@ super::facts! {
             /// Directions without stiffness.
             directions: usize,
         } = "under these loads the sheet has lost its stiffness in {directions} direction(s): it buckles or wrinkles before, and the \
-             linear answer is that of a sheet that is kept from it; take [analysis] kind = \"nonlinear\" with method = \"flow\", or \
+             linear answer is that of a sheet that is kept from it; take [analysis] kind = \"nonlinear\" with method = \"stable\", or \
              lower the load";
         /// A mesh that leaves results open.
         "S106" CoarseMesh {
@@ -116,6 +116,12 @@ super::facts! {
             directions: usize,
         } = "the equilibrium is unstable: its energy falls in {directions} direction(s), and a real sheet would leave it; \
              take [analysis] method = \"flow\", or perturbation = 1e-3 with method = \"newton\"";
+        /// An equilibrium whose forces do not cancel.
+        "S127" ForcesBelowRounding {
+            /// Unbalanced forces, relative to loads or reactions.
+            residual: f64,
+        } = "the sheet moves no further, but {residual:.1e} of the loads is left unbalanced: the rounding of its stiffest forces \
+             is larger than loads so small; take kind = \"linear\" for them, and do not rely on reactions and energies here";
         /// A sheet that buckled on the way.
         "S124" Buckled {
             /// Factors of the load after which it did.

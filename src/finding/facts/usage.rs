@@ -42,6 +42,7 @@ fn own_results(files: usize) -> String {
 
 fn renamed_because(name: &str, renamed: &str, because: Renaming) -> String {
     match because {
+        Renaming::CaseFile => format!("{name:?} cannot be the name of a file; this case is called {renamed}"),
         Renaming::CaseReserved => {
             format!("a file of every fabric is named {name} too; this case is called {renamed}")
         }

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::instrument::dialect::{Statistic, TableColumn};
+use crate::instrument::error::{Problem, ReadError};
 use crate::instrument::facets::Facets;
 use crate::instrument::layout::Context;
 use crate::instrument::raw::Row;
@@ -10,6 +11,9 @@ use crate::instrument::shape::{self, Region};
 use crate::instrument::sniff::{Number, number};
 use crate::instrument::unit_text::unit;
 use crate::instrument::words::folded;
+
+/// Characters of the longest name of a fabric over columns; what is longer is a title.
+pub(super) const NAME: usize = 40;
 
 /// A column of values.
 #[derive(Clone, Debug)]
@@ -29,6 +33,8 @@ pub(super) struct Column {
 pub(super) struct LabelColumn {
     pub index: usize,
     pub meta: Option<TableColumn>,
+    /// The text of its heads.
+    pub name: String,
 }
 
 /// The columns of a table.
@@ -45,12 +51,16 @@ pub(super) struct Layout {
     pub left_out_rows: BTreeMap<usize, String>,
     /// Numbers behind symbols, in heads or in labels of rows.
     numbers: BTreeSet<usize>,
+    /// Heads that were read as directions although they say more.
+    pub texts_of_directions: Vec<String>,
     /// What each column holds, for people.
     told: Vec<String>,
 }
 
 impl Layout {
-    pub fn of(region: &Region<'_>, context: &Context<'_>) -> Self {
+    /// # Errors
+    /// R018 where the heads of a column state two units.
+    pub fn of(region: &Region<'_>, context: &Context<'_>) -> Result<Self, ReadError> {
         let width = region.heads.iter().chain(&region.rows).map(|r| r.cells.len()).max().unwrap_or(0);
         let heads = Heads::of(region, context);
         let mut layout = Self {
@@ -61,6 +71,7 @@ impl Layout {
             line: region.heads.last().or(region.rows.first()).map_or(0, |r| r.line),
             left_out_rows: BTreeMap::new(),
             numbers: BTreeSet::new(),
+            texts_of_directions: Vec::new(),
             told: Vec::new(),
         };
         let labels: Vec<(&Row<'_>, usize)> = region
@@ -72,8 +83,12 @@ impl Layout {
         for index in 0..width {
             layout.add(index, &heads, region, &labels, context);
         }
-        layout.settle(region, context);
-        layout
+        layout.settle(&heads, region, context);
+        let indices = layout.values.iter().map(|c| c.index).chain(layout.sd_column);
+        match indices.into_iter().find_map(|i| heads.two_units(i)) {
+            Some((found, (line, column))) => Err(context.error(line, column, Problem::BadTable { found })),
+            None => Ok(layout),
+        }
     }
 
     fn add(
@@ -95,7 +110,7 @@ impl Layout {
                 self.values.push(column(facets, None));
             } else if meta.is_some() || has_values || region.rows.iter().any(|r| r.get(index).is_some()) {
                 self.told.extend(meta.map(|m| format!("{name:?} is {}", format!("{m:?}").to_lowercase())));
-                self.labels.push(LabelColumn { index, meta });
+                self.labels.push(LabelColumn { index, meta, name });
             }
             return;
         }
@@ -124,7 +139,7 @@ impl Layout {
                             | TableColumn::Fabric
                     ) =>
             {
-                self.labels.push(LabelColumn { index, meta: Some(m) });
+                self.labels.push(LabelColumn { index, meta: Some(m), name: name.clone() });
             }
             _ if numeric && is_value => {
                 // A name may look like a symbol: `G-1`, `T 40`. What labels the rows decides.
@@ -133,7 +148,7 @@ impl Layout {
                 let facets = if is_name { Facets::default() } else { facets };
                 self.values.push(column(facets, fabric));
             }
-            _ => self.labels.push(LabelColumn { index, meta }),
+            _ => self.labels.push(LabelColumn { index, meta, name: name.clone() }),
         }
         if let Some(m) = meta {
             self.told.push(format!("{name:?} is {}", format!("{m:?}").to_lowercase()));
@@ -143,7 +158,7 @@ impl Layout {
     }
 
     /// What can be said only when all columns are known.
-    fn settle(&mut self, region: &Region<'_>, context: &Context<'_>) {
+    fn settle(&mut self, heads: &Heads, region: &Region<'_>, context: &Context<'_>) {
         if self.down {
             // Numbered columns are specimens: an unknown word among them is no fabric.
             let numbered = self.values.iter().filter(|c| c.facets.index.is_some()).count();
@@ -172,10 +187,59 @@ impl Layout {
             let labels: Vec<Facets> =
                 region.rows.iter().filter_map(|r| shape::row_label(r, context)).map(|(_, f)| f).collect();
             self.numbers = labels.iter().filter_map(|f| f.index).collect();
+            self.directions_over_columns(context);
+            self.fabrics_over_columns(heads);
             return;
         }
+        self.drop_numbers_that_do_not_count();
         self.numbers = self.values.iter().filter_map(|c| c.facets.index).collect();
         self.counters(region, context);
+    }
+
+    /// `Warp yarn` and `Filling direction` over columns: names that are directions, each of another.
+    fn directions_over_columns(&mut self, context: &Context<'_>) {
+        let of =
+            |c: &Column| c.facets.direction.or_else(|| context.vocabulary.direction(c.fabric.as_deref()?));
+        let columns = self.values.iter().filter(|c| c.facets.statistic.is_none());
+        let Some(found) = columns.map(of).collect::<Option<Vec<_>>>() else { return };
+        let distinct: BTreeSet<_> = found.iter().collect();
+        if distinct.len() < 2 || distinct.len() < found.len() {
+            return;
+        }
+        for column in self.values.iter_mut().filter(|c| c.fabric.is_some()) {
+            column.facets.direction = of(column);
+            self.texts_of_directions.extend(column.fabric.take());
+        }
+    }
+
+    /// Names of fabrics over their directions: where every column has one above it, and there are several.
+    fn fabrics_over_columns(&mut self, heads: &Heads) {
+        let names: Vec<_> = self.values.iter().map(|c| heads.name_over(c.index)).collect();
+        let distinct: BTreeSet<_> = names.iter().flatten().collect();
+        let all = names.iter().all(Option::is_some) && self.values.iter().all(|c| c.fabric.is_none());
+        if all && distinct.len() > 1 {
+            for (column, name) in self.values.iter_mut().zip(&names) {
+                column.fabric.clone_from(name);
+            }
+        }
+    }
+
+    /// `B`, `B1`, `B2` and `EMT`, `EMT50`: beside a column without a number, or with gaps between them, numbers do not count
+    /// specimens. What they are nobody says; the columns are told as not used.
+    fn drop_numbers_that_do_not_count(&mut self) {
+        let key = |c: &Column| (c.facets.parameter, c.facets.direction, c.facets.fast.map(|f| f.symbol()));
+        let mut groups: BTreeMap<_, BTreeSet<Option<usize>>> = BTreeMap::new();
+        for c in self.values.iter().filter(|c| c.facets.statistic.is_none()) {
+            groups.entry(key(c)).or_default().insert(c.facets.index);
+        }
+        let count = |indices: &BTreeSet<Option<usize>>| {
+            let numbers: Vec<usize> = indices.iter().flatten().copied().collect();
+            let run = numbers.windows(2).all(|pair| pair[1] == pair[0] + 1);
+            !indices.contains(&None) && run && (numbers.len() > 1 || numbers == [1] || numbers == [2])
+        };
+        self.values.retain(|c| {
+            c.facets.index.is_none() || c.facets.statistic.is_some() || groups.get(&key(c)).is_none_or(count)
+        });
     }
 
     /// Columns that count: `N` over 1, 2, 3, and the first column where its head is empty or strange.
@@ -282,6 +346,17 @@ fn is_units(row: &Row<'_>) -> bool {
     any
 }
 
+/// Whether two texts are units that are not the same.
+pub(super) fn differ(a: &str, b: &str) -> bool {
+    let (Ok(a), Ok(b)) = (unit(a), unit(b)) else { return false };
+    a.dimension != b.dimension || (a.factor - b.factor).abs() > 1e-9 * a.factor.abs()
+}
+
+/// Of two units of one value.
+pub(super) fn two_units(first: &str, second: &str) -> String {
+    format!("the unit of these values is {first:?} and {second:?}: remove the one that does not hold")
+}
+
 /// What the heads say over a column, their text, and where it stands.
 type Head = (Facets, String, (usize, usize));
 
@@ -322,9 +397,35 @@ impl Heads {
                 let cell = cell.or_else(spread).unwrap_or_else(empty);
                 cells.push(cell);
             }
+            // Where rows are parameters, `B` and `G` beside `A` over their columns are names like it.
+            let names = cells.iter().filter(|(f, ..)| f.unknown && f.meta.is_none());
+            if region.down && !lowest && names.count() > 0 {
+                let symbols = cells.iter_mut().filter(|(f, ..)| f.parameter.is_some() || f.fast.is_some());
+                symbols.for_each(|(f, ..)| *f = Facets { unknown: true, ..Facets::default() });
+            }
             rows.insert(0, cells);
         }
         Self { rows, units }
+    }
+
+    /// The name that stands in a row above the lowest heads of a column.
+    fn name_over(&self, index: usize) -> Option<String> {
+        let over = self.rows.iter().skip(1).filter_map(|row| row.get(index));
+        let mut names =
+            over.filter(|(f, text, _)| f.unknown && !text.is_empty() && text.chars().count() <= NAME);
+        names.next().map(|(_, text, _)| text.clone())
+    }
+
+    /// Two units of one column that are not the same, as people read it, with the place of the second.
+    fn two_units(&self, index: usize) -> Option<(String, (usize, usize))> {
+        let below = self.units.as_ref().and_then(|u| u.get(index)).filter(|(text, _)| !text.is_empty());
+        let below = below.map(|(text, at)| (text.as_str(), *at));
+        let heads = self.rows.iter().filter_map(|row| row.get(index));
+        let mut stated =
+            below.into_iter().chain(heads.filter_map(|(f, _, at)| Some((f.unit.as_deref()?, *at))));
+        let (text, at) = stated.next()?;
+        let (other, _) = stated.find(|(other, _)| differ(text, other))?;
+        Some((two_units(other, text), at))
     }
 
     /// What stands over a column: facets, text, and the place of the head that names it.

@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::rows_above::RowsAbove;
+use super::states::States;
 use super::{Contents, Datum, RowFacts, Table};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::dialect::{Statistic, TableColumn};
@@ -10,6 +12,7 @@ use crate::instrument::raw::Row;
 use crate::instrument::sniff::Number;
 use crate::instrument::statistic::{finding, names_statistics};
 use crate::instrument::value::value;
+use crate::instrument::vocabulary::Vocabulary;
 use crate::instrument::words::folded;
 use crate::instrument::{Direction, Parameter, ResultValue};
 use crate::quantity::Estimate;
@@ -36,6 +39,7 @@ impl<'t> Table<'t, '_> {
             return;
         }
         self.names_of_statistics(rows);
+        self.statistics_of_names(rows);
         self.odd_labels(rows);
         self.sums_of_fabrics(rows);
     }
@@ -67,6 +71,44 @@ impl<'t> Table<'t, '_> {
         }
     }
 
+    /// `F1 mean` and `SD of F1` in the column of fabrics, where `F1` is a fabric, begins names of others (`F1 1`), or has
+    /// several statistics.
+    fn statistics_of_names(&self, rows: &mut [(&Row<'_>, RowFacts)]) {
+        let v = self.context.vocabulary;
+        let split: Vec<_> = rows
+            .iter()
+            .map(|(_, f)| {
+                f.fabric.as_deref().filter(|_| f.facets.statistic.is_none()).and_then(|t| summed_up(t, v))
+            })
+            .collect();
+        let names: Vec<Option<String>> = rows.iter().map(|(_, f)| f.fabric.clone()).collect();
+        let mut statistics = BTreeMap::<&str, BTreeSet<Statistic>>::new();
+        for (of, statistic, _) in split.iter().flatten() {
+            statistics.entry(of).or_default().insert(*statistic);
+        }
+        // Names begin alike where the next character is no letter and no figure.
+        let begins = |name: &str, of: &str| {
+            name.strip_prefix(of).and_then(|rest| rest.chars().next()).is_some_and(|c| !c.is_alphanumeric())
+        };
+        let plain: BTreeSet<&str> =
+            names.iter().zip(&split).filter(|(_, s)| s.is_none()).filter_map(|(n, _)| n.as_deref()).collect();
+        for ((_, facts), found) in rows.iter_mut().zip(&split) {
+            let Some((of, statistic, word)) = found else { continue };
+            let is_fabric = plain.contains(of.as_str()) || statistics[of.as_str()].len() > 1;
+            // Names that begin with this one follow it in their order.
+            let next = plain.range(of.as_str()..).find(|n| **n != of);
+            let of_parts = next.is_some_and(|name| begins(name, of));
+            if !is_fabric && !of_parts {
+                continue;
+            }
+            facts.label = facts.fabric.take().unwrap_or_default();
+            facts.facets.statistic = Some(*statistic);
+            facts.facets.sd = v.table_column(word) == Some(TableColumn::Sd);
+            facts.summary_of_fabrics = !is_fabric;
+            facts.fabric = Some(of.clone()).filter(|_| is_fabric);
+        }
+    }
+
     /// A label without a number among numbered specimens is none of them.
     fn odd_labels(&mut self, rows: &mut [(&Row<'_>, RowFacts)]) {
         if !self.layout.meta(TableColumn::Specimen) {
@@ -94,29 +136,28 @@ impl<'t> Table<'t, '_> {
             indices.iter().map(|i| row.get(*i).and_then(|c| rounded(c, self.context.decimal))).collect()
         };
         let all: Vec<Vec<Option<(f64, f64)>>> = rows.iter().map(|(row, _)| numbers(row)).collect();
-        let mut from = 0;
-        for i in 0..rows.len() {
-            let facts = &rows[i].1;
+        // Of rows of each direction: all above, and those since the last summary.
+        let (mut above, mut section) = (BTreeMap::new(), BTreeMap::new());
+        for (row, (_, facts)) in all.iter().zip(rows) {
             if facts.facets.statistic.is_some() {
-                from = i + 1;
+                section.clear();
                 continue;
             }
+            let direction = facts.facets.direction;
             // A number of a specimen says what it is.
-            if facts.facets.index.is_some() {
-                continue;
-            }
-            let alike = |k: &usize| {
-                let other = &rows[*k].1;
-                other.facets.statistic.is_none() && other.facets.direction == facts.facets.direction
-            };
-            let above: Vec<&Vec<Option<(f64, f64)>>> = (0..i).filter(alike).map(|k| &all[k]).collect();
-            let section: Vec<&Vec<Option<(f64, f64)>>> = (from..i).filter(alike).map(|k| &all[k]).collect();
-            if sums_up(&all[i], &above) || sums_up(&all[i], &section) {
-                let label = rows[i].1.fabric.clone().or_else(|| Some(rows[i].1.label.clone()));
-                let f = &mut rows[i].1;
-                f.facets.statistic = Some(Statistic::Other);
-                f.label = label.unwrap_or_default();
-                f.summary_of_fabrics = true;
+            let sums_up = facts.facets.index.is_none()
+                && [&above, &section].iter().any(|rows: &&BTreeMap<_, RowsAbove>| {
+                    rows.get(&direction).is_some_and(|rows| rows.are_summed_up_by(row))
+                });
+            if sums_up {
+                let label = facts.fabric.clone().unwrap_or_else(|| facts.label.clone());
+                facts.facets.statistic = Some(Statistic::Other);
+                facts.label = label;
+                facts.summary_of_fabrics = true;
+            } else {
+                for rows in [&mut above, &mut section] {
+                    rows.entry(direction).or_default().add(row);
+                }
             }
         }
     }
@@ -130,23 +171,27 @@ impl<'t> Table<'t, '_> {
             self.layout.left_out_rows.iter().map(|(line, t)| ((true, *line, 0), t.clone())).collect();
         let mut out: Vec<(Option<String>, ResultValue)> = Vec::new();
         let mut repeated: Vec<(Key, Place)> = Vec::new();
+        let (mut states, mut unread) = (States::new(), Vec::new());
         for group in groups {
             let beside = group.key.2.is_none() && both.contains(&(group.key.0.clone(), group.key.1));
             let fabric = group.key.0.clone();
-            match self.value_of(group, beside, &mut left_out, &mut repeated) {
+            match self.value_of(group, beside, &mut left_out, &mut repeated, (&mut states, &mut unread)) {
                 Ok(value) => out.extend(value),
                 Err(error) => self.leave_out(fabric, error)?,
             }
         }
+        let stiffnesses = self.stiffnesses_of_fast();
         out.extend(self.derive_from_fast(&out));
         out.retain(|(fabric, _)| !self.is_left_out(fabric));
         if out.is_empty() && self.failures.is_empty() {
             let found = "the table has no value of a KES parameter".to_string();
             return Err(self.context.error(self.layout.line, 0, Problem::BadTable { found }));
         }
+        self.findings.extend(states.into_iter().map(|((_, column), state)| state.finding(column)));
+        self.ignored.extend(unread);
         self.say(&left_out, &repeated);
         let failures = self.failures.into_values().collect();
-        Ok(Contents { values: out, findings: self.findings, failures })
+        Ok(Contents { values: out, stiffnesses, findings: self.findings, failures })
     }
 
     fn groups(&mut self) -> Vec<Group> {
@@ -170,6 +215,7 @@ impl<'t> Table<'t, '_> {
         beside: bool,
         left_out: &mut BTreeMap<(bool, usize, usize), String>,
         repeated: &mut Vec<(Key, Place)>,
+        (states, unread): (&mut States, &mut Vec<String>),
     ) -> Result<Option<Named>, ReadError> {
         let (fabric, parameter, direction) = group.key;
         let (summaries, singles): (Vec<Datum>, Vec<Datum>) =
@@ -177,6 +223,13 @@ impl<'t> Table<'t, '_> {
         let is = |d: &Datum, s: Statistic| d.statistic.as_ref().is_some_and(|t| t.0 == s);
         let mean =
             summaries.iter().find(|d| is(d, Statistic::Mean) && !beside && !d.of_fabrics(self)).cloned();
+        let singles = if self.are_beside_means(&singles, &summaries) {
+            let name = singles.first().and_then(|d| self.layout.values.iter().find(|c| c.index == d.cell));
+            unread.extend(name.map(|c| c.name.clone()));
+            Vec::new()
+        } else {
+            singles
+        };
         let taken = if singles.is_empty() { mean } else { None };
         let sd = summaries.iter().find(|d| d.statistic.as_ref().is_some_and(|t| t.1)).map(|d| d.mean);
         for d in &summaries {
@@ -203,20 +256,23 @@ impl<'t> Table<'t, '_> {
         };
         let mut kept: Vec<Datum> = Vec::new();
         let mut numbers = BTreeSet::new();
+        // What was kept of each line, and the directions of rows by the value in them.
+        let mut of_line = BTreeMap::<(usize, Option<usize>), f64>::new();
+        let mut stated = BTreeMap::<u64, BTreeSet<_>>::new();
         for d in &singles {
-            // The same value in two units, or in the rows of both directions.
-            let same = kept.iter().any(|k| (k.mean - d.mean).abs() <= SAME * d.mean.abs());
-            let in_row = kept.iter().any(|k| k.line == d.line && k.index == d.index && !self.layout.down);
-            let in_column = kept.iter().any(|k| k.line == d.line && k.index.is_none() && self.layout.down);
-            if in_row || (in_column && d.index.is_none()) {
-                if same {
+            let before = of_line.get(&(d.line, d.index)).filter(|_| !self.layout.down || d.index.is_none());
+            if let Some(before) = before {
+                // The same value in two units, or in the rows of both directions.
+                if (before - d.mean).abs() <= SAME * d.mean.abs() {
                     continue;
                 }
                 return Err(twice(d));
             }
             // A thickness in the rows of both directions: the fabric has one.
-            let stated_again = |k: &Datum| k.mean == d.mean && k.row_direction != d.row_direction;
-            if !parameter.is_directional() && d.index.is_none() && kept.iter().any(stated_again) {
+            let stated_again = !parameter.is_directional()
+                && d.index.is_none()
+                && stated.get(&d.mean.to_bits()).is_some_and(|of| of.iter().any(|k| *k != d.row_direction));
+            if stated_again {
                 continue;
             }
             if d.index.is_some()
@@ -225,17 +281,35 @@ impl<'t> Table<'t, '_> {
             {
                 return Err(twice(d));
             }
+            of_line.insert((d.line, d.index), d.mean);
+            stated.entry(d.mean.to_bits()).or_default().insert(d.row_direction);
             kept.push(d.clone());
         }
         let unnumbered = kept.iter().filter(|d| d.index.is_none()).count();
         if unnumbered > 1 && kept.iter().all(|d| d.statistic.is_none()) {
             repeated.push(((fabric.clone(), parameter, direction), place(&kept[1])));
         }
+        if kept.iter().all(|d| d.statistic.is_none()) {
+            self.states_of(&fabric, &kept, states);
+        }
         let repeats = kept.len() > 1;
         if let ([only], Some(sd)) = (&mut kept[..], sd) {
             only.sd = only.sd.or(Some(sd));
         }
         Ok(Some(self.result(fabric, &kept, repeats)))
+    }
+
+    /// Whether one column stands beside each mean and is not what the mean sums up, such as a deviation under a word that is
+    /// not known.
+    fn are_beside_means(&self, singles: &[Datum], summaries: &[Datum]) -> bool {
+        let is_mean =
+            |d: &&Datum| !d.by_row && d.statistic.as_ref().is_some_and(|(s, ..)| *s == Statistic::Mean);
+        let means: BTreeMap<usize, f64> =
+            summaries.iter().filter(is_mean).map(|d| (d.line, d.mean)).collect();
+        let one_each = singles.len() == means.len() && singles.iter().all(|d| d.index.is_none());
+        let beside = |d: &Datum| means.get(&d.line).map(|mean| (d.mean - mean).abs() > SAME * mean.abs());
+        let beside: Option<Vec<bool>> = singles.iter().map(beside).collect();
+        one_each && beside.is_some_and(|differ| differ.contains(&true))
     }
 
     /// A number may come again where a value has no direction of its own and the rows do.
@@ -304,6 +378,22 @@ impl Datum {
     }
 }
 
+/// The name, the statistic and its word in `F1 mean`, `F1 (SD)` and `mean of F1`.
+fn summed_up(text: &str, v: Vocabulary<'_>) -> Option<(String, Statistic, String)> {
+    let edge = |c: char| !c.is_alphanumeric();
+    let plain = text.trim_end_matches(edge);
+    let behind = plain.rfind(edge).map(|at| (&plain[..at], &plain[at..]));
+    let before = text.find(edge).map(|at| (&text[at..], &text[..at]));
+    [behind, before].into_iter().flatten().find_map(|(name, word)| {
+        let word = word.trim_matches(edge);
+        // One letter, such as `n` and `s`, is a part of a name.
+        let statistic = v.statistic(word).filter(|_| word.chars().count() > 1)?;
+        let name = name.trim_matches(edge);
+        let name = name.strip_prefix("of ").unwrap_or(name).trim_matches(edge);
+        (!name.is_empty()).then(|| (name.to_string(), statistic, word.to_string()))
+    })
+}
+
 /// A number and half of its last decimal.
 fn rounded(cell: &str, decimal: char) -> Option<(f64, f64)> {
     let (Number::Value(v), None) = value(cell, decimal) else { return None };
@@ -311,47 +401,4 @@ fn rounded(cell: &str, decimal: char) -> Option<(f64, f64)> {
     let decimals = text.split_once(decimal).map_or(0, |(_, d)| d.bytes().filter(u8::is_ascii_digit).count());
     // The repeats are rounded as well.
     Some((v, 0.5001 * 10f64.powi(-(decimals.min(15) as i32)) + 1e-9 * v.abs()))
-}
-
-/// Whether a row holds one statistic of the rows above in every column.
-fn sums_up(row: &[Option<(f64, f64)>], above: &[&Vec<Option<(f64, f64)>>]) -> bool {
-    if above.len() < 3 || row.iter().flatten().count() < 2 {
-        return false;
-    }
-    let of = |statistic: fn(&[f64]) -> f64| {
-        row.iter().enumerate().filter_map(|(i, cell)| cell.map(|c| (i, c))).all(|(i, (v, half))| {
-            let column: Vec<f64> =
-                above.iter().filter_map(|r| r.get(i).copied().flatten()).map(|c| c.0).collect();
-            column.len() == above.len() && (statistic(&column) - v).abs() <= half
-        })
-    };
-    [mean, deviation, variation, largest, smallest, middle].into_iter().any(of)
-}
-
-fn mean(v: &[f64]) -> f64 {
-    v.iter().sum::<f64>() / v.len() as f64
-}
-
-fn deviation(v: &[f64]) -> f64 {
-    let m = mean(v);
-    (v.iter().map(|x| (x - m).powi(2)).sum::<f64>() / (v.len() as f64 - 1.0)).sqrt()
-}
-
-fn variation(v: &[f64]) -> f64 {
-    100.0 * deviation(v) / mean(v)
-}
-
-fn largest(v: &[f64]) -> f64 {
-    v.iter().copied().fold(f64::NEG_INFINITY, f64::max)
-}
-
-fn smallest(v: &[f64]) -> f64 {
-    v.iter().copied().fold(f64::INFINITY, f64::min)
-}
-
-fn middle(v: &[f64]) -> f64 {
-    let mut sorted = v.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let n = sorted.len();
-    0.5 * (sorted[(n - 1) / 2] + sorted[n / 2])
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::card::{Card, CardError, Exporter, Material};
-use super::constants::{Constants, no_place};
+use super::constants::{Constants, Property, no_place};
 use super::text::{number, preamble_of, set};
 use crate::characterise::{FabricSheet, mean_branches};
 use crate::instrument::{Direction, Test};
@@ -19,9 +19,6 @@ pub static EXPORTER: Exporter = Exporter {
             contraction across, no unloading curve.",
     write,
 };
-
-/// Force per width (N/m) to which a straight line is drawn where no curve was measured: 500 gf/cm.
-const LINE_TO: f64 = 490.3325;
 
 /// One response: its component in Abaqus, its curve of strain and force per width, and where the curve comes from.
 struct Response {
@@ -71,8 +68,8 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
             let _ = writeln!(text, "{}, {}", number(force / thickness), number(strain));
         }
     }
-    let lost = ["bending rigidity", "torsional rigidity", "transverse shear", "contraction across the load"];
-    Ok(Card { text, findings: lost.map(|what| no_place("Abaqus *FABRIC", what)).into() })
+    let lost = [Property::Bending, Property::Torsion, Property::TransverseShear, Property::Poisson];
+    Ok(Card { text, findings: lost.map(|what| no_place("Abaqus *FABRIC", section, what)).into() })
 }
 
 /// The measured loading curve of a test; a straight line of the section where there is none.
@@ -90,8 +87,11 @@ fn response(
             Response { component, curve, source }
         }
         None => {
-            let line = Curve::from_points([(0.0, 0.0), (LINE_TO / stiffness, LINE_TO)]);
-            let source = "a straight line, the stiffness of the section: no curve was recorded".into();
+            // As far as the test goes: to a force, or to an angle.
+            let end = sheet.conditions(test, Some(direction)).maximum;
+            let end = if test == Test::Shear { (end, end * stiffness) } else { (end / stiffness, end) };
+            let line = Curve::from_points([(0.0, 0.0), end]);
+            let source = "a straight line, the stiffness of the section: the input has no curve".into();
             Response { component, curve: line, source }
         }
     }

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::card::{Card, CardError, Exporter, Material};
-use super::constants::{Constants, no_place};
+use super::constants::{Constants, Property, no_place};
 use super::text::provenance;
 use crate::report::json;
 use crate::section::ShellSection;
@@ -49,6 +49,6 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
     });
     let text =
         json::text(&document).map_err(|e| CardError::Json { program: "ARCSim", reason: e.to_string() })?;
-    let findings = ["a torsional rigidity apart from that of the bias", "transverse shear"];
-    Ok(Card { text, findings: findings.map(|what| no_place("ARCSim", what)).into() })
+    let findings = [Property::TorsionBesideBias, Property::TransverseShear];
+    Ok(Card { text, findings: findings.map(|what| no_place("ARCSim", section, what)).into() })
 }

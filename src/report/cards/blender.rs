@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::card::{Card, CardError, Exporter, Material};
-use super::constants::{Constants, Yarn, lost, no_place};
+use super::constants::{Constants, Property, Yarn, lost, no_place};
 use super::text::{label, number, preamble};
 use crate::section::ShellSection;
 
@@ -108,11 +108,11 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
         let _ = writeln!(text, "{name} = {{\"tensile\": {tensile}, \"bending\": {bending}}}");
     }
     text.push_str(SCRIPT);
-    Ok(Card { text, findings: losses(&c) })
+    Ok(Card { text, findings: losses(&c, section) })
 }
 
 /// What the cloth of Blender has in the place of what it cannot hold.
-fn losses(c: &Constants) -> Vec<crate::finding::Finding> {
+fn losses(c: &Constants, section: &ShellSection) -> Vec<crate::finding::Finding> {
     let mean = c.mean();
     let mut findings: Vec<_> = [
         ("on quads, a torsional rigidity", [TWIST * mean.bending, c.torsion], "N·m"),
@@ -126,6 +126,6 @@ fn losses(c: &Constants) -> Vec<crate::finding::Finding> {
     .into_iter()
     .filter_map(|(what, pair, unit)| lost("Blender", what, pair, unit))
     .collect();
-    findings.push(no_place("Blender", "transverse shear"));
+    findings.push(no_place("Blender", section, Property::TransverseShear));
     findings
 }

@@ -62,6 +62,12 @@ errors! {
             /// What is wrong.
             reason: String,
         } = "the document of {program} could not be made: {reason}";
+        /// O046: a number that the fields of a card cannot hold.
+        "O046" Range {
+            /// Stiffness, mass per area or thickness (SI).
+            value: f64,
+        } = "a stiffness, mass or thickness of {value:e} (SI) is beyond what a card can hold, 1e-30 to 1e30: correct \
+             the value that it comes from";
     }
 }
 
@@ -74,4 +80,11 @@ pub struct Material<'a> {
     pub made: &'a Constitutive,
     /// Date and time (RFC 3339), if they are wanted; a format that must have a date gets a fixed one without.
     pub stamp: Option<&'a str>,
+}
+
+impl Material<'_> {
+    /// Whether a value is a stand-in: it is no property of the material, and formats that describe one leave it out.
+    pub(super) fn is_assumed(&self, name: &str) -> bool {
+        self.made.used.iter().any(|u| u.name == name && u.source.starts_with("assumed"))
+    }
 }

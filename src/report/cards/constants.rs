@@ -3,6 +3,7 @@
 use nalgebra::Matrix3;
 
 use crate::finding::{ExchangeFact, Finding};
+use crate::quantity::significant;
 use crate::section::ShellSection;
 
 /// What a strip cut along a yarn shows: tensile stiffness and bending rigidity per width, free to contract.
@@ -67,7 +68,40 @@ pub fn lost(program: &str, what: &str, [has, own]: [f64; 2], unit: &str) -> Opti
     (!near).then(|| Finding::new(ExchangeFact::OtherStiffness { program, what, has, own, unit }))
 }
 
-/// O044: something of the fabric for which a program has no place at all.
-pub fn no_place(program: &str, what: &str) -> Finding {
-    Finding::new(ExchangeFact::NoPlace { program: program.into(), what: what.into() })
+/// A property of a section for which a program may have no place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Property {
+    /// Bending rigidity of a strip along each yarn.
+    Bending,
+    /// Poisson's ratio of stretching.
+    Poisson,
+    /// Shear stiffness G.
+    Shear,
+    /// Torsional rigidity D66.
+    Torsion,
+    /// Torsional rigidity, where the program has the bending along the bias only.
+    TorsionBesideBias,
+    /// Transverse shear.
+    TransverseShear,
+}
+
+/// O044: something of the fabric for which a program has no place at all, with its size.
+pub fn no_place(program: &str, section: &ShellSection, property: Property) -> Finding {
+    let c = Constants::of(section);
+    let [warp, weft] = c.yarns;
+    let (name, own, unit) = match property {
+        Property::Bending => ("bending rigidity", vec![warp.bending, weft.bending], " N·m"),
+        Property::Poisson => ("Poisson's ratio", vec![c.poisson], ""),
+        Property::Shear => ("shear stiffness", vec![c.shear], " N/m"),
+        Property::Torsion => ("torsional rigidity", vec![c.torsion], " N·m"),
+        Property::TorsionBesideBias => {
+            ("a torsional rigidity apart from that of the bias", vec![c.torsion], " N·m")
+        }
+        Property::TransverseShear => {
+            ("transverse shear", vec![section.d_s[(0, 0)], section.d_s[(1, 1)]], " N/m")
+        }
+    };
+    let own: Vec<String> = own.into_iter().map(significant).collect();
+    let what = format!("{name} ({}{unit})", own.join(" and "));
+    Finding::new(ExchangeFact::NoPlace { program: program.into(), what })
 }

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::card::{Card, CardError, Exporter, Material};
 use super::text::provenance;
 use crate::characterise::SpecimenResult;
-use crate::report::json::{assumptions, section_document, sheet_document, text};
+use crate::report::json::{section_document, sheet_document, text};
 use crate::section::ShellSection;
 
 /// `kesf export --to fabric`.
@@ -13,7 +13,8 @@ pub static EXPORTER: Exporter = Exporter {
     name: "fabric",
     ending: "fabric.json",
     title: "open fabric file kesf.fabric/1: curves as recorded, parameters, friction laws, section, bands; SI",
-    holds: "everything: it is read back as an input, and docs/schemas/open-fabric.json describes it.",
+    holds: "everything, as docs/schemas/open-fabric.json describes it; an input of kesf for its values, its laws and its section, \
+            not for its curves and notes.",
     write,
 };
 
@@ -21,7 +22,7 @@ pub static EXPORTER: Exporter = Exporter {
 fn write(material: &Material<'_>, _: &ShellSection) -> Result<Card, CardError> {
     let wrong = |e: serde_json::Error| CardError::Json { program: "kesf.fabric/1", reason: e.to_string() };
     let Material { sheet, made, stamp } = *material;
-    let section = section_document([(sheet, &made.section, &made.inputs[..], assumptions(&made.used))]);
+    let section = section_document([(sheet, made)]);
     let mut parameters = serde_json::to_value(sheet_document([sheet], None)).map_err(wrong)?;
     file_names(&mut parameters);
     let document = json!({

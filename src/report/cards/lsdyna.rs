@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::card::{Card, CardError, Exporter, Material};
-use super::constants::{Constants, no_place};
+use super::constants::{Constants, Property, no_place};
 use super::text::{label, preamble};
 use crate::section::ShellSection;
 
@@ -56,8 +56,9 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
     row(&mut text, &[]);
     row(&mut text, &[]);
     row(&mut text, &["0", "0", "0", "0", "0", "0"].map(String::from));
-    let findings = ["bending rigidity", "torsional rigidity", "transverse shear"];
-    Ok(Card { text, findings: findings.map(|what| no_place("LS-DYNA *MAT_FABRIC", what)).into() })
+    let findings = [Property::Bending, Property::Torsion, Property::TransverseShear];
+    let of = |what| no_place("LS-DYNA *MAT_FABRIC", section, what);
+    Ok(Card { text, findings: findings.map(of).into() })
 }
 
 /// Values of one line, ten columns each.

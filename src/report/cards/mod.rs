@@ -12,8 +12,10 @@
 //! | `abaqus_fabric.rs` | Abaqus/Explicit `*FABRIC` | measured curves of tension and shear of a membrane |
 //! | `ansys.rs` | Ansys Mechanical APDL | all of it, if it resists twisting |
 //! | `arcsim.rs` | ARCSim | stretching; bending along warp, weft and the bias |
+//! | `browzwear.rs` | the physics file of U3M with Browzwear's block | stretch and bend of strips, mass, thickness |
 //! | `blender.rs` | Blender | strips along warp and weft, shear; an isotropic sheet |
 //! | `calculix.rs` | CalculiX | all of it, as three layers |
+//! | `clo.rs` | the schema of CLO's USD files, as Unreal Engine reads it | strips along warp, weft and the bias, shear |
 //! | `fabric.rs` | the open fabric file `kesf.fabric/1` | all that is known of the fabric |
 //! | `kratos.rs` | Kratos Multiphysics | all of it, as three layers |
 //! | `opensees.rs` | OpenSees | all of it, as three layers |
@@ -30,8 +32,10 @@ mod abaqus_fabric;
 mod ansys;
 mod arcsim;
 mod blender;
+mod browzwear;
 mod calculix;
 mod card;
+mod clo;
 mod constants;
 mod fabric;
 mod kratos;
@@ -48,6 +52,8 @@ mod text;
 mod u3m;
 mod usd;
 
+use crate::section::ShellSection;
+
 pub use card::{Card, CardError, Exporter, Material, Target};
 pub use laminate::{Laminate, laminate};
 
@@ -58,7 +64,9 @@ pub static EXPORTERS: &[Target] = &[
     &ansys::EXPORTER,
     &arcsim::EXPORTER,
     &blender::EXPORTER,
+    &browzwear::EXPORTER,
     &calculix::EXPORTER,
+    &clo::EXPORTER,
     &fabric::EXPORTER,
     &kratos::EXPORTER,
     &lsdyna::EXPORTER,
@@ -69,6 +77,25 @@ pub static EXPORTERS: &[Target] = &[
     &radioss::EXPORTER,
     &u3m::EXPORTER,
     &usd::EXPORTER,
+];
+
+/// Programs for which nothing is written, and why: a card of fields that nobody has defined would be invented.
+pub const NOT_WRITTEN: &[(&str, &str)] = &[
+    (
+        "CLO Fabric Kit",
+        "the file that the Emulator of CLO reads is not published; `clo` writes the attributes of CLO's USD.",
+    ),
+    (
+        "Optitex",
+        "its public help names stretch, shear and bending, but neither their units nor their definitions.",
+    ),
+    (
+        "Style3D Studio",
+        "its fabric file is not published; `newton` writes the constants of the solver that Style3D published.",
+    ),
+    ("LS-DYNA *MAT_235", "it asks for the geometry and the moduli of yarns, which KES does not measure."),
+    ("OpenRadioss LAW58", "it asks for crimp and numbers of yarns, which KES does not measure."),
+    ("PAM-FORM, AniForm", "their manuals are not public."),
 ];
 
 /// The target of a name.
@@ -82,7 +109,19 @@ pub fn named(name: &str) -> Option<Target> {
 /// See [`CardError`].
 pub fn card(target: Target, material: &Material<'_>) -> Result<Card, CardError> {
     let section = material.made.section.clone().checked()?;
+    if let Some(value) = beyond_cards(&section) {
+        return Err(CardError::Range { value });
+    }
     (target.write)(material, &section)
+}
+
+/// A stiffness, mass or thickness (SI) beyond 1e-30 to 1e30: fields of eight or ten columns have no room for more, and
+/// quotients of such numbers are none.
+fn beyond_cards(section: &ShellSection) -> Option<f64> {
+    let beyond = |value: &f64| *value != 0.0 && !(1e-30..=1e30).contains(&value.abs());
+    let [d_m, d_b] = [&section.d_m, &section.d_b].map(|d| d.iter());
+    let others = [section.areal_density, section.thickness];
+    d_m.chain(d_b).chain(section.d_s.iter()).chain(&others).copied().find(beyond)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::card::{Card, CardError, Exporter, Material};
-use super::constants::{Constants, Yarn, lost, no_place};
+use super::constants::{Constants, Property, Yarn, lost, no_place};
 use super::swatch::{SIDE, Swatch, cell, swatch};
 use super::text::{number, provenance, wrapped};
 use crate::section::ShellSection;
@@ -68,7 +68,7 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
         flex(&mut text, name, &swatch(direction == 1), (elastic, poisson, mass));
     }
     text.push_str("  </worldbody>\n</mujoco>\n");
-    Ok(Card { text, findings: losses(&constants, poisson) })
+    Ok(Card { text, findings: losses(&constants, poisson, section) })
 }
 
 /// One strip as a `flexcomp`.
@@ -99,7 +99,7 @@ fn flex(
 }
 
 /// What a flex has in the place of what it cannot hold.
-fn losses(c: &Constants, poisson: f64) -> Vec<crate::finding::Finding> {
+fn losses(c: &Constants, poisson: f64, section: &ShellSection) -> Vec<crate::finding::Finding> {
     let mean = c.mean();
     let shear = mean.tensile / (2.0 * (1.0 + poisson));
     let mut findings: Vec<_> = [
@@ -114,6 +114,6 @@ fn losses(c: &Constants, poisson: f64) -> Vec<crate::finding::Finding> {
     .into_iter()
     .filter_map(|(what, pair, unit)| lost("MuJoCo", what, pair, unit))
     .collect();
-    findings.push(no_place("MuJoCo", "transverse shear"));
+    findings.push(no_place("MuJoCo", section, Property::TransverseShear));
     findings
 }

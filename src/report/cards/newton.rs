@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::card::{Card, CardError, Exporter, Material};
-use super::constants::{Constants, lost, no_place};
+use super::constants::{Constants, Property, lost, no_place};
 use super::text::provenance;
 use crate::report::json;
 use crate::section::ShellSection;
@@ -63,6 +63,6 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
     let mut findings: Vec<_> =
         lost("newton", "on a grid, a torsional rigidity", [held, c.torsion], "N·m").into_iter().collect();
     findings.extend(lost("newton", "Poisson's ratio", [0.0, c.poisson], ""));
-    findings.push(no_place("newton", "transverse shear"));
+    findings.push(no_place("newton", section, Property::TransverseShear));
     Ok(Card { text, findings })
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::card::{Card, CardError, Exporter, Material};
-use super::constants::{Constants, no_place};
+use super::constants::{Constants, Property, no_place};
 use super::text::{label, number, preamble};
 use crate::section::ShellSection;
 
@@ -53,6 +53,7 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
         let fields: String = values.iter().map(|v| format!("{:>20}", number(*v))).collect();
         let _ = writeln!(text, "#{}\n{fields}", &heads[1..]);
     }
-    let findings = ["bending rigidity", "torsional rigidity"];
-    Ok(Card { text, findings: findings.map(|what| no_place("OpenRadioss LAW19", what)).into() })
+    let findings = [Property::Bending, Property::Torsion];
+    let of = |what| no_place("OpenRadioss LAW19", section, what);
+    Ok(Card { text, findings: findings.map(of).into() })
 }

@@ -58,13 +58,34 @@ fn keyword(lines: &Lines<'_>, name: &'static str) -> Result<usize, CardReadError
     at.ok_or_else(|| syntax(lines.last().map_or(1, |l| l.0), "the end of the card", name))
 }
 
-/// The value of a parameter of a keyword line, such as `DENSITY=0.118`.
-fn parameter((line, text): (usize, &str), name: &'static str) -> Result<f64, CardReadError> {
-    let found = text.split(',').find_map(|part| {
+/// The text of a parameter of a keyword line, such as `DENSITY=0.118`.
+fn stated<'t>(text: &'t str, name: &str) -> Option<&'t str> {
+    text.split(',').find_map(|part| {
         let (key, value) = part.split_once('=')?;
-        key.trim().eq_ignore_ascii_case(name).then_some(value)
-    });
-    real((line, found.unwrap_or_default()), name)
+        key.trim().eq_ignore_ascii_case(name).then_some(value.trim())
+    })
+}
+
+fn parameter((line, text): (usize, &str), name: &'static str) -> Result<f64, CardReadError> {
+    real((line, stated(text, name).unwrap_or_default()), name)
+}
+
+/// Refuses what moves the reference surface, and a second section: which of them was meant is not said.
+fn the_only_section(lines: &Lines<'_>, at: usize) -> Result<(), CardReadError> {
+    let is_section = |line: &str| {
+        let head = line.to_ascii_uppercase();
+        head.starts_with("*SHELL SECTION") || head.starts_with("*SHELL GENERAL SECTION")
+    };
+    if let Some((line, _)) = lines.iter().skip(at + 1).find(|(_, line)| is_section(line)) {
+        return Err(syntax(*line, "a second shell section", "one shell section a file"));
+    }
+    let (line, text) = lines[at];
+    match stated(text, "OFFSET") {
+        Some(offset) if offset.parse() != Ok(0.0) => {
+            Err(syntax(line, format!("OFFSET={offset}"), "no offset of the reference surface"))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// A section that a card states.
@@ -89,13 +110,20 @@ pub fn section_in(text: &str, thickness: f64) -> Option<Result<StatedSection, Ca
     const GENERAL: &str = "*SHELL GENERAL SECTION";
     const LAYERS: &str = "*SHELL SECTION, COMPOSITE";
     let lines = lines(text, "**");
-    let stated = |keyword, section: Result<_, _>, has_thickness| {
-        section.map(|section| StatedSection { keyword, section, has_thickness, origin: origin(text) })
+    let stated = |keyword, at: usize, section: Result<ShellSection, _>, has_thickness| {
+        let section = section?;
+        match super::beyond_cards(&section) {
+            Some(value) => {
+                let found = format!("a stiffness, mass or thickness of {value:e} (SI)");
+                Err(syntax(lines[at].0, found, "a section of numbers from 1e-30 to 1e30"))
+            }
+            None => Ok(StatedSection { keyword, section, has_thickness, origin: origin(text) }),
+        }
     };
-    if keyword(&lines, GENERAL).is_ok() {
-        Some(stated(GENERAL, abaqus(text, thickness), false))
-    } else if keyword(&lines, "*SHELL SECTION").is_ok() {
-        Some(stated(LAYERS, calculix(text), true))
+    if let Ok(at) = keyword(&lines, GENERAL) {
+        Some(stated(GENERAL, at, abaqus(text, thickness), false))
+    } else if let Ok(at) = keyword(&lines, "*SHELL SECTION") {
+        Some(stated(LAYERS, at, calculix(text), true))
     } else {
         None
     }
@@ -116,6 +144,7 @@ fn origin(text: &str) -> Option<Origin> {
 pub fn abaqus(text: &str, thickness: f64) -> Result<ShellSection, CardReadError> {
     let lines = lines(text, "**");
     let at = keyword(&lines, "*SHELL GENERAL SECTION")?;
+    the_only_section(&lines, at)?;
     let areal_density = parameter(lines[at], "DENSITY")?;
     let mut half = Vec::new();
     for line in lines.iter().skip(at + 1).take_while(|(_, l)| !l.starts_with('*')) {
@@ -149,14 +178,18 @@ pub fn abaqus(text: &str, thickness: f64) -> Result<ShellSection, CardReadError>
     Ok(ShellSection { d_m, d_b, d_s, areal_density, thickness }.checked()?)
 }
 
+/// Coupling of stretching and bending, over the root of both stiffnesses, that the digits of a card may leave.
+const LARGEST_COUPLING: f64 = 1e-6;
+
 /// A CalculiX `*SHELL SECTION, COMPOSITE` of layers along the warp: their sums are D_m, D_b and the mass per area.
-/// The thickness is that of the laminate.
+/// The thickness is that of the laminate. Layers that couple stretching with bending are refused, as a section has no coupling.
 ///
 /// # Errors
 /// See [`CardReadError`].
 pub fn calculix(text: &str) -> Result<ShellSection, CardReadError> {
     let lines = lines(text, "**");
     let at = keyword(&lines, "*SHELL SECTION")?;
+    the_only_section(&lines, at)?;
     let mut layers = Vec::new();
     for (line, layer) in lines.iter().skip(at + 1).take_while(|(_, l)| !l.starts_with('*')) {
         let fields: Vec<&str> = layer.split(',').map(str::trim).collect();
@@ -167,14 +200,19 @@ pub fn calculix(text: &str) -> Result<ShellSection, CardReadError> {
     }
     let whole: f64 = layers.iter().map(|l| l.0).sum();
     let (mut d_m, mut d_b, mut d_s) = (Matrix3::zeros(), Matrix3::zeros(), Matrix2::zeros());
-    let (mut areal_density, mut below) = (0.0, -0.5 * whole);
+    let (mut areal_density, mut below, mut coupling) = (0.0, -0.5 * whole, Matrix3::zeros());
     for (thickness, (q, shear, density)) in layers {
         let above = below + thickness;
         d_m += q * thickness;
         d_b += q * ((above.powi(3) - below.powi(3)) / 3.0);
+        coupling += q * (0.5 * (above * above - below * below));
         d_s += shear * thickness;
         areal_density += density * thickness;
         below = above;
+    }
+    if coupling.amax() > LARGEST_COUPLING * (d_m.amax() * d_b.amax()).sqrt() {
+        let found = format!("layers with a coupling of {:e} N", coupling.amax());
+        return Err(syntax(lines[at].0, found, "layers that are the same on both sides"));
     }
     Ok(ShellSection { d_m, d_b, d_s, areal_density, thickness: whole }.checked()?)
 }
@@ -195,6 +233,10 @@ fn material(
         .collect();
     let expected = "nine engineering constants";
     let elastic = keyword(&block, "*ELASTIC")?;
+    let (line, text) = block[elastic];
+    if !stated(text, "TYPE").is_some_and(|kind| kind.eq_ignore_ascii_case("ENGINEERING CONSTANTS")) {
+        return Err(syntax(line, format!("`{text}`"), "*ELASTIC, TYPE=ENGINEERING CONSTANTS"));
+    }
     let mut constants = Vec::new();
     for line in block.iter().skip(elastic + 1).take_while(|(_, l)| !l.starts_with('*')) {
         constants.extend(values(*line, expected)?);
@@ -246,6 +288,34 @@ mod tests {
             let found = abaqus(&changed, section.thickness).unwrap();
             assert!((found.d_b[(0, 0)] / section.d_b[(0, 0)] - 1.0).abs() > 0.1);
         }
+    }
+
+    /// Decks of others that look alike: nothing of what they say is passed over.
+    #[test]
+    fn what_a_section_cannot_hold_is_refused() {
+        let card = written("calculix", section()).unwrap();
+        let at = card.lines().position(|l| l.starts_with("*SHELL SECTION")).unwrap();
+        let without_the_last_layer: String =
+            card.lines().enumerate().filter(|(i, _)| *i != at + 3).map(|(_, l)| format!("{l}\n")).collect();
+        let second = format!("{card}*SHELL SECTION, COMPOSITE, ELSET=OTHER\n");
+        let cases = [
+            (without_the_last_layer, "coupling"),
+            (card.replace("TYPE=ENGINEERING CONSTANTS", "TYPE=ORTHO"), "TYPE=ORTHO"),
+            (card.replacen("COMPOSITE,", "COMPOSITE, OFFSET=0.5,", 1), "OFFSET=0.5"),
+            (second, "a second shell section"),
+        ];
+        for (text, said) in cases {
+            assert_ne!(text, card, "{said}");
+            let error = calculix(&text).unwrap_err().to_string();
+            assert!(error.starts_with("O045") && error.contains(said), "{said}: {error}");
+        }
+        assert!(calculix(&card.replacen("COMPOSITE,", "COMPOSITE, OFFSET=0.,", 1)).is_ok());
+
+        // A section that no card could hold, of fields that are numbers.
+        let abaqus = written("abaqus", section()).unwrap();
+        let first = super::super::text::number(section().d_m[(0, 0)]);
+        let error = section_in(&abaqus.replacen(&first, "1e49", 1), 4e-4).unwrap().unwrap_err().to_string();
+        assert!(error.starts_with("O045") && error.contains("1e49"), "{error}");
     }
 
     #[test]

@@ -200,17 +200,7 @@ fn abaqus_fabric_has_measured_curves_as_stress_over_strain() {
     let specimen = |stiffness: f64| {
         let curve = Curve::from_points((0..=50).map(|i| f64::from(i) * 10.0).map(|f| (f / stiffness, f)));
         SpecimenResult {
-            measurement: Measurement {
-                test: Test::Tensile,
-                sample: None,
-                direction: Some(Direction::Warp),
-                specimen: 1,
-                conditions: Default::default(),
-                curve: curve.clone(),
-                lines: Vec::new(),
-                source: Default::default(),
-                metadata: Default::default(),
-            },
+            measurement: Measurement::of_curve(Test::Tensile, Some(Direction::Warp), 1, curve.clone()),
             branches: vec![Branch { cycle: 0, outgoing: true, curve }],
             correction: [0.0; 2],
             windows: Vec::new(),
@@ -235,7 +225,7 @@ fn abaqus_fabric_has_measured_curves_as_stress_over_strain() {
     let secant = |data: &[f64]| data[data.len() - 2] / data[data.len() - 1] * t;
     assert_relative_eq!(secant(&weft), 4000.0 - 900.0 * 900.0 / 6000.0, max_relative = 1e-8);
     assert_relative_eq!(secant(&shear), 60.0, max_relative = 1e-8);
-    assert!(card.text.contains("n = 2") && card.text.contains("no curve was recorded"));
+    assert!(card.text.contains("n = 2") && card.text.contains("the input has no curve"));
     assert!(card.text.contains(&format!("*DENSITY\n{},", super::text::number(0.118 / t))));
     assert_eq!(card.findings.len(), 4);
 }
@@ -291,9 +281,110 @@ fn a_planted_mistake_is_another_card() {
         for plant in mistakes {
             let mut other = section();
             plant(&mut other);
-            // MuJoCo has no shear stiffness.
-            let told = target.name != "mujoco" || other.d_m[(2, 2)] / other.d_m[(0, 0)] == 0.01;
+            // MuJoCo has no shear stiffness, and Browzwear none whose definition is published.
+            let told = !["mujoco", "browzwear"].contains(&target.name)
+                || other.d_m[(2, 2)] / other.d_m[(0, 0)] == 0.01;
             assert!(!told || written(target.name, other).unwrap() != own, "{}", target.name);
         }
+    }
+}
+
+/// Units of Browzwear's help: dyn cm, N/m, g/m² and mm; length is the warp. Read back it is the strip of the section.
+#[test]
+fn browzwear_has_documented_units() {
+    let card = json("browzwear");
+    assert_eq!((&card["schema"], &card["raw_data"]), (&Value::from("1.1"), &Value::Null));
+    let block = &card["custom"]["browzwear"];
+    let of = |v: &Value| v.as_str().unwrap().parse::<f64>().unwrap();
+    let strip = |d: &Matrix3<f64>, i: usize| d[(i, i)] - d[(0, 1)] * d[(0, 1)] / d[(1 - i, 1 - i)];
+    let s = section();
+    for (i, key) in ["length", "width"].iter().enumerate() {
+        // 1 dyn = 1e-5 N.
+        assert_relative_eq!(of(&block["bend"][key]) * 1e-5 * 1e-2, strip(&s.d_b, i), max_relative = 1e-8);
+        assert_relative_eq!(of(&block["stretch"][key]), strip(&s.d_m, i), max_relative = 1e-8);
+    }
+    assert_relative_eq!(of(&block["mass"]), 118.0, max_relative = 1e-8);
+    assert_relative_eq!(of(&block["thickness"]), 0.4, max_relative = 1e-8);
+    for none in ["shear", "friction", "stretch_linearity"] {
+        assert!(block.get(none).is_none(), "{none}");
+    }
+}
+
+/// `USDImportNode_v2.cpp`: factors 1e-5 to kg·cm²/s², 1e-3 to kg/s², 1e3 to kg/m², 1e-1 to cm; the prims that it looks for.
+#[test]
+fn clo_is_what_unreal_reads() {
+    let text = written("clo", section()).unwrap();
+    let of = |key: &str| -> f64 {
+        let head = format!("float[] primvars:clo:{key} = [");
+        let line = text.lines().find_map(|l| l.trim().strip_prefix(&head)).unwrap();
+        line.trim_end_matches(']').parse().unwrap()
+    };
+    let s = section();
+    let strip = |d: &Matrix3<f64>, i: usize| d[(i, i)] - d[(0, 1)] * d[(0, 1)] / d[(1 - i, 1 - i)];
+    // 1 kg·cm²/s² = 1e-4 N·m.
+    for (key, i) in [("bendingWarp", 0), ("bendingWeft", 1)] {
+        assert_relative_eq!(of(key) * 1e-5 * 1e-4, strip(&s.d_b, i), max_relative = 1e-8);
+    }
+    for (key, i) in [("stretchWarp", 0), ("stretchWeft", 1)] {
+        assert_relative_eq!(of(key) * 1e-3, strip(&s.d_m, i), max_relative = 1e-8);
+    }
+    for side in ["Left", "Right"] {
+        assert_relative_eq!(of(&format!("shear{side}")) * 1e-3, 60.0, max_relative = 1e-8);
+        let bias = 0.25 * (8e-6 + 4e-6 + 2.0 * 5e-7) + 2.5e-6;
+        assert_relative_eq!(of(&format!("bendingBias{side}")) * 1e-9, bias, max_relative = 1e-8);
+    }
+    assert_relative_eq!(of("density") * 1e3, 0.118, max_relative = 1e-8);
+    assert_relative_eq!(of("thickness") * 0.1, 0.04, max_relative = 1e-8);
+    for schema in ["ClothRootAPI", "SimMeshDataAPI", "SimPatternAPI"] {
+        assert!(text.contains(&format!("prepend apiSchemas = [\"{schema}\"]")), "{schema}");
+    }
+    assert!(text.contains("familyName = \"pattern\"") && text.contains("elementType = \"face\""));
+}
+
+/// A factor 2 that is lost or added in the bending of any card that holds bending is another card.
+#[test]
+fn a_lost_factor_in_bending_is_another_card() {
+    let plants: [fn(&mut ShellSection); 2] = [|s| s.d_b *= 2.0, |s| s.d_b[(0, 0)] = 9e-6];
+    for target in EXPORTERS.iter().filter(|t| !["lsdyna", "radioss", "abaqus-fabric"].contains(&t.name)) {
+        let own = written(target.name, section()).unwrap();
+        for plant in plants {
+            let mut other = section();
+            plant(&mut other);
+            assert!(written(target.name, other).unwrap() != own, "{}", target.name);
+        }
+    }
+}
+
+/// What is left out is told with its size.
+#[test]
+fn what_has_no_place_is_told_with_its_size() {
+    let made = Constitutive {
+        section: section(),
+        law: None,
+        used: Vec::new(),
+        inputs: Vec::new(),
+        findings: Vec::new(),
+    };
+    for target in EXPORTERS {
+        let sheet = sheet();
+        let card = card(target, &Material { sheet: &sheet, made: &made, stamp: None }).unwrap();
+        for finding in card.findings.iter().filter(|f| f.code() == "O044") {
+            let told = finding.message();
+            assert!(told.contains('(') && told.contains(char::is_numeric), "{}: {told}", target.name);
+        }
+    }
+}
+
+/// What fields of eight or ten columns cannot hold is refused for all programs alike.
+#[test]
+fn numbers_that_no_cloth_has_are_refused() {
+    let tiny = ShellSection { thickness: 1e-203, ..section() };
+    for target in EXPORTERS {
+        let error = written(target.name, tiny.clone()).unwrap_err().to_string();
+        assert!(
+            error.starts_with("O046 a stiffness, mass or thickness of 1e-203"),
+            "{}: {error}",
+            target.name
+        );
     }
 }

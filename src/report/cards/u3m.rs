@@ -9,7 +9,7 @@ use uuid::Builder;
 
 use super::card::{Card, CardError, Exporter, Material};
 use super::fabric::file_names;
-use crate::report::json::{assumptions, section_document, sheet_document, text};
+use crate::report::json::{section_document, sheet_document, text};
 
 use crate::section::ShellSection;
 
@@ -79,15 +79,14 @@ const NO_DATE: &str = "1970-01-01T00:00:00Z";
 fn document(material: &Material<'_>, _: &ShellSection) -> Result<Card, CardError> {
     let wrong = |e: serde_json::Error| CardError::Json { program: "U3M", reason: e.to_string() };
     let Material { sheet, made, stamp } = *material;
-    let section = section_document([(sheet, &made.section, &made.inputs[..], assumptions(&made.used))]);
+    let section = section_document([(sheet, made)]);
     let parameters = serde_json::to_value(sheet_document([sheet], None)).map_err(wrong)?;
     let mut ours = Map::new();
     ours.insert("sheet".into(), without_loops(parameters));
     ours.insert("section".into(), serde_json::to_value(section).map_err(wrong)?);
     let [kind, construction] = made_as(sheet.info.weave.as_deref().unwrap_or_default());
-    let assumed = |name: &str| made.used.iter().any(|u| u.name == name && u.source.starts_with("assumed"));
     // A stand-in is no property of the material.
-    let known = |name: &str, value: f64| if assumed(name) { Value::Null } else { value.into() };
+    let known = |name: &str, value: f64| if material.is_assumed(name) { Value::Null } else { value.into() };
     let name = if sheet.info.title.is_empty() { &sheet.name } else { &sheet.info.title };
     let date = stamp.unwrap_or(NO_DATE);
     let origin = sheet.info.origin.name();

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::card::{Card, CardError, Exporter, Material};
-use super::constants::{Constants, Yarn, lost, no_place};
+use super::constants::{Constants, Property, Yarn, lost, no_place};
 use super::swatch::{Swatch, swatch};
 use super::text::{label, number, preamble};
 use crate::section::ShellSection;
@@ -52,7 +52,7 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
         of_yarn(&mut text, name, yarn, c.shear, density);
     }
     text.push_str("    }\n}\n");
-    Ok(Card { text, findings: losses(&c) })
+    Ok(Card { text, findings: losses(&c, section) })
 }
 
 fn of_yarn(text: &mut String, name: &str, yarn: Yarn, shear: f64, density: f64) {
@@ -94,7 +94,7 @@ fn mesh(text: &mut String, name: &str, s: &Swatch, thickness: f64) {
 }
 
 /// What the proposal has in the place of what it cannot hold.
-fn losses(c: &Constants) -> Vec<crate::finding::Finding> {
+fn losses(c: &Constants, section: &ShellSection) -> Vec<crate::finding::Finding> {
     let mean = c.mean();
     let mut findings: Vec<_> = [
         ("for a sheet, a bending rigidity along the warp", [mean.bending, c.yarns[0].bending], "N·m"),
@@ -105,7 +105,7 @@ fn losses(c: &Constants) -> Vec<crate::finding::Finding> {
     .into_iter()
     .filter_map(|(what, pair, unit)| lost("USD", what, pair, unit))
     .collect();
-    findings
-        .extend(["torsional rigidity", "Poisson's ratio", "transverse shear"].map(|w| no_place("USD", w)));
+    let none = [Property::Torsion, Property::Poisson, Property::TransverseShear];
+    findings.extend(none.map(|what| no_place("USD", section, what)));
     findings
 }

@@ -1,8 +1,7 @@
 //! Axes: ranges, ticks at round numbers, and the frame that maps data to the page.
 
-use super::canvas::{Canvas, Point, Stroke};
+use super::canvas::{Align, Canvas, Point, Stroke, Type};
 use super::error::ChartError;
-use super::letters::{Align, Type};
 use super::palette::{GREY, GRID, INK};
 use crate::report::number::{fixed, power_of_ten};
 

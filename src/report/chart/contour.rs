@@ -1,14 +1,16 @@
 //! Filled contours and iso-lines of nodal values over quadrilaterals.
 
+use std::sync::Arc;
+
 use plotters::prelude::RGBColor;
 
 use super::axes::{Frame, Range};
-use super::canvas::{Canvas, Point, Stroke};
+use super::canvas::{Align, Canvas, Point, Stroke, Tones, Type};
 use super::error::ChartError;
-use super::letters::{Align, Type};
 use super::palette::{INK, diverging, lighter, sequential};
 
 /// Contour levels at round values, with the colour of each band between them.
+#[derive(Clone)]
 pub(super) struct Levels {
     /// Ascending, one step apart, enclosing every value.
     edges: Vec<f64>,
@@ -78,6 +80,8 @@ pub(super) fn draw(
     levels: &Levels,
 ) -> Result<(), ChartError> {
     let colors: Vec<RGBColor> = (0..levels.bands()).map(|b| levels.band_color(b)).collect();
+    let bands = levels.clone();
+    let tones: Tones = Arc::new(move |v| colors[bands.band(v)]);
     let pieces = || {
         quads.iter().flat_map(|quad| {
             let corners = quad.map(|n| n as usize);
@@ -85,7 +89,7 @@ pub(super) fn draw(
         })
     };
     for (corners, values) in pieces().filter(|p| p.1.iter().all(|v| v.is_finite())) {
-        canvas.shade(corners, values, |v| colors[levels.band(v)])?;
+        canvas.shade(corners, values, &tones)?;
     }
     let line = Stroke::solid(lighter(INK, 0.25), 1.3);
     for (corners, values) in pieces().filter(|p| p.1.iter().all(|v| v.is_finite())) {

@@ -1,13 +1,15 @@
 //! A draped sheet: its shadow from above, and a picture of it.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use nalgebra::Vector3;
 use plotters::prelude::RGBColor;
 
-use super::canvas::{Canvas, HEIGHT, Point, Stroke, WIDTH};
+use super::canvas::{Canvas, HEIGHT, Point, Stroke, Tones, WIDTH};
 use super::error::ChartError;
 use super::head::Head;
+use super::output::Chart;
 use super::palette::{BLUE, GREY, INK, WARNING, darker, lighter};
 use super::panel::{self, Row};
 
@@ -48,17 +50,18 @@ const ROUND: usize = 180;
 /// # Errors
 /// [`ChartError::NothingToDraw`] without quads, [`ChartError::Inconsistent`] if a quad names a node
 /// that is not there.
-pub fn drape_shadow(plot: &DrapePlot) -> Result<Vec<u8>, ChartError> {
+pub fn drape_shadow(plot: &DrapePlot) -> Result<Chart, ChartError> {
     let mut canvas = page(plot)?;
     let (centre, scale) = ((0.5 * SPLIT, 0.5 * (TOP + HEIGHT as f64)), 0.44 * (HEIGHT as f64 - TOP));
     let at = |x: f64, y: f64| -> Point {
         (centre.0 + x / plot.sheet_radius * scale, centre.1 - y / plot.sheet_radius * scale)
     };
     canvas.polygon(&circle(plot.sheet_radius, at), RGBColor(0xf4, 0xf4, 0xf4))?;
+    let pale: Tones = Arc::new(|_| lighter(BLUE, 0.55));
     for quad in plot.quads {
         let corners = quad.map(|n| plot.nodes[n as usize]).map(|p| at(p[0], p[1]));
         for triangle in [[0, 1, 2], [0, 2, 3]] {
-            canvas.shade(triangle.map(|i| corners[i]), [0.0; 3], |_| lighter(BLUE, 0.55))?;
+            canvas.shade(triangle.map(|i| corners[i]), [0.0; 3], &pale)?;
         }
     }
     canvas.polygon(&circle(plot.disc_radius, at), lighter(GREY, 0.55))?;
@@ -83,40 +86,42 @@ pub fn drape_shadow(plot: &DrapePlot) -> Result<Vec<u8>, ChartError> {
         Row::Gap,
     ];
     column(&mut canvas, plot, &key)?;
-    canvas.png(&plot.title)
+    Ok(canvas.chart())
 }
 
 /// The sheet on its disc, seen from above and aside, with its shadow on the ground.
 ///
 /// # Errors
 /// See [`drape_shadow`].
-pub fn drape_view(plot: &DrapePlot) -> Result<Vec<u8>, ChartError> {
+pub fn drape_view(plot: &DrapePlot) -> Result<Chart, ChartError> {
     let mut canvas = page(plot)?;
     let low = plot.nodes.iter().map(|p| p[2]).fold(0.0, f64::min) - 0.1 * plot.sheet_radius;
     let camera = Camera::over(plot, low);
+    let dark: Tones = Arc::new(|_| RGBColor(0xdd, 0xdd, 0xdd));
     for quad in plot.quads {
         let corners = quad.map(|n| plot.nodes[n as usize]).map(|p| camera.at(&[p[0], p[1], low]));
         for triangle in [[0, 1, 2], [0, 2, 3]] {
-            canvas.shade(triangle.map(|i| corners[i]), [0.0; 3], |_| RGBColor(0xdd, 0xdd, 0xdd))?;
+            canvas.shade(triangle.map(|i| corners[i]), [0.0; 3], &dark)?;
         }
     }
     let ground = |x: f64, y: f64| camera.at(&[x, y, low]);
     canvas.polygon(&circle(plot.disc_radius, ground), RGBColor(0xdd, 0xdd, 0xdd))?;
     canvas.polygon(&stand(plot, &camera, low), lighter(GREY, 0.25))?;
+    let lit: Tones = Arc::new(toned);
     let mut faces = sheet(plot);
     faces.sort_by(|a, b| camera.depth(a).total_cmp(&camera.depth(b)));
     for face in &faces {
         let corners = face.corners.map(|p| camera.at(&p));
         for [a, b, c] in [[0, 1, 2], [0, 2, 3]] {
             let light = [face.light[a], face.light[b], face.light[c]];
-            canvas.shade([corners[a], corners[b], corners[c]], light, toned)?;
+            canvas.shade([corners[a], corners[b], corners[c]], light, &lit)?;
         }
     }
     // Nothing is above the part on the disc.
     let top = circle(plot.disc_radius, |x, y| camera.at(&[x, y, 0.0]));
     canvas.polygon(&top, toned(brightness(&Vector3::z())))?;
     column(&mut canvas, plot, &[])?;
-    canvas.png(&plot.title)
+    Ok(canvas.chart())
 }
 
 /// The page with its head, once the lists are known to fit.
@@ -130,7 +135,7 @@ fn page(plot: &DrapePlot) -> Result<Canvas, ChartError> {
         let problem = format!("a quad names node {node} of {nodes}");
         return Err(ChartError::Inconsistent { name: plot.title.clone(), problem });
     }
-    let mut canvas = Canvas::new()?;
+    let mut canvas = Canvas::new();
     Head { title: &plot.title, kind: "", subtitle: &plot.subtitle, origin: &plot.origin }
         .draw(&mut canvas)?;
     Ok(canvas)

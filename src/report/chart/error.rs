@@ -29,3 +29,10 @@ errors! {
         } = "drawing failed: {problem}";
     }
 }
+
+impl ChartError {
+    /// What a library that draws or encodes says.
+    pub(super) fn drawing(error: impl std::fmt::Display) -> Self {
+        Self::Drawing { problem: error.to_string() }
+    }
+}

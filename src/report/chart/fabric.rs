@@ -2,7 +2,7 @@
 
 use crate::characterise::{FabricSheet, mean_branches};
 use crate::instrument::{Direction, Origin, Parameter, Shape, Test};
-use crate::quantity::{Curve, Estimate};
+use crate::quantity::{Curve, Estimate, stated_repeats};
 use crate::report::number::{fixed, plain_exponent, power_of_ten, significant, unit_text, with_spread};
 use crate::study::Comparison;
 
@@ -12,6 +12,7 @@ use super::error::ChartError;
 use super::head::Head;
 use super::loops::{self, TestAxes, Trace};
 use super::marks::{Marks, has_readings, reading_stroke};
+use super::output::Chart;
 use super::palette::{self, GREY, darker, lighter};
 use super::panel::{self, Row};
 use super::schematic;
@@ -66,7 +67,7 @@ impl From<&Comparison> for SimulatedCurve {
 ///
 /// # Errors
 /// [`ChartError::NothingToDraw`] if the sheet has neither curves nor LT, WT and EMT.
-pub fn tensile(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<Vec<u8>, ChartError> {
+pub fn tensile(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<Chart, ChartError> {
     of_test(sheet, Test::Tensile, simulated)
 }
 
@@ -74,7 +75,7 @@ pub fn tensile(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<Vec<
 ///
 /// # Errors
 /// [`ChartError::NothingToDraw`] if the sheet has neither curves nor G and 2HG.
-pub fn shear(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<Vec<u8>, ChartError> {
+pub fn shear(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<Chart, ChartError> {
     of_test(sheet, Test::Shear, simulated)
 }
 
@@ -82,7 +83,7 @@ pub fn shear(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<Vec<u8
 ///
 /// # Errors
 /// [`ChartError::NothingToDraw`] if the sheet has neither curves nor B and 2HB.
-pub fn bending(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<Vec<u8>, ChartError> {
+pub fn bending(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<Chart, ChartError> {
     of_test(sheet, Test::Bending, simulated)
 }
 
@@ -90,7 +91,7 @@ pub fn bending(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<Vec<
 ///
 /// # Errors
 /// [`ChartError::NothingToDraw`] if the sheet has neither curves nor LC, WC, T0 and Tm.
-pub fn compression(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<Vec<u8>, ChartError> {
+pub fn compression(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<Chart, ChartError> {
     of_test(sheet, Test::Compression, simulated)
 }
 
@@ -99,7 +100,7 @@ pub fn compression(sheet: &FabricSheet, simulated: &[SimulatedCurve]) -> Result<
 ///
 /// # Errors
 /// [`ChartError::NothingToDraw`] if the sheet has neither curves nor the values that a curve can be drawn from.
-pub fn of_test(sheet: &FabricSheet, test: Test, simulated: &[SimulatedCurve]) -> Result<Vec<u8>, ChartError> {
+pub fn of_test(sheet: &FabricSheet, test: Test, simulated: &[SimulatedCurve]) -> Result<Chart, ChartError> {
     let axes = TestAxes::of(test);
     let mut traces = loops::traces(sheet, test, &axes);
     let recorded = !traces.is_empty();
@@ -117,7 +118,7 @@ pub fn of_test(sheet: &FabricSheet, test: Test, simulated: &[SimulatedCurve]) ->
     let spread = Spread::of(mean_branches(sheet, test), simulated, &axes);
     let frame = frame(test, &traces, &overlay, &spread);
 
-    let mut canvas = Canvas::new()?;
+    let mut canvas = Canvas::new();
     let name = if sheet.info.title.is_empty() { &sheet.name } else { &sheet.info.title };
     let kind = format!(", {}", test.name());
     Head {
@@ -143,7 +144,7 @@ pub fn of_test(sheet: &FabricSheet, test: Test, simulated: &[SimulatedCurve]) ->
     rows.extend(value_rows(sheet, test));
     rows.extend(distance_rows(&axes, simulated));
     panel::draw(&mut canvas, &rows, [1405.0, WIDTH as f64 - 40.0], [frame.top - 20.0, HEIGHT as f64 - 40.0])?;
-    canvas.png(&format!("{name}{kind}"))
+    Ok(canvas.chart())
 }
 
 fn frame(test: Test, traces: &[Trace], overlay: &[Vec<Point>], spread: &Spread) -> Frame {
@@ -286,11 +287,12 @@ fn value_rows(sheet: &FabricSheet, test: Test) -> Vec<Row> {
             .into_iter()
             .filter_map(move |d| sheet.get(p, d).map(|e| (d, e)))
     };
-    let counts: Vec<usize> = parameters.iter().flat_map(|&p| estimates(p)).map(|(_, e)| e.n).collect();
-    let Some((&fewest, &most)) = counts.iter().min().zip(counts.iter().max()) else { return Vec::new() };
-    let n = if fewest == most { format!("n = {most}") } else { format!("n = {fewest} to {most}") };
-    let heading =
-        if counts.iter().all(|&n| n == 1) { format!("Value ({n})") } else { format!("Mean ± SD ({n})") };
+    let counts: Vec<Option<u64>> = parameters
+        .iter()
+        .flat_map(|&p| estimates(p))
+        .map(|(_, e)| stated_repeats(e.n as u64, e.sd))
+        .collect();
+    let Some(heading) = heading_of(&counts) else { return Vec::new() };
     let mut rows = vec![Row::Heading(heading)];
     for p in parameters {
         let found: Vec<(Option<Direction>, &Estimate)> = estimates(p).collect();
@@ -317,6 +319,17 @@ fn value_rows(sheet: &FabricSheet, test: Test) -> Vec<Row> {
         }
     }
     rows
+}
+
+/// What stands over values with so many repeats each; `None` where nobody stated how many.
+fn heading_of(counts: &[Option<u64>]) -> Option<String> {
+    let (fewest, most) = (counts.iter().min()?, counts.iter().max()?);
+    Some(match (fewest, most) {
+        (Some(1), Some(1)) => "Value (n = 1)".into(),
+        (Some(fewest), Some(most)) if fewest == most => format!("Mean ± SD (n = {most})"),
+        (Some(fewest), Some(most)) => format!("Mean ± SD (n = {fewest} to {most})"),
+        _ => "Mean ± SD (n not stated)".into(),
+    })
 }
 
 /// The symbol as printed.

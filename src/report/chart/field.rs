@@ -4,11 +4,11 @@ use crate::quantity::Curve;
 use crate::report::number::{prefixed, significant};
 
 use super::axes::{Frame, Label, Range};
-use super::canvas::{Canvas, HEIGHT, Point, Stroke, WIDTH};
+use super::canvas::{Canvas, HEIGHT, Point, Stroke, Type, WIDTH};
 use super::contour::{self, Levels};
 use super::error::ChartError;
 use super::head::Head;
-use super::letters::Type;
+use super::output::Chart;
 use super::palette::{BLUE, INK, VERMILLION, WARNING};
 use super::panel;
 
@@ -47,9 +47,9 @@ pub struct FieldPlot<'a> {
 ///
 /// # Errors
 /// [`ChartError::Inconsistent`] if lists do not fit together, [`ChartError::NothingToDraw`] without quads.
-pub fn field(plot: &FieldPlot) -> Result<Vec<u8>, ChartError> {
+pub fn field(plot: &FieldPlot) -> Result<Chart, ChartError> {
     check(plot)?;
-    let mut canvas = Canvas::new()?;
+    let mut canvas = Canvas::new();
     Head { title: &plot.title, kind: "", subtitle: &plot.subtitle, origin: &plot.origin }
         .draw(&mut canvas)?;
     let bottom = notes(&mut canvas, &plot.notes)?;
@@ -73,7 +73,7 @@ pub fn field(plot: &FieldPlot) -> Result<Vec<u8>, ChartError> {
     if let Some(frame) = &mut profile {
         draw_profile(&mut canvas, plot, frame, (factor, &unit))?;
     }
-    canvas.png(&plot.title)
+    Ok(canvas.chart())
 }
 
 fn check(plot: &FieldPlot) -> Result<(), ChartError> {

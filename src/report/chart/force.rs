@@ -8,10 +8,10 @@ use crate::report::number::{fixed, significant};
 use crate::study::bending::{Agreement, BendLoop, BendLoops, Simulated};
 
 use super::axes::{Frame, Label, Range};
-use super::canvas::{Canvas, Point, Stroke, WIDTH};
+use super::canvas::{Canvas, Point, Stroke, Type, WIDTH};
 use super::error::ChartError;
 use super::head::Head;
-use super::letters::Type;
+use super::output::Chart;
 use super::palette::{BLUE, GREY, INK, VERMILLION, lighter};
 use super::panel::{self, Row};
 
@@ -35,7 +35,7 @@ const GF: f64 = 9.80665e-3;
 ///
 /// # Errors
 /// [`ChartError::NothingToDraw`] without a test.
-pub fn bend_loops(plot: &ForcePlot) -> Result<Vec<u8>, ChartError> {
+pub fn bend_loops(plot: &ForcePlot) -> Result<Chart, ChartError> {
     let tests = &plot.loops.loops;
     if tests.is_empty() {
         return Err(ChartError::NothingToDraw {
@@ -44,7 +44,7 @@ pub fn bend_loops(plot: &ForcePlot) -> Result<Vec<u8>, ChartError> {
             missing: "there is no FAB bend test".into(),
         });
     }
-    let mut canvas = Canvas::new()?;
+    let mut canvas = Canvas::new();
     let kind = format!(", FAB bend loop, {}", plot.loops.direction);
     let subtitle =
         "force against clamp distance; pull is positive; the zero of the load is fitted in every test";
@@ -53,7 +53,7 @@ pub fn bend_loops(plot: &ForcePlot) -> Result<Vec<u8>, ChartError> {
         draw_test(&mut canvas, cell, test)?;
     }
     panel::draw(&mut canvas, &rows(plot.loops), [1400.0, WIDTH as f64 - 40.0], [150.0, 1310.0])?;
-    canvas.png(&format!("{}{kind}", plot.title))
+    Ok(canvas.chart())
 }
 
 /// `[left, top, right, bottom]` of each frame: two above, the others below at full width.

@@ -5,12 +5,12 @@ use crate::instrument::{Direction, Parameter, Test};
 use crate::report::number::{plain_exponent, power_of_ten, significant, unit_text};
 
 use super::axes::{Frame, Label, Range};
-use super::canvas::{Canvas, HEIGHT, Point, Stroke, WIDTH};
+use super::canvas::{Align, Canvas, HEIGHT, Point, Stroke, Type, WIDTH};
 use super::error::ChartError;
 use super::fabric::symbol;
 use super::head::Head;
-use super::letters::{Align, Type};
 use super::loops::TestAxes;
+use super::output::Chart;
 use super::palette::{self, GREY, INK, darker, lighter};
 use super::panel::{self, Row};
 
@@ -34,7 +34,7 @@ struct Loop<'a> {
 ///
 /// # Errors
 /// [`ChartError::NothingToDraw`] if no loop was recorded, or none has a law.
-pub fn friction(sheet: &FabricSheet, test: Option<Test>) -> Result<Vec<u8>, ChartError> {
+pub fn friction(sheet: &FabricSheet, test: Option<Test>) -> Result<Chart, ChartError> {
     let loops = loops(sheet, test);
     let what = match test {
         Some(Test::Tensile) => "tension",
@@ -49,7 +49,7 @@ pub fn friction(sheet: &FabricSheet, test: Option<Test>) -> Result<Vec<u8>, Char
         });
     }
     let axes = TestAxes::of(test.unwrap_or(Test::Tensile));
-    let mut canvas = Canvas::new()?;
+    let mut canvas = Canvas::new();
     let name = if sheet.info.title.is_empty() { &sheet.name } else { &sheet.info.title };
     let kind = format!(", friction in {what}");
     let subtitle = "The law is fitted to one cycle; other cycles are predicted. Residual: measured less law, of the fitted span";
@@ -65,7 +65,7 @@ pub fn friction(sheet: &FabricSheet, test: Option<Test>) -> Result<Vec<u8>, Char
     }
     let across = [1420.0, WIDTH as f64 - 40.0];
     panel::draw(&mut canvas, &rows, across, [HEIGHTS[0] - 25.0, HEIGHT as f64 - 40.0])?;
-    canvas.png(&format!("{name}{kind}"))
+    Ok(canvas.chart())
 }
 
 fn loops(sheet: &FabricSheet, test: Option<Test>) -> Vec<Loop<'_>> {
@@ -289,9 +289,10 @@ mod tests {
         let batch = crate::instrument::read_fabrics(&[folder], &Default::default(), &|_| ());
         let sheet = characterise(&batch.fabrics[0], &Default::default());
         for test in Test::ALL.into_iter().filter(|t| t.shape() != Shape::Sweep) {
-            let bytes = friction(&sheet, Some(test)).unwrap();
+            let bytes = friction(&sheet, Some(test)).unwrap().png().unwrap();
             if test == Test::Bending {
-                assert_eq!(bytes, friction(&sheet, Some(test)).unwrap(), "same data, same bytes");
+                let again = friction(&sheet, Some(test)).unwrap().png().unwrap();
+                assert_eq!(bytes, again, "same data, same bytes");
             }
             if let Some(folder) = std::env::var_os("KESF_GALLERY") {
                 let name = format!("friction_{}.png", test.name());

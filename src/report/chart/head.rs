@@ -1,8 +1,7 @@
 //! What every chart carries above its plot.
 
-use super::canvas::{Canvas, WIDTH};
+use super::canvas::{Align, Canvas, Type, WIDTH};
 use super::error::ChartError;
-use super::letters::{Align, Type};
 use super::palette;
 use super::panel::fitted;
 
@@ -17,8 +16,11 @@ pub(super) struct Head<'a> {
 }
 
 impl Head<'_> {
-    /// Draws it at the top of the canvas.
+    /// Draws it at the top of the canvas, and says it to those who do not see the chart.
     pub fn draw(&self, canvas: &mut Canvas) -> Result<(), ChartError> {
+        canvas.title = format!("{}{}", self.title, self.kind);
+        let said = [self.subtitle, self.origin].into_iter().filter(|text| !text.is_empty());
+        canvas.description = said.collect::<Vec<_>>().join("; ");
         let right = WIDTH as f64 - 40.0;
         let mark = Type::new(26.0, palette::INK).bold().align(Align::Right);
         let mut room = right - 40.0;

@@ -4,10 +4,9 @@ use crate::characterise::{FabricSheet, Window};
 use crate::instrument::{Parameter, Shape, Test};
 
 use super::axes::Frame;
-use super::canvas::{Canvas, Point, Stroke};
+use super::canvas::{Align, Canvas, Point, Stroke, Type};
 use super::error::ChartError;
 use super::fabric::symbol;
-use super::letters::{Align, Type};
 use super::loops::{TestAxes, Trace};
 use super::palette::{self, GREY, INK, darker, lighter};
 

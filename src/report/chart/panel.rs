@@ -2,9 +2,8 @@
 
 use plotters::prelude::RGBColor;
 
-use super::canvas::{Canvas, Point, Stroke};
+use super::canvas::{Align, Canvas, Point, Stroke, Type};
 use super::error::ChartError;
-use super::letters::{Align, Type};
 use super::palette::{GREY, GROUPS, INK};
 
 /// One line of the column.

@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 use crate::report::number::{fixed, prefixed, significant};
 
 use super::axes::{Frame, Label, Range};
-use super::canvas::{Canvas, Point, Stroke, WIDTH};
+use super::canvas::{Canvas, Point, Stroke, Type, WIDTH};
 use super::error::ChartError;
 use super::head::Head;
-use super::letters::Type;
+use super::output::Chart;
 use super::palette::{GREY, INK, lighter};
 use super::panel::{self, Row, marker};
 
@@ -33,6 +33,9 @@ pub struct ParityPoint {
     pub simulated_half_width: Option<f64>,
     /// Lowest and highest simulated value, for a bar.
     pub simulated_band: Option<[f64; 2]>,
+    /// Whether the model was made of the measured value itself: agreement then validates nothing, and has no statistics.
+    #[serde(default)]
+    pub is_closed_loop: bool,
 }
 
 /// How far simulated values are from measured ones.
@@ -64,13 +67,13 @@ fn agreement(points: &[&ParityPoint]) -> Agreement {
     }
 }
 
-/// The 1:1 line with bands of 10 and 20 %, error bars, and R², RMSE, MAPE and n of each quantity.
+/// The 1:1 line with bands of 10 and 20 %, error bars, and R², RMSE, MAPE and n of each quantity that is no closed loop.
 ///
 /// Axes are logarithmic where positive values span more than a factor of 30.
 ///
 /// # Errors
 /// [`ChartError::NothingToDraw`] without a point of two finite numbers.
-pub fn parity(points: &[ParityPoint], title: &str, subtitle: &str) -> Result<Vec<u8>, ChartError> {
+pub fn parity(points: &[ParityPoint], title: &str, subtitle: &str) -> Result<Chart, ChartError> {
     let usable: Vec<&ParityPoint> =
         points.iter().filter(|p| p.measured.is_finite() && p.simulated.is_finite()).collect();
     if usable.is_empty() {
@@ -82,7 +85,7 @@ pub fn parity(points: &[ParityPoint], title: &str, subtitle: &str) -> Result<Vec
     }
     let quantities = in_order(usable.iter().map(|p| p.quantity.as_str()));
     let groups = in_order(usable.iter().map(|p| p.group.as_str()));
-    let mut canvas = Canvas::new()?;
+    let mut canvas = Canvas::new();
     Head { title, kind: "", subtitle, origin: "" }.draw(&mut canvas)?;
     for (cell, quantity) in cells(quantities.len()).into_iter().zip(&quantities) {
         let mine: Vec<&ParityPoint> = usable.iter().copied().filter(|p| p.quantity == *quantity).collect();
@@ -108,7 +111,7 @@ pub fn parity(points: &[ParityPoint], title: &str, subtitle: &str) -> Result<Vec
         rows.push(Row::Remark("Upright bars: lowest to highest simulated value.".into(), GREY));
     }
     panel::draw(&mut canvas, &rows, [1420.0, WIDTH as f64 - 40.0], [200.0, 1300.0])?;
-    canvas.png(title)
+    Ok(canvas.chart())
 }
 
 fn inner() -> plotters::prelude::RGBColor {
@@ -167,7 +170,7 @@ fn draw_panel(
     let heading = Type::new(30.0, INK).bold();
     let quantity = panel::fitted(canvas, quantity, heading, side + 30.0)?;
     canvas.text((left, top - 84.0), &quantity, heading)?;
-    for (line, baseline) in summary(agreement(points), factor, &unit).iter().zip([-49.0, -17.0]) {
+    for (line, baseline) in summary(points, factor, &unit).iter().zip([-49.0, -17.0]) {
         canvas.text((left, top + baseline), line, Type::new(24.0, INK))?;
     }
     let places: Vec<Point> =
@@ -196,9 +199,17 @@ fn draw_panel(
     labels(canvas, points, &places, &frame)
 }
 
-fn summary(a: Agreement, factor: f64, unit: &str) -> [String; 2] {
+/// What stands above a panel: how well its points agree, or that this is no validation.
+fn summary(points: &[&ParityPoint], factor: f64, unit: &str) -> [String; 2] {
+    if points.iter().any(|p| p.is_closed_loop) {
+        let made_of = format!("of the measured value; n = {}", points.len());
+        return ["closed loop: the section is made".into(), made_of];
+    }
+    let a = agreement(points);
     let r2 = a.r2.map_or("–".into(), |v| fixed(v, 3));
     let mape = a.mape.map_or("–".into(), |v| format!("{} %", significant(100.0 * v, 3)));
+    // A difference of two percentages is no part of either.
+    let unit = if unit == "%" { "percentage points" } else { unit };
     let rmse = format!("{} {unit}", significant(a.rmse / factor, 3));
     [format!("n = {}    MAPE {mape}", a.n), format!("R² {r2}    RMSE {}", rmse.trim_end())]
 }
@@ -312,6 +323,19 @@ mod tests {
         let one = point(0.0, 1.0);
         let a = agreement(&[&one]);
         assert_eq!((a.r2, a.mape), (None, None));
+    }
+
+    /// The section is made of the measured stiffness: that the simulated test gives it back is no validation.
+    #[test]
+    fn a_closed_loop_has_no_statistics() {
+        let open = point(50.0, 55.0);
+        assert_eq!(
+            summary(&[&open], 1.0, "%"),
+            ["n = 1    MAPE 10.0 %", "R² –    RMSE 5.00 percentage points"]
+        );
+        let closed = ParityPoint { is_closed_loop: true, ..point(1.0, 1.0) };
+        let told = summary(&[&closed, &closed], 1.0, "N·m");
+        assert_eq!(told, ["closed loop: the section is made", "of the measured value; n = 2"]);
     }
 
     #[test]

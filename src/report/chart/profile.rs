@@ -7,6 +7,7 @@ use super::axes::{Frame, Label, Range};
 use super::canvas::{Canvas, Point, Stroke, WIDTH};
 use super::error::ChartError;
 use super::head::Head;
+use super::output::Chart;
 use super::palette::{self, GREY, INK};
 use super::panel::{self, Row};
 
@@ -50,7 +51,7 @@ pub struct ProfilePlot {
 ///
 /// # Errors
 /// [`ChartError::NothingToDraw`] without a strip of two points.
-pub fn profile(plot: &ProfilePlot) -> Result<Vec<u8>, ChartError> {
+pub fn profile(plot: &ProfilePlot) -> Result<Chart, ChartError> {
     const MM: f64 = 1e-3;
     let shapes: Vec<Vec<Point>> = plot.lines.iter().map(|line| points(line, plot.mirrored, MM)).collect();
     if shapes.iter().all(|s| s.len() < 2) {
@@ -60,7 +61,7 @@ pub fn profile(plot: &ProfilePlot) -> Result<Vec<u8>, ChartError> {
             missing: "there is no bent strip".into(),
         });
     }
-    let mut canvas = Canvas::new()?;
+    let mut canvas = Canvas::new();
     Head { title: &plot.title, kind: &plot.kind, subtitle: &plot.subtitle, origin: &plot.origin }
         .draw(&mut canvas)?;
     let frame = equal_scales(&shapes);
@@ -95,7 +96,7 @@ pub fn profile(plot: &ProfilePlot) -> Result<Vec<u8>, ChartError> {
         rows.extend([Row::Remark(remark.clone(), INK), Row::Gap]);
     }
     panel::draw(&mut canvas, &rows, [1390.0, WIDTH as f64 - 40.0], [200.0, 1300.0])?;
-    canvas.png(&format!("{}{}", plot.title, plot.kind))
+    Ok(canvas.chart())
 }
 
 fn stroke(line: &ProfileLine) -> Stroke {

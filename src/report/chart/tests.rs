@@ -10,9 +10,7 @@ use rand_pcg::Pcg64;
 
 use super::*;
 use crate::characterise::{self, Branch, FabricSheet, Key, SpecimenResult, Window};
-use crate::instrument::{
-    self, Conditions, Direction, FabricInfo, Measurement, Origin, Parameter, Source, Test,
-};
+use crate::instrument::{self, Direction, FabricInfo, Measurement, Origin, Parameter, Test};
 use crate::quantity::{Curve, Estimate};
 use crate::study;
 
@@ -26,12 +24,73 @@ fn keep(name: &str, bytes: &[u8]) {
 }
 
 /// The file, drawn twice to see that the bytes are the same, and its size on the page.
-fn drawn(name: &str, draw: impl Fn() -> Result<Vec<u8>, ChartError>) {
-    let bytes = draw().unwrap();
-    assert_eq!(bytes, draw().unwrap(), "{name}: same data, same bytes");
+fn drawn(name: &str, draw: impl Fn() -> Result<Chart, ChartError>) {
+    let (chart, again) = (draw().unwrap(), draw().unwrap());
+    let bytes = chart.png().unwrap();
+    assert_eq!(bytes, again.png().unwrap(), "{name}: same data, same bytes");
     let reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
     assert_eq!((reader.info().width, reader.info().height), (1800, 1350));
     keep(name, &bytes);
+    for &format in Format::ALL.iter().filter(|format| **format != Format::Png) {
+        let bytes = chart.file(format).unwrap();
+        assert_eq!(bytes, again.file(format).unwrap(), "{name}, {format:?}: same data, same bytes");
+        keep(&name.replace(".png", &format!(".{}", format.ending())), &bytes);
+        let texts = match format {
+            Format::Svg => svg_texts(&bytes),
+            _ => pdf_texts(&bytes),
+        };
+        // Every word that is drawn in a font that the file can name is there to be found.
+        for mark in &chart.0.marks {
+            let canvas::Mark::Text { text, .. } = mark else { continue };
+            let is_found = |word: &str| word.chars().any(|c| c > '\u{2fff}') || texts.contains(word);
+            let missing = text.split_whitespace().find(|word| !is_found(word));
+            assert_eq!(missing, None, "{name}, {format:?}: not in {texts}");
+        }
+        assert!(texts.contains(chart.title()), "{name}, {format:?}: {}", chart.title());
+    }
+}
+
+/// What stands in the elements of an SVG file, which is read as XML.
+fn svg_texts(bytes: &[u8]) -> String {
+    use quick_xml::events::Event;
+    let mut reader = quick_xml::Reader::from_str(std::str::from_utf8(bytes).unwrap());
+    let mut texts = String::new();
+    loop {
+        match reader.read_event().unwrap() {
+            Event::Eof => return texts,
+            Event::Text(text) => texts.push_str(&text),
+            Event::GeneralRef(name) if name.is_char_ref() => {
+                texts.extend(name.resolve_char_ref().unwrap());
+            }
+            Event::GeneralRef(name) => texts.push_str(match &*name.xml10_content() {
+                "lt" => "<",
+                "gt" => ">",
+                "amp" => "&",
+                "quot" => "\"",
+                "apos" => "'",
+                other => panic!("&{other};"),
+            }),
+            Event::End(_) => texts.push('\n'),
+            _ => {}
+        }
+    }
+}
+
+/// What stands on the page of a PDF file, and its title; no date is in the file.
+#[cfg(feature = "pdf")]
+fn pdf_texts(bytes: &[u8]) -> String {
+    let file = lopdf::Document::load_mem(bytes).unwrap();
+    assert_eq!(file.get_pages().len(), 1);
+    let about = file.trailer.get(b"Info").and_then(|info| info.as_reference()).unwrap();
+    let about = file.get_dictionary(about).unwrap();
+    assert!(about.iter().all(|(key, _)| !key.ends_with(b"Date")), "{about:?}");
+    let title = lopdf::decode_text_string(about.get(b"Title").unwrap()).unwrap();
+    format!("{title}\n{}", file.extract_text(&[1]).unwrap())
+}
+
+#[cfg(not(feature = "pdf"))]
+fn pdf_texts(_: &[u8]) -> String {
+    unreachable!("there are no PDF files")
 }
 
 struct Mock {
@@ -76,17 +135,7 @@ impl Mock {
             branches.push(Branch { cycle: 0, outgoing, curve: Curve::from_points(noisy) });
         }
         self.sheet.specimens.push(SpecimenResult {
-            measurement: Measurement {
-                test,
-                sample: None,
-                direction,
-                specimen,
-                conditions: Conditions::default(),
-                curve: Curve::default(),
-                lines: vec![],
-                source: Source::default(),
-                metadata: BTreeMap::new(),
-            },
+            measurement: Measurement::of_curve(test, direction, specimen, Curve::default()),
             branches,
             correction: [0.0; 2],
             windows,
@@ -276,7 +325,7 @@ fn every_shipped_fabric_has_the_charts_that_its_data_allow() {
             let chart = of_test(&sheet, test, &[]);
             let curves = sheet.specimens.iter().any(|s| s.measurement.test == test);
             match chart {
-                Ok(bytes) => keep(&format!("{}-{}.png", sheet.name, test.name()), &bytes),
+                Ok(chart) => keep(&format!("{}-{}.png", sheet.name, test.name()), &chart.png().unwrap()),
                 Err(ChartError::NothingToDraw { .. }) if !curves => {}
                 Err(e) => panic!("{e}"),
             }
@@ -416,6 +465,7 @@ fn parity_of_one_and_of_four_quantities() {
         simulated: scale * (1.0 + 0.9 * i as f64) * (1.0 + 0.17 * (i as f64 * 2.1).sin()),
         simulated_half_width: Some(0.05 * scale * (1.0 + 0.9 * i as f64)),
         simulated_band: i.is_multiple_of(3).then_some([0.9 * scale, 1.2 * scale * (1.0 + i as f64)]),
+        is_closed_loop: false,
     };
     let one: Vec<ParityPoint> = (0..10).map(|i| point(i, "Bending rigidity B", "N·m", 1.1e-6)).collect();
     drawn("parity-one.png", || parity(&one, "Simulated against measured", "ten fabrics"));

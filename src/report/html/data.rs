@@ -5,14 +5,21 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use super::shapes::Shapes;
 use crate::instrument::{Direction, Parameter, Test};
 use crate::quantity::Curve;
 use crate::report::axes::axes;
 use crate::report::number::unit_text;
+use crate::report::population::Population;
 use crate::report::table::{FabricRow, UnitSystem};
 
 /// Most points of a branch on the page.
 pub const POINTS: usize = 120;
+
+/// The parameters that nearly every laboratory has: they come first, so that a table of fabrics from many sources does
+/// not begin with columns of nothing.
+const LEADING: [Parameter; 6] =
+    [Parameter::W, Parameter::T0, Parameter::B, Parameter::Hb, Parameter::G, Parameter::Hg];
 
 /// Everything that the script shows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -23,6 +30,15 @@ pub struct PageData {
     pub fabrics: Vec<FabricValues>,
     /// Tests with curves, fabric by fabric.
     pub curves: Vec<TestCurves>,
+    /// Deflected sheets, fabric by fabric.
+    #[serde(skip_serializing_if = "Shapes::is_empty")]
+    pub shapes: Shapes,
+    /// What fabrics are compared with; none for the fabrics of the page themselves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub population: Option<Population>,
+    /// How many fabrics the run has, where this page holds some of them only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fabrics_of_run: Option<usize>,
 }
 
 /// A parameter in a direction.
@@ -32,7 +48,7 @@ pub struct Column {
     pub symbol: String,
     /// `warp`, `weft` or `bias`; `None` for the fabric as a whole.
     pub direction: Option<String>,
-    /// The test it comes from; `other` for the balance and the surface tester.
+    /// The test it comes from; `weight` for the balance.
     pub test: &'static str,
     /// KES unit as printed.
     pub kes: String,
@@ -51,6 +67,11 @@ pub struct FabricValues {
     pub name: String,
     /// For people: title, weave, composition, origin.
     pub about: String,
+    /// `measured`, `published` or `synthetic`; empty of a fabric of which nothing could be read.
+    pub origin: String,
+    /// How many of its inputs could not be read, and how many of its results could not be made.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub failed: usize,
     /// Its values by their column.
     pub values: BTreeMap<usize, Value>,
 }
@@ -156,9 +177,9 @@ impl AxisEntry {
 }
 
 impl PageData {
-    /// The table of `rows` (SI) for the fabrics `(name, about)`; rows without a mean are none of a parameter.
+    /// The table of `rows` (SI) for the fabrics, yet without values; rows without a mean are none of a parameter.
     pub fn of_rows<'a>(
-        fabrics: impl Iterator<Item = (&'a str, String)>,
+        fabrics: impl Iterator<Item = FabricValues>,
         rows: impl Iterator<Item = &'a FabricRow> + Clone,
     ) -> Self {
         let columns = columns(rows.clone());
@@ -175,11 +196,11 @@ impl PageData {
                 values.entry(&row.fabric).or_default().insert(column, value);
             }
         }
-        let fabrics = fabrics.map(|(name, about)| {
-            let values = values.get(name).cloned().unwrap_or_default();
-            FabricValues { name: name.into(), about, values }
+        let fabrics = fabrics.map(|fabric| {
+            let values = values.get(fabric.name.as_str()).cloned().unwrap_or_default();
+            FabricValues { values, ..fabric }
         });
-        Self { fabrics: fabrics.collect(), columns, curves: Vec::new() }
+        Self { fabrics: fabrics.collect(), columns, ..Self::default() }
     }
 
     /// The data as text for a `<script>` element of JSON: no `<` in it ends the element.
@@ -191,12 +212,17 @@ impl PageData {
     }
 }
 
-/// The parameters and directions that occur: parameters in their order, then moduli.
+/// What is not there is not written.
+fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
+/// The parameters and directions that occur: [`LEADING`], the other parameters in their order, then moduli.
 fn columns<'a>(rows: impl Iterator<Item = &'a FabricRow>) -> Vec<Column> {
     let mut seen: Vec<((usize, String), Option<String>)> = rows
         .filter(|row| row.mean.is_some())
         .map(|row| {
-            let order = Parameter::ALL.iter().position(|p| p.symbol() == row.parameter);
+            let order = LEADING.iter().chain(Parameter::ALL).position(|p| p.symbol() == row.parameter);
             ((order.unwrap_or(usize::MAX), row.parameter.clone()), row.direction.clone())
         })
         .collect();
@@ -213,19 +239,7 @@ fn column(symbol: String, direction: Option<String>) -> Column {
     let parameter = Parameter::from_symbol(&symbol);
     let (kes, factor) = parameter.map_or(UnitSystem::Kes.of_modulus(), |p| UnitSystem::Kes.of(p));
     let (si, _) = parameter.map_or(UnitSystem::Si.of_modulus(), |p| UnitSystem::Si.of(p));
-    let test = parameter.map_or(Some(Test::Tensile), Parameter::test).map_or("other", Test::name);
-    let log = parameter.and_then(takes_logarithm);
+    let test = parameter.map_or(Some(Test::Tensile), Parameter::test).map_or("weight", Test::name);
+    let log = parameter.and_then(Parameter::takes_logarithm);
     Column { kes: unit_text(kes), si: unit_text(si), log, symbol, direction, test, factor }
-}
-
-/// Whether the hand equations take the logarithm of a parameter: Kawabata, The Standardization and Analysis of Hand
-/// Evaluation, 2nd ed., Osaka 1980: LT, log WT, RT, log B, log 2HB, log G, log 2HG, log 2HG5, LC, log WC, RC, MIU,
-/// log MMD, log SMD, log T, log W. `None` of the others.
-fn takes_logarithm(parameter: Parameter) -> Option<bool> {
-    use Parameter as P;
-    match parameter {
-        P::Lt | P::Rt | P::Lc | P::Rc | P::Miu => Some(false),
-        P::Wt | P::B | P::Hb | P::G | P::Hg | P::Hg5 | P::Wc | P::Mmd | P::Smd | P::T0 | P::W => Some(true),
-        P::Emt | P::Bf | P::Bb | P::Hb05 | P::Tm | P::Emc => None,
-    }
 }

@@ -5,17 +5,20 @@
 //! forbids every script and style but its own and every request.
 
 mod data;
+mod figure;
 mod one_file;
 mod parameters;
 mod problems;
+mod shapes;
+mod tables;
 mod text;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::finding::{Finding, explain};
+use crate::report::table::ProblemRow;
 
 pub use data::POINTS;
 #[cfg(feature = "results")]
@@ -23,14 +26,25 @@ pub(crate) use data::shortened;
 pub use data::{
     AxisEntry, Column, FabricValues, Line, PageData, SimulatedLine, SpecimenCurves, TestCurves, Value,
 };
+pub use figure::{Figure, FigureKind};
 pub use one_file::{LIMIT, OneFile, self_contained};
-pub use problems::{Problem, ProblemGroup};
+pub use problems::{DoubtfulValue, Problem, ProblemGroup};
+pub use shapes::{Shape, Shapes};
+pub use tables::Cell;
 pub use text::{fabric_id, local, without_folders};
 
-use text::{address, escape};
+use text::{address, breakable, escape, prose};
 
 const STYLE: &str = include_str!("../page.css");
-const SCRIPT: &str = include_str!("../page.js");
+/// One script of its files: the first gives the others what they need.
+const SCRIPT: &str = concat!(
+    include_str!("../page.js"),
+    include_str!("../page_fabrics.js"),
+    include_str!("../page_curves.js"),
+    include_str!("../page_correlation.js"),
+    include_str!("../page_3d.js"),
+    include_str!("../page_print.js")
+);
 
 /// The whole page.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -43,6 +57,17 @@ pub struct Page {
     pub sections: Vec<Section>,
     /// What the script works on.
     pub data: PageData,
+    /// The table of parameters as workbooks, which the script hands out; without them it offers none.
+    pub workbooks: Option<Workbooks>,
+}
+
+/// The table of parameters as workbooks (XLSX).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Workbooks {
+    /// In KES units.
+    pub kes: Vec<u8>,
+    /// In SI units.
+    pub si: Vec<u8>,
 }
 
 /// A part of the page under a heading.
@@ -66,7 +91,9 @@ pub enum Block {
         /// Column headings.
         header: Vec<String>,
         /// Cells by row; a short row ends in empty cells.
-        rows: Vec<Vec<String>>,
+        rows: Vec<Vec<Cell>>,
+        /// Whether each row is of the fabric that its first cell names: the script then filters and sorts it.
+        of_fabrics: bool,
     },
     /// Pictures beside each other as the window allows.
     Figures(Vec<Figure>),
@@ -76,8 +103,14 @@ pub enum Block {
     Findings(Vec<Finding>),
     /// The table of fabrics and parameters, from the data of the page.
     Parameters,
+    /// What is known of something: names and texts.
+    Facts(Vec<(String, String)>),
+    /// What failed, each with its code and place.
+    Failures(Vec<ProblemRow>),
     /// Problems by code.
     Problems(Vec<ProblemGroup>),
+    /// Values not to be relied on, each with the codes of what speaks against it.
+    Doubtful(Vec<DoubtfulValue>),
     /// A table whose cells are a text in KES units and one in SI, of which one is shown.
     Units {
         /// A line above it.
@@ -89,7 +122,9 @@ pub enum Block {
     },
     /// The curves of [`PageData::curves`] of a fabric (by its place), drawn by the script.
     Curves(usize),
-    /// The control chart of the parameters and the nearest fabrics, drawn by the script.
+    /// The sheets of [`PageData::shapes`] of a fabric (by its place), turned by the script.
+    Shapes(usize),
+    /// The control chart of the parameters, the nearest fabrics and the correlation of parameters, drawn by the script.
     ControlChart,
     /// The part about a fabric, closed until it is wanted where there are several.
     Fabric {
@@ -100,15 +135,6 @@ pub enum Block {
         /// What it holds.
         blocks: Vec<Block>,
     },
-}
-
-/// A picture with its caption.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Figure {
-    /// What it shows, for readers who do not see it, and as caption.
-    pub caption: String,
-    /// The file: path relative to the page, with `/`.
-    pub picture: String,
 }
 
 /// The page as HTML (UTF-8), the same text for the same page.
@@ -141,6 +167,11 @@ pub fn html(page: &Page) -> String {
     // Without the data the page is as readable as without the script.
     if let Ok(json) = page.data.json() {
         out.push_str(&format!("<script type=\"application/json\" id=\"data\">{json}</script>\n"));
+        if let Some(Workbooks { kes, si }) = &page.workbooks {
+            let [kes, si] = [kes, si].map(|bytes| STANDARD.encode(bytes));
+            let books = format!("{{\"kes\":\"{kes}\",\"si\":\"{si}\"}}");
+            out.push_str(&format!("<script type=\"application/json\" id=\"workbooks\">{books}</script>\n"));
+        }
         out.push_str(&format!("<script>{SCRIPT}</script>\n"));
     }
     out.push_str("</body>\n</html>\n");
@@ -161,11 +192,13 @@ fn policy() -> String {
 
 fn block(out: &mut String, part: &Block, data: &PageData) {
     match part {
-        Block::Text(text) => out.push_str(&format!("<p>{}</p>\n", escape(text))),
-        Block::Table { caption, header, rows } => table(out, caption, header, rows),
+        Block::Text(text) => out.push_str(&format!("<p>{}</p>\n", prose(text))),
+        Block::Table { caption, header, rows, of_fabrics } => {
+            tables::table(out, [caption, if *of_fabrics { "of-fabrics" } else { "" }], header, rows);
+        }
         Block::Figures(figures) => {
             out.push_str("<div class=\"figures\">\n");
-            figures.iter().for_each(|f| figure(out, f));
+            figures.iter().for_each(|f| figure::figure(out, f));
             out.push_str("</div>\n");
         }
         Block::Files(files) => {
@@ -177,96 +210,34 @@ fn block(out: &mut String, part: &Block, data: &PageData) {
         }
         Block::Findings(list) => findings(out, list),
         Block::Parameters => parameters::parameters(out, data),
+        Block::Facts(facts) => tables::facts(out, facts),
+        Block::Failures(rows) => problems::failures(out, rows),
         Block::Problems(groups) => problems::problems(out, groups),
-        Block::Units { caption, header, rows } => units(out, caption, header, rows),
+        Block::Doubtful(values) => problems::doubtful(out, values),
+        Block::Units { caption, header, rows } => tables::units(out, caption, header, rows),
         Block::Curves(fabric) => {
             out.push_str(&format!("<div class=\"curves\" data-fabric=\"{fabric}\"></div>\n"));
         }
-        Block::ControlChart => out.push_str("<div id=\"control-chart\"></div>\n"),
+        Block::Shapes(fabric) => {
+            out.push_str(&format!("<div class=\"shapes\" data-fabric=\"{fabric}\"></div>\n"));
+            shapes::left_out(out, &data.shapes, *fabric);
+        }
+        Block::ControlChart => {
+            out.push_str("<div id=\"control-chart\"></div>\n<div id=\"correlation\"></div>\n");
+        }
         Block::Fabric { name, about, blocks } => {
             // A reader of one fabric need not open it.
             let open = if data.fabrics.len() == 1 { " open" } else { "" };
             out.push_str(&format!(
                 "<details class=\"fabric\" id=\"{}\"{open}><summary><h3>{}</h3> <span>{}</span></summary>\n",
                 fabric_id(name),
-                escape(name),
+                breakable(name),
                 escape(&without_folders(about))
             ));
             blocks.iter().for_each(|part| block(out, part, data));
             out.push_str("</details>\n");
         }
     }
-}
-
-fn table(out: &mut String, caption: &str, header: &[String], rows: &[Vec<String>]) {
-    let cell = |row: &[String], column: usize| row.get(column).map_or("", String::as_str).to_string();
-    let numeric: Vec<bool> = (0..header.len())
-        .map(|column| {
-            let mut filled =
-                rows.iter().map(|r| cell(r, column)).filter(|c| !c.is_empty() && c != "-").peekable();
-            filled.peek().is_some() && filled.all(|c| is_number(&c))
-        })
-        .collect();
-    let class = |column: usize| if numeric[column] { " class=\"number\"" } else { "" };
-    out.push_str("<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Table\"><table>\n");
-    if !caption.is_empty() {
-        out.push_str(&format!("<caption>{}</caption>\n", escape(caption)));
-    }
-    out.push_str("<thead><tr>");
-    for (column, name) in header.iter().enumerate() {
-        out.push_str(&format!("<th scope=\"col\"{}>{}</th>", class(column), escape(name)));
-    }
-    out.push_str("</tr></thead>\n<tbody>\n");
-    for row in rows {
-        out.push_str("<tr>");
-        for column in 0..header.len() {
-            out.push_str(&format!("<td{}>{}</td>", class(column), escape(&cell(row, column))));
-        }
-        out.push_str("</tr>\n");
-    }
-    out.push_str("</tbody>\n</table></div>\n");
-}
-
-fn units(out: &mut String, caption: &str, header: &[String], rows: &[Vec<[String; 2]>]) {
-    out.push_str("<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Table\"><table>\n");
-    out.push_str(&format!("<caption>{}</caption>\n<thead><tr>", escape(caption)));
-    header.iter().for_each(|name| out.push_str(&format!("<th scope=\"col\">{}</th>", escape(name))));
-    out.push_str("</tr></thead>\n<tbody>\n");
-    for row in rows {
-        out.push_str("<tr>");
-        for [kes, si] in row {
-            let class = if is_number(kes) { " class=\"number\"" } else { "" };
-            if kes == si {
-                out.push_str(&format!("<td{class}>{}</td>", escape(kes)));
-            } else {
-                let [kes, si] = [escape(kes), escape(si)];
-                out.push_str(&format!(
-                    "<td{class}><span class=\"kes\">{kes}</span><span class=\"si\">{si}</span></td>"
-                ));
-            }
-        }
-        out.push_str("</tr>\n");
-    }
-    out.push_str("</tbody>\n</table></div>\n");
-}
-
-/// Whether a cell is to be read as a number: `0.052`, `−3`, `1.2 × 10⁻⁵`, `4.11 ± 0.13`, `12 %`.
-fn is_number(cell: &str) -> bool {
-    let digits = cell.trim_start_matches(['-', '−', '+', '(', '±', ' ']);
-    digits.starts_with(|c: char| c.is_ascii_digit())
-        && digits.chars().all(|c| {
-            c.is_ascii_digit() || matches!(c, '.' | ' ' | '±' | '×' | '%' | '(' | ')' | '-' | '−' | '+' | 'e')
-                // Superscripts of a power of ten.
-                || matches!(c, '⁻' | '¹' | '²' | '³' | '⁰' | '⁴'..='⁹')
-        })
-}
-
-fn figure(out: &mut String, figure: &Figure) {
-    let caption = escape(&figure.caption);
-    let address = address(&figure.picture);
-    let image =
-        format!("<a href=\"{address}\"><img src=\"{address}\" alt=\"{caption}\" loading=\"lazy\"></a>");
-    out.push_str(&format!("<figure>{image}<figcaption>{caption}</figcaption></figure>\n"));
 }
 
 fn findings(out: &mut String, findings: &[Finding]) {
@@ -278,7 +249,7 @@ fn findings(out: &mut String, findings: &[Finding]) {
         if let Some(place) = &finding.place {
             out.push_str(&format!("<code>{}</code> ", escape(&local(&place.to_string()))));
         }
-        out.push_str(&escape(&without_folders(&finding.message())));
+        out.push_str(&prose(&without_folders(&finding.message())));
         out.push_str("</li>\n");
     }
     out.push_str("</ul>\n");

@@ -1,14 +1,18 @@
 //! The page as one file that can be sent.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
+use super::figure::FigureKind;
 use super::text::{decoded, escape};
 
 /// Bytes of a page with its pictures, at most, unless more is wanted: what a mail takes.
 pub const LIMIT: usize = 3_000_000;
+
+/// What a picture stands in.
+const FIGURE: &str = "<figure>";
 
 /// Bytes kept for the note on what was left out.
 const NOTE: usize = 2_000;
@@ -24,18 +28,36 @@ pub struct OneFile {
 
 /// A piece of a page after `<a href="./`: a link to a file of the folder.
 struct Link<'a> {
-    /// The picture that it holds, and the rest of its `<img>`.
-    picture: Option<(String, &'a str)>,
+    /// The picture that it holds.
+    picture: Option<Picture<'a>>,
     /// What it shows.
     inner: &'a str,
     /// What follows.
     after: &'a str,
 }
 
+/// A picture of the folder.
+struct Picture<'a> {
+    /// Its file.
+    name: String,
+    /// The rest of its `<img>`.
+    attributes: &'a str,
+    /// What it is of.
+    kind: FigureKind,
+}
+
+impl Picture<'_> {
+    /// The name of the file: the same for the same chart of every fabric.
+    fn chart(&self) -> &str {
+        chart_of(&self.name)
+    }
+}
+
 /// A page of [`html`](super::html) that needs no folder: pictures are part of it, and links to files of the folder
-/// are their names only. `picture` gives the bytes of a PNG file of the folder. Pictures of one file name (one kind
-/// of chart, over all fabrics) are taken in the order of the page, all or none, as long as the page stays within
-/// `limit` bytes; the others are named in their places and in a note at the end. `None` of a page that is not of
+/// are their names only. `picture` gives the bytes of a PNG or SVG file of the folder. Pictures are taken as long
+/// as the page stays within `limit` bytes, what is worth most first ([`FigureKind`]): those of one file name (one chart of every
+/// fabric) together, or, where there is not room for all of them, those of the first fabrics of the page. The others are named
+/// in a line at their place and in a note at the end. `None` of a page that is not of
 /// [`html`](super::html).
 ///
 /// # Errors
@@ -49,31 +71,30 @@ pub fn self_contained<E>(
     let mut out = parts.next().unwrap_or_default().to_string();
     // Markup has no raw `<` or `"` elsewhere: all text of a page is escaped.
     let Some(links) = parts.map(link).collect::<Option<Vec<Link>>>() else { return Ok(None) };
-    let mut sizes: Vec<(&str, usize)> = Vec::new();
     let mut encoded = BTreeMap::new();
-    for (name, _) in links.iter().filter_map(|l| l.picture.as_ref()) {
-        let png = STANDARD.encode(picture(name)?);
-        match sizes.iter_mut().find(|(kind, _)| *kind == kind_of(name)) {
-            Some((_, size)) => *size += png.len(),
-            None => sizes.push((kind_of(name), png.len())),
-        }
-        encoded.insert(name.as_str(), png);
+    for picture_of in links.iter().filter_map(|l| l.picture.as_ref()) {
+        encoded.insert(picture_of.name.as_str(), STANDARD.encode(picture(&picture_of.name)?));
     }
-    let kinds = kinds_that_fit(&sizes, limit.saturating_sub(page.len() + NOTE));
+    let taken = those_that_fit(&links, &encoded, limit.saturating_sub(page.len() + NOTE));
     let mut left_out = Vec::new();
+    // Charts that are left out of the block of figures that is being written.
+    let mut absent = Vec::new();
     for link in &links {
+        let mut after = link.after;
         match &link.picture {
-            Some((name, attributes)) if kinds.contains(&kind_of(name)) => {
-                let png = &encoded[name.as_str()];
-                out.push_str(&format!("<img src=\"data:image/png;base64,{png}\"{attributes}"));
+            Some(picture) if taken.contains(picture.name.as_str()) => {
+                let bytes = &encoded[picture.name.as_str()];
+                let kind = if picture.name.ends_with(".svg") { "svg+xml" } else { "png" };
+                out.push_str(&format!("<img src=\"data:image/{kind};base64,{bytes}\"{}", picture.attributes));
             }
-            Some((name, _)) => {
-                out.push_str(&format!("<span class=\"absent\">not in this file: {}</span>", escape(name)));
-                left_out.push(name.clone());
+            Some(picture) => {
+                absent.push(picture.chart());
+                left_out.push(picture.name.clone());
+                after = without_figure(&mut out, after);
             }
             None => out.push_str(link.inner),
         }
-        out.push_str(link.after);
+        push_with_absent(&mut out, after, &mut absent);
     }
     note(&mut out, &left_out);
     Ok(Some(OneFile { page: out, left_out }))
@@ -81,28 +102,61 @@ pub fn self_contained<E>(
 
 fn link(part: &str) -> Option<Link<'_>> {
     let (inner, after) = part.split_once("\">").and_then(|(_, rest)| rest.split_once("</a>"))?;
-    let picture = inner
-        .strip_prefix("<img src=\"./")
-        .and_then(|text| text.split_once('"'))
-        .map(|(address, attributes)| (decoded(address), attributes));
+    let picture = inner.strip_prefix("<img src=\"./").and_then(|text| text.split_once('"')).map(
+        |(address, attributes)| Picture {
+            name: decoded(address),
+            attributes,
+            kind: FigureKind::of_attributes(attributes),
+        },
+    );
     Some(Link { picture, inner, after })
 }
 
+/// What follows a link; at the end of a block of figures, with the charts that are left out of it in one line.
+fn push_with_absent(out: &mut String, after: &str, absent: &mut Vec<&str>) {
+    // No text of the page has a raw `<`, and figures have no `<div>` in them.
+    let Some(end) = after.find("</div>").filter(|_| !absent.is_empty()) else { return out.push_str(after) };
+    let list = escape(&std::mem::take(absent).join(", "));
+    out.push_str(&format!("{}<p class=\"absent\">Not in this file: {list}.</p>\n", &after[..end]));
+    out.push_str(&after[end..]);
+}
+
+/// Takes the frame of a picture that is left out away, with its caption; what follows it.
+fn without_figure<'a>(out: &mut String, after: &'a str) -> &'a str {
+    if out.ends_with(FIGURE) {
+        out.truncate(out.len() - FIGURE.len());
+    }
+    after.split_once("</figure>\n").map_or(after, |(_, rest)| rest)
+}
+
 /// The name of the file: the same for the same chart of every fabric.
-fn kind_of(name: &str) -> &str {
+fn chart_of(name: &str) -> &str {
     name.rsplit('/').next().unwrap_or(name)
 }
 
-fn kinds_that_fit<'a>(sizes: &[(&'a str, usize)], room: usize) -> Vec<&'a str> {
-    let mut left = room;
-    let mut fitting = Vec::new();
-    for &(kind, size) in sizes {
-        if size <= left {
-            left -= size;
-            fitting.push(kind);
+/// Names of the pictures that there is room for.
+fn those_that_fit<'a>(links: &'a [Link], encoded: &BTreeMap<&str, String>, room: usize) -> BTreeSet<&'a str> {
+    let mut charts: Vec<(FigureKind, &str, Vec<&str>)> = Vec::new();
+    for picture in links.iter().filter_map(|link| link.picture.as_ref()) {
+        match charts.iter_mut().find(|(kind, chart, _)| (*kind, *chart) == (picture.kind, picture.chart())) {
+            Some((.., names)) => names.push(&picture.name),
+            None => charts.push((picture.kind, picture.chart(), vec![&picture.name])),
         }
     }
-    fitting
+    // Those of one worth stay in the order of the page.
+    charts.sort_by_key(|(kind, ..)| *kind);
+    let mut left = room;
+    let mut fits = |name: &str| {
+        let rest = encoded.get(name).and_then(|bytes| left.checked_sub(bytes.len()));
+        left = rest.unwrap_or(left);
+        rest.is_some()
+    };
+    // Of a chart that there is not room for in all fabrics, those of the first fabrics.
+    let mut taken = BTreeSet::new();
+    for (.., names) in charts {
+        taken.extend(names.into_iter().take_while(|name| fits(name)));
+    }
+    taken
 }
 
 /// What is not in the file, before the end of the body.
@@ -112,9 +166,9 @@ fn note(out: &mut String, left_out: &[String]) {
     }
     let mut kinds: Vec<(&str, usize)> = Vec::new();
     for name in left_out {
-        match kinds.iter_mut().find(|(kind, _)| *kind == kind_of(name)) {
+        match kinds.iter_mut().find(|(kind, _)| *kind == chart_of(name)) {
             Some((_, count)) => *count += 1,
-            None => kinds.push((kind_of(name), 1)),
+            None => kinds.push((chart_of(name), 1)),
         }
     }
     let list: Vec<String> = kinds.iter().map(|(kind, count)| format!("{} ({count})", escape(kind))).collect();

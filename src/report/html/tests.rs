@@ -1,5 +1,6 @@
 //! What the page holds, what it keeps out, and the page as one file.
 
+use super::tables::is_number;
 use super::*;
 use crate::finding::{EvaluationFact, Place, ReadFact};
 use crate::report::table::FabricRow;
@@ -22,6 +23,7 @@ fn page() -> Page {
                         caption: "Parameters".into(),
                         header: vec!["fabric".into(), "B (gf·cm²/cm)".into(), "status".into()],
                         rows,
+                        of_fabrics: false,
                     },
                     Block::Findings(vec![
                         Finding::new(warning).at(Place::at("a b.csv", 3, 1)),
@@ -35,12 +37,14 @@ fn page() -> Page {
                     Block::Figures(vec![Figure {
                         caption: "bending".into(),
                         picture: "pop lin#1/経 b.png".into(),
+                        ..Figure::default()
                     }]),
                     Block::Files(vec!["javascript:alert(1)".into(), "poplin/sheet.json".into()]),
                 ],
             },
         ],
         data: PageData::default(),
+        workbooks: None,
     }
 }
 
@@ -81,7 +85,8 @@ fn data_cannot_end_their_element() {
     let name = "</script><script>alert(1)</script>";
     let row =
         FabricRow { fabric: name.into(), parameter: "T0".into(), mean: Some(5e-4), ..FabricRow::default() };
-    let data = PageData::of_rows([(name, name.to_string())].into_iter(), [row].iter());
+    let fabric = FabricValues { name: name.into(), about: name.into(), ..FabricValues::default() };
+    let data = PageData::of_rows([fabric].into_iter(), [row].iter());
     let sections = vec![Section {
         heading: name.into(),
         blocks: vec![
@@ -89,7 +94,7 @@ fn data_cannot_end_their_element() {
             Block::Fabric { name: name.into(), about: name.into(), blocks: vec![Block::Curves(0)] },
         ],
     }];
-    let text = html(&Page { title: name.into(), lead: name.into(), sections, data });
+    let text = html(&Page { title: name.into(), lead: name.into(), sections, data, workbooks: None });
     assert_eq!(text.matches("<script").count(), 2);
     assert_eq!(text.matches("</script").count(), 2);
     let json = text.split("id=\"data\">").nth(1).unwrap().split("</script>").next().unwrap();
@@ -110,7 +115,7 @@ fn problems_of_a_code_have_one_cure_and_no_absolute_path() {
     let sections = vec![Section { heading: "Problems".into(), blocks: vec![Block::Problems(vec![group])] }];
     let text = html(&Page { sections, ..Page::default() });
     let cure = &explain("K003").unwrap().cure;
-    assert_eq!(text.matches(&escape(cure)).count(), 1);
+    assert_eq!(text.matches(&prose(cure)).count(), 1);
     assert!(text.contains(
         "<a href=\"#fabric-a%20b\">a b</a> <code>poplin/fb2.csv:3:1</code> as in x/y.csv: &lt;no&gt;"
     ));
@@ -141,7 +146,7 @@ fn a_self_contained_page_has_its_pictures_and_no_addresses() {
     assert!(left_out.is_empty() && !text.contains("left-out"));
     // RFC 4648: the bytes 89 50 4E 47 are "iVBORw==".
     assert!(text.contains(
-        "<figure><img src=\"data:image/png;base64,iVBORw==\" alt=\"bending\" loading=\"lazy\"><figcaption>"
+        "<figure><img src=\"data:image/png;base64,iVBORw==\" alt=\"bending\" data-kind=\"benchmark\" loading=\"lazy\"><figcaption>"
     ));
     assert!(text.contains("<li>poplin/sheet.json</li>"));
     assert!(!text.contains("=\"./"));
@@ -153,7 +158,7 @@ fn a_self_contained_page_has_its_pictures_and_no_addresses() {
 /// All pictures of a name or none, in their order, and what is not there is told where it would be and at the end.
 #[test]
 fn what_does_not_fit_is_left_out_by_kinds_and_told() {
-    let figure = |picture: &str| Figure { caption: "c".into(), picture: picture.into() };
+    let figure = |picture: &str| Figure { caption: "c".into(), picture: picture.into(), ..Figure::default() };
     let names = ["parity.png", "a/big.png", "b/big.png", "a/small.png", "b/small.png"];
     let blocks = vec![Block::Figures(names.map(figure).to_vec())];
     let index = html(&Page { sections: vec![Section { heading: "x".into(), blocks }], ..Page::default() });
@@ -163,10 +168,82 @@ fn what_does_not_fit_is_left_out_by_kinds_and_told() {
     let made = self_contained(&index, index.len() + 2000 + 1300, picture).unwrap().unwrap();
     assert_eq!(made.left_out, ["a/big.png", "b/big.png"]);
     assert_eq!(made.page.matches("data:image/png").count(), 3);
-    assert!(made.page.contains("<span class=\"absent\">not in this file: a/big.png</span>"));
+    let line = "<p class=\"absent\">Not in this file: big.png, big.png.</p>\n</div>";
+    assert!(made.page.contains(line) && !made.page.contains("a/big.png"), "no frame of what is not there");
+    assert_eq!(made.page.matches("<figcaption>").count(), 3);
     assert!(made.page.contains("2 pictures, big.png (2). They are in the folder of results"));
     let all = self_contained(&index, usize::MAX, picture).unwrap().unwrap();
     assert!(all.left_out.is_empty());
+}
+
+/// A page that is sent has drapes before benchmarks, and of what does not fit whole the first fabrics.
+#[test]
+fn what_is_worth_most_is_taken_first() {
+    let figure = |(picture, kind): (&str, FigureKind)| Figure {
+        picture: picture.into(),
+        alt: "A \"drape\" data-kind=\"test\".".into(),
+        kind,
+        ..Figure::default()
+    };
+    let of_fabrics = ["a", "b", "c"].map(|fabric| {
+        let (plate, drape) = (format!("{fabric}/plate.png"), format!("{fabric}/drape.png"));
+        let figures = [(plate.as_str(), FigureKind::Plate), (drape.as_str(), FigureKind::Drape)].map(figure);
+        Block::Figures(figures.to_vec())
+    });
+    let benchmark = Block::Figures(vec![figure(("square.png", FigureKind::Benchmark))]);
+    let blocks = std::iter::once(benchmark).chain(of_fabrics).collect();
+    let index = html(&Page { sections: vec![Section { heading: "x".into(), blocks }], ..Page::default() });
+    let sent = |pictures: usize| {
+        let limit = index.len() + 2000 + 400 * pictures;
+        self_contained(&index, limit, |_| Ok::<_, ()>(vec![0; 300])).unwrap().unwrap().left_out
+    };
+    assert_eq!(sent(2), ["square.png", "a/plate.png", "b/plate.png", "c/plate.png", "c/drape.png"]);
+    assert_eq!(sent(5), ["square.png", "c/plate.png"]);
+    assert!(sent(7).is_empty());
+}
+
+/// Each value that is not to be relied on leads to what speaks against it.
+#[test]
+fn doubtful_values_have_their_causes() {
+    let value = DoubtfulValue {
+        fabric: "wool_a".into(),
+        parameter: "B warp".into(),
+        mean: ["1.900 gf·cm²/cm", "1.863e-4 N·m"].map(String::from),
+        n: 3,
+        status: "doubtful".into(),
+        causes: vec!["K011".into()],
+        page: String::new(),
+    };
+    let elsewhere = DoubtfulValue { page: "index.html".into(), ..value.clone() };
+    let group = ProblemGroup { code: "K011".into(), count: "1 of 2 fabrics".into(), lines: Vec::new() };
+    let blocks = vec![Block::Doubtful(vec![value, elsewhere]), Block::Problems(vec![group])];
+    let text = html(&Page { sections: vec![Section { heading: "x".into(), blocks }], ..Page::default() });
+    assert!(text.contains("<td>wool_<wbr>a</td><td>B warp</td>"));
+    assert!(text.contains("<td>n 3</td><td class=\"doubtful\">doubtful</td><td><a href=\"#problem-K011\">K011</a> An implausible value. "));
+    assert!(text.contains("href=\"./index.html#problem-K011\"") && text.contains("<li id=\"problem-K011\">"));
+}
+
+/// Data of the page, which no policy for scripts forbids.
+#[test]
+fn workbooks_are_in_the_page() {
+    let books = Workbooks { kes: b"PK".to_vec(), si: b"PKS".to_vec() };
+    let text = html(&Page { workbooks: Some(books), ..page() });
+    // RFC 4648.
+    assert!(text.contains("id=\"workbooks\">{\"kes\":\"UEs=\",\"si\":\"UEtT\"}</script>"));
+    assert!(!html(&page()).contains("id=\"workbooks\""));
+}
+
+/// What a browser shows is shown, and what it does not is a link.
+#[test]
+fn pictures_are_taken_by_their_kind() {
+    let figure = |picture: &str| Figure { caption: "c".into(), picture: picture.into(), ..Figure::default() };
+    let blocks = vec![Block::Figures(["a/b.svg", "a/b.pdf"].map(figure).to_vec())];
+    let index = html(&Page { sections: vec![Section { heading: "x".into(), blocks }], ..Page::default() });
+    assert!(index.contains("<img src=\"./a/b.svg\"") && index.contains("<a href=\"./a/b.pdf\">c (PDF)</a>"));
+    let made = self_contained(&index, LIMIT, |_| Ok::<_, ()>(vec![0])).unwrap().unwrap();
+    assert!(
+        made.page.contains("<img src=\"data:image/svg+xml;base64,AA==\"") && !made.page.contains("=\"./")
+    );
 }
 
 #[test]
@@ -193,7 +270,7 @@ fn elements_are_closed_in_order() {
             Some(closed) => assert_eq!(open.pop().as_deref(), Some(closed)),
             // What looks like a tag in a script is none.
             None if open.last().is_some_and(|o| o == "script") => {}
-            None if ["!DOCTYPE", "meta", "img"].contains(&name.as_str()) => {}
+            None if ["!DOCTYPE", "meta", "img", "br", "wbr"].contains(&name.as_str()) => {}
             None => open.push(name),
         }
     }

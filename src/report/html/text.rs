@@ -20,6 +20,25 @@ pub(super) fn escape(text: &str) -> String {
     out
 }
 
+/// A sentence for an element: what stands between two backticks is code.
+pub(super) fn prose(text: &str) -> String {
+    let escaped = escape(text);
+    let parts: Vec<&str> = escaped.split('`').collect();
+    if parts.len().is_multiple_of(2) {
+        // A backtick without its other one is only a character.
+        return escaped;
+    }
+    let part = |(at, part): (usize, &&str)| {
+        if at.is_multiple_of(2) { (*part).to_string() } else { format!("<code>{part}</code>") }
+    };
+    parts.iter().enumerate().map(part).collect()
+}
+
+/// Text for an element, which may be broken after each `_` rather than within a word.
+pub(super) fn breakable(text: &str) -> String {
+    escape(text).replace('_', "_<wbr>")
+}
+
 /// A relative address for a path of the folder. The leading `./` keeps a name like `javascript:x` a name.
 pub(super) fn address(path: &str) -> String {
     const KEPT: &AsciiSet = &NON_ALPHANUMERIC.remove(b'/').remove(b'.').remove(b'-').remove(b'_');
@@ -81,6 +100,17 @@ mod tests {
         for same in ["kesf_data/poplin", "0.5 gf/(cm·deg), 1/2", "and / or", "/x", "N·m"] {
             assert_eq!(cut(same), same);
         }
+    }
+
+    #[test]
+    fn names_are_broken_after_their_words() {
+        assert_eq!(breakable("wool_tropical <b>"), "wool_<wbr>tropical &lt;b&gt;");
+    }
+
+    #[test]
+    fn what_stands_between_backticks_is_code() {
+        assert_eq!(prose("see `kesf list` & <b>"), "see <code>kesf list</code> &amp; &lt;b&gt;");
+        assert_eq!(prose("5` of `a`"), "5` of `a`");
     }
 
     #[test]

@@ -11,32 +11,26 @@ use crate::results::sampled;
 use crate::results::task::Task;
 use crate::study::bending::{BendingResult, CHORD_ANGLE_DEG, Cantilever, HeartLoop};
 
-/// Writes `<stem>.png`, or one a direction of a FAB test, `<stem>_<direction>.png`; the names of those that there are.
+/// Writes the chart `<stem>`, or one a direction of a FAB test, `<stem>_<direction>`; the names of those that there are.
 pub(in crate::results) fn write_charts(
     task: &Task,
     result: &BendingResult,
     folder: &Folder,
 ) -> Result<Vec<String>, Failure> {
-    let name = format!("{}.png", task.stem());
+    let stem = task.stem();
     let mut drawn = Vec::new();
     match result {
         BendingResult::Cantilever(tests) => {
-            if folder.chart(&name, || chart::profile(&cantilever_plot(task, tests)))? {
-                drawn.push(name);
-            }
+            drawn.extend(folder.chart(&stem, || chart::profile(&cantilever_plot(task, tests)))?);
         }
         BendingResult::HeartLoop(tests) => {
-            if folder.chart(&name, || chart::profile(&heart_plot(task, tests)))? {
-                drawn.push(name);
-            }
+            drawn.extend(folder.chart(&stem, || chart::profile(&heart_plot(task, tests)))?);
         }
         BendingResult::FabBendLoop(directions) => {
             for loops in directions {
-                let name = format!("{}_{}.png", task.stem(), loops.direction);
+                let stem = format!("{stem}_{}", loops.direction);
                 let plot = ForcePlot { title: title(task), origin: task.origin(), loops };
-                if folder.chart(&name, || chart::bend_loops(&plot))? {
-                    drawn.push(name);
-                }
+                drawn.extend(folder.chart(&stem, || chart::bend_loops(&plot))?);
             }
         }
     }
@@ -50,7 +44,7 @@ fn cantilever_plot(task: &Task, tests: &[Cantilever]) -> ProfilePlot {
         subtitle: format!(
             "side view at equal scales; the strip hangs over the edge at 0 until its chord falls at {CHORD_ANGLE_DEG}°"
         ),
-        origin: task.origin(),
+        origin: task.simulated_from(),
         lines: tests.iter().flat_map(|c| cantilever_lines(task, c)).collect(),
         chord_angle_deg: Some(CHORD_ANGLE_DEG),
         mirrored: false,
@@ -63,7 +57,7 @@ fn heart_plot(task: &Task, tests: &[HeartLoop]) -> ProfilePlot {
         title: title(task),
         kind: ", heart loop".into(),
         subtitle: "side view at equal scales; both ends are clamped at the top and point upwards".into(),
-        origin: task.origin(),
+        origin: task.simulated_from(),
         lines: tests.iter().map(|h| heart_line(task, h)).collect(),
         chord_angle_deg: None,
         mirrored: true,

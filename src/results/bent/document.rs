@@ -1,5 +1,6 @@
 //! The entries of `kesf.comparison/1` of bending tests.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::measured::{measured, role};
@@ -15,7 +16,7 @@ use crate::study::bending::{
 };
 
 /// An entry of `kesf.comparison/1`: a bending test of a strip (SI).
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct BendingEntry {
     name: String,
     case: String,
@@ -27,7 +28,7 @@ pub struct BendingEntry {
     uncertainty: Option<Option<SamplingEntry>>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum BendingTestEntry {
     Cantilever(CantileverEntry),
@@ -35,7 +36,7 @@ enum BendingTestEntry {
     FabBendLoop(FabEntry),
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct CantileverEntry {
     chord_angle_deg: f64,
     overhang: QuantityEntry,
@@ -50,7 +51,7 @@ struct CantileverEntry {
     stable: bool,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct BendingLengthEntry {
     simulated: f64,
     closed_form: f64,
@@ -59,7 +60,7 @@ struct BendingLengthEntry {
     unit: &'static str,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct CantileverFrictionEntry {
     couple: QuantityEntry,
     mu: f64,
@@ -68,7 +69,7 @@ struct CantileverFrictionEntry {
     profile: ProfileEntry,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct EstimatedLengthEntry {
     simulated: f64,
     estimate: f64,
@@ -76,14 +77,14 @@ struct EstimatedLengthEntry {
 }
 
 /// The middle line of a strip.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct ProfileEntry {
     x: Vec<f64>,
     z: Vec<f64>,
     unit: &'static str,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct HeartEntry {
     length: QuantityEntry,
     height: HeightEntry,
@@ -95,21 +96,21 @@ struct HeartEntry {
     stable: bool,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct HeightEntry {
     simulated: f64,
     closed_form: Option<f64>,
     unit: &'static str,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct HeartRigidityEntry {
     read_from_height: Option<f64>,
     section: f64,
     unit: &'static str,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct FabEntry {
     rigidity: QuantityEntry,
     clamp_inclination: QuantityEntry,
@@ -118,7 +119,7 @@ struct FabEntry {
     tests: Vec<LoopEntry>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct FabFrictionEntry {
     rigidity: QuantityEntry,
     as_kes: AsKesEntry,
@@ -128,7 +129,7 @@ struct FabFrictionEntry {
 }
 
 /// What KES-FB2 would read of a law.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct AsKesEntry {
     #[serde(rename = "B")]
     b: f64,
@@ -137,7 +138,7 @@ struct AsKesEntry {
     unit: [&'static str; 2],
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct LoopEntry {
     test: &'static str,
     role: &'static str,
@@ -149,7 +150,7 @@ struct LoopEntry {
     friction: Option<SimulatedEntry>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct SimulatedEntry {
     load_zero: QuantityEntry,
     outer: Option<Agreement>,

@@ -1,6 +1,7 @@
 //! The entry of `kesf.solution/1`.
 
 use indexmap::IndexMap;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::effort::{SolverEntry, TimingsEntry};
@@ -12,7 +13,7 @@ use crate::results::task::Task;
 use crate::study::{CaseResult, CheckResult, Convergence, History, Prediction, Probe, Status, Uncertainty};
 
 /// An entry of `kesf.solution/1`: a solved case (SI).
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct SolutionEntry {
     case: String,
     fabric: Option<String>,
@@ -35,7 +36,7 @@ pub struct SolutionEntry {
 }
 
 /// Size of a model.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ModelEntry {
     /// Nodes of the mesh.
     pub nodes: usize,
@@ -46,7 +47,7 @@ pub struct ModelEntry {
 }
 
 /// A value with its unit.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct QuantityEntry {
     /// SI.
     pub value: f64,
@@ -54,7 +55,7 @@ pub struct QuantityEntry {
     pub unit: &'static str,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct ResultsEntry {
     w_max: QuantityEntry,
     w_over_bending_thickness: f64,
@@ -68,7 +69,7 @@ struct ResultsEntry {
     uncertainty: Option<UncertaintyEntry>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct ProbeEntry {
     at: Vec<f64>,
     u: [f64; 3],
@@ -79,7 +80,7 @@ struct ProbeEntry {
 }
 
 /// Bands by sampling, or by first-order propagation.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
 enum UncertaintyEntry {
     Sampled(SamplingEntry),
@@ -87,13 +88,13 @@ enum UncertaintyEntry {
 }
 
 /// The inputs, and each quantity with its bands and its sensitivities.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct FirstOrderEntry {
     inputs: Vec<InputEntry>,
     quantities: IndexMap<String, PredictionEntry>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct PredictionEntry {
     value: f64,
     unit: &'static str,

@@ -1,5 +1,6 @@
 //! What a solution took: systems, counts, memory and seconds.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::quantity::significant;
@@ -8,14 +9,14 @@ use crate::solve::{Solution, System};
 use crate::study::CaseResult;
 
 /// `solver` of an entry of `kesf.solution/1`: what does not depend on the machine.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct SolverEntry {
     residual: f64,
     systems: Vec<SystemEntry>,
 }
 
 /// One system of equations.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct SystemEntry {
     dofs: Vec<&'static str>,
     path: &'static str,
@@ -35,7 +36,7 @@ struct SystemEntry {
 }
 
 /// `timings` of an entry: seconds, rate, threads and the peak memory of the process, which differ from run to run.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct TimingsEntry {
     analyse_s: f64,
     order_s: f64,

@@ -83,7 +83,7 @@ impl Mesh {
         FieldPlot {
             title: task.case.title.clone(),
             subtitle: format!("{fabric}; {} elements, {cells} each", self.quads.len()),
-            origin: task.origin(),
+            origin: task.simulated_from(),
             quantity: "Deflection w".into(),
             unit: "m".into(),
             nodes: &self.nodes,

@@ -13,6 +13,7 @@ pub use effort::{SolverEntry, TimingsEntry};
 pub(crate) use text::checks;
 pub(super) use text::{status, text};
 
+use super::deflected::Deflected;
 use super::failure::Failure;
 use super::folder::Folder;
 use super::task::Task;
@@ -67,9 +68,18 @@ fn row(task: &Task, result: &CaseResult, quantity: String, value: f64, unit: &st
     }
 }
 
-/// Writes `<stem>.vtu`, `<stem>.png`, `<stem>.csv` of what there is of a history, and `<stem>-step-<k>.vtu` of each of its
-/// `[[steps]]`; whether there is a chart.
-pub(super) fn write(task: &Task, result: &CaseResult, folder: &Folder) -> Result<bool, Failure> {
+/// The sheet before and after; `None` of vibrations, which have no size, and of a search that left all numbers.
+pub(super) fn deflected(task: &Task, result: &CaseResult) -> Option<Deflected> {
+    let all = &result.solution.displacement;
+    let is_shape = !result.is_modal() && all.iter().all(|u| u.is_finite());
+    let moved = all.chunks_exact(6).map(|u| [u[0], u[1], u[2]]);
+    is_shape.then(|| Deflected::new(task, &result.model, moved.collect()))
+}
+
+/// Writes `<stem>.vtu`, the chart `<stem>`, `<stem>.csv` of what there is of a history, and `<stem>-step-<k>.vtu` of each of its
+/// `[[steps]]`; the chart, if
+/// there is one.
+pub(super) fn write(task: &Task, result: &CaseResult, folder: &Folder) -> Result<Option<String>, Failure> {
     let stem = task.stem();
     let history = history_rows(result);
     if !history.is_empty() {
@@ -83,5 +93,5 @@ pub(super) fn write(task: &Task, result: &CaseResult, folder: &Folder) -> Result
             folder.write(&format!("{stem}-step-{}.vtu", k + 1), &fields::Mesh::new(&then).vtu(&then)?)?;
         }
     }
-    folder.chart(&format!("{stem}.png"), || chart::field(&mesh.plot(task, result)))
+    folder.chart(&stem, || chart::field(&mesh.plot(task, result)))
 }

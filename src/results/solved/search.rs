@@ -1,6 +1,7 @@
 //! How nonlinear analyses went: tables and document.
 
 use indexmap::IndexMap;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::case::MethodChoice;
@@ -104,7 +105,7 @@ pub(super) fn load_steps(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
 }
 
 /// `search` of an entry of `kesf.solution/1`.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct SearchEntry {
     method: MethodChoice,
     converged: bool,
@@ -118,7 +119,7 @@ pub struct SearchEntry {
 }
 
 /// One of the `[[steps]]` of a case: its place in `steps`, from 0 and without the last, and how it ended.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct LoadStepEntry {
     name: String,
     method: MethodChoice,
@@ -128,7 +129,7 @@ pub struct LoadStepEntry {
 }
 
 /// A step of `steps` (SI).
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct StepEntry {
     factor: f64,
     iterations: usize,

@@ -38,7 +38,7 @@ impl<const B: usize> Hierarchy<B> {
         let mut levels = Vec::new();
         while at.matrix.graph.nodes > COARSEST {
             let inverses = diagonal_inverses(&at.matrix)?;
-            let (p, next) = coarsen(&at.matrix, &inverses, &at.rigid, &at.neighbours);
+            let (p, next) = coarsen(&at.matrix, &inverses, &at.rigid, &at.neighbours)?;
             if 3 * next.matrix.graph.nodes > 2 * at.matrix.graph.nodes {
                 break; // loose nodes: nothing to be gained
             }

@@ -7,6 +7,7 @@ use rand_pcg::Pcg64;
 
 use super::aggregates::{NONE, Neighbours, aggregate};
 use super::blocks::{Block, add_product, blocks, blocks_mut, inverse, times, transposed, zero};
+use crate::platform::over;
 use crate::solve::factor::FactorError;
 use crate::solve::sparse::{BlockGraph, BlockMatrix};
 
@@ -50,25 +51,36 @@ pub fn diagonal_inverses<const B: usize>(a: &BlockMatrix) -> Result<Vec<Block<B>
 
 /// The interpolation from the aggregates of a level, and the matrix of the aggregates. `rigid` are
 /// the rigid motions at each node, one a column.
+///
+/// # Errors
+/// [`FactorError::OutOfTime`].
 pub fn coarsen<const B: usize>(
     a: &BlockMatrix,
     inverses: &[Block<B>],
     rigid: &[Block<B>],
     neighbours: &Neighbours,
-) -> (Rows<B>, Coarse<B>) {
+) -> Result<(Rows<B>, Coarse<B>), FactorError> {
     // Held nodes have no rigid motion and move on no coarser level.
     let active: Vec<bool> = rigid.iter().map(|r| r.as_flattened().iter().any(|v| *v != 0.0)).collect();
     let (aggregate_of, count) = aggregate(neighbours, &active);
+    in_time()?;
     let (tentative, coarse_rigid) = orthonormal(rigid, &aggregate_of, count);
+    in_time()?;
     let whole = WholeRows::of(&a.graph);
     let p = smoothed(a, &whole, inverses, &aggregate_of, &tentative);
+    in_time()?;
     let matrix = product(a, &whole, &p, count);
     let edge =
         |i: usize| neighbours.list[neighbours.ptr[i]..neighbours.ptr[i + 1]].iter().map(move |&j| (i, j));
     let pairs = (0..active.len()).flat_map(edge).map(|(i, j)| [aggregate_of[i], aggregate_of[j as usize]]);
     let touching = BlockGraph::from_elements(count, pairs.filter(|pair| !pair.contains(&NONE)));
     let (ptr, list) = touching.adjacency();
-    (p, Coarse { matrix, rigid: coarse_rigid, neighbours: Neighbours { ptr, list } })
+    in_time()?;
+    Ok((p, Coarse { matrix, rigid: coarse_rigid, neighbours: Neighbours { ptr, list } }))
+}
+
+fn in_time() -> Result<(), FactorError> {
+    over().map_or(Ok(()), |seconds| Err(FactorError::OutOfTime { seconds }))
 }
 
 /// Orthonormal bases of the rigid motions of each aggregate at its nodes (Gram-Schmidt, twice), and

@@ -32,6 +32,7 @@ use super::system::{Balance, System};
 use super::{NonlinearError, Settings, State, plan};
 use crate::element::{Mass, Vector24};
 use crate::model::Model;
+use crate::platform::over;
 use crate::solve::assemble::unit_rows;
 use crate::solve::factor::Factor;
 use crate::solve::linear::Options;
@@ -125,6 +126,10 @@ pub fn integrate_with(
         let above = |part: f64| Some(error? > part * tolerance? * reached);
         let kept = above(1.0) != Some(true);
         let (Some(next), true) = (next, kept) else {
+            // Without time nothing is factorised: the motion ends where it is.
+            if over().is_some() {
+                break;
+            }
             let cause = if kept { StepLimit::Convergence } else { StepLimit::Tolerance };
             step = guard.halve(dt, time, cause)?;
             continue;

@@ -41,8 +41,8 @@ impl Default for Flow {
     }
 }
 
-/// The random loads are taken away at this residual.
-const SETTLING: f64 = 1e-3;
+/// A sheet with a smaller residual is almost at rest; the random loads are taken away there.
+pub(super) const SETTLING: f64 = 1e-3;
 
 /// An inner Newton iteration that needs more than this is dragged more strongly.
 const INNER_ITERATIONS: usize = 8;
@@ -51,13 +51,13 @@ const INNER_ITERATIONS: usize = 8;
 const INNER_TOLERANCE: f64 = 0.01;
 
 /// Drag over the first one at which the search is given up.
-const LARGEST_RISE: f64 = 1e8;
+pub(super) const LARGEST_RISE: f64 = 1e8;
 
 /// Steps after which [`settle`] gives up.
 const SETTLING_STEPS: usize = 1000;
 
 /// Unstable equilibria that may be left, at one load, before the search is given up.
-const KICKS: usize = 20;
+pub(super) const KICKS: usize = 20;
 
 /// The first step, at most.
 const FIRST_STEP: f64 = 0.1;
@@ -248,7 +248,7 @@ impl Pace {
 }
 
 /// The drag under which the load moves the sheet by a hundredth of its size in the first step.
-fn first_rate(system: &System<'_>, model: &Model, rest: &State) -> f64 {
+pub(super) fn first_rate(system: &System<'_>, model: &Model, rest: &State) -> f64 {
     let balance = system.balance(&State { factor: 1.0, ..rest.clone() }, None);
     let area: f64 = system.metric.iter().step_by(6).sum();
     let force: f64 = balance.unbalanced.chunks_exact(6).map(|n| n[0].hypot(n[1]).hypot(n[2])).sum();
@@ -257,7 +257,7 @@ fn first_rate(system: &System<'_>, model: &Model, rest: &State) -> f64 {
 }
 
 /// A step along a shape that moves the sheet by a thousandth of its size and turns it by 0.1 rad, at most.
-fn kick(size: f64, shape: &[f64]) -> Vec<f64> {
+pub(super) fn kick(size: f64, shape: &[f64]) -> Vec<f64> {
     let largest = shape
         .iter()
         .enumerate()

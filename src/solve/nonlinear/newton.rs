@@ -19,7 +19,7 @@ const LARGEST_TURN: f64 = 0.8;
 
 /// A node may turn so far against its element in an equilibrium (rad); more is a fold that the
 /// mesh cannot show.
-const LARGEST_FOLD: f64 = std::f64::consts::FRAC_PI_2;
+pub(super) const LARGEST_FOLD: f64 = std::f64::consts::FRAC_PI_2;
 
 /// An equilibrium.
 pub(super) struct Converged {
@@ -67,13 +67,21 @@ impl Failure {
 
     /// Whether no shorter step is worth trying.
     pub fn is_final(&self) -> bool {
-        matches!(self.obstacle, Obstacle::OutOfTime(_) | Obstacle::CutBacks(_))
+        matches!(
+            self.obstacle,
+            Obstacle::OutOfTime(_)
+                | Obstacle::CutBacks(_)
+                | Obstacle::Factor(FactorError::OutOfTime { .. } | FactorError::OutOfMemory { .. })
+        )
     }
 
     /// The error when no smaller step is left.
     pub fn ends(self, step: usize, settings: &Settings, last: State) -> NonlinearError {
         match self.obstacle {
             Obstacle::Factor(cause @ FactorError::OutOfMemory { .. }) => SolveError::Factor(cause).into(),
+            Obstacle::Factor(FactorError::OutOfTime { seconds }) => {
+                Self { obstacle: Obstacle::OutOfTime(seconds), ..self }.ends(step, settings, last)
+            }
             obstacle => NonlinearError::NotConverged {
                 step,
                 obstacle,

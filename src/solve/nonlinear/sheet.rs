@@ -33,6 +33,8 @@ pub(super) struct Sheet<'a> {
 pub(super) struct Answer {
     pub motion: Motion,
     pub forces: Forces,
+    /// Nodal forces and moments, global axes.
+    pub nodal: Vector24,
     strain: YarnStrain,
     /// What its arcs add to the strain of its chords.
     bent: Option<Bent>,
@@ -143,8 +145,17 @@ impl<'a> Sheet<'a> {
             energy += bent.energy;
             varying = bent.varying;
         }
-        let forces = Forces { local, resultant, varying };
-        Answer { motion, forces, strain, bent: bent.map(|(_, bent)| bent), tangents, energy, dissipation }
+        let (forces, nodal) = (Forces { local, resultant, varying }, motion.force(&local));
+        Answer {
+            motion,
+            forces,
+            nodal,
+            strain,
+            bent: bent.map(|(_, bent)| bent),
+            tangents,
+            energy,
+            dissipation,
+        }
     }
 
     /// Adds the stresses of the cells: their mean to the resultants, their deviations to the rest of the force.

@@ -2,6 +2,7 @@
 
 use super::system::{Balance, System};
 use nalgebra::{UnitQuaternion, Vector3};
+use schemars::JsonSchema;
 
 use super::{NonlinearError, Settings, State, plan};
 use crate::model::Model;
@@ -15,7 +16,7 @@ const ROUNDS: usize = 60;
 const SETTLED: f64 = 1e-4;
 
 /// How an equilibrium answers to a small push.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, JsonSchema)]
 pub struct Stability {
     /// Directions in which the energy falls: negative pivots of the tangent. 0 is stable.
     pub negative_pivots: usize,

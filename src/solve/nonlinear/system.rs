@@ -11,7 +11,7 @@ use super::{NonlinearError, Settings, State};
 use crate::element::corotational::Motion;
 use crate::element::{Matrix24, Vector24, follower_pressure, follower_pressure_tangent, lumped_mass};
 use crate::model::rigid::lever;
-use crate::model::{Links, Model, ModelError};
+use crate::model::{DofGroup, Links, Model, ModelError};
 use crate::platform;
 use crate::solve::SolveError;
 use crate::solve::assemble::{scatter, unit_rows};
@@ -19,6 +19,14 @@ use crate::solve::factor::{Factor, FactorError};
 use crate::solve::linear::Options;
 use crate::solve::plan::Plan;
 use crate::solve::sparse::BlockMatrix;
+
+/// What depends on the mesh, the bodies and the hard supports only, shared by every model on them.
+///
+/// # Errors
+/// M009, M010 for supports and bodies; N002 for memory.
+pub fn plan(model: &Model, options: &Options) -> Result<Plan, NonlinearError> {
+    Ok(Plan::direct(model, &[DofGroup::Shell], options)?)
+}
 
 /// Elements whose tangents are held at a time before they are added up in order.
 const BATCH: usize = 512;
@@ -142,32 +150,28 @@ impl<'a> System<'a> {
     /// Forces in a state, with the loads times its factor and `extra` loads on top.
     pub fn balance(&self, state: &State, extra: Option<&[f64]>) -> Balance {
         let mesh = &self.model.mesh;
-        let parts = self.each(0..mesh.quads.len(), |q| {
+        let answers = self.each(0..mesh.quads.len(), |q| {
             let nodes = mesh.quads[q].map(|n| n as usize);
             let (x, r) = (nodes.map(|n| state.position[n]), nodes.map(|n| state.rotation[n]));
-            let answer = self.sheet.answer(q, &state.memory, &x, &r);
-            let force = answer.motion.force(&answer.forces.local);
-            (answer, force, self.push_of(state, q))
+            self.sheet.answer(q, &state.memory, &x, &r)
         });
         let mut external = self.dead_loads(state.factor);
         if let Some(extra) = extra {
             external.iter_mut().zip(extra).for_each(|(f, e)| *f += e);
         }
-        for (quad, (.., pushes)) in mesh.quads.iter().zip(&parts) {
-            for (node, push) in quad.iter().zip(pushes.iter().flatten()) {
-                (0..3).for_each(|d| external[6 * *node as usize + d] += push[d]);
-            }
+        let pressure = self.pressure_at(state.factor);
+        if pressure != 0.0 {
+            self.add_pressure(state, pressure, &mut external);
         }
         let mut nodal: Vec<f64> = external.iter().map(|f| -f).collect();
-        let (mut answers, mut energy) = (Vec::with_capacity(parts.len()), 0.0);
-        for (quad, (answer, force, _)) in mesh.quads.iter().zip(parts) {
+        let mut energy = 0.0;
+        for (quad, answer) in mesh.quads.iter().zip(&answers) {
             for (i, node) in quad.iter().enumerate() {
                 for d in 0..6 {
-                    nodal[6 * *node as usize + d] += force[6 * i + d];
+                    nodal[6 * *node as usize + d] += answer.nodal[6 * i + d];
                 }
             }
             energy += answer.energy;
-            answers.push(answer);
         }
         let unbalanced = self.to_leads(state, &nodal);
         let residual = self.norm(&unbalanced, false);
@@ -199,11 +203,14 @@ impl<'a> System<'a> {
         reduced
     }
 
-    /// Forces of the follower pressure on the nodes of an element, at the factor of the state; `None` without
-    /// pressure.
-    fn push_of(&self, state: &State, quad: usize) -> Option<[Vector3<f64>; 4]> {
-        let pressure = self.pressure_at(state.factor);
-        (pressure != 0.0).then(|| follower_pressure(&self.corners(state, quad), pressure))
+    /// Adds the forces of a follower pressure (Pa) on the nodes.
+    fn add_pressure(&self, state: &State, pressure: f64, nodal: &mut [f64]) {
+        for (q, quad) in self.model.mesh.quads.iter().enumerate() {
+            let forces = follower_pressure(&self.corners(state, q), pressure);
+            for (node, force) in quad.iter().zip(forces) {
+                (0..3).for_each(|d| nodal[6 * *node as usize + d] += force[d]);
+            }
+        }
     }
 
     /// Where the corners of an element are.
@@ -247,12 +254,7 @@ impl<'a> System<'a> {
             pressure -= before.pressure;
         }
         if pressure != 0.0 {
-            for (q, quad) in self.model.mesh.quads.iter().enumerate() {
-                let forces = follower_pressure(&self.corners(state, q), pressure);
-                for (node, force) in quad.iter().zip(forces) {
-                    (0..3).for_each(|d| nodal[6 * *node as usize + d] += force[d]);
-                }
-            }
+            self.add_pressure(state, pressure, &mut nodal);
         }
         self.to_leads(state, &nodal)
     }
@@ -294,25 +296,34 @@ impl<'a> System<'a> {
         let mut matrix = BlockMatrix::zeros(Arc::clone(&pattern.graph), 6);
         let mut push = vec![0.0; self.held.len()];
         let pushes = self.values.iter().any(|v| *v != 0.0);
-        for start in (0..pattern.quads.len()).step_by(BATCH) {
-            let batch = start..(start + BATCH).min(pattern.quads.len());
-            let tangents = self.each(batch.clone(), |q| {
-                let answer = &balance.answers[q];
-                let mut k = self.sheet.stiffness(q, answer).scale(stiffening);
-                self.sheet.add_geometric(q, answer, &forces[q], &mut k);
-                let mut k = answer.motion.tangent(&k, &forces[q].local);
-                self.soften(state, q, &mut k);
-                self.constrain(state, q, k, pushes)
-            });
-            for (q, (k, forces)) in batch.zip(tangents) {
-                let nodes = &pattern.quads[q];
-                scatter(k.as_slice(), 6, nodes, &pattern.blocks[q], &mut matrix);
-                for (i, node) in nodes.iter().enumerate() {
-                    for d in 0..6 {
-                        push[6 * *node as usize + d] += forces[6 * i + d];
-                    }
-                }
+        let of_element = |q: usize| {
+            let answer = &balance.answers[q];
+            let mut k = self.sheet.stiffness(q, answer);
+            if stiffening != 1.0 {
+                k.scale_mut(stiffening);
             }
+            self.sheet.add_geometric(q, answer, &forces[q], &mut k);
+            let mut k = answer.motion.tangent(&k, &forces[q].local);
+            self.soften(state, q, &mut k);
+            let push = self.constrain(state, q, &mut k, pushes);
+            (k, push)
+        };
+        let mut add = |q: usize, (k, forces): (Matrix24, Option<Vector24>)| {
+            let nodes = &pattern.quads[q];
+            scatter(k.as_slice(), 6, nodes, &pattern.blocks[q], &mut matrix);
+            let Some(forces) = forces else { return };
+            for (i, node) in nodes.iter().enumerate() {
+                (0..6).for_each(|d| push[6 * *node as usize + d] += forces[6 * i + d]);
+            }
+        };
+        if self.threads > 1 {
+            for start in (0..pattern.quads.len()).step_by(BATCH) {
+                let batch = start..(start + BATCH).min(pattern.quads.len());
+                platform::map(batch.clone(), of_element).into_iter().zip(batch).for_each(|(k, q)| add(q, k));
+            }
+        } else {
+            // One after the other, none is kept.
+            (0..pattern.quads.len()).for_each(|q| add(q, of_element(q)));
         }
         self.add_body_terms(state, &balance.nodal, &mut matrix);
         let graph = &pattern.graph;
@@ -324,8 +335,8 @@ impl<'a> System<'a> {
     }
 
     /// Moves the stiffness of followers to their leads, empties the rows and columns of held dofs,
-    /// and returns the forces of their values.
-    pub fn constrain(&self, state: &State, q: usize, mut k: Matrix24, pushes: bool) -> (Matrix24, Vector24) {
+    /// and returns the forces of their values if they are asked for.
+    pub fn constrain(&self, state: &State, q: usize, k: &mut Matrix24, pushes: bool) -> Option<Vector24> {
         let nodes = &self.model.mesh.quads[q];
         for (i, node) in nodes.iter().enumerate() {
             if self.links.leads[*node as usize] == *node {
@@ -339,17 +350,13 @@ impl<'a> System<'a> {
             k.fixed_rows_mut::<3>(6 * i + 3).copy_from(&rows);
         }
         let dof = |a: usize| 6 * self.plan.pattern.quads[q][a / 6] as usize + a % 6;
-        let mut push = Vector24::zeros();
-        if pushes {
-            let values = Vector24::from_fn(|a, _| self.values[dof(a)]);
-            push = k * values;
-        }
+        let mut push = pushes.then(|| *k * Vector24::from_fn(|a, _| self.values[dof(a)]));
         for a in (0..24).filter(|a| self.held[dof(*a)]) {
             k.row_mut(a).fill(0.0);
             k.column_mut(a).fill(0.0);
-            push[a] = 0.0;
+            push.iter_mut().for_each(|push| push[a] = 0.0);
         }
-        (k, push)
+        push
     }
 
     /// Forces on followers (`nodal`, six a node) turn with the body: `n (r · dω) - ...` on the rotation of

@@ -21,11 +21,12 @@ use crate::instrument::fab::{FabKind, FabTest};
 use crate::law::Channel;
 use crate::quantity::Curve;
 use crate::study::StudyError;
+use schemars::JsonSchema;
 
 use self::record::{Record, simulate};
 
 /// How far a simulated curve is from a measured one.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, JsonSchema)]
 pub struct Agreement {
     /// Root mean square difference (N).
     pub rmse: f64,
@@ -147,7 +148,7 @@ pub struct FabSettings {
 impl Default for FabSettings {
     /// 32 elements on half of the strip, one step from sample to sample.
     fn default() -> Self {
-        Self { cells: super::CELLS, steps: 1 }
+        Self { cells: super::strip::CELLS, steps: 1 }
     }
 }
 

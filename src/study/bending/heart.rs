@@ -58,7 +58,7 @@ const PER_BENDING_LENGTH: f64 = 12.0;
 pub fn heart_cells(section: &ShellSection, direction: Direction, length: f64) -> usize {
     let weight = section.areal_density * STANDARD_GRAVITY;
     let bends = 0.5 * length * (weight / rigidity(section, direction)).cbrt();
-    ((PER_BENDING_LENGTH * bends).ceil() as usize).clamp(super::CELLS, MOST)
+    ((PER_BENDING_LENGTH * bends).ceil() as usize).clamp(super::strip::CELLS, MOST)
 }
 
 /// Elements on each half that are not exceeded without being asked for.

@@ -15,6 +15,9 @@ use crate::solve::Options;
 use crate::solve::nonlinear::{Settings, Solution, solve};
 use crate::study::StudyError;
 
+/// Elements along a strip where a case says nothing.
+pub(super) const CELLS: usize = 32;
+
 /// A strip under its own weight, at rest from x = 0 to x = length in z = 0.
 #[derive(Clone, Debug)]
 pub(super) struct Strip {
@@ -47,7 +50,7 @@ impl Strip {
         let side = length / cells.max(1) as f64;
         let (width, across) = match width {
             Some(width) => {
-                let across = side.max(length / super::CELLS as f64);
+                let across = side.max(length / CELLS as f64);
                 (0.5 * width, (0.5 * width / across).round().max(1.0) as usize)
             }
             None => (side, 1),

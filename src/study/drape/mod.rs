@@ -33,7 +33,7 @@ use crate::model::Model;
 use crate::platform;
 use crate::quantity::Ratio;
 use crate::section::{SheetLaw, ShellSection};
-use crate::solve::nonlinear::{Flow, NonlinearError, Settings, Solution, State, Step, plan, relax_from};
+use crate::solve::nonlinear::{NonlinearError, Settings, Solution, State, Step, descend_from, plan};
 use crate::solve::{Options, Plan};
 
 /// A draped sheet.
@@ -264,10 +264,9 @@ impl Ring {
         watch: Watch<'_>,
     ) -> Result<Solution, NonlinearError> {
         let settings = Settings { tolerance: TOLERANCE, law: law.cloned(), ..Settings::default() };
-        let flow = Flow { perturbation: 0.0, seed: self.seed, steps: STEPS };
         let observe =
             |_: &Step<'_>| if (watch.stopped)() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-        relax_from(model, plan, from, &settings, &flow, options, observe)
+        descend_from(model, plan, from, &settings, STEPS, options, observe)
     }
 
     fn state(&self, model: &Model, solution: &Solution, start: usize) -> DrapeState {

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::solve::Options;
 use crate::study::{Case, CaseResult, StudyError, build, solve_case, validate};
 
 /// A strip of 1 m x 0.1 m: t = 10 mm, E = 1 MPa, nu = 0.3; `SHEET` is its outline.
@@ -160,7 +161,7 @@ fn contradictions_of_loads_are_refused() {
     assert_eq!(refused(&massless, gravity).code(), "N008");
     let text = format!("{}{gravity}", massless.replace("SHEET", OUTLINE));
     let case = Case::parse(Path::new("c.toml"), &text).unwrap();
-    assert_eq!(validate(&case).unwrap_err().code(), "N008");
+    assert_eq!(validate(&case, &Options::default()).unwrap_err().code(), "N008");
     assert!(solved(&format!("{}{PRESSURE}", massless.replace("SHEET", OUTLINE))).is_ok());
 }
 

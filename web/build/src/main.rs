@@ -30,7 +30,14 @@ const SCRIPT: &str = include_str!("../../page/page.js");
 const WORKER: &str = include_str!("../../page/worker.js");
 /// Those of the report, which is shown in a frame and has the policy of the page beside its own.
 const REPORT_STYLE: &str = include_str!("../../../src/report/page.css");
-const REPORT_SCRIPT: &str = include_str!("../../../src/report/page.js");
+const REPORT_SCRIPT: &str = concat!(
+    include_str!("../../../src/report/page.js"),
+    include_str!("../../../src/report/page_fabrics.js"),
+    include_str!("../../../src/report/page_curves.js"),
+    include_str!("../../../src/report/page_correlation.js"),
+    include_str!("../../../src/report/page_3d.js"),
+    include_str!("../../../src/report/page_print.js")
+);
 
 fn main() -> Result<(), Box<dyn Error>> {
     let root =

@@ -51,7 +51,8 @@ impl Inertia {
             let of = |i: usize, j: usize| {
                 if i % 6 == j % 6 { factor * self.share(i % 6) * pairs[(i / 6, j / 6)] } else { 0.0 }
             };
-            let (element, _) = system.constrain(state, q, Matrix24::from_fn(of), false);
+            let mut element = Matrix24::from_fn(of);
+            system.constrain(state, q, &mut element, false);
             scatter(element.as_slice(), 6, &pattern.quads[q], &pattern.blocks[q], matrix);
         }
     }

@@ -1,0 +1,36 @@
+//! The targets: each with its valid files, and what has to hold of a damaged one.
+
+mod documents;
+mod drawn;
+mod exports;
+mod tables;
+mod toml_files;
+
+use crate::Target;
+
+pub use documents::{cards, documents};
+pub use drawn::{gmsh, picture};
+pub use exports::{archive, fab, ods, text, xls, xlsx};
+pub use tables::{bounds, library, parts};
+pub use toml_files::{case, dialect, fabric, settings};
+
+/// Every target by its name.
+pub const TARGETS: [(&str, fn() -> Target); 17] = [
+    ("archive", archive),
+    ("bounds", bounds),
+    ("cards", cards),
+    ("case", case),
+    ("dialect", dialect),
+    ("documents", documents),
+    ("fab", fab),
+    ("fabric", fabric),
+    ("gmsh", gmsh),
+    ("library", library),
+    ("ods", ods),
+    ("parts", parts),
+    ("picture", picture),
+    ("settings", settings),
+    ("text", text),
+    ("xls", xls),
+    ("xlsx", xlsx),
+];

@@ -1,0 +1,128 @@
+//! What is written down while a section is made: inputs and assumptions, where constants come from, findings.
+
+use std::borrow::Cow;
+
+use serde::Serialize;
+
+use super::error::ConstitutiveError;
+use super::perturbed::InputSource;
+use super::sensitivity::{Constant, Origin};
+use crate::characterise::{FabricSheet, Key};
+use crate::finding::{Finding, SectionFact};
+use crate::instrument::{Direction, Parameter};
+use crate::quantity::Estimate;
+
+/// One input or assumption behind a section.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Used {
+    /// What it is, e.g. `tensile modulus`.
+    pub name: Cow<'static, str>,
+    /// Its value with unit, e.g. `warp 5120 N/m, weft 3080 N/m`.
+    pub value: String,
+    /// `measured: ...` or `assumed: ...` and why.
+    pub source: String,
+}
+
+/// An estimate of the sheet, and where it stands.
+pub(super) fn value(
+    sheet: &FabricSheet,
+    parameter: Parameter,
+    direction: Option<Direction>,
+) -> Option<(Estimate, InputSource)> {
+    let estimate = sheet.get(parameter, direction)?.clone();
+    Some((estimate, InputSource::Value(Key { parameter, direction })))
+}
+
+/// What is written down on the way: the sheet, the inputs used and the findings.
+pub(super) struct Notes<'a> {
+    pub sheet: &'a FabricSheet,
+    pub used: Vec<Used>,
+    pub origins: Vec<Origin>,
+    pub findings: Vec<Finding>,
+}
+
+impl Notes<'_> {
+    /// Writes down where constants come from; `gives` has `∂ln c/∂ln p` of each.
+    pub fn origin(
+        &mut self,
+        name: impl Into<String>,
+        (estimate, source): (&Estimate, InputSource),
+        gives: &[(Constant, f64)],
+    ) {
+        let (estimate, gives) = (estimate.clone(), gives.to_vec());
+        self.origins.push(Origin { name: name.into(), estimate, source, gives });
+    }
+
+    /// The same for a parameter of the sheet; nothing if the sheet has none.
+    pub fn origin_value(
+        &mut self,
+        parameter: Parameter,
+        direction: Option<Direction>,
+        gives: &[(Constant, f64)],
+    ) {
+        if let Some((estimate, from)) = value(self.sheet, parameter, direction) {
+            let name = match direction {
+                Some(direction) => format!("{parameter} {direction}"),
+                None => parameter.symbol().to_string(),
+            };
+            self.origin(name, (&estimate, from), gives);
+        }
+    }
+
+    pub fn used(&mut self, name: &'static str, value: impl Into<String>, source: impl Into<String>) {
+        self.used.push(Used { name: name.into(), value: value.into(), source: source.into() });
+    }
+
+    /// Name of the fabric.
+    pub fn fabric(&self) -> String {
+        self.sheet.name.clone()
+    }
+
+    pub fn finding(&mut self, fact: SectionFact) {
+        let finding = Finding::new(fact);
+        // A value that is looked at twice is reported once.
+        if !self.findings.contains(&finding) {
+            self.findings.push(finding);
+        }
+    }
+
+    pub fn missing(&self, what: impl Into<String>, cure: &'static str) -> ConstitutiveError {
+        ConstitutiveError::Missing { fabric: self.sheet.name.clone(), what: what.into(), cure }
+    }
+
+    pub fn positive(
+        &self,
+        what: &str,
+        value: f64,
+        unit: &'static str,
+        cure: &'static str,
+    ) -> Result<(), ConstitutiveError> {
+        if value.is_finite() && value > 0.0 {
+            return Ok(());
+        }
+        let (fabric, what) = (self.sheet.name.clone(), what.to_string());
+        Err(ConstitutiveError::NotPositive { fabric, what, value, unit, cure })
+    }
+
+    /// Bending rigidities along warp and weft. One value for the fabric, or for one direction only,
+    /// stands for both, with a finding.
+    pub fn bending_rigidities(&mut self) -> Option<[f64; 2]> {
+        let (parameter, sheet) = (Parameter::B, self.sheet);
+        let get = |direction| sheet.get(parameter, direction);
+        let constants = [0, 1].map(|i| (Constant::Bending(i), 1.0));
+        let known = match (get(Some(Direction::Warp)), get(Some(Direction::Weft)), get(None)) {
+            (Some(warp), Some(weft), _) => {
+                self.origin_value(parameter, Some(Direction::Warp), &constants[..1]);
+                self.origin_value(parameter, Some(Direction::Weft), &constants[1..]);
+                return Some([warp.mean, weft.mean]);
+            }
+            (_, _, Some(mean)) => (mean, None),
+            (Some(warp), None, None) => (warp, Some(Direction::Warp)),
+            (None, Some(weft), None) => (weft, Some(Direction::Weft)),
+            (None, None, None) => return None,
+        };
+        self.finding(SectionFact::OneRigidity { fabric: self.fabric(), known: known.1 });
+        self.origin_value(parameter, known.1, &constants);
+        Some([known.0.mean; 2])
+    }
+}

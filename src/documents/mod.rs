@@ -1,0 +1,208 @@
+//! The JSON documents that the command prints around what the library computes, and the schemas of all documents.
+//!
+//! Each is a type that serialises, here or beside what it describes; [`schemas`] generates a JSON Schema from every one.
+
+#[cfg(feature = "parquet")]
+mod tables;
+
+use std::borrow::Cow;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::finding::Explanation;
+use crate::instrument::FabricInput;
+use crate::report::json::{FindingEntry, SectionDocument, SheetDocument};
+use crate::report::table::PredictionRow;
+use crate::report::write::Manifest;
+use crate::results::list::ListDocument;
+use crate::results::{Card, CheckDocument, ComparisonDocument, FailureEntry, SolutionDocument};
+use crate::run::RunDocument;
+use crate::schema::{self, SchemaFile};
+use crate::verify;
+
+#[cfg(feature = "parquet")]
+pub use tables::{FoundDocument, LibraryDocument, MergedDocument, PartDocument, PartRows};
+
+/// A document with what was said of the work beside it.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Complete<D> {
+    /// The document.
+    #[serde(flatten)]
+    pub document: D,
+    /// What a reader must know; nothing here where the document has findings of its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub findings: Option<Vec<FindingEntry>>,
+    /// What gave no result.
+    pub failures: Vec<FailureEntry>,
+}
+
+/// A line on standard error with `--json`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ErrorLine {
+    /// What gave no result.
+    pub error: FailureEntry,
+}
+
+/// `kesf.curves/1`, of `kesf read`: what was read.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct CurvesDocument<'a> {
+    /// `kesf.curves/1`.
+    #[schemars(extend("const" = "kesf.curves/1"))]
+    pub schema: &'static str,
+    /// In name order.
+    pub fabrics: &'a [FabricInput],
+}
+
+impl<'a> CurvesDocument<'a> {
+    /// Of fabrics.
+    pub fn new(fabrics: &'a [FabricInput]) -> Self {
+        Self { schema: "kesf.curves/1", fabrics }
+    }
+}
+
+/// `kesf.export/1`, of `kesf export`: cards, or the files that they were written to.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ExportDocument<'a> {
+    /// `kesf.export/1`.
+    #[schemars(extend("const" = "kesf.export/1"))]
+    pub schema: &'static str,
+    /// The programs, with commas.
+    pub target: String,
+    /// The cards themselves, where they go to standard output.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cards: Option<&'a [Card]>,
+    /// Paths of the files.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub files: Option<Vec<String>>,
+}
+
+impl ExportDocument<'_> {
+    /// Of nothing yet.
+    pub fn new(target: String) -> Self {
+        Self { schema: "kesf.export/1", target, cards: None, files: None }
+    }
+}
+
+/// `kesf.report/1`, of `kesf report`: the page, or the file that it was written to.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ReportDocument {
+    /// `kesf.report/1`.
+    #[schemars(extend("const" = "kesf.report/1"))]
+    pub schema: &'static str,
+    /// HTML.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub page: Option<String>,
+    /// Path of the file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub output: Option<String>,
+}
+
+impl Default for ReportDocument {
+    fn default() -> Self {
+        Self { schema: "kesf.report/1", page: None, output: None }
+    }
+}
+
+/// `kesf.results/1`, of `kesf run`: where the results are, and the predictions.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ResultsDocument<'a> {
+    /// `kesf.results/1`.
+    #[schemars(extend("const" = "kesf.results/1"))]
+    pub schema: &'static str,
+    /// The folder.
+    pub output: String,
+    /// The rows of `predictions.csv`.
+    pub predictions: &'a [PredictionRow],
+}
+
+impl<'a> ResultsDocument<'a> {
+    /// Of a folder.
+    pub fn new(output: String, predictions: &'a [PredictionRow]) -> Self {
+        Self { schema: "kesf.results/1", output, predictions }
+    }
+}
+
+/// `kesf.init/1`, of `kesf init`: the files of a folder.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct InitDocument<'a> {
+    /// `kesf.init/1`.
+    #[schemars(extend("const" = "kesf.init/1"))]
+    pub schema: &'static str,
+    /// Those that were written.
+    pub written: Vec<Cow<'a, str>>,
+    /// Those that were there, and were not changed.
+    pub kept: Vec<Cow<'a, str>>,
+}
+
+impl<'a> InitDocument<'a> {
+    /// Of a folder.
+    pub fn new(written: Vec<Cow<'a, str>>, kept: Vec<Cow<'a, str>>) -> Self {
+        Self { schema: "kesf.init/1", written, kept }
+    }
+}
+
+/// `kesf.explanations/1`, of `kesf explain`: the text behind codes.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ExplanationsDocument<'a> {
+    /// `kesf.explanations/1`.
+    #[schemars(extend("const" = "kesf.explanations/1"))]
+    pub schema: &'static str,
+    /// In the order that was asked for.
+    pub codes: &'a [&'static Explanation],
+}
+
+impl<'a> ExplanationsDocument<'a> {
+    /// Of codes.
+    pub fn new(codes: &'a [&'static Explanation]) -> Self {
+        Self { schema: "kesf.explanations/1", codes }
+    }
+}
+
+/// The schemas of all files and documents that the program reads or writes, in name order; the hidden records by which a run
+/// goes on are for the program alone.
+pub fn schemas() -> Vec<SchemaFile> {
+    let mut all = schema::schemas();
+    all.extend([
+        document::<CheckDocument>("check", "kesf.check/1, of kesf check"),
+        document::<ComparisonDocument>(
+            "comparison",
+            "kesf.comparison/1, of kesf compare and of cases of tests",
+        ),
+        document::<CurvesDocument>("curves", "kesf.curves/1, of kesf read"),
+        SchemaFile::of_document::<ErrorLine>("error", "A line on standard error with --json"),
+        document::<ExplanationsDocument>("explanations", "kesf.explanations/1, of kesf explain"),
+        document::<ExportDocument>("export", "kesf.export/1, of kesf export"),
+        document::<InitDocument>("init", "kesf.init/1, of kesf init"),
+        document::<ListDocument>("list", "kesf.list/1, of kesf list"),
+        SchemaFile::of_document::<Manifest>("manifest", "kesf.manifest/1, the files of a folder of results"),
+        document::<ReportDocument>("report", "kesf.report/1, of kesf report"),
+        document::<ResultsDocument>("results", "kesf.results/1, of kesf run"),
+        SchemaFile::of_document::<RunDocument>("run", "kesf.run/1, run.json in a folder of results"),
+        document::<SectionDocument>("section", "kesf.section/1, of kesf section, and section.json"),
+        document::<SheetDocument>("sheet", "kesf.sheet/1, of kesf characterise, and sheet.json"),
+        document::<SolutionDocument>("solution", "kesf.solution/1, of kesf solve and of cases with a sheet"),
+        document::<verify::Document>("verify", "kesf.verify/1, of kesf verify"),
+    ]);
+    #[cfg(feature = "parquet")]
+    all.extend([
+        document::<FoundDocument>("found", "kesf.found/1, of kesf library find"),
+        document::<LibraryDocument>("library", "kesf.library/1, of kesf library build"),
+        document::<MergedDocument>("merged", "kesf.merged/1, of kesf merge"),
+        document::<PartDocument>("part", "kesf.part/1, of kesf run --shard"),
+    ]);
+    all.sort_by_key(|file| file.name);
+    all
+}
+
+/// A document that a command prints, or that is a file without `findings` and `failures`.
+fn document<D: JsonSchema>(name: &'static str, title: &'static str) -> SchemaFile {
+    let mut file = SchemaFile::of_document::<Complete<D>>(name, title);
+    if let Some(required) = file.schema["required"].as_array_mut() {
+        required.retain(|key| key != "failures");
+    }
+    file
+}
+
+#[cfg(test)]
+mod tests;

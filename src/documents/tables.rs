@@ -1,0 +1,99 @@
+//! Documents of commands that work on tables of Parquet.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::library::Axis;
+use crate::report::arrow_text::{Cell, Records};
+
+/// `kesf.found/1`, of `kesf library find`: fabrics of a library.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct FoundDocument<'a> {
+    /// `kesf.found/1`.
+    #[schemars(extend("const" = "kesf.found/1"))]
+    pub schema: &'static str,
+    /// The fabric that they were compared with.
+    pub like: Option<&'a str>,
+    /// The bounds that they are within.
+    #[serde(rename = "where")]
+    pub bounds: Option<&'a str>,
+    /// What is usual in the library for the parameters that fabrics were compared by.
+    pub space: &'a [Axis],
+    /// Units of the columns that have one throughout.
+    pub units: BTreeMap<String, String>,
+    /// A row each, the nearest first.
+    #[schemars(with = "Vec<BTreeMap<String, Cell>>")]
+    pub fabrics: Records<'a>,
+}
+
+/// `kesf.library/1`, of `kesf library build`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct LibraryDocument {
+    /// `kesf.library/1`.
+    #[schemars(extend("const" = "kesf.library/1"))]
+    pub schema: &'static str,
+    /// The file.
+    pub output: String,
+    /// How many it has.
+    pub fabrics: usize,
+}
+
+impl LibraryDocument {
+    /// Of a library that was written.
+    pub fn new(output: String, fabrics: usize) -> Self {
+        Self { schema: "kesf.library/1", output, fabrics }
+    }
+}
+
+/// `kesf.merged/1`, of `kesf merge`: the rows of the parts.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct MergedDocument<'a> {
+    /// `kesf.merged/1`.
+    #[schemars(extend("const" = "kesf.merged/1"))]
+    pub schema: &'static str,
+    /// `results`, `findings` or `failures`.
+    pub table: &'static str,
+    /// In the order of the fabrics.
+    #[schemars(with = "Vec<BTreeMap<String, Cell>>")]
+    pub rows: Records<'a>,
+}
+
+impl<'a> MergedDocument<'a> {
+    /// Of a table.
+    pub fn new(table: &'static str, rows: Records<'a>) -> Self {
+        Self { schema: "kesf.merged/1", table, rows }
+    }
+}
+
+/// `kesf.part/1`, of `kesf run --shard`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct PartDocument {
+    /// `kesf.part/1`.
+    #[schemars(extend("const" = "kesf.part/1"))]
+    pub schema: &'static str,
+    /// The file of its results; those of findings and failures stand beside it.
+    pub output: String,
+    /// Its number, from 1.
+    pub shard: usize,
+    /// How many there are.
+    pub shards: usize,
+    /// Whether it was there already.
+    pub kept: bool,
+    /// How many it has.
+    pub fabrics: usize,
+    /// Rows of its tables.
+    pub rows: PartRows,
+}
+
+/// Rows of the tables of a part.
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+pub struct PartRows {
+    /// Of values.
+    pub results: usize,
+    /// Of findings.
+    pub findings: usize,
+    /// Of failures.
+    pub failures: usize,
+}

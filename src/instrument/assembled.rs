@@ -1,0 +1,203 @@
+//! What the files of a group say, put together as fabrics.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+
+use super::dialect::Key as HeaderKey;
+use super::read::{FileContent, ReadSettings};
+use super::states::told_apart;
+use super::vocabulary::Vocabulary;
+use super::{FabricInfo, FabricInput, Inference, Measurement, Parameter, ResultValue};
+use crate::finding::{Finding, Place, ReadFact};
+use crate::kes::Key;
+
+/// What is to be read as one fabric.
+pub(super) struct Group {
+    pub path: PathBuf,
+    /// A folder's name; `None` for a single file, which names itself.
+    pub name: Option<String>,
+    pub files: Vec<PathBuf>,
+    /// Whether the files were named one by one.
+    pub named: bool,
+}
+
+/// What is known of a group before its files are read. A library of thousands of groups does not keep it.
+pub(super) struct AboutGroup {
+    pub info: FabricInfo,
+    pub settings: ReadSettings,
+    pub findings: Vec<Finding>,
+}
+
+/// The fabrics of a group: one, or as many as its result tables name.
+pub(super) fn fabrics(group: &Group, about: &AboutGroup, contents: Vec<FileContent>) -> Vec<FabricInput> {
+    if contents.is_empty() && group.named {
+        return Vec::new(); // the files failed, and the failures say so
+    }
+    let names: BTreeSet<&String> =
+        contents.iter().flat_map(|c| c.results.iter().filter_map(|(name, _)| name.as_ref())).collect();
+    let sample = contents.iter().flat_map(|c| &c.measurements).find_map(|m| m.sample.clone());
+    let of_fab = contents.iter().find_map(|c| c.fab.as_ref()?.name.clone());
+    // One that is left out makes a table of several as well.
+    let left_out = contents.iter().flat_map(|c| c.failures.iter().filter_map(|e| e.about.fabric.as_ref()));
+    let several = names.iter().copied().chain(left_out).collect::<BTreeSet<_>>().len() > 1;
+    let only = if names.len() == 1 { names.first().map(|n| (*n).clone()) } else { None };
+    let stem = || group.path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let name = group.name.clone().or(sample).or(only).or(of_fab).unwrap_or_else(stem);
+    let mut out: BTreeMap<String, FabricInput> = BTreeMap::new();
+    if !several {
+        out.insert(name.clone(), blank(&name, group, about));
+    }
+    for content in contents {
+        // Values without a name, and the values of a folder's only fabric, belong to the folder.
+        let mut of: BTreeMap<String, Vec<ResultValue>> = BTreeMap::new();
+        let named = |fabric: Option<String>| fabric.filter(|_| several).unwrap_or_else(|| name.clone());
+        for (fabric, value) in content.results {
+            of.entry(named(fabric)).or_default().push(value);
+        }
+        let stiffnesses: Vec<_> = content.stiffnesses.into_iter().map(|(f, s)| (named(f), s)).collect();
+        if !content.measurements.is_empty() || content.fab.is_some() {
+            of.entry(name.clone()).or_default();
+        }
+        let decisions = content.inference;
+        let mut inference = Some(Inference { path: content.source.path.clone(), decisions });
+        // A finding of a table goes to the fabric of its cell, and one of the file to the first.
+        let first = of.keys().next().cloned();
+        let (mut of_cells, findings) = by_cell(content.findings, &of);
+        for (fabric, results) in of {
+            let input = out.entry(fabric.clone()).or_insert_with(|| blank(&fabric, group, about));
+            input.findings.extend(of_cells.remove(&fabric).unwrap_or_default());
+            input.results.extend(results);
+            let own = stiffnesses.iter().filter(|(name, _)| *name == fabric);
+            input.stiffnesses.extend(own.map(|(_, s)| s.clone()));
+            input.sources.push(content.source.clone());
+            input.inference.extend(inference.take());
+        }
+        if let Some(input) = first.and_then(|name| out.get_mut(&name)) {
+            input.findings.extend(findings);
+        }
+        if let Some(input) = out.get_mut(&name) {
+            input.measurements.extend(content.measurements);
+            input.fab.extend(content.fab);
+        }
+    }
+    // What is said of the table as a whole is said once.
+    let once = |(i, mut fabric): (usize, FabricInput)| {
+        fabric.findings.retain(|f| i == 0 || !about.findings.contains(f));
+        let states = states(&fabric, Vocabulary::new(&about.settings.dialects));
+        fabric.findings.extend(states);
+        finished(fabric)
+    };
+    out.into_values().enumerate().map(once).collect()
+}
+
+/// Findings by the fabric in whose cell they were made, and those of no cell.
+fn by_cell(
+    findings: Vec<Finding>,
+    of: &BTreeMap<String, Vec<ResultValue>>,
+) -> (BTreeMap<String, Vec<Finding>>, Vec<Finding>) {
+    let mut cells: BTreeMap<&Place, &str> = BTreeMap::new();
+    for (fabric, results) in of {
+        for result in results {
+            cells.entry(&result.place).or_insert(fabric);
+        }
+    }
+    let (mut by_fabric, mut others) = (BTreeMap::<String, Vec<Finding>>::new(), Vec::new());
+    for finding in findings {
+        match finding.place.as_ref().and_then(|place| cells.get(place)) {
+            Some(fabric) => by_fabric.entry((*fabric).to_string()).or_default().push(finding),
+            None => others.push(finding),
+        }
+    }
+    (by_fabric, others)
+}
+
+/// R127: header lines of unknown meaning that tell apart the records of one test and direction.
+fn states(fabric: &FabricInput, vocabulary: Vocabulary<'_>) -> Vec<Finding> {
+    let mut of: BTreeMap<_, Vec<&Measurement>> = BTreeMap::new();
+    for measurement in &fabric.measurements {
+        of.entry((measurement.test, measurement.direction)).or_default().push(measurement);
+    }
+    let mut found = Vec::new();
+    for records in of.into_values() {
+        let names: BTreeSet<&String> = records.iter().flat_map(|m| m.metadata.keys()).collect();
+        for name in names {
+            let entry = |m: &&Measurement| m.metadata.get(name).cloned().unwrap_or_default();
+            let entries: Vec<String> = records.iter().map(entry).collect();
+            let speaks_of_the_cloth = vocabulary.key(name).is_none_or(|key| matches!(key, HeaderKey::Remark));
+            if let Some(entries) = told_apart(&entries, '.').filter(|_| speaks_of_the_cloth) {
+                let (name, record) = (name.clone(), records[0].record_name());
+                let fact = ReadFact::RecordsOfStates { name, entries, record };
+                found.push(Finding::new(fact).at(records[0].place()));
+            }
+        }
+    }
+    found
+}
+
+fn blank(name: &str, group: &Group, about: &AboutGroup) -> FabricInput {
+    let mut info = about.info.clone();
+    if group.name.as_deref() != Some(name) {
+        // One of several in a table: the title is the folder's, not its own.
+        info.title.clear();
+    }
+    FabricInput {
+        name: name.to_string(),
+        path: group.path.clone(),
+        info,
+        findings: about.findings.clone(),
+        ..FabricInput::default()
+    }
+}
+
+/// Orders the measurements, numbers the specimens, and says when several samples were mixed.
+fn finished(mut fabric: FabricInput) -> FabricInput {
+    if fabric.info.title.is_empty() {
+        fabric.info.title.clone_from(&fabric.name);
+    }
+    let samples: BTreeSet<&str> = fabric.measurements.iter().filter_map(|m| m.sample.as_deref()).collect();
+    if samples.len() > 1 {
+        let fact = ReadFact::SeveralSamples { samples: samples.into_iter().map(str::to_string).collect() };
+        fabric.findings.push(Finding::new(fact).at(Place::file(&fabric.path)));
+    }
+    // The areal density stands in the header of every file; once is enough.
+    let mut known = BTreeSet::new();
+    fabric.results.retain(|v| {
+        // `-0.0` is 0; nothing here is not a number.
+        let bits = |value: f64| (value + 0.0).to_bits();
+        known.insert((v.parameter, v.direction, bits(v.mean), v.sd.map(bits), v.n))
+    });
+    several_tables(&mut fabric);
+    renumber(&mut fabric);
+    fabric.measurements.sort_by_key(|m| (m.test, m.direction, m.specimen));
+    fabric
+}
+
+/// R120: a value that several tables, sheets or files give, each something else.
+fn several_tables(fabric: &mut FabricInput) {
+    let mut of: BTreeMap<_, Vec<&ResultValue>> = BTreeMap::new();
+    // Headers of curves state the areal density, each its specimen's.
+    for value in fabric.results.iter().filter(|v| v.parameter != Parameter::W) {
+        let key = Key { parameter: value.parameter, direction: value.direction };
+        of.entry(key).or_default().push(value);
+    }
+    of.retain(|_, values| values.len() > 1);
+    let Some([first, second, ..]) = of.values().next().map(Vec::as_slice) else { return };
+    let (first, place) = (first.place.to_string(), second.place.clone());
+    let fact = ReadFact::SeveralTables { keys: of.into_keys().collect(), first };
+    fabric.findings.push(Finding::new(fact).at(place));
+}
+
+/// Gives specimens of different files that carry the same number numbers of their own.
+fn renumber(fabric: &mut FabricInput) {
+    let mut seen: BTreeMap<_, BTreeSet<usize>> = BTreeMap::new();
+    for m in &mut fabric.measurements {
+        let taken = seen.entry((m.test, m.direction)).or_default();
+        if taken.contains(&m.specimen) {
+            let next = taken.last().map_or(1, |n| n + 1);
+            let fact = ReadFact::Renumbered { specimen: m.specimen, number: next };
+            fabric.findings.push(Finding::new(fact).at(Place::file(&m.source.path)));
+            m.specimen = next;
+        }
+        taken.insert(m.specimen);
+    }
+}

@@ -1,0 +1,109 @@
+//! What a header says twice or of a factor that nobody can know to be applied, and what the names of columns say against it or against one another.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::dialect::{Key, Role};
+use super::layout::{Entry, Pair, Scanner};
+use super::raw::Row;
+use super::sniff::{Number, number};
+use super::vocabulary::Vocabulary;
+use crate::finding::{Finding, Place, ReadFact};
+
+impl Scanner<'_, '_> {
+    /// R118: two lines of one header that state a direction or a dimension differently; the later one is taken.
+    pub(super) fn note_contradiction(&mut self, key: Key, entry: &Entry) {
+        let Some(before) = self.header.known.get(&key) else { return };
+        let of_test = matches!(
+            key,
+            Key::Direction | Key::Width | Key::Gauge | Key::Maximum | Key::Pretension | Key::Contact
+        );
+        let is_number = |row: &Row<'_>| {
+            let first = row.filled().next().map(|(_, c)| number(&c.text, self.context.decimal));
+            first.is_some_and(|first| first != Number::Text)
+        };
+        let in_one_header = !self.rows[..self.at.min(self.rows.len())]
+            .iter()
+            .rev()
+            .take_while(|row| row.line > before.line)
+            .any(is_number);
+        let differs = match key {
+            Key::Direction => {
+                let of = |text: &str| self.context.vocabulary.direction(text);
+                of(&before.text) != of(&entry.text)
+            }
+            _ => before.text != entry.text,
+        };
+        if of_test && in_one_header && differs {
+            let fact = ReadFact::StatedTwice {
+                first: before.text.clone(),
+                first_line: before.line,
+                second: entry.text.clone(),
+            };
+            self.findings.push(Finding::new(fact).at(Place::at(self.context.path, entry.line, entry.column)));
+        }
+    }
+
+    /// R125: a direction among words that are not understood.
+    pub(super) fn note_more_than_direction(&mut self, entry: &Entry) {
+        if let Some(fact) = more_than_direction(&entry.text, self.context.vocabulary) {
+            self.findings.push(Finding::new(fact).at(Place::at(self.context.path, entry.line, entry.column)));
+        }
+    }
+
+    /// R122: a factor other than 1, which the samples may have been multiplied by or may still have to be.
+    pub(super) fn note_factor(
+        &mut self,
+        key: Option<Key>,
+        name: &str,
+        values: &[(String, usize)],
+        line: usize,
+    ) {
+        let Some((value, column)) = values.first().filter(|_| key == Some(Key::Factor)) else { return };
+        let is_one = number(value, self.context.decimal) == Number::Value(1.0);
+        if !is_one && value.starts_with(|c: char| c.is_ascii_digit() || "+-.×x".contains(c)) {
+            let fact = ReadFact::StatedFactor { name: name.to_string(), value: value.clone() };
+            self.findings.push(Finding::new(fact).at(Place::at(self.context.path, line, *column)));
+        }
+    }
+
+    /// R118: the name of a column states another direction than the header.
+    pub(super) fn note_direction_in_heads(&mut self, pairs: &[Pair]) {
+        let vocabulary = self.context.vocabulary;
+        let differs = |pair: &&Pair| {
+            let of_header =
+                pair.header.known.get(&Key::Direction).and_then(|e| vocabulary.direction(&e.text));
+            let of_head = pair.y.says.direction.or(pair.x.says.direction);
+            of_header.is_some() && of_head.is_some() && of_header != of_head
+        };
+        let Some(pair) = pairs.iter().find(differs) else { return };
+        if let Some(entry) = pair.header.known.get(&Key::Direction) {
+            let (first, first_line, second) = (entry.text.clone(), entry.line, pair.y.name.clone());
+            let fact = ReadFact::StatedTwice { first, first_line, second };
+            let place = Place::at(self.context.path, pair.y.line, pair.y.column);
+            self.findings.push(Finding::new(fact).at(place));
+        }
+    }
+
+    /// R119: ordinates of one kind that are named by different words are other fabrics, or one was made of another; they are
+    /// read as specimens, and told.
+    pub(super) fn note_words(&mut self, pairs: &[Pair]) {
+        let mut of: BTreeMap<Role, Vec<&Pair>> = BTreeMap::new();
+        for pair in pairs {
+            of.entry(pair.y.role).or_default().push(pair);
+        }
+        for pairs in of.into_values() {
+            let words: BTreeSet<&str> = pairs.iter().map(|p| p.y.says.words.as_str()).collect();
+            if words.len() > 1 {
+                let names = pairs.iter().map(|p| p.y.name.clone()).collect();
+                let place = Place::at(self.context.path, pairs[0].y.line, 0);
+                self.findings.push(Finding::new(ReadFact::ColumnsAsSpecimens { names }).at(place));
+            }
+        }
+    }
+}
+
+/// R125 of a text that names a direction and says more.
+pub(super) fn more_than_direction(text: &str, vocabulary: Vocabulary<'_>) -> Option<ReadFact> {
+    let direction = vocabulary.direction(text).filter(|_| vocabulary.says_more_than_direction(text))?;
+    Some(ReadFact::MoreThanDirection { text: text.to_string(), direction })
+}

@@ -1,0 +1,123 @@
+//! Directions of values that no column states: in names of fabrics, of the sheet, and in numbers behind symbols.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{Datum, RowFacts, Table};
+use crate::finding::{Finding, Place, ReadFact};
+use crate::instrument::contradictions::more_than_direction;
+use crate::instrument::raw::Row;
+use crate::instrument::{Direction, Parameter};
+use crate::kes::Key;
+
+impl Table<'_, '_> {
+    /// `F1-warp`, `F1-weft` in the column of names: fabrics that end with a direction each, and occur in several of them.
+    pub(super) fn directions_in_names(&self, rows: &mut [(&Row<'_>, RowFacts)]) {
+        let v = self.context.vocabulary;
+        let parts = |name: &str| {
+            let name = name.trim_end_matches([')', ']']);
+            let at = name.rfind(|c: char| !c.is_alphanumeric())?;
+            let (stem, word) = name.split_at(at);
+            let direction = v.direction_exactly(word.trim_start_matches(|c: char| !c.is_alphanumeric()))?;
+            let stem = stem.trim_end_matches(|c: char| !c.is_alphanumeric()).to_string();
+            (!stem.is_empty()).then_some((stem, direction))
+        };
+        let split: Vec<_> = rows.iter().map(|(_, f)| parts(f.fabric.as_ref()?)).collect();
+        let mut of_stem = BTreeMap::<&str, BTreeSet<Direction>>::new();
+        for (stem, direction) in split.iter().flatten() {
+            of_stem.entry(stem).or_default().insert(*direction);
+        }
+        let all = split.iter().all(Option::is_some) && of_stem.values().all(|of| of.len() > 1);
+        if !all || rows.iter().any(|(_, f)| f.facets.direction.is_some()) {
+            return;
+        }
+        for ((_, facts), split) in rows.iter_mut().zip(&split) {
+            if let Some((stem, direction)) = split {
+                (facts.fabric, facts.facets.direction) = (Some(stem.clone()), Some(*direction));
+            }
+        }
+    }
+
+    /// R125, once for each text.
+    pub(super) fn note_more_than_direction(&mut self, (line, column): (usize, usize), text: &str) {
+        if !self.directions.insert(text.to_string()) {
+            return;
+        }
+        if let Some(fact) = more_than_direction(text, self.context.vocabulary) {
+            let place = Place::at(self.context.path, line, column);
+            self.findings.push(Finding::new(fact).at(place));
+        }
+    }
+
+    /// The direction that the name of the sheet or file states, where nothing in the table states one.
+    pub(super) fn direction_of_the_sheet(&mut self) {
+        let directional = |d: &Datum| d.parameter.is_directional();
+        let stated = self.data.iter().any(|d| d.direction.is_some() || d.row_direction.is_some());
+        let Some(direction) = self.context.label.direction.filter(|_| !stated) else { return };
+        if !self.fast.is_empty() || !self.layout.numbers_of_symbols().is_empty() {
+            return;
+        }
+        let mut any = false;
+        for d in self.data.iter_mut().filter(|d| directional(d)) {
+            d.direction = Some(direction);
+            any = true;
+        }
+        if any {
+            let place = Place::at(self.context.path, self.layout.line, 0);
+            self.findings.push(Finding::new(ReadFact::DirectionFromName {}).at(place));
+        }
+    }
+
+    /// `B1, B2` and `LT-1, LT-2` of the literature: 1 is warp and 2 is weft, where no direction is stated and the numbers
+    /// are these two.
+    ///
+    /// In a table of FAST they are that always, and its T2, the thickness at 2 gf/cm², is no second T0.
+    pub(super) fn directions_of_numbers(&mut self) {
+        let is_fast_table = !self.fast.is_empty();
+        if is_fast_table {
+            self.leave_out_t2();
+            // B of a strip under its own weight and G of a bias strip are no values of KES-FB.
+            for d in self.data.iter_mut().filter(|d| [Parameter::B, Parameter::G].contains(&d.parameter)) {
+                d.inferred = true;
+            }
+        }
+        let numbered = self.layout.numbers_of_symbols();
+        let of = |d: Option<Direction>, p: Option<Parameter>| {
+            d.is_some() && p.is_none_or(Parameter::is_directional)
+        };
+        let stated = self.data.iter().any(|d| of(d.direction, Some(d.parameter)));
+        if stated || numbered.is_empty() {
+            return;
+        }
+        if numbered != BTreeSet::from([1, 2]) {
+            self.numbers_of_specimens();
+            return;
+        }
+        let direction = |index: Option<usize>| match index {
+            Some(1) => Some(Direction::Warp),
+            Some(2) => Some(Direction::Weft),
+            _ => None,
+        };
+        for d in self.data.iter_mut().filter(|d| d.parameter.is_directional()) {
+            (d.direction, d.index) = (direction(d.index), None);
+        }
+        for f in &mut self.fast {
+            f.direction = f.direction.or(direction(f.index));
+        }
+        if !is_fast_table {
+            let place = Place::at(self.context.path, self.layout.line, 0);
+            self.findings.push(Finding::new(ReadFact::NumbersAsDirections {}).at(place));
+        }
+    }
+
+    /// R121: `B1, B2, B3` of no direction.
+    fn numbers_of_specimens(&mut self) {
+        let without = |d: &&Datum| d.parameter.is_directional() && d.index.is_some();
+        let parameters: BTreeSet<Parameter> = self.data.iter().filter(without).map(|d| d.parameter).collect();
+        let keys: Vec<Key> =
+            parameters.into_iter().map(|parameter| Key { parameter, direction: None }).collect();
+        if !keys.is_empty() {
+            let place = Place::at(self.context.path, self.layout.line, 0);
+            self.findings.push(Finding::new(ReadFact::NumbersAsSpecimens { keys }).at(place));
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! Columns of unknown meaning that tell apart rows which are averaged: states of one fabric, or other fabrics.
+
+use std::collections::BTreeMap;
+
+use super::{Datum, Table};
+use crate::finding::{Finding, Place, ReadFact};
+use crate::instrument::dialect::Key as HeaderKey;
+use crate::instrument::states::told_apart;
+use crate::kes::Key;
+
+/// The columns that tell repeats apart, by fabric and heading: a table may have very many.
+pub(super) type States = BTreeMap<(Option<String>, String), State>;
+
+/// A column that tells the repeats of a fabric apart.
+pub(super) struct State {
+    entries: [String; 2],
+    keys: Vec<Key>,
+    place: Place,
+}
+
+impl State {
+    /// R126 about a column, at the first of the values.
+    pub fn finding(self, column: String) -> Finding {
+        let Self { entries, keys, place } = self;
+        Finding::new(ReadFact::ColumnOfStates { column, entries, keys }).at(place)
+    }
+}
+
+impl Table<'_, '_> {
+    /// Adds the columns in which the repeats of a value differ.
+    pub(super) fn states_of(&self, fabric: &Option<String>, kept: &[Datum], states: &mut States) {
+        let [first, _, ..] = kept else { return };
+        for label in self.layout.labels.iter().filter(|l| l.meta.is_none()) {
+            if self.context.vocabulary.key(&label.name) == Some(HeaderKey::Circumstance) {
+                continue;
+            }
+            let entry = |d: &Datum| {
+                let text = self.states.get(&d.line).and_then(|of| of.get(&label.index));
+                text.cloned().unwrap_or_default()
+            };
+            let entries: Vec<String> = kept.iter().map(entry).collect();
+            let Some(two) = told_apart(&entries, self.context.decimal) else { continue };
+            let key = Key { parameter: first.parameter, direction: first.direction };
+            let place = || Place::at(self.context.path, first.line, first.column);
+            let new = || State { entries: two, keys: Vec::new(), place: place() };
+            states.entry((fabric.clone(), label.name.clone())).or_insert_with(new).keys.push(key);
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! The unit of a value: stated in one of several cells, and one only.
+
+use super::layout::{self, Column};
+use super::{RowFacts, Table};
+use crate::instrument::Parameter;
+use crate::instrument::error::{Problem, ReadError};
+use crate::instrument::raw::Row;
+use crate::instrument::unit_text::known_unit;
+use crate::quantity::{Unit, counts_angles, divides_by_length};
+
+impl Table<'_, '_> {
+    /// R018 where a row and its heads, or two cells of a row, state units that are not the same.
+    pub(super) fn one_unit(
+        &self,
+        row: &Row<'_>,
+        index: usize,
+        first: Option<&str>,
+        second: Option<&str>,
+    ) -> Result<(), ReadError> {
+        match (first, second) {
+            (Some(first), Some(second)) if layout::differ(first, second) => {
+                let problem = Problem::BadTable { found: layout::two_units(first, second) };
+                Err(self.context.error(row.line, row.column(index), problem))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Where the unit of a value stands: in its row, else in the heads.
+    pub(super) fn unit_place(&self, row: &Row<'_>, column: &Column, facts: &RowFacts) -> (usize, usize) {
+        if column.facets.unit.is_some() || !self.layout.down {
+            return column.place;
+        }
+        (row.line, row.column(facts.unit_at))
+    }
+
+    /// The unit of a value; dimensionless parameters need none.
+    pub(super) fn unit(
+        &self,
+        p: Parameter,
+        text: Option<&str>,
+        (line, column): (usize, usize),
+    ) -> Result<Unit, ReadError> {
+        let error = |problem| self.context.error(line, column, problem);
+        let text = match text {
+            Some(text) if text != "-" || p.kes_unit() == "1" => text,
+            _ if p.kes_unit() == "1" || self.context.kes_units => p.kes_unit(),
+            _ => {
+                let found = p.symbol().to_string();
+                return Err(error(Problem::UnitMissing { found, expected: p.kes_unit() }));
+            }
+        };
+        let unit = known_unit(text).map_err(error)?;
+        let expected = known_unit(p.si_unit()).map_err(error)?;
+        // G in gf/cm could be per degree or per radian, a factor 57: only SI is clear without deg.
+        let per_angle = p == Parameter::G
+            && text.contains("gf")
+            && !(text.contains("deg") || text.contains("rad") || text.contains('°') || text.contains('度'));
+        let undivided = p == Parameter::W && !divides_by_length(text);
+        // An angle has no dimension, and a ratio in degrees would be 57 times too large as one in radians.
+        let angle = matches!(p.kes_unit(), "1" | "%") && counts_angles(text);
+        if unit.dimension != expected.dimension || per_angle || undivided || angle {
+            let of = p.symbol().to_string();
+            let expected = p.kes_unit();
+            return Err(error(Problem::UnitWrong { found: text.to_string(), of, expected }));
+        }
+        Ok(unit)
+    }
+}

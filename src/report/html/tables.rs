@@ -1,0 +1,111 @@
+//! Tables of the page. What stands above one is a paragraph of its own: a caption would scroll away with a wide table.
+
+use super::text::{breakable, escape, prose};
+
+/// A cell of a table.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Cell {
+    /// What it says.
+    pub text: String,
+    /// What speaks against it; empty for nothing.
+    pub remark: String,
+}
+
+impl<T: Into<String>> From<T> for Cell {
+    fn from(text: T) -> Self {
+        Self { text: text.into(), remark: String::new() }
+    }
+}
+
+/// The beginning of a table with its headings, each with the attributes of its cell.
+pub(super) fn begin<'h>(
+    out: &mut String,
+    [caption, class]: [&str; 2],
+    header: impl Iterator<Item = (&'h str, &'static str)>,
+) {
+    if !caption.is_empty() {
+        out.push_str(&format!("<p class=\"caption\">{}</p>\n", prose(caption)));
+    }
+    let class = if class.is_empty() { String::new() } else { format!(" class=\"{class}\"") };
+    out.push_str("<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Table\">");
+    out.push_str(&format!("<table{class}>\n<thead><tr>"));
+    header.for_each(|(name, cell)| out.push_str(&format!("<th scope=\"col\"{cell}>{}</th>", escape(name))));
+    out.push_str("</tr></thead>\n<tbody>\n");
+}
+
+/// The end of a table.
+pub(super) fn end(out: &mut String) {
+    out.push_str("</tbody>\n</table></div>\n");
+}
+
+/// A table; columns of numbers are set to the right.
+pub(super) fn table(out: &mut String, above: [&str; 2], header: &[String], rows: &[Vec<Cell>]) {
+    let text = |row: &[Cell], column: usize| row.get(column).map_or(String::new(), |cell| cell.text.clone());
+    let is_numeric = |column: usize| {
+        let mut filled =
+            rows.iter().map(|r| text(r, column)).filter(|c| !c.is_empty() && c != "-").peekable();
+        filled.peek().is_some() && filled.all(|c| is_number(&c))
+    };
+    let numeric: Vec<bool> = (0..header.len()).map(is_numeric).collect();
+    let of_head = |column: usize| if numeric[column] { " class=\"number\"" } else { "" };
+    begin(out, above, header.iter().enumerate().map(|(column, name)| (name.as_str(), of_head(column))));
+    for row in rows {
+        out.push_str("<tr>");
+        for (column, is_numeric) in numeric.iter().enumerate() {
+            cell(out, row.get(column).unwrap_or(&Cell::default()), *is_numeric);
+        }
+        out.push_str("</tr>\n");
+    }
+    end(out);
+}
+
+fn cell(out: &mut String, Cell { text, remark }: &Cell, is_numeric: bool) {
+    let classes = [(is_numeric, "number"), (!remark.is_empty(), "marked")];
+    let classes: Vec<&str> = classes.into_iter().filter_map(|(has, class)| has.then_some(class)).collect();
+    let class = if classes.is_empty() { String::new() } else { format!(" class=\"{}\"", classes.join(" ")) };
+    let remark = if remark.is_empty() { String::new() } else { format!("<small>{}</small>", escape(remark)) };
+    out.push_str(&format!("<td{class}>{}{remark}</td>", breakable(text)));
+}
+
+/// A table whose cells are a text in KES units and one in SI.
+pub(super) fn units(out: &mut String, caption: &str, header: &[String], rows: &[Vec<[String; 2]>]) {
+    begin(out, [caption, ""], header.iter().map(|name| (name.as_str(), "")));
+    for row in rows {
+        out.push_str("<tr>");
+        for [kes, si] in row {
+            let class = if is_number(kes) { " class=\"number\"" } else { "" };
+            out.push_str(&format!("<td{class}>{}</td>", both([kes, si])));
+        }
+        out.push_str("</tr>\n");
+    }
+    end(out);
+}
+
+/// A text in KES units and in SI, of which one is shown.
+pub(super) fn both([kes, si]: [&str; 2]) -> String {
+    if kes == si {
+        return breakable(kes);
+    }
+    let [kes, si] = [escape(kes), escape(si)];
+    format!("<span class=\"kes\">{kes}</span><span class=\"si\">{si}</span>")
+}
+
+/// Names and texts.
+pub(super) fn facts(out: &mut String, facts: &[(String, String)]) {
+    out.push_str("<dl class=\"facts\">\n");
+    for (name, text) in facts {
+        out.push_str(&format!("<div><dt>{}</dt> <dd>{}</dd></div>\n", escape(name), prose(text)));
+    }
+    out.push_str("</dl>\n");
+}
+
+/// Whether a cell is to be read as a number: `0.052`, `−3`, `1.2 × 10⁻⁵`, `4.11 ± 0.13`, `12 %`.
+pub(super) fn is_number(cell: &str) -> bool {
+    let digits = cell.trim_start_matches(['-', '−', '+', '(', '±', ' ']);
+    digits.starts_with(|c: char| c.is_ascii_digit())
+        && digits.chars().all(|c| {
+            c.is_ascii_digit() || matches!(c, '.' | ' ' | '±' | '×' | '%' | '(' | ')' | '-' | '−' | '+' | 'e')
+                // Superscripts of a power of ten.
+                || matches!(c, '⁻' | '¹' | '²' | '³' | '⁰' | '⁴'..='⁹')
+        })
+}
