@@ -14,6 +14,7 @@ mod build;
 mod error;
 mod file;
 mod find;
+mod grammar;
 mod space;
 mod text;
 

@@ -162,7 +162,7 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
     (
         "library",
         &["platform", "quantity", "kes", "finding", "instrument", "report", "results", "parts"],
-        &["arrow_array", "arrow_schema", "arrow_select", "csv", "parquet", "sqlparser"],
+        &["arrow_array", "arrow_schema", "arrow_select", "csv", "parquet", "winnow"],
     ),
     (
         "documents",
