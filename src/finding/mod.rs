@@ -81,7 +81,7 @@ impl fmt::Display for Place {
 /// As JSON it has `code`, `message`, `fields` (an object) and `place`; from JSON it is made of all but the message,
 /// which is written anew from the fields.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(from = "Written")]
+#[serde(try_from = "Written")]
 pub struct Finding {
     /// What was found.
     pub fact: Fact,
@@ -160,14 +160,16 @@ impl JsonSchema for Finding {
 /// A finding as it is written.
 #[derive(Deserialize)]
 struct Written {
-    #[serde(flatten)]
-    fact: Fact,
+    code: String,
+    fields: Fields,
     place: Option<Place>,
 }
 
-impl From<Written> for Finding {
-    fn from(Written { fact, place }: Written) -> Self {
-        Self { fact, place }
+impl TryFrom<Written> for Finding {
+    type Error = serde_json::Error;
+
+    fn try_from(Written { code, fields, place }: Written) -> Result<Self, serde_json::Error> {
+        Ok(Self { fact: Fact::read(&code, &fields)?, place })
     }
 }
 

@@ -14,7 +14,8 @@ mod usage;
 
 use std::fmt;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
+use serde::de::{DeserializeOwned, Error as _};
 use serde_json::Value;
 
 pub use drape::DrapeFact;
@@ -39,7 +40,7 @@ macro_rules! facts {
             = $format:literal $(, $argument:expr)*;
     )*}) => {
         $(#[$meta])*
-        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[derive(Clone, Debug, PartialEq, serde::Serialize)]
         #[serde(tag = "code", content = "fields")]
         pub enum $name {$(
             #[doc = concat!("`", $code, "`: ")]
@@ -52,6 +53,15 @@ macro_rules! facts {
             /// The stable code; see [`explain`](crate::finding::explain).
             pub fn code(&self) -> &'static str {
                 match self { $(Self::$variant { .. } => $code,)* }
+            }
+
+            /// The fact of a code with these fields, if the code is one of this group.
+            #[allow(unused_variables)]
+            pub(super) fn read(code: &str, fields: &super::Fields) -> serde_json::Result<Option<Self>> {
+                Ok(Some(match code {
+                    $($code => Self::$variant { $($field: super::field(fields, stringify!($field))?),* },)*
+                    _ => return Ok(None),
+                }))
             }
         }
 
@@ -68,8 +78,15 @@ macro_rules! facts {
 }
 use facts;
 
+/// A field of a fact, as it was written. Facts are read field by field, as readers that are derived for some hundred
+/// variants are a tenth of the program.
+fn field<T: DeserializeOwned>(fields: &Fields, name: &str) -> serde_json::Result<T> {
+    T::deserialize(fields.get(name).unwrap_or(&Value::Null))
+        .map_err(|e| serde_json::Error::custom(format_args!("field `{name}`: {e}")))
+}
+
 /// What a finding says.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Fact {
     /// Of files (codes `R`).
@@ -130,7 +147,20 @@ impl fmt::Display for Fact {
 
 /// A group of facts is a fact.
 macro_rules! groups {
-    ($($group:ident($name:ty)),*) => {$(
+    ($($group:ident($name:ty)),*) => {
+        impl Fact {
+            /// The fact of a code with its fields, as [`Fact::code`] and [`Fact::fields`] give them.
+            ///
+            /// # Errors
+            /// If there is no such code, or a field is not one of it.
+            pub fn read(code: &str, fields: &Fields) -> serde_json::Result<Self> {
+                $(if let Some(fact) = <$name>::read(code, fields)? {
+                    return Ok(Self::$group(fact));
+                })*
+                Err(serde_json::Error::custom(format_args!("no finding has the code `{code}`")))
+            }
+        }
+        $(
         impl From<$name> for Fact {
             fn from(fact: $name) -> Self {
                 Self::$group(fact)
