@@ -3,6 +3,7 @@
 //! Laboratories put these in any order and into any cell (`B warp (gf·cm²/cm)`, `Warp-1`, `2HG5_2`, `Weft mean`), so that
 //! all cells of words are read alike; where they stand decides later what a value is.
 
+use super::condition;
 use super::dialect::{Statistic, TableColumn};
 use super::fast::{self, FastValue};
 use super::unit_text::{is_scaled, matching_open, split_unit, unit};
@@ -39,6 +40,23 @@ impl Facets {
     /// Reads a cell.
     pub fn of(cell: &str, vocabulary: Vocabulary<'_>) -> Self {
         let text = folded(cell).replace(['[', '【'], "(").replace([']', '】'], ")");
+        let facets = Self::of_words(&text, vocabulary);
+        let understood = !facets.unknown && facets.unit.as_ref().is_none_or(|u| unit(u).is_ok());
+        if understood || text.chars().count() > HEADING {
+            return facets;
+        }
+        // `2HG at 0.5°`: a condition that is in the definition of the parameter says nothing new.
+        let without =
+            condition::without(&text).map(|(rest, stated)| (Self::of_words(&rest, vocabulary), stated));
+        match without {
+            Some((other, stated)) if other.parameter.is_some_and(|p| !other.unknown && stated.defines(p)) => {
+                other
+            }
+            _ => facets,
+        }
+    }
+
+    fn of_words(text: &str, vocabulary: Vocabulary<'_>) -> Self {
         let mut facets = Self::default();
         if text.is_empty() {
             return facets;
@@ -47,7 +65,7 @@ impl Facets {
             facets.unknown = true;
             return facets;
         }
-        let mut name = text.as_str();
+        let mut name = text;
         while let Some((before, inner)) = bracket(name) {
             if !facets.take_bracket(inner, vocabulary) {
                 break;
@@ -163,6 +181,9 @@ impl Facets {
                 rest.push(words[i]);
             }
             i += taken.unwrap_or(1);
+        }
+        if let Some(parameter) = self.parameter {
+            rest.retain(|word| !vocabulary.belongs_to(word, parameter));
         }
         if rest.is_empty() {
             return;
@@ -302,6 +323,24 @@ mod tests {
         assert_eq!(parameter("B (経) [gf·cm²/cm]"), (B, Some(Warp), unit("gf·cm2/cm"), false, false));
         assert_eq!(parameter("Bending rigidity B warp"), (B, Some(Warp), None, false, false));
         assert!(of("drape_nodes").unknown);
+        // Words of a parameter's own names, and the condition that defines it.
+        assert_eq!(parameter("Hysteresis 2HB (gf·cm/cm)").0, Hb);
+        assert_eq!(parameter("Linearity of compression LC").0, Parameter::Lc);
+        assert_eq!(parameter("Resiliência RT (%)").0, Parameter::Rt);
+        assert_eq!(parameter("Weight per unit area (mg/cm²)").0, Parameter::W);
+        assert_eq!(parameter("2HG at 0.5 degrees (gf/cm)").0, Parameter::Hg);
+        assert_eq!(parameter("Hysteresis of shear force at 5 deg, 2HG5 (gf/cm)").0, Hg5);
+        assert_eq!(parameter("Hysteresis of shear force (at 0.5°) (2HG) (gf/cm)").0, Parameter::Hg);
+        assert_eq!(parameter("EMT (% at 500 gf/cm)"), (Emt, None, unit("%"), false, false));
+        assert_eq!(parameter("2HB bei K=1 1/cm (cN·cm/cm)").0, Hb);
+        // Other conditions, and words of other meaning.
+        for text in
+            ["2HG at 3 degrees (gf/cm)", "EMT at 50 gf/cm (%)", "2HB corrected", "G hysteresis", "B loss"]
+        {
+            let f = of(text);
+            assert!(f.unknown, "{text}: {f:?}");
+        }
+        assert!(super::super::unit_text::unit(&of("EMT (% at 50 gf/cm)").unit.unwrap()).is_err());
         assert_eq!(of("LT CV (%)").statistic, Some(Statistic::Spread));
         assert_eq!(of("EMT warp max (%)").statistic, Some(Statistic::Other));
     }

@@ -9,6 +9,7 @@ mod assembled;
 mod axis;
 mod blanks;
 mod column_name;
+mod condition;
 mod conditions;
 mod contradictions;
 mod curves;

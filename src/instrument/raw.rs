@@ -195,14 +195,57 @@ fn looks_japanese(bytes: &[u8]) -> bool {
 /// Hand-written because the csv crate gives no position of a field and skips blank lines, which
 /// separate blocks here.
 pub(super) fn rows(text: &str, delimiter: char) -> Vec<Row<'_>> {
-    text.split('\n')
-        .enumerate()
-        .map(|(i, line)| Row {
-            line: i + 1,
-            cells: cells(line.strip_suffix('\r').unwrap_or(line), delimiter),
+    let (mut out, mut line, mut rest) = (Vec::new(), 1, Some(text));
+    while let Some(here) = rest {
+        let (end, lines) = logical_line(here, delimiter);
+        let own = &here[..end];
+        out.push(Row {
+            line,
+            cells: cells(own.strip_suffix('\r').unwrap_or(own), delimiter),
             in_cells: false,
-        })
-        .collect()
+        });
+        line += lines;
+        rest = here.get(end + 1..);
+    }
+    out
+}
+
+/// Lines that a heading with line breaks in it may take.
+const BREAKS: usize = 8;
+
+/// Where the first line ends, and how many it is: spreadsheets write a line break within a cell in quotes. A quote that no
+/// cell of the next lines closes is an inch mark or a slip, and ends with its line.
+fn logical_line(text: &str, delimiter: char) -> (usize, usize) {
+    let ends = text.match_indices('\n').map(|(at, _)| at).chain([text.len()]);
+    let mut first = None;
+    for (end, lines) in ends.zip(1..=BREAKS) {
+        let line = &text[..end];
+        first.get_or_insert(end);
+        if !line.contains('"') {
+            break;
+        }
+        if !leaves_quote_open(line, delimiter) {
+            return (end, lines);
+        }
+    }
+    (first.unwrap_or(text.len()), 1)
+}
+
+/// Whether a cell that begins with a quote lacks the closing one.
+fn leaves_quote_open(line: &str, delimiter: char) -> bool {
+    let mut rest = line.trim_end_matches('\r');
+    loop {
+        let cell = rest.trim_start_matches(' ');
+        let end = cell_end(rest, delimiter);
+        let quotes = rest[..end].matches('"').count();
+        if cell.starts_with('"') && quotes % 2 == 1 {
+            return true;
+        }
+        match rest.get(end + delimiter.len_utf8()..) {
+            Some(behind) if end < rest.len() => rest = behind,
+            _ => return false,
+        }
+    }
 }
 
 pub(super) fn cells(line: &str, delimiter: char) -> Vec<Cell<'_>> {
@@ -238,6 +281,10 @@ fn cell_end(rest: &str, delimiter: char) -> usize {
 }
 
 fn unquoted(cell: &str) -> Cow<'_, str> {
+    if cell.contains('\n') {
+        let one_line = cell.split('\n').map(str::trim).collect::<Vec<_>>().join(" ");
+        return Cow::Owned(unquoted(&one_line).into_owned());
+    }
     match cell.strip_prefix('"').and_then(|c| c.strip_suffix('"')) {
         Some(inner) if inner.contains("\"\"") => Cow::Owned(inner.replace("\"\"", "\"")),
         Some(inner) => Cow::Borrowed(inner),
@@ -291,5 +338,17 @@ mod tests {
         let row = &rows("\"a, b\", é ,\"c \"\"d\"\"\",", ',')[0];
         let cells: Vec<_> = row.cells.iter().map(|c| (c.text.as_ref(), c.column)).collect();
         assert_eq!(cells, [("a, b", 1), ("é", 9), ("c \"d\"", 12), ("", 22)]);
+    }
+
+    #[test]
+    fn headings_with_line_breaks_are_one_cell_and_lines_are_counted() {
+        let rows = rows("a,\"Bending\r\nrigidity\n(gf)\",b\r\n1,2,3\n5\",6,7\nc,\"d\ne,f", ',');
+        let cells = |i: usize| rows[i].cells.iter().map(|c| c.text.to_string()).collect::<Vec<_>>();
+        assert_eq!(cells(0), ["a", "Bending rigidity (gf)", "b"]);
+        assert_eq!((rows[1].line, cells(1)), (4, vec!["1".into(), "2".into(), "3".into()]));
+        assert_eq!((rows[2].line, cells(2)), (5, vec!["5\"".into(), "6".into(), "7".into()]));
+        // Nothing closes this quote.
+        assert_eq!((rows[3].line, cells(3)), (6, vec!["c".into(), "\"d".into()]));
+        assert_eq!((rows[4].line, cells(4)), (7, vec!["e".into(), "f".into()]));
     }
 }

@@ -8,6 +8,7 @@ mod directions;
 mod fast_cells;
 mod layout;
 mod merged_cells;
+mod noted;
 mod repeats;
 mod rows_above;
 mod states;
@@ -25,7 +26,7 @@ use super::layout::{Context, Header};
 use super::raw::Row;
 use super::shape::{self, Region};
 use super::sniff::{Number, number};
-use super::value::{is_gap, value};
+use super::value::{Printed, is_gap, printed};
 use super::words::{folded, normalised};
 use super::{Direction, Parameter, ResultValue, StatedStiffness};
 use crate::finding::Finding;
@@ -112,6 +113,8 @@ pub(super) fn read(
         directions: BTreeSet::new(),
         states: BTreeMap::new(),
         above: None,
+        marked: None,
+        bounds: None,
     };
     for text in std::mem::take(&mut table.layout.texts_of_directions) {
         table.note_more_than_direction((table.layout.line, 0), &text);
@@ -126,6 +129,7 @@ pub(super) fn read(
             if e.place.line == row.line { table.leave_out(facts.fabric.clone(), e) } else { Err(e) }
         })?;
     }
+    table.note_cells();
     table.direction_of_the_sheet();
     let unused = table.layout.unused(region, context);
     table.ignored.extend(unused);
@@ -156,6 +160,10 @@ struct Table<'t, 'a> {
     states: BTreeMap<usize, BTreeMap<usize, String>>,
     /// The fabric of the row above: a name often stands in the first of its rows only.
     above: Option<String>,
+    /// The first of the cells with marks behind their numbers, and their texts.
+    marked: noted::Cells,
+    /// The same of cells that bound a value.
+    bounds: noted::Cells,
 }
 
 impl<'t> Table<'t, '_> {
@@ -323,9 +331,9 @@ impl<'t> Table<'t, '_> {
 
     /// A cell as a finite number with the deviation that may stand beside it.
     fn finite(&self, row: &Row<'_>, index: usize, cell: &str) -> Result<(f64, Option<f64>), ReadError> {
-        let problem = match value(cell, self.context.decimal) {
-            (Number::Value(v), sd) => return Ok((v, sd)),
-            (Number::NotFinite, _) => Problem::NotFinite { found: cell.to_string() },
+        let problem = match printed(cell, self.context.decimal) {
+            Printed::Plain(Number::Value(v), sd) | Printed::Marked(v, sd) => return Ok((v, sd)),
+            Printed::Plain(Number::NotFinite, _) => Problem::NotFinite { found: cell.to_string() },
             _ => Problem::NotANumber { found: cell.to_string(), decimal: self.context.decimal },
         };
         Err(self.context.error(row.line, row.column(index), problem))
@@ -345,6 +353,9 @@ impl<'t> Table<'t, '_> {
         let first = self.data.len();
         for column in &columns {
             let Some(cell) = row.get(column.index).filter(|c| !is_gap(c)) else { continue };
+            if self.states_no_value(row, column.index, cell) {
+                continue;
+            }
             let units = [&column.facets, &facts.facets].map(|f| f.unit.as_deref());
             self.one_unit(row, column.index, units[0], units[1])?;
             let all = column.facets.or(&facts.facets);

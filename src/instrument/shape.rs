@@ -9,7 +9,7 @@ use super::layout::Context;
 use super::raw::Row;
 use super::sniff::{Number, number};
 use super::unit_text::{split_unit, unit};
-use super::value::{is_gap, value};
+use super::value::{Printed, is_gap, printed};
 use super::words::folded;
 use super::{Direction, Parameter};
 
@@ -48,7 +48,7 @@ enum Kind {
 
 /// A cell that holds a number, and perhaps its deviation.
 pub(super) fn is_value(cell: &str, context: &Context<'_>) -> bool {
-    matches!(value(cell, context.decimal), (Number::Value(_) | Number::NotFinite | Number::Broken, _))
+    !matches!(printed(cell, context.decimal), Printed::Plain(Number::Text, _))
 }
 
 /// Whether a row behind a table is laid out like its first or last one: the same cells are filled, with numbers in the same

@@ -63,7 +63,20 @@ const NAMES: &[(&str, &str)] = &[
     ("deg.", "deg"),
     ("°", "deg"),
     ("度", "deg"),
+    ("grados", "deg"),
+    ("grad", "deg"),
+    ("graus", "deg"),
+    ("grau", "deg"),
+    ("gradi", "deg"),
+    ("grado", "deg"),
+    ("graden", "deg"),
+    ("degrés", "deg"),
+    ("degré", "deg"),
+    ("derece", "deg"),
+    ("stopni", "deg"),
     ("percent", "%"),
+    ("ounces", "oz"),
+    ("inches", "inch"),
     ("microns", "um"),
     ("micron", "um"),
     ("gsm", "g/m2"),
@@ -131,7 +144,9 @@ pub(super) fn is_scaled(name: &str) -> bool {
 
 /// What else a unit text may stand for; each has one reading only.
 fn spellings(text: &str) -> Vec<String> {
-    let mut plain = folded(text).replace(['*', '⋅', '・', ' ', '×'], "·");
+    let mut plain =
+        folded(text).replace("yd.", "yd").replace("oz.", "oz").replace("sq.", "sq ").replace("  ", " ");
+    plain = plain.replace(['*', '⋅', '・', ' ', '×'], "·");
     if matches!(plain.as_str(), "-" | "—") {
         return vec!["1".to_string()];
     }
@@ -142,6 +157,11 @@ fn spellings(text: &str) -> Vec<String> {
     for (name, symbol) in NAMES {
         plain = plain.replace(name, symbol);
     }
+    // A German degree is written with a capital.
+    plain = plain.replace("Grad", "deg");
+    if let Some(square) = plain.strip_suffix("sq·yd").or_else(|| plain.strip_suffix("sq.yd")) {
+        plain = format!("{square}yd2");
+    }
     let glued = unglued(&plain).into_owned();
     let per_angle = [per_angle(&plain), per_angle(&glued)];
     [plain, glued].into_iter().chain(per_angle.into_iter().flatten()).collect()
@@ -150,9 +170,10 @@ fn spellings(text: &str) -> Vec<String> {
 /// `gf/cm·deg` as `gf/(cm·deg)`: a force per length and per angle is a stiffness in shear; times an angle it is nothing.
 fn per_angle(text: &str) -> Option<String> {
     let (above, below) = text.split_once('/')?;
-    let length = below.strip_suffix("deg")?.trim_end_matches(['·', '.', '-']);
+    let angle = if below.ends_with("rad") { "rad" } else { "deg" };
+    let length = below.strip_suffix(angle)?.trim_end_matches(['·', '.', '-']);
     let simple = !length.is_empty() && length.chars().all(|c| c.is_ascii_alphabetic());
-    simple.then(|| format!("{above}/({length}·deg)"))
+    simple.then(|| format!("{above}/({length}·{angle})"))
 }
 
 /// `gfcm²/cm` as `gf·cm²/cm`: symbols that were set without a mark between them, where they come apart in one way only.
@@ -253,6 +274,15 @@ mod tests {
         for text in ["gfcm²/cm", "gf.cm2/cm", "gf cm^2/cm", "GF.CM2/CM"] {
             assert!((unit(text).unwrap().factor - 9.80665e-5).abs() < 1e-15, "{text}");
         }
+        for text in ["cN/cm*Grad", "cN/(cm·Grad)", "cN/cm.grau"] {
+            assert!((unit(text).unwrap().factor - 180.0 / std::f64::consts::PI).abs() < 1e-9, "{text}");
+        }
+        for text in ["N/m·rad", "N/(m·rad)", "N/m rad"] {
+            assert_eq!(unit(text).unwrap().factor, 1.0, "{text}");
+        }
+        assert!((unit("oz/yd²").unwrap().factor - 0.033_905_747_5).abs() < 1e-10);
+        assert!((unit("oz./sq.yd.").unwrap().factor - 0.033_905_747_5).abs() < 1e-10);
+        assert!((unit("inches").unwrap().factor - 0.0254).abs() < 1e-15);
         assert!((unit("uNm").unwrap().factor - 1e-6).abs() < 1e-18);
         assert!((unit("gsm").unwrap().factor - 1e-3).abs() < 1e-15);
         // Two readings, or none.

@@ -1,4 +1,5 @@
-//! Values of result tables as print writes them: `0.081 ± 0.003`, `0.081 (0.003)`, `6.2 %`, `1,234.5`.
+//! Values of result tables as print writes them: `0.081 ± 0.003`, `0.081 (0.003)`, `6.2 %`, `1,234.5`, `8.0×10⁻⁶`, `0.081ab`,
+//! `<0.01`.
 
 use super::sniff::{Number, number};
 use super::words::folded;
@@ -22,7 +23,84 @@ pub(super) fn value(cell: &str, decimal: char) -> (Number, Option<f64>) {
     }
     match number(text, decimal) {
         Number::Value(v) => (Number::Value(v), None),
-        _ => (grouped(text, decimal).unwrap_or(plain), None),
+        _ => (grouped(text, decimal).or_else(|| with_power(text, decimal)).unwrap_or(plain), None),
+    }
+}
+
+/// What a cell of a result table holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Printed {
+    /// A number as [`value`] has it.
+    Plain(Number, Option<f64>),
+    /// A number with the letters of a test of significance or the sign of a footnote behind it.
+    Marked(f64, Option<f64>),
+    /// `<0.01`, `0.079-0.083`: what bounds a value and is none.
+    Bound,
+}
+
+/// Reads a cell of a result table.
+pub(super) fn printed(cell: &str, decimal: char) -> Printed {
+    let (plain, sd) = value(cell, decimal);
+    if matches!(plain, Number::Value(_) | Number::NotFinite) {
+        return Printed::Plain(plain, sd);
+    }
+    let text = folded(cell);
+    // Most cells are words, and one look at their first sign settles it.
+    if !text.starts_with(|c: char| c.is_ascii_digit() || "+-.,<>≤≥~≈".contains(c)) {
+        return Printed::Plain(plain, sd);
+    }
+    if is_bound(&text, decimal) {
+        return Printed::Bound;
+    }
+    let parts = text.split_once('±').map_or((text.as_ref(), None), |(mean, sd)| (mean, Some(sd)));
+    let bare = [Some(parts.0), parts.1].map(|part| part.map(|part| without_mark(part, decimal)));
+    let bare = match bare {
+        [Some(mean), Some(sd)] => format!("{mean}±{sd}"),
+        [mean, _] => mean.unwrap_or_default().to_string(),
+    };
+    match value(&bare, decimal) {
+        (Number::Value(v), sd) => Printed::Marked(v, sd),
+        _ => Printed::Plain(plain, sd),
+    }
+}
+
+/// A number without `*`, `†` or up to four letters of groups behind it. Letters need decimals before them: `2b` is a
+/// name, and so is a sole `e`, which may be a power that was cut off.
+fn without_mark(text: &str, decimal: char) -> &str {
+    let text = text.trim();
+    let bare = text.trim_end_matches(['*', '†', '‡', '§', '¶']).trim_end();
+    if bare.len() < text.len() {
+        return bare;
+    }
+    let is_letter = |c: char| matches!(c, 'a'..='h' | 'A'..='H');
+    let bare = text.trim_end_matches(|c: char| is_letter(c) || matches!(c, ' ' | ','));
+    let letters = &text[bare.len()..];
+    let few = (1..=4).contains(&letters.chars().filter(|c| is_letter(*c)).count());
+    let decimals = bare.split_once(decimal).is_some_and(|(_, d)| d.ends_with(|c: char| c.is_ascii_digit()));
+    if few && decimals && !letters.eq_ignore_ascii_case("e") { bare } else { text }
+}
+
+/// `<0.01`, `~0.08`, or two decimal numbers with a dash between them.
+fn is_bound(text: &str, decimal: char) -> bool {
+    let is_number = |t: &str| matches!(number(t.trim(), decimal), Number::Value(_));
+    let open = text.trim_start_matches(['<', '>', '≤', '≥', '=', '~', '≈']);
+    if open.len() < text.len() {
+        return is_number(open);
+    }
+    let ends = text.split_once("...").or_else(|| text.split_once(" to ")).or_else(|| text.split_once('-'));
+    ends.is_some_and(|(low, high)| [low, high].iter().all(|t| t.contains(decimal) && is_number(t)))
+}
+
+/// `8.0×10⁻⁶`, `8.0 x 10^-6`, `8,0·10-6`: a number and a power of ten that says it is one, by a sign, a mark or raised digits.
+fn with_power(text: &str, decimal: char) -> Option<Number> {
+    let (mantissa, power) = text.split_once(['×', 'x', 'X', '*', '·', '⋅'])?;
+    let power = power.trim_start().strip_prefix("10")?;
+    let raised = power.trim_start_matches('^');
+    let says_so = raised.len() < power.len() || raised.starts_with(['-', '+']);
+    let exponent: i32 = raised.trim_matches(['(', ')']).parse().ok().filter(|n: &i32| n.abs() <= 30)?;
+    match number(mantissa.trim(), decimal) {
+        Number::Value(v) if says_so => Some(Number::Value(v * 10f64.powi(exponent))),
+        _ => None,
     }
 }
 
@@ -41,7 +119,10 @@ fn grouped(text: &str, decimal: char) -> Option<Number> {
 
 /// A cell that stands for "not measured".
 pub(super) fn is_gap(cell: &str) -> bool {
-    matches!(cell.trim(), "-" | "–" | "—" | "--" | "n/m" | "n.m.")
+    const GAPS: [&str; 14] =
+        ["-", "–", "—", "--", "n/m", "n.m.", "n.d.", "nd", "n/d", "n/a", "n.a.", "na", "n.t.", "k.a."];
+    let text = cell.trim();
+    text.len() <= 4 && GAPS.iter().any(|gap| text.eq_ignore_ascii_case(gap))
 }
 
 #[cfg(test)]
@@ -65,5 +146,39 @@ mod tests {
         assert_eq!(of("0.081 (warp)"), None);
         assert_eq!(value("1.234,5", ','), (Number::Value(1234.5), None));
         assert_eq!(value("1,5 ± 0,1", ','), (Number::Value(1.5), Some(0.1)));
+    }
+
+    #[test]
+    fn powers_marks_and_bounds() {
+        let close = |t: &str, expected: f64| match value(t, '.') {
+            (Number::Value(v), None) => assert!((v / expected - 1.0).abs() < 1e-12, "{t}: {v}"),
+            other => panic!("{t}: {other:?}"),
+        };
+        for text in ["8.0x10^-6", "8.0 × 10⁻⁶", "8.0·10-6", "8.0*10^(-6)", "8.0E-06"] {
+            close(text, 8.0e-6);
+        }
+        for text in ["0.0812a", "0.0812 ab", "0.0812A,B", "0.0812*", "0.0812**", "0.0812†", "0.0812ᵃ"] {
+            assert_eq!(printed(text, '.'), Printed::Marked(0.0812, None), "{text}");
+        }
+        assert_eq!(printed("0.081a ± 0.003", '.'), Printed::Marked(0.081, Some(0.003)));
+        assert_eq!(printed("0,081 ± 0,003*", ','), Printed::Marked(0.081, Some(0.003)));
+        for text in ["<0.01", "> 0.5", "≤0.1", "~0.08", "0.079-0.083", "0.079 – 0.083", "0.079 to 0.083"]
+        {
+            assert_eq!(printed(text, '.'), Printed::Bound, "{text}");
+        }
+        // Names, dates, cut numbers, and powers that may be factors.
+        for text in
+            ["2b", "12A", "1.5e", "2024-03-11", "1-3", "8.0x10", "8.0x106", "0.081 cm", "warp", "<LOD"]
+        {
+            let found = printed(text, '.');
+            assert!(
+                matches!(found, Printed::Plain(Number::Text | Number::Broken, None)),
+                "{text}: {found:?}"
+            );
+        }
+        for text in ["n.d.", "N/A", "-", "k.A.", "nd"] {
+            assert!(is_gap(text), "{text}");
+        }
+        assert!(!is_gap("nm") && !is_gap("no"));
     }
 }

@@ -276,6 +276,16 @@ impl<'a> Vocabulary<'a> {
         })
     }
 
+    /// Whether a word is part of a name of this parameter: `hysteresis` beside 2HB says nothing new.
+    pub fn belongs_to(self, word: &str, parameter: Parameter) -> bool {
+        let word = normalised(word);
+        let names = self.dialects().flat_map(|d| &d.symbols);
+        !word.is_empty()
+            && names
+                .filter(|(symbol, _)| Parameter::from_symbol(symbol) == Some(parameter))
+                .any(|(_, names)| names.iter().any(|name| name.contains(word.as_str())))
+    }
+
     /// Every dialect with those of the words that it does not know, the closest first.
     pub fn closest(self, words: &[String]) -> Vec<(String, Vec<String>)> {
         let words: Vec<(&String, String)> = words.iter().map(|w| (w, normalised(&split_unit(w).0))).collect();

@@ -35,6 +35,31 @@ pub const FRICTION_LOAD: f64 = 50.0e-3 * STANDARD_GRAVITY;
 /// Load on the contactor of the roughness of KES-FB4: 10 gf (N).
 pub const ROUGHNESS_LOAD: f64 = 10.0e-3 * STANDARD_GRAVITY;
 
+impl Parameter {
+    /// At which load, angle or curvature the parameter is read by its definition: SI value and unit; `None` of one that
+    /// has no such place.
+    pub fn defined_at(self) -> Option<(f64, &'static str)> {
+        match self {
+            Self::Lt | Self::Wt | Self::Rt | Self::Emt => Some((TENSILE.maximum, "N/m")),
+            Self::Hg => Some((SHEAR_READINGS[0], "rad")),
+            Self::Hg5 => Some((SHEAR_READINGS[1], "rad")),
+            Self::Hb => Some((BENDING_READINGS[0], "1/m")),
+            Self::Hb05 => Some((BENDING_READINGS[1], "1/m")),
+            Self::T0 => Some((COMPRESSION_START, "Pa")),
+            Self::Lc | Self::Wc | Self::Rc | Self::Tm => Some((COMPRESSION.maximum, "Pa")),
+            Self::G
+            | Self::B
+            | Self::Bf
+            | Self::Bb
+            | Self::Emc
+            | Self::W
+            | Self::Miu
+            | Self::Mmd
+            | Self::Smd => None,
+        }
+    }
+}
+
 /// The standard specimen of a test, and how the test is run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TestSpec {

@@ -186,6 +186,16 @@ super::facts! {
             cells: Vec<String>,
         } = "formulas without a stored value are read as blank: {}; open the workbook in a spreadsheet program and save it",
             cells.join("; ");
+        /// Numbers with letters of significance or signs of footnotes behind them.
+        "R130" MarkedNumbers {
+            /// What stands in the cells.
+            cells: Vec<String>,
+        } = "marks behind numbers are left out, and the numbers are read: {}; see what the table says of them", some(cells);
+        /// Cells that bound a value.
+        "R131" BoundsLeftOut {
+            /// What stands in the cells.
+            cells: Vec<String>,
+        } = "bounds and ranges are no values, and left out: {}; enter the value if it is known", some(cells);
         /// Blank cells below a direction or a parameter.
         "R124" MergedCells {} = "blank cells are read as the direction or parameter above them, as of merged cells: fill them in \
              if they are something else";
@@ -247,6 +257,15 @@ fn assumed(dimension: Divisor, value: f64, test: Option<Test>, not_understood: &
 
 /// The most that a message names one by one.
 const NAMED: usize = 8;
+
+/// The first of some texts, and how many more there are.
+fn some(texts: &[String]) -> String {
+    let named = texts.iter().take(NAMED).map(|text| format!("{text:?}")).collect::<Vec<_>>().join(", ");
+    match texts.len().saturating_sub(NAMED) {
+        0 => named,
+        more => format!("{named} and {more} more"),
+    }
+}
 
 fn lines(left_out: &[LeftOutLine]) -> String {
     let named: Vec<String> =

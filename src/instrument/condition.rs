@@ -1,0 +1,113 @@
+//! Conditions in headings: `at 0.5°`, `@500 gf/cm`, `bei K = 1 1/cm`.
+
+use super::Parameter;
+use super::unit_text::unit;
+use crate::quantity::{Unit, counts_angles};
+
+/// Letters of the longest word before a condition that goes with it: `at`, `bei`, `em`, `K=`.
+const PREPOSITION: usize = 3;
+
+/// A load, an angle or a curvature at which a value is read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Condition {
+    number: f64,
+    unit: Unit,
+    is_angle: bool,
+}
+
+impl Condition {
+    /// Whether the parameter is read there by its definition.
+    pub fn defines(self, parameter: Parameter) -> bool {
+        parameter.defined_at().is_some_and(|(value, symbol)| {
+            let same = Unit::parse(symbol).is_ok_and(|u| u.dimension == self.unit.dimension);
+            let (found, is_angle) = (self.number * self.unit.factor, symbol == "rad");
+            same && is_angle == self.is_angle && (found / value - 1.0).abs() < 1e-3
+        })
+    }
+}
+
+/// The text without the first condition in it, and the condition.
+pub(super) fn without(text: &str) -> Option<(String, Condition)> {
+    let starts = text.char_indices().filter(|(at, c)| {
+        let before = text[..*at].chars().next_back();
+        c.is_ascii_digit() && before.is_some_and(|b| matches!(b, ' ' | '@' | '=' | '('))
+    });
+    for (start, _) in starts {
+        let Some((condition, end)) = quantity(&text[start..]) else { continue };
+        let before = prefix(&text[..start]);
+        let rest = format!("{before} {}", &text[start + end..]);
+        return Some((
+            rest.replace("()", "").replace("( )", "").replace(" )", ")").trim().to_string(),
+            condition,
+        ));
+    }
+    None
+}
+
+/// A number with a unit at the beginning of a text, and where it ends.
+fn quantity(text: &str) -> Option<(Condition, usize)> {
+    let digits = text.find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | ',')))?;
+    let number = text[..digits].replace(',', ".").parse().ok()?;
+    let behind = text[digits..].trim_start();
+    let start = text.len() - behind.len();
+    // `10^-4 N` and `1/cm` are units, not conditions.
+    if behind.starts_with(['/', '^', '-', '*', '·']) {
+        return None;
+    }
+    let length = behind.find([' ', ')', ',', ';', '(']).unwrap_or(behind.len());
+    let symbol = &behind[..length];
+    let unit = unit(symbol).ok()?;
+    let is_angle =
+        counts_angles(symbol) || unit.dimension == Default::default() && symbol != "%" && symbol != "1";
+    let has_meaning = is_angle || unit.dimension != Default::default();
+    has_meaning.then_some((Condition { number, unit, is_angle }, start + length))
+}
+
+/// What stands before a condition, without the word that leads to it.
+fn prefix(text: &str) -> &str {
+    let mut text = text.trim_end_matches([' ', '=', '@']);
+    // `bei K = 1 1/cm` has two of them.
+    for _ in 0..2 {
+        let word = text.rfind([' ', '(']).map_or(0, |at| at + 1);
+        let letters = text[word..].chars();
+        let short =
+            word > 0 && letters.clone().count() <= PREPOSITION && letters.clone().all(char::is_alphabetic);
+        // A symbol in capitals, such as LT, is none of them, but for the one letter of an abscissa.
+        let leads = letters.clone().all(char::is_lowercase) || letters.count() == 1;
+        if !short || !leads || text[word..].is_empty() {
+            break;
+        }
+        text = text[..word].trim_end_matches(' ');
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn conditions_are_found_and_held_against_the_definition() {
+        for (text, rest, parameter, holds) in [
+            ("2HG at 0.5 degrees", "2HG", Parameter::Hg, true),
+            ("2HG5 @5°", "2HG5", Parameter::Hg5, true),
+            ("2HG5 at 0.5°", "2HG5", Parameter::Hg5, false),
+            ("EMT (% at 500 gf/cm)", "EMT (%)", Parameter::Emt, true),
+            ("EMT (% at 490 N/m)", "EMT (%)", Parameter::Emt, true),
+            ("EMT bei 5 N/cm (%)", "EMT (%)", Parameter::Emt, false),
+            ("T (0,5 gf/cm2)", "T", Parameter::T0, true),
+            ("T (50 gf/cm2) mm", "T  mm", Parameter::T0, false),
+            ("2HB bei K = 1 1/cm", "2HB", Parameter::Hb, true),
+        ] {
+            let (found, condition) = without(text).unwrap();
+            assert_eq!(
+                found.split_whitespace().collect::<Vec<_>>(),
+                rest.split_whitespace().collect::<Vec<_>>()
+            );
+            assert_eq!(condition.defines(parameter), holds, "{text}");
+        }
+        for text in ["2HG5", "T 40", "W-17", "B (10^-4 N·m)", "Warp 1", "EMT 5 %", "2HB (1/cm)"] {
+            assert_eq!(without(text), None, "{text}");
+        }
+    }
+}
