@@ -137,14 +137,16 @@ def test_a_drape_has_states_and_an_outline(poplin: kesf.Sheet) -> None:
 
 def coarse_drape() -> bytes:
     """The shipped drape on few elements and from one number of folds."""
-    import tomllib
-
-    data = tomllib.loads(DRAPE.read_text())
-    data["sheet"]["cells"] = [6, 32]
-    data["analysis"].update(folds=[4], refinements=0)
-    from kesf._calls import toml
-
-    return toml(data, "the case").encode()
+    # As text: a reader of TOML came with Python 3.11 only.
+    text = DRAPE.read_text(encoding="utf-8")
+    for shipped, coarse in (
+        ("cells = [14, 90]", "cells = [6, 32]"),
+        ("folds = [3, 4, 5, 6, 7]", "folds = [4]"),
+        ("refinements = 1", "refinements = 0"),
+    ):
+        assert shipped in text, shipped
+        text = text.replace(shipped, coarse)
+    return text.encode()
 
 
 @pytest.mark.parametrize(

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import pickle
+import re
+import shutil
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -182,6 +186,36 @@ def test_everything_pickles_and_compares(sheets: kesf.Sheets, poplin: kesf.Sheet
     assert kesf.section(poplin, poisson=0.1) != kesf.section(poplin)
     assert section.has_friction and round_trip(section).has_friction  # type: ignore[attr-defined]
     assert batch[0].inference == round_trip(batch[0]).inference  # type: ignore[attr-defined]
+
+
+def test_markup_in_names_stays_text(tmp_path: Path) -> None:
+    folder = tmp_path / "<script>alert(1)<"
+    shutil.copytree("kesf_data/poplin", folder)
+    info = (folder / "fabric.toml").read_text(encoding="utf-8")
+    named = re.sub(r"(?m)^name = .*$", 'name = "<script>alert(2)"', info)
+    assert named != info
+    (folder / "fabric.toml").write_text(named, encoding="utf-8")
+    fabric = kesf.read(folder)[0]
+    sheet = kesf.characterise(fabric)
+    card = kesf.export(sheet, "abaqus")
+    shown: list[Any] = [fabric, sheet, kesf.Sheets([sheet]), kesf.section(sheet), card, fabric.measurements[0]]
+    direction: Any = "<script>"
+    shown += [dataclasses.replace(fabric.measurements[0], direction=direction), kesf.read([folder])]
+    for thing in shown:
+        html = thing._repr_html_()
+        assert "<script" not in html and "<" in html, thing
+    assert "&lt;script&gt;alert(2)" in fabric._repr_html_() and "&lt;script&gt;alert(2)" in sheet._repr_html_()
+
+
+def test_notebooks_show_pictures_and_tables(poplin: kesf.Sheet, sheets: kesf.Sheets) -> None:
+    # A picture for each of the tests that have curves, and none without.
+    assert poplin._repr_html_().count("<svg") == len({m.test for m in kesf.read("kesf_data/poplin").measurements})
+    assert "<svg" not in sheets["petrak_m1"]._repr_html_()
+    card = kesf.export(poplin, "calculix")
+    assert "<table" in card._repr_html_() and card.text.splitlines()[0].split()[0] in card._repr_html_()
+    mesh = kesf.solve("cases/benchmark_clamped_orthotropic.toml").mesh
+    assert "<svg" in mesh._repr_html_() and f"{len(mesh.elements)} elements" in mesh._repr_html_()
+    assert len(mesh._repr_html_()) < 100_000
 
 
 def test_the_pickle_of_another_version_is_refused(poplin: kesf.Sheet) -> None:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import builtins
 import pickle
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -77,6 +80,41 @@ def test_duckdb_asks_a_table(tables: dict[str, kesf.Table]) -> None:
     found = duckdb.sql("select count(*), max(mean) from parameters where parameter = 'B'").fetchall()
     means = [r["mean"] for r in parameters.rows() if r["parameter"] == "B"]
     assert found == [(len(means), max(means))]
+
+
+def test_daft_takes_curves() -> None:
+    daft = pytest.importorskip("daft")
+    curves = kesf.read("kesf_data/poplin").curves("bending", "warp")
+    taken = daft.from_arrow(pytest.importorskip("pyarrow").table(curves))
+    assert taken.to_pydict() == curves.to_pydict()
+
+
+def test_a_missing_engine_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    importer, missing = builtins.__import__, ""
+
+    def without(name: str, *rest: Any, **more: Any) -> Any:
+        if name.split(".")[0] == missing:
+            raise ImportError(name)
+        return importer(name, *rest, **more)
+
+    from kesf import dask, library, parts
+
+    monkeypatch.setattr(builtins, "__import__", without)
+    calls: dict[str, Callable[[], object]] = {
+        "fsspec": lambda: parts.write_file("memory://table.parquet", b""),
+        "pyarrow": lambda: parts.merge(str(tmp_path)),
+        "polars": lambda: library.find(tmp_path / "library.parquet"),
+        "distributed": lambda: dask.run("kesf_data", (), tmp_path / "out"),
+    }
+    for missing, call in calls.items():
+        with pytest.raises(kesf.KesfError, match=f"{missing} is not installed") as refused:
+            call()
+        assert refused.value.code == "O053" and refused.value.cure is not None
+        assert refused.value.cure.startswith("pip install") and missing in refused.value.cure
+    # The disk does not need it.
+    missing = "fsspec"
+    parts.write_file(str(tmp_path / "folder" / "table.parquet"), b"PAR1")
+    assert (tmp_path / "folder" / "table.parquet").read_bytes() == b"PAR1"
 
 
 def test_a_stream_is_taken_once_and_a_table_often(tables: dict[str, kesf.Table]) -> None:

@@ -36,6 +36,21 @@ const report = (() => {
   const counted = (n, what) => `${n} ${what}${n === 1 ? "" : "s"}`;
   /** A name that is broken after its underscores rather than within a word. */
   const breakable = (name) => name.split(/(?<=_)/).flatMap((part, i) => (i ? [document.createElement("wbr"), part] : [part]));
+  const PAINT = ["fill", "stroke", "stroke-width", "stroke-dasharray", "opacity", "font-family", "font-size"];
+  /** Gives a drawing away as a file: what the styles of the page do to it stands in it as attributes. */
+  function saveSvg(drawing, name) {
+    const copy = drawing.cloneNode(true), nodes = (svg) => [svg, ...svg.querySelectorAll("*")];
+    nodes(drawing).forEach((node, i) => {
+      const style = getComputedStyle(node);
+      for (const key of PAINT) nodes(copy)[i].setAttribute(key, style.getPropertyValue(key));
+    });
+    const [, , width, height] = drawing.getAttribute("viewBox").split(" ");
+    copy.setAttribute("width", width);
+    copy.setAttribute("height", height);
+    copy.prepend(shape("rect", { width, height, fill: getComputedStyle(document.body).backgroundColor }));
+    save(new XMLSerializer().serializeToString(copy), "image/svg+xml", name.replace(/[^\p{L}\p{N}._-]+/gu, "_") + ".svg");
+  }
+  const svgButton = (drawing, name) => button("Save SVG", `Save SVG of ${name()}`, () => saveSvg(drawing(), name()));
   const fieldset = (title, ...children) => element("fieldset", {}, element("legend", {}, title), ...children);
 
   // ---- numbers as report::number and html::parameters write them ------------------------------------------------
@@ -198,12 +213,12 @@ const report = (() => {
     return [head, ...lines].map((line) => line.map(cell).join("\t")).join("\n") + "\n";
   }
 
-  function download(content, type, ending) {
+  function save(content, type, name) {
     const url = URL.createObjectURL(new Blob([content], { type }));
-    const name = `parameters_${state.si ? "si" : "kes"}.${ending}`;
     element("a", { href: url, download: name }).click();
     setTimeout(() => URL.revokeObjectURL(url), 1000);
   }
+  const download = (content, type, ending) => save(content, type, `parameters_${state.si ? "si" : "kes"}.${ending}`);
 
   // The mark at the start tells Excel that the text is UTF-8.
   const downloadCsv = () => download("\ufeff" + csvText(), "text/csv;charset=utf-8", "csv");
@@ -267,13 +282,12 @@ const report = (() => {
     const directions = [...new Set(data.columns.map((c) => c.direction ?? "whole"))];
     const copyButton = element("button", { type: "button", click: () => copy(copyButton) }, "Copy");
     table.parentElement.before(
-      element("div", { class: "controls" }, unitSwitch(), controls.search, controls.origin, controls.status,
-        fieldset("Range", controls.column, controls.from, controls.to)),
-      element("div", { class: "controls" }, toggles("Tests", tests, view.hiddenTests),
-        toggles("Directions", directions, view.hiddenDirections), copyButton,
-        element("button", { type: "button", click: downloadCsv }, "Download CSV"),
-        ...(workbooks ? [element("button", { type: "button", click: downloadXlsx }, "Download XLSX (all fabrics)")] : []),
-        controls.count));
+      element("div", { class: "controls" }, unitSwitch(), controls.search, controls.origin, controls.status, copyButton,
+        button("CSV", "Download CSV", downloadCsv), ...(workbooks ? [button("XLSX", "Download XLSX, all fabrics", downloadXlsx)] : []),
+        controls.count),
+      element("details", { class: "more" }, element("summary", {}, "Columns and range"), element("div", { class: "controls" },
+        toggles("Tests", tests, view.hiddenTests), toggles("Directions", directions, view.hiddenDirections),
+        fieldset("Range", controls.column, controls.from, controls.to))));
     table.parentElement.after(controls.more);
   }
 
@@ -435,8 +449,8 @@ const report = (() => {
       const names = chosen.map(([i]) => data.fabrics[i].name).join(", ");
       const key = ([i, k]) => element("span", {}, shape("svg", { viewBox: "0 0 32 10", "aria-hidden": "true" },
         shape("path", { class: `line p${k} ${["", "second", "third", ""][k]}`, d: "M0 5H32" })), " " + data.fabrics[i].name);
-      chart.replaceChildren(shape("svg", { viewBox: `0 0 ${width} ${bottom + 42}`, role: "img", "aria-label": `Control chart of ${names}; the values are in the table below` }, ...parts),
-        element("div", { class: "keys" }, ...chosen.map(key)));
+      const svg = shape("svg", { viewBox: `0 0 ${width} ${bottom + 42}`, role: "img", "aria-label": `Control chart of ${names}; the values are in the table below` }, ...parts);
+      chart.replaceChildren(svg, element("div", { class: "keys" }, ...chosen.map(key), svgButton(() => svg, () => "control chart")));
       lists.replaceChildren(valueTable(chosen), ...chosen.map(([i]) => nearestText(i)));
     }
     function valueTable(chosen) {
@@ -459,6 +473,6 @@ const report = (() => {
   startControlChart();
   window.addEventListener("hashchange", openLinked);
   openLinked();
-  return { data, state, table, redraw, followers, fillers, element, shape, checkbox, button, counted, breakable, fixed, significant, spread, factor, unit, label,
+  return { data, state, table, redraw, followers, fillers, element, shape, checkbox, button, svgButton, counted, breakable, fixed, significant, spread, factor, unit, label,
     columnIsShown, chosenRows, ticks, extent, wide, tall, fitted, standardised };
 })();

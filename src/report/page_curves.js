@@ -1,9 +1,8 @@
 
 // Curves of tests: measured loops, windows of the fits, simulated curves; read by pointer, finger and keys.
 (() => {
-  const { data, state, redraw, fillers, element, shape, checkbox, button, counted, fixed, significant, factor, unit, label, ticks, extent, wide, tall, fitted } = report;
+  const { data, state, redraw, fillers, element, shape, checkbox, button, svgButton, counted, fixed, significant, factor, unit, label, ticks, extent, wide, tall, fitted } = report;
   const FRAME = { left: 66, right: 12, top: 10, bottom: 46 };
-  const dashes = { warp: "", weft: "7 4", bias: "2 3" };
 
   /** A chart of one test: measured loops, windows of the fits, simulated curves; hover, zoom, switches. */
   class Chart {
@@ -32,7 +31,7 @@
       this.node = element("div", { class: "chart" },
         element("h4", {}, curves.test + remark),
         element("div", { class: "zoom", role: "group", "aria-label": "Zoom" }, button("+", "Zoom in", () => this.nearer(0.25)),
-          button("−", "Zoom out", () => this.nearer(-0.5)), button("Reset", "Reset the zoom", () => this.reset())),
+          button("−", "Zoom out", () => this.nearer(-0.5)), button("Reset", "Reset the zoom", () => this.reset()), svgButton(() => this.svg, () => `${fabric.name} ${curves.test}`)),
         this.svg, this.reading, keys);
       redraw.push(() => this.draw());
       fitted(this.node, () => this.draw());
@@ -61,7 +60,7 @@
     }
     stroke(trace) {
       const kind = (trace.simulated ? " simulated" : "") + (trace.friction ? " friction" : "");
-      return { class: `curve ${trace.direction ?? "none"}${kind}`, "stroke-dasharray": trace.simulated ? null : dashes[trace.direction] };
+      return { class: `curve ${trace.direction ?? "none"}${kind}` };
     }
     get axes() { return this.curves.axes.map((a) => ({ quantity: a.quantity, unit: (state.si ? a.si : a.kes)[0], by: (state.si ? a.si : a.kes)[1] })); }
     /** Ranges in SI: those of everything that is switched on, or the zoom. */

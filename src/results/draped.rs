@@ -41,7 +41,7 @@ pub(super) fn table<'a, 'f: 'a, 'c: 'a>(
         "coefficient (%)",
         "band (%)",
         "measured (%)",
-        "nodes",
+        "folds",
         "amplitude (mm)",
         "elements",
         "residual",
@@ -320,7 +320,7 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
         values.push(("measured".into(), format!("{} %", percent(value))));
     }
     values.extend([
-        ("nodes".to_string(), s.folds.count.to_string()),
+        ("folds".to_string(), s.folds.count.to_string()),
         ("amplitude".to_string(), format!("{} mm", significant(1e3 * s.folds.amplitude))),
         ("elements".to_string(), s.elements.to_string()),
         ("residual".to_string(), format!("{:.0e}", s.residual)),
@@ -339,6 +339,7 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
         disc_radius: d.disc_radius,
         sheet_radius: d.sheet_radius,
         outline: &d.outline,
+        measured: measured(task).map(|(coefficient, _)| coefficient),
         values,
         remarks: d.findings.iter().map(|f| f.message()).collect(),
     }

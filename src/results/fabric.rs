@@ -12,6 +12,7 @@ use super::inputs::Fabric;
 use super::observer::Observer;
 use super::outcome::Outcome;
 use super::overview;
+use super::page_section::PageSection;
 use super::rests_on::DOUBTFUL;
 use super::simulate::simulate;
 use super::task::Task;
@@ -21,6 +22,7 @@ use crate::characterise::FabricSheet;
 use crate::constitutive::{Assumptions, section};
 use crate::finding::{Finding, Place};
 use crate::instrument::FabricInfo;
+use crate::law::Mode;
 use crate::platform::Stopwatch;
 use crate::report::chart::ParityPoint;
 use crate::report::html::{Figure, Shape, TestCurves};
@@ -48,6 +50,12 @@ pub struct FabricReport {
     /// What `fabric.toml` says; nothing of a fabric that could not be read.
     #[serde(default)]
     pub info: Option<FabricInfo>,
+    /// Its section with what that rests on.
+    #[serde(default)]
+    pub section: Option<PageSection>,
+    /// Titles of its cases, and whether the cloth has friction there, by their names.
+    #[serde(default)]
+    pub cases: BTreeMap<String, (String, bool)>,
     /// Curves of its tests, thinned for the page.
     pub curves: Vec<TestCurves>,
     /// Deflected sheets for the page.
@@ -108,6 +116,7 @@ impl FabricReport {
         match section(sheet, &Assumptions::default()) {
             Ok(made) => {
                 report.findings.extend(made.findings.iter().cloned());
+                report.section = Some(PageSection::new(&made));
                 let name = format!("{}/section.json", sheet.name);
                 report.keep_failure(folder.json(&name, &section_document([(sheet, &made)])));
                 report.simulate(sheet, tasks, folder, observer);
@@ -192,6 +201,8 @@ impl FabricReport {
     }
 
     fn add(&mut self, task: &Task, outcome: &Outcome, figures: Vec<Figure>) {
+        let told = (task.case.title.clone(), task.case.law() != Mode::Elastic);
+        self.cases.insert(task.case.name.clone(), told);
         self.predictions.extend(outcome.rows(task));
         self.findings.extend(outcome.findings(task).into_iter().cloned());
         self.failures.extend(outcome.failures(task));
@@ -218,7 +229,8 @@ impl FabricReport {
         if is_linear && result.w_over_thickness.is_finite() {
             self.relative_deflections.push((result.case.clone(), result.w_over_thickness));
         }
-        if result.status != Status::Ok && self.status == "ok" {
+        // That a linear solve cannot hold for cloth is said once, of all fabrics.
+        if !matches!(result.status, Status::Ok | Status::BeyondLinear) && self.status == "ok" {
             self.status = solved::status(result.status).into();
         }
     }

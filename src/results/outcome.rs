@@ -197,7 +197,10 @@ impl Outcome {
         let told = |row: &PredictionRow| {
             let unit = if row.unit == "1" { String::new() } else { format!(" {}", row.unit) };
             let number = |v: f64| if v.fract() == 0.0 { v.to_string() } else { significant(v) };
-            row.simulated.map(|v| format!("{} {}{unit}", row.quantity.replace('_', " "), number(v)))
+            // Who counts nodes of a drape counts its folds.
+            let name =
+                if row.quantity == "drape_nodes" { "folds".into() } else { row.quantity.replace('_', " ") };
+            row.simulated.map(|v| format!("{name} {}{unit}", number(v)))
         };
         let values: Vec<String> = self.rows(task).iter().filter_map(told).take(VALUES_SEEN).collect();
         let values = if values.is_empty() { String::new() } else { format!("; {}", values.join(", ")) };

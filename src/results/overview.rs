@@ -1,10 +1,14 @@
 //! The overview of a batch: one line a fabric.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::columns::Columns;
 use super::fabric::FabricReport;
+use super::page_problems::BEYOND_LINEAR;
 use super::sheet_text::mark;
 use crate::case::{Analysis, BendingTest, Case, Problem};
 use crate::characterise::{FabricSheet, Key};
+use crate::finding::Place;
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::significant;
 
@@ -134,6 +138,8 @@ impl<'c> Prediction<'c> {
 pub(crate) struct Overview<'c> {
     predictions: Vec<Prediction<'c>>,
     table: Columns,
+    /// Cases whose linear solve means nothing of a shape, and for how many fabrics.
+    beyond: BTreeMap<String, usize>,
 }
 
 impl<'c> Overview<'c> {
@@ -143,7 +149,7 @@ impl<'c> Overview<'c> {
         predictions.sort_by_key(Prediction::rank);
         let predicted = predictions.iter().map(Prediction::heading);
         let headings = HEADINGS.map(String::from).into_iter().chain(predicted).chain(["status".to_string()]);
-        Self { table: Columns::new(headings), predictions }
+        Self { table: Columns::new(headings), predictions, beyond: BTreeMap::new() }
     }
 
     /// Adds a fabric.
@@ -153,14 +159,27 @@ impl<'c> Overview<'c> {
         row.extend(self.predictions.iter().map(|prediction| prediction.cell(report)));
         row.push(report.status.clone());
         self.table.row(row);
+        let beyond = report.findings.iter().filter(|finding| finding.code() == BEYOND_LINEAR);
+        let cases: BTreeSet<String> = beyond.filter_map(|f| Some(stem(f.place.as_ref()?))).collect();
+        cases.into_iter().for_each(|case| *self.beyond.entry(case).or_default() += 1);
     }
 
     /// The table.
     pub fn table(self) -> Columns {
-        let caption =
+        let mut caption =
             if self.predictions.is_empty() { CAPTION.into() } else { format!("{CAPTION}; {PREDICTIONS}") };
+        if !self.beyond.is_empty() {
+            let of = |(case, fabrics): (&String, &usize)| format!("{case} of {fabrics} fabrics");
+            let named: Vec<String> = self.beyond.iter().map(of).collect();
+            caption += &format!("\nbeyond linear (S101), a stiffness and no shape: {}", named.join(", "));
+        }
         self.table.with_note(&caption)
     }
+}
+
+/// The name of the case that a finding is about.
+fn stem(place: &Place) -> String {
+    place.path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
 }
 
 #[cfg(test)]
@@ -168,6 +187,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
+    use crate::finding::{Excess, Fact, Finding, StudyFact};
     use crate::report::table::PredictionRow;
 
     fn case(file: &str) -> Case {
@@ -209,5 +229,28 @@ mod tests {
         assert!(places.is_sorted(), "{text}");
         let values: Vec<&str> = text.lines().nth(1).unwrap().split_whitespace().rev().take(5).collect();
         assert_eq!(values, ["ok", "1.000e-5", "-", "20.00", "50.00"], "{text}");
+    }
+
+    /// A linear solve that cannot hold for cloth says so once, not once a fabric.
+    #[test]
+    fn what_is_beyond_linear_is_told_once() {
+        let beyond = Fact::Study(StudyFact::BeyondLinear {
+            excess: Excess::Deflection,
+            value: 0.65,
+            ratio: 4.6e3,
+            limit: 0.3,
+            in_time: false,
+        });
+        let report = |name: &str| FabricReport {
+            name: name.into(),
+            status: "ok".into(),
+            findings: vec![Finding::new(beyond.clone()).at(Place::file("cases/strip.toml"))],
+            ..FabricReport::default()
+        };
+        let mut overview = Overview::new(std::iter::empty());
+        ["a", "b"].iter().for_each(|name| overview.row(&report(name)));
+        let text = overview.table().text();
+        assert_eq!(text.matches("beyond linear").count(), 1, "{text}");
+        assert!(text.ends_with("a stiffness and no shape: strip of 2 fabrics\n"), "{text}");
     }
 }

@@ -3,7 +3,9 @@
 use super::draped::{self, DrapePoint};
 use super::fabric::FabricReport;
 use super::page_fabric::{fabric_block, figures_block};
-use super::page_values::{doubtful, leading, plates};
+use super::page_index::Pages;
+use super::page_predictions::{leading, plates};
+use super::page_values::doubtful;
 use super::solved::status;
 use super::task::Task;
 use crate::quantity::significant;
@@ -53,18 +55,18 @@ pub(crate) struct Head<'a> {
     /// Files of each chart; none where no charts are drawn.
     pub formats: &'a [Format],
     /// Pages with the fabrics, where there are too many for this one.
-    pub pages: &'a [String],
+    pub pages: &'a Pages,
 }
 
 /// The page of a batch; `reports` are the fabrics, unless they have pages of their own.
 pub(crate) fn page(reports: &[FabricReport], benchmarks: &[Benchmark], head: Head) -> Page {
-    let mut predictions: Vec<Block> = leading(reports).into_iter().collect();
+    let mut predictions = leading(reports);
     predictions.extend(draped::bracket(head.drapes).map(|table| table.block(BRACKET)));
     predictions.extend(plates(reports));
     predictions.extend(figures_block(head.figures));
     let sections = [
         parameters(reports),
-        section("Fabrics", links(head.pages)),
+        section("Fabrics", head.pages.blocks()),
         section("Problems and doubtful values", problem_blocks(reports, head.problems)),
         section("Predictions", predictions),
         fabrics(reports),
@@ -89,7 +91,10 @@ pub(crate) fn fabrics_page(
         section("Predictions", leading(reports).into_iter().chain(plates(reports)).collect()),
         fabrics(reports),
         side_by_side(reports, population),
-        section("All fabrics", vec![Block::Files(vec!["index.html".into()])]),
+        section(
+            "All fabrics",
+            vec![Block::Pages(vec![("index.html".into(), "all fabrics and problems".into())])],
+        ),
     ];
     let unread = reports.iter().map(|r| r.unread.len()).sum();
     let undone = reports.iter().map(|r| r.failures.len()).sum();
@@ -169,15 +174,6 @@ fn parameters(reports: &[FabricReport]) -> Section {
 
 fn fabrics(reports: &[FabricReport]) -> Section {
     section("Fabrics", reports.iter().enumerate().map(|(i, r)| fabric_block(i, r)).collect())
-}
-
-fn links(pages: &[String]) -> Vec<Block> {
-    if pages.is_empty() {
-        return Vec::new();
-    }
-    let text =
-        format!("Parameters, curves and charts are on pages of {FABRICS_OF_PAGE} fabrics, in name order:");
-    vec![Block::Text(text), Block::Files(pages.to_vec())]
 }
 
 fn problem_blocks(reports: &[FabricReport], problems: Vec<ProblemGroup>) -> Vec<Block> {

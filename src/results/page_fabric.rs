@@ -3,6 +3,7 @@
 use super::fabric::FabricReport;
 use super::failure::Failure;
 use super::page_problems::BEYOND_LINEAR;
+use super::page_section::PageSection;
 use super::page_values::tests;
 use crate::instrument::Parameter;
 use crate::quantity::repeats_text;
@@ -20,6 +21,7 @@ pub(super) fn fabric_block(place: usize, report: &FabricReport) -> Block {
     blocks.extend(facts(report));
     blocks.extend(values(report));
     blocks.extend(tests(report));
+    blocks.extend(report.section.as_ref().map(PageSection::block));
     let (drawn, pictures): (Vec<Figure>, Vec<Figure>) =
         report.figures.iter().cloned().partition(|figure| is_drawn(report, figure));
     if !report.curves.is_empty() {

@@ -78,7 +78,7 @@ impl<'c> Workshop<'c> {
         let of_fabrics = work.cases.iter().filter(|case| case.section().is_none());
         let jobs = of_fabrics.map(|case| CaseWork::new(case, work)).collect::<Result<_, _>>()?;
         let base = json!({
-            "record": 2,
+            "record": 3,
             "program": settings.program.as_deref().unwrap_or(env!("CARGO_PKG_VERSION")),
             "charts": settings.charts,
             "formats": settings.formats.iter().map(|format| format.ending()).collect::<Vec<_>>(),

@@ -20,8 +20,8 @@ use crate::report::table::{FabricRow, PredictionRow, ProblemRow, problem_row};
 use crate::report::workbook;
 use crate::results::{
     Benchmark, Columns, DrapePoint, FABRICS_OF_PAGE, FabricReport, Failure, FileEntry, Folder, Head, Job,
-    Observer, Overview, Problems, Record, SinkFile, Table, bracket, checks, fabrics_page, page,
-    unread_by_fabric, unread_of, write_drape_parity, write_friction_parity,
+    Observer, Overview, Pages, Problems, Record, SinkFile, Table, bracket, checks, fabrics_page,
+    name_of_page, page, unread_by_fabric, unread_of, write_drape_parity, write_friction_parity,
 };
 
 /// Fabrics that the overview for people lists; all of them are in `fabrics.csv`.
@@ -70,8 +70,8 @@ struct Kept {
     drapes: Vec<DrapePoint>,
     /// Reports for the page that is being filled.
     reports: Vec<FabricReport>,
-    /// Names of the pages that are full.
-    pages: Vec<String>,
+    /// The pages that are full.
+    pages: Pages,
 }
 
 impl Results<'_, '_> {
@@ -200,14 +200,13 @@ impl Results<'_, '_> {
 
     fn write_page_of_fabrics(&self, kept: &mut Kept) -> Result<(), Failure> {
         let reports = std::mem::take(&mut kept.reports);
-        let number = kept.pages.len() + 1;
-        let name = name_of_page(number);
+        let (name, number) = kept.pages.next();
         self.folder.write(
             &name,
             html(&fabrics_page(&reports, number, self.made.len(), self.settings.population.as_ref()))
                 .as_bytes(),
         )?;
-        kept.pages.push(name);
+        kept.pages.add(name, &reports);
         Ok(())
     }
 
@@ -304,11 +303,6 @@ impl Tables<'_> {
         self.workbook.iter_mut().for_each(|rows| rows.problems.push(row.clone()));
         Ok(())
     }
-}
-
-/// The name of a page of fabrics; pages count from 1.
-fn name_of_page(number: usize) -> String {
-    format!("fabrics-{number}.html")
 }
 
 fn figure(caption: &str, picture: &str) -> Figure {

@@ -1,10 +1,11 @@
 """The report in a browser: what a reader sees, clicks, types and takes away.
 
-    report.py INDEX REPORT ABSENT [GIVEN [PICTURES]]
+    report.py INDEX REPORT ABSENT [GIVEN [LIBRARY [PICTURES]]]
 
 INDEX is `index.html` of a folder of results, REPORT the page of `kesf report`; both hold the shipped fabrics and one
 whose name is markup. ABSENT is a text that neither may hold: the folder that the inputs were read from. GIVEN is
-`index.html` of a run with a population of its own. With a folder PICTURES, what was seen is put there.
+`index.html` of a run with a population of its own and a drape, LIBRARY that of a run of 1,000 fabrics. With a folder
+PICTURES, what was seen is put there, under the names that the book shows.
 
 Every check is counted; the last line is `N passed, N failed`.
 """
@@ -16,6 +17,7 @@ import json
 import re
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 from openpyxl import load_workbook
 from playwright.sync_api import sync_playwright
@@ -75,6 +77,10 @@ def table(page, data):
     doubtful = page.locator("#parameters td.doubtful").first.inner_text()
     check("a status is told in words", "doubtful" in doubtful, doubtful)
     check("there is a legend", page.locator(".legend li").count() == 7)
+    rows_of_controls = page.locator(".controls").first.locator("> *").evaluate_all("all => new Set(all.map((one) => Math.round(one.getBoundingClientRect().top / 20))).size")
+    check("controls are one line", rows_of_controls <= 2 and page.locator(".controls").first.bounding_box()["height"] < 60, rows_of_controls)
+    sizes = page.locator("figure img").evaluate_all("all => all.map((img) => img.getAttribute('width') && img.getAttribute('height'))")
+    check("pictures have their room before they are loaded", sizes and all(sizes), sizes[:3])
     check("the origin stands beside the name", cell(page, "poplin", "origin").inner_text() == "synthetic" and
           cell(page, "petrak_m1", "origin").inner_text() == "published")
     first = list(dict.fromkeys(c["symbol"] for c in data["columns"]))[:6]
@@ -122,6 +128,7 @@ def filters(page):
     page.get_by_label("Status").select_option("doubtful")
     check("the status filters", 0 < len(names(page)) < 14, names(page))
     page.get_by_label("Status").select_option("")
+    page.get_by_text("Columns and range").click()
     page.get_by_label("Parameter to filter by").select_option(label="W")
     page.get_by_label("from, in the chosen unit").fill("20")
     heavy = names(page)
@@ -143,8 +150,16 @@ def predictions(page):
     check("predictions sort", found() == sorted(found(), reverse=True) and len(found()) > 5, found())
     head.get_by_role("button").click()
     check("both ways", found() == sorted(found()), found())
-    doubtful = page.locator("td.marked").all_inner_texts()
-    check("what speaks against a prediction stands beside it", any("above 0.3" in text for text in doubtful), doubtful[:3])
+    marked = page.locator("td.marked").all_inner_texts()
+    check("what speaks against a prediction stands beside it", marked and all("rests on" in text for text in marked), marked[:3])
+    plates = page.locator(".caption", has_text="Linear solves, normalised").inner_text()
+    check("what a linear solve cannot say is said once, above the table", "Above it: 14 of 14 fabrics in" in plates, plates)
+    captions = page.locator(".caption", has_text="laboratory measures").all_inner_texts()
+    check("a run without a drape says nothing of one", captions and not any("drape" in text for text in captions), captions)
+    heads = page.locator("table.of-fabrics:not(.stacked) th").all_inner_texts()
+    check("cases stand under their titles", not any("cantilever_strip" in head for head in heads), heads)
+    links = page.locator("table.of-fabrics tbody td:first-child a").evaluate_all("all => all.map((a) => a.getAttribute('href'))")
+    check("names lead to their fabrics", len(links) > 14 and all(link.startswith("#fabric-") for link in links), links[:3])
 
 
 def sections(page):
@@ -152,6 +167,14 @@ def sections(page):
     part = page.locator("#fabric-petrak_m1")
     facts = part.locator(".facts").first.text_content()
     check("source and notes of fabric.toml are told", "CC-BY-4.0" in facts and "read second-hand" in facts, facts)
+    matrices = part.locator("details.more", has_text="Shell section")
+    for details in (part, matrices):
+        details.evaluate("details => { details.open = true; }")
+    text = matrices.inner_text()
+    check("the section is there with what it rests on", all(name in text for name in ("D_m, x", "D_b, xy", "D_s, yz", "assumed: ", "gf/cm")), text[:400])
+    page.get_by_role("button", name="SI", exact=True).click()
+    check("and follows the switch of units", "N·m" in matrices.inner_text() and "gf/cm" not in matrices.inner_text(), matrices.inner_text()[:400])
+    page.get_by_role("button", name="KES units").click()
     listed = part.locator("table").first.locator("tbody tr").count()
     check("and its parameters are listed", listed > 5, listed)
 
@@ -259,6 +282,16 @@ def curves(page, data):
     chart.get_by_label("warp, specimen 1").check()
     check("windows of the fits are shaded", chart.locator("rect.window").count() > 0)
     check("a simulated curve lies over them", chart.locator("path.simulated").count() > 0)
+    dashed = lambda kind: chart.locator(f"svg path.curve{kind}").evaluate_all("all => all.map((p) => getComputedStyle(p).strokeDasharray)")
+    check("dashes are simulated, and nothing measured has them",
+          "none" not in dashed(".simulated") and set(dashed(":not(.simulated)")) == {"none"}, dashed(""))
+    with page.expect_download() as caught:
+        chart.get_by_role("button", name="Save SVG").click()
+    drawing = ElementTree.parse(caught.value.path()).getroot()
+    paths = [p for p in drawing.iter("{http://www.w3.org/2000/svg}path") if "curve" in p.get("class", "")]
+    check("a chart is saved as SVG with its styles", caught.value.suggested_filename == "poplin_bending.svg" and
+          len(paths) == frame.locator("path.curve").count() and all(p.get("stroke", "").startswith("rgb") and p.get("fill") == "none" for p in paths),
+          (caught.value.suggested_filename, len(paths)))
     chart.get_by_role("button", name="Zoom in").click()
     check("a button zooms", axis() != whole)
     chart.get_by_role("button", name="Reset the zoom").click()
@@ -338,6 +371,8 @@ def draped(page, data):
     page.locator("#fabric-poplin").evaluate("details => { details.open = true; }")
     canvas = page.locator("#fabric-poplin .viewer canvas").first
     canvas.scroll_into_view_if_needed()
+    said = page.locator("table.of-fabrics", has=page.locator("th", has_text="drape coefficient")).first.inner_text()
+    check("a drape is one cell", re.search(r"\d+\.\d \(\d+\.\d–\d+\.\d\), \d+ folds", said), said[:300])
     check("and can be chosen", "drape" in page.locator("#fabric-poplin .viewer option").first.inner_text())
     first = canvas.screenshot()
     canvas.focus()
@@ -453,7 +488,46 @@ def accessible(page, what):
     check(f"axe-core finds nothing: {what}", not problems, problems)
 
 
-def main(index, report, absent, given=None, pictures=None):
+def photographed(page, pictures, size):
+    """The pictures of the book."""
+    if size == "desktop":
+        for part, name in ((".viewer", "sheets"), (".charts", "curves")):
+            place = page.locator(f"#fabric-poplin {part}").first
+            place.scroll_into_view_if_needed()
+            page.wait_for_timeout(300)
+            place.screenshot(path=f"{pictures}/report_{name}.png")
+    page.evaluate("scrollTo(0, 0)")
+    page.screenshot(path=f"{pictures}/report{'' if size == 'desktop' else '_' + size}.png")
+
+
+def many(browser, index):
+    """The index and a page of a run of 1,000 fabrics: it opens, sorts, and leads to its fabrics."""
+    page = opened(browser, index)
+    page.locator("table.of-fabrics tbody tr").first.wait_for()
+    paint = page.evaluate("performance.getEntriesByType('paint').find((e) => e.name === 'first-contentful-paint')?.startTime")
+    print(f"1,000 fabrics: first contentful paint of the index after {paint:.0f} ms")
+    check("the index of 1,000 fabrics is painted within a second", paint < 1000, paint)
+    table = page.locator("table.of-fabrics", has=page.locator("th", has_text="B warp"))
+    check("it has a line a fabric", table.locator("tbody tr").count() == 1000, table.locator("tbody tr").count())
+    links = page.locator(".files a", has_text="… to ").all_inner_texts()
+    check("links say what is on a page", len(links) == 5, links)
+    first = lambda: table.locator("tbody tr td:first-child").first.inner_text()
+    start, head = first(), table.locator("th", has_text="fabric").get_by_role("button")
+    head.click()
+    before = page.evaluate("performance.now()")
+    head.click()
+    check("it sorts at once", first() != start and page.evaluate("performance.now()") - before < 2000, (start, first()))
+    table.locator("tbody a").first.click()
+    page.locator("#parameters tbody tr").first.wait_for()
+    opened_part = page.locator("details.fabric[open] h3").all_inner_texts()
+    check("a name leads to the fabric on its page", len(opened_part) == 1 and len(names(page)) == 100, opened_part)
+    paint = page.evaluate("performance.getEntriesByType('paint').find((e) => e.name === 'first-contentful-paint')?.startTime")
+    print(f"1,000 fabrics: first contentful paint of a page of 200 after {paint:.0f} ms")
+    check("nothing is complained of", not page.complaints, page.complaints)
+    page.context.close()
+
+
+def main(index, report, absent, given=None, library=None, pictures=None):
     index, report = Path(index), Path(report)
     with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path="/usr/bin/chromium", args=["--no-sandbox"])
@@ -505,6 +579,9 @@ def main(index, report, absent, given=None, pictures=None):
             draped(own, own_data)
             check("z is of its mean and SD", abs(float(row[-2].replace("−", "-")) - expected) < 0.006, (row, expected))
 
+        if library:
+            many(browser, Path(library))
+
         plain = opened(browser, index, java_script_enabled=False)
         check("the table is readable without the script", len(names(plain)) == 14 and "n 3" in plain.locator("#parameters").inner_text())
 
@@ -514,13 +591,8 @@ def main(index, report, absent, given=None, pictures=None):
                 wide = seen.evaluate("document.documentElement.scrollWidth - innerWidth")
                 check(f"nothing but the tables scrolls sideways: {size}", wide <= 0, wide)
                 accessible(seen, f"{size}, {scheme}")
-                if pictures:
-                    seen.screenshot(path=f"{pictures}/report_{size}_{scheme}_fabric.png")
-                    for part, name in ((".viewer", "sheets"), ("#correlation", "correlation"), ("#control-chart", "snake")):
-                        seen.locator(part).first.scroll_into_view_if_needed()
-                        seen.locator(part).first.screenshot(path=f"{pictures}/report_{size}_{scheme}_{name}.png")
-                    seen.evaluate("scrollTo(0, 0)")
-                    seen.screenshot(path=f"{pictures}/report_{size}_{scheme}.png")
+                if pictures and scheme == "light":
+                    photographed(seen, pictures, size)
         browser.close()
     if Axe is None:
         print("axe-core is not there: contrast and names were not checked")

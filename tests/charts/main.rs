@@ -347,4 +347,19 @@ fn the_shadow_of_a_draped_sheet_ends_at_its_outline() {
         assert!(!picture.has(place(radius(k) + 0.006), 1.0, shade), "no shadow outside at {k}");
         assert!(!picture.has(place(0.5 * disc), 1.0, shade), "the disc at {k}");
     }
+    // Nothing was measured, so that nothing is drawn of it.
+    assert_eq!(picture.extent(VERMILLION, [0, 130, 1800, HEIGHT])[2], 0.0);
+    // The round shadow of 40 %: π r² = π R_d² + 0.4 (π R_s² − π R_d²), with 9 and 15 cm.
+    let measured = DrapePlot { measured: Some(0.4), ..plot };
+    let picture = Picture::decode(&drape_shadow(&measured).unwrap().png().unwrap());
+    let round = (0.0081_f64 + 0.4 * (0.0225 - 0.0081)).sqrt();
+    let ring: Vec<Point> = (0..720)
+        .map(|k| (tau * f64::from(k) / 720.0).sin_cos())
+        .map(|(sin, cos)| at(round * cos, round * sin))
+        .collect();
+    // Dashed: 20 pixels of 31, and more where a disc of 3 pixels reaches into a gap.
+    let covered = picture.covered(&ring, 3.0, VERMILLION);
+    assert!((0.6..0.95).contains(&covered), "{covered} of the measured circle has ink");
+    assert!(picture.stray(&ring, 6.0, VERMILLION, region) < 0.02);
+    assert!(picture.find("measured, as a circle", (25.0, false), [1390, 262, 1790, 320]).is_some());
 }

@@ -6,6 +6,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from html import escape
 from typing import Any, Protocol, TypeVar, overload
 
 import numpy as np
@@ -80,8 +81,8 @@ class Measurement:
 
     def _repr_html_(self) -> str:
         what = " ".join(str(part) for part in (self.test, self.direction, self.specimen) if part)
-        picture = lines([(self.x, self.y)])
-        return f"<div><b>{what}</b>: {len(self)} points, {self.y_unit} over {self.x_unit}<br>{picture}</div>"
+        told = f"{len(self)} points, {self.y_unit} over {self.x_unit}"
+        return f"<div><b>{escape(what)}</b>: {escape(told)}<br>{lines([(self.x, self.y)])}</div>"
 
 
 class Fabric:
@@ -196,7 +197,8 @@ class Fabric:
             if curves:
                 rows.append(f"<td>{test}, {len(curves)}<br>{lines([(m.x, m.y) for m in curves], 140)}</td>")
         title = self.info.get("title") or self.name
-        return f"<div><b>{title}</b>, {len(self.results)} values of tables<table><tr>{''.join(rows)}</tr></table></div>"
+        head = f"<b>{escape(str(title))}</b>, {len(self.results)} values of tables"
+        return f"<div>{head}<table><tr>{''.join(rows)}</tr></table></div>"
 
 
 def _fabric(version: str, packed: bytes) -> Fabric:

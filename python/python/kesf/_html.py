@@ -7,6 +7,7 @@ from html import escape
 
 import numpy as np
 
+from ._errors import Finding
 from ._types import Floats
 
 _STYLE = "border-collapse:collapse;font-size:90%"
@@ -39,7 +40,17 @@ def table(header: Sequence[str], rows: Iterable[Sequence[object]], caption: str 
     return f"<table style='{_STYLE}'>{title}<tr>{head}</tr>{body}{more}</table>"
 
 
-def lines(curves: Sequence[tuple[Floats, Floats]], width: int = 220, height: int = 60) -> str:
+def findings(told: Sequence[Finding], most: int = 5) -> str:
+    """A list of findings, each as its code and sentence; nothing for none."""
+    items = [f"<li>{escape(f'{finding.code} {finding.message}')}</li>" for finding in told[:most]]
+    if len(told) > most:
+        items.append(f"<li>… {len(told) - most} more</li>")
+    return f"<ul>{''.join(items)}</ul>" if items else ""
+
+
+def lines(
+    curves: Sequence[tuple[Floats, Floats]], width: int = 220, height: int = 60, colours: Sequence[str] = _COLOURS
+) -> str:
     """Curves in one small SVG picture, each over the same axes; nothing without a point."""
     drawn = [(np.asarray(x, float), np.asarray(y, float)) for x, y in curves]
     drawn = [(x, y) for x, y in drawn if len(x) > 1 and np.isfinite(x).all() and np.isfinite(y).all()]
@@ -54,8 +65,8 @@ def lines(curves: Sequence[tuple[Floats, Floats]], width: int = 220, height: int
         u = 2 + (x[::step] - low_x) / across * (width - 4)
         v = height - 2 - (y[::step] - low_y) / up * (height - 4)
         points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(u, v, strict=True))
-        colour = _COLOURS[k % len(_COLOURS)]
-        paths.append(f"<polyline points='{points}' fill='none' stroke='{colour}' stroke-width='1.2'/>")
+        colour = colours[k % len(colours)]
+        paths.append(f"<polyline points='{points}' fill='none' stroke='{colour}' stroke-width='1'/>")
     return (
         f"<svg xmlns='http://www.w3.org/2000/svg' width='{width}' height='{height}' role='img'>"
         + "".join(paths)

@@ -12,6 +12,7 @@ import numpy as np
 
 from . import _kesf
 from ._errors import Finding, KesfError, findings_of
+from ._html import findings as html_findings
 from ._html import table as html_table
 from ._types import Floats, Path
 
@@ -181,6 +182,12 @@ class Card:
         """Writes the file, in UTF-8."""
         with open(path, "w", encoding="utf-8", newline="") as file:
             file.write(self.text)
+
+    def _repr_html_(self) -> str:
+        """The lines of the file, the first of them where there are many, and what it cannot hold."""
+        rows = list(enumerate(self.text.splitlines(), 1))
+        caption = f"{self.fabric} for {self.program} ({self.ending}), {len(self.text.encode())} bytes"
+        return html_table(("line", "text"), rows, caption, 12) + html_findings(self.findings)
 
 
 def assumptions_of(given: Mapping[str, Any]) -> str:

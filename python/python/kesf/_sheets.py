@@ -7,13 +7,16 @@ import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, get_args, overload
+
+import numpy as np
 
 from . import _kesf
 from ._calls import unit_system
 from ._errors import Finding, KesfError, findings_of
 from ._fabrics import named
-from ._html import number
+from ._html import findings as html_findings
+from ._html import lines, number
 from ._html import table as html_table
 from ._table import Table
 from ._types import Direction, Test, Units
@@ -210,10 +213,21 @@ class Sheet:
             for direction, e in by.items()
         ]
         header = ("parameter", "direction", "mean", "SD", "n", "unit")
-        told = "".join(f"<li>{finding.code} {finding.message}</li>" for finding in self.findings[:5])
-        return html_table(header, rows, f"{self.title or self.name}, {self.origin} data", 60) + (
-            f"<ul>{told}</ul>" if told else ""
-        )
+        caption = f"{self.title or self.name}, {self.origin} data"
+        return html_table(header, rows, caption, 60) + self._sparklines() + html_findings(self.findings)
+
+    def _sparklines(self) -> str:
+        """A small picture of each test that has curves: all runs of all specimens."""
+        pictures = []
+        for test in get_args(Test):
+            drawn = [
+                (np.array(branch["curve"]["x"]), np.array(branch["curve"]["y"]))
+                for specimen in self.curves(test)["specimens"]
+                for branch in specimen["branches"]
+            ]
+            if drawn:
+                pictures.append(f"<td>{test}<br>{lines(drawn, 140)}</td>")
+        return f"<table><tr>{''.join(pictures)}</tr></table>" if pictures else ""
 
 
 def _direction(name: str) -> str | None:

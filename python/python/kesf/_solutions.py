@@ -32,6 +32,19 @@ class Mesh(Result):
     def __repr__(self) -> str:
         return f"<kesf.Mesh: {len(self.nodes)} nodes, {len(self.elements)} elements>"
 
+    def _repr_html_(self) -> str:
+        """Its size, and the elements seen from above, where that many can be told apart."""
+        low, high = self.nodes.min(axis=0), self.nodes.max(axis=0)
+        rows = [(axis, float(a), float(b)) for axis, a, b in zip("xyz", low, high, strict=True)]
+        across, up = (float(size) or 1.0 for size in (high - low)[:2])
+        scale = 160.0 / max(across, up)
+        # Every so many elements: a picture of thousands would be grey, and megabytes.
+        shown = self.elements[:: max(1, len(self.elements) // 800)]
+        rims = [(self.nodes[rim, 0], self.nodes[rim, 1]) for rim in np.hstack([shown, shown[:, :1]])]
+        picture = lines(rims, round(across * scale) + 4, round(up * scale) + 4, ("#1a1a1a",))
+        caption = f"{len(self.nodes)} nodes, {len(self.elements)} elements"
+        return html_table(("", "from (m)", "to (m)"), rows, caption) + picture
+
 
 @dataclass(frozen=True)
 class Probe:

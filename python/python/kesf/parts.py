@@ -9,7 +9,7 @@ A folder of parts::
 The metadata of a part has the version of kesf and a key, the hash of everything that the part depends on: a part with
 the same key is not made again. The results are written last, so that a part that is there is complete. The command's
 ``kesf run --shard`` and ``kesf merge`` write and read the same files; polars and duckdb read ``out/part-*.parquet`` as
-one table. Needs fsspec, and pyarrow for tables.
+one table. Needs fsspec, and pyarrow for tables; a file on the disk is written without either.
 """
 
 from __future__ import annotations
@@ -97,9 +97,14 @@ def write_file(path: str, data: bytes, options: dict[str, Any] | None = None) ->
     Raises:
         KesfError: O001 if it cannot be written; what was half written is removed.
     """
-    system, place = filesystem(path if "://" in path else os.path.abspath(path), options)
+    # The disk needs no fsspec, which a bare environment does not have.
+    system, place = filesystem(path, options) if "://" in path else (None, os.path.abspath(path))
     try:
-        _write_whole(system, place, data)
+        # An object of a store is there when all of it is; a file of a disk is, once it has its name.
+        if system is None or system.protocol in ("file", "local", ("file", "local")):
+            _write_whole(place, data)
+        else:
+            system.pipe_file(place, data)
     except OSError as error:
         raise KesfError(
             f"the file cannot be written: {error}",
@@ -133,11 +138,7 @@ def write(
         write_file(f"{out.rstrip('/')}/{name}", data, options)
 
 
-def _write_whole(system: Any, path: str, data: bytes) -> None:
-    # An object of a store is there when all of it is; a file of a disk is, once it has its name.
-    if system.protocol not in ("file", "local", ("file", "local")):
-        system.pipe_file(path, data)
-        return
+def _write_whole(path: str, data: bytes) -> None:
     folder = os.path.dirname(path)
     os.makedirs(folder, exist_ok=True)
     name = os.path.basename(path)

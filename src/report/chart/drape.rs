@@ -10,7 +10,7 @@ use super::canvas::{Canvas, HEIGHT, Point, Stroke, Tones, WIDTH};
 use super::error::ChartError;
 use super::head::Head;
 use super::output::Chart;
-use super::palette::{BLUE, GREY, INK, WARNING, darker, lighter};
+use super::palette::{BLUE, GREY, INK, VERMILLION, WARNING, darker, lighter};
 use super::panel::{self, Row};
 
 /// What [`drape_shadow`] and [`drape_view`] draw (m).
@@ -32,6 +32,8 @@ pub struct DrapePlot<'a> {
     pub sheet_radius: f64,
     /// Distance of the shadow's outline from the axis in equal steps from x.
     pub outline: &'a [f64],
+    /// The measured drape coefficient (0 to 1), drawn as the circle whose shadow has it.
+    pub measured: Option<f64>,
     /// Names and values beside the picture.
     pub values: Vec<(String, String)>,
     /// Remarks below them.
@@ -79,12 +81,17 @@ pub fn drape_shadow(plot: &DrapePlot) -> Result<Chart, ChartError> {
         })
         .collect();
     canvas.line(&closed(outline), Stroke::solid(BLUE, 4.0))?;
-    let key = [
+    let mut key = vec![
         Row::Sample(Stroke::solid(BLUE, 4.0), "shadow".into()),
         Row::Sample(dashed, "sheet at rest".into()),
         Row::Sample(Stroke::solid(INK, 2.5), "disc".into()),
-        Row::Gap,
     ];
+    if let Some(radius) = plot.measured.and_then(|coefficient| measured_radius(plot, coefficient)) {
+        let stroke = Stroke { color: VERMILLION, width: 3.5, dash: Some([20.0, 11.0]) };
+        canvas.line(&closed(circle(radius, at)), stroke)?;
+        key.push(Row::Sample(stroke, "measured, as a circle".into()));
+    }
+    key.push(Row::Gap);
     column(&mut canvas, plot, &key)?;
     Ok(canvas.chart())
 }
@@ -147,6 +154,13 @@ fn column(canvas: &mut Canvas, plot: &DrapePlot, key: &[Row]) -> Result<(), Char
     rows.push(Row::Gap);
     rows.extend(plot.remarks.iter().map(|r| Row::Remark(r.clone(), WARNING)));
     panel::draw(canvas, &rows, [SPLIT + 10.0, WIDTH as f64 - 40.0], [TOP, HEIGHT as f64 - 60.0])
+}
+
+/// Radius of the round shadow of a drape coefficient C: C = (r² − R_d²) / (R_s² − R_d²) of disc and sheet.
+fn measured_radius(plot: &DrapePlot, coefficient: f64) -> Option<f64> {
+    let [disc, sheet] = [plot.disc_radius, plot.sheet_radius].map(|radius| radius * radius);
+    let square = disc + coefficient * (sheet - disc);
+    (square.is_finite() && square > 0.0).then(|| square.sqrt())
 }
 
 fn circle(radius: f64, at: impl Fn(f64, f64) -> Point) -> Vec<Point> {

@@ -510,6 +510,7 @@ fn a_draped_sheet_from_above_and_aside() {
         disc_radius: 0.09,
         sheet_radius: 0.15,
         outline: &outline,
+        measured: Some(0.55),
         values: vec![("Drape coefficient".into(), "60 %".into())],
         remarks: vec!["nothing measured".into()],
     };

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::text::{address, escape};
+use crate::report::chart;
 
 /// A picture with its caption.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -81,8 +82,11 @@ pub(super) fn figure(out: &mut String, figure: &Figure) {
     }
     let alt = if figure.alt.is_empty() { caption.clone() } else { escape(&figure.alt) };
     let kind = figure.kind.name();
+    // With its size a picture has its room before it is loaded, and what stands below does not jump.
+    let (width, height) = chart::PIXELS;
+    let size = format!("width=\"{width}\" height=\"{height}\"");
     let image = format!(
-        "<a href=\"{address}\"><img src=\"{address}\" alt=\"{alt}\" data-kind=\"{kind}\" loading=\"lazy\"></a>"
+        "<a href=\"{address}\"><img src=\"{address}\" alt=\"{alt}\" data-kind=\"{kind}\" {size} loading=\"lazy\"></a>"
     );
     out.push_str(&format!("<figure>{image}<figcaption>{caption}</figcaption></figure>\n"));
 }

@@ -13,6 +13,8 @@ mod shapes;
 mod tables;
 mod text;
 
+use std::collections::BTreeSet;
+
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use sha2::{Digest, Sha256};
@@ -92,13 +94,22 @@ pub enum Block {
         header: Vec<String>,
         /// Cells by row; a short row ends in empty cells.
         rows: Vec<Vec<Cell>>,
-        /// Whether each row is of the fabric that its first cell names: the script then filters and sorts it.
+        /// Whether each row is of the fabric that its first cell names, which then leads to it: the script filters and sorts them.
         of_fabrics: bool,
     },
     /// Pictures beside each other as the window allows.
     Figures(Vec<Figure>),
     /// Files of the folder: path relative to the page, with `/`.
     Files(Vec<String>),
+    /// Pages of the folder, each with what is said of it.
+    Pages(Vec<(String, String)>),
+    /// What is closed until it is wanted.
+    More {
+        /// The line that opens it.
+        summary: String,
+        /// What it holds.
+        blocks: Vec<Block>,
+    },
     /// Findings and errors, each with its code.
     Findings(Vec<Finding>),
     /// The table of fabrics and parameters, from the data of the page.
@@ -194,7 +205,11 @@ fn block(out: &mut String, part: &Block, data: &PageData) {
     match part {
         Block::Text(text) => out.push_str(&format!("<p>{}</p>\n", prose(text))),
         Block::Table { caption, header, rows, of_fabrics } => {
-            tables::table(out, [caption, if *of_fabrics { "of-fabrics" } else { "" }], header, rows);
+            // A fabric that the page has is a link to its part.
+            let known: BTreeSet<&str> = data.fabrics.iter().map(|fabric| fabric.name.as_str()).collect();
+            let is_linked = |name: &str| *of_fabrics && known.contains(name);
+            let class = if *of_fabrics { "of-fabrics" } else { "" };
+            tables::table(out, [caption, class], header, rows, &is_linked);
         }
         Block::Figures(figures) => {
             out.push_str("<div class=\"figures\">\n");
@@ -207,6 +222,18 @@ fn block(out: &mut String, part: &Block, data: &PageData) {
                 out.push_str(&format!("<li><a href=\"{}\">{}</a></li>\n", address(file), escape(file)));
             }
             out.push_str("</ul>\n");
+        }
+        Block::Pages(pages) => {
+            out.push_str("<ul class=\"files\">\n");
+            for (page, text) in pages {
+                out.push_str(&format!("<li><a href=\"{}\">{}</a></li>\n", address(page), breakable(text)));
+            }
+            out.push_str("</ul>\n");
+        }
+        Block::More { summary, blocks } => {
+            out.push_str(&format!("<details class=\"more\"><summary>{}</summary>\n", escape(summary)));
+            blocks.iter().for_each(|part| block(out, part, data));
+            out.push_str("</details>\n");
         }
         Block::Findings(list) => findings(out, list),
         Block::Parameters => parameters::parameters(out, data),

@@ -26,8 +26,10 @@ const CAPTION: &str = "Mean ± SD, number of repeats n, and status where it is n
 
 /// The table with its legend.
 pub(super) fn parameters(out: &mut String, data: &PageData) {
+    out.push_str("<details class=\"more\"><summary>Legend: status and origin</summary>\n");
     legend(out, "Status of a value", STATUSES);
     legend(out, "Origin of a fabric", ORIGINS);
+    out.push_str("</details>\n");
     out.push_str(&format!("<p class=\"caption\">{CAPTION}</p>\n"));
     out.push_str(
         "<div class=\"wide tall\" tabindex=\"0\" role=\"region\" aria-label=\"Table of parameters\">",

@@ -103,7 +103,8 @@ fn doubtful_row(out: &mut String, value: &DoubtfulValue) {
     let mean = tables::both([&value.mean[0], &value.mean[1]]);
     let causes: Vec<String> = value.causes.iter().map(|code| cause(code, &value.page)).collect();
     out.push_str(&format!(
-        "<tr><td>{}</td><td>{}</td><td>{mean}</td><td>n {}</td><td class=\"{status}\">{status}</td><td>{}</td></tr>\n",
+        "<tr><td><a href=\"#{}\">{}</a></td><td>{}</td><td>{mean}</td><td>n {}</td><td class=\"{status}\">{status}</td><td>{}</td></tr>\n",
+        fabric_id(&value.fabric),
         breakable(&value.fabric),
         escape(&value.parameter),
         value.n,

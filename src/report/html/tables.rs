@@ -1,6 +1,6 @@
 //! Tables of the page. What stands above one is a paragraph of its own: a caption would scroll away with a wide table.
 
-use super::text::{breakable, escape, prose};
+use super::text::{address, breakable, escape, fabric_id, prose};
 
 /// A cell of a table.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -9,11 +9,13 @@ pub struct Cell {
     pub text: String,
     /// What speaks against it; empty for nothing.
     pub remark: String,
+    /// Page of the folder and name of the fabric there that it leads to.
+    pub leads_to: Option<(String, String)>,
 }
 
 impl<T: Into<String>> From<T> for Cell {
     fn from(text: T) -> Self {
-        Self { text: text.into(), remark: String::new() }
+        Self { text: text.into(), ..Self::default() }
     }
 }
 
@@ -39,7 +41,15 @@ pub(super) fn end(out: &mut String) {
 }
 
 /// A table; columns of numbers are set to the right.
-pub(super) fn table(out: &mut String, above: [&str; 2], header: &[String], rows: &[Vec<Cell>]) {
+///
+/// First cells that are to be links to a fabric of the page are told by `is_linked`.
+pub(super) fn table(
+    out: &mut String,
+    above: [&str; 2],
+    header: &[String],
+    rows: &[Vec<Cell>],
+    is_linked: &dyn Fn(&str) -> bool,
+) {
     let text = |row: &[Cell], column: usize| row.get(column).map_or(String::new(), |cell| cell.text.clone());
     let is_numeric = |column: usize| {
         let mut filled =
@@ -52,19 +62,27 @@ pub(super) fn table(out: &mut String, above: [&str; 2], header: &[String], rows:
     for row in rows {
         out.push_str("<tr>");
         for (column, is_numeric) in numeric.iter().enumerate() {
-            cell(out, row.get(column).unwrap_or(&Cell::default()), *is_numeric);
+            let none = Cell::default();
+            let found = row.get(column).unwrap_or(&none);
+            cell(out, found, *is_numeric, column == 0 && is_linked(&found.text));
         }
         out.push_str("</tr>\n");
     }
     end(out);
 }
 
-fn cell(out: &mut String, Cell { text, remark }: &Cell, is_numeric: bool) {
+fn cell(out: &mut String, Cell { text, remark, leads_to }: &Cell, is_numeric: bool, is_linked: bool) {
     let classes = [(is_numeric, "number"), (!remark.is_empty(), "marked")];
     let classes: Vec<&str> = classes.into_iter().filter_map(|(has, class)| has.then_some(class)).collect();
     let class = if classes.is_empty() { String::new() } else { format!(" class=\"{}\"", classes.join(" ")) };
     let remark = if remark.is_empty() { String::new() } else { format!("<small>{}</small>", escape(remark)) };
-    out.push_str(&format!("<td{class}>{}{remark}</td>", breakable(text)));
+    let shown = breakable(text);
+    let shown = match leads_to {
+        Some((page, fabric)) => format!("<a href=\"{}#{}\">{shown}</a>", address(page), fabric_id(fabric)),
+        None if is_linked => format!("<a href=\"#{}\">{shown}</a>", fabric_id(text)),
+        None => shown,
+    };
+    out.push_str(&format!("<td{class}>{shown}{remark}</td>"));
 }
 
 /// A table whose cells are a text in KES units and one in SI.

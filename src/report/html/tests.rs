@@ -146,7 +146,7 @@ fn a_self_contained_page_has_its_pictures_and_no_addresses() {
     assert!(left_out.is_empty() && !text.contains("left-out"));
     // RFC 4648: the bytes 89 50 4E 47 are "iVBORw==".
     assert!(text.contains(
-        "<figure><img src=\"data:image/png;base64,iVBORw==\" alt=\"bending\" data-kind=\"benchmark\" loading=\"lazy\"><figcaption>"
+        "<figure><img src=\"data:image/png;base64,iVBORw==\" alt=\"bending\" data-kind=\"benchmark\" width=\"1800\" height=\"1350\" loading=\"lazy\"><figcaption>"
     ));
     assert!(text.contains("<li>poplin/sheet.json</li>"));
     assert!(!text.contains("=\"./"));
@@ -218,9 +218,32 @@ fn doubtful_values_have_their_causes() {
     let group = ProblemGroup { code: "K011".into(), count: "1 of 2 fabrics".into(), lines: Vec::new() };
     let blocks = vec![Block::Doubtful(vec![value, elsewhere]), Block::Problems(vec![group])];
     let text = html(&Page { sections: vec![Section { heading: "x".into(), blocks }], ..Page::default() });
-    assert!(text.contains("<td>wool_<wbr>a</td><td>B warp</td>"));
+    assert!(text.contains("<td><a href=\"#fabric-wool_a\">wool_<wbr>a</a></td><td>B warp</td>"));
     assert!(text.contains("<td>n 3</td><td class=\"doubtful\">doubtful</td><td><a href=\"#problem-K011\">K011</a> An implausible value. "));
     assert!(text.contains("href=\"./index.html#problem-K011\"") && text.contains("<li id=\"problem-K011\">"));
+}
+
+/// A table of the fabrics of other pages leads there, one of the page itself to their parts.
+#[test]
+fn fabrics_of_a_table_are_links() {
+    let elsewhere = Cell {
+        text: "wool_a".into(),
+        leads_to: Some(("fabrics-2.html".into(), "wool_a".into())),
+        ..Cell::default()
+    };
+    let rows = vec![vec![elsewhere], vec!["a b".into()], vec!["unknown".into()]];
+    let table =
+        Block::Table { caption: String::new(), header: vec!["fabric".into()], rows, of_fabrics: true };
+    let more = Block::More { summary: "all <of> them".into(), blocks: vec![table] };
+    let pages = Block::Pages(vec![("fabrics-1.html".into(), "a b… to c…".into())]);
+    let fabrics = vec![FabricValues { name: "a b".into(), ..FabricValues::default() }];
+    let data = PageData { fabrics, ..PageData::default() };
+    let sections = vec![Section { heading: "x".into(), blocks: vec![more, pages] }];
+    let text = html(&Page { sections, data, ..Page::default() });
+    assert!(text.contains("<td><a href=\"./fabrics-2.html#fabric-wool_a\">wool_<wbr>a</a></td>"));
+    assert!(text.contains("<td><a href=\"#fabric-a%20b\">a b</a></td>") && text.contains("<td>unknown</td>"));
+    assert!(text.contains("<li><a href=\"./fabrics-1.html\">a b… to c…</a></li>"));
+    assert!(text.contains("<details class=\"more\"><summary>all &lt;of&gt; them</summary>"));
 }
 
 /// Data of the page, which no policy for scripts forbids.

@@ -15,6 +15,8 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
         Columns::new(["case", "fabric", "w_max (mm)", "± 95 % (mm)", "w/t_b", "elements", "status"]);
     let mut probes = Columns::new(["probe", "case", "fabric", "u (mm)", "v (mm)", "w (mm)", "± 95 % (mm)"]);
     let mut modes = Columns::new(["mode", "case", "fabric", "frequency (Hz)", "± 95 % (Hz)", "elements"]);
+    // That a linear solve cannot hold for cloth is said once, however many fabrics there are.
+    let beyond = solved.iter().filter(|(_, r)| r.status == Status::BeyondLinear).count();
     for (task, r) in solved {
         let fabric = task.fabric_name().unwrap_or_default().to_string();
         for (k, f) in r.frequencies.iter().enumerate() {
@@ -35,7 +37,7 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
             half_width(r, "w_max", 1e3),
             ratio,
             elements,
-            status(r.status).into(),
+            if beyond > 1 && r.status == Status::BeyondLinear { "*" } else { status(r.status) }.into(),
         ]);
         for p in &r.probes {
             let u = p.value.u.map(|u| significant(1e3 * u));
@@ -43,6 +45,13 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
             probes
                 .row([vec![p.name.clone(), r.case.clone(), fabric.clone()], u.to_vec(), vec![half]].concat());
         }
+    }
+    if beyond > 1 {
+        let note = format!(
+            "* beyond linear: {beyond} of {} results say how stiff a sheet is, not what shape it takes",
+            solved.len()
+        );
+        table = table.with_note(&note);
     }
     let steps = if verbose { search::steps(solved) } else { None };
     let parts = [

@@ -1,0 +1,117 @@
+//! The index of a run of many fabrics, which have pages of their own: a line a fabric, and links to the pages.
+
+use super::fabric::FabricReport;
+use super::overview::{CAPTION, HEADINGS};
+use super::page::FABRICS_OF_PAGE;
+use crate::report::html::{Block, Cell};
+
+/// Fabrics that the index lists: a longer table takes a browser seconds. All of them are in `fabrics.csv`.
+const LISTED: usize = 5000;
+
+/// Pages of fabrics that are written.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pages {
+    /// File and what it holds.
+    pages: Vec<(String, String)>,
+    /// A line a fabric, up to [`LISTED`].
+    rows: Vec<Vec<Cell>>,
+    fabrics: usize,
+}
+
+/// The name of a page of fabrics; pages count from 1.
+pub(crate) fn name_of_page(number: usize) -> String {
+    format!("fabrics-{number}.html")
+}
+
+impl Pages {
+    /// The name and number of the next page.
+    pub fn next(&self) -> (String, usize) {
+        let number = self.pages.len() + 1;
+        (name_of_page(number), number)
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.pages.is_empty()
+    }
+
+    /// Adds a page that is written, with its fabrics.
+    pub fn add(&mut self, page: String, reports: &[FabricReport]) {
+        let name = |report: Option<&FabricReport>| report.map_or("", |r| &r.name).to_string();
+        let text = format!("{}… to {}…", name(reports.first()), name(reports.last()));
+        for report in reports.iter().take(LISTED.saturating_sub(self.rows.len())) {
+            let first = Cell {
+                text: report.name.clone(),
+                leads_to: Some((page.clone(), report.name.clone())),
+                ..Cell::default()
+            };
+            let cells = report.cells.iter().map(Cell::from);
+            let status = Cell::from(&report.status);
+            self.rows.push(std::iter::once(first).chain(cells).chain([status]).collect());
+        }
+        self.fabrics += reports.len();
+        self.pages.push((page, text));
+    }
+
+    /// Links and the table; nothing without pages.
+    pub fn blocks(&self) -> Vec<Block> {
+        if self.is_empty() {
+            return Vec::new();
+        }
+        let text = format!(
+            "Parameters, curves and charts are on pages of {FABRICS_OF_PAGE} fabrics, in name order:"
+        );
+        let rest = match self.fabrics - self.rows.len() {
+            0 => String::new(),
+            more => format!(" The first {LISTED} fabrics; {more} more are on the pages and in fabrics.csv."),
+        };
+        let table = Block::Table {
+            caption: format!("{CAPTION}.{rest}"),
+            header: HEADINGS.into_iter().chain(["status"]).map(String::from).collect(),
+            rows: self.rows.clone(),
+            of_fabrics: true,
+        };
+        vec![Block::Text(text), Block::Pages(self.pages.clone()), table]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_fabric_has_a_line_that_leads_to_its_page() {
+        let report = |name: &str| FabricReport {
+            name: name.into(),
+            cells: vec!["0.1 ?".into(); HEADINGS.len() - 1],
+            status: "ok".into(),
+            ..FabricReport::default()
+        };
+        let mut pages = Pages::default();
+        assert!(pages.blocks().is_empty());
+        for names in [["a", "f"], ["g", "m"]] {
+            let (page, _) = pages.next();
+            pages.add(page, &names.map(report));
+        }
+        let blocks = pages.blocks();
+        let [Block::Text(_), Block::Pages(links), Block::Table { header, rows, .. }] = &blocks[..] else {
+            panic!("{blocks:?}")
+        };
+        assert_eq!(links[1], ("fabrics-2.html".to_string(), "g… to m…".to_string()));
+        assert_eq!((rows.len(), rows[3].len()), (4, header.len()));
+        assert_eq!(rows[3][0].leads_to, Some(("fabrics-2.html".into(), "m".into())));
+    }
+
+    #[test]
+    fn a_library_of_any_size_has_a_table_that_opens() {
+        let reports: Vec<FabricReport> = (0..LISTED + 3)
+            .map(|k| FabricReport { name: k.to_string(), ..FabricReport::default() })
+            .collect();
+        let mut pages = Pages::default();
+        pages.add("fabrics-1.html".into(), &reports);
+        let blocks = pages.blocks();
+        let [.., Block::Table { caption, rows, .. }] = &blocks[..] else { panic!("{blocks:?}") };
+        assert_eq!(rows.len(), LISTED);
+        assert!(caption.ends_with("3 more are on the pages and in fabrics.csv."), "{caption}");
+    }
+}

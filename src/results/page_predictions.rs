@@ -1,0 +1,281 @@
+//! Predictions of cases on the page: what a laboratory measures first, plates in a form without units after it.
+
+use super::fabric::FabricReport;
+use super::page_values::rests_on;
+use super::rests_on::OF_PLATE;
+use crate::quantity::significant;
+use crate::report::html::{Block, Cell};
+use crate::report::table::PredictionRow;
+
+/// Deflection over the bending thickness below which a linear solve is meaningful.
+const MEANINGFUL: f64 = 0.3;
+
+/// A column of what a laboratory measures.
+#[derive(Clone, Debug, PartialEq)]
+struct Column {
+    case: String,
+    quantity: String,
+    /// Whether it is the measured value beside it.
+    is_measured: bool,
+}
+
+/// The row of the quantity of a case.
+fn found<'r>(report: &'r FabricReport, case: &str, quantity: &str) -> Option<&'r PredictionRow> {
+    report.predictions.iter().find(|row| row.case == case && row.quantity == quantity)
+}
+
+/// What the case is called.
+fn title<'r>(reports: &'r [FabricReport], case: &'r str) -> &'r str {
+    reports.iter().find_map(|r| r.cases.get(case)).map_or(case, |(title, _)| title)
+}
+
+fn is_drape(quantity: &str) -> bool {
+    quantity == "drape_coefficient"
+}
+
+fn is_leading(row: &PredictionRow) -> bool {
+    is_drape(&row.quantity) || row.quantity.starts_with("bending_length")
+}
+
+/// Whether the cloth has friction there.
+fn has_friction(report: &FabricReport, row: &PredictionRow) -> bool {
+    row.quantity.contains("_friction ") || report.cases.get(&row.case).is_some_and(|(_, friction)| *friction)
+}
+
+/// Drape and cantilever, one row a fabric: of elastic cloth, then of cloth with friction.
+pub(super) fn leading(reports: &[FabricReport]) -> Vec<Block> {
+    [false, true].into_iter().filter_map(|friction| leading_table(reports, friction)).collect()
+}
+
+fn leading_table(reports: &[FabricReport], friction: bool) -> Option<Block> {
+    let mut columns: Vec<Column> = Vec::new();
+    for report in reports {
+        let mine = |row: &&PredictionRow| is_leading(row) && has_friction(report, row) == friction;
+        for row in report.predictions.iter().filter(mine) {
+            let simulated =
+                Column { case: row.case.clone(), quantity: row.quantity.clone(), is_measured: false };
+            let measured = Column { is_measured: true, ..simulated.clone() };
+            let wanted = [Some(simulated), row.measured.map(|_| measured)];
+            let new: Vec<Column> = wanted.into_iter().flatten().filter(|c| !columns.contains(c)).collect();
+            columns.extend(new);
+        }
+    }
+    columns.sort_by(|a, b| {
+        let key = |c: &Column| (!is_drape(&c.quantity), c.case.clone(), c.quantity.clone(), c.is_measured);
+        key(a).cmp(&key(b))
+    });
+    let heading = |column: &Column| match column {
+        Column { quantity, is_measured: true, .. } => format!("measured ({})", unit(quantity)),
+        Column { case, quantity, .. } => {
+            let name = quantity.replace("_friction", "").replace('_', " ");
+            format!("{name} ({}): {}", unit(quantity), title(reports, case))
+        }
+    };
+    let line = |report: &FabricReport| {
+        let cells = columns.iter().map(|column| leading_cell(report, column));
+        std::iter::once(Cell::from(&report.name)).chain(cells).collect()
+    };
+    (!columns.is_empty()).then(|| Block::Table {
+        caption: leading_caption(&columns, friction),
+        header: std::iter::once("fabric".to_string()).chain(columns.iter().map(heading)).collect(),
+        rows: reports.iter().map(line).collect(),
+        of_fabrics: true,
+    })
+}
+
+/// Names only what the table has.
+fn leading_caption(columns: &[Column], friction: bool) -> String {
+    let has = |drape: bool| columns.iter().any(|c| is_drape(&c.quantity) == drape);
+    let parts = [(has(true), "drape"), (has(false), "the bending length of the cantilever")];
+    let named: Vec<&str> = parts.into_iter().filter_map(|(has, name)| has.then_some(name)).collect();
+    let of = if friction {
+        "What a laboratory measures, of cloth with friction"
+    } else {
+        "What a laboratory measures"
+    };
+    let mut caption = format!("{of}: {}.", named.join(", and "));
+    if has(true) {
+        caption += " A drape coefficient is that of the state of lowest energy; the least and the greatest of all states that were \
+                    found stand in brackets, and then how many folds it has.";
+    }
+    if columns.iter().any(|c| c.is_measured) {
+        caption += " The measured value stands beside the simulated one where there is one.";
+    }
+    caption
+}
+
+/// The unit in which a leading quantity is read.
+fn unit(quantity: &str) -> &'static str {
+    if is_drape(quantity) { "%" } else { "mm" }
+}
+
+fn leading_cell(report: &FabricReport, column: &Column) -> Cell {
+    let Some(row) = found(report, &column.case, &column.quantity) else { return "-".into() };
+    let text = |value: f64| {
+        if is_drape(&row.quantity) { format!("{:.1}", 1e2 * value) } else { significant(1e3 * value) }
+    };
+    let of = |quantity: &str| found(report, &column.case, quantity);
+    let folds = |value: Option<f64>| value.map_or(String::new(), |count| format!(", {count} folds"));
+    let counted = of("drape_nodes").filter(|_| is_drape(&row.quantity));
+    if column.is_measured {
+        return match row.measured {
+            Some(value) => format!("{}{}", text(value), folds(counted.and_then(|row| row.measured))).into(),
+            None => "-".into(),
+        };
+    }
+    let Some(value) = row.simulated else { return "-".into() };
+    let [least, greatest] = ["drape_coefficient_least", "drape_coefficient_greatest"]
+        .map(|quantity| of(quantity).filter(|_| is_drape(&row.quantity)).and_then(|row| row.simulated));
+    let band = least.zip(greatest).map_or(String::new(), |(a, b)| format!(" ({}–{})", text(a), text(b)));
+    Cell {
+        text: format!("{}{band}{}", text(value), folds(counted.and_then(|row| row.simulated))),
+        remark: rests_on(report, &row.quantity),
+        ..Cell::default()
+    }
+}
+
+/// Linear solves, one row a fabric and one column a case.
+pub(super) fn plates(reports: &[FabricReport]) -> Option<Block> {
+    let mut cases: Vec<&str> = Vec::new();
+    for (case, _) in reports.iter().flat_map(|r| &r.relative_deflections) {
+        if !cases.contains(&case.as_str()) {
+            cases.push(case);
+        }
+    }
+    let line = |report: &FabricReport| {
+        let of = |case: &&str| {
+            let found = report.relative_deflections.iter().find(|(name, _)| name == case);
+            found.map_or("-".into(), |(_, value)| Cell {
+                text: significant(*value),
+                remark: rests_on(report, OF_PLATE),
+                ..Cell::default()
+            })
+        };
+        std::iter::once(Cell::from(&report.name)).chain(cases.iter().map(of)).collect()
+    };
+    (!cases.is_empty()).then(|| Block::Table {
+        caption: plates_caption(reports, &cases),
+        header: std::iter::once("fabric")
+            .chain(cases.iter().map(|case| title(reports, case)))
+            .map(String::from)
+            .collect(),
+        rows: reports.iter().map(line).collect(),
+        of_fabrics: true,
+    })
+}
+
+/// That a linear solve cannot hold for cloth is said once, with the count of each case.
+fn plates_caption(reports: &[FabricReport], cases: &[&str]) -> String {
+    let mut caption = format!(
+        "Linear solves, normalised: largest deflection over the bending thickness √(12 B / D_m). A linear solve is \
+         meaningful below {MEANINGFUL}; above, the number says how stiff a sheet is, not what shape it takes."
+    );
+    let beyond: Vec<String> = cases
+        .iter()
+        .filter_map(|case| {
+            let of_case =
+                || reports.iter().flat_map(|r| &r.relative_deflections).filter(|(name, _)| name == case);
+            let beyond = of_case().filter(|(_, value)| value.abs() > MEANINGFUL).count();
+            let title = title(reports, case);
+            (beyond > 0).then(|| format!("{beyond} of {} fabrics in “{title}”", of_case().count()))
+        })
+        .collect();
+    if !beyond.is_empty() {
+        caption += &format!(" Above it: {}.", beyond.join(", "));
+    }
+    caption
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::table::FabricRow;
+    use crate::results::rests_on::DOUBTFUL;
+
+    fn row(case: &str, quantity: &str, simulated: f64, measured: Option<f64>) -> PredictionRow {
+        PredictionRow {
+            case: case.into(),
+            quantity: quantity.into(),
+            simulated: Some(simulated),
+            measured,
+            ..PredictionRow::default()
+        }
+    }
+
+    fn table(block: Option<Block>) -> (String, Vec<String>, Vec<Vec<Cell>>) {
+        let Some(Block::Table { caption, header, rows, .. }) = block else { panic!("a table") };
+        (caption, header, rows)
+    }
+
+    #[test]
+    fn a_drape_is_one_cell_with_the_measured_value_beside_it() {
+        let cases = [("drape", "Drape", false), ("drape_friction", "Drape with friction", true)];
+        let report = FabricReport {
+            name: "poplin".into(),
+            cases: cases.map(|(name, title, friction)| (name.into(), (title.into(), friction))).into(),
+            predictions: vec![
+                row("cantilever", "bending_length warp", 0.0212, None),
+                row("cantilever", "bending_length_friction warp", 0.0234, None),
+                row("seed_clamped", "w_max", 3.5e-7, None),
+                row("drape", "drape_coefficient", 0.647, Some(0.5)),
+                row("drape", "drape_coefficient_least", 0.622, None),
+                row("drape", "drape_coefficient_greatest", 0.674, None),
+                row("drape", "drape_nodes", 7.0, Some(6.0)),
+                row("drape_friction", "drape_coefficient", 0.7, None),
+                row("virtual_bending", "B warp", 9.80665e-6, Some(9.80665e-6)),
+            ],
+            ..FabricReport::default()
+        };
+        let blocks = leading(std::slice::from_ref(&report));
+        assert_eq!(blocks.len(), 2);
+        let mut blocks = blocks.into_iter();
+        let (caption, header, rows) = table(blocks.next());
+        let expected = [
+            "fabric",
+            "drape coefficient (%): Drape",
+            "measured (%)",
+            "bending length warp (mm): cantilever",
+        ];
+        assert_eq!(header, expected);
+        let cells = ["poplin", "64.7 (62.2–67.4), 7 folds", "50.0, 6 folds", "21.20"];
+        assert_eq!(rows, [cells.map(Cell::from)]);
+        assert!(caption.contains("drape, and the bending length") && caption.contains("folds"), "{caption}");
+        let (caption, header, rows) = table(blocks.next());
+        let expected =
+            ["fabric", "drape coefficient (%): Drape with friction", "bending length warp (mm): cantilever"];
+        assert_eq!(header, expected);
+        assert_eq!(rows, [["poplin", "70.0", "23.40"].map(Cell::from)]);
+        assert!(caption.contains("friction") && !caption.contains("measured value"), "{caption}");
+    }
+
+    #[test]
+    fn without_a_drape_nothing_says_drape() {
+        let predictions = vec![row("cantilever", "bending_length warp", 0.0212, None)];
+        let report = FabricReport { predictions, ..FabricReport::default() };
+        let (caption, header, _) = table(leading(&[report]).into_iter().next());
+        assert!(!caption.contains("drape") && !header.concat().contains("drape"), "{caption}");
+    }
+
+    /// That a linear solve is beyond its meaning is said once; what speaks against one fabric stands beside its value.
+    #[test]
+    fn only_another_cause_marks_a_plate() {
+        let b = FabricRow { parameter: "B".into(), status: DOUBTFUL.into(), ..FabricRow::default() };
+        let report = |name: &str, rows: Vec<FabricRow>, value: f64| FabricReport {
+            name: name.into(),
+            rows,
+            cases: [("own".to_string(), ("Own weight".to_string(), false))].into(),
+            relative_deflections: vec![("own".into(), value)],
+            predictions: vec![row("cantilever", "bending_length warp", 0.0212, None)],
+            ..FabricReport::default()
+        };
+        let reports =
+            [report("a", vec![b], 710.0), report("b", Vec::new(), -45.0), report("c", Vec::new(), 0.01)];
+        let (caption, header, rows) = table(plates(&reports));
+        assert_eq!(header, ["fabric", "Own weight"]);
+        assert!(caption.ends_with("Above it: 2 of 3 fabrics in “Own weight”."), "{caption}");
+        let remarks: Vec<&str> = rows.iter().map(|row| row[1].remark.as_str()).collect();
+        assert_eq!(remarks, ["rests on a doubtful B", "", ""]);
+        let (_, _, rows) = table(leading(&reports).into_iter().next());
+        assert_eq!(rows[0][1].remark, "rests on a doubtful B");
+    }
+}
