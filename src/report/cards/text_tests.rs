@@ -23,6 +23,8 @@ fn after(text: &str, heads: &[&str]) -> Field {
         let found = text[from..].find(head).unwrap_or_else(|| panic!("no {head} in\n{text}"));
         from + found + head.len()
     });
+    // JSON puts each number on a line of its own.
+    let start = start + (text[start..].len() - text[start..].trim_start().len());
     let length = text[start..].find([',', '}', '"', ']', '\n', ')']).unwrap();
     let at = start..start + length;
     Field { value: text[at.clone()].trim().parse().unwrap(), at }
