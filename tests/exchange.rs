@@ -6,11 +6,11 @@
 //!
 //! `ci/exchange` installs the programs and runs this with `KESF_EXCHANGE` naming their folder; without it all are
 //! skipped. A program that is not there is skipped and counted; with `KESF_EXCHANGE_LEAST=6` fewer than six
-//! executed programs are a failure. The table stands in `docs/src/exchange.md`; `KESF_EXCHANGE_WRITE=1` writes it anew.
+//! distinct programs that executed are a failure: newton, which is given two cards, counts once. The table stands in `docs/src/exchange.md`; `KESF_EXCHANGE_WRITE=1` writes it anew.
 
 mod common;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -19,7 +19,7 @@ use kesf::analytical::von_karman::VonKarmanPlate;
 use kesf::analytical::{Plate, elastica};
 use kesf::characterise::FabricSheet;
 use kesf::constitutive::Constitutive;
-use kesf::report::cards::{Material, card, named};
+use kesf::report::cards::{Material, Target, card, named};
 use kesf::section::ShellSection;
 use kesf::{characterise, constitutive, instrument};
 
@@ -189,9 +189,12 @@ fn reference(section: &ShellSection, problem: &str) -> f64 {
     });
     let strip = |b: f64| elastica::heavy_elastica(weight * STRIP.powi(3) / b).unwrap().drop;
     let hang = |e: f64| 1e3 * weight * STRIP / (2.0 * e);
+    let mean = |[warp, weft]: [f64; 2]| (warp * weft).sqrt();
     let yarn = usize::from(problem.ends_with("_weft"));
     match problem.trim_end_matches("_warp").trim_end_matches("_weft") {
-        "strip" => strip(bending[yarn]),
+        "mean_tensile" => mean(tensile),
+        "mean_rigidity" => mean(bending),
+        "strip" | "mesh_strip" => strip(bending[yarn]),
         "hang" => hang(tensile[yarn]),
         "tensile" => tensile[yarn],
         "rigidity" | "as_read" => bending[yarn],
@@ -220,6 +223,11 @@ fn home() -> Option<PathBuf> {
 type Answers = (String, BTreeMap<String, f64>);
 
 impl Program {
+    /// What executes the card: the same for two cards of one program.
+    fn engine(&self) -> &'static str {
+        self.needs.1.split('.').next().unwrap()
+    }
+
     fn python(&self) -> PathBuf {
         match home() {
             Some(home) if !self.needs.0.is_empty() => home.join(self.needs.0).join("bin/python"),
@@ -246,10 +254,15 @@ impl Program {
         let (sheet, made) = poplin();
         let made = Constitutive { section: section.clone(), ..made };
         let material = Material { sheet: &sheet, made: &made, stamp: None };
-        let target = named(self.target).unwrap();
         let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join(format!("card.{}", target.ending));
-        std::fs::write(&file, card(target, &material).unwrap().text).unwrap();
+        let written = |target: Target| {
+            let file = folder.path().join(format!("card.{}", target.ending));
+            std::fs::write(&file, card(target, &material).unwrap().text).unwrap();
+            file
+        };
+        let file = written(named(self.target).unwrap());
+        // A mesh for the materials, where there is one.
+        named(&format!("{}-mesh", self.target)).map(written);
         let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/exchange");
         let ran = Command::new(self.python())
             .arg(scripts.join(self.script))
@@ -293,8 +306,23 @@ fn present() -> Vec<&'static Program> {
     for program in &missing {
         common::skipped("exchange", &format!("{} is not installed; ci/exchange installs it", program.target));
     }
-    println!("{} programs executed, {} skipped", there.len(), missing.len());
+    println!("{} cards are given to programs, {} are skipped", there.len(), missing.len());
     there
+}
+
+/// The programs behind cards, each once.
+fn distinct<'p>(programs: impl IntoIterator<Item = &'p &'static Program>) -> BTreeSet<&'static str> {
+    programs.into_iter().map(|program| program.engine()).collect()
+}
+
+/// Two cards of one program are one program.
+#[test]
+fn newton_counts_once() {
+    let all: Vec<&Program> = PROGRAMS.iter().collect();
+    let distinct = distinct(&all);
+    let of = |target: &str| PROGRAMS.iter().find(|p| p.target == target).unwrap().engine();
+    assert_eq!(of("newton"), of("usd"));
+    assert!(distinct.len() < PROGRAMS.len() && distinct.len() >= 6, "{distinct:?}");
 }
 
 #[test]
@@ -319,7 +347,9 @@ fn other_programs_make_of_a_fabric_what_it_is() {
         }
     }
     assert!(wrong.is_empty(), "beyond their bounds:\n{}", wrong.join("\n"));
-    assert!(programs.len() >= least, "{} programs, at least {least} were asked for", programs.len());
+    let distinct = distinct(&programs);
+    println!("{} distinct programs executed: {distinct:?}", distinct.len());
+    assert!(distinct.len() >= least, "at least {least} distinct programs were asked for: {distinct:?}");
     hold(&rows);
 }
 
@@ -438,6 +468,18 @@ fn browzwear_files_are_valid() {
     judge_cards("browzwear", "tests/exchange/schemas/u3m-physics-1.1.json", &faults);
 }
 
+/// ARCSim's material file: how many numbers it reads, and where.
+#[test]
+fn arcsim_files_are_valid() {
+    let faults = [
+        ("\"density\":", "\"weight\":"),
+        ("\"density\": ", "\"density\": -"),
+        ("\"stretching\": [", "\"stretching\": [[1, 1, 1, 1],"),
+        ("\"bending\": [", "\"bending\": [[1, 1, 1, 1],"),
+    ];
+    judge_cards("arcsim", "tests/exchange/schemas/arcsim-material.json", &faults);
+}
+
 /// What Unreal's importer looks for is there, and its factors give the section.
 #[test]
 fn attributes_of_clo_are_what_unreal_reads() {
@@ -451,6 +493,93 @@ fn attributes_of_clo_are_what_unreal_reads() {
         let off = answers[*problem] / reference(&section, problem) - 1.0;
         assert!(off.abs() <= *bound, "{problem}: {off}");
     }
+}
+
+/// The JSON part of a binary glTF file (Khronos, glTF 2.0, 4.4): a header of 12 bytes, the length and kind of the part.
+#[cfg(feature = "cli")]
+fn gltf_document(bytes: &[u8]) -> serde_json::Value {
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    serde_json::from_slice(&bytes[20..20 + length]).unwrap()
+}
+
+/// A drape as a shape: Blender imports the file that `kesf solve` writes, as large as it says, in metres and upright.
+#[cfg(feature = "cli")]
+#[test]
+fn blender_opens_a_drape() {
+    let blender = PROGRAMS.iter().find(|p| p.target == "blender").unwrap();
+    if !blender.is_there() {
+        return common::skipped("drape", "blender is not installed; ci/exchange installs it");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    // The drape of `cases/drape.toml` on few cells.
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let case = std::fs::read_to_string(root.join("cases/drape.toml")).unwrap();
+    let coarse = [
+        ("cells = [14, 90]", "cells = [6, 40]"),
+        ("folds = [3, 4, 5, 6, 7]", "folds = [4]"),
+        ("refinements = 1", "refinements = 0"),
+        ("#:schema", "#"),
+    ];
+    let case = coarse.iter().fold(case, |text, (own, few)| text.replace(own, few));
+    std::fs::write(folder.path().join("drape.toml"), case).unwrap();
+    let ran = Command::new(env!("CARGO_BIN_EXE_kesf"))
+        .args(["-q", "solve", "drape.toml"])
+        .arg(root.join("kesf_data/poplin"))
+        .args(["-o", "out"])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    let file = glb_below(&folder.path().join("out")).expect("a .glb file");
+    let ran = Command::new(blender.python())
+        .arg(root.join("tests/exchange/blender_drape.py"))
+        .arg(&file)
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&ran.stdout).into_owned();
+    let last = said.lines().rfind(|l| l.starts_with('{')).unwrap_or_default();
+    let answer: serde_json::Value = serde_json::from_str(last)
+        .unwrap_or_else(|_| panic!("{said}\n{}", String::from_utf8_lossy(&ran.stderr)));
+    let box_of = |name: &str| -> [Vec<f64>; 2] {
+        [0, 1].map(|end| {
+            let corner = answer["boxes"][name][end].as_array().unwrap_or_else(|| panic!("{name}: {answer}"));
+            corner.iter().map(|v| v.as_f64().unwrap()).collect()
+        })
+    };
+    println!("{answer}");
+    let document = gltf_document(&std::fs::read(&file).unwrap());
+    // z is upwards in both, and metres are units.
+    for (mesh, name) in ["deflected", "outline before"].iter().enumerate() {
+        let place =
+            document["meshes"][mesh]["primitives"][0]["attributes"]["POSITION"].as_u64().unwrap() as usize;
+        for (end, key) in ["min", "max"].iter().enumerate() {
+            let stated = document["accessors"][place][*key].as_array().unwrap();
+            for (found, stated) in box_of(name)[end].iter().zip(stated) {
+                assert!((found - stated.as_f64().unwrap()).abs() < 1e-6, "{name}, {key}: {answer}");
+            }
+        }
+    }
+    // The sheet before is 30 cm wide and flat; hung, it is narrower, and deep by no more than its ring of 6 cm.
+    let [low, high] = box_of("outline before");
+    assert!((high[0] - low[0] - 0.3).abs() < 1e-6 && (high[1] - low[1] - 0.3).abs() < 1e-6, "{answer}");
+    // Blender turns in single precision.
+    assert!((high[2] - low[2]).abs() < 1e-6, "{answer}");
+    let [low, high] = box_of("deflected");
+    assert!(high[0] - low[0] < 0.3 && (0.01..=0.0601).contains(&(high[2] - low[2])), "{answer}");
+    assert!(low[2] < -0.01, "it hangs: {answer}");
+    assert_eq!(answer["said"]["scale_factor"], 1.0, "{answer}");
+}
+
+/// The only glTF file of a folder of results.
+#[cfg(feature = "cli")]
+fn glb_below(folder: &Path) -> Option<PathBuf> {
+    let entries = std::fs::read_dir(folder).ok()?.map(|entry| entry.unwrap().path());
+    entries.into_iter().find_map(|path| match path.extension() {
+        Some(ending) if ending == "glb" => Some(path),
+        _ if path.is_dir() => glb_below(&path),
+        _ => None,
+    })
 }
 
 /// A mistake of a writer of cards: problems that show it, and the section that the program would be given.

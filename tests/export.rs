@@ -3,10 +3,13 @@
 
 #![cfg(feature = "cli")]
 
+mod common;
+
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use kesf::report::cards::EXPORTERS;
 use serde_json::Value;
 
 fn kesf(arguments: &[&str]) -> Output {
@@ -106,6 +109,102 @@ fn several_programs_are_given_every_shipped_fabric() {
     );
     let twice = kesf(&["-q", "export", "kesf_data/satin", "--to", "usd,mujoco"]);
     assert!(code(&twice) == 2 && stderr(&twice).contains("O058"), "{}", stderr(&twice));
+}
+
+/// Every shipped fabric has a card of every program, each once however often it is named.
+#[test]
+fn all_programs_are_given_every_shipped_fabric() {
+    let folder = tempfile::tempdir().unwrap();
+    let cards = folder.path().join("cards");
+    let output = kesf(&["-q", "--json", "export", "kesf_data", "--to", "all,usd", "-o", text(&cards)]);
+    assert_eq!((code(&output), stderr(&output)), (0, String::new()));
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let files = document["files"].as_array().unwrap();
+    let fabrics: Vec<String> = fs::read_dir("kesf_data")
+        .unwrap()
+        .map(|e| e.unwrap())
+        .filter(|e| e.path().is_dir())
+        .map(|e| e.file_name().into_string().unwrap())
+        .collect();
+    assert_eq!(fabrics.len(), 13);
+    assert_eq!(files.len(), EXPORTERS.len() * fabrics.len());
+    for (fabric, target) in fabrics.iter().flat_map(|f| EXPORTERS.iter().map(move |t| (f, t))) {
+        let card = fs::read_to_string(cards.join(format!("{fabric}.{}", target.ending))).unwrap();
+        let lower = card.to_lowercase();
+        assert!(lower.contains(fabric.as_str()), "{fabric} {}", target.name);
+        // Words, not parts of words such as `finance`.
+        let nonsense = |word: &str| ["nan", "inf", "-inf"].contains(&word);
+        let words = lower.split(|c: char| !c.is_ascii_alphanumeric() && c != '-' && c != '.');
+        assert_eq!(words.into_iter().find(|w| nonsense(w)), None, "{fabric} {}", target.name);
+    }
+}
+
+/// The script of a release writes the presets, and an index of the values in them that nobody measured.
+#[cfg(unix)]
+#[test]
+fn the_presets_of_a_release_have_an_index_of_stand_ins() {
+    if Command::new("python3").arg("--version").output().is_err() {
+        return common::skipped("presets", "there is no python3");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let presets = folder.path().join("presets");
+    let ran = Command::new("bash")
+        .args(["ci/presets", text(&presets)])
+        .env("KESF", env!("CARGO_BIN_EXE_kesf"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap();
+    assert!(ran.status.success(), "{}", stderr(&ran));
+    let index = fs::read_to_string(presets.join("index.md")).unwrap();
+    for ending in ["usda", "mjcf.xml", "fabric.json", "newton.json"] {
+        assert!(presets.join(format!("satin.{ending}")).is_file(), "{ending}");
+    }
+    let told = |fabric: &str, value: &str| {
+        index.lines().any(|l| l.starts_with(&format!("| {fabric} |")) && l.contains(&format!("| {value} |")))
+    };
+    assert!(told("poplin", "torsional rigidity D66") && !told("poplin", "thickness"), "{index}");
+    assert!(index.contains("synthetic") && index.contains("published"), "{index}");
+}
+
+/// Our U3M material is an input like a section; a physics file with Browzwear's values gives what those are.
+#[test]
+fn u3m_files_are_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let card = |target: &str, ending: &str| {
+        let card = folder.path().join(format!("card.{ending}"));
+        let options = ["-q", "export", "kesf_data/poplin", "--to", target, "-o", text(&card)];
+        assert_eq!(code(&kesf(&options)), 0);
+        card
+    };
+    let section = |input: &str| -> Value {
+        let run = kesf(&["-q", "--json", "section", input]);
+        assert_eq!(code(&run), 0, "{}", stderr(&run));
+        serde_json::from_slice::<Value>(&run.stdout).unwrap()["sections"][0].clone()
+    };
+    let own = section("kesf_data/poplin");
+    let u3m = section(text(&card("u3m", "u3m")));
+    for key in ["fabric", "origin", "d_m", "d_b", "d_s", "areal_density", "thickness", "assumptions"] {
+        assert_eq!(own[key], u3m[key], "{key}");
+    }
+    let read = section(text(&card("browzwear", "json")));
+    assert_eq!(read["fabric"], "poplin");
+    let strip = |s: &Value, d: &str, i: usize| {
+        let of = |i: usize, j: usize| s[d][i][j].as_f64().unwrap();
+        of(i, i) - of(0, 1) * of(0, 1) / of(1 - i, 1 - i)
+    };
+    for i in [0, 1] {
+        // B of the file is that of a strip; D11 is B, as there is no coupling in bending.
+        let (b, own_b) = (read["d_b"][i][i].as_f64().unwrap(), strip(&own, "d_b", i));
+        assert!((b / own_b - 1.0).abs() < 1e-8, "{b} {own_b}");
+        let (e, own_e) = (strip(&read, "d_m", i), strip(&own, "d_m", i));
+        assert!((e / own_e - 1.0).abs() < 1e-8, "{e} {own_e}");
+    }
+    for key in ["areal_density", "thickness"] {
+        let ratio = read[key].as_f64().unwrap() / own[key].as_f64().unwrap();
+        assert!((ratio - 1.0).abs() < 1e-8, "{key}");
+    }
+    let why = read["assumptions"].to_string();
+    assert!(why.contains("inferred: tangent_low of Browzwear") && why.contains("inferred: B"), "{why}");
 }
 
 /// A file in the way costs the others nothing, and is kept; under `--json` a document says what was written.

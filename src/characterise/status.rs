@@ -197,7 +197,7 @@ fn of_evaluation(fact: &EvaluationFact) -> Option<(Scope<'_>, ValueStatus)> {
         F::LowLoad { direction, .. } => (value(Parameter::B, Some(*direction)), Doubtful),
         F::BiasStrip { .. } => (value(Parameter::G, None), Inferred),
         F::FabThickness { .. } => (value(Parameter::T0, None), Inferred),
-        F::ModuliOfTable { .. } | F::StiffnessOfFast { .. } => (Scope::Moduli, Inferred),
+        F::ModuliOfTable { .. } | F::StatedStiffness { .. } => (Scope::Moduli, Inferred),
         F::StatedThickness {} => (value(Parameter::T0, None), Assumed),
         F::NotEvaluated { .. }
         | F::Missing { .. }

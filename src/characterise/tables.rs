@@ -49,15 +49,19 @@ pub(super) fn merge(sheet: &mut FabricSheet, input: &FabricInput, settings: &Set
     }
 }
 
-/// Tensile stiffnesses of a table, where they are between the loads of `tangent_low` and no curve says more.
+/// Tensile stiffnesses of a table, where they are between the loads of `tangent_low`, or at any load, and no curve says
+/// more.
 pub(super) fn stiffnesses(sheet: &mut FabricSheet, input: &FabricInput, settings: &Settings) {
     let window = settings.tangent_low.map(crate::quantity::LineForce::si);
     for stated in &input.stiffnesses {
-        let fits = stated.loads.iter().zip(window).all(|(own, set)| (own - set).abs() <= 1e-6 * set);
+        let same =
+            |loads: [f64; 2]| loads.iter().zip(window).all(|(own, set)| (own - set).abs() <= 1e-6 * set);
+        let fits = stated.loads.is_none_or(same);
         let key = (Modulus::TangentLow.name(), stated.direction);
         if fits && !sheet.moduli.contains_key(&key) {
             sheet.moduli.insert(key, Estimate::single(stated.stiffness));
-            let fact = EvaluationFact::StiffnessOfFast { direction: stated.direction };
+            let fact =
+                EvaluationFact::StatedStiffness { direction: stated.direction, what: stated.what.clone() };
             sheet.findings.push(Finding::new(fact).at(stated.place.clone()));
         }
     }

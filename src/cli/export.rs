@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::PossibleValuesParser;
 
 use super::assumptions::AssumptionArgs;
 use super::exit::Exit;
@@ -13,22 +13,22 @@ use super::program::now;
 use super::ui::Ui;
 use crate::documents::ExportDocument;
 use crate::report::OutputFolder;
-use crate::report::cards::{EXPORTERS, Target, named};
+use crate::report::cards::{ALL, EXPORTERS, targets};
 use crate::report::write::write_file;
 use crate::results::{Card, Curves, Failure, cards, sections_with, write_cards};
 
 /// Write fabrics as material files of other programs
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  kesf export kesf_data/poplin --to u3m -o poplin.u3m\n  \
-    kesf export kesf_data --to usd,mujoco,fabric -o presets/\n`kesf list exports` tells what each target is given.")]
+    kesf export kesf_data --to usd,mujoco,fabric -o presets/\n  kesf export kesf_data --to all -o cards/\n`kesf list exports` tells what each target is given.")]
 pub struct Options {
     /// Fabric folders, measurement files, sheets, or sections (`kesf section -o section.json`), which have their
     /// assumptions; `-` is a file on standard input
     #[arg(value_name = "INPUT", required = true)]
     inputs: Vec<PathBuf>,
-    /// The program, or several with commas between them
-    #[arg(long, value_name = "TARGETS", required = true, value_parser = target(), value_delimiter = ',')]
-    to: Vec<Target>,
+    /// The program, several with commas between them, or `all`
+    #[arg(long, value_name = "TARGETS", required = true, value_parser = names(), value_delimiter = ',')]
+    to: Vec<String>,
     /// Write to this file, or to this folder if it is one or ends in `/` [default: standard output]
     #[arg(short, long, value_name = "PATH", default_value = "-", hide_default_value = true)]
     output: PathBuf,
@@ -44,24 +44,23 @@ pub struct Options {
     evaluate: EvaluateArgs,
 }
 
-fn target() -> impl TypedValueParser<Value = Target> {
-    let names = PossibleValuesParser::new(EXPORTERS.iter().map(|t| t.name));
-    names.try_map(|name| named(&name).ok_or("no target of that name"))
+fn names() -> PossibleValuesParser {
+    PossibleValuesParser::new(EXPORTERS.iter().map(|t| t.name).chain([ALL]))
 }
 
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
-    let (inputs, reading) = (inputs(&options.inputs)?, options.evaluate.reading());
+    let (inputs, reading, targets) =
+        (inputs(&options.inputs)?, options.evaluate.reading(), targets(&options.to));
     let assumptions = options.assume.assumptions();
     let (cards, mut failures) = ui.observe(|observer| {
         let (sections, mut failures) =
             sections_with(&inputs, &reading, &assumptions, Curves::Kept, observer)?;
         let stamp = options.stamp.then(now);
-        let (cards, refused) = cards(&sections, &options.to, stamp.as_deref(), observer);
+        let (cards, refused) = cards(&sections, &targets, stamp.as_deref(), observer);
         failures.extend(refused);
         Ok::<_, Failure>((cards, failures))
     })?;
-    let target = options.to.iter().map(|target| target.name).collect::<Vec<_>>().join(",");
-    let document = ExportDocument::new(target);
+    let document = ExportDocument::new(targets.iter().map(|t| t.name).collect::<Vec<_>>().join(","));
     if is_stdin(&options.output) && ui.json {
         ui.document(ExportDocument { cards: Some(&cards), ..document })?;
         return Ok(Exit::of_batch(cards.len(), &failures));

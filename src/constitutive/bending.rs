@@ -52,6 +52,10 @@ pub(super) fn matrix(
     Ok(Matrix3::new(b1, d12, 0.0, d12, b2, 0.0, 0.0, 0.0, d66))
 }
 
+/// D66 over the geometric mean of D11 and D22 beyond which it is told: of woven cloth it is about 0.5 (Huber), and of a
+/// homogeneous plate (1 - ν)/2 or G t²/12, which a thick sheet of stiff shear may raise.
+const STIFF_TORSION: f64 = 100.0;
+
 /// Whether B in a direction is that of buckled strips.
 fn is_of_strips(notes: &Notes, direction: Direction) -> bool {
     notes.sheet.findings.iter().any(|f| match &f.fact {
@@ -116,5 +120,9 @@ fn torsion(
         "N·m",
         "choose torsion = \"huber\" or a value, or lower the bending coupling",
     )?;
+    let times = d66 / (b1 * b2).sqrt();
+    if times > STIFF_TORSION {
+        notes.finding(SectionFact::StiffTorsion { fabric: notes.fabric(), times });
+    }
     Ok((d66, source))
 }

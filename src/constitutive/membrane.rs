@@ -53,12 +53,13 @@ pub(super) fn matrix(
 fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], ConstitutiveError> {
     let chosen = assumptions.modulus;
     if let Some(e) = known(chosen, notes) {
-        let of_fast =
-            |f: &Finding| matches!(f.fact, Fact::Evaluation(EvaluationFact::StiffnessOfFast { .. }));
-        let source = if chosen == Modulus::TangentLow && notes.sheet.findings.iter().any(of_fast) {
-            format!("inferred: {chosen} of E5 and E20 of FAST")
-        } else {
-            format!("measured: {chosen}")
+        let stated = |f: &Finding| match &f.fact {
+            Fact::Evaluation(EvaluationFact::StatedStiffness { what, .. }) => Some(what.clone()),
+            _ => None,
+        };
+        let source = match notes.sheet.findings.iter().find_map(stated) {
+            Some(what) if chosen == Modulus::TangentLow => format!("inferred: {chosen} of {what}"),
+            _ => format!("measured: {chosen}"),
         };
         return Ok(record(e, Some(chosen), source, notes));
     }

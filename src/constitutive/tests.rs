@@ -118,6 +118,10 @@ fn the_other_sources_of_torsion_and_coupling() {
     assert_eq!(codes(&neglected), ["C016"]);
     let s = with(Torsion::Huber, BendingCoupling::Poisson(0.2)).unwrap().section;
     let root = 32e-12_f64.sqrt();
+    // A unit that slipped: a hundred times the geometric mean of the rigidities.
+    let value = |times: f64| with(Torsion::Value(BendingRigidity(times * root)), none).unwrap();
+    assert_eq!((codes(&value(101.0)), codes(&value(99.0))), (vec!["C019"], vec![]));
+    assert!(value(101.0).findings[0].message().contains("101.0 times"));
     assert_relative_eq!(s.d_b[(0, 1)], 0.2 * root, max_relative = 1e-12);
     assert_relative_eq!(s.d_b[(0, 1)] + 2.0 * s.d_b[(2, 2)], root, max_relative = 1e-12);
     // D12 above √(B1 B2) releases energy.

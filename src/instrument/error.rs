@@ -250,7 +250,7 @@ problems! {
         /// The path inside the document and what is wrong with it.
         reason: String,
     } = "{reason}",
-        "only the FAB raw data of a U3M file are read (raw_data.L|W|B.S1 ...); remove other JSON files from the folder";
+        "only the FAB raw data of a U3M file (raw_data.L|W|B.S1 ...), or Browzwear's values without them (custom.browzwear), are read; remove other JSON files from the folder";
     /// A picture that cannot be decoded.
     "R024" BadPicture {
         /// The decoder's words.

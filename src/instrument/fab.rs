@@ -237,7 +237,7 @@ fn branches(test: &Value, path: &Path, at: &str) -> Result<Vec<Curve>, ReadError
 }
 
 /// A JSON number, or a string that holds one; finite.
-fn as_number(value: &Value) -> Option<f64> {
+pub(super) fn as_number(value: &Value) -> Option<f64> {
     let number = value.as_f64().or_else(|| value.as_str().and_then(|s| s.trim().parse().ok()));
     number.filter(|v| v.is_finite())
 }

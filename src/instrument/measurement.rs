@@ -172,15 +172,17 @@ pub struct FabricInfo {
     pub results: Vec<MeasuredResult>,
 }
 
-/// A tensile stiffness between two loads that a table states: E5 and E20 of FAST.
+/// A tensile stiffness that a table or a program states: between two loads, as E5 and E20 of FAST, or of a linear fabric.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StatedStiffness {
     /// Direction of the load.
     pub direction: Direction,
-    /// The two loads (N/m).
-    pub loads: [f64; 2],
+    /// The two loads (N/m); none of a linear fabric, which has one stiffness.
+    pub loads: Option<[f64; 2]>,
     /// Difference of the loads over that of the extensions (N/m).
     pub stiffness: f64,
+    /// What it is, for people.
+    pub what: String,
     /// Cell of the extension at the greater load.
     pub place: Place,
 }

@@ -8,6 +8,7 @@ pub mod anonymise;
 mod assembled;
 mod axis;
 mod blanks;
+mod browzwear;
 mod column_name;
 mod condition;
 mod conditions;

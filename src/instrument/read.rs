@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use sha2::{Digest, Sha256};
 
 use super::blanks;
+use super::browzwear;
 use super::conditions::StatedConditions;
 use super::curves;
 use super::dialect::{Dialect, Key};
@@ -118,6 +119,12 @@ fn text(
         return Err(error((0, 0, Problem::Empty)));
     }
     if text.trim_start().starts_with('{') {
+        if let Some(values) = browzwear::parse(path, &text)? {
+            content.source.dialect = "u3m-browzwear".to_string();
+            content.inference.push(format!("JSON without raw data: {} of Browzwear's block", values.told()));
+            (content.results, content.stiffnesses) = (values.results, values.stiffnesses);
+            return Ok(());
+        }
         let (mut file, findings) = fab::parse(path, &text)?;
         content.source.dialect = "u3m-fab".to_string();
         content.inference.push(format!("JSON with raw_data: {}", file.told()));

@@ -1,4 +1,4 @@
-//! `kesf.sheet/1`, `kesf.section/1` and `kesf.fabric/1` read back: what other people keep of a fabric is enough to go on with.
+//! `kesf.sheet/1`, `kesf.section/1`, `kesf.fabric/1` and our U3M materials read back: what other people keep of a fabric is enough to go on with.
 //!
 //! Curves and findings are not read: they are those of measurements, which stay with the files that are named.
 
@@ -82,8 +82,39 @@ pub fn read(bytes: &[u8]) -> Result<Option<Document>, DocumentError> {
             let read = sheets.zip(sections).map(|(sheet, section)| Ok((sheet?, section?.1)));
             Ok(Some(Document::Sections(read.collect::<Result<_, DocumentError>>()?)))
         }
+        // Every program writes U3M: ours has the section in its own corner.
+        "1.1" => match serde_json::from_slice(bytes) {
+            Ok(Material { custom: Custom { kesf: Corner { section: document } } }) => {
+                let read = document.sections.into_iter().map(section).collect::<Result<_, _>>()?;
+                Ok(Some(Document::Sections(read)))
+            }
+            Err(e) if has_corner(bytes) => Err(e.into()),
+            Err(_) => Ok(None),
+        },
         _ => Ok(None),
     }
+}
+
+/// A U3M material of ours: `custom.kesf.section`.
+#[derive(Deserialize)]
+struct Material {
+    custom: Custom,
+}
+
+#[derive(Deserialize)]
+struct Custom {
+    kesf: Corner,
+}
+
+#[derive(Deserialize)]
+struct Corner {
+    section: SectionDocument,
+}
+
+/// Whether a document has our section at all, readable or not.
+fn has_corner(bytes: &[u8]) -> bool {
+    serde_json::from_slice::<serde_json::Value>(bytes)
+        .is_ok_and(|v| v.pointer("/custom/kesf/section").is_some())
 }
 
 /// The open fabric file: a sheet and its section; curves are not read.
@@ -220,6 +251,21 @@ mod tests {
         };
         assert_eq!((&read[0].1.section, &read[0].1.used), (&made.section, &made.used));
         assert_eq!((read[0].0.name.as_str(), read[0].0.info.origin), ("köper", Origin::Published));
+    }
+
+    #[test]
+    fn a_u3m_material_of_ours_gives_its_section() {
+        use crate::report::cards::{self, card};
+        let made = section(&sheet(), &Assumptions::default()).unwrap();
+        let material = cards::Material { sheet: &sheet(), made: &made, stamp: None };
+        let written = card(cards::named("u3m").unwrap(), &material).unwrap().text;
+        let Some(Document::Sections(read)) = super::read(written.as_bytes()).unwrap() else { panic!("none") };
+        assert_eq!((&read[0].1.section, &read[0].1.used), (&made.section, &made.used));
+        assert_eq!((read[0].0.name.as_str(), read[0].0.info.origin), ("köper", Origin::Published));
+        let error = super::read(written.replace("\"d_m\"", "\"a\"").as_bytes()).unwrap_err().to_string();
+        assert!(error.starts_with("O042"), "{error}");
+        let theirs = written.replace("\"kesf\"", "\"other\"");
+        assert_eq!(super::read(theirs.as_bytes()).unwrap(), None);
     }
 
     #[test]

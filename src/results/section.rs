@@ -86,15 +86,16 @@ fn of_card(input: &Input, card: StatedSection, assumptions: &Assumptions) -> (Fa
     (FabricSheet { name: name.into_owned(), info, ..FabricSheet::default() }, made)
 }
 
-/// The bytes of an input that may be a document or a card: a JSON file, an input file of Abaqus or CalculiX, or
+/// The bytes of an input that may be a document or a card: a JSON file, a U3M material, an input file of Abaqus or CalculiX, or
 /// anything in memory.
 fn document_bytes(input: &Input) -> Option<Cow<'_, [u8]>> {
     match input {
         Input::Memory { bytes, .. } => Some(Cow::Borrowed(bytes)),
         Input::Fabric(_) => None,
         Input::Path(path) => {
-            let ending =
-                |e: &std::ffi::OsStr| ["json", "inp"].iter().any(|known| e.eq_ignore_ascii_case(known));
+            let ending = |e: &std::ffi::OsStr| {
+                ["json", "u3m", "inp"].iter().any(|known| e.eq_ignore_ascii_case(known))
+            };
             let is_document = path.extension().is_some_and(ending);
             is_document.then(|| files::read(path).ok().map(Cow::Owned))?
         }

@@ -2,6 +2,9 @@
 
 import importlib.metadata
 import json
+import os
+import sys
+import types
 
 import KratosMultiphysics as km
 import KratosMultiphysics.ConstitutiveLawsApplication  # noqa: F401  the orthotropic law
@@ -17,8 +20,7 @@ REACTIONS = (km.REACTION_X, km.REACTION_Y, km.REACTION_Z)
 MOMENTS = (km.REACTION_MOMENT_X, km.REACTION_MOMENT_Y, km.REACTION_MOMENT_Z)
 
 
-def solve(path, problem):
-    mesh = problem.mesh
+def empty():
     model = km.Model()
     part = model.CreateModelPart("Structure")
     part.ProcessInfo[km.DOMAIN_SIZE] = 3
@@ -31,6 +33,12 @@ def solve(path, problem):
         structural.POINT_LOAD,
     ):
         part.AddNodalSolutionStepVariable(variable)
+    return model, part
+
+
+def solve(path, problem):
+    mesh = problem.mesh
+    model, part = empty()
     sheet = part.CreateSubModelPart("sheet")
     for k, (x, y) in enumerate(mesh.points):
         sheet.CreateNewNode(k + 1, x, y, 0.0)
@@ -39,6 +47,28 @@ def solve(path, problem):
         sheet.CreateNewElement("ShellThinElementCorotational3D4N", e + 1, [k + 1 for k in quad], properties)
     for c, k in enumerate(problem.forces):
         part.CreateNewCondition("PointLoadCondition3D1N", c + 1, [k + 1], properties)
+    return run(path, model, part, problem)
+
+
+def mesh_strip(path, yarn):
+    """The strips of the mdpa file beside the materials, read by Kratos itself; drop of one tip over its length."""
+    model, part = empty()
+    km.ModelPartIO(os.path.join(os.path.dirname(path), "card")).ReadModelPart(part)
+    fixed = {n.Id - 1: problems.ALL for y in ("warp", "weft") for n in part.GetSubModelPart("held_" + y).Nodes}
+    shares = [step / 10 for step in range(1, 11)]
+    problem = types.SimpleNamespace(
+        fixed=fixed, forces={}, acceleration=(0.0, 0.0, -problems.G), shares=lambda: shares
+    )
+    moved = run(path, model, part, problem)
+    along = 0 if yarn == "warp" else 1
+    nodes = list(part.GetSubModelPart("strip_" + yarn).Nodes)
+    across = [(n.X0, n.Y0)[1 - along] for n in nodes]
+    middle = (min(across) + max(across)) / 2
+    ends = sorted(nodes, key=lambda n: (-round((n.X0, n.Y0)[along], 9), abs((n.X0, n.Y0)[1 - along] - middle)))
+    return -moved[ends[0].Id - 1][2] / problems.STRIP
+
+
+def run(path, model, part, problem):
     settings = {"Parameters": {"materials_filename": path}}
     km.ReadMaterialsUtility(km.Parameters(json.dumps(settings)), model)
     for variable, reaction in zip(TRANSLATIONS + ROTATIONS, REACTIONS + MOMENTS):
@@ -77,4 +107,6 @@ def solve(path, problem):
 
 
 if __name__ == "__main__":
-    problems.main("Kratos " + importlib.metadata.version("KratosMultiphysics"), solve)
+    wanted = [name for name in sys.argv[2:] if name.startswith("mesh_strip_")]
+    more = {name: mesh_strip(sys.argv[1], name[-4:]) for name in wanted}
+    problems.main("Kratos " + importlib.metadata.version("KratosMultiphysics"), solve, more)

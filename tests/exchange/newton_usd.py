@@ -20,12 +20,12 @@ warnings.simplefilter("ignore")
 
 
 def strip(path, yarn):
-    along = 0 if yarn == "warp" else 1
+    bodies = {"warp": "strip_warp", "weft": "strip_weft", "mean": "sheet"}
+    along = 1 if yarn == "weft" else 0
     stage = Usd.Stage.Open(path)
-    mesh = stage.GetPrimAtPath(f"/World/strip_{yarn}/sim")
-    other = "weft" if yarn == "warp" else "warp"
+    mesh = stage.GetPrimAtPath(f"/World/{bodies[yarn]}/sim")
     builder = newton.ModelBuilder()
-    builder.add_usd(path, ignore_paths=[f"/World/strip_{other}.*"])
+    builder.add_usd(path, ignore_paths=[f"/World/{body}.*" for key, body in bodies.items() if key != yarn])
     points = np.array([list(q) for q in builder.particle_q])
     assert len(points) == len(mesh.GetAttribute("points").Get())
     thickness = mesh.GetAttribute("physics:thicknesses").Get()[0]
@@ -55,6 +55,9 @@ def main():
     path, answers = sys.argv[1], {}
     for yarn in ("warp", "weft"):
         answers.update(strip(path, yarn))
+    if any(name.startswith("mean_") for name in sys.argv[2:]):
+        sheet = strip(path, "mean")
+        answers.update({f"mean_{what}": sheet[f"{what}_mean"] for what in ("tensile", "rigidity")})
     stage = Usd.Stage.Open(path)
     answers["shear"] = stage.GetPrimAtPath("/World/Materials/sheet").GetAttribute("physics:surfaceShearStiffness").Get()
     version = "newton USD " + importlib.metadata.version("newton")

@@ -8,6 +8,8 @@ hang_warp, hang_weft    a strip hangs along its yarns in 1000 g, linear      elo
 shear                   a square under shear forces along its edges, linear  shear angle times G over force per length: G
 plate                   a rectangle supported on all edges, linear           deflection of its centre
 sheet                   a square clamped all round under its own weight      deflection of its centre
+
+mesh_strip_*, mean_* and others are problems of one program alone, in its own script.
 """
 
 import json
@@ -142,14 +144,17 @@ PROBLEMS = {
 }
 
 
-def main(version, solve):
+def main(version, solve, more=None):
     """`python PROGRAM.py CARD PROBLEM...`: prints one JSON document with the version and a number for each problem.
 
-    `solve(card, problem)` returns the displacement (at least three numbers) of every point of the mesh.
+    `solve(card, problem)` returns the displacement (at least three numbers) of every point of the mesh; `more` has the
+    answers to problems of the program's own.
     """
     card, names = sys.argv[1], sys.argv[2:]
-    answers = {}
+    answers = dict(more or {})
     for name in names:
+        if name in answers:
+            continue
         problem, read = PROBLEMS[name]()
         value = read(solve(card, problem))
         answers[name] = value if math.isfinite(value) else None

@@ -205,10 +205,12 @@ super::facts! {
         } = "tensile moduli come from the table's EMT, taken at {:.4} gf/cm; the low-load tangent cannot be known from a table",
             maximum / Parameter::Hg.kes_factor();
         /// A tensile stiffness of FAST.
-        "K061" StiffnessOfFast {
+        "K061" StatedStiffness {
             /// The direction of the load.
             direction: Direction,
-        } = "tangent_low along the {direction} is that of FAST, 14.7 N/m over E20 - E5";
+            /// What it is.
+            what: String,
+        } = "tangent_low along the {direction} is that of {what}";
         /// T0 from fabric.toml.
         "K021" StatedThickness {} = "T0 is the thickness of fabric.toml, whose pressure is not known";
         /// Samples that are not numbers.

@@ -62,6 +62,14 @@ super::facts! {
              it; a law with friction, which a comparison with the strips' bend loops identifies, is softer (1.7 to 1.9 times on the \
              one cloth where both were fitted)",
             directions.iter().map(|d| d.name()).collect::<Vec<_>>().join(" and ");
+        /// A torsional rigidity far beyond that of cloth.
+        "C019" StiffTorsion {
+            /// Name of the fabric.
+            fabric: String,
+            /// D66 over the geometric mean of D11 and D22.
+            times: f64,
+        } = "{fabric}: the torsional rigidity D66 is {} times the geometric mean of both bending rigidities, and of woven cloth it is \
+             about half of it: look at its unit and at what it was taken from", significant(*times);
         /// No hysteresis of bending.
         "C017" NoHysteresis {
             /// Name of the fabric.

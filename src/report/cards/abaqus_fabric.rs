@@ -21,10 +21,12 @@ pub static EXPORTER: Exporter = Exporter {
 };
 
 /// One response: its component in Abaqus, its curve of strain and force per width, and where the curve comes from.
-struct Response {
+pub(super) struct Response {
     component: &'static str,
-    curve: Curve,
-    source: String,
+    /// Strain (an angle in rad for shear) and force per width (N/m), from the origin, neither ever falling.
+    pub curve: Curve,
+    /// Where the curve comes from.
+    pub source: String,
 }
 
 /// Abaqus Keywords Guide, `*FABRIC`, `*UNIAXIAL`, `*LOADING DATA`: nominal stress and nominal strain a line, strains rising;
@@ -32,13 +34,8 @@ struct Response {
 /// calls its two yarns fill and warp in that order; the orientation decides which is which). The shear strain is the change of the
 /// angle between the yarns (rad).
 fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
-    let (sheet, name, thickness) = (material.sheet, set(material), section.thickness);
-    let c = Constants::of(section);
-    let responses = [
-        response(sheet, "1", Test::Tensile, Direction::Warp, c.yarns[0].tensile),
-        response(sheet, "2", Test::Tensile, Direction::Weft, c.yarns[1].tensile),
-        response(sheet, "SHEAR", Test::Shear, Direction::Warp, c.shear),
-    ];
+    let (name, thickness) = (set(material), section.thickness);
+    let responses = responses(material.sheet, section);
     let mut notes = vec![
         "A membrane for Abaqus/Explicit: it does not resist bending. Component 1 is along the warp: turn the local axes \
          of *ORIENTATION to the warp of your part."
@@ -70,6 +67,16 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
     }
     let lost = [Property::Bending, Property::Torsion, Property::TransverseShear, Property::Poisson];
     Ok(Card { text, findings: lost.map(|what| no_place("Abaqus *FABRIC", section, what)).into() })
+}
+
+/// Tension along the warp and the weft, and shear.
+pub(super) fn responses(sheet: &FabricSheet, section: &ShellSection) -> [Response; 3] {
+    let c = Constants::of(section);
+    [
+        response(sheet, "1", Test::Tensile, Direction::Warp, c.yarns[0].tensile),
+        response(sheet, "2", Test::Tensile, Direction::Weft, c.yarns[1].tensile),
+        response(sheet, "SHEAR", Test::Shear, Direction::Warp, c.shear),
+    ]
 }
 
 /// The measured loading curve of a test; a straight line of the section where there is none.

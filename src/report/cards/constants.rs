@@ -2,7 +2,9 @@
 
 use nalgebra::Matrix3;
 
+use crate::characterise::FabricSheet;
 use crate::finding::{ExchangeFact, Finding};
+use crate::instrument::{Direction, Parameter};
 use crate::quantity::significant;
 use crate::section::ShellSection;
 
@@ -83,6 +85,10 @@ pub enum Property {
     TorsionBesideBias,
     /// Transverse shear.
     TransverseShear,
+    /// Tensile stiffness of a strip along each yarn.
+    Tensile,
+    /// Mass per area.
+    Mass,
 }
 
 /// O044: something of the fabric for which a program has no place at all, with its size.
@@ -100,8 +106,32 @@ pub fn no_place(program: &str, section: &ShellSection, property: Property) -> Fi
         Property::TransverseShear => {
             ("transverse shear", vec![section.d_s[(0, 0)], section.d_s[(1, 1)]], " N/m")
         }
+        Property::Tensile => ("tensile stiffness", vec![warp.tensile, weft.tensile], " N/m"),
+        Property::Mass => ("mass per area", vec![section.areal_density], " kg/m²"),
     };
+    left_out(program, name, own, unit)
+}
+
+fn left_out(program: &str, name: &str, own: Vec<f64>, unit: &str) -> Finding {
     let own: Vec<String> = own.into_iter().map(significant).collect();
     let what = format!("{name} ({}{unit})", own.join(" and "));
     Finding::new(ExchangeFact::NoPlace { program: program.into(), what })
+}
+
+/// O044: the hysteresis of bending and of shear, as far as they were measured.
+pub fn hysteresis(program: &str, sheet: &FabricSheet) -> Vec<Finding> {
+    let known = |(name, parameter): (&str, Parameter)| {
+        let value = |direction| Some(sheet.get(parameter, direction)?.mean);
+        let mut own: Vec<f64> =
+            [Direction::Warp, Direction::Weft].into_iter().filter_map(|d| value(Some(d))).collect();
+        if own.is_empty() {
+            own.extend(value(None));
+        }
+        let name = format!("{name} {parameter}");
+        (!own.is_empty()).then(|| left_out(program, &name, own, &format!(" {}", parameter.si_unit())))
+    };
+    [("the hysteresis of bending", Parameter::Hb), ("the hysteresis of shear", Parameter::Hg)]
+        .into_iter()
+        .filter_map(known)
+        .collect()
 }

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::card::{Card, CardError, Exporter, Material};
-use super::constants::plane_stress;
+use super::constants::{Property, no_place, plane_stress};
 use super::laminate::laminate;
 use super::text::provenance;
 use crate::report::json;
@@ -36,7 +36,7 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
          nothing; forces and moments per width do.",
         "Elements ShellThinElementCorotational3D4N or ShellThinElementCorotational3D3N, which know no transverse \
          shear, with element axes along the warp; import the ConstitutiveLawsApplication; call your model part \
-         Structure.sheet or change its name here.",
+         Structure.sheet or change its name here. `kesf export --to kratos-mesh` writes one.",
     ];
     let document: Value = json!({
         "kesf": provenance(material, &notes.map(String::from)),
@@ -56,5 +56,5 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
     });
     let text =
         json::text(&document).map_err(|e| CardError::Json { program: "Kratos", reason: e.to_string() })?;
-    Ok(text.into())
+    Ok(Card { text, findings: vec![no_place("Kratos", section, Property::TransverseShear)] })
 }

@@ -17,7 +17,8 @@ pub static EXPORTER: Exporter = Exporter {
     write,
 };
 
-/// LS-DYNA Keyword User's Manual, Volume II, `*MAT_FABRIC`, in fields of ten columns:
+/// LS-DYNA Keyword User's Manual, R9.0, Volume II, `*MAT_FABRIC` (page 2-222 ff.), in fields of ten columns; A0REF is of
+/// later editions, and blank here as the rest of its line:
 ///
 /// ```text
 /// MID  RO     EA   EB  -    PRBA  PRAB    -
@@ -39,17 +40,20 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
         "A membrane: it does not resist bending. Give your elements the material angle of the warp (AOPT = 0: a along \
          the first side of each element).",
         "Moduli are stiffnesses per width over the thickness of *SECTION_SHELL: change both or none.",
+        "SECID and MID are 1. Where two cards go into one model, give the second one other numbers there, the first \
+         number below each title, and in your *PART.",
     ];
     let mut text = preamble(material, "$", &notes.map(String::from));
     let title = label(&material.sheet.name, 60);
-    let [e1, e2, g] = [c.yarns[0].tensile, c.yarns[1].tensile, c.shear].map(|s| real(s / t));
-    let density = real(section.areal_density / t);
+    let moduli = [c.yarns[0].tensile, c.yarns[1].tensile, c.shear];
+    let [e1, e2, g] = reals(moduli.map(|s| s / t))?;
+    let [density, t, nu12, nu21] = reals([section.areal_density / t, t, nu12, nu21])?;
     let blank = String::new;
     let _ = writeln!(text, "*SECTION_SHELL_TITLE\nKESF_{title}");
     row(&mut text, &["1".into(), "9".into()]);
-    row(&mut text, &[real(t), real(t), real(t), real(t)]);
+    row(&mut text, &[t.clone(), t.clone(), t.clone(), t]);
     let _ = writeln!(text, "*MAT_FABRIC_TITLE\nKESF_{title}");
-    row(&mut text, &["1".into(), density, e1, e2, blank(), real(nu21), real(nu12), blank()]);
+    row(&mut text, &["1".into(), density, e1, e2, blank(), nu21, nu12, blank()]);
     row(&mut text, &[g, blank(), blank(), "0.0".into()]);
     let form = ["0.0", "", "", "", "", "14"].map(String::from);
     row(&mut text, &form);
@@ -68,7 +72,33 @@ fn row(text: &mut String, values: &[String]) {
     let _ = writeln!(text, "{}", if line.is_empty() { " ".repeat(10) } else { line });
 }
 
-/// At most ten columns.
-fn real(value: f64) -> String {
-    format!("{value:.4E}")
+/// Each in at most ten columns.
+fn reals<const N: usize>(values: [f64; N]) -> Result<[String; N], CardError> {
+    match values.into_iter().find(|value| real(*value).is_none()) {
+        Some(value) => Err(CardError::Range { value }),
+        None => Ok(values.map(|value| real(value).unwrap_or_default())),
+    }
+}
+
+/// With five digits, or as many as ten columns have room for: a sign and an exponent of three digits take some.
+fn real(value: f64) -> Option<String> {
+    let fields = (0..=4).rev().map(|digits| format!("{value:.digits$E}"));
+    fields.into_iter().find(|field| field.len() <= 10).filter(|_| value.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_fits_into_ten_columns() {
+        let given =
+            [(1e-12, "1.0000E-12"), (-1e-12, "-1.000E-12"), (-1.23456e-100, "-1.23E-100"), (0.0, "0.0000E0")];
+        for (value, field) in given {
+            assert_eq!(real(value).as_deref(), Some(field));
+        }
+        for none in [f64::NAN, f64::INFINITY] {
+            assert!(matches!(reals([1.0, none]), Err(CardError::Range { .. })));
+        }
+    }
 }

@@ -18,10 +18,12 @@
 //! | `clo.rs` | the schema of CLO's USD files, as Unreal Engine reads it | strips along warp, weft and the bias, shear |
 //! | `fabric.rs` | the open fabric file `kesf.fabric/1` | all that is known of the fabric |
 //! | `kratos.rs` | Kratos Multiphysics | all of it, as three layers |
+//! | `kratos_mesh.rs` | Kratos Multiphysics | nothing: the mesh of a strip for its materials |
 //! | `opensees.rs` | OpenSees | all of it, as three layers |
 //! | `lsdyna.rs` | LS-DYNA `*MAT_FABRIC` | tension, shear and mass of a membrane |
 //! | `nastran.rs` | Nastran and MYSTRAN | all of it |
 //! | `radioss.rs` | OpenRadioss `/MAT/LAW19` | tension, shear and mass of a membrane |
+//! | `radioss_fabric.rs` | OpenRadioss `/MAT/LAW158` | measured curves of tension and shear of a membrane |
 //! | `mujoco.rs` | MuJoCo 4 | strips along warp and weft; an isotropic sheet |
 //! | `usd.rs` | USD, as newton reads it | strips along warp and weft, shear; an isotropic sheet |
 //! | `newton.rs` | newton, Style3D | tension, shear and bending along warp and weft; torsion on a grid |
@@ -39,6 +41,7 @@ mod clo;
 mod constants;
 mod fabric;
 mod kratos;
+mod kratos_mesh;
 mod laminate;
 mod lsdyna;
 mod mujoco;
@@ -46,6 +49,7 @@ mod nastran;
 mod newton;
 mod opensees;
 mod radioss;
+mod radioss_fabric;
 pub mod read;
 mod swatch;
 mod text;
@@ -53,6 +57,7 @@ mod u3m;
 mod usd;
 
 use crate::section::ShellSection;
+use constants::hysteresis;
 
 pub use card::{Card, CardError, Exporter, Material, Target};
 pub use laminate::{Laminate, laminate};
@@ -69,12 +74,14 @@ pub static EXPORTERS: &[Target] = &[
     &clo::EXPORTER,
     &fabric::EXPORTER,
     &kratos::EXPORTER,
+    &kratos_mesh::EXPORTER,
     &lsdyna::EXPORTER,
     &mujoco::EXPORTER,
     &nastran::EXPORTER,
     &newton::EXPORTER,
     &opensees::EXPORTER,
     &radioss::EXPORTER,
+    &radioss_fabric::EXPORTER,
     &u3m::EXPORTER,
     &usd::EXPORTER,
 ];
@@ -94,13 +101,35 @@ pub const NOT_WRITTEN: &[(&str, &str)] = &[
         "its fabric file is not published; `newton` writes the constants of the solver that Style3D published.",
     ),
     ("LS-DYNA *MAT_235", "it asks for the geometry and the moduli of yarns, which KES does not measure."),
-    ("OpenRadioss LAW58", "it asks for crimp and numbers of yarns, which KES does not measure."),
+    (
+        "OpenRadioss LAW58",
+        "its crimp decides how warp and weft move each other, which KES does not measure; its defaults (N1 = N2 = 1, \
+         S1 = S2 = 0.1) are no fabric's. `radioss-fabric` writes the curves for LAW158.",
+    ),
+    ("GNATV", "no published format was found."),
     ("PAM-FORM, AniForm", "their manuals are not public."),
 ];
 
 /// The target of a name.
 pub fn named(name: &str) -> Option<Target> {
     EXPORTERS.iter().copied().find(|t| t.name == name)
+}
+
+/// What stands for every program on the command line.
+pub const ALL: &str = "all";
+
+/// The targets of some names, each once and in their order; [`ALL`] is every one. Names that are none give none.
+pub fn targets<S: AsRef<str>>(names: &[S]) -> Vec<Target> {
+    let mut out: Vec<Target> = Vec::new();
+    for name in names.iter().map(AsRef::as_ref) {
+        let every = EXPORTERS.iter().copied();
+        for target in every.filter(|t| name == ALL || t.name == name) {
+            if !out.iter().any(|own| own.name == target.name) {
+                out.push(target);
+            }
+        }
+    }
+    out
 }
 
 /// The card of a fabric for a program.
@@ -112,8 +141,15 @@ pub fn card(target: Target, material: &Material<'_>) -> Result<Card, CardError> 
     if let Some(value) = beyond_cards(&section) {
         return Err(CardError::Range { value });
     }
-    (target.write)(material, &section)
+    let mut card = (target.write)(material, &section)?;
+    if !WITH_FRICTION.contains(&target.name) {
+        card.findings.extend(hysteresis(target.name, material.sheet));
+    }
+    Ok(card)
 }
+
+/// Targets whose file has the hysteresis, wherever in it: no other program knows friction within a sheet.
+const WITH_FRICTION: &[&str] = &["fabric", "u3m"];
 
 /// A stiffness, mass or thickness (SI) beyond 1e-30 to 1e30: fields of eight or ten columns have no room for more, and
 /// quotients of such numbers are none.
@@ -123,6 +159,9 @@ fn beyond_cards(section: &ShellSection) -> Option<f64> {
     let others = [section.areal_density, section.thickness];
     d_m.chain(d_b).chain(section.d_s.iter()).chain(&others).copied().find(beyond)
 }
+
+#[cfg(test)]
+mod text_tests;
 
 #[cfg(test)]
 mod tests;

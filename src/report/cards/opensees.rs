@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use nalgebra::{Matrix3, SymmetricEigen};
 
 use super::card::{Card, CardError, Exporter, Material};
-use super::constants::plane_stress;
+use super::constants::{Property, no_place, plane_stress};
 use super::laminate::NO_STIFFNESS;
 use super::text::{number, preamble};
 use crate::section::ShellSection;
@@ -81,7 +81,7 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
         text,
         "    ops.section(\"LayeredShell\", tag, 3, 10 * tag + 1, {outer}, 10 * tag + 2, {core}, 10 * tag + 1, {outer})"
     );
-    Ok(text.into())
+    Ok(Card { text, findings: vec![no_place("the section of OpenSees", section, Property::Mass)] })
 }
 
 #[cfg(test)]

@@ -7,17 +7,22 @@ use super::constants::{Constants, Property, no_place};
 use super::text::{label, number, preamble};
 use crate::section::ShellSection;
 
+/// What to do with the numbers of two cards.
+pub(super) const ONE_MODEL: &str = "Numbers begin with 1: /UNIT/1 and, before the unit of each, the material (and its functions). Where two \
+    cards go into one model, one /UNIT/1 is enough, and the second one needs other numbers of materials and functions.";
+
 /// `kesf export --to radioss`.
 pub static EXPORTER: Exporter = Exporter {
     name: "radioss",
     ending: "radioss.inc",
     title: "/MAT/LAW19 (FABRI) of a membrane with its unit system: tension, shear and mass; fields of 20 columns; SI",
     holds: "D_m, transverse shear and mass per area; a membrane does not resist bending, which the law has for a \
-            thickness only; no friction. LAW58 is left out: it needs the crimp and the numbers of yarns.",
+            thickness only; no friction.",
     write,
 };
 
-/// OpenRadioss and Altair Radioss, Reference Guide, `/MAT/LAW19 (FABRI)`, in fields of twenty columns:
+/// Altair Radioss 2021.1, Reference Guide, `/MAT/LAW19 (FABRI)`, and OpenRadioss, `radioss110/MAT/matl19_fabri.cfg`, in
+/// fields of twenty columns:
 ///
 /// ```text
 /// RHO_I
@@ -38,6 +43,7 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
         "A membrane: give the orthotropic shell property (/PROP/TYPE9) one integration point (N = 1), so that it does \
          not bend with the stiffness of a plate of this thickness, and its direction along the warp.",
         &format!("Moduli are stiffnesses per width over a thickness of {t:.4E} m: change both or none."),
+        ONE_MODEL,
     ];
     let mut text = preamble(material, "#", &notes.map(String::from));
     let title = label(&material.sheet.name, 60);

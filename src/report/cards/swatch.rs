@@ -39,9 +39,20 @@ pub fn cell() -> f64 {
 
 /// The piece whose free length runs along x (`turned`: along y).
 pub fn swatch(turned: bool) -> Swatch {
-    let (across, h) = (CELLS + 1, cell());
+    let h = cell();
+    grid(turned, |i| (i as f64 - 0.5) * h, 2)
+}
+
+/// The same for finite elements, which have rotations: the clamp is the first row of points.
+pub fn clamped(turned: bool) -> Swatch {
+    grid(turned, |i| i as f64 * SIDE / CELLS as f64, 1)
+}
+
+/// Points at `along(i)`, the first rows of which are held.
+fn grid(turned: bool, along: impl Fn(usize) -> f64, rows: usize) -> Swatch {
+    let across = CELLS + 1;
     let place = |i: usize, j: usize| {
-        let (along, aside) = ((i as f64 - 0.5) * h, j as f64 * SIDE / CELLS as f64);
+        let (along, aside) = (along(i), j as f64 * SIDE / CELLS as f64);
         if turned { [aside, along] } else { [along, aside] }
     };
     let points = (0..=CELLS).flat_map(|i| (0..across).map(move |j| place(i, j))).collect();
@@ -51,7 +62,7 @@ pub fn swatch(turned: bool) -> Swatch {
         let both = if i % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
         triangles.extend(both.map(|[p, q, r]| if turned { [p, r, q] } else { [p, q, r] }));
     }
-    Swatch { points, triangles, held: (0..2 * across).collect() }
+    Swatch { points, triangles, held: (0..rows * across).collect() }
 }
 
 #[cfg(test)]
@@ -76,6 +87,9 @@ mod tests {
             assert!(mean.abs() < 1e-15 && s.held.len() == 2 * (CELLS + 1));
             let far = s.points.iter().map(|p| p[along]).fold(0.0, f64::max);
             assert_relative_eq!(far, SIDE, max_relative = 1e-12);
+            let shell = clamped(turned);
+            assert_eq!((shell.triangles, shell.held.len()), (s.triangles, CELLS + 1));
+            assert!(shell.held.iter().all(|k| shell.points[*k][along] == 0.0));
         }
     }
 }

@@ -8,6 +8,7 @@ use sha2::{Digest, Sha256};
 use uuid::Builder;
 
 use super::card::{Card, CardError, Exporter, Material};
+use super::constants::{Property, no_place};
 use super::fabric::file_names;
 use crate::report::json::{section_document, sheet_document, text};
 
@@ -76,7 +77,7 @@ const CONSTRUCTIONS: &[(&str, &str, &str)] = &[
 const NO_DATE: &str = "1970-01-01T00:00:00Z";
 
 /// The document.
-fn document(material: &Material<'_>, _: &ShellSection) -> Result<Card, CardError> {
+fn document(material: &Material<'_>, checked: &ShellSection) -> Result<Card, CardError> {
     let wrong = |e: serde_json::Error| CardError::Json { program: "U3M", reason: e.to_string() };
     let Material { sheet, made, stamp } = *material;
     let section = section_document([(sheet, made)]);
@@ -115,7 +116,9 @@ fn document(material: &Material<'_>, _: &ShellSection) -> Result<Card, CardError
         },
         "custom": {"kesf": ours},
     });
-    Ok(text(&document).map_err(wrong)?.into())
+    let outside = [Property::Tensile, Property::Bending, Property::Shear, Property::Torsion];
+    let findings = outside.map(|what| no_place("U3M outside of `custom`", checked, what)).into();
+    Ok(Card { text: text(&document).map_err(wrong)?, findings })
 }
 
 /// A sheet without the samples of its friction laws, which are in `sheet.json`, and without the paths of its files:

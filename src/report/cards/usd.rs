@@ -12,11 +12,14 @@ use crate::section::ShellSection;
 pub static EXPORTER: Exporter = Exporter {
     name: "usd",
     ending: "usda",
-    title: "USD stage: surface deformable materials for strips and a sheet, and two strips of 4 cm; SI",
+    title: "USD stage: surface deformable materials for strips and a sheet, each with a piece of 4 cm; SI",
     holds: "one tensile, one shear and one bending stiffness: the proposal is isotropic. Each strip has the constants \
             of its own direction, a sheet their means; the shear stiffness is held; no friction.",
     write,
 };
+
+/// How far the sheet lies from the strips (m).
+const BESIDE: f64 = 0.06;
 
 /// AOUSD, proposal for deformable bodies: `physics:surfaceStretchStiffness` and `physics:surfaceShearStiffness` (N/m),
 /// `physics:surfaceBendStiffness` (N·m), `physics:density` (kg/m³) of `PhysicsSurfaceDeformableMaterialAPI`;
@@ -27,7 +30,7 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
     let c = Constants::of(section);
     let notes = [
         "The proposal is isotropic: strips cut along warp and weft have the constants of their own direction, the \
-         material `sheet` their geometric means. Stretch and shear N/m, bend N*m, density kg/m3 (times the thickness of \
+         material `sheet` their geometric means; each has a body of 4 cm x 4 cm. Stretch and shear N/m, bend N*m, density kg/m3 (times the thickness of \
          the mesh it is mass per area).",
         "The first column of cells is to be held: its points are listed in custom int[] kesf:held.",
         "Programs that resist bending by hinges may need another number than N*m: newton takes it as force, which its \
@@ -43,8 +46,17 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
         text,
         "\ndef Xform \"World\" (\n    customData = {{ string fabric = \"KESF_{name}\" }}\n)\n{{"
     );
-    for (direction, name) in ["warp", "weft"].iter().enumerate() {
-        mesh(&mut text, name, &swatch(direction == 1), section.thickness);
+    let mut sheet = swatch(false);
+    for [_, y] in &mut sheet.points {
+        *y -= BESIDE;
+    }
+    let bodies = [
+        ("strip_warp", "warp", swatch(false)),
+        ("strip_weft", "weft", swatch(true)),
+        ("sheet", "sheet", sheet),
+    ];
+    for (body, material, piece) in bodies {
+        mesh(&mut text, [body, material], &piece, section.thickness);
     }
     text.push_str("    def Scope \"Materials\"\n    {\n");
     let density = section.areal_density / section.thickness;
@@ -71,15 +83,15 @@ fn of_yarn(text: &mut String, name: &str, yarn: Yarn, shear: f64, density: f64) 
     text.push_str("        }\n");
 }
 
-/// A strip with its material.
-fn mesh(text: &mut String, name: &str, s: &Swatch, thickness: f64) {
+/// A piece of cloth with its material.
+fn mesh(text: &mut String, [body, material]: [&str; 2], s: &Swatch, thickness: f64) {
     let points: Vec<String> = s.points.iter().map(|[x, y]| format!("({x:.9}, {y:.9}, 0)")).collect();
     let corners: Vec<String> = s.triangles.iter().map(|[a, b, c]| format!("{a}, {b}, {c}")).collect();
     let threes = vec!["3"; s.triangles.len()].join(", ");
     let held: Vec<String> = s.held.iter().map(ToString::to_string).collect();
     let _ = writeln!(
         text,
-        "    def Xform \"strip_{name}\" (\n        prepend apiSchemas = [\"PhysicsDeformableBodyAPI\"]\n    )\n    {{\n        def Mesh \"sim\" (\n            prepend apiSchemas = [\"PhysicsSurfaceDeformableSimAPI\", \"MaterialBindingAPI\"]\n        )\n        {{"
+        "    def Xform \"{body}\" (\n        prepend apiSchemas = [\"PhysicsDeformableBodyAPI\"]\n    )\n    {{\n        def Mesh \"sim\" (\n            prepend apiSchemas = [\"PhysicsSurfaceDeformableSimAPI\", \"MaterialBindingAPI\"]\n        )\n        {{"
     );
     let _ = writeln!(text, "            point3f[] points = [{}]", points.join(", "));
     let _ = writeln!(text, "            int[] faceVertexCounts = [{threes}]");
@@ -89,7 +101,7 @@ fn mesh(text: &mut String, name: &str, s: &Swatch, thickness: f64) {
     let _ = writeln!(text, "            custom int[] kesf:held = [{}]", held.join(", "));
     let _ = writeln!(
         text,
-        "            rel material:binding:physics = </World/Materials/{name}>\n        }}\n    }}"
+        "            rel material:binding:physics = </World/Materials/{material}>\n        }}\n    }}"
     );
 }
 
