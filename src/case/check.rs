@@ -1,5 +1,6 @@
 //! `[[probes]]` and `[[checks]]`: what is reported and what must come out.
 
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 use schemars::JsonSchema;
@@ -97,8 +98,9 @@ pub enum ReferenceKind {
 pub(super) fn probes(tables: &[ProbeTable], case: &Node<'_>) -> Result<Vec<ProbePoint>, CaseError> {
     let mut probes: Vec<ProbePoint> = Vec::with_capacity(tables.len());
     let places = case.get("probes");
+    let mut names = BTreeSet::new();
     for (table, at) in tables.iter().zip(places.iter().flat_map(Node::items)) {
-        if probes.iter().any(|p| p.name == table.name) {
+        if !names.insert(&table.name) {
             let message = format!("two [[probes]] are called `{}`: give each a name of its own", table.name);
             return refused(at.value_place("name"), message);
         }

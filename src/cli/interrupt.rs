@@ -13,8 +13,8 @@ use crate::results::Failure;
 /// Set by the signal, read between items of work.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// What the work in hand has to end by itself.
-const MOMENT: Duration = Duration::from_millis(100);
+/// What the work in hand has to end by itself; the system then needs its own time to take the memory back.
+const MOMENT: Duration = Duration::from_millis(25);
 
 /// Whether the user wants the work to end.
 pub fn is_set() -> bool {

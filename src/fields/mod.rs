@@ -12,7 +12,7 @@ mod recovery;
 
 pub use edge::edge_moments;
 pub use extrapolation::Extrapolation;
-pub use probe::{Line, Locator, ProbeValue, nearest};
+pub use probe::{Finder, Line, Locator, ProbeValue, nearest};
 pub use reactions::reaction_resultants;
 
 use nalgebra::Vector3;

@@ -36,8 +36,56 @@ fn reach(corners: &[Point3<f64>; 4]) -> f64 {
     pairs.into_iter().map(|(a, b)| (corners[b] - corners[a]).norm()).fold(0.0, f64::max)
 }
 
+/// Finds points in a mesh, however many: quads by the cell of a grid that holds their first corner, so that a point asks
+/// those near it and not all.
+#[derive(Clone, Debug)]
+pub struct Finder<'m> {
+    mesh: &'m QuadMesh,
+    /// Side of a cell (m): no quad reaches farther than that from its first corner.
+    side: f64,
+    /// Cells and the quads that begin there, in order.
+    cells: Vec<([i64; 3], usize)>,
+}
+
+impl<'m> Finder<'m> {
+    /// For the points of a mesh.
+    pub fn new(mesh: &'m QuadMesh) -> Self {
+        let quads = 0..mesh.quads.len();
+        let farthest = quads.clone().map(|quad| reach(&mesh.corners(quad))).fold(0.0, f64::max);
+        // A little more, so that rounding hides no quad.
+        let side = farthest * OUTSIDE * OUTSIDE;
+        let mut cells: Vec<_> = quads.map(|quad| (cell(&mesh.corners(quad)[0], side), quad)).collect();
+        cells.sort_unstable();
+        Self { mesh, side, cells }
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &'m QuadMesh {
+        self.mesh
+    }
+
+    /// The first quad that holds the point, seen along its own normal; `None` outside the mesh.
+    pub fn find(&self, point: &Point3<f64>) -> Option<Locator> {
+        let [x, y, z] = cell(point, self.side);
+        let around = |k: i64| k.saturating_sub(1)..=k.saturating_add(1);
+        let rows = around(x).flat_map(|x| around(y).map(move |y| [x, y]));
+        let near = rows.flat_map(|[x, y]| {
+            let [low, high] = [z.saturating_sub(1), z.saturating_add(1)].map(|z| [x, y, z]);
+            let start = self.cells.partition_point(|(cell, _)| *cell < low);
+            self.cells[start..].iter().take_while(move |(cell, _)| *cell <= high).map(|(_, quad)| *quad)
+        });
+        near.filter_map(|quad| Locator::within(self.mesh, quad, point)).min_by_key(|found| found.quad)
+    }
+}
+
+/// The cell of a grid that holds a point.
+fn cell(point: &Point3<f64>, side: f64) -> [i64; 3] {
+    [point.x, point.y, point.z].map(|x| (x / side).floor() as i64)
+}
+
 impl Locator {
-    /// The quad that holds the point, seen along its own normal; `None` outside the mesh.
+    /// The quad that holds the point, seen along its own normal; `None` outside the mesh. Many points are found faster
+    /// by a [`Finder`].
     pub fn find(mesh: &QuadMesh, point: &Point3<f64>) -> Option<Self> {
         (0..mesh.quads.len()).find_map(|quad| Self::within(mesh, quad, point))
     }
@@ -178,6 +226,7 @@ mod tests {
             rectangle(0.2, 0.1, 3, 5).unwrap(),
         ];
         for mesh in meshes {
+            let finder = Finder::new(&mesh);
             for (quad, at) in (0..mesh.quads.len()).flat_map(|q| (0..25).map(move |k| (q, k))) {
                 let part = |k: usize| -0.9 + 0.45 * k as f64;
                 let weights = shape(part(at % 5), part(at / 5));
@@ -185,6 +234,7 @@ mod tests {
                 let point: Point3<f64> =
                     (0..4).map(|i| weights[i] * corners[i].coords).sum::<nalgebra::Vector3<f64>>().into();
                 let found = Locator::find(&mesh, &point).unwrap();
+                assert_eq!(finder.find(&point), Some(found));
                 assert_eq!(found.quad, quad);
                 assert!((0..4).all(|i| (found.weights[i] - weights[i]).abs() < 1e-9), "{quad} {point}");
             }
@@ -199,7 +249,15 @@ mod tests {
             let at = Locator::find(&mesh, &Point3::new(x, y, 0.0)).unwrap();
             assert_relative_eq!(at.interpolate(&mesh, field), 1.0 + 2.0 * x - 3.0 * y, epsilon = 1e-12);
         }
-        assert_eq!(Locator::find(&mesh, &Point3::new(2.1, 0.5, 0.0)), None);
+        for off in [[2.1, 0.5, 0.0], [1e300, 0.5, 0.0], [-1e300, f64::MAX, 0.0], [0.5, 0.5, 0.3]] {
+            assert_eq!(Locator::find(&mesh, &Point3::from(off)), None);
+            assert_eq!(Finder::new(&mesh).find(&Point3::from(off)), None);
+        }
+        // On edges and corners the first of the quads that meet there, either way.
+        for (quad, corner) in (0..mesh.quads.len()).flat_map(|q| (0..4).map(move |k| (q, k))) {
+            let point = mesh.corners(quad)[corner];
+            assert_eq!(Finder::new(&mesh).find(&point), Locator::find(&mesh, &point));
+        }
         let line = Line::new(&mesh, &Point3::new(0.0, 0.5, 0.0), &Point3::new(2.0, 0.5, 0.0), 10);
         let line = line.profile(&mesh, field);
         assert_eq!(line.len(), 11);

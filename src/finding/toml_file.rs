@@ -61,6 +61,8 @@ pub(crate) struct TomlError {
 pub(crate) struct TomlFile<'t> {
     path: &'t Path,
     text: &'t str,
+    /// Where each line begins (bytes): a place is asked for every value of a file of many tables.
+    lines: Vec<usize>,
     root: Spanned<DeValue<'t>>,
 }
 
@@ -79,7 +81,8 @@ impl<'t> TomlFile<'t> {
     pub fn parse(path: &'t Path, text: &'t str) -> Result<Self, TomlError> {
         let table = DeTable::parse(text).map_err(|e| at_position(path, text, &e))?;
         let root = Spanned::new(0..text.len(), DeValue::Table(table.into_inner()));
-        Ok(Self { path, text, root })
+        let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
+        Ok(Self { path, text, lines, root })
     }
 
     /// The file's table.
@@ -175,7 +178,9 @@ impl<'f> Node<'f> {
     }
 
     fn at(&self, offset: usize) -> Place {
-        let (line, column) = position(self.file.text, offset);
+        let line = self.file.lines.partition_point(|start| *start <= offset);
+        let start = self.file.lines[line.saturating_sub(1)];
+        let column = self.file.text.get(start..offset).map_or(0, |before| before.chars().count()) + 1;
         Place::at(self.file.path, line, column)
     }
 }

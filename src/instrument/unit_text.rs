@@ -1,6 +1,8 @@
 //! Units as headings print them, and headings split into name and unit.
 
 use std::borrow::Cow;
+use std::cell::RefCell;
+use std::collections::HashMap;
 
 use super::error::Problem;
 use super::words::folded;
@@ -82,12 +84,34 @@ const NAMES: &[(&str, &str)] = &[
     ("gsm", "g/m2"),
 ];
 
+/// Answers that are kept on each thread: every cell of a heading is asked a dozen times whether it is a unit, and those
+/// that are none cost most.
+const KEPT: usize = 1024;
+
+thread_local! {
+    static ANSWERS: RefCell<HashMap<String, Result<Unit, QuantityError>>> = RefCell::default();
+}
+
 /// The unit of a heading: the unit table, and the spellings that print uses.
 pub(super) fn unit(text: &str) -> Result<Unit, QuantityError> {
-    Unit::parse(text).or_else(|error| {
-        if text.chars().count() > LONGEST {
-            return Err(error);
+    if text.chars().count() > LONGEST {
+        return Unit::parse(text);
+    }
+    if let Some(known) = ANSWERS.with_borrow(|answers| answers.get(text).cloned()) {
+        return known;
+    }
+    let answer = looked_up(text);
+    ANSWERS.with_borrow_mut(|answers| {
+        if answers.len() >= KEPT {
+            answers.clear();
         }
+        answers.insert(text.to_string(), answer.clone());
+    });
+    answer
+}
+
+fn looked_up(text: &str) -> Result<Unit, QuantityError> {
+    Unit::parse(text).or_else(|error| {
         if let Some((power, rest)) = power_of_ten(text) {
             return unit(rest).map(|unit| Unit { factor: power * unit.factor, ..unit });
         }

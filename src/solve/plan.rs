@@ -56,6 +56,7 @@ impl Plan {
     fn chosen(model: &Model, groups: &[DofGroup], options: &Options) -> Result<Self, SolveError> {
         let watch = Stopwatch::start();
         let mesh = &model.mesh;
+        SolveError::in_time()?;
         let pattern = Pattern::new(mesh, model.links()?);
         let mut plan = Self { pattern, groups: Vec::new(), iterated: Vec::new(), seconds: (0.0, 0.0) };
         if options.method == Method::Iterative {
@@ -67,6 +68,7 @@ impl Plan {
         let order = factor::order(graph, Some(&coordinates)).map_err(SolveError::Factor)?;
         plan.seconds.0 = watch.seconds();
         for &group in groups {
+            SolveError::in_time()?;
             let analysis = factor::analyse_ordered(graph, group.dofs().len(), &order, options.path)
                 .map_err(SolveError::Factor)?;
             if options.method == Method::Auto && analysis.counts().bytes as u64 > options.factor_limit {

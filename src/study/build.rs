@@ -1,5 +1,6 @@
 //! A case and a section become a model.
 
+use std::cell::OnceCell;
 use std::path::Path;
 
 use nalgebra::{Matrix2, Matrix3, Point3, Vector3};
@@ -9,7 +10,7 @@ use crate::case::{
     Analysis, Held, Layout, Mounting, Outline, PointOfAction, Prescribed, RigidSet, SectionTable, Sheet,
     SheetLoad, SheetPoint, SheetProblem, SheetStep, SheetSupport, SupportKind, Warp,
 };
-use crate::fields::{Locator, nearest};
+use crate::fields::{Finder, Locator, nearest};
 use crate::finding::{Located, Place};
 use crate::mesh::{self, MeshError, QuadMesh};
 use crate::model::{Load, Model, RigidBody, Support};
@@ -84,9 +85,10 @@ pub(super) fn actions(
     for held in held {
         supports.extend(placed(case, &held.set, support(mesh, held))?);
     }
-    let mut acting = Vec::new();
+    let (mut acting, finder) = (Vec::new(), OnceCell::new());
     for load in loads {
-        acting.extend(model_loads(case, mesh, load)?);
+        SolveError::in_time()?;
+        acting.extend(model_loads(case, (mesh, &finder), load)?);
     }
     let mut moved = Vec::new();
     for Prescribed { set, dof, value, .. } in prescribed {
@@ -247,8 +249,13 @@ fn support(mesh: &QuadMesh, support: &SheetSupport) -> Result<Vec<Support>, Stud
     })
 }
 
-/// The loads of the model: one, or one for each corner of the element that holds a point.
-fn model_loads(case: &Case, mesh: &QuadMesh, load: &SheetLoad) -> Result<Vec<Load>, StudyError> {
+/// The loads of the model: one, or one for each corner of the element that holds a point. What finds points is made
+/// for the first that asks.
+fn model_loads<'m>(
+    case: &Case,
+    (mesh, finder): (&'m QuadMesh, &OnceCell<Finder<'m>>),
+    load: &SheetLoad,
+) -> Result<Vec<Load>, StudyError> {
     Ok(match load {
         SheetLoad::Pressure { value, follower: false } => vec![Load::Pressure(value.si())],
         SheetLoad::Pressure { value, follower: true } => vec![Load::FollowerPressure(value.si())],
@@ -258,7 +265,7 @@ fn model_loads(case: &Case, mesh: &QuadMesh, load: &SheetLoad) -> Result<Vec<Loa
             vec![Load::Point { nodes, force: *force, moment: *moment }]
         }
         SheetLoad::Point { on: PointOfAction::At(at), force, moment } => {
-            let place = locate(case, mesh, at, "the point load")?;
+            let place = locate(case, finder.get_or_init(|| Finder::new(mesh)), at, "the point load")?;
             let shares = mesh.quads[place.quad].into_iter().zip(place.weights);
             let of_node = |(node, share): (u32, f64)| Load::Point {
                 nodes: vec![node],
@@ -285,14 +292,14 @@ fn model_loads(case: &Case, mesh: &QuadMesh, load: &SheetLoad) -> Result<Vec<Loa
 /// S003 for a point off the sheet.
 pub(super) fn locate(
     case: &Case,
-    mesh: &QuadMesh,
+    finder: &Finder<'_>,
     at: &Located<SheetPoint>,
     what: &str,
 ) -> Result<Locator, StudyError> {
     let point = at.value.point();
-    Locator::find(mesh, &point).ok_or_else(|| {
+    finder.find(&point).ok_or_else(|| {
         let given: Vec<String> = at.value.coordinates().iter().map(f64::to_string).collect();
-        let near = nearest(mesh, &point);
+        let near = nearest(finder.mesh(), &point);
         let distance = (near - point).norm();
         let off_plane = matches!(at.value, SheetPoint::Plane(_)) && near.z.abs() > 1e-6 * distance;
         let cure = if off_plane { ": give `at` its z as a third coordinate" } else { "" };

@@ -9,12 +9,12 @@ use super::effort::within_limits;
 use super::limits::Extent;
 use super::{Case, StudyError, build, placed, refused, sheet_problem};
 use crate::case::{Analysis, Newmark, Outline, ProbePoint, Problem, Sheet, SheetProblem};
-use crate::fields::{Line, Locator, Recovery};
+use crate::fields::{Finder, Line, Locator, Recovery};
 use crate::finding::Located;
 use crate::mesh::QuadMesh;
 use crate::model::{DofGroup, Model};
 use crate::section::ShellSection;
-use crate::solve::{Options, Plan};
+use crate::solve::{Options, Plan, SolveError};
 
 /// A case with a `[sheet]`, and everything of it that does not depend on the fabric: mesh, supports,
 /// loads, order of elimination and symbolic factorisation, places of probes. Shared between threads
@@ -177,6 +177,13 @@ fn middle_line(mesh: &QuadMesh) -> [Point3<f64>; 2] {
 }
 
 fn locators(case: &Case, problem: &SheetProblem, mesh: &QuadMesh) -> Result<Vec<Locator>, StudyError> {
-    let locate = |p: &ProbePoint| build::locate(case, mesh, &p.at, &format!("probe `{}`", p.name));
+    if problem.probes.is_empty() {
+        return Ok(Vec::new());
+    }
+    let finder = Finder::new(mesh);
+    let locate = |p: &ProbePoint| {
+        SolveError::in_time()?;
+        build::locate(case, &finder, &p.at, &format!("probe `{}`", p.name))
+    };
     problem.probes.iter().map(locate).collect()
 }

@@ -60,7 +60,7 @@ fn results_that_are_named_are_no_measurements() {
 fn names_are_no_formulas() {
     let folder = tempfile::tempdir().unwrap();
     let [lab, out] = ["lab", "out"].map(|name| folder.path().join(name));
-    let names = ["=cmd calc!A0", "+1", "-2", "@SUM(A1)"];
+    let names = ["=cmd calc!A0", "+1", "-2", "@SUM(A1)", "＝3", "＋4", "－5", "＠SUM(A2)"];
     for name in names {
         write(&lab.join(name), "fabric.toml", "areal_density = \"100 g/m²\"\n");
         write(&lab.join(name), "t.csv", "parameter,unit,warp,weft\nB,gf·cm²/cm,0.1,0.1\n");
@@ -71,7 +71,10 @@ fn names_are_no_formulas() {
         let mut reader = csv::ReaderBuilder::new().from_path(out.join(name)).unwrap();
         for row in reader.records() {
             for cell in row.unwrap().iter().filter(|cell| cell.parse::<f64>().is_err()) {
-                assert!(!cell.starts_with(['=', '+', '-', '@', '\t', '\r']), "{name}: {cell}");
+                assert!(
+                    !cell.starts_with(['=', '+', '-', '@', '\t', '\r', '＝', '＋', '－', '＠']),
+                    "{name}: {cell}"
+                );
             }
         }
     }

@@ -13,6 +13,7 @@ mod memory;
 mod names;
 mod resume;
 mod same;
+mod sizes;
 
 use std::collections::BTreeMap;
 use std::fs;

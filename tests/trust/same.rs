@@ -1,6 +1,8 @@
 //! The same input gives the same bytes, whatever the threads, the order of the inputs, the language and the clock.
 
 use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
 
 use crate::{code, kesf, stderr, tree};
 
@@ -68,4 +70,35 @@ fn the_order_of_the_inputs_changes_the_order_of_rows_only() {
             assert_eq!(sorted(bytes), sorted(&found[name]), "{name}");
         }
     }
+}
+
+/// The same inputs, named in the same way in two folders that stand in different places: the same bytes. A path is kept
+/// as it was typed, so that none of it says where the folder stands.
+#[test]
+fn the_folder_that_the_inputs_stand_in_changes_no_byte() {
+    let places = ["here", "somewhere/else and further"];
+    let all = places.map(|place| {
+        let root = tempfile::tempdir().unwrap();
+        let folder = root.path().join(place);
+        for input in INPUTS {
+            let from = Path::new(env!("CARGO_MANIFEST_DIR")).join(input);
+            let files =
+                if from.is_dir() { tree(&from) } else { [(String::new(), fs::read(&from).unwrap())].into() };
+            for (name, bytes) in files {
+                let to = if name.is_empty() { folder.join(input) } else { folder.join(input).join(name) };
+                fs::create_dir_all(to.parent().unwrap()).unwrap();
+                fs::write(to, bytes).unwrap();
+            }
+        }
+        let done = kesf()
+            .current_dir(&folder)
+            .args(["run", "--no-charts"])
+            .args(INPUTS)
+            .args(["-o", "results"])
+            .output()
+            .unwrap();
+        assert!([0, 1].contains(&code(&done)), "{}", stderr(&done));
+        tree(&folder.join("results"))
+    });
+    assert_same("folder", &all[0], &all[1]);
 }

@@ -39,7 +39,9 @@ fn the_columns_of_rows_are_their_cells() {
 
 #[test]
 fn no_text_is_a_formula_and_numbers_stay_numbers() {
-    for name in ["=cmd|' /C calc'!A0", "+1", "-1", "@SUM(A1)", "\t=1", "\r=1"] {
+    for name in
+        ["=cmd|' /C calc'!A0", "+1", "-1", "@SUM(A1)", "\t=1", "\r=1", "＝1", "＋1", "－1", "＠SUM(A1)"]
+    {
         let row = FabricRow { fabric: name.into(), mean: Some(-1.5), ..FabricRow::default() };
         let bytes = csv(&[row]).unwrap();
         let mut reader = csv::ReaderBuilder::new().from_reader(&bytes[..]);

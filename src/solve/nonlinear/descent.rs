@@ -13,6 +13,7 @@ use super::sheet::Forces;
 use super::system::{Balance, System};
 use super::{NonlinearError, Obstacle, Progress, Settings, Solution, State, Step, stability};
 use crate::model::Model;
+use crate::solve::SolveError;
 use crate::solve::linear::Options;
 use crate::solve::plan::Plan;
 
@@ -70,7 +71,7 @@ fn descend(
     settings: &Settings,
     mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Option<Solution>, NonlinearError> {
-    let mut descent = Descent::new(system, start);
+    let mut descent = Descent::new(system, start)?;
     let (mut progress, mut kicks) = (Progress::default(), 0);
     while progress.steps < STEPS {
         match descent.step() {
@@ -126,12 +127,14 @@ struct Descent<'s> {
 }
 
 impl<'s> Descent<'s> {
-    fn new(system: &'s System<'s>, start: State) -> Self {
+    /// At its start; N010 if there is no time for it, since the forces of every element are wanted twice.
+    fn new(system: &'s System<'s>, start: State) -> Result<Self, SolveError> {
         let state = State { factor: 1.0, ..start };
         let first_rate = FIRST_DRAG * first_rate(system, system.model, &State::rest(&system.model.mesh));
+        SolveError::in_time()?;
         let balance = system.balance(&state, None);
         let forces = balance.forces();
-        Self {
+        Ok(Self {
             system,
             now: at(state, balance),
             forces,
@@ -139,7 +142,7 @@ impl<'s> Descent<'s> {
             first_rate,
             steady: CAREFUL_STEPS,
             turn: f64::INFINITY,
-        }
+        })
     }
 
     /// Takes a step, or says why that cannot be done with so little drag.

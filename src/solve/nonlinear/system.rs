@@ -122,6 +122,9 @@ impl<'a> System<'a> {
         let (mesh, mut area) = (&self.model.mesh, 0.0);
         let unit = crate::section::ShellSection { areal_density: 1.0, ..self.model.section.clone() };
         for quad in 0..mesh.quads.len() {
+            if quad % BATCH == 0 {
+                SolveError::in_time()?;
+            }
             let element = self.model.element(quad, false).map_err(ModelError::from)?;
             let same = quad > 0 && {
                 let (now, last) = (mesh.corners(quad), mesh.corners(quad - 1));

@@ -1,0 +1,51 @@
+//! What reading costs grows with the size of a file and not with its square.
+
+use std::fs;
+use std::path::Path;
+
+use kesf::instrument::{Library, ReadSettings};
+
+#[path = "../common/shapes.rs"]
+mod shapes;
+use shapes::SHAPES;
+
+/// Processor time that this thread has had (s); `None` where the system does not say.
+fn processor_seconds() -> Option<f64> {
+    let told = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    Some(1e-9 * told.split_whitespace().next()?.parse::<f64>().ok()?)
+}
+
+/// Processor time of reading a file (s). One file is read on the thread that asks.
+fn of_reading(path: &Path) -> Option<f64> {
+    let start = processor_seconds()?;
+    let library = Library::find(&[path.to_path_buf()], &ReadSettings::default());
+    library.each(&|_: &Path| (), |input| input.measurements.len());
+    Some(processor_seconds()? - start)
+}
+
+/// Four times as many pieces take less than eight times as long, where they would take sixteen times as long if each
+/// were compared with all before it.
+#[test]
+fn reading_is_linear_in_the_size_of_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    // The vocabulary is made by the first file that is read.
+    let first = folder.path().join("first.csv");
+    fs::write(&first, "sample,poplin\ncurvature (1/cm),moment (gf·cm/cm)\n0,0\n1,0.05\n").unwrap();
+    if of_reading(&first).is_none() {
+        return crate::common::skipped(
+            "reading_is_linear_in_the_size_of_a_file",
+            "the system does not tell the processor time of a thread",
+        );
+    }
+    for (name, pieces, ending, text) in SHAPES {
+        let path = folder.path().join(format!("file.{ending}"));
+        let seconds = [pieces / 4, *pieces].map(|n| {
+            fs::write(&path, text(n)).unwrap();
+            // The better of two: others have the caches too.
+            (0..2).map(|_| of_reading(&path).unwrap()).fold(f64::INFINITY, f64::min)
+        });
+        let growth = seconds[1] / seconds[0].max(1e-3);
+        println!("{name}: {:.4} and {:.4} s, times {growth:.1}", seconds[0], seconds[1]);
+        assert!(growth < 8.0, "{name}: {seconds:?} s for {} and {pieces} pieces", pieces / 4);
+    }
+}
