@@ -7,7 +7,7 @@ use crate::report::html::{Problem, ProblemGroup, local};
 use crate::report::table::ProblemRow;
 
 /// Of a linear solve beyond its meaning: it holds of cloth as such and is said once.
-pub(super) const BEYOND_LINEAR: &str = "S101";
+const BEYOND_LINEAR: &str = "S101";
 
 /// Of a value that no fabric has: it is nearly always a mistake in a unit.
 const IMPLAUSIBLE: &str = "K011";
