@@ -63,7 +63,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let target = options.to.iter().map(|target| target.name).collect::<Vec<_>>().join(",");
     let document = ExportDocument::new(target);
     if is_stdin(&options.output) && ui.json {
-        ui.document(ExportDocument { cards: Some(&cards), ..document })?;
+        ui.document(ExportDocument { cards: Some(cards.as_slice().into()), ..document })?;
         return Ok(Exit::of_batch(cards.len(), &failures));
     }
     let files = write(options, &cards, &mut failures, ui)?;
