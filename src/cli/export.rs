@@ -62,7 +62,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     })?;
     let document = ExportDocument::new(targets.iter().map(|t| t.name).collect::<Vec<_>>().join(","));
     if is_stdin(&options.output) && ui.json {
-        ui.document(ExportDocument { cards: Some(&cards), ..document })?;
+        ui.document(ExportDocument { cards: Some(cards.as_slice().into()), ..document })?;
         return Ok(Exit::of_batch(cards.len(), &failures));
     }
     let files = write(options, &cards, &mut failures, ui)?;

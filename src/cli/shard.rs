@@ -26,7 +26,7 @@ pub fn run(shard: Shard, request: &Request, ui: &Ui) -> Result<Exit, Failure> {
     let output = folder.join(shard.file());
     if ui.json {
         ui.document(PartDocument {
-            schema: "kesf.part/1",
+            schema: "kesf.part/1".into(),
             output: output.to_string_lossy().into_owned(),
             shard: shard.number(),
             shards: shard.count(),

@@ -119,7 +119,7 @@ pub enum Torsion {
     Bias,
     /// G t² / 12, a homogeneous sheet of the measured shear stiffness.
     Shear,
-    /// H = 0, as the seed allows: twisting then costs nothing.
+    /// H = 0, as Nguyen-Trong et al. allow: twisting then costs nothing.
     Neglect,
     /// A stated rigidity.
     Value(BendingRigidity),

@@ -2,17 +2,18 @@
 //!
 //! KES-FB2 bends a sheet 20 cm wide over a gap of 1 cm, so cylindrically: its B, in N·m (moment
 //! per width over curvature), is D11 itself. There is no factor 1/(1-ν²), and no t³/12.
-//! The seed's Eq. (5) multiplies B by t³/12. That is right only if "B" is a bending *modulus*
+//! Eq. (5) of Nguyen-Trong et al. multiplies B by t³/12. That is right only if "B" is a bending *modulus*
 //! 12 B / t³ (Pa); with the measured rigidity it is wrong by 12/t³, about 1e11 at 0.5 mm. The
-//! seed does not say which it means; the units of its instrument do.
+//! paper does not say which it means; the units of its instrument do.
 //!
-//! Torsion is not measured by a standard KES set. The seed's H = D66 may be zero; then twisting
+//! Torsion is not measured by a standard KES set. The H = D66 of Nguyen-Trong et al. may be zero; then twisting
 //! w = x y costs nothing. Huber's D12 + 2 D66 = √(B1 B2) makes B(45°) the mean of warp, weft and
 //! twice their geometric mean, which lies near what bias tests of woven cloth give.
 
 use nalgebra::Matrix3;
 
-use super::{Assumptions, BendingCoupling, Constant, ConstitutiveError, Notes, Torsion};
+use super::notes::{Because, Notes};
+use super::{Assumptions, BendingCoupling, Constant, ConstitutiveError, Provenance, Torsion};
 use crate::characterise::{Key, ValueStatus};
 use crate::finding::{EvaluationFact, Fact, SectionFact};
 use crate::instrument::{Direction, Parameter};
@@ -40,12 +41,13 @@ pub(super) fn matrix(
         BendingCoupling::Poisson(nu) => nu * (b1 * b2).sqrt(),
         BendingCoupling::Value(d12) => d12.si(),
     };
-    let source = match assumptions.bending_coupling {
-        BendingCoupling::Poisson(0.0) => "assumed: no coupling".to_string(),
-        BendingCoupling::Poisson(nu) => format!("assumed: {nu} √(B1 B2)"),
-        BendingCoupling::Value(_) => "assumed: stated".to_string(),
+    let why = match assumptions.bending_coupling {
+        BendingCoupling::Poisson(0.0) => "no coupling".into(),
+        BendingCoupling::Poisson(nu) => format!("{nu} √(B1 B2)").into(),
+        BendingCoupling::Value(_) => "stated".into(),
     };
-    notes.used("bending coupling D12", format!("{} N·m", significant(d12)), source);
+    let value = format!("{} N·m", significant(d12));
+    notes.used("bending coupling D12", value, (Provenance::Assumed, why));
 
     let (d66, source) = torsion([b1, b2, d12], g, thickness, assumptions.torsion, notes)?;
     notes.used("torsional rigidity D66", format!("{} N·m", significant(d66)), source);
@@ -65,7 +67,7 @@ fn is_of_strips(notes: &Notes, direction: Direction) -> bool {
 }
 
 /// Where B comes from; C018 if it is that of strips.
-fn rigidity_source(notes: &mut Notes) -> &'static str {
+fn rigidity_source(notes: &mut Notes) -> Because {
     let directions: Vec<Direction> =
         [Direction::Warp, Direction::Weft].into_iter().filter(|d| is_of_strips(notes, *d)).collect();
     let of_table = |direction: Option<Direction>| {
@@ -74,13 +76,18 @@ fn rigidity_source(notes: &mut Notes) -> &'static str {
     };
     if directions.is_empty() && [None, Some(Direction::Warp), Some(Direction::Weft)].into_iter().any(of_table)
     {
-        return "inferred: B of a table that was not measured on KES-FB2 (a cantilever of FAST), for D11, D22";
+        let why = "B of a table that was not measured on KES-FB2 (a cantilever of FAST), for D11, D22";
+        return (Provenance::Inferred, why.into());
     }
     if directions.is_empty() {
-        return "measured: B of KES-FB2 is D11, D22";
+        return (Provenance::Measured, "B of KES-FB2 is D11, D22".into());
     }
     notes.finding(SectionFact::StripRigidity { fabric: notes.fabric(), directions });
-    "inferred: buckled FAB strips, whose B stands for D11, D22"
+    (Provenance::Inferred, "buckled FAB strips, whose B stands for D11, D22".into())
+}
+
+fn assumed(why: &'static str) -> Because {
+    (Provenance::Assumed, why.into())
 }
 
 /// D66 (N·m) and where it comes from.
@@ -90,11 +97,9 @@ fn torsion(
     thickness: f64,
     torsion: Torsion,
     notes: &mut Notes,
-) -> Result<(f64, String), ConstitutiveError> {
-    let (d66, source) = match torsion {
-        Torsion::Huber => {
-            (((b1 * b2).sqrt() - d12) / 2.0, "assumed: Huber, D12 + 2 D66 = √(B1 B2)".to_string())
-        }
+) -> Result<(f64, Because), ConstitutiveError> {
+    let (d66, why) = match torsion {
+        Torsion::Huber => (((b1 * b2).sqrt() - d12) / 2.0, assumed("Huber, D12 + 2 D66 = √(B1 B2)")),
         Torsion::Bias => {
             let Some(b45) = notes.sheet.get(Parameter::B, Some(Direction::Bias)) else {
                 return Err(notes.missing(
@@ -104,14 +109,20 @@ fn torsion(
             };
             notes.origin_value(Parameter::B, Some(Direction::Bias), &[(Constant::Bias, 1.0)]);
             let b45 = b45.mean;
-            let had = if is_of_strips(notes, Direction::Bias) { "inferred from strips" } else { "measured" };
-            (b45 - (b1 + b2 + 2.0 * d12) / 4.0, format!("{had}: B at 45° = {} N·m", significant(b45)))
+            let had = if is_of_strips(notes, Direction::Bias) {
+                Provenance::Inferred
+            } else {
+                Provenance::Measured
+            };
+            let of = if had == Provenance::Inferred { "buckled strips, " } else { "" };
+            let why = format!("{of}B at 45° = {} N·m", significant(b45));
+            (b45 - (b1 + b2 + 2.0 * d12) / 4.0, (had, why.into()))
         }
-        Torsion::Shear => (g * thickness.powi(2) / 12.0, "assumed: G t²/12".to_string()),
-        Torsion::Value(h) => (h.si(), "assumed: stated".to_string()),
+        Torsion::Shear => (g * thickness.powi(2) / 12.0, assumed("G t²/12")),
+        Torsion::Value(h) => (h.si(), assumed("stated")),
         Torsion::Neglect => {
             notes.finding(SectionFact::NoTorsion { fabric: notes.fabric() });
-            return Ok((0.0, "assumed: neglected, as Nguyen-Trong et al. allow".to_string()));
+            return Ok((0.0, assumed("neglected, as Nguyen-Trong et al. allow")));
         }
     };
     notes.positive(
@@ -124,5 +135,5 @@ fn torsion(
     if times > STIFF_TORSION {
         notes.finding(SectionFact::StiffTorsion { fabric: notes.fabric(), times });
     }
-    Ok((d66, source))
+    Ok((d66, why))
 }

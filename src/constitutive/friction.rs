@@ -13,7 +13,8 @@
 //! A structure has no zero error and no jaws that let go, so the laws pass through the origin and
 //! hold to both sides. Bending has both faces in its law, as the loop of FB2 has.
 
-use super::{Assumptions, ConstitutiveError, Notes};
+use super::notes::{Because, Notes};
+use super::{Assumptions, ConstitutiveError, Provenance};
 use crate::characterise::{Basis, FabricSheet, FrictionLaw, bending_law};
 use crate::finding::SectionFact;
 use crate::instrument::{Direction, Parameter, Test};
@@ -43,7 +44,7 @@ pub(super) fn law(
             let d = section.d_b;
             ([of_fabric(along, d[(0, 0)], sheet), of_fabric(across, d[(1, 1)], sheet)], source(along))
         }
-        _ => (stand_in(section, assumptions, notes)?, "assumed: residual_curvature".to_string()),
+        _ => (stand_in(section, assumptions, notes)?, (Provenance::Assumed, "residual_curvature".into())),
     };
     // The warp and the weft test measure one shear, as for G.
     let shears: Vec<Option<Direction>> = [Some(warp), Some(weft)]
@@ -62,13 +63,16 @@ pub(super) fn law(
     let twist = twist(&bending, [d[(0, 0)], d[(1, 1)], d[(2, 2)]])
         .map_err(|source| ConstitutiveError::Law { fabric, source })?;
     let value = format!("{} N", significant(twist.as_ref().map_or(0.0, Channel::couple)));
-    notes.used("friction couple of twist", value, "assumed: in proportion to D66");
+    notes.used("friction couple of twist", value, (Provenance::Assumed, "in proportion to D66".into()));
     match &shear {
         Some((law, from)) => {
             let value = format!("{} N/m", significant(law.couple()));
-            notes.used("friction of shear", value, from.as_str());
+            notes.used("friction of shear", value, from.clone());
         }
-        None => notes.used("friction of shear", "none", "assumed: no shear loop and no 2HG"),
+        None => {
+            let why = (Provenance::Assumed, "no shear loop and no 2HG".into());
+            notes.used("friction of shear", "none", why);
+        }
     }
     widths.extend(shears.into_iter().map(|d| (Parameter::Hg, d)));
     widths.dedup();
@@ -144,10 +148,11 @@ fn twist(bending: &[Channel; 2], [b1, b2, h]: [f64; 3]) -> Result<Option<Channel
     Channel::new(Backbone::line(h)?, families, false).map(Some)
 }
 
-fn source(law: &FrictionLaw) -> String {
-    match law.basis {
-        Basis::Loop => format!("measured: loop of specimen {}, with the means of the fabric", law.specimen),
-        Basis::Strip => "measured: cycle of a strip".into(),
-        Basis::AssumedSpectrum => "measured: width of the loop; assumed: how friction begins".into(),
-    }
+fn source(law: &FrictionLaw) -> Because {
+    let why = match law.basis {
+        Basis::Loop => format!("loop of specimen {}, with the means of the fabric", law.specimen).into(),
+        Basis::Strip => "cycle of a strip".into(),
+        Basis::AssumedSpectrum => "width of the loop; assumed: how friction begins".into(),
+    };
+    (Provenance::Measured, why)
 }

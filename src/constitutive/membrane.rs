@@ -2,14 +2,15 @@
 //!
 //! KES-FB1 records force per width, so the moduli are in N/m and thickness never enters. The
 //! specimen is 20 cm wide and 5 cm long between jaws that hinder its contraction; the slope is
-//! taken as E t nevertheless, as in the seed, which is at most 1/(1-ν²) too high.
+//! taken as E t nevertheless, as in Nguyen-Trong et al., which is at most 1/(1-ν²) too high.
 //!
-//! The seed puts the same ν into both rows of Eq. (4), which makes D_m unsymmetric unless
+//! Nguyen-Trong et al. put the same ν into both rows of Eq. (4), which makes D_m unsymmetric unless
 //! E1 = E2. Here ν12 E2 = ν21 E1 always holds; [`PoissonRule`] says what the given ν is.
 
 use nalgebra::Matrix3;
 
-use super::{Assumptions, Constant, ConstitutiveError, InputSource, Notes, PoissonRule};
+use super::notes::{Because, Notes};
+use super::{Assumptions, Constant, ConstitutiveError, InputSource, PoissonRule, Provenance};
 use crate::characterise::Modulus;
 use crate::finding::{EvaluationFact, Fact, Finding, SectionFact};
 use crate::instrument::Direction;
@@ -41,7 +42,10 @@ pub(super) fn matrix(
     notes.used(
         "Poisson's ratio",
         format!("nu12 {}, nu21 {}", significant(nu12), significant(nu21)),
-        format!("assumed: {nu}, {} rule; no KES test measures it", assumptions.poisson_rule),
+        (
+            Provenance::Assumed,
+            format!("{nu}, {} rule; no KES test measures it", assumptions.poisson_rule).into(),
+        ),
     );
     let d = 1.0 / (1.0 - nu_g * nu_g);
     let d12 = nu_g * (e1 * e2).sqrt() * d;
@@ -58,8 +62,10 @@ fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], Cons
             _ => None,
         };
         let source = match notes.sheet.findings.iter().find_map(stated) {
-            Some(what) if chosen == Modulus::TangentLow => format!("inferred: {chosen} of {what}"),
-            _ => format!("measured: {chosen}"),
+            Some(what) if chosen == Modulus::TangentLow => {
+                (Provenance::Inferred, format!("{chosen} of {what}").into())
+            }
+            _ => (Provenance::Measured, chosen.to_string().into()),
         };
         return Ok(record(e, Some(chosen), source, notes));
     }
@@ -73,14 +79,14 @@ fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], Cons
         if let Some(e) = known(other, notes) {
             let (chosen_name, used) = (chosen.to_string(), other.to_string());
             notes.finding(SectionFact::OtherModulus { fabric: notes.fabric(), chosen: chosen_name, used });
-            let source = format!("measured: {other}, because there is no {chosen} modulus");
-            return Ok(record(e, Some(other), source, notes));
+            let why = format!("{other}, because there is no {chosen} modulus");
+            return Ok(record(e, Some(other), (Provenance::Measured, why.into()), notes));
         }
     }
     let e = assumptions.tensile;
     notes.finding(SectionFact::NoTensileModulus { fabric: notes.fabric(), assumed: e.si() });
     let stand_in = Estimate::single(e.si());
-    Ok(record([&stand_in; 2], None, "assumed: not measured".into(), notes))
+    Ok(record([&stand_in; 2], None, (Provenance::Assumed, "not measured".into()), notes))
 }
 
 /// Writes down the two moduli and gives their values.
@@ -88,7 +94,7 @@ fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], Cons
 fn record(
     [warp, weft]: [&Estimate; 2],
     modulus: Option<Modulus>,
-    source: String,
+    source: Because,
     notes: &mut Notes,
 ) -> [f64; 2] {
     let [e1, e2] = [warp.mean, weft.mean];

@@ -21,6 +21,8 @@ mod perturbed;
 mod sensitivity;
 mod shear;
 
+use std::borrow::Cow;
+
 use crate::characterise::FabricSheet;
 use crate::finding::{Finding, SectionFact};
 use crate::instrument::Parameter;
@@ -30,8 +32,8 @@ use crate::section::{SheetLaw, ShellSection};
 pub use assumptions::{Assumptions, BendingCoupling, ChoiceError, PoissonRule, Torsion, TransverseShear};
 pub use error::ConstitutiveError;
 pub use friction::tension;
-pub use notes::Used;
-use notes::{Notes, value};
+use notes::{Because, Notes, value};
+pub use notes::{Provenance, Used};
 pub use perturbed::{InputSource, law_inputs, perturbed};
 use sensitivity::Constant;
 pub use sensitivity::{Entry, Input, SectionDerivative, bands, entries};
@@ -92,18 +94,21 @@ pub fn section(sheet: &FabricSheet, assumptions: &Assumptions) -> Result<Constit
     Ok(Constitutive { section, law, used: notes.used, inputs, findings: notes.findings })
 }
 
+/// Of what people measured with other instruments.
+const MEASURED_ELSEWHERE: Because = (Provenance::Measured, Cow::Borrowed("fabric.toml"));
+
 /// T0, else Tm, else `fabric.toml`, else the stand-in (m).
 fn thickness(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, ConstitutiveError> {
     let sheet = notes.sheet;
     let measured = [Parameter::T0, Parameter::Tm]
         .into_iter()
-        .find_map(|p| Some((value(sheet, p, None)?, format!("measured: {p}"))));
+        .find_map(|p| Some((value(sheet, p, None)?, (Provenance::Measured, p.symbol().into()))));
     let single = |t: f64| (Estimate::single(t), InputSource::Thickness);
-    let stated = || sheet.info.thickness.map(|t| (single(t), "measured: fabric.toml".to_string()));
+    let stated = || sheet.info.thickness.map(|t| (single(t), MEASURED_ELSEWHERE));
     let ((estimate, from), source) = measured.or_else(stated).unwrap_or_else(|| {
         let t = assumptions.thickness;
         notes.finding(SectionFact::NoThickness { fabric: sheet.name.clone(), assumed: t.si() });
-        (single(t.si()), "assumed: not measured".to_string())
+        (single(t.si()), (Provenance::Assumed, "not measured".into()))
     });
     let value = estimate.mean;
     notes.origin("thickness", (&estimate, from), &[(Constant::Thickness, 1.0)]);
@@ -115,10 +120,11 @@ fn thickness(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, Consti
 /// W, else `fabric.toml`, else what is assumed explicitly (kg/m²).
 fn areal_density(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, ConstitutiveError> {
     let sheet = notes.sheet;
-    let measured = value(sheet, Parameter::W, None).map(|w| (w, "measured: W"));
+    let measured = value(sheet, Parameter::W, None).map(|w| (w, (Provenance::Measured, "W".into())));
     let single = |w: f64| (Estimate::single(w), InputSource::ArealDensity);
-    let stated = || sheet.info.areal_density.map(|w| (single(w), "measured: fabric.toml"));
-    let assumed = || assumptions.areal_density.map(|w| (single(w.si()), "assumed: not measured"));
+    let stated = || sheet.info.areal_density.map(|w| (single(w), MEASURED_ELSEWHERE));
+    let assumed =
+        || assumptions.areal_density.map(|w| (single(w.si()), (Provenance::Assumed, "not measured".into())));
     let Some(((estimate, from), source)) = measured.or_else(stated).or_else(assumed) else {
         return Err(notes.missing(
             "areal density",

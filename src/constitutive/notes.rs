@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::error::ConstitutiveError;
 use super::perturbed::InputSource;
@@ -12,6 +13,36 @@ use crate::finding::{Finding, SectionFact};
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::Estimate;
 
+/// What a constant of a section rests on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Provenance {
+    /// A measurement, or what `fabric.toml` says.
+    Measured,
+    /// A measurement of something else, from which it follows.
+    Inferred,
+    /// Somebody's word, such as a card of another program.
+    #[default]
+    Stated,
+    /// A choice or a stand-in: it is no property of the material.
+    Assumed,
+}
+
+impl Provenance {
+    /// `measured`, `inferred`, `stated` or `assumed`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Measured => "measured",
+            Self::Inferred => "inferred",
+            Self::Stated => "stated",
+            Self::Assumed => "assumed",
+        }
+    }
+}
+
+/// A provenance and what it consists of.
+pub(super) type Because = (Provenance, Cow<'static, str>);
+
 /// One input or assumption behind a section.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Used {
@@ -19,7 +50,9 @@ pub struct Used {
     pub name: Cow<'static, str>,
     /// Its value with unit, e.g. `warp 5120 N/m, weft 3080 N/m`.
     pub value: String,
-    /// `measured: ...` or `assumed: ...` and why.
+    /// What it rests on.
+    pub provenance: Provenance,
+    /// That and why, for people: `measured: ...` or `assumed: ...`.
     pub source: String,
 }
 
@@ -69,8 +102,9 @@ impl Notes<'_> {
         }
     }
 
-    pub fn used(&mut self, name: &'static str, value: impl Into<String>, source: impl Into<String>) {
-        self.used.push(Used { name: name.into(), value: value.into(), source: source.into() });
+    pub fn used(&mut self, name: &'static str, value: impl Into<String>, (provenance, why): Because) {
+        let source = format!("{}: {why}", provenance.name());
+        self.used.push(Used { name: name.into(), value: value.into(), provenance, source });
     }
 
     /// Name of the fabric.

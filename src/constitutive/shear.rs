@@ -7,12 +7,12 @@
 //! measured slope are no stiffness of the cloth. Published G contain them, and D_m takes G as it is
 //! unless `shear_tension` says how much to take off.
 //!
-//! Nothing measures the transverse shear of cloth. The seed's χ G_t t with G_t = the in-plane G and
+//! Nothing measures the transverse shear of cloth. The χ G_t t of Nguyen-Trong et al. with G_t = the in-plane G and
 //! χ = 5/6 is kept: any value with χ G_t t h²/B between 1e2 and 1e6 gives the same deflections.
 
 use nalgebra::Matrix2;
 
-use super::{Assumptions, Constant, ConstitutiveError, InputSource, Notes, TransverseShear};
+use super::{Assumptions, Constant, ConstitutiveError, InputSource, Notes, Provenance, TransverseShear};
 use crate::characterise::{Key, ValueStatus};
 use crate::finding::SectionFact;
 use crate::instrument::{Direction, Parameter};
@@ -34,7 +34,8 @@ pub(super) fn in_plane(assumptions: &Assumptions, notes: &mut Notes) -> Result<f
             notes.origin_value(Parameter::G, directions[0], &[(Constant::Shear, 0.5 * warp / g)]);
             notes.origin_value(Parameter::G, directions[1], &[(Constant::Shear, 0.5 * weft / g)]);
             let values = format!("{} and {} N/m", significant(warp), significant(weft));
-            (g, format!("measured: mean of G warp and weft, {values}{}", taken_off(tension)))
+            let why = format!("mean of G warp and weft, {values}{}", taken_off(tension));
+            (g, (Provenance::Measured, why.into()))
         }
         _ => match directions.into_iter().find_map(|d| Some((d, sheet.get(Parameter::G, d)?))) {
             Some((direction, measured)) => {
@@ -42,14 +43,14 @@ pub(super) fn in_plane(assumptions: &Assumptions, notes: &mut Notes) -> Result<f
                 notes.origin_value(Parameter::G, direction, &[(Constant::Shear, measured.mean / g)]);
                 let inferred =
                     sheet.status(Key { parameter: Parameter::G, direction }) == ValueStatus::Inferred;
-                let known = if inferred { "inferred" } else { "measured" };
-                (g, format!("{known}: G{}", taken_off(tension)))
+                let provenance = if inferred { Provenance::Inferred } else { Provenance::Measured };
+                (g, (provenance, format!("G{}", taken_off(tension)).into()))
             }
             None => {
                 let g = assumptions.shear;
                 notes.finding(SectionFact::NoShearTest { fabric: notes.fabric(), assumed: g.si() });
                 notes.origin("G", (&Estimate::single(g.si()), InputSource::Shear), &[(Constant::Shear, 1.0)]);
-                (g.si(), "assumed: no shear test".to_string())
+                (g.si(), (Provenance::Assumed, "no shear test".into()))
             }
         },
     };
@@ -72,12 +73,12 @@ pub(super) fn transverse(
     assumptions: &Assumptions,
     notes: &mut Notes,
 ) -> Result<Matrix2<f64>, ConstitutiveError> {
-    let (s, source) = match assumptions.transverse_shear {
-        TransverseShear::InPlane => (CHI * g, "assumed: 5/6 of the in-plane G; not measurable on KES"),
-        TransverseShear::Value(s) => (s.si(), "assumed: stated"),
+    let (s, why) = match assumptions.transverse_shear {
+        TransverseShear::InPlane => (CHI * g, "5/6 of the in-plane G; not measurable on KES"),
+        TransverseShear::Value(s) => (s.si(), "stated"),
     };
     notes.positive("the transverse shear stiffness", s, "N/m", "state a positive one")?;
-    notes.used("transverse shear", format!("{} N/m", significant(s)), source);
+    notes.used("transverse shear", format!("{} N/m", significant(s)), (Provenance::Assumed, why.into()));
     // Eq. (6)
     Ok(Matrix2::new(s, 0.0, 0.0, s))
 }

@@ -8,7 +8,7 @@ mod tables;
 use std::borrow::Cow;
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::finding::Explanation;
 use crate::instrument::FabricInput;
@@ -25,7 +25,7 @@ use crate::verify;
 pub use tables::{FoundDocument, LibraryDocument, MergedDocument, PartDocument, PartRows};
 
 /// A document with what was said of the work beside it.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Complete<D> {
     /// The document.
     #[serde(flatten)]
@@ -38,40 +38,40 @@ pub struct Complete<D> {
 }
 
 /// A line on standard error with `--json`.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ErrorLine {
     /// What gave no result.
     pub error: FailureEntry,
 }
 
 /// `kesf.curves/1`, of `kesf read`: what was read.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct CurvesDocument<'a> {
     /// `kesf.curves/1`.
     #[schemars(extend("const" = "kesf.curves/1"))]
-    pub schema: &'static str,
+    pub schema: Cow<'static, str>,
     /// In name order.
-    pub fabrics: &'a [FabricInput],
+    pub fabrics: Cow<'a, [FabricInput]>,
 }
 
 impl<'a> CurvesDocument<'a> {
     /// Of fabrics.
     pub fn new(fabrics: &'a [FabricInput]) -> Self {
-        Self { schema: "kesf.curves/1", fabrics }
+        Self { schema: "kesf.curves/1".into(), fabrics: fabrics.into() }
     }
 }
 
 /// `kesf.export/1`, of `kesf export`: cards, or the files that they were written to.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ExportDocument<'a> {
     /// `kesf.export/1`.
     #[schemars(extend("const" = "kesf.export/1"))]
-    pub schema: &'static str,
+    pub schema: Cow<'static, str>,
     /// The programs, with commas.
     pub target: String,
     /// The cards themselves, where they go to standard output.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub cards: Option<&'a [Card]>,
+    pub cards: Option<Cow<'a, [Card]>>,
     /// Paths of the files.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub files: Option<Vec<String>>,
@@ -80,16 +80,16 @@ pub struct ExportDocument<'a> {
 impl ExportDocument<'_> {
     /// Of nothing yet.
     pub fn new(target: String) -> Self {
-        Self { schema: "kesf.export/1", target, cards: None, files: None }
+        Self { schema: "kesf.export/1".into(), target, cards: None, files: None }
     }
 }
 
 /// `kesf.report/1`, of `kesf report`: the page, or the file that it was written to.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ReportDocument {
     /// `kesf.report/1`.
     #[schemars(extend("const" = "kesf.report/1"))]
-    pub schema: &'static str,
+    pub schema: Cow<'static, str>,
     /// HTML.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub page: Option<String>,
@@ -100,35 +100,35 @@ pub struct ReportDocument {
 
 impl Default for ReportDocument {
     fn default() -> Self {
-        Self { schema: "kesf.report/1", page: None, output: None }
+        Self { schema: "kesf.report/1".into(), page: None, output: None }
     }
 }
 
 /// `kesf.results/1`, of `kesf run`: where the results are, and the predictions.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ResultsDocument<'a> {
     /// `kesf.results/1`.
     #[schemars(extend("const" = "kesf.results/1"))]
-    pub schema: &'static str,
+    pub schema: Cow<'static, str>,
     /// The folder.
     pub output: String,
     /// The rows of `predictions.csv`.
-    pub predictions: &'a [PredictionRow],
+    pub predictions: Cow<'a, [PredictionRow]>,
 }
 
 impl<'a> ResultsDocument<'a> {
     /// Of a folder.
     pub fn new(output: String, predictions: &'a [PredictionRow]) -> Self {
-        Self { schema: "kesf.results/1", output, predictions }
+        Self { schema: "kesf.results/1".into(), output, predictions: predictions.into() }
     }
 }
 
 /// `kesf.init/1`, of `kesf init`: the files of a folder.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct InitDocument<'a> {
     /// `kesf.init/1`.
     #[schemars(extend("const" = "kesf.init/1"))]
-    pub schema: &'static str,
+    pub schema: Cow<'static, str>,
     /// Those that were written.
     pub written: Vec<Cow<'a, str>>,
     /// Those that were there, and were not changed.
@@ -138,24 +138,25 @@ pub struct InitDocument<'a> {
 impl<'a> InitDocument<'a> {
     /// Of a folder.
     pub fn new(written: Vec<Cow<'a, str>>, kept: Vec<Cow<'a, str>>) -> Self {
-        Self { schema: "kesf.init/1", written, kept }
+        Self { schema: "kesf.init/1".into(), written, kept }
     }
 }
 
 /// `kesf.explanations/1`, of `kesf explain`: the text behind codes.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct ExplanationsDocument<'a> {
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+pub struct ExplanationsDocument {
     /// `kesf.explanations/1`.
     #[schemars(extend("const" = "kesf.explanations/1"))]
-    pub schema: &'static str,
+    pub schema: Cow<'static, str>,
     /// In the order that was asked for.
-    pub codes: &'a [&'static Explanation],
+    pub codes: Vec<Cow<'static, Explanation>>,
 }
 
-impl<'a> ExplanationsDocument<'a> {
+impl ExplanationsDocument {
     /// Of codes.
-    pub fn new(codes: &'a [&'static Explanation]) -> Self {
-        Self { schema: "kesf.explanations/1", codes }
+    pub fn new(codes: &[&'static Explanation]) -> Self {
+        let codes = codes.iter().map(|code| Cow::Borrowed(*code)).collect();
+        Self { schema: "kesf.explanations/1".into(), codes }
     }
 }
 

@@ -1,9 +1,10 @@
 //! Documents of commands that work on tables of Parquet.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::library::Axis;
 use crate::report::arrow_text::{Cell, Records};
@@ -29,11 +30,11 @@ pub struct FoundDocument<'a> {
 }
 
 /// `kesf.library/1`, of `kesf library build`.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct LibraryDocument {
     /// `kesf.library/1`.
     #[schemars(extend("const" = "kesf.library/1"))]
-    pub schema: &'static str,
+    pub schema: Cow<'static, str>,
     /// The file.
     pub output: String,
     /// How many it has.
@@ -43,7 +44,7 @@ pub struct LibraryDocument {
 impl LibraryDocument {
     /// Of a library that was written.
     pub fn new(output: String, fabrics: usize) -> Self {
-        Self { schema: "kesf.library/1", output, fabrics }
+        Self { schema: "kesf.library/1".into(), output, fabrics }
     }
 }
 
@@ -68,11 +69,11 @@ impl<'a> MergedDocument<'a> {
 }
 
 /// `kesf.part/1`, of `kesf run --shard`.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct PartDocument {
     /// `kesf.part/1`.
     #[schemars(extend("const" = "kesf.part/1"))]
-    pub schema: &'static str,
+    pub schema: Cow<'static, str>,
     /// The file of its results; those of findings and failures stand beside it.
     pub output: String,
     /// Its number, from 1.
@@ -88,7 +89,7 @@ pub struct PartDocument {
 }
 
 /// Rows of the tables of a part.
-#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct PartRows {
     /// Of values.
     pub results: usize,

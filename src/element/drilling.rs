@@ -6,7 +6,7 @@ use super::quad4::{GAUSS_2X2, gauss_point};
 use super::{Cell, Drilling};
 use crate::section::ShellSection;
 
-/// Penalty γ (N/m) on `θz - (v,x - u,y)/2`; 0 for the seed's spring.
+/// Penalty γ (N/m) on `θz - (v,x - u,y)/2`; 0 for the spring of Nguyen-Trong et al.
 pub(super) fn penalty(drilling: Drilling, section: &ShellSection, area: f64) -> f64 {
     match drilling {
         Drilling::Scaled => {

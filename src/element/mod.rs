@@ -47,8 +47,8 @@ pub struct Formulation {
     pub membrane: Membrane,
     /// Smoothing of the curvature.
     pub bending: Bending,
-    /// Stabilisation α of the transverse shear, `1/S_i + α h_i² / (3.5 B_i)` with `h_i` the side along `i`: 0 as the seed
-    /// paper has it, 0.05 by default. It removes the loss of digits of very thin sheets.
+    /// Stabilisation α of the transverse shear, `1/S_i + α h_i² / (3.5 B_i)` with `h_i` the side along `i`: 0 in
+    /// Nguyen-Trong et al., 0.05 by default. It removes the loss of digits of very thin sheets.
     pub shear_stabilisation: f64,
     /// What resists the rotation θz about the normal.
     pub drilling: Drilling,
@@ -112,7 +112,7 @@ pub enum Drilling {
     Scaled,
     /// The same penalty with `γ = D_m33` (Hughes and Brezzi 1989).
     HughesBrezzi,
-    /// The seed's spring: this factor (1e-3) of the largest diagonal term, on every θz. It strains
+    /// The spring of Nguyen-Trong et al.: this factor (1e-3) of the largest diagonal term, on every θz. It strains
     /// rigid rotations and stiffens curved shells. In a flat sheet it ties θz to nothing: bending and
     /// displacements in the plane are right, but moments and rotations about the normal are lost in it.
     Seed(f64),
@@ -149,7 +149,7 @@ impl Formulation {
         }
     }
 
-    /// The seed paper's element: four cells, no shear stabilisation, drilling spring 1e-3.
+    /// The element of Nguyen-Trong et al.: four cells, no shear stabilisation, drilling spring 1e-3.
     pub fn seed() -> Self {
         Self {
             cells: Cells::grid(2, 2),

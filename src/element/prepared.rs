@@ -70,7 +70,7 @@ pub struct Prepared {
     /// Strains of the element axes to those of the material axes.
     to_material: Matrix3<f64>,
     gamma: f64,
-    /// The seed's drilling spring (N·m).
+    /// The drilling spring of Nguyen-Trong et al. (N·m).
     spring: f64,
     /// Part of the stiffness of several membrane cells that one cell is given.
     stabilisation: f64,

@@ -23,6 +23,14 @@ pub enum FailureKind {
 /// Codes that mean that numerics failed, rather than the input, or that a search did not reach its end.
 const NUMERIC: [&str; 10] = ["N001", "N002", "N003", "N005", "N006", "N007", "N010", "N012", "S004", "S112"];
 
+/// Codes of failures for want of memory, which another run may not meet.
+const OF_MEMORY: [&str; 2] = ["N002", "N011"];
+
+/// Whether a code is that of a failure for want of memory.
+pub(crate) fn is_of_memory(code: &str) -> bool {
+    OF_MEMORY.contains(&code)
+}
+
 /// The code of an interruption.
 const INTERRUPTED: &str = "O054";
 

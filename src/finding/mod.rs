@@ -21,7 +21,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize, Serializer};
 
 pub use error::{Coded, FailureKind};
-pub(crate) use error::{as_text, errors, fields_of};
+pub(crate) use error::{as_text, errors, fields_of, is_of_memory};
 pub use facts::{
     CoarseQuantity, Divisor, DrapeFact, EvaluationFact, Excess, ExchangeFact, Fact, Fields, LeftOutLine,
     Missed, ReadFact, RecordAxis, Renaming, Samples, SectionFact, StripLength, StudyFact, Subject, UsageFact,

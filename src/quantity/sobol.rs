@@ -1,7 +1,7 @@
 //! Spread of measured inputs through a function that is not linear: scrambled Sobol points.
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::{Estimate, NoSpread};
@@ -18,7 +18,7 @@ pub enum Population {
 }
 
 /// A result over a sample of the inputs.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Sampled {
     /// Median.
     pub median: f64,

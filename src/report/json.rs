@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::characterise::{FabricSheet, FrictionLaw, LawBand, MeanBranch, Settings, ValueStatus};
-use crate::constitutive::{Constitutive, Entry, Used, entries};
+use crate::constitutive::{Constitutive, Entry, Provenance, Used, entries};
 use crate::finding::{Fields, Finding};
 use crate::instrument::{Direction, Origin, Parameter, Test};
 use crate::quantity::{Curve, Estimate};
@@ -229,7 +229,10 @@ pub struct SectionEntry {
 pub struct AssumptionEntry {
     /// The value that is used.
     pub value: String,
-    /// Where it comes from.
+    /// What it rests on; a document that does not say it states the value.
+    #[serde(default)]
+    pub provenance: Provenance,
+    /// Where it comes from, for people.
     pub source: String,
 }
 
@@ -286,7 +289,8 @@ pub fn section_document<'a>(
 }
 
 fn assumption(used: &Used) -> (String, AssumptionEntry) {
-    (used.name.to_string(), AssumptionEntry { value: used.value.clone(), source: used.source.clone() })
+    let Used { name, value, provenance, source } = used.clone();
+    (name.into_owned(), AssumptionEntry { value, provenance, source })
 }
 
 /// A document as text: two blanks of indentation and a final newline.

@@ -181,8 +181,12 @@ fn section(entry: SectionEntry) -> Result<(FabricSheet, Constitutive), DocumentE
         areal_density: entry.areal_density,
         thickness: entry.thickness,
     };
-    let used =
-        |(name, AssumptionEntry { value, source }): (String, _)| Used { name: name.into(), value, source };
+    let used = |(name, AssumptionEntry { value, provenance, source }): (String, _)| Used {
+        name: name.into(),
+        value,
+        provenance,
+        source,
+    };
     let made = Constitutive {
         section: section.checked()?,
         law: None,

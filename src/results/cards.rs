@@ -1,9 +1,11 @@
 //! Fabrics as material files of other programs.
 
+use std::borrow::Cow;
+
 use schemars::JsonSchema;
 use std::collections::BTreeSet;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::failure::Failure;
 use super::file_name::{file_name, is_device, on_disk};
@@ -14,12 +16,12 @@ use crate::finding::Place;
 use crate::report::cards::{Material, Target, card, named};
 
 /// The material file of a fabric.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Card {
     /// Its name.
     pub fabric: String,
     /// The program.
-    pub target: &'static str,
+    pub target: Cow<'static, str>,
     /// The file.
     pub text: String,
 }
@@ -40,7 +42,7 @@ pub fn cards(
                 for finding in card.findings {
                     observer.found(Some(&sheet.name), &finding.at(Place::file(path)));
                 }
-                cards.push(Card { fabric: sheet.name.clone(), target: target.name, text: card.text });
+                cards.push(Card { fabric: sheet.name.clone(), target: target.name.into(), text: card.text });
             }
             Err(error) => {
                 let failure = Failure::from(error).of(&sheet.name).at(Place::file(path));
@@ -92,7 +94,7 @@ mod tests {
 
     #[test]
     fn every_name_is_one_of_windows_and_macos() {
-        let card = |name: &str| Card { fabric: name.into(), target: "u3m", text: name.into() };
+        let card = |name: &str| Card { fabric: name.into(), target: "u3m".into(), text: name.into() };
         let sink = MemorySink::default();
         let cards = ["../out", "NUL", "Poplin", "poplin", "a:b."].map(card);
         let (names, failures) = write_cards(&cards, &sink, &Observer::default());
@@ -102,7 +104,7 @@ mod tests {
 
     #[test]
     fn two_fabrics_of_one_name_have_a_file_each() {
-        let card = |text: &str| Card { fabric: "poplin".into(), target: "u3m", text: text.into() };
+        let card = |text: &str| Card { fabric: "poplin".into(), target: "u3m".into(), text: text.into() };
         let sink = MemorySink::default();
         let (names, failures) = write_cards(&[card("a"), card("b")], &sink, &Observer::default());
         assert_eq!((names, failures), (vec!["poplin.u3m".to_string(), "poplin-2.u3m".into()], Vec::new()));

@@ -1,10 +1,12 @@
 //! Inputs that were read and checked, and nothing more.
 
+use std::borrow::Cow;
+
 use schemars::JsonSchema;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::columns::Columns;
 use super::failure::Failure;
@@ -29,17 +31,17 @@ pub struct Checked {
 }
 
 /// `kesf.check/1`.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct CheckDocument {
     #[schemars(extend("const" = "kesf.check/1"))]
-    schema: &'static str,
+    schema: Cow<'static, str>,
     fabrics: Vec<FabricEntry>,
     cases: Vec<CaseEntry>,
     errors: usize,
     inference: Vec<Inference>,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct FabricEntry {
     name: String,
     path: String,
@@ -49,7 +51,7 @@ struct FabricEntry {
     findings: Vec<Finding>,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct CaseEntry {
     name: String,
     path: String,
@@ -128,7 +130,7 @@ impl Checked {
             title: c.title.clone(),
         };
         CheckDocument {
-            schema: "kesf.check/1",
+            schema: "kesf.check/1".into(),
             fabrics: self.fabrics.iter().map(fabric).collect(),
             cases: self.cases.iter().map(case).collect(),
             errors: self.failures.len(),

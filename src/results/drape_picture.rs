@@ -99,7 +99,7 @@ pub fn drape_pictures(
         captures.push(capture);
     }
     let document = DrapeDocument {
-        schema: "kesf.drape-image/1",
+        schema: "kesf.drape-image/1".into(),
         method: setup.method,
         summaries: summaries(&captures),
         captures,

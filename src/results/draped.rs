@@ -1,5 +1,7 @@
 //! A drape: rows, document, charts and text.
 
+use std::borrow::Cow;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -67,24 +69,24 @@ pub(super) fn table<'a, 'f: 'a, 'c: 'a>(
 }
 
 /// An entry of `kesf.solution/1`: a drape (SI).
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct DrapeEntry {
     case: String,
     fabric: Option<String>,
-    status: &'static str,
+    status: Cow<'static, str>,
     model: ModelEntry,
     results: DrapeResults,
     findings: Vec<Finding>,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct DrapeResults {
     drape: DrapeValues,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct DrapeValues {
-    law: &'static str,
+    law: Cow<'static, str>,
     /// Of the state of lowest energy on the finest mesh, 0 to 1.
     coefficient: f64,
     /// Least and greatest coefficient of all states.
@@ -98,13 +100,13 @@ struct DrapeValues {
     outline: OutlineEntry,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct MeasuredDrape {
     value: f64,
     method: String,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct StateEntry {
     start_folds: usize,
     elements: usize,
@@ -120,16 +122,16 @@ struct StateEntry {
     iterations: usize,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct FailedStart {
     start_folds: usize,
-    code: &'static str,
+    code: Cow<'static, str>,
 }
 
 /// Distances of the outline from the axis of the disc, one a degree.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct OutlineEntry {
-    unit: &'static str,
+    unit: Cow<'static, str>,
     step_deg: u32,
     distance: Vec<f64>,
 }
@@ -157,7 +159,7 @@ impl StateEntry {
 pub(super) fn entry(task: &Task, d: &Drape) -> DrapeEntry {
     let mesh = &d.model.mesh;
     let drape = DrapeValues {
-        law: law(task),
+        law: law(task).into(),
         coefficient: d.finest.coefficient,
         band: d.band(),
         measured: measured(task).map(|(value, method)| MeasuredDrape { value, method: method.to_string() }),
@@ -168,14 +170,14 @@ pub(super) fn entry(task: &Task, d: &Drape) -> DrapeEntry {
         failed_starts: d
             .failed
             .iter()
-            .map(|(start, e)| FailedStart { start_folds: *start, code: e.code() })
+            .map(|(start, e)| FailedStart { start_folds: *start, code: e.code().into() })
             .collect(),
-        outline: OutlineEntry { unit: "m", step_deg: 1, distance: d.outline.clone() },
+        outline: OutlineEntry { unit: "m".into(), step_deg: 1, distance: d.outline.clone() },
     };
     DrapeEntry {
         case: d.case.clone(),
         fabric: task.fabric_name().map(str::to_string),
-        status: "ok",
+        status: "ok".into(),
         model: ModelEntry { nodes: mesh.nodes.len(), elements: mesh.quads.len(), dofs: 6 * mesh.nodes.len() },
         results: DrapeResults { drape },
         findings: d.findings.clone(),

@@ -20,7 +20,7 @@ use super::tested::{self, Tested};
 use super::{friction, page_curves, solved};
 use crate::characterise::FabricSheet;
 use crate::constitutive::{Assumptions, section};
-use crate::finding::{Finding, Place};
+use crate::finding::{Finding, Place, is_of_memory};
 use crate::instrument::FabricInfo;
 use crate::law::Mode;
 use crate::platform::Stopwatch;
@@ -92,9 +92,6 @@ pub struct FabricReport {
     pub(super) hurried: bool,
 }
 
-/// Failures that another run may not meet: for want of memory.
-const OF_MACHINE: [&str; 2] = ["N002", "N011"];
-
 impl FabricReport {
     /// Does all of the work for one fabric and writes its files.
     pub(crate) fn new(fabric: &Fabric, tasks: &[Task], folder: &Folder, observer: &Observer) -> Self {
@@ -153,7 +150,7 @@ impl FabricReport {
 
     /// Whether another run could not find more: nothing failed for want of time, memory or a place to write to.
     pub(super) fn is_final(&self) -> bool {
-        let of_machine = |f: &Failure| f.code.starts_with('O') || OF_MACHINE.contains(&&*f.code);
+        let of_machine = |f: &Failure| f.code.starts_with('O') || is_of_memory(&f.code);
         !self.hurried && !self.failures.iter().any(of_machine)
     }
 

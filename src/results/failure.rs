@@ -28,7 +28,7 @@ pub struct Failure {
 }
 
 /// `error` of a JSON line on standard error, and an entry of `failures` of a document.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct FailureEntry {
     /// Code for `kesf explain`.
     pub code: String,

@@ -1,8 +1,10 @@
 //! What the program knows, as lists.
 
+use std::borrow::Cow;
+
 use indexmap::IndexMap;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::columns::Columns;
@@ -21,19 +23,22 @@ pub struct List {
 }
 
 /// `kesf.list/1`.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ListDocument {
     #[schemars(extend("const" = "kesf.list/1"))]
-    schema: &'static str,
+    schema: Cow<'static, str>,
     /// Objects with the headings as keys.
-    items: Vec<IndexMap<&'static str, Value>>,
+    items: Vec<IndexMap<Cow<'static, str>, Value>>,
 }
 
 impl List {
     /// The document.
     pub fn document(&self) -> ListDocument {
-        let item = |row: &Vec<Value>| self.headings.iter().copied().zip(row.iter().cloned()).collect();
-        ListDocument { schema: "kesf.list/1", items: self.rows.iter().map(item).collect() }
+        let item = |row: &Vec<Value>| {
+            let keys = self.headings.iter().map(|heading| Cow::Borrowed(*heading));
+            keys.zip(row.iter().cloned()).collect()
+        };
+        ListDocument { schema: "kesf.list/1".into(), items: self.rows.iter().map(item).collect() }
     }
 
     /// The list as text.

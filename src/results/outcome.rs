@@ -1,7 +1,9 @@
 //! What a task gives, whatever its kind: the one place that tells the kinds apart.
 
+use std::borrow::Cow;
+
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::bent::{self, BendingEntry};
 use super::deflected::{Deflected, PageSheet};
@@ -37,7 +39,7 @@ pub enum Outcome {
 }
 
 /// A document with the outcome of a task or of several.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Document {
     /// Of cases with a sheet.
@@ -47,25 +49,25 @@ pub enum Document {
 }
 
 /// `kesf.solution/1`.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct SolutionDocument {
     #[schemars(extend("const" = "kesf.solution/1"))]
-    schema: &'static str,
+    schema: Cow<'static, str>,
     /// One a task.
     solutions: Vec<Solution>,
 }
 
 /// `kesf.comparison/1`.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ComparisonDocument {
     #[schemars(extend("const" = "kesf.comparison/1"))]
-    schema: &'static str,
+    schema: Cow<'static, str>,
     /// One a direction.
     comparisons: Vec<ComparisonEntry>,
 }
 
 /// An entry of `kesf.solution/1`.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Solution {
     /// A solved case.
@@ -75,7 +77,7 @@ pub enum Solution {
 }
 
 /// An entry of `kesf.comparison/1`.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ComparisonEntry {
     /// A simulated KES test.
@@ -87,12 +89,12 @@ pub enum ComparisonEntry {
 impl Document {
     /// `kesf.solution/1`.
     pub(super) fn solutions(solutions: Vec<Solution>) -> Self {
-        Self::Solutions(SolutionDocument { schema: "kesf.solution/1", solutions })
+        Self::Solutions(SolutionDocument { schema: "kesf.solution/1".into(), solutions })
     }
 
     /// `kesf.comparison/1`.
     pub(super) fn comparisons(comparisons: Vec<ComparisonEntry>) -> Self {
-        Self::Comparisons(ComparisonDocument { schema: "kesf.comparison/1", comparisons })
+        Self::Comparisons(ComparisonDocument { schema: "kesf.comparison/1".into(), comparisons })
     }
 }
 

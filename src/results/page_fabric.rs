@@ -2,9 +2,9 @@
 
 use super::fabric::FabricReport;
 use super::failure::Failure;
-use super::page_problems::BEYOND_LINEAR;
 use super::page_section::PageSection;
 use super::page_values::tests;
+use crate::finding::{Fact, Finding, StudyFact};
 use crate::instrument::Parameter;
 use crate::quantity::repeats_text;
 use crate::report::html::{Block, Figure, POINTS};
@@ -44,11 +44,16 @@ pub(super) fn fabric_block(place: usize, report: &FabricReport) -> Block {
         !report.relative_deflections.iter().any(is_linear)
     });
     blocks.extend(figures_block(first.into_iter().chain(last).collect()));
-    let findings: Vec<_> = report.findings.iter().filter(|f| f.code() != BEYOND_LINEAR).cloned().collect();
+    let findings: Vec<_> = report.findings.iter().filter(|f| !is_beyond_linear(f)).cloned().collect();
     if !findings.is_empty() {
         blocks.push(Block::Findings(findings));
     }
     Block::Fabric { name: report.name.clone(), about: report.about.clone(), blocks }
+}
+
+/// A linear solve beyond its meaning: it holds of cloth as such, and is said once in the batch.
+fn is_beyond_linear(finding: &Finding) -> bool {
+    matches!(finding.fact, Fact::Study(StudyFact::BeyondLinear { .. }))
 }
 
 /// Pictures beside each other; nothing where there are none.

@@ -1,15 +1,12 @@
 //! What a simulated value rests on that is not to be relied on: a constant of the section that nobody measured, or a
 //! measured value that a finding speaks against.
 
-use crate::finding::Finding;
+use crate::finding::{Fact, Finding, SectionFact};
 use crate::instrument::{Parameter, Test};
 use crate::report::table::FabricRow;
 
 /// Status of a value that a finding speaks against.
 pub(super) const DOUBTFUL: &str = "doubtful";
-
-/// Findings of a section that has a stand-in for a stiffness, and its symbol.
-const STAND_INS: [(&str, &str); 2] = [("C012", "E"), ("C013", "G")];
 
 /// What the deflection of a plate rests on.
 pub(super) const OF_PLATE: &str = "w_max";
@@ -37,8 +34,17 @@ pub(super) fn assumed_of_test(test: Test, findings: &[Finding]) -> Option<String
 }
 
 fn stand_in(symbol: &str, findings: &[Finding]) -> Option<String> {
-    let (code, _) = STAND_INS.iter().find(|(_, of)| *of == symbol)?;
-    findings.iter().any(|finding| finding.code() == *code).then(|| format!("an assumed {symbol}"))
+    let is_of_symbol = |finding: &Finding| symbol_of_stand_in(&finding.fact) == Some(symbol);
+    findings.iter().any(is_of_symbol).then(|| format!("an assumed {symbol}"))
+}
+
+/// The stiffness that a section has a stand-in for.
+fn symbol_of_stand_in(fact: &Fact) -> Option<&'static str> {
+    match fact {
+        Fact::Section(SectionFact::NoTensileModulus { .. }) => Some("E"),
+        Fact::Section(SectionFact::NoShearTest { .. }) => Some("G"),
+        _ => None,
+    }
 }
 
 /// Symbols of the inputs that a predicted quantity shows most of.
@@ -81,7 +87,6 @@ fn doubts(rows: &[FabricRow], symbol: &str, direction: &str) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::finding::SectionFact;
 
     fn sheet() -> ([FabricRow; 3], [Finding; 1]) {
         let row = |parameter: &str, direction: &str, status: &str| FabricRow {

@@ -1,8 +1,10 @@
 //! Bands from sampled inputs: table, document and notes of charts.
 
+use std::borrow::Cow;
+
 use indexmap::IndexMap;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::columns::Columns;
 use super::task::Task;
@@ -53,9 +55,9 @@ pub(super) fn interval(band: Option<Sampled>, factor: f64) -> String {
 }
 
 /// `uncertainty` of an entry of a document, by sampling.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct SamplingEntry {
-    method: &'static str,
+    method: Cow<'static, str>,
     points: u32,
     seed: u32,
     level: f64,
@@ -65,7 +67,7 @@ pub struct SamplingEntry {
 }
 
 /// A measured input (SI).
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct InputEntry {
     name: String,
     mean: f64,
@@ -73,10 +75,10 @@ pub struct InputEntry {
     n: usize,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct QuantityEntry {
     value: f64,
-    unit: &'static str,
+    unit: Cow<'static, str>,
     mean_fabric: Option<Sampled>,
     next_specimen: Option<Sampled>,
     without_spread: Vec<String>,
@@ -94,7 +96,7 @@ impl QuantityEntry {
     fn new(q: &SampledQuantity) -> Self {
         Self {
             value: q.value,
-            unit: q.unit,
+            unit: q.unit.into(),
             mean_fabric: q.mean_fabric,
             next_specimen: q.next_specimen,
             without_spread: q.without_spread.clone(),
@@ -107,7 +109,7 @@ impl SamplingEntry {
     pub(super) fn ending_with(sampling: &Sampling, ending: &str) -> Self {
         let mine = sampling.quantities.iter().filter(|q| q.quantity.ends_with(ending));
         Self {
-            method: "scrambled Sobol points",
+            method: "scrambled Sobol points".into(),
             points: sampling.points,
             seed: sampling.seed,
             level: 0.95,

@@ -12,7 +12,7 @@ use super::failure::Failure;
 use super::inputs::{Curves, Fabric, Input, Reading, nothing_to_read, paths_of_several};
 use super::observer::Observer;
 use crate::characterise::{FabricSheet, Key};
-use crate::constitutive::{Assumptions, Constitutive, InputSource, Used, entries, section};
+use crate::constitutive::{Assumptions, Constitutive, InputSource, Provenance, Used, entries, section};
 use crate::finding::{EvaluationFact, Fact, Place};
 use crate::instrument::{FabricInfo, Origin};
 use crate::platform::files;
@@ -71,15 +71,21 @@ fn of_card(input: &Input, card: StatedSection, assumptions: &Assumptions) -> (Fa
     // The numbers of a card that is not ours are somebody's, and no record is behind them.
     let origin = card.origin.unwrap_or(Origin::Published);
     let info = FabricInfo { title: name.to_string(), origin, ..FabricInfo::default() };
-    let entry = |name: &'static str, value: String, source: String| Used { name: name.into(), value, source };
-    let mut used =
-        vec![entry("matrices, areal density", "as stated".into(), format!("the card: {}", card.keyword))];
+    let entry = |name: &'static str, value: String, provenance, source: String| Used {
+        name: name.into(),
+        value,
+        provenance,
+        source,
+    };
+    let of_card = format!("the card: {}", card.keyword);
+    let mut used = vec![entry("matrices, areal density", "as stated".into(), Provenance::Stated, of_card)];
     if card.origin.is_none() {
-        used.push(entry("origin", origin.name().into(), "assumed: the card does not say it".into()));
+        let source = "assumed: the card does not say it".into();
+        used.push(entry("origin", origin.name().into(), Provenance::Assumed, source));
     }
     if !card.has_thickness {
         let source = "assumed (--thickness): the card states none".into();
-        used.push(entry("thickness", assumptions.thickness.to_string(), source));
+        used.push(entry("thickness", assumptions.thickness.to_string(), Provenance::Assumed, source));
     }
     let made =
         Constitutive { section: card.section, law: None, used, inputs: Vec::new(), findings: Vec::new() };

@@ -1,10 +1,12 @@
 //! A simulated KES test beside its measurement: rows, document, charts and text.
 
+use std::borrow::Cow;
+
 use schemars::JsonSchema;
 use std::collections::BTreeMap;
 
 use indexmap::IndexMap;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::columns::Columns;
 use super::failure::Failure;
@@ -117,7 +119,7 @@ fn stiffness(
 }
 
 /// An entry of `kesf.comparison/1`: a simulated KES test.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct TestEntry {
     name: String,
     case: String,
@@ -126,21 +128,21 @@ pub struct TestEntry {
     nrmse: Option<f64>,
     r2: Option<f64>,
     n: usize,
-    unit: Option<&'static str>,
+    unit: Option<Cow<'static, str>>,
     stiffness: Option<StiffnessEntry>,
     edge_effect: Option<EdgeEffect>,
     unstable_from: Option<f64>,
-    cycle: Option<IndexMap<&'static str, CycleEntry>>,
+    cycle: Option<IndexMap<Cow<'static, str>, CycleEntry>>,
     uncertainty: Option<SamplingEntry>,
     x: Option<Vec<f64>>,
     simulated: Option<Vec<f64>>,
     measured: Option<Vec<f64>>,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct StiffnessEntry {
-    symbol: &'static str,
-    unit: &'static str,
+    symbol: Cow<'static, str>,
+    unit: Cow<'static, str>,
     simulated: f64,
     mean_fabric: Option<Band>,
     next_specimen: Option<Band>,
@@ -150,11 +152,11 @@ struct StiffnessEntry {
 }
 
 /// A parameter of a simulated cycle beside the measured one (SI).
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct CycleEntry {
     simulated: f64,
     measured: Option<f64>,
-    unit: &'static str,
+    unit: Cow<'static, str>,
 }
 
 /// The entry of a document.
@@ -168,9 +170,9 @@ pub(super) fn entry(task: &Task, t: &Tested) -> TestEntry {
         nrmse: c.map(|c| c.nrmse),
         r2: c.map(|c| c.r2),
         n: c.map_or(0, |c| c.n),
-        unit: c.map(|c| c.unit),
+        unit: c.map(|c| c.unit.into()),
         stiffness: t.stiffness.as_ref().map(|stiffness| stiffness_entry(stiffness, &t.simulated)),
-        edge_effect: t.simulated.edge,
+        edge_effect: t.simulated.edge.clone(),
         unstable_from: t.simulated.unstable_from,
         cycle: t.simulated.cycle.as_ref().map(|cycle| cycle_entries(task, cycle)),
         uncertainty: task.sampling().map(|s| SamplingEntry::ending_with(s, t.direction())),
@@ -185,8 +187,8 @@ fn stiffness_entry(stiffness: &Stiffness, simulated: &VirtualCurve) -> Stiffness
     let bands = prediction.and_then(|p| p.bands);
     let measured = stiffness.measured.as_ref();
     StiffnessEntry {
-        symbol: stiffness.symbol,
-        unit: stiffness.unit,
+        symbol: stiffness.symbol.into(),
+        unit: stiffness.unit.into(),
         simulated: simulated.apparent,
         mean_fabric: bands.map(|b| b.mean_fabric),
         next_specimen: bands.map(|b| b.next_specimen),
@@ -197,10 +199,11 @@ fn stiffness_entry(stiffness: &Stiffness, simulated: &VirtualCurve) -> Stiffness
 }
 
 /// By symbol, in the order of the parameters.
-fn cycle_entries(task: &Task, cycle: &VirtualLoop) -> IndexMap<&'static str, CycleEntry> {
+fn cycle_entries(task: &Task, cycle: &VirtualLoop) -> IndexMap<Cow<'static, str>, CycleEntry> {
     let entry = |(parameter, simulated): (&Parameter, &f64)| {
         let measured = task.measured(*parameter, Some(cycle.direction));
-        (parameter.symbol(), CycleEntry { simulated: *simulated, measured, unit: parameter.si_unit() })
+        let unit = parameter.si_unit().into();
+        (parameter.symbol().into(), CycleEntry { simulated: *simulated, measured, unit })
     };
     cycle.values.iter().map(entry).collect()
 }
@@ -431,7 +434,7 @@ fn fixed(ratio: f64) -> String {
 fn notes(task: &Task, t: &Tested) -> Vec<String> {
     let (simulated, name) = (&t.simulated, &t.name);
     let mut notes = Vec::new();
-    if let Some(tension) = simulated.edge.and_then(|e| e.tension) {
+    if let Some(tension) = simulated.edge.as_ref().and_then(|e| e.tension) {
         let [value, adds] = [tension.value, tension.adds].map(significant);
         let without = significant(simulated.apparent - tension.adds);
         notes

@@ -64,7 +64,7 @@ fn every_key_of_a_case_file_stands_in_the_reference() {
     }
 }
 
-/// The schemas take what the program takes: the files of this repository, and the defaults that they state.
+/// Defaults are as a file states them; `tests/documents.rs` holds the files of this repository against the schemas.
 #[test]
 fn defaults_are_written_as_a_file_writes_them() {
     let files = schemas();

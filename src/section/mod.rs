@@ -71,7 +71,7 @@ errors! {
 
 impl ShellSection {
     /// The section itself if every matrix is finite, symmetric and positive definite
-    /// (`d_b` may be semidefinite in twist: the seed's H = 0), and density and thickness are positive.
+    /// (`d_b` may be semidefinite in twist: the H = 0 of Nguyen-Trong et al.), and density and thickness are positive.
     ///
     /// # Errors
     /// See [`SectionError`].

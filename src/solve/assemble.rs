@@ -248,7 +248,7 @@ pub fn internal_forces(
     }
 }
 
-/// Whether rigid rotations cost no energy: the seed's spring acts on the drilling rotation itself.
+/// Whether rigid rotations cost no energy: the spring of Nguyen-Trong et al. acts on the drilling rotation itself.
 pub(super) fn rigid_rotations(model: &Model, group: DofGroup) -> bool {
     group == DofGroup::Plate || !matches!(model.formulation.drilling, Drilling::Seed(_))
 }

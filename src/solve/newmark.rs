@@ -84,7 +84,7 @@ pub struct Settings {
 }
 
 /// Energies of the sheet at one instant (J).
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, JsonSchema)]
 pub struct Energy {
     /// ½ u̇ᵀ M u̇.
     pub kinetic: f64,

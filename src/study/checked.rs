@@ -42,7 +42,7 @@ pub(super) fn check(case: &Case, check: &Check, results: &CaseResult) -> Result<
         quantity: quantity.value.clone(),
         value,
         expected: *expected,
-        unit,
+        unit: (*unit).into(),
         relative_error,
         relative_tolerance: *relative_tolerance,
         passed: relative_error <= *relative_tolerance,

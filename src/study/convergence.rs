@@ -33,7 +33,7 @@ impl Convergence {
             // A coarse mesh may have fewer modes.
             let known = values.len() == results.len() && finest > ROUNDING * size;
             let extrapolation = Extrapolation::of(&values).filter(|_| known)?;
-            Some(MeshSeries { quantity, unit, values, extrapolation, size })
+            Some(MeshSeries { quantity, unit: unit.into(), values, extrapolation, size })
         };
         Ok(Self { cells, quantities: names(problem).into_iter().filter_map(series).collect() })
     }

@@ -1,12 +1,14 @@
 //! The results of a case on meshes that grow finer.
 
+use std::borrow::Cow;
+
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::fields::Extrapolation;
 
 /// A case on its own mesh and on coarser ones.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Convergence {
     /// `cells` of the meshes, coarsest first.
     pub cells: Vec<[usize; 2]>,
@@ -15,12 +17,12 @@ pub struct Convergence {
 }
 
 /// One result on each mesh.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MeshSeries {
     /// `w_max`, `PROBE.w`, `strain_energy`, `frequency_1` ...
     pub quantity: String,
     /// SI unit of the values.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
     /// Its values, coarsest mesh first.
     pub values: Vec<f64>,
     /// What they approach.

@@ -1,10 +1,12 @@
 //! What a solved case holds.
 
+use std::borrow::Cow;
+
 use schemars::JsonSchema;
 use std::sync::{Arc, OnceLock};
 
 use nalgebra::Vector3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::history::History;
 use super::load_path::{LoadPath, LoadStepEnd};
@@ -23,7 +25,7 @@ use crate::solve::nonlinear::State;
 use crate::solve::{self, Factors, Solution};
 
 /// How a case ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
     /// Solved; every check holds.
@@ -48,7 +50,7 @@ pub struct Probe {
 }
 
 /// A check with its outcome.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CheckResult {
     /// What was checked.
     pub quantity: String,
@@ -57,7 +59,7 @@ pub struct CheckResult {
     /// The value expected (SI).
     pub expected: f64,
     /// SI unit of both.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
     /// |value - expected| / |expected|.
     pub relative_error: f64,
     /// What is accepted.

@@ -8,6 +8,8 @@
 //! Where the section comes from repeats, the stiffness has the bands of first-order propagation
 //! ([`Prediction`]); those of a straight line widen from the origin in proportion.
 
+use std::borrow::Cow;
+
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 
@@ -56,20 +58,20 @@ pub struct VirtualCurve {
 }
 
 /// How far the stiffness of a specimen is from that of the sheet.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, JsonSchema)]
 pub struct EdgeEffect {
     /// Stiffness of the specimen over the ideal one, without a tension across.
     pub ratio: f64,
     /// The same by a closed form; none where that does not hold.
     pub closed_form: Option<f64>,
     /// The closed form.
-    pub formula: &'static str,
+    pub formula: Cow<'static, str>,
     /// The tension across a sheared specimen; none of other tests.
     pub tension: Option<Tension>,
 }
 
 /// A tension across a sheared specimen.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize, JsonSchema)]
 pub struct Tension {
     /// Its size per width (N/m): what it adds to the shear stiffness where the yarns carry it, W tan φ.
     pub value: f64,
@@ -326,7 +328,7 @@ impl PreparedTest {
             }
             _ => (Some(1.0), "1: a wide specimen bends to a cylinder"),
         };
-        EdgeEffect { ratio, closed_form, formula, tension: None }
+        EdgeEffect { ratio, closed_form, formula: formula.into(), tension: None }
     }
 
     /// The stiffness by the work of the moving clamp, `apparent = 2 U / (width x² gauge)`. The transverse

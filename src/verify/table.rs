@@ -1,7 +1,9 @@
 //! Checked lines as a table and as a document.
 
+use std::borrow::Cow;
+
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::line::{Kind, Line, Outcome, RESIDUAL, Tolerance};
 
@@ -141,10 +143,10 @@ fn digits(value: f64) -> String {
 }
 
 /// `kesf.verify/1`.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Document {
     #[schemars(extend("const" = "kesf.verify/1"))]
-    schema: &'static str,
+    schema: Cow<'static, str>,
     lines: Vec<LineEntry>,
     failed: usize,
     largest_residual: Option<f64>,
@@ -153,7 +155,7 @@ pub struct Document {
 }
 
 /// A line of the suite with its value, reference and outcome.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct LineEntry {
     id: String,
     quantity: String,
@@ -163,7 +165,7 @@ pub struct LineEntry {
     reference: Option<f64>,
     error: Option<f64>,
     tolerance: f64,
-    tolerance_of: &'static str,
+    tolerance_of: Cow<'static, str>,
     residual: Option<f64>,
     pass: bool,
     seconds: f64,
@@ -173,7 +175,7 @@ pub struct LineEntry {
 /// The document of checked lines.
 pub fn document(all: &[Checked<'_>], seconds: f64) -> Document {
     Document {
-        schema: "kesf.verify/1",
+        schema: "kesf.verify/1".into(),
         lines: all.iter().map(line_entry).collect(),
         failed: all.iter().filter(|(_, outcome)| !outcome.pass).count(),
         largest_residual: worst(all).map(|(_, residual)| residual),
@@ -197,7 +199,7 @@ fn line_entry((line, outcome): &Checked<'_>) -> LineEntry {
         reference: compared.map(|c| c.reference),
         error: compared.map(|c| c.error),
         tolerance,
-        tolerance_of,
+        tolerance_of: tolerance_of.into(),
         residual: outcome.residual,
         pass: outcome.pass,
         seconds: outcome.seconds,

@@ -6,6 +6,7 @@
 //! violation that is planted in a small crate ([`planted`]).
 
 mod planted;
+mod ratchet;
 mod rules;
 mod source;
 
@@ -75,6 +76,29 @@ fn files_do_not_need_one_another_in_long_circles() {
 #[test]
 fn files_of_the_command_are_short() {
     assert_none(&rules::long_commands(&SOURCE, &source::files()));
+}
+
+#[test]
+fn the_command_is_small() {
+    let lines = ratchet::command_lines(&SOURCE, &source::files());
+    println!("{lines} lines of code in src/cli");
+    assert!(
+        lines <= ratchet::COMMAND_LINES,
+        "{lines}: what can be of use without the command belongs into the library"
+    );
+}
+
+/// What we want less of: whoever takes one away lowers the figure in `ratchet.rs`.
+#[test]
+fn what_is_private_to_this_code_only_becomes_less() {
+    for (what, most, found) in [
+        ("local closures with a name", ratchet::CLOSURES, ratchet::closures(&SOURCE)),
+        ("closures called `of`", ratchet::CLOSURES_OF, ratchet::closures_called_of(&SOURCE)),
+        ("names of several public types", ratchet::SHARED_NAMES, ratchet::shared_names(&SOURCE).len()),
+    ] {
+        println!("{what}: {found}");
+        assert!(found <= most, "{what}: {found}, at most {most}");
+    }
 }
 
 #[test]

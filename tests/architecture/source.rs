@@ -28,6 +28,10 @@ pub struct Module {
     pub macros: Vec<(String, usize)>,
     /// Methods that are called, and the lines.
     pub methods: Vec<(String, usize)>,
+    /// Names of closures that are local variables.
+    pub closures: Vec<String>,
+    /// Public structs, enums, traits and aliases.
+    pub public_types: Vec<String>,
     /// Identifiers and literals, comments left out.
     pub words: Vec<String>,
 }
@@ -278,6 +282,9 @@ impl Scan {
         if attrs.iter().any(for_tests_only) {
             return;
         }
+        if let (Some(name), true) = (&name, is_public_type(item)) {
+            self.module.public_types.push(name.clone());
+        }
         self.module.items.extend(name);
         if let Item::Use(import) = item {
             for (alias, segments, _) in leaves(&import.tree) {
@@ -358,6 +365,17 @@ fn head(item: &Item) -> Option<(&[Attribute], Option<String>)> {
     })
 }
 
+fn is_public_type(item: &Item) -> bool {
+    let visibility = match item {
+        Item::Enum(i) => &i.vis,
+        Item::Struct(i) => &i.vis,
+        Item::Trait(i) => &i.vis,
+        Item::Type(i) => &i.vis,
+        _ => return false,
+    };
+    matches!(visibility, Visibility::Public(_))
+}
+
 /// Name (or `*`), path and line of everything that a `use` imports.
 fn leaves(tree: &UseTree) -> Vec<(String, Vec<String>, usize)> {
     let one = |alias: &syn::Ident, ident: &syn::Ident| {
@@ -402,8 +420,20 @@ impl<'ast> Visit<'ast> for Scan {
         visit_item_fn: ItemFn, visit_item_impl: ItemImpl,
         visit_item_macro: ItemMacro, visit_item_mod: ItemMod, visit_item_static: ItemStatic,
         visit_item_struct: ItemStruct, visit_item_trait: ItemTrait, visit_item_type: ItemType,
-        visit_local: Local, visit_stmt_macro: StmtMacro, visit_trait_item_const: TraitItemConst,
+        visit_stmt_macro: StmtMacro, visit_trait_item_const: TraitItemConst,
         visit_trait_item_fn: TraitItemFn, visit_variant: Variant,
+    }
+
+    fn visit_local(&mut self, node: &'ast syn::Local) {
+        if node.attrs.iter().any(for_tests_only) {
+            return;
+        }
+        if let (syn::Pat::Ident(name), Some(init)) = (&node.pat, &node.init)
+            && matches!(*init.expr, syn::Expr::Closure(_))
+        {
+            self.module.closures.push(name.ident.to_string());
+        }
+        visit::visit_local(self, node);
     }
 
     fn visit_item_use(&mut self, node: &'ast syn::ItemUse) {

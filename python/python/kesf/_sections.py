@@ -24,17 +24,19 @@ class Assumption:
     Attributes:
         name: What it is, such as ``tensile modulus``.
         value: Its value with unit.
-        source: ``measured: ...`` or ``assumed: ...`` and why.
+        provenance: ``measured``, ``inferred``, ``stated`` or ``assumed``.
+        source: That and why, for people.
     """
 
     name: str
     value: str
+    provenance: str
     source: str
 
     @property
     def is_assumed(self) -> bool:
-        """Whether it is not measured."""
-        return self.source.startswith("assumed")
+        """Whether it is a choice or a stand-in, and no property of the fabric."""
+        return self.provenance == "assumed"
 
 
 class Section:

@@ -8,8 +8,10 @@ mod folds;
 mod outline;
 mod summary;
 
+use std::borrow::Cow;
+
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 pub use crate::kes::DrapeMethod;
 pub use summary::{DrapeSummary, Spread, drape_results, summaries};
@@ -42,7 +44,7 @@ pub struct SeenSheet {
 }
 
 /// Where the scale of a picture comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ScaleSource {
     /// It was given.
@@ -65,7 +67,7 @@ impl ScaleSource {
 }
 
 /// A scale with its source.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Scale {
     /// Pixels in a metre.
     pub pixels_per_metre: f64,
@@ -74,7 +76,7 @@ pub struct Scale {
 }
 
 /// Side of the cloth that is up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum ClothSide {
     /// Face up.
@@ -108,7 +110,7 @@ impl ClothSide {
 }
 
 /// One harmonic of the distance from the centre: `amplitude · cos(order · (direction - phase))`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Harmonic {
     /// Waves around.
     pub order: usize,
@@ -119,7 +121,7 @@ pub struct Harmonic {
 }
 
 /// What one picture shows.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DrapeCapture {
     /// The picture, as it was named.
     pub picture: String,
@@ -142,7 +144,7 @@ pub struct DrapeCapture {
     /// Half the mean difference between folds and the valleys beside them.
     pub amplitude: f64,
     /// Unit of all lengths: `m`, or `px` without a scale. Areas are in its square.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
     /// Area of the shadow, the disc and holes included.
     pub area: f64,
     /// The scale, where there is one.
@@ -161,11 +163,11 @@ pub struct DrapeCapture {
 }
 
 /// `kesf.drape-image/1`: what pictures of drape tests show.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("additionalProperties" = true))]
 pub struct DrapeDocument {
     /// `kesf.drape-image/1`.
-    pub schema: &'static str,
+    pub schema: Cow<'static, str>,
     /// Disc and sheet of all tests.
     pub method: DrapeMethod,
     /// One entry per picture.
@@ -223,7 +225,7 @@ pub fn measure(seen: &SeenSheet, setup: &DrapeSetup, others: Option<f64>) -> (Dr
         folds_at_deg: counted.at,
         harmonic: strongest.map_or(0, |h| h.order),
         amplitude: counted.amplitude,
-        unit,
+        unit: unit.into(),
         area,
         scale,
         centre_px: [axis[0] * metre, -axis[1] * metre],

@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{ClothSide, DrapeCapture, DrapeMethod};
 use crate::instrument::MeasuredResult;
 use crate::quantity::Estimate;
 
 /// A mean with its spread.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Spread {
     /// Arithmetic mean.
     pub mean: f64,
@@ -28,7 +28,7 @@ impl Spread {
 }
 
 /// The captures of a test, or of one side of the cloth in it.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DrapeSummary {
     /// The test: the name of the folder of its pictures.
     pub test: String,

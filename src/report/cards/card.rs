@@ -1,7 +1,7 @@
 //! What a card is made of, and what it is made by.
 
 use crate::characterise::FabricSheet;
-use crate::constitutive::Constitutive;
+use crate::constitutive::{Constitutive, Provenance};
 use crate::finding::{Finding, errors};
 use crate::section::{SectionError, ShellSection};
 
@@ -85,6 +85,6 @@ pub struct Material<'a> {
 impl Material<'_> {
     /// Whether a value is a stand-in: it is no property of the material, and formats that describe one leave it out.
     pub(super) fn is_assumed(&self, name: &str) -> bool {
-        self.made.used.iter().any(|u| u.name == name && u.source.starts_with("assumed"))
+        self.made.used.iter().any(|u| u.name == name && u.provenance == Provenance::Assumed)
     }
 }

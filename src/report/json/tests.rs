@@ -57,7 +57,12 @@ fn a_section_is_written_by_rows() {
         areal_density: 0.2,
         thickness: 4e-4,
     };
-    let used = vec![Used { name: "poisson".into(), value: "geometric".into(), source: "assumed".into() }];
+    let used = vec![Used {
+        name: "poisson".into(),
+        value: "geometric".into(),
+        provenance: Provenance::Assumed,
+        source: "assumed".into(),
+    }];
     let made = Constitutive { section, law: None, used, inputs: Vec::new(), findings: Vec::new() };
     let sheet = FabricSheet { name: "poplin".into(), ..Default::default() };
     let document = section_document([(&sheet, &made)]);

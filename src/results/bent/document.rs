@@ -1,7 +1,9 @@
 //! The entries of `kesf.comparison/1` of bending tests.
 
+use std::borrow::Cow;
+
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::measured::{measured, role};
 use crate::instrument::Direction;
@@ -16,7 +18,7 @@ use crate::study::bending::{
 };
 
 /// An entry of `kesf.comparison/1`: a bending test of a strip (SI).
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct BendingEntry {
     name: String,
     case: String,
@@ -24,11 +26,16 @@ pub struct BendingEntry {
     #[serde(flatten)]
     test: BendingTestEntry,
     /// Of tests with sampled bands, or `null`; a FAB test has none.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "stated")]
     uncertainty: Option<Option<SamplingEntry>>,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+/// What is there, `null` too; what is not there has its default.
+fn stated<'d, T: Deserialize<'d>, D: Deserializer<'d>>(value: D) -> Result<Option<T>, D::Error> {
+    T::deserialize(value).map(Some)
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum BendingTestEntry {
     Cantilever(CantileverEntry),
@@ -36,7 +43,7 @@ enum BendingTestEntry {
     FabBendLoop(FabEntry),
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct CantileverEntry {
     chord_angle_deg: f64,
     overhang: QuantityEntry,
@@ -51,16 +58,16 @@ struct CantileverEntry {
     stable: bool,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct BendingLengthEntry {
     simulated: f64,
     closed_form: f64,
     measured: Option<f64>,
     by_peirce_formula: f64,
-    unit: &'static str,
+    unit: Cow<'static, str>,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct CantileverFrictionEntry {
     couple: QuantityEntry,
     mu: f64,
@@ -69,22 +76,22 @@ struct CantileverFrictionEntry {
     profile: ProfileEntry,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct EstimatedLengthEntry {
     simulated: f64,
     estimate: f64,
-    unit: &'static str,
+    unit: Cow<'static, str>,
 }
 
 /// The middle line of a strip.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct ProfileEntry {
     x: Vec<f64>,
     z: Vec<f64>,
-    unit: &'static str,
+    unit: Cow<'static, str>,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct HeartEntry {
     length: QuantityEntry,
     height: HeightEntry,
@@ -96,21 +103,21 @@ struct HeartEntry {
     stable: bool,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct HeightEntry {
     simulated: f64,
     closed_form: Option<f64>,
-    unit: &'static str,
+    unit: Cow<'static, str>,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct HeartRigidityEntry {
     read_from_height: Option<f64>,
     section: f64,
-    unit: &'static str,
+    unit: Cow<'static, str>,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct FabEntry {
     rigidity: QuantityEntry,
     clamp_inclination: QuantityEntry,
@@ -119,7 +126,7 @@ struct FabEntry {
     tests: Vec<LoopEntry>,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct FabFrictionEntry {
     rigidity: QuantityEntry,
     as_kes: AsKesEntry,
@@ -129,28 +136,28 @@ struct FabFrictionEntry {
 }
 
 /// What KES-FB2 would read of a law.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct AsKesEntry {
     #[serde(rename = "B")]
     b: f64,
     #[serde(rename = "half_2HB")]
     half_2hb: f64,
-    unit: [&'static str; 2],
+    unit: [Cow<'static, str>; 2],
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct LoopEntry {
-    test: &'static str,
-    role: &'static str,
+    test: Cow<'static, str>,
+    role: Cow<'static, str>,
     distance: Vec<f64>,
     measured: Vec<f64>,
     branches_begin: Vec<usize>,
-    unit: [&'static str; 2],
+    unit: [Cow<'static, str>; 2],
     elastic: SimulatedEntry,
     friction: Option<SimulatedEntry>,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct SimulatedEntry {
     load_zero: QuantityEntry,
     outer: Option<Agreement>,
@@ -203,12 +210,12 @@ fn entry(
 }
 
 fn quantity(value: f64, unit: &'static str) -> QuantityEntry {
-    QuantityEntry { value, unit }
+    QuantityEntry { value, unit: unit.into() }
 }
 
 impl ProfileEntry {
     fn new(profile: &Curve) -> Self {
-        Self { x: profile.x.clone(), z: profile.y.clone(), unit: "m" }
+        Self { x: profile.x.clone(), z: profile.y.clone(), unit: "m".into() }
     }
 }
 
@@ -222,7 +229,7 @@ impl CantileverEntry {
                 closed_form: c.closed_form,
                 measured,
                 by_peirce_formula: c.peirce,
-                unit: "m",
+                unit: "m".into(),
             },
             rigidity_by_peirce_formula_excess: c.peirce_excess(),
             rigidity: quantity(c.rigidity, "N·m"),
@@ -239,7 +246,7 @@ impl CantileverEntry {
 impl CantileverFrictionEntry {
     fn new(f: &WithFriction) -> Self {
         let bending_length =
-            EstimatedLengthEntry { simulated: f.bending_length, estimate: f.estimate, unit: "m" };
+            EstimatedLengthEntry { simulated: f.bending_length, estimate: f.estimate, unit: "m".into() };
         Self {
             couple: quantity(f.couple, "N"),
             mu: f.mu,
@@ -254,11 +261,11 @@ impl HeartEntry {
     fn new(h: &HeartLoop) -> Self {
         Self {
             length: quantity(h.length, "m"),
-            height: HeightEntry { simulated: h.height, closed_form: h.closed_form, unit: "m" },
+            height: HeightEntry { simulated: h.height, closed_form: h.closed_form, unit: "m".into() },
             rigidity: HeartRigidityEntry {
                 read_from_height: h.rigidity,
                 section: h.section_rigidity,
-                unit: "N·m",
+                unit: "N·m".into(),
             },
             gamma: h.gamma,
             profile: ProfileEntry::new(&h.profile),
@@ -285,7 +292,11 @@ impl FabFrictionEntry {
     fn new(f: &Friction) -> Self {
         Self {
             rigidity: quantity(f.rigidity, "N·m"),
-            as_kes: AsKesEntry { b: f.kes_rigidity, half_2hb: f.kes_couple, unit: ["N·m", "N"] },
+            as_kes: AsKesEntry {
+                b: f.kes_rigidity,
+                half_2hb: f.kes_couple,
+                unit: ["N·m".into(), "N".into()],
+            },
             clamp_inclination: quantity(f.inclination, "rad"),
             law: f.law.clone(),
             rounds: f.rounds,
@@ -296,12 +307,12 @@ impl FabFrictionEntry {
 impl LoopEntry {
     fn new(l: &BendLoop) -> Self {
         Self {
-            test: l.kind.name(),
-            role: role(l),
+            test: l.kind.name().into(),
+            role: role(l).into(),
             distance: l.measured.x.clone(),
             measured: l.measured.y.clone(),
             branches_begin: l.branches.clone(),
-            unit: ["m", "N"],
+            unit: ["m".into(), "N".into()],
             elastic: SimulatedEntry::new(&l.elastic),
             friction: l.friction.as_ref().map(SimulatedEntry::new),
         }

@@ -1,8 +1,10 @@
 //! The entry of `kesf.solution/1`.
 
+use std::borrow::Cow;
+
 use indexmap::IndexMap;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::effort::{SolverEntry, TimingsEntry};
 use super::search::{SearchEntry, StepEntry, step_entries};
@@ -13,7 +15,7 @@ use crate::results::task::Task;
 use crate::study::{CaseResult, CheckResult, Convergence, History, Prediction, Probe, Status, Uncertainty};
 
 /// An entry of `kesf.solution/1`: a solved case (SI).
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct SolutionEntry {
     case: String,
     fabric: Option<String>,
@@ -36,7 +38,7 @@ pub struct SolutionEntry {
 }
 
 /// Size of a model.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ModelEntry {
     /// Nodes of the mesh.
     pub nodes: usize,
@@ -47,15 +49,15 @@ pub struct ModelEntry {
 }
 
 /// A value with its unit.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct QuantityEntry {
     /// SI.
     pub value: f64,
     /// SI unit.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct ResultsEntry {
     w_max: QuantityEntry,
     w_over_bending_thickness: f64,
@@ -69,7 +71,7 @@ struct ResultsEntry {
     uncertainty: Option<UncertaintyEntry>,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct ProbeEntry {
     at: Vec<f64>,
     u: [f64; 3],
@@ -80,7 +82,7 @@ struct ProbeEntry {
 }
 
 /// Bands by sampling, or by first-order propagation.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 enum UncertaintyEntry {
     Sampled(SamplingEntry),
@@ -88,16 +90,16 @@ enum UncertaintyEntry {
 }
 
 /// The inputs, and each quantity with its bands and its sensitivities.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct FirstOrderEntry {
     inputs: Vec<InputEntry>,
     quantities: IndexMap<String, PredictionEntry>,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct PredictionEntry {
     value: f64,
-    unit: &'static str,
+    unit: Cow<'static, str>,
     mean_fabric: Option<Band>,
     next_specimen: Option<Band>,
     without_spread: Vec<String>,
@@ -131,7 +133,7 @@ fn results(task: &Task, result: &CaseResult) -> ResultsEntry {
         None => result.uncertainty.as_ref().map(|u| UncertaintyEntry::FirstOrder(FirstOrderEntry::new(u))),
     };
     ResultsEntry {
-        w_max: QuantityEntry { value: result.w_max, unit: "m" },
+        w_max: QuantityEntry { value: result.w_max, unit: "m".into() },
         w_over_bending_thickness: result.w_over_thickness,
         probes: result.probes.iter().map(|p| (p.name.clone(), ProbeEntry::new(p))).collect(),
         reactions: reactions.map(|[force, _]| force.into()),
@@ -181,7 +183,7 @@ impl PredictionEntry {
         let derivatives = u.inputs.iter().zip(&p.derivatives);
         Self {
             value: p.value,
-            unit: p.unit,
+            unit: p.unit.into(),
             mean_fabric: p.bands.map(|b| b.mean_fabric),
             next_specimen: p.bands.map(|b| b.next_specimen),
             without_spread: p.without_spread.clone(),

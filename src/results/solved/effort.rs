@@ -1,7 +1,9 @@
 //! What a solution took: systems, counts, memory and seconds.
 
+use std::borrow::Cow;
+
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::quantity::significant;
 use crate::results::columns::Columns;
@@ -9,17 +11,17 @@ use crate::solve::{Solution, System};
 use crate::study::CaseResult;
 
 /// `solver` of an entry of `kesf.solution/1`: what does not depend on the machine.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct SolverEntry {
     residual: f64,
     systems: Vec<SystemEntry>,
 }
 
 /// One system of equations.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct SystemEntry {
-    dofs: Vec<&'static str>,
-    path: &'static str,
+    dofs: Vec<Cow<'static, str>>,
+    path: Cow<'static, str>,
     rows: usize,
     nnz_a: usize,
     bytes: usize,
@@ -36,7 +38,7 @@ struct SystemEntry {
 }
 
 /// `timings` of an entry: seconds, rate, threads and the peak memory of the process, which differ from run to run.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct TimingsEntry {
     analyse_s: f64,
     order_s: f64,
@@ -61,8 +63,8 @@ impl SystemEntry {
         let counts = &system.counts;
         let iterates = !system.history.is_empty();
         Self {
-            dofs: dof_names(system),
-            path: system.path,
+            dofs: dof_names(system).into_iter().map(Cow::Borrowed).collect(),
+            path: system.path.into(),
             rows: counts.rows,
             nnz_a: counts.nnz_a,
             bytes: counts.bytes,

@@ -2,7 +2,7 @@
 
 use indexmap::IndexMap;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::case::MethodChoice;
 use crate::quantity::significant;
@@ -105,7 +105,7 @@ pub(super) fn load_steps(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
 }
 
 /// `search` of an entry of `kesf.solution/1`.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct SearchEntry {
     method: MethodChoice,
     converged: bool,
@@ -114,12 +114,12 @@ pub struct SearchEntry {
     stability: Option<Stability>,
     linear_w_max: Option<f64>,
     /// Of the `[[steps]]` of the case.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     load_steps: Vec<LoadStepEntry>,
 }
 
 /// One of the `[[steps]]` of a case: its place in `steps`, from 0 and without the last, and how it ended.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct LoadStepEntry {
     name: String,
     method: MethodChoice,
@@ -129,7 +129,7 @@ pub struct LoadStepEntry {
 }
 
 /// A step of `steps` (SI).
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct StepEntry {
     factor: f64,
     iterations: usize,

@@ -16,7 +16,7 @@ const ROUNDS: usize = 60;
 const SETTLED: f64 = 1e-4;
 
 /// How an equilibrium answers to a small push.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize, JsonSchema)]
 pub struct Stability {
     /// Directions in which the energy falls: negative pivots of the tangent. 0 is stable.
     pub negative_pivots: usize,

@@ -26,7 +26,7 @@ use schemars::JsonSchema;
 use self::record::{Record, simulate};
 
 /// How far a simulated curve is from a measured one.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize, JsonSchema)]
 pub struct Agreement {
     /// Root mean square difference (N).
     pub rmse: f64,

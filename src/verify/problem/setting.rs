@@ -117,7 +117,7 @@ pub enum DrillingChoice {
     Scaled,
     /// Hughes and Brezzi.
     HughesBrezzi,
-    /// The seed's spring.
+    /// The spring of Nguyen-Trong et al.
     Seed,
 }
 
