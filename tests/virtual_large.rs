@@ -86,7 +86,8 @@ fn trellis(w: f64, g: f64, e: f64, x: f64) -> f64 {
 fn a_tension_across_adds_itself_to_the_shear() {
     let (s, cells) = (fabric(0.0), "cells = [5, 40]");
     let g = run("shear", cells, Direction::Warp, &s);
-    let (edge, tension) = (g.edge.unwrap(), g.edge.unwrap().tension.unwrap());
+    let edge = g.edge.unwrap();
+    let tension = edge.tension.unwrap();
     println!("{edge:?}, {:?}", g.unstable_from);
     assert_relative_eq!(edge.ratio, edge.closed_form.unwrap(), max_relative = 0.01);
     assert_eq!(tension.value, 9.80665);

@@ -58,7 +58,7 @@ fn the_disc_gives_the_scale_and_a_scale_that_contradicts_it_is_told() {
     let (_, facts) = measure(&disc, &DrapeSetup { pixels_per_metre: Some(4400.0), ..setup() }, None);
     assert_eq!(codes(facts), ["K052"]);
     let (capture, facts) = measure(&seen(|_| 480.0), &own, None);
-    assert_eq!((capture.coefficient, capture.unit), (None, "px"));
+    assert_eq!((capture.coefficient, capture.unit), (None, "px".into()));
     assert_eq!(codes(facts), ["K050"]);
     let (capture, facts) = measure(&seen(|_| 480.0), &own, Some(4000.0));
     assert!(capture.coefficient.is_some());
