@@ -253,7 +253,7 @@ fn a_table_of_fabrics_loses_only_the_bad_ones() {
         .enumerate()
         .map(|(i, b)| format!("a/b,{i},{b},0.1\n"))
         .collect();
-    write(folder.path(), "t.csv", &format!("{head}{repeats}B,1,0.1,n/a\nC,1,0.1,0.1\n"));
+    write(folder.path(), "t.csv", &format!("{head}{repeats}B,1,0.1,#DIV/0!\nC,1,0.1,0.1\n"));
     let table = folder.path().join("t.csv");
     let output = run(&["--json", "characterise", table.to_str().unwrap()]);
     assert_eq!(code(&output), 1, "{}", stderr(&output));
@@ -263,7 +263,7 @@ fn a_table_of_fabrics_loses_only_the_bad_ones() {
     assert_eq!(names, ["C", "a-b"]);
     assert_eq!(document["failures"][0]["code"], "R017");
     assert_eq!(document["failures"][0]["line"], 7);
-    assert_eq!(document["failures"][0]["fields"], serde_json::json!({ "found": "n/a" }));
+    assert_eq!(document["failures"][0]["fields"], serde_json::json!({ "found": "#DIV/0!" }));
     let found: Vec<&Value> = document["findings"].as_array().unwrap().iter().collect();
     let outlier = found.iter().find(|f| f["code"] == "K010" && f["fabric"] == "a-b").unwrap();
     let fields = serde_json::json!({

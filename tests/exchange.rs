@@ -80,6 +80,9 @@ const PROGRAMS: &[Program] = &[
             ("shear", SHELL),
             ("plate", SHELL),
             ("sheet", 0.01),
+            // The strips of `kratos-mesh`, read by ModelPartIO.
+            ("mesh_strip_warp", 0.01),
+            ("mesh_strip_weft", 0.01),
         ],
     },
     Program {
@@ -152,6 +155,9 @@ const PROGRAMS: &[Program] = &[
             ("as_read_warp", 1.0),
             ("as_read_weft", 1.0),
             ("mass", 1e-3),
+            // The material of the sheet, which is isotropic.
+            ("mean_tensile", SINGLE),
+            ("mean_rigidity", 1e-3),
         ],
     },
 ];

@@ -789,3 +789,53 @@ fn a_square_specimen_does_not_state_the_gauge() {
     assert_eq!(gauge("200 x 200 mm"), (0.05, 1));
     assert_eq!(gauge("20 x 10 cm"), (0.1, 0));
 }
+
+/// What papers print behind and in the place of numbers: letters of significance, footnotes, powers of ten, bounds and ranges.
+#[test]
+fn marks_are_left_out_and_bounds_are_no_values() {
+    let marked =
+        read("t.csv", &format!("Fabric,Direction,{B}\nA,warp,0.1a\nA,weft,0.2**\nC,warp,3.0×10⁻¹\n"));
+    let (warp, weft) = (Some(Direction::Warp), Some(Direction::Weft));
+    assert_eq!(
+        of_b(&marked),
+        [(Some("A"), warp, 0.1, 1), (Some("A"), weft, 0.2, 1), (Some("C"), warp, 0.3, 1)]
+    );
+    assert!(messages(&marked, "R130")[0].contains("\"0.1a\", \"0.2**\""), "{:?}", marked.findings);
+    let bounds =
+        read("t.csv", "Property,Unit,Warp,Weft\nB,gf·cm²/cm,0.079-0.083,<0.01\n2HB,gf·cm/cm,0.04,n.d.\n");
+    assert_eq!(of_b(&bounds), []);
+    assert!(messages(&bounds, "R131")[0].contains("\"0.079-0.083\", \"<0.01\""), "{:?}", bounds.findings);
+    assert_eq!(bounds.results.len(), 1);
+}
+
+/// A heading may say at which angle or load its parameter is read by definition, and repeat its name in words; another
+/// condition is another quantity.
+#[test]
+fn headings_with_the_condition_of_the_definition() {
+    let read_one = |heading: &str, value: &str| {
+        let text = format!("Fabric,Direction,\"{heading}\",{B}\nA,warp,{value},0.1\nA,weft,{value},0.2\n");
+        let content = read("t.csv", &text);
+        let found: Vec<f64> = content
+            .results
+            .iter()
+            .filter(|(_, r)| r.parameter != Parameter::B)
+            .map(|(_, r)| r.mean)
+            .collect();
+        (found, messages(&content, "R104").len())
+    };
+    for (heading, si) in [
+        ("2HG at 0.5° (gf/cm)", 0.980665),
+        ("Hysteresis of shear force at 5 degrees, 2HG5 (gf/cm)", 0.980665),
+        ("Hysteresis 2HB (gf·cm/cm)", 9.80665e-3),
+        ("Schubhysterese 2HG (cN/cm)", 1.0),
+        ("EMT (% at 500 gf/cm)", 0.01),
+        ("Bending\nhysteresis\n(gf·cm/cm)", 9.80665e-3),
+    ] {
+        let (found, left_out) = read_one(heading, "1");
+        assert!(left_out == 0 && found.len() == 2, "{heading}: {found:?}");
+        assert!(found.iter().all(|v| (v / si - 1.0).abs() < 1e-12), "{heading}: {found:?}");
+    }
+    for heading in ["2HG at 3° (gf/cm)", "EMT at 50 gf/cm (%)", "2HB corrected (gf·cm/cm)"] {
+        assert_eq!(read_one(heading, "1"), (vec![], 1), "{heading}");
+    }
+}

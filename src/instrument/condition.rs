@@ -2,7 +2,7 @@
 
 use super::Parameter;
 use super::unit_text::unit;
-use crate::quantity::{Unit, counts_angles};
+use crate::quantity::{Dimension, Unit, counts_angles};
 
 /// Letters of the longest word before a condition that goes with it: `at`, `bei`, `em`, `K=`.
 const PREPOSITION: usize = 3;
@@ -16,6 +16,11 @@ pub(super) struct Condition {
 }
 
 impl Condition {
+    /// Whether it is a specimen's number and the unit of the parameter: `B 1 gf·cm²/cm`.
+    pub fn is_of(self, parameter: Parameter) -> bool {
+        Unit::parse(parameter.kes_unit()).is_ok_and(|u| u.dimension == self.unit.dimension && !self.is_angle)
+    }
+
     /// Whether the parameter is read there by its definition.
     pub fn defines(self, parameter: Parameter) -> bool {
         parameter.defined_at().is_some_and(|(value, symbol)| {
@@ -57,9 +62,9 @@ fn quantity(text: &str) -> Option<(Condition, usize)> {
     let length = behind.find([' ', ')', ',', ';', '(']).unwrap_or(behind.len());
     let symbol = &behind[..length];
     let unit = unit(symbol).ok()?;
-    let is_angle =
-        counts_angles(symbol) || unit.dimension == Default::default() && symbol != "%" && symbol != "1";
-    let has_meaning = is_angle || unit.dimension != Default::default();
+    let has_dimension = unit.dimension != Dimension::default();
+    let is_angle = !has_dimension && (counts_angles(symbol) || !matches!(symbol, "%" | "1"));
+    let has_meaning = is_angle || has_dimension;
     has_meaning.then_some((Condition { number, unit, is_angle }, start + length))
 }
 

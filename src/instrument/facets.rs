@@ -40,20 +40,16 @@ impl Facets {
     /// Reads a cell.
     pub fn of(cell: &str, vocabulary: Vocabulary<'_>) -> Self {
         let text = folded(cell).replace(['[', '【'], "(").replace([']', '】'], ")");
-        let facets = Self::of_words(&text, vocabulary);
-        let understood = !facets.unknown && facets.unit.as_ref().is_none_or(|u| unit(u).is_ok());
-        if understood || text.chars().count() > HEADING {
-            return facets;
+        // `2HG at 0.5°`: a condition that is in the definition of the parameter says nothing new, another one makes it another
+        // quantity.
+        if text.chars().count() <= HEADING
+            && let Some((rest, stated)) = condition::without(&text)
+            && let other = Self::of_words(&rest, vocabulary)
+            && let Some(parameter) = other.parameter.filter(|p| !stated.is_of(*p))
+        {
+            return if stated.defines(parameter) { other } else { Self { unknown: true, ..Self::default() } };
         }
-        // `2HG at 0.5°`: a condition that is in the definition of the parameter says nothing new.
-        let without =
-            condition::without(&text).map(|(rest, stated)| (Self::of_words(&rest, vocabulary), stated));
-        match without {
-            Some((other, stated)) if other.parameter.is_some_and(|p| !other.unknown && stated.defines(p)) => {
-                other
-            }
-            _ => facets,
-        }
+        Self::of_words(&text, vocabulary)
     }
 
     fn of_words(text: &str, vocabulary: Vocabulary<'_>) -> Self {
@@ -182,9 +178,6 @@ impl Facets {
             }
             i += taken.unwrap_or(1);
         }
-        if let Some(parameter) = self.parameter {
-            rest.retain(|word| !vocabulary.belongs_to(word, parameter));
-        }
         if rest.is_empty() {
             return;
         }
@@ -195,7 +188,7 @@ impl Facets {
         if self.parameter.is_some() && self.unit.is_none() && is_unit {
             self.unit = Some(if unit(&spelt).is_ok() { spelt } else { joined });
         } else {
-            self.unknown = true;
+            self.unknown = !self.parameter.is_some_and(|p| rest.iter().all(|w| vocabulary.belongs_to(w, p)));
         }
     }
 
@@ -340,7 +333,6 @@ mod tests {
             let f = of(text);
             assert!(f.unknown, "{text}: {f:?}");
         }
-        assert!(super::super::unit_text::unit(&of("EMT (% at 50 gf/cm)").unit.unwrap()).is_err());
         assert_eq!(of("LT CV (%)").statistic, Some(Statistic::Spread));
         assert_eq!(of("EMT warp max (%)").statistic, Some(Statistic::Other));
     }

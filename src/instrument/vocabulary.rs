@@ -279,8 +279,10 @@ impl<'a> Vocabulary<'a> {
     /// Whether a word is part of a name of this parameter: `hysteresis` beside 2HB says nothing new.
     pub fn belongs_to(self, word: &str, parameter: Parameter) -> bool {
         let word = normalised(word);
+        // One letter stands in any name, and what may be a unit is asked elsewhere.
+        let says_little = word.chars().count() > 1 && !word.chars().all(|c| c.is_ascii_digit());
         let names = self.dialects().flat_map(|d| &d.symbols);
-        !word.is_empty()
+        says_little
             && names
                 .filter(|(symbol, _)| Parameter::from_symbol(symbol) == Some(parameter))
                 .any(|(_, names)| names.iter().any(|name| name.contains(word.as_str())))

@@ -7,7 +7,7 @@ use crate::source::Crate;
 /// Most lines of code of the command, comments and blank lines left out.
 pub const COMMAND_LINES: usize = 2000;
 /// Local variables that are closures: most of them are functions that have no name of their own.
-pub const CLOSURES: usize = 947;
+pub const CLOSURES: usize = 970;
 /// Of those, the ones called `of`, which says nothing.
 pub const CLOSURES_OF: usize = 30;
 /// Names that more than one public type has.
