@@ -62,8 +62,8 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
     let text =
         text(&document).map_err(|e| CardError::Json { program: "Browzwear", reason: e.to_string() })?;
     let lost = [Property::Shear, Property::Torsion, Property::Poisson, Property::TransverseShear];
-    let of = |what| no_place("Browzwear's documentation", section, what);
-    Ok(Card { text, findings: lost.map(of).into() })
+    let missing = |what| no_place("Browzwear's documentation", section, what);
+    Ok(Card { text, findings: lost.map(missing).into() })
 }
 
 /// Numbers are text in the block, as its example has them.

@@ -61,8 +61,8 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
     row(&mut text, &[]);
     row(&mut text, &["0", "0", "0", "0", "0", "0"].map(String::from));
     let findings = [Property::Bending, Property::Torsion, Property::TransverseShear];
-    let of = |what| no_place("LS-DYNA *MAT_FABRIC", section, what);
-    Ok(Card { text, findings: findings.map(of).into() })
+    let missing = |what| no_place("LS-DYNA *MAT_FABRIC", section, what);
+    Ok(Card { text, findings: findings.map(missing).into() })
 }
 
 /// Values of one line, ten columns each.

@@ -60,6 +60,6 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
         let _ = writeln!(text, "#{}\n{fields}", &heads[1..]);
     }
     let findings = [Property::Bending, Property::Torsion];
-    let of = |what| no_place("OpenRadioss LAW19", section, what);
-    Ok(Card { text, findings: findings.map(of).into() })
+    let missing = |what| no_place("OpenRadioss LAW19", section, what);
+    Ok(Card { text, findings: findings.map(missing).into() })
 }
