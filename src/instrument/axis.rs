@@ -4,7 +4,7 @@ use super::curves::{positive, size};
 use super::dialect::Key;
 use super::error::{Problem, ReadError};
 use super::layout::{Column, Context, Entry, Header};
-use super::unit_text::{is_volt, known_unit};
+use super::unit_text::{is_angular, is_volt, known_unit};
 use super::words::folded;
 use super::{Conditions, Test};
 use crate::finding::{Divisor, Finding, Place, ReadFact};
@@ -100,7 +100,7 @@ impl Axes<'_> {
     /// The axis from a unit: directly, or from raw force, moment or travel and the geometry. The
     /// inner error is a unit that would do.
     fn axis(&self, abscissa: bool, unit: Unit, text: &str) -> Result<Result<Axis, &'static str>, ReadError> {
-        let is_angle = ["deg", "°", "度", "rad"].iter().any(|a| text.contains(a));
+        let is_angle = is_angular(text);
         let (f, Conditions { width, gauge, .. }) = (unit.factor, self.conditions);
         let plain = Axis { scale: Scale::Linear(f), by: None };
         let over = |by, size: f64| Axis { scale: Scale::Linear(f / size), by: Some(by) };

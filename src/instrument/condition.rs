@@ -1,8 +1,8 @@
 //! Conditions in headings: `at 0.5°`, `@500 gf/cm`, `bei K = 1 1/cm`.
 
 use super::Parameter;
-use super::unit_text::unit;
-use crate::quantity::{Dimension, Unit, counts_angles};
+use super::unit_text::{is_angular, unit};
+use crate::quantity::{Dimension, Unit};
 
 /// Letters of the longest word before a condition that goes with it: `at`, `bei`, `em`, `K=`.
 const PREPOSITION: usize = 3;
@@ -63,7 +63,7 @@ fn quantity(text: &str) -> Option<(Condition, usize)> {
     let symbol = &behind[..length];
     let unit = unit(symbol).ok()?;
     let has_dimension = unit.dimension != Dimension::default();
-    let is_angle = !has_dimension && (counts_angles(symbol) || !matches!(symbol, "%" | "1"));
+    let is_angle = !has_dimension && (is_angular(symbol) || !matches!(symbol, "%" | "1"));
     let has_meaning = is_angle || has_dimension;
     has_meaning.then_some((Condition { number, unit, is_angle }, start + length))
 }

@@ -42,14 +42,20 @@ impl Facets {
         let text = folded(cell).replace(['[', '【'], "(").replace([']', '】'], ")");
         // `2HG at 0.5°`: a condition that is in the definition of the parameter says nothing new, another one makes it another
         // quantity.
-        if text.chars().count() <= HEADING
-            && let Some((rest, stated)) = condition::without(&text)
-            && let other = Self::of_words(&rest, vocabulary)
-            && let Some(parameter) = other.parameter.filter(|p| !stated.is_of(*p))
+        let whole = Self::of_words(&text, vocabulary);
+        let condition = if text.chars().count() <= HEADING { condition::without(&text) } else { None };
+        let Some((rest, stated)) = condition else { return whole };
+        // A name may hold its condition: `thickness at 50 gf/cm²`.
+        if whole.names_value() && whole.index.is_none() && whole.parameter.is_some_and(|p| stated.defines(p))
         {
-            return if stated.defines(parameter) { other } else { Self { unknown: true, ..Self::default() } };
+            return whole;
         }
-        Self::of_words(&text, vocabulary)
+        let other = Self::of_words(&rest, vocabulary);
+        match other.parameter {
+            Some(parameter) if stated.defines(parameter) => other,
+            Some(parameter) if !stated.is_of(parameter) => Self { unknown: true, ..Self::default() },
+            _ => whole,
+        }
     }
 
     fn of_words(text: &str, vocabulary: Vocabulary<'_>) -> Self {
@@ -326,6 +332,8 @@ mod tests {
         assert_eq!(parameter("Hysteresis of shear force (at 0.5°) (2HG) (gf/cm)").0, Parameter::Hg);
         assert_eq!(parameter("EMT (% at 500 gf/cm)"), (Emt, None, unit("%"), false, false));
         assert_eq!(parameter("2HB bei K=1 1/cm (cN·cm/cm)").0, Hb);
+        assert_eq!(parameter("Thickness at 50 gf/cm2 TM (mm)").0, Parameter::Tm);
+        assert_eq!(parameter("Thickness at 0.5 gf/cm2 (mm)").0, T0);
         // Other conditions, and words of other meaning.
         for text in
             ["2HG at 3 degrees (gf/cm)", "EMT at 50 gf/cm (%)", "2HB corrected", "G hysteresis", "B loss"]

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::dialect::Role;
 use super::error::Problem;
-use super::unit_text::{split_unit, unit};
+use super::unit_text::{is_angular, split_unit, unit};
 use super::vocabulary::Vocabulary;
 use crate::quantity::{Dimension, divides_by_length};
 
@@ -63,7 +63,7 @@ fn dialect_file(unknown: &[String]) -> String {
 /// The column that has such a unit, in the spelling of dialect files.
 fn role(text: &str) -> Option<&'static str> {
     let of = unit(text).ok()?;
-    let is_angle = ["deg", "rad", "°", "度"].iter().any(|a| text.contains(a));
+    let is_angle = is_angular(text);
     let is = |role: Role| unit(role.kes_unit()).is_ok_and(|u| u.dimension == of.dimension);
     const MOMENT: Dimension = Dimension { kg: 1, m: 2, s: -2 };
     match () {

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use super::error::Problem;
 use super::words::folded;
-use crate::quantity::{QuantityError, UNITS, Unit};
+use crate::quantity::{QuantityError, UNITS, Unit, counts_angles};
 
 /// Characters of the longest text that is tried as a unit.
 const LONGEST: usize = 40;
@@ -230,6 +230,13 @@ fn unglued(text: &str) -> Cow<'_, str> {
     if changed { Cow::Owned(out) } else { Cow::Borrowed(text) }
 }
 
+/// Whether a unit text counts angles, in any of the spellings that are known here: an angle has no dimension, so that only its
+/// text tells a value per degree from one per radian or from a ratio.
+pub(super) fn is_angular(text: &str) -> bool {
+    let text = folded(text).to_lowercase();
+    counts_angles(&text) || NAMES.iter().any(|(name, symbol)| *symbol == "deg" && text.contains(name))
+}
+
 /// [`unit`] with the error of the readers.
 pub(super) fn known_unit(text: &str) -> Result<Unit, Problem> {
     unit(text).map_err(|e| Problem::UnitUnknown { reason: e.to_string() })
@@ -301,6 +308,10 @@ mod tests {
         for text in ["cN/cm*Grad", "cN/(cm·Grad)", "cN/cm.grau"] {
             assert!((unit(text).unwrap().factor - 180.0 / std::f64::consts::PI).abs() < 1e-9, "{text}");
         }
+        for text in ["gf/cm.grau", "Grad", "°", "度", "DEG", "stopni", "1/rad"] {
+            assert!(is_angular(text), "{text}");
+        }
+        assert!(!is_angular("gf/cm") && !is_angular("%") && !is_angular("mg/cm²"));
         for text in ["N/m·rad", "N/(m·rad)", "N/m rad"] {
             assert_eq!(unit(text).unwrap().factor, 1.0, "{text}");
         }
