@@ -46,8 +46,8 @@ impl Facets {
         let condition = if text.chars().count() <= HEADING { condition::without(&text) } else { None };
         let Some((rest, stated)) = condition else { return whole };
         // A name may hold its condition: `thickness at 50 gf/cm²`.
-        if whole.names_value() && whole.index.is_none() && whole.parameter.is_some_and(|p| stated.defines(p))
-        {
+        let is_plain = whole.index.is_none() && whole.unit.as_ref().is_none_or(|u| unit(u).is_ok());
+        if is_plain && whole.names_value() && whole.parameter.is_some_and(|p| stated.defines(p)) {
             return whole;
         }
         let other = Self::of_words(&rest, vocabulary);
