@@ -24,9 +24,11 @@ pub enum FailureKind {
 const NUMERIC: [&str; 10] = ["N001", "N002", "N003", "N005", "N006", "N007", "N010", "N012", "S004", "S112"];
 
 /// Codes of failures for want of memory, which another run may not meet.
+#[cfg_attr(not(feature = "results"), allow(dead_code))]
 const OF_MEMORY: [&str; 2] = ["N002", "N011"];
 
 /// Whether a code is that of a failure for want of memory.
+#[cfg_attr(not(feature = "results"), allow(dead_code))]
 pub(crate) fn is_of_memory(code: &str) -> bool {
     OF_MEMORY.contains(&code)
 }

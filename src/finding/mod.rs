@@ -20,8 +20,10 @@ use std::sync::OnceLock;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize, Serializer};
 
+#[cfg(feature = "results")]
+pub(crate) use error::is_of_memory;
 pub use error::{Coded, FailureKind};
-pub(crate) use error::{as_text, errors, fields_of, is_of_memory};
+pub(crate) use error::{as_text, errors, fields_of};
 pub use facts::{
     CoarseQuantity, Divisor, DrapeFact, EvaluationFact, Excess, ExchangeFact, Fact, Fields, LeftOutLine,
     Missed, ReadFact, RecordAxis, Renaming, Samples, SectionFact, StripLength, StudyFact, Subject, UsageFact,

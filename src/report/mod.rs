@@ -32,6 +32,9 @@ pub(crate) mod number;
 #[cfg(feature = "results")]
 pub mod chart;
 
+/// Width and height of a chart in pixels: the page has room for a chart before it is loaded.
+const CHART_PIXELS: (usize, usize) = (1800, 1350);
+
 #[cfg(feature = "pictures")]
 pub mod overlay;
 

@@ -7,11 +7,12 @@ use std::sync::Arc;
 use plotters::prelude::RGBColor;
 
 use super::error::ChartError;
+use crate::report::CHART_PIXELS;
 
 /// Page size in pixels: 6 in x 4.5 in at 300 dpi.
-pub(super) const WIDTH: usize = 1800;
+pub(super) const WIDTH: usize = CHART_PIXELS.0;
 /// See [`WIDTH`].
-pub(super) const HEIGHT: usize = 1350;
+pub(super) const HEIGHT: usize = CHART_PIXELS.1;
 /// Drawn pixels per page pixel in each direction, where something is drawn in pixels.
 pub(super) const OVERSAMPLING: usize = 3;
 /// Pixels of the page per inch.

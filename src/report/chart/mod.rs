@@ -42,9 +42,6 @@ pub use output::{Chart, Format};
 pub use parity::{ParityPoint, parity};
 pub use profile::{ProfileLine, ProfilePlot, profile};
 
-/// Width and height of every chart (pixels).
-pub(crate) const PIXELS: (usize, usize) = (canvas::WIDTH, canvas::HEIGHT);
-
 /// Colour of a value that is a part (0 to 1) of the largest, red, green and blue.
 pub(crate) fn value_color(part: f64) -> [u8; 3] {
     let color = palette::sequential(part);

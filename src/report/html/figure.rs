@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::text::{address, escape};
-use crate::report::chart;
+use crate::report::CHART_PIXELS;
 
 /// A picture with its caption.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -83,7 +83,7 @@ pub(super) fn figure(out: &mut String, figure: &Figure) {
     let alt = if figure.alt.is_empty() { caption.clone() } else { escape(&figure.alt) };
     let kind = figure.kind.name();
     // With its size a picture has its room before it is loaded, and what stands below does not jump.
-    let (width, height) = chart::PIXELS;
+    let (width, height) = CHART_PIXELS;
     let size = format!("width=\"{width}\" height=\"{height}\"");
     let image = format!(
         "<a href=\"{address}\"><img src=\"{address}\" alt=\"{alt}\" data-kind=\"{kind}\" {size} loading=\"lazy\"></a>"
