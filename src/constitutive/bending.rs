@@ -54,7 +54,7 @@ pub(super) fn matrix(
     Ok(Matrix3::new(b1, d12, 0.0, d12, b2, 0.0, 0.0, 0.0, d66))
 }
 
-/// D66 over the geometric mean of D11 and D22 beyond which it is told: of woven cloth it is about 0.5 (Huber), and of a
+/// D66 over the geometric mean of D11 and D22 beyond which it is told: Huber's assumption has 0.5, and a
 /// homogeneous plate (1 - ν)/2 or G t²/12, which a thick sheet of stiff shear may raise.
 const STIFF_TORSION: f64 = 100.0;
 

@@ -194,7 +194,7 @@ impl Facets {
         if self.parameter.is_some() && self.unit.is_none() && is_unit {
             self.unit = Some(if unit(&spelt).is_ok() { spelt } else { joined });
         } else {
-            self.unknown = !self.parameter.is_some_and(|p| rest.iter().all(|w| vocabulary.belongs_to(w, p)));
+            self.unknown = !self.parameter.is_some_and(|p| vocabulary.belongs_to(&joined, p));
         }
     }
 
@@ -335,9 +335,17 @@ mod tests {
         assert_eq!(parameter("Thickness at 50 gf/cm2 TM (mm)").0, Parameter::Tm);
         assert_eq!(parameter("Thickness at 0.5 gf/cm2 (mm)").0, T0);
         // Other conditions, and words of other meaning.
-        for text in
-            ["2HG at 3 degrees (gf/cm)", "EMT at 50 gf/cm (%)", "2HB corrected", "G hysteresis", "B loss"]
-        {
+        for text in [
+            "2HG at 3 degrees (gf/cm)",
+            "EMT at 50 gf/cm (%)",
+            "EMT (% at 50 gf/cm)",
+            "2HB corrected",
+            "G hysteresis",
+            "B loss",
+            // An abbreviation stands in some name by chance.
+            "W SE (mg/cm²)",
+            "2HB force hysteresis",
+        ] {
             let f = of(text);
             assert!(f.unknown, "{text}: {f:?}");
         }

@@ -276,16 +276,16 @@ impl<'a> Vocabulary<'a> {
         })
     }
 
-    /// Whether a word is part of a name of this parameter: `hysteresis` beside 2HB says nothing new.
-    pub fn belongs_to(self, word: &str, parameter: Parameter) -> bool {
-        let word = normalised(word);
-        // One letter stands in any name, and what may be a unit is asked elsewhere.
-        let says_little = word.chars().count() > 1 && !word.chars().all(|c| c.is_ascii_digit());
-        let names = self.dialects().flat_map(|d| &d.symbols);
-        says_little
-            && names
-                .filter(|(symbol, _)| Parameter::from_symbol(symbol) == Some(parameter))
-                .any(|(_, names)| names.iter().any(|name| name.contains(word.as_str())))
+    /// Whether words are a part of a name of this parameter, as they follow each other there: `Hysteresis` beside 2HB says
+    /// nothing new. Short ones, such as `SE`, stand in many names by chance.
+    pub fn belongs_to(self, words: &str, parameter: Parameter) -> bool {
+        let words = normalised(words);
+        let mut names = self.dialects().flat_map(|d| &d.symbols);
+        long_enough(&words)
+            && names.any(|(symbol, names)| {
+                Parameter::from_symbol(symbol) == Some(parameter)
+                    && names.iter().any(|name| name.contains(words.as_str()))
+            })
     }
 
     /// Every dialect with those of the words that it does not know, the closest first.

@@ -68,8 +68,8 @@ super::facts! {
             fabric: String,
             /// D66 over the geometric mean of D11 and D22.
             times: f64,
-        } = "{fabric}: the torsional rigidity D66 is {} times the geometric mean of both bending rigidities, and of woven cloth it is \
-             about half of it: look at its unit and at what it was taken from", significant(*times);
+        } = "{fabric}: the torsional rigidity D66 is {} times the geometric mean of both bending rigidities, of which \
+             Huber's assumption takes half: look at its unit and at what it was taken from", significant(*times);
         /// No hysteresis of bending.
         "C017" NoHysteresis {
             /// Name of the fabric.
