@@ -343,7 +343,7 @@ mod tests {
             "G hysteresis",
             "B loss",
             // An abbreviation stands in some name by chance.
-            "W SE (mg/cm²)",
+            "W UR (mg/cm²)",
             "2HB force hysteresis",
         ] {
             let f = of(text);

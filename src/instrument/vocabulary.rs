@@ -277,7 +277,7 @@ impl<'a> Vocabulary<'a> {
     }
 
     /// Whether words are a part of a name of this parameter, as they follow each other there: `Hysteresis` beside 2HB says
-    /// nothing new. Short ones, such as `SE`, stand in many names by chance.
+    /// nothing new. Short ones, such as `UR`, stand in some name by chance.
     pub fn belongs_to(self, words: &str, parameter: Parameter) -> bool {
         let words = normalised(words);
         let mut names = self.dialects().flat_map(|d| &d.symbols);
