@@ -522,7 +522,7 @@ fn blender_opens_a_drape() {
     let case = std::fs::read_to_string(root.join("cases/drape.toml")).unwrap();
     let coarse = [
         ("cells = [14, 90]", "cells = [6, 40]"),
-        ("folds = [3, 4, 5, 6, 7]", "folds = [4]"),
+        ("folds = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]", "folds = [4]"),
         ("refinements = 1", "refinements = 0"),
         ("#:schema", "#"),
     ];

@@ -101,6 +101,10 @@ pub(super) struct DrapeTable {
     /// Whose sizes disc and sheet have: `case` (those of [sheet]), or `measured` (those that the method of the fabric's
     /// measured drape coefficient states, such as 24 cm on 18 cm, where it states some).
     pub sizes: DrapeSizes,
+    /// How hard a sheet with friction is shaken after it has been hung: the largest change of its weight over the weight
+    /// itself. It swings about its weight in turns, each half as large as the one before; 0 leaves it as it was hung. An elastic
+    /// sheet would only come back.
+    pub shaking: f64,
 }
 
 /// Whose sizes disc and sheet of a drape have.
@@ -116,7 +120,7 @@ pub(super) enum DrapeSizes {
 
 impl Default for DrapeTable {
     fn default() -> Self {
-        Self { folds: vec![3, 4, 5, 6, 7], refinements: 1, sizes: DrapeSizes::default() }
+        Self { folds: (2..=12).collect(), refinements: 1, sizes: DrapeSizes::default(), shaking: 1.0 }
     }
 }
 

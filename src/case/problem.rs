@@ -100,6 +100,8 @@ pub struct DrapeProblem {
     pub refinements: usize,
     /// Whether the sizes of disc and sheet are those with which the fabric's drape was measured, where they are known.
     pub sizes_as_measured: bool,
+    /// The largest change of the weight over itself when a sheet with friction is shaken, 0 to 1.
+    pub shaking: f64,
     /// How the equations are solved.
     pub solver: Solver,
 }

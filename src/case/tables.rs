@@ -286,6 +286,10 @@ impl CaseTable {
         if drape.folds.is_empty() {
             return refused(at.value_place("folds"), "folds = []: give at least one number");
         }
+        if !(0.0..=1.0).contains(&drape.shaking) {
+            let message = format!("shaking = {}: give 0 to 1; more would throw the sheet up", drape.shaking);
+            return refused(at.value_place("shaking"), message);
+        }
         foreign(case, &["convergence"], NO_CONVERGENCE)?;
         let (ring, layout) = sheet.ring(of_sheet)?;
         let message = "a drape has no [[probes]] and no [[checks]]: remove them";
@@ -312,6 +316,7 @@ impl CaseTable {
             folds: drape.folds,
             refinements: drape.refinements,
             sizes_as_measured: drape.sizes == DrapeSizes::Measured,
+            shaking: drape.shaking,
             solver,
         })
     }

@@ -1,6 +1,7 @@
 //! A drape: rows, document, charts and text.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -89,8 +90,14 @@ struct DrapeValues {
     law: Cow<'static, str>,
     /// Of the state of lowest energy on the finest mesh, 0 to 1.
     coefficient: f64,
-    /// Least and greatest coefficient of all states.
+    /// Least and greatest coefficient of the states whose energy is at most 2 % above the lowest.
     band: [f64; 2],
+    /// Mean coefficient of those states, each as often as searches ended in it.
+    mean: f64,
+    /// How many searches ended in each number of nodes (folds), of those states.
+    node_numbers: BTreeMap<usize, usize>,
+    /// The state of lowest energy before it was shaken, on the mesh of its search; of sheets with friction only.
+    hung: Option<StateEntry>,
     measured: Option<MeasuredDrape>,
     uncertainty: Option<SamplingEntry>,
     finest: StateEntry,
@@ -109,6 +116,8 @@ struct MeasuredDrape {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct StateEntry {
     start_folds: usize,
+    /// How many searches ended in it.
+    searches: usize,
     elements: usize,
     coefficient: f64,
     nodes: usize,
@@ -140,6 +149,7 @@ impl StateEntry {
     fn new(s: &DrapeState) -> Self {
         Self {
             start_folds: s.start,
+            searches: s.searches,
             elements: s.elements,
             coefficient: s.coefficient,
             nodes: s.folds.count,
@@ -162,6 +172,9 @@ pub(super) fn entry(task: &Task, d: &Drape) -> DrapeEntry {
         law: law(task).into(),
         coefficient: d.finest.coefficient,
         band: d.band(),
+        mean: d.mean(),
+        node_numbers: d.fold_numbers(),
+        hung: d.hung.as_ref().map(StateEntry::new),
         measured: measured(task).map(|(value, method)| MeasuredDrape { value, method: method.to_string() }),
         uncertainty: task.sampling().map(|s| SamplingEntry::ending_with(s, "")),
         finest: StateEntry::new(&d.finest),
@@ -184,7 +197,8 @@ pub(super) fn entry(task: &Task, d: &Drape) -> DrapeEntry {
     }
 }
 
-/// Rows of `predictions.csv`: the coefficient beside what was measured, and the least and greatest of the states.
+/// Rows of `predictions.csv`: the coefficient beside what was measured, the mean, least and greatest of the states of nearly
+/// the lowest energy, and what it was before the sheet was shaken.
 pub(super) fn rows(task: &Task, d: &Drape) -> Vec<PredictionRow> {
     let [low, high] = d.band();
     let nodes = task.fabric.and_then(|sheet| {
@@ -192,12 +206,15 @@ pub(super) fn rows(task: &Task, d: &Drape) -> Vec<PredictionRow> {
         counted.value.parse::<f64>().ok()
     });
     let coefficient = measured(task).map(|(m, _)| m);
-    vec![
+    let mut rows = vec![
         row(task, "drape_coefficient", d.finest.coefficient, coefficient),
+        row(task, "drape_coefficient_mean", d.mean(), None),
         row(task, "drape_coefficient_least", low, None),
         row(task, "drape_coefficient_greatest", high, None),
         row(task, "drape_nodes", d.finest.folds.count as f64, nodes),
-    ]
+    ];
+    rows.extend(d.hung.as_ref().map(|hung| row(task, "drape_coefficient_hung", hung.coefficient, None)));
+    rows
 }
 
 /// Without a band: those of the table are for the spread of measured inputs, which a band of states is not.
@@ -272,7 +289,7 @@ pub(crate) fn bracket(points: &[DrapePoint]) -> Option<Columns> {
 
 /// Writes the chart `drape_parity`, if there is anything to compare; its name if so.
 pub(crate) fn write_parity(folder: &Folder, points: &[DrapePoint]) -> Result<Option<String>, Failure> {
-    let subtitle = "point: state of lowest energy, bar: all states found; the friction that elastic cloth lacks would raise its points";
+    let subtitle = "point: state of lowest energy, bar: states of nearly that energy; the friction that elastic cloth lacks would raise its points";
     let points: Vec<ParityPoint> = points.iter().map(|p| p.point.clone()).collect();
     folder.chart(PARITY, || chart::parity(&points, "Drape, simulated against measured", subtitle))
 }
@@ -315,7 +332,10 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
     let ([low, high], s) = (d.band(), &d.finest);
     let mut values = vec![
         ("Drape coefficient".to_string(), format!("{} %", percent(s.coefficient))),
-        (format!("band of {} states", d.states.len()), format!("{} to {} %", percent(low), percent(high))),
+        (
+            format!("band of {} of {} states", d.near().len(), d.states.len()),
+            format!("{} to {} %", percent(low), percent(high)),
+        ),
     ];
     values.extend(sampled::values(task, "drape_coefficient", "%", 0.01));
     if let Some((value, _)) = measured(task) {

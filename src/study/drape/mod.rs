@@ -7,15 +7,20 @@
 //! ```
 //! The equilibria are many: a sheet hangs in four folds, or five, or six, and its coefficient moves by
 //! ten points between them. So there are several searches, each from a sheet that is given its number
-//! of folds at the start; every one ends in a stable equilibrium with whatever folds it then has. The
-//! result is the state of lowest energy, refined, and the band of all coefficients.
+//! of folds at the start; every one ends in a stable equilibrium with whatever folds it then has. A search begins on cells of
+//! twice the width, where they are narrow enough for its folds: most of the way is gone there. The result is the state of
+//! lowest energy, refined, and the band of the coefficients of all states whose energy is nearly as low.
+//!
+//! A sheet with friction is hung, and then shaken: its weight swings about itself, less and less. A sheet that is laid on a disc by
+//! hands has been through more than the way down from flat, and what friction holds up in it is less.
 
 mod method;
 mod refine;
 mod rim;
+mod search;
 mod shadow;
 
-use std::ops::ControlFlow;
+use std::collections::BTreeMap;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
@@ -24,28 +29,30 @@ use rand_pcg::Pcg64Mcg;
 pub use method::{as_measured, drape_method};
 pub use rim::Folds;
 
+use self::search::{Cloth, Found, Hanging, Searches};
 use super::effort::within_limits;
 use super::{Case, StudyError, Watch, build, refused};
 use crate::case::{Annulus, DrapeProblem, Outline, Problem, Sheet};
 use crate::characterise::FabricSheet;
 use crate::finding::{Finding, Located, Place, StudyFact};
 use crate::model::Model;
-use crate::platform;
 use crate::quantity::Ratio;
 use crate::section::{SheetLaw, ShellSection};
-use crate::solve::nonlinear::{NonlinearError, Settings, Solution, State, Step, descend_from, plan};
-use crate::solve::{Options, Plan};
+use crate::solve::Options;
+use crate::solve::nonlinear::{NonlinearError, Solution, State};
 
 /// A draped sheet.
 #[derive(Clone, Debug)]
 pub struct Drape {
     /// Name of the case.
     pub case: String,
-    /// One state for each search that ended in an equilibrium, on the mesh of the case; lowest
-    /// energy first.
+    /// The states that the searches ended in, on the mesh of the case, lowest energy first; those whose energy was
+    /// clearly higher on the wide cells where the searches began are left out.
     pub states: Vec<DrapeState>,
     /// Folds at the start of the searches that did not, and why.
     pub failed: Vec<(usize, NonlinearError)>,
+    /// The state of lowest energy before it was shaken, on the mesh of its search; of sheets with friction only.
+    pub hung: Option<DrapeState>,
     /// The state of lowest energy on each mesh, from that of the case to the finest.
     pub meshes: Vec<DrapeState>,
     /// The last of them.
@@ -67,8 +74,10 @@ pub struct Drape {
 /// An equilibrium of a draped sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrapeState {
-    /// Folds that the sheet was given at the start.
+    /// Folds that the sheet was given at the start of the first search that ended in it.
     pub start: usize,
+    /// How many searches ended in it.
+    pub searches: usize,
     /// Elements of the mesh.
     pub elements: usize,
     /// Drape coefficient, 0 to 1.
@@ -90,20 +99,46 @@ pub struct DrapeState {
 }
 
 impl Drape {
-    /// The lowest and the highest coefficient of the states found, moved by what refinement changed
-    /// in the state of lowest energy.
+    /// The lowest and the highest coefficient of the states [near](Self::near) the one of lowest energy, moved by what
+    /// refinement changed in that one.
     pub fn band(&self) -> [f64; 2] {
-        let moved = self.states.first().map_or(0.0, |lowest| self.finest.coefficient - lowest.coefficient);
-        let all = self.states.iter().map(|s| s.coefficient + moved);
+        let all = self.near().iter().map(|s| s.coefficient + self.moved());
         all.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], c| [l.min(c), h.max(c)])
+    }
+
+    /// States whose energy is higher than the lowest by two hundredths of it, at most: a real sheet may hang in any of them.
+    pub fn near(&self) -> &[DrapeState] {
+        let lowest = self.states.first().map_or(0.0, |s| s.energy);
+        let near = self.states.partition_point(|s| s.energy - lowest <= NEARLY_AS_LOW * lowest.abs());
+        &self.states[..near]
+    }
+
+    /// The mean coefficient of the states near the one of lowest energy, each as often as searches ended in it, moved as the band.
+    pub fn mean(&self) -> f64 {
+        let weight = |s: &DrapeState| s.searches as f64;
+        let near = self.near();
+        let sum: f64 = near.iter().map(|s| weight(s) * s.coefficient).sum();
+        sum / near.iter().map(weight).sum::<f64>() + self.moved()
+    }
+
+    /// How many searches ended in a state with a number of folds near the lowest energy, by that number.
+    pub fn fold_numbers(&self) -> BTreeMap<usize, usize> {
+        let mut numbers = BTreeMap::new();
+        self.near().iter().for_each(|s| *numbers.entry(s.folds.count).or_default() += s.searches);
+        numbers
+    }
+
+    /// What refinement changed in the coefficient of the state of lowest energy.
+    fn moved(&self) -> f64 {
+        self.states.first().map_or(0.0, |lowest| self.finest.coefficient - lowest.coefficient)
     }
 }
 
-/// Unbalanced forces that are accepted, relative to the weight or the reactions.
-const TOLERANCE: f64 = 1e-6;
+/// Energy above the lowest, relative to it, of states that a real sheet may hang in as well.
+const NEARLY_AS_LOW: f64 = 0.02;
 
-/// Steps of a search.
-const STEPS: usize = 600;
+/// Cells along the radius that a search needs at the start.
+const CELLS_OF_THE_RADIUS: usize = 6;
 
 /// How much the last refinement may change the coefficient without a word. No order of convergence is taken
 /// off it: a limp sheet that went from 43.2 to 40.3 % ended at 37.0 % with the next one.
@@ -130,52 +165,37 @@ pub fn drape(
     };
     let DrapeProblem { folds, refinements, .. } = problem;
     within_limits(case, &case.options(options)?)?;
-    let ring = Ring::of(problem);
-    let model = ring.model(case, problem, section)?;
-    build::weighed(&model)?;
     let single = Options { threads: 1, ..case.options(options)? };
-    let shared = plan(&model, &single)?;
-    let searches: Vec<Result<(Solution, DrapeState), (usize, NonlinearError)>> =
-        platform::map(folds, |&start| {
-            let found = ring.relax(&model, law, &shared, ring.start(&model, start), &single, watch);
-            (watch.stage)();
-            found.map(|s| (s.clone(), ring.state(&model, &s, start))).map_err(|e| (start, e))
-        });
+    let cloth = Cloth { case, problem, section, law, watch };
+    let sheet = Hanging::new(&cloth, Ring::of(problem), &single)?;
+    build::weighed(&sheet.model)?;
     let go_on = || if (watch.stopped)() { Err(StudyError::Stopped) } else { Ok(()) };
+    let Searches { found, mut failed } = sheet.searches(folds, &single)?;
     go_on()?;
-    let (mut found, mut failed) = (Vec::new(), Vec::new());
-    for search in searches {
-        match search {
-            Ok(state) => found.push(state),
-            Err(failure) => failed.push(failure),
-        }
-    }
-    found.sort_by(|a, b| a.1.energy.total_cmp(&b.1.energy));
-    let Some((lowest, _)) = found.first() else {
+    let Some(lowest) = found.first() else {
         // `folds` is not empty, so there is a failure.
         return Err(failed.swap_remove(0).1.into());
     };
-    let (mut ring, mut model, mut solution, start) = (ring, model, lowest.clone(), found[0].1.start);
-    let mut meshes = vec![found[0].1.clone()];
+    let Found { mut solution, state, hung } = lowest.clone();
+    let (start, mut sheet, mut finest, mut meshes) = (state.start, sheet, state.clone(), vec![state]);
     for _ in 0..*refinements {
-        let finer = ring.refined();
-        let fine = finer.model(case, problem, section)?;
-        let from = refine::refined(&solution.state, &model.mesh, &fine.mesh, ring.cells);
-        solution = finer.relax(&fine, law, &plan(&fine, options)?, from, options, watch)?;
+        let finer = Hanging::new(&cloth, sheet.ring.refined(), options)?;
+        solution = finer.relax(finer.carried(&sheet, &solution.state), options)?;
         go_on()?;
-        meshes.push(finer.state(&fine, &solution, start));
+        finest = finer.state(&solution, start);
+        meshes.push(finest.clone());
         (watch.stage)();
-        (ring, model) = (finer, fine);
+        sheet = finer;
     }
-    // `meshes` holds the first one at least.
-    let finest = meshes.last().unwrap_or(&found[0].1).clone();
-    let states: Vec<DrapeState> = found.into_iter().map(|(_, s)| s).collect();
+    let states: Vec<DrapeState> = found.into_iter().map(|found| found.state).collect();
+    let Hanging { ring, model, .. } = sheet;
     let outline = shadow::outline(&projected(&solution.state), &model.mesh.quads, ring.inner, 360);
     let findings = findings(case, &meshes, &failed, folds.len(), law.is_none());
     Ok(Drape {
         case: case.name.clone(),
         states,
         failed,
+        hung,
         meshes,
         finest,
         model,
@@ -220,6 +240,13 @@ impl Ring {
         Self { cells: self.cells.map(|n| 2 * n), ..*self }
     }
 
+    /// The ring with cells of twice the width, where a sheet can be made of them.
+    fn widened(&self) -> Option<Self> {
+        let even = self.cells.iter().all(|n| n % 2 == 0);
+        (even && self.cells[0] / 2 >= CELLS_OF_THE_RADIUS)
+            .then(|| Self { cells: self.cells.map(|n| n / 2), ..*self })
+    }
+
     /// The model of the problem with the cells of this ring.
     fn model(
         &self,
@@ -252,50 +279,6 @@ impl Ring {
             state.rotation[i] = UnitQuaternion::from_scaled_axis(Vector3::new(dy, -dx, 0.0));
         }
         state
-    }
-
-    fn relax(
-        &self,
-        model: &Model,
-        law: Option<&SheetLaw>,
-        plan: &Plan,
-        from: State,
-        options: &Options,
-        watch: Watch<'_>,
-    ) -> Result<Solution, NonlinearError> {
-        let settings = Settings { tolerance: TOLERANCE, law: law.cloned(), ..Settings::default() };
-        let observe =
-            |_: &Step<'_>| if (watch.stopped)() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-        descend_from(model, plan, from, &settings, STEPS, options, observe)
-    }
-
-    fn state(&self, model: &Model, solution: &Solution, start: usize) -> DrapeState {
-        let mesh = &model.mesh;
-        let [now, rest] = [projected(&solution.state), projected(&State::rest(mesh))];
-        let area = |points: &[[f64; 2]], quads: &[[u32; 4]]| shadow::area(points, quads, self.inner);
-        let (disc, specimen) = (area(&[], &[]), area(&rest, &mesh.quads));
-        let rim: Vec<f64> = now[now.len() - self.cells[1]..].iter().map(|p| p[0].hypot(p[1])).collect();
-        let load = model.load_vector();
-        let work: f64 = solution
-            .state
-            .position
-            .iter()
-            .zip(&mesh.nodes)
-            .zip(load.chunks_exact(6))
-            .map(|((now, rest), f)| (now - rest).dot(&Vector3::new(f[0], f[1], f[2])))
-            .sum();
-        DrapeState {
-            start,
-            elements: mesh.quads.len(),
-            coefficient: (area(&now, &mesh.quads) - disc) / (specimen - disc),
-            folds: Folds::of(&rim),
-            energy: solution.energy - work,
-            strain_energy: solution.energy,
-            residual: solution.residual,
-            negative_pivots: solution.stability.negative_pivots,
-            lowest_eigenvalue: solution.stability.lowest_eigenvalue,
-            iterations: solution.iterations,
-        }
     }
 }
 

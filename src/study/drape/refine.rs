@@ -3,9 +3,11 @@
 use nalgebra::{Point3, UnitQuaternion};
 
 use crate::mesh::QuadMesh;
-use crate::solve::nonlinear::State;
+use crate::solve::nonlinear::{Memory, State};
 
 /// The state of `coarse`, an annulus of `radial` by `around` cells, on `fine`, twice as fine.
+///
+/// What friction remembers of a cell, its four parts remember.
 ///
 /// A new node lies on the cubic between its neighbours that has their directions, as a bent sheet
 /// does: on the chord the sheet would be short of length.
@@ -16,7 +18,8 @@ pub(super) fn refined(
     [radial, around]: [usize; 2],
 ) -> State {
     let node = |i: usize, k: usize| i * 2 * around + k % (2 * around);
-    let mut new = State { factor: state.factor, ..State::rest(fine) };
+    let memory = divided(&state.memory, [radial, around]);
+    let mut new = State { factor: state.factor, memory, ..State::rest(fine) };
     for (i, k) in (0..=radial).flat_map(|i| (0..around).map(move |k| (i, k))) {
         let (from, to) = (i * around + k, node(2 * i, 2 * k));
         new.rotation[to] = state.rotation[from];
@@ -30,6 +33,19 @@ pub(super) fn refined(
         between(&mut new, fine, node(i, k), [node(i, k - 1), node(i, k + 1)]);
     }
     new
+}
+
+/// The memory of the cells of a ring, given to the four cells that each is divided into.
+fn divided(memory: &Memory, [radial, around]: [usize; 2]) -> Memory {
+    // Cells of an element; none without a law.
+    let each = memory.cells.len() / (radial * around);
+    let parent = |i: usize, k: usize| {
+        let first = (i / 2 * around + k / 2) * each;
+        &memory.cells[first..first + each]
+    };
+    let fine = (0..2 * radial).flat_map(|i| (0..2 * around).map(move |k| (i, k)));
+    let cells = fine.flat_map(|(i, k)| parent(i, k)).cloned().collect();
+    Memory { cells, dissipated: memory.dissipated }
 }
 
 /// Places a node halfway between two others.
@@ -46,8 +62,8 @@ fn between(state: &mut State, mesh: &QuadMesh, node: usize, [a, b]: [usize; 2]) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::law;
     use crate::mesh::annulus;
-    use crate::solve::nonlinear::Memory;
     use nalgebra::Vector3;
 
     /// A rigid motion stays one; a roll of the sheet is met to fourth order.
@@ -81,5 +97,23 @@ mod tests {
         let new = refined(&rolled, &coarse, &fine, [4, 32]);
         let off = new.position.iter().zip(&fine.nodes).map(|(p, rest)| (p - roll(rest)).norm());
         assert!(off.fold(0.0, f64::max) < 1e-4, "of cells of 2 cm rolled through 0.4 rad");
+    }
+
+    /// Two cells an element, each with a memory of its own.
+    #[test]
+    fn each_part_of_a_cell_remembers_what_the_cell_did() {
+        let (radial, around) = (2, 3);
+        let marked =
+            |n: usize| std::array::from_fn(|_| law::State { strain: n as f64, ..law::State::default() });
+        let cells = (0..2 * radial * around).map(marked).collect();
+        let fine = divided(&Memory { cells, dissipated: 0.5 }, [radial, around]);
+        assert_eq!((fine.cells.len(), fine.dissipated), (4 * 2 * radial * around, 0.5));
+        for (i, k) in (0..2 * radial).flat_map(|i| (0..2 * around).map(move |k| (i, k))) {
+            for cell in 0..2 {
+                let at = 2 * (i * 2 * around + k) + cell;
+                assert_eq!(fine.cells[at], marked(2 * (i / 2 * around + k / 2) + cell), "{i} {k} {cell}");
+            }
+        }
+        assert_eq!(divided(&Memory::default(), [radial, around]), Memory::default());
     }
 }

@@ -1,6 +1,9 @@
 //! Own statements (equilibrium, stability, the same always) and limits that need no other program.
 
+use super::search::TOLERANCE;
 use super::*;
+use crate::characterise::bending_law;
+use crate::law::Mode;
 use approx::assert_relative_eq;
 use std::path::Path;
 
@@ -67,6 +70,50 @@ fn a_cloth_hangs_in_folds_and_does_so_always() {
     assert_eq!((again.states, again.finest), (drape.states, drape.finest));
 }
 
+/// Friction holds a sheet up, and shaking takes a part of that away; without a shake the sheet hangs as it was hung.
+#[test]
+fn a_shaken_sheet_hangs_between_one_without_friction_and_one_that_was_only_hung() {
+    let b = 2e-5;
+    let shaken = case(b, "folds = [3, 5]", "folds = [5]");
+    let only_hung = case(b, "folds = [3, 5]", "folds = [5]\nshaking = 0");
+    let section = build::section(shaken.section().unwrap()).unwrap();
+    // A residual curvature of a quarter per centimetre: 2HB = 2 B · 25 1/m.
+    let bending = || Some(bending_law(b, 2.0 * b * 25.0).unwrap());
+    let law = SheetLaw::new(Mode::Friction, [None, None, None, bending(), bending(), None]);
+    let hang = |case: &Case, law: Option<&SheetLaw>| {
+        drape(case, &section, law, &Options::default(), Watch::default()).unwrap()
+    };
+    let (elastic, hung, shaken) =
+        (hang(&shaken, None), hang(&only_hung, Some(&law)), hang(&shaken, Some(&law)));
+    assert_eq!(hung.hung, None);
+    let first = shaken.hung.as_ref().unwrap();
+    assert_eq!(first, &hung.states[0], "the same until it is shaken");
+    let [elastic_is, hung_is, shaken_is] = [&elastic, &hung, &shaken].map(|d| d.states[0].coefficient);
+    println!("{elastic_is:.3} {shaken_is:.3} {hung_is:.3}");
+    assert!(
+        elastic_is + 0.01 < shaken_is && shaken_is + 0.01 < hung_is,
+        "{elastic_is} {shaken_is} {hung_is}"
+    );
+    // The finer mesh remembers: without it the sheet would be held up as if it had been bent at one go.
+    assert!(
+        (shaken.finest.coefficient - shaken_is).abs() < (hung_is - shaken_is).min(0.03),
+        "{:?}",
+        shaken.meshes
+    );
+}
+
+/// States that differ in the turn of the whole only are one, which counts as often as it was found.
+#[test]
+fn states_are_told_once_with_the_number_of_their_searches() {
+    let drape = run(&case(2e-5, "folds = [3, 5]", "folds = [5, 5, 3]\nrefinements = 0"));
+    assert_eq!(drape.states.iter().map(|s| s.searches).sum::<usize>(), 3);
+    assert!(drape.states.len() < 3);
+    let numbers = drape.fold_numbers();
+    assert_eq!(numbers.values().sum::<usize>(), drape.near().iter().map(|s| s.searches).sum::<usize>());
+    let [low, high] = drape.band();
+    assert!((low..=high).contains(&drape.mean()));
+}
+
 /// The three specimens of the test: the more of a cloth hangs, the deeper, and the smaller its coefficient.
 #[test]
 fn specimens_of_24_30_and_36_cm_hang_deeper_in_turn() {
@@ -84,6 +131,7 @@ fn specimens_of_24_30_and_36_cm_hang_deeper_in_turn() {
 #[test]
 fn a_coarse_mesh_is_a_finding() {
     let state = |coefficient| DrapeState {
+        searches: 1,
         start: 3,
         elements: 5040,
         coefficient,
