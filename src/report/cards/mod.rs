@@ -164,6 +164,9 @@ fn beyond_cards(section: &ShellSection) -> Option<f64> {
 }
 
 #[cfg(test)]
+mod layer_tests;
+
+#[cfg(test)]
 mod text_tests;
 
 #[cfg(test)]

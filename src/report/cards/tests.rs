@@ -126,7 +126,11 @@ fn u3m_has_the_keys_of_its_schema() {
     assert_eq!(physics["construction"], serde_json::json!({"type": "Twill", "name": null}));
     let id = material["id"].as_str().unwrap();
     assert!(id.len() == 36 && &id[14..15] == "4" && "89ab".contains(&id[19..20]), "{id}");
-    assert_eq!(document["custom"]["kesf"]["section"]["sections"][0]["d_m"][0][0], 6000.0);
+    let held = &document["custom"]["kesf"]["section"]["sections"][0];
+    for (key, matrix) in [("d_m", section().d_m), ("d_b", section().d_b)] {
+        let rows: [[f64; 3]; 3] = serde_json::from_value(held[key].clone()).unwrap();
+        assert_eq!(Matrix3::from_fn(|i, j| rows[i][j]), matrix, "{key}");
+    }
     assert_eq!(written("u3m", section()).unwrap(), text);
 }
 
@@ -280,6 +284,7 @@ fn lsdyna_has_fields_of_ten_columns() {
     let (shell, fabric) = (block("*SECTION_SHELL_TITLE"), block("*MAT_FABRIC_TITLE"));
     assert_eq!((shell.len(), fabric.len(), fabric[2][5]), (2, 6, 14.0));
     let t = shell[1][0];
+    assert_relative_eq!(t, section().thickness, max_relative = 1e-4);
     let [_, rho, ea, eb, _, prba, prab, _] = fabric[0][..] else { panic!("{fabric:?}") };
     let gab = fabric[1][0];
     // PRBA EA = PRAB EB, and the fields hold five digits.

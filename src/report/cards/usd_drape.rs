@@ -103,6 +103,19 @@ mod tests {
         assert_eq!(line("int[] faceVertexIndices = "), "[0, 1, 2, 1, 3, 2]");
         assert_eq!(line("custom int[] kesf:held = "), "[0, 1, 2]");
         assert!(line("rel material:binding:physics = ").contains("/World/Materials/sheet"));
+        let sheet = card.text.split("def Material \"sheet\"").nth(1).unwrap();
+        let (c, density) = (Constants::of(&section()), section().areal_density / section().thickness);
+        for (key, value) in [
+            ("surfaceStretchStiffness", c.mean().tensile),
+            ("surfaceShearStiffness", 60.0),
+            ("surfaceBendStiffness", c.mean().bending),
+            ("density", density),
+        ] {
+            let said =
+                sheet.split(&format!("physics:{key} = ")).nth(1).and_then(|s| s.lines().next()).unwrap();
+            assert!((said.parse::<f64>().unwrap() / value - 1.0).abs() < 1e-8, "{key}: {said}");
+        }
+        assert_eq!(line("float[] physics:thicknesses = "), "[4.000000000E-4]");
         assert!(card.text.is_ascii() && card.text.contains("# corner\n"));
         // What the isotropic material loses is told, and stands in the file.
         assert!(!card.findings.is_empty());
