@@ -393,6 +393,18 @@ fn hold(rows: &[Row]) {
     }
 }
 
+/// The table has a line for every problem of every program, in their order, and no other: none is left out, and none stays of a
+/// program or problem that is no more.
+#[test]
+fn the_table_has_every_problem() {
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(PAGE)).unwrap();
+    let (_, rest) = page.split_once(HEAD).unwrap();
+    let lines = rest.lines().take_while(|line| !line.is_empty());
+    let told: Vec<&str> = lines.map(|line| line.split('|').nth(2).unwrap().trim()).collect();
+    let asked: Vec<&str> = PROGRAMS.iter().flat_map(|program| program.problems).map(|p| p.0).collect();
+    assert_eq!(told, asked);
+}
+
 /// A file, and whether it is to be valid.
 type Judged = (String, bool);
 
