@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::columns::Columns;
 use super::deflected::Deflected;
+use super::draped_stage;
 use super::failure::Failure;
 use super::folder::Folder;
 use super::sampled::{self, SamplingEntry};
@@ -301,7 +302,21 @@ pub(super) fn deflected(task: &Task, d: &Drape) -> Deflected {
     Deflected::new(task, &d.model, displacement)
 }
 
-/// Writes `<stem>.vtu` and the charts `<stem>` (shadow) and `<stem>_view`; those charts that there are.
+/// What shape it is, in a line.
+fn told(task: &Task, d: &Drape) -> String {
+    let s = &d.finest;
+    format!(
+        "{}, {}: drape coefficient {} %, {} folds; state of lowest energy of {}, {}",
+        task.case.title,
+        law(task),
+        percent(s.coefficient),
+        s.folds.count,
+        d.states.len(),
+        if s.negative_pivots == 0 { "stable" } else { "UNSTABLE" }
+    )
+}
+
+/// Writes `<stem>.vtu`, `<stem>.usda` and the charts `<stem>` (shadow) and `<stem>_view`; those charts that there are.
 pub(super) fn write(task: &Task, d: &Drape, folder: &Folder) -> Result<Vec<String>, Failure> {
     let stem = task.stem();
     let position: Vec<[f64; 3]> = d.solution.state.position.iter().map(|p| [p.x, p.y, p.z]).collect();
@@ -318,6 +333,7 @@ pub(super) fn write(task: &Task, d: &Drape, folder: &Folder) -> Result<Vec<Strin
     ];
     if folder.fields() {
         folder.write(&format!("{stem}.vtu"), &vtu(&position, &d.model.mesh.quads, &fields, &[])?)?;
+        draped_stage::write(task, d, told(task, d), folder)?;
     }
     let mut drawn = Vec::new();
     if folder.charts() {

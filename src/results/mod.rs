@@ -18,6 +18,7 @@ mod deflected;
 #[cfg(feature = "pictures")]
 mod drape_picture;
 mod draped;
+mod draped_stage;
 mod fabric;
 mod failure;
 mod file_name;

@@ -1,4 +1,4 @@
-"""A drape that kesf solved (glTF), imported by Blender: the size of each mesh in the scene, and what is said beside it."""
+"""A drape that kesf solved (glTF or USD), imported by Blender: the size of each mesh in the scene, and what is said beside it."""
 
 import json
 import sys
@@ -7,7 +7,10 @@ import bpy
 from mathutils import Vector
 
 bpy.ops.wm.read_factory_settings(use_empty=True)
-bpy.ops.import_scene.gltf(filepath=sys.argv[1])
+if sys.argv[1].endswith(".usda"):
+    bpy.ops.wm.usd_import(filepath=sys.argv[1])
+else:
+    bpy.ops.import_scene.gltf(filepath=sys.argv[1])
 boxes, said = {}, {}
 for body in bpy.data.objects:
     said.update({key: body[key] for key in body.keys() if isinstance(body[key], (int, float, str))})

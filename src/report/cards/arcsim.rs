@@ -40,6 +40,8 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
          shear strain is the tensor's: rows hold D11/2, D12/2, D22/2, 2 D33 (N/m).",
         "Rows of `bending` (N*m) are hinges along u, at 45 degrees and along v: 4 times the rigidity of weft, bias and \
          warp. Linear: the same at every strain and curvature.",
+        "These are the factors of ARCSim's code. The comments of its published paper.json and aluminium.json take a row of \
+         `stretching` for E h and one of `bending` for E h^3/12, without them.",
     ];
     let document: Value = json!({
         "kesf": provenance(material, &notes.map(String::from)),

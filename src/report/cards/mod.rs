@@ -26,6 +26,7 @@
 //! | `radioss_fabric.rs` | OpenRadioss `/MAT/LAW158` | measured curves of tension and shear of a membrane |
 //! | `mujoco.rs` | MuJoCo 4 | strips along warp and weft; an isotropic sheet |
 //! | `usd.rs` | USD, as newton reads it | strips along warp and weft, shear; an isotropic sheet |
+//! | `usd_drape.rs` | USD | no card of a fabric alone: a sheet that was draped, with the materials of `usd.rs` |
 //! | `newton.rs` | newton, Style3D | tension, shear and bending along warp and weft; torsion on a grid |
 //! | `u3m.rs` | U3M 1.1 | thickness, mass, composition; the rest under `custom` |
 
@@ -55,12 +56,14 @@ mod swatch;
 mod text;
 mod u3m;
 mod usd;
+mod usd_drape;
 
 use crate::section::ShellSection;
 use constants::hysteresis;
 
 pub use card::{Card, CardError, Exporter, Material, Target};
 pub use laminate::{Laminate, laminate};
+pub use usd_drape::{DrapedSheet, draped};
 
 /// Every program, by name.
 pub static EXPORTERS: &[Target] = &[
@@ -159,6 +162,9 @@ fn beyond_cards(section: &ShellSection) -> Option<f64> {
     let others = [section.areal_density, section.thickness];
     d_m.chain(d_b).chain(section.d_s.iter()).chain(&others).copied().find(beyond)
 }
+
+#[cfg(test)]
+mod layer_tests;
 
 #[cfg(test)]
 mod text_tests;

@@ -21,7 +21,7 @@ pub(super) fn section() -> ShellSection {
     }
 }
 
-fn sheet() -> FabricSheet {
+pub(super) fn sheet() -> FabricSheet {
     let mut sheet = FabricSheet { name: "Köper 65".into(), ..Default::default() };
     sheet.info.title = "Köper 65".into();
     sheet.info.weave = Some("twill 2/1".into());
@@ -29,9 +29,12 @@ fn sheet() -> FabricSheet {
     sheet
 }
 
+pub(super) fn constitutive(section: ShellSection) -> Constitutive {
+    Constitutive { section, law: None, used: Vec::new(), inputs: Vec::new(), findings: Vec::new() }
+}
+
 pub(super) fn written(name: &str, section: ShellSection) -> Result<String, CardError> {
-    let made =
-        Constitutive { section, law: None, used: Vec::new(), inputs: Vec::new(), findings: Vec::new() };
+    let made = constitutive(section);
     card(named(name).unwrap(), &Material { sheet: &sheet(), made: &made, stamp: None }).map(|c| c.text)
 }
 
@@ -123,7 +126,11 @@ fn u3m_has_the_keys_of_its_schema() {
     assert_eq!(physics["construction"], serde_json::json!({"type": "Twill", "name": null}));
     let id = material["id"].as_str().unwrap();
     assert!(id.len() == 36 && &id[14..15] == "4" && "89ab".contains(&id[19..20]), "{id}");
-    assert_eq!(document["custom"]["kesf"]["section"]["sections"][0]["d_m"][0][0], 6000.0);
+    let held = &document["custom"]["kesf"]["section"]["sections"][0];
+    for (key, matrix) in [("d_m", section().d_m), ("d_b", section().d_b)] {
+        let rows: [[f64; 3]; 3] = serde_json::from_value(held[key].clone()).unwrap();
+        assert_eq!(Matrix3::from_fn(|i, j| rows[i][j]), matrix, "{key}");
+    }
     assert_eq!(written("u3m", section()).unwrap(), text);
 }
 
@@ -154,6 +161,37 @@ fn arcsim_has_the_rows_that_its_sources_read() {
     for (row, rigidity) in bending.iter().zip([strip(1, 0), bias, strip(0, 1)]) {
         close(&row[0], 4.0 * rigidity);
         close(&row[4], 4.0 * rigidity);
+    }
+}
+
+/// ARCSim's own examples of a sheet without Poisson's ratio say by their comments what they are of: `paper.json` of
+/// E = 5 GPa and h = 0.1 mm, `aluminium.json` of 70 GPa and 25.4 um; they have `stretching` rows of `E h`, 0, `E h`,
+/// `E h` (N/m) and `bending` of `E h^3 / 12` (N m), each rounded to two digits. Our card of such a sheet has the same rows in the same
+/// units, but for the factors of the code that reads them: it doubles `stretching`, and a hinge of k has the rigidity k/4.
+#[test]
+fn arcsim_has_the_rows_and_units_of_its_published_examples() {
+    for (modulus, thickness, stretch, bend) in [(5e9, 0.1e-3, 0.5e6, 0.4e-3), (70e9, 25.4e-6, 1.8e6, 96e-6)] {
+        let stiff: f64 = modulus * thickness;
+        let isotropic = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.5);
+        let section = ShellSection {
+            d_m: isotropic * stiff,
+            d_b: isotropic * (stiff * thickness * thickness / 12.0),
+            thickness,
+            ..section()
+        };
+        let text = written("arcsim", section).unwrap();
+        let card: Value = serde_json::from_str(&text).unwrap();
+        let rows = |key: &str| -> Vec<Vec<f64>> { serde_json::from_value(card[key].clone()).unwrap() };
+        for row in rows("stretching") {
+            assert_relative_eq!(
+                row[..],
+                [0.5 * stretch, 0.0, 0.5 * stretch, stretch][..],
+                max_relative = 0.05
+            );
+        }
+        for row in rows("bending") {
+            assert_relative_eq!(row[..], [4.0 * bend; 5][..], max_relative = 0.05);
+        }
     }
 }
 
@@ -246,6 +284,7 @@ fn lsdyna_has_fields_of_ten_columns() {
     let (shell, fabric) = (block("*SECTION_SHELL_TITLE"), block("*MAT_FABRIC_TITLE"));
     assert_eq!((shell.len(), fabric.len(), fabric[2][5]), (2, 6, 14.0));
     let t = shell[1][0];
+    assert_relative_eq!(t, section().thickness, max_relative = 1e-4);
     let [_, rho, ea, eb, _, prba, prab, _] = fabric[0][..] else { panic!("{fabric:?}") };
     let gab = fabric[1][0];
     // PRBA EA = PRAB EB, and the fields hold five digits.

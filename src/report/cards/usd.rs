@@ -21,6 +21,10 @@ pub static EXPORTER: Exporter = Exporter {
 /// How far the sheet lies from the strips (m).
 const BESIDE: f64 = 0.06;
 
+/// What newton makes of the rigidity.
+pub(super) const HINGES: &str = "Programs that resist bending by hinges may need another number than N*m: newton takes it as \
+    force, which its mesh multiplies by the length of a hinge; divide it by the distance between hinges.";
+
 /// AOUSD, proposal for deformable bodies: `physics:surfaceStretchStiffness` and `physics:surfaceShearStiffness` (N/m),
 /// `physics:surfaceBendStiffness` (N·m), `physics:density` (kg/m³) of `PhysicsSurfaceDeformableMaterialAPI`;
 /// `physics:thicknesses` (m) of the mesh. The structural stiffnesses hold as they are, whatever the thickness. In terms
@@ -33,30 +37,64 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
          material `sheet` their geometric means; each has a body of 4 cm x 4 cm. Stretch and shear N/m, bend N*m, density kg/m3 (times the thickness of \
          the mesh it is mass per area).",
         "The first column of cells is to be held: its points are listed in custom int[] kesf:held.",
-        "Programs that resist bending by hinges may need another number than N*m: newton takes it as force, which its \
-         mesh multiplies by the length of a hinge; divide it by the distance between hinges.",
+        HINGES,
     ];
+    let mut sheet = swatch(false);
+    for [_, y] in &mut sheet.points {
+        *y -= BESIDE;
+    }
+    let bodies = [
+        Body::flat("strip_warp", "warp", swatch(false)),
+        Body::flat("strip_weft", "weft", swatch(true)),
+        Body::flat("sheet", "sheet", sheet),
+    ];
+    let text = stage(material, section, &notes.map(String::from), &bodies);
+    Ok(Card { text, findings: losses(&c, section) })
+}
+
+/// A piece of cloth as a mesh of triangles.
+pub(super) struct Body<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Its material: `warp`, `weft` or `sheet`.
+    pub material: &'a str,
+    /// Where its points are (m).
+    pub points: Vec<[f64; 3]>,
+    /// Where they are without any force (m), if that is elsewhere.
+    pub rest: Option<&'a [[f64; 3]]>,
+    /// Triangles, counter-clockwise.
+    pub triangles: Vec<[usize; 3]>,
+    /// Points that are held.
+    pub held: Vec<usize>,
+}
+
+impl<'a> Body<'a> {
+    fn flat(name: &'a str, material: &'a str, piece: Swatch) -> Self {
+        let points = piece.points.iter().map(|[x, y]| [*x, *y, 0.0]).collect();
+        Self { name, material, points, rest: None, triangles: piece.triangles, held: piece.held }
+    }
+}
+
+/// A stage with bodies and the three materials of a fabric: of strips along warp and weft, and of a sheet.
+pub(super) fn stage(
+    material: &Material<'_>,
+    section: &ShellSection,
+    notes: &[String],
+    bodies: &[Body<'_>],
+) -> String {
+    let c = Constants::of(section);
     let mut text = String::from(
         "#usda 1.0\n(\n    defaultPrim = \"World\"\n    metersPerUnit = 1\n    kilogramsPerUnit = 1\n    upAxis = \"Z\"\n)\n\n",
     );
-    text.push_str(&preamble(material, "#", &notes.map(String::from)));
+    text.push_str(&preamble(material, "#", notes));
     text.push_str("\ndef PhysicsScene \"PhysicsScene\"\n{\n    vector3f physics:gravityDirection = (0, 0, -1)\n    float physics:gravityMagnitude = 9.80665\n}\n");
     let name = label(&material.sheet.name, 40);
     let _ = writeln!(
         text,
         "\ndef Xform \"World\" (\n    customData = {{ string fabric = \"KESF_{name}\" }}\n)\n{{"
     );
-    let mut sheet = swatch(false);
-    for [_, y] in &mut sheet.points {
-        *y -= BESIDE;
-    }
-    let bodies = [
-        ("strip_warp", "warp", swatch(false)),
-        ("strip_weft", "weft", swatch(true)),
-        ("sheet", "sheet", sheet),
-    ];
-    for (body, material, piece) in bodies {
-        mesh(&mut text, [body, material], &piece, section.thickness);
+    for body in bodies {
+        mesh(&mut text, body, section.thickness);
     }
     text.push_str("    def Scope \"Materials\"\n    {\n");
     let density = section.areal_density / section.thickness;
@@ -64,7 +102,7 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
         of_yarn(&mut text, name, yarn, c.shear, density);
     }
     text.push_str("    }\n}\n");
-    Ok(Card { text, findings: losses(&c, section) })
+    text
 }
 
 fn of_yarn(text: &mut String, name: &str, yarn: Yarn, shear: f64, density: f64) {
@@ -83,19 +121,31 @@ fn of_yarn(text: &mut String, name: &str, yarn: Yarn, shear: f64, density: f64) 
     text.push_str("        }\n");
 }
 
-/// A piece of cloth with its material.
-fn mesh(text: &mut String, [body, material]: [&str; 2], s: &Swatch, thickness: f64) {
-    let points: Vec<String> = s.points.iter().map(|[x, y]| format!("({x:.9}, {y:.9}, 0)")).collect();
-    let corners: Vec<String> = s.triangles.iter().map(|[a, b, c]| format!("{a}, {b}, {c}")).collect();
-    let threes = vec!["3"; s.triangles.len()].join(", ");
-    let held: Vec<String> = s.held.iter().map(ToString::to_string).collect();
+/// Points of the format, which has them in single precision.
+fn places(points: &[[f64; 3]]) -> String {
+    let points: Vec<String> = points.iter().map(|[x, y, z]| format!("({x:.9}, {y:.9}, {z:.9})")).collect();
+    points.join(", ")
+}
+
+/// A piece of cloth with its material. Its edges are as they are drawn: a mesh of USD is smoothed unless it says so.
+fn mesh(text: &mut String, body: &Body<'_>, thickness: f64) {
+    let Body { name, material, points, rest, triangles, held } = body;
+    let corners: Vec<String> = triangles.iter().map(|[a, b, c]| format!("{a}, {b}, {c}")).collect();
+    let threes = vec!["3"; triangles.len()].join(", ");
+    let held: Vec<String> = held.iter().map(ToString::to_string).collect();
     let _ = writeln!(
         text,
-        "    def Xform \"{body}\" (\n        prepend apiSchemas = [\"PhysicsDeformableBodyAPI\"]\n    )\n    {{\n        def Mesh \"sim\" (\n            prepend apiSchemas = [\"PhysicsSurfaceDeformableSimAPI\", \"MaterialBindingAPI\"]\n        )\n        {{"
+        "    def Xform \"{name}\" (\n        prepend apiSchemas = [\"PhysicsDeformableBodyAPI\"]\n    )\n    {{\n        def Mesh \"sim\" (\n            prepend apiSchemas = [\"PhysicsSurfaceDeformableSimAPI\", \"MaterialBindingAPI\"]\n        )\n        {{"
     );
-    let _ = writeln!(text, "            point3f[] points = [{}]", points.join(", "));
+    let _ = writeln!(text, "            uniform token subdivisionScheme = \"none\"");
+    let _ = writeln!(text, "            uniform bool doubleSided = 1");
+    let _ = writeln!(text, "            point3f[] points = [{}]", places(points));
     let _ = writeln!(text, "            int[] faceVertexCounts = [{threes}]");
     let _ = writeln!(text, "            int[] faceVertexIndices = [{}]", corners.join(", "));
+    if let Some(rest) = rest {
+        let _ = writeln!(text, "            point3f[] physics:restShapePoints = [{}]", places(rest));
+        let _ = writeln!(text, "            uniform token physics:restBendAnglesDefault = \"flat\"");
+    }
     let _ = writeln!(text, "            float[] physics:thicknesses = [{}]", number(thickness));
     let _ = writeln!(text, "            uniform token physics:thicknesses:elementType = \"constant\"");
     let _ = writeln!(text, "            custom int[] kesf:held = [{}]", held.join(", "));
@@ -106,7 +156,7 @@ fn mesh(text: &mut String, [body, material]: [&str; 2], s: &Swatch, thickness: f
 }
 
 /// What the proposal has in the place of what it cannot hold.
-fn losses(c: &Constants, section: &ShellSection) -> Vec<crate::finding::Finding> {
+pub(super) fn losses(c: &Constants, section: &ShellSection) -> Vec<crate::finding::Finding> {
     let mean = c.mean();
     let mut findings: Vec<_> = [
         ("for a sheet, a bending rigidity along the warp", [mean.bending, c.yarns[0].bending], "N·m"),
