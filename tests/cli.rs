@@ -541,7 +541,7 @@ fn check_explains_what_it_inferred() {
     let told = stdout(&run(&["-v", "check", "kesf_data/twill/twill_bending_warp.txt"]));
     for expected in [
         "twill_bending_warp.txt\n  encoding Shift_JIS: not UTF-8, and the byte pairs are Japanese\n",
-        "delimiter '\\t', decimal mark '.': 1473 numbers so",
+        "delimiter '\\t', decimal mark '.': 1475 numbers so",
         "\"曲げモーメント\" (gf・cm/cm) times 0.00980665 is N",
         "maximum 2.5 1/cm (standard, not in the file)",
         "bending warp (stated in line 3), specimen 2",

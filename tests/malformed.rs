@@ -65,6 +65,8 @@ const CASES: &[(&str, &str, &str)] = &[
     ("R128", "r128-later.csv", "r128-later.csv:6"),
     ("R130", "r130-letters.csv", "r130-letters.csv:2:8"),
     ("R131", "r131-bound.csv", "r131-bound.csv:2:15"),
+    ("R132", "r132-setting.csv", "r132-setting.csv:1"),
+    ("R133", "r133-letters.csv", "r133-letters.csv:1"),
     ("R123", "r123-colours.xlsx", "r123-colours.xlsx[Colour]:3:1"),
     ("K001", "k001-five-samples.csv", "k001-five-samples.csv:6"),
     ("K002", "k002-two-degrees.csv", "k002-two-degrees.csv:6"),

@@ -21,6 +21,14 @@ impl Condition {
         Unit::parse(parameter.kes_unit()).is_ok_and(|u| u.dimension == self.unit.dimension && !self.is_angle)
     }
 
+    /// The parameter that is read there by its definition: the one that is named, or its sibling, as `2HG at 5°` is 2HG5. A
+    /// `name` that says itself where it is read, `T0`, has none.
+    pub fn defined(self, parameter: Parameter, name: &str) -> Option<Parameter> {
+        let says_where = name.split(|c: char| !c.is_alphanumeric()).any(|w| w.eq_ignore_ascii_case("T0"));
+        let sibling = sibling(parameter).filter(|_| !(says_where && parameter == Parameter::T0));
+        [Some(parameter), sibling].into_iter().flatten().find(|p| self.defines(*p))
+    }
+
     /// Whether the parameter is read there by its definition.
     pub fn defines(self, parameter: Parameter) -> bool {
         parameter.defined_at().is_some_and(|(value, symbol)| {
@@ -28,6 +36,16 @@ impl Condition {
             let (found, is_angle) = (self.number * self.unit.factor, symbol == "rad");
             same && is_angle == self.is_angle && (found / value - 1.0).abs() < 1e-3
         })
+    }
+}
+
+/// The parameter of the same name that is read elsewhere.
+pub(super) fn sibling(parameter: Parameter) -> Option<Parameter> {
+    match parameter {
+        Parameter::Hg => Some(Parameter::Hg5),
+        Parameter::Hb => Some(Parameter::Hb05),
+        Parameter::T0 => Some(Parameter::Tm),
+        _ => None,
     }
 }
 

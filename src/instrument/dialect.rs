@@ -225,6 +225,9 @@ pub struct Dialect {
     /// Words of directions.
     #[serde(deserialize_with = "words")]
     pub directions: BTreeMap<Direction, Vec<String>>,
+    /// Letters of warp and weft: directions only in a column of directions, or where each stands beside the other.
+    #[serde(deserialize_with = "pairs")]
+    pub direction_letters: Vec<[String; 2]>,
     /// Words beside those of directions.
     #[serde(deserialize_with = "words")]
     pub direction_words: BTreeMap<DirectionWord, Vec<String>>,
@@ -254,6 +257,11 @@ where
 {
     let map = BTreeMap::<K, Vec<String>>::deserialize(d)?;
     Ok(map.into_iter().map(|(k, v)| (k, v.iter().map(|w| normalised(w)).collect())).collect())
+}
+
+fn pairs<'de, D: Deserializer<'de>>(d: D) -> Result<Vec<[String; 2]>, D::Error> {
+    let pairs = Vec::<[String; 2]>::deserialize(d)?;
+    Ok(pairs.into_iter().map(|pair| pair.map(|word| normalised(&word))).collect())
 }
 
 fn encoding<'de, D: Deserializer<'de>>(d: D) -> Result<Option<String>, D::Error> {

@@ -51,10 +51,11 @@ impl Facets {
             return whole;
         }
         let other = Self::of_words(&rest, vocabulary);
-        match other.parameter {
-            Some(parameter) if stated.defines(parameter) => other,
-            Some(parameter) if !stated.is_of(parameter) => Self { unknown: true, ..Self::default() },
-            _ => whole,
+        let Some(parameter) = other.parameter else { return whole };
+        match stated.defined(parameter, &rest) {
+            defined @ Some(_) => Self { parameter: defined, ..other },
+            None if !stated.is_of(parameter) => Self { unknown: true, ..Self::default() },
+            None => whole,
         }
     }
 
@@ -82,7 +83,10 @@ impl Facets {
         let is_value = |n: &str| vocabulary.parameter(n).is_some() || fast::heading(n).is_some();
         // One letter behind words is part of a name: `Sample N`.
         let long = own.as_ref().is_some_and(|u| u == "%" || u.chars().count() > 1);
-        if facets.unit.is_none() && own.is_some() && !name.contains('_') && (long || is_value(&stem)) {
+        // `B_warp_uN_m` has its unit in several words.
+        let in_words =
+            own.as_ref().is_some_and(|u| name.strip_suffix(u.as_str()).is_some_and(|n| n.ends_with('_')));
+        if facets.unit.is_none() && own.is_some() && !in_words && (long || is_value(&stem)) {
             facets.unit = own;
             name = &stem;
         }
@@ -173,12 +177,15 @@ impl Facets {
     /// Word by word, the longest phrases first.
     fn take_words(&mut self, name: &str, vocabulary: Vocabulary<'_>) {
         let separators = ['_', ' ', '(', ')', '-', ',', ':', '#', '=', '\'', '"'];
-        let words: Vec<&str> = name.split(separators).filter(|p| !p.is_empty()).collect();
+        let parts = name.split(separators).filter(|p| !p.is_empty());
+        let words: Vec<&str> = parts.flat_map(|w| without_blank(w, vocabulary)).collect();
         let mut rest: Vec<&str> = Vec::new();
         let mut i = 0;
         while i < words.len() {
             let longest = PHRASE.min(words.len() - i);
-            let taken = (1..=longest).rev().find(|n| self.take_phrase(&words[i..i + n], vocabulary));
+            let taken = (1..=longest)
+                .rev()
+                .find(|n| is_phrase(&words[i..i + n]) && self.take_phrase(&words[i..i + n], vocabulary));
             if taken.is_none() {
                 rest.push(words[i]);
             }
@@ -190,7 +197,8 @@ impl Facets {
         let spelt = spelt_out(&rest);
         let joined = rest.join(" ");
         // One letter is no unit of its own, unless it stands where one is looked for: behind a symbol.
-        let is_unit = unit(&spelt).is_ok() || unit(&joined).is_ok();
+        let is_unit =
+            (unit(&spelt).is_ok() || unit(&joined).is_ok()) && !(joined == "in" && name.contains(' '));
         if self.parameter.is_some() && self.unit.is_none() && is_unit {
             self.unit = Some(if unit(&spelt).is_ok() { spelt } else { joined });
         } else {
@@ -200,8 +208,9 @@ impl Facets {
 
     fn take_phrase(&mut self, words: &[&str], vocabulary: Vocabulary<'_>) -> bool {
         let phrase = words.join(" ");
+        // The symbol says which of two siblings a name stands for: `thickness TM`.
         if let Some(parameter) = vocabulary.parameter(&phrase)
-            && self.parameter.is_none_or(|p| p == parameter)
+            && self.parameter.is_none_or(|p| p == parameter || condition::sibling(p) == Some(parameter))
         {
             self.parameter = Some(parameter);
             return true;
@@ -258,6 +267,29 @@ impl Facets {
         }
         known
     }
+}
+
+/// Whether the ends of a phrase are words: a sign there, such as `%`, would be swallowed with it.
+fn is_phrase(words: &[&str]) -> bool {
+    let ends = [words.first(), words.last()];
+    words.len() == 1 || ends.into_iter().flatten().all(|word| word.contains(char::is_alphanumeric))
+}
+
+fn is_wide(c: char) -> bool {
+    c >= '\u{2e80}'
+}
+
+fn is_symbol(word: &str, vocabulary: Vocabulary<'_>) -> bool {
+    word.is_ascii() && vocabulary.parameter(word).is_some()
+}
+
+/// `弯曲刚度B` as a name and its symbol: no blank stands between words of Chinese and Japanese and those of others.
+fn without_blank<'w>(word: &'w str, vocabulary: Vocabulary<'_>) -> Vec<&'w str> {
+    let mut ends = word.char_indices().zip(word.chars().skip(1));
+    let edge = ends.find(|((_, a), b)| is_wide(*a) != is_wide(*b)).map(|((at, a), _)| at + a.len_utf8());
+    let Some((before, behind)) = edge.map(|at| word.split_at(at)) else { return vec![word] };
+    let has_symbol = is_symbol(before, vocabulary) || is_symbol(behind, vocabulary);
+    if has_symbol { vec![before, behind] } else { vec![word] }
 }
 
 fn is_number(word: &str) -> bool {
@@ -334,9 +366,18 @@ mod tests {
         assert_eq!(parameter("2HB bei K=1 1/cm (cN·cm/cm)").0, Hb);
         assert_eq!(parameter("Thickness at 50 gf/cm2 TM (mm)").0, Parameter::Tm);
         assert_eq!(parameter("Thickness at 0.5 gf/cm2 (mm)").0, T0);
+        assert_eq!(parameter("2HG at 5 deg (gf/cm)"), (Hg5, None, unit("gf/cm"), false, false));
+        assert_eq!(parameter("2HB at 0.5 1/cm (gf·cm/cm)").0, Parameter::Hb05);
+        assert_eq!(parameter("T at 50 gf/cm2 (mm)").0, Parameter::Tm);
+        assert_eq!(parameter("EMT at 500 gf/cm (%) warp"), (Emt, Some(Warp), unit("%"), false, false));
+        assert_eq!(parameter("弯曲刚度B(cN·cm2/cm)"), (B, None, unit("cN·cm2/cm"), false, false));
+        assert_eq!(parameter("剪切滞后矩2HG5/(gf·cm-1)"), (Hg5, None, unit("(gf·cm-1)"), false, false));
+        assert_eq!(parameter("Biegesteifigkeit B in gf·cm²/cm"), (B, None, unit("gf·cm2/cm"), false, false));
         // Other conditions, and words of other meaning.
         for text in [
             "2HG at 3 degrees (gf/cm)",
+            "T0 at 50 gf/cm2 (mm)",
+            "2HG5 at 0.5 deg (gf/cm)",
             "EMT at 50 gf/cm (%)",
             "EMT (% at 50 gf/cm)",
             "2HB corrected",

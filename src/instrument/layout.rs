@@ -16,7 +16,7 @@ use super::raw::Row;
 use super::shape::{self, Region, has_numbers, is_numeric};
 use super::sniff::{Number, number};
 use super::suggest;
-use super::unit_text::{is_volt, split_unit, unit};
+use super::unit_text::{is_volt, split_unit, unbracketed, unit};
 use super::vocabulary::Vocabulary;
 use super::words::folded;
 use crate::finding::{Finding, Place, ReadFact};
@@ -107,7 +107,7 @@ pub(super) fn blocks<'t>(
     let mut words: Vec<String> = Vec::new();
     // The first row of numbers under headings that nobody knows; a remark may look like one, so that it is an error only
     // where nothing else was read.
-    let (mut unread, mut behind) = (None, Vec::new());
+    let (mut unread, mut behind, mut stray) = (None, Vec::new(), Vec::new());
     while let Some(row) = rows.get(scanner.at) {
         if row.is_blank() {
             scanner.at += 1;
@@ -132,6 +132,7 @@ pub(super) fn blocks<'t>(
             {
                 behind.push(row.line);
             }
+            stray.extend(shape::value_of_header(row, context).map(|name| (row.line, name)));
             words = row.filled().map(|(_, c)| folded(&c.text).into_owned()).collect();
             scanner.header_line(row);
             scanner.at += 1;
@@ -139,6 +140,13 @@ pub(super) fn blocks<'t>(
     }
     if blocks.is_empty() {
         return Err(unread.unwrap_or_else(|| context.error(0, 0, Problem::Empty)));
+    }
+    let has_table = blocks.iter().any(|block| matches!(block, Block::Table { .. }));
+    if let Some((line, _)) = stray.first().filter(|_| has_table) {
+        let place = Place::at(context.path, *line, 0);
+        let names = stray.into_iter().map(|(_, name)| name).collect();
+        let fact = ReadFact::Unusable { names, reason: Some(shape::APART.to_string()) };
+        scanner.findings.push(Finding::new(fact).at(place));
     }
     if let Some(line) = behind.first() {
         let place = Place::at(context.path, *line, 0);
@@ -286,14 +294,16 @@ impl<'t> Scanner<'t, '_> {
     /// A row of units below headings that have none.
     fn unit_row(&mut self, columns: &mut [Column]) {
         let Some(row) = self.rows.get(self.at) else { return };
-        let bare =
-            |i: usize| row.get(i).map(|t| folded(t).trim_matches(['(', ')', '[', ']']).trim().to_string());
+        let bare = |i: usize| row.get(i).map(unbracketed);
         let is_unit =
             |t: &str| !t.starts_with(|c: char| c.is_ascii_digit()) && (is_volt(t) || unit(t).is_ok());
         if columns.iter().any(|c| c.unit.is_some()) || row.is_blank() {
             return;
         }
-        if row.filled().all(|(i, _)| bare(i).is_some_and(|t| is_unit(&t) || t == "1/cm")) {
+        if row
+            .filled()
+            .all(|(i, _)| bare(i).is_some_and(|t| is_unit(&t) || t == "1/cm" || row.get(i) == Some("(1)")))
+        {
             for column in columns {
                 column.unit = bare(column.index);
                 (column.line, column.column) = (row.line, row.column(column.index));

@@ -7,6 +7,7 @@ use encoding_rs::{
     WINDOWS_1252, WINDOWS_1254,
 };
 
+use super::dos::CodePage;
 use super::error::Problem;
 use super::vocabulary::known_letters;
 
@@ -65,13 +66,13 @@ impl Row<'_> {
 /// The whole file is decoded before anything is split, because the second byte of a CP932
 /// character can be `|` or a backslash. The error carries line and column.
 pub(super) fn decode(bytes: &[u8], label: Option<&str>) -> Result<Text, (usize, usize, Problem)> {
-    let (encoding, why) = match label.and_then(|l| Encoding::for_label(l.as_bytes())) {
-        Some(encoding) => (encoding, "stated by the dialect"),
+    let (set, why) = match label.and_then(|l| Encoding::for_label(l.as_bytes())) {
+        Some(encoding) => (Set::Web(encoding), "stated by the dialect"),
         None => guess(bytes),
     };
     let body = Encoding::for_bom(bytes).map_or(bytes, |(_, n)| &bytes[n..]);
-    let Some(decoded) = encoding.decode_without_bom_handling_and_without_replacement(body) else {
-        return Err((0, 0, not_text(format!("its bytes are not valid {}", encoding.name()))));
+    let Some(decoded) = set.decode(body) else {
+        return Err((0, 0, not_text(format!("its bytes are not valid {}", set.name()))));
     };
     // DOS programs end a file with Ctrl-Z.
     let text = decoded.trim_end_matches('\u{1a}');
@@ -90,7 +91,39 @@ pub(super) fn decode(bytes: &[u8], label: Option<&str>) -> Result<Text, (usize, 
     }
     // Old programs end lines with a carriage return alone.
     let text = if text.contains('\n') { text.to_string() } else { text.replace('\r', "\n") };
-    Ok(Text { text, encoding: encoding.name(), why })
+    Ok(Text { text, encoding: set.name(), why })
+}
+
+/// A character set: one of the web, or of DOS.
+#[derive(Clone, Copy)]
+enum Set {
+    Web(&'static Encoding),
+    Dos(CodePage),
+}
+
+impl Set {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Web(encoding) => encoding.name(),
+            Self::Dos(page) => page.name(),
+        }
+    }
+
+    /// The text of whole bytes; none where they are none of this set.
+    fn decode(self, bytes: &[u8]) -> Option<Cow<'_, str>> {
+        match self {
+            Self::Web(encoding) => encoding.decode_without_bom_handling_and_without_replacement(bytes),
+            Self::Dos(page) => page.decode(bytes).map(Cow::Owned),
+        }
+    }
+
+    /// The text of the beginning of bytes, which may end within a character.
+    fn beginning(self, bytes: &[u8]) -> Cow<'_, str> {
+        match self {
+            Self::Web(encoding) => encoding.decode_without_bom_handling(bytes).0,
+            Self::Dos(page) => Cow::Owned(page.decode(bytes).unwrap_or_default()),
+        }
+    }
 }
 
 fn not_text(found: String) -> Problem {
@@ -98,20 +131,22 @@ fn not_text(found: String) -> Problem {
 }
 
 /// The encoding, and what speaks for it.
-fn guess(bytes: &[u8]) -> (&'static Encoding, &'static str) {
+fn guess(bytes: &[u8]) -> (Set, &'static str) {
     if let Some((encoding, _)) = Encoding::for_bom(bytes) {
-        return (encoding, "byte order mark");
+        return (Set::Web(encoding), "byte order mark");
     }
     const NULS: &str = "every second byte is NUL";
     let nuls = |offset: usize| bytes.iter().skip(offset).step_by(2).take(2000).filter(|&&b| b == 0).count();
     match (std::str::from_utf8(bytes).is_ok(), nuls(0), nuls(1)) {
-        (true, 0, 0) if bytes.is_ascii() && has_escapes(bytes) => (ISO_2022_JP, "its escape sequences"),
-        (true, 0, 0) if bytes.is_ascii() => (UTF_8, "plain ASCII"),
-        (true, 0, 0) => (UTF_8, "the bytes are valid UTF-8"),
+        (true, 0, 0) if bytes.is_ascii() && has_escapes(bytes) => {
+            (Set::Web(ISO_2022_JP), "its escape sequences")
+        }
+        (true, 0, 0) if bytes.is_ascii() => (Set::Web(UTF_8), "plain ASCII"),
+        (true, 0, 0) => (Set::Web(UTF_8), "the bytes are valid UTF-8"),
         // ASCII characters of UTF-16 have a NUL in every second byte, always on the same side.
-        (_, even, odd) if odd > 10 * even && odd > 3 => (UTF_16LE, NULS),
-        (_, even, odd) if even > 10 * odd && even > 3 => (UTF_16BE, NULS),
-        (true, ..) => (UTF_8, "the bytes are valid UTF-8"),
+        (_, even, odd) if odd > 10 * even && odd > 3 => (Set::Web(UTF_16LE), NULS),
+        (_, even, odd) if even > 10 * odd && even > 3 => (Set::Web(UTF_16BE), NULS),
+        (true, ..) => (Set::Web(UTF_8), "the bytes are valid UTF-8"),
         _ => by_words(bytes),
     }
 }
@@ -122,21 +157,23 @@ fn has_escapes(bytes: &[u8]) -> bool {
 }
 
 /// Encodings that laboratories have besides Unicode, and what they are called in messages.
-const OLD: [(&Encoding, &str); 8] = [
-    (SHIFT_JIS, "not UTF-8, and the byte pairs are Japanese"),
-    (WINDOWS_1252, "not UTF-8, and its words are known in this Western encoding"),
-    (EUC_JP, "not UTF-8, and its words are known in Japanese"),
-    (GB18030, "not UTF-8, and its words are known in Chinese"),
-    (BIG5, "not UTF-8, and its words are known in traditional Chinese"),
-    (EUC_KR, "not UTF-8, and its words are known in Korean"),
-    (WINDOWS_1250, "not UTF-8, and its words are known in this Central European encoding"),
-    (WINDOWS_1254, "not UTF-8, and its words are known in Turkish"),
+const OLD: [(Set, &str); 10] = [
+    (Set::Web(SHIFT_JIS), "not UTF-8, and the byte pairs are Japanese"),
+    (Set::Web(WINDOWS_1252), "not UTF-8, and its words are known in this Western encoding"),
+    (Set::Web(EUC_JP), "not UTF-8, and its words are known in Japanese"),
+    (Set::Web(GB18030), "not UTF-8, and its words are known in Chinese"),
+    (Set::Web(BIG5), "not UTF-8, and its words are known in traditional Chinese"),
+    (Set::Web(EUC_KR), "not UTF-8, and its words are known in Korean"),
+    (Set::Web(WINDOWS_1250), "not UTF-8, and its words are known in this Central European encoding"),
+    (Set::Web(WINDOWS_1254), "not UTF-8, and its words are known in Turkish"),
+    (Set::Dos(CodePage::Cp850), "not UTF-8, and its words are known in this Western code page of DOS"),
+    (Set::Dos(CodePage::Cp857), "not UTF-8, and its words are known in the Turkish code page of DOS"),
 ];
 /// Bytes of lines that are looked at for words.
 const SAMPLE: usize = 16_384;
 
 /// The encoding in which most letters belong to known words; without any, by the byte pairs.
-fn by_words(bytes: &[u8]) -> (&'static Encoding, &'static str) {
+fn by_words(bytes: &[u8]) -> (Set, &'static str) {
     let mut lines: Vec<u8> = Vec::new();
     // A line end is the same byte in all of them.
     for line in bytes.split_inclusive(|b| *b == b'\n').filter(|l| !l.is_ascii()) {
@@ -147,17 +184,14 @@ fn by_words(bytes: &[u8]) -> (&'static Encoding, &'static str) {
     }
     // A line may be as long as the file. A character that is cut there is known to nobody.
     lines.truncate(SAMPLE);
-    let known = |encoding: &'static Encoding| {
-        let whole = encoding.decode_without_bom_handling_and_without_replacement(bytes);
-        whole.map(|_| known_letters(&encoding.decode_without_bom_handling(&lines).0))
-    };
-    let scores = OLD.iter().map(|(e, why)| (known(e).unwrap_or(0), *e, *why));
+    let known = |set: Set| set.decode(bytes).map(|_| known_letters(&set.beginning(&lines)));
+    let scores = OLD.iter().map(|(set, why)| (known(*set).unwrap_or(0), *set, *why));
     // Among equals the first.
     let best = scores.reduce(|a, b| if b.0 > a.0 { b } else { a });
     match best {
-        Some((score, encoding, why)) if score > 0 => (encoding, why),
-        _ if looks_japanese(bytes) => (SHIFT_JIS, "not UTF-8, and the byte pairs are Japanese"),
-        _ => (WINDOWS_1252, "not UTF-8 and not Japanese"),
+        Some((score, set, why)) if score > 0 => (set, why),
+        _ if looks_japanese(bytes) => (Set::Web(SHIFT_JIS), "not UTF-8, and the byte pairs are Japanese"),
+        _ => (Set::Web(WINDOWS_1252), "not UTF-8 and not Japanese"),
     }
 }
 
@@ -210,18 +244,23 @@ pub(super) fn rows(text: &str, delimiter: char) -> Vec<Row<'_>> {
     out
 }
 
-/// Lines that a heading with line breaks in it may take.
+/// Lines that one heading with line breaks in it may take.
 const BREAKS: usize = 8;
+/// Lines that a row of such headings may take.
+const ROW_BREAKS: usize = 200;
 
 /// Where the first line ends, and how many it is: spreadsheets write a line break within a cell in quotes. A quote that no
 /// cell of the next lines closes is an inch mark or a slip, and ends with its line.
 fn logical_line(text: &str, delimiter: char) -> (usize, usize) {
     let ends = text.match_indices('\n').map(|(at, _)| at).chain([text.len()]);
-    let mut first = None;
-    for (end, lines) in ends.zip(1..=BREAKS) {
+    let (mut first, mut start, mut without) = (None, 0, 0);
+    for (end, lines) in ends.zip(1..=ROW_BREAKS) {
         let line = &text[..end];
         first.get_or_insert(end);
-        if !line.contains('"') {
+        // A line without a quote goes on with the cell of the line before.
+        without = if text[start..end].contains('"') { 0 } else { without + 1 };
+        start = end;
+        if !line.contains('"') || without >= BREAKS {
             break;
         }
         if !leaves_quote_open(line, delimiter) {
@@ -313,6 +352,10 @@ mod tests {
         assert_eq!(encoding(&[b"\xff\xfe", &little[..]].concat()), "UTF-16LE");
         let portuguese = "extensão (mm);força (gf/cm²)\r\nângulo (°);direção\r\n";
         assert_eq!(encoding(&WINDOWS_1252.encode(portuguese).0), "windows-1252");
+        let portuguese = "amostra;direção\r\nespessura;0,5 mm\r\n".replace("çã", "\u{1}");
+        let bytes: Vec<u8> =
+            portuguese.bytes().flat_map(|b| if b == 1 { vec![0x87, 0xc6] } else { vec![b] }).collect();
+        assert_eq!(encoding(&bytes), "CP850");
         // Half-width katakana, as old instruments write it.
         assert_eq!(encoding(&SHIFT_JIS.encode("ﾀﾃ,ﾖｺ\n1,2\n").0), "Shift_JIS");
     }

@@ -16,11 +16,11 @@ use super::label::Label;
 use super::layout::{self, Block, Context, Header};
 use super::raw::{self, Row};
 use super::result_table::{self, Values};
-use super::sniff::{Sniffed, sniff};
+use super::sniff::{Sniffed, sniff, sniff_lines};
 use super::vocabulary::Vocabulary;
 use super::workbook::{self, Archive};
 use super::{Measurement, Parameter, ResultValue, Source, StatedStiffness};
-use super::{limits, web_page};
+use super::{limits, lines, web_page};
 use crate::finding::{Fact, Finding, Place, ReadFact};
 use crate::platform;
 use crate::quantity::ArealDensity;
@@ -148,6 +148,8 @@ fn text(
         content.inference.push("columns that blanks separate: gaps are read as tabs".to_string());
         text = tabbed;
         sniffed = sniff(&text, Some('\t'), decimal);
+    } else if let Some(lines) = nothing.then(|| sniff_lines(&text, decimal)).flatten() {
+        sniffed = Ok(lines);
     }
     let Sniffed { format, why, .. } = sniffed.map_err(|p| error((0, 0, p)))?;
     content
@@ -296,6 +298,8 @@ fn table(
     complete: bool,
     content: &mut FileContent,
 ) -> Result<(), ReadError> {
+    let split = lines::split(rows, context.decimal, context.vocabulary);
+    let rows = split.as_deref().unwrap_or(rows);
     let (blocks, findings) = layout::blocks(rows, context)?;
     content.findings.extend(findings);
     content.source.dialect = dialect_name(rows, context, &mut content.inference);

@@ -4,6 +4,7 @@
 //! section and the lines above the table say together. So `fabric,direction,B (gf·cm²/cm)`, `id,B_warp_uN_m`, two rows of
 //! heads, `parameter,unit,warp,weft`, `1 2 3 AVE` under WARP and WEFT and one row for each value are one kind of table.
 
+mod cells;
 mod directions;
 mod fast_cells;
 mod layout;
@@ -12,6 +13,7 @@ mod noted;
 mod repeats;
 mod rows_above;
 mod states;
+mod strangers;
 mod units;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -26,7 +28,7 @@ use super::layout::{Context, Header};
 use super::raw::Row;
 use super::shape::{self, Region};
 use super::sniff::{Number, number};
-use super::value::{Printed, is_gap, printed};
+use super::value::is_gap;
 use super::words::{folded, normalised};
 use super::{Direction, Parameter, ResultValue, StatedStiffness};
 use crate::finding::Finding;
@@ -133,6 +135,7 @@ pub(super) fn read(
     table.direction_of_the_sheet();
     let unused = table.layout.unused(region, context);
     table.ignored.extend(unused);
+    table.note_strangers();
     table.directions_of_numbers();
     table.finish()
 }
@@ -282,6 +285,10 @@ impl<'t> Table<'t, '_> {
                     self.one_unit(row, label.index, facts.facets.unit.as_deref(), f.unit.as_deref())?;
                     facts.take_label(&f, text, label.index);
                 }
+                // A number under a head that is not understood counts nothing.
+                None if f.index.is_some() && !label.name.is_empty() && is_whole(text) => {
+                    facts.take(&Facets { index: None, ..f.clone() }, text);
+                }
                 _ => facts.take(&f, text),
             }
             if !had_direction && facts.facets.direction.is_some() && f.index.is_none() {
@@ -312,7 +319,7 @@ impl<'t> Table<'t, '_> {
         if of_both || is_gap(text) || matches!(normalised(text).as_str(), "" | "all" | "none") {
             return Ok(None);
         }
-        let conflict = f.unknown.then(|| v.direction(text)).flatten();
+        let conflict = f.unknown.then(|| v.direction(text)).flatten().or_else(|| v.letter(text));
         f.direction.filter(|_| !f.unknown).or(conflict).map(Some).ok_or_else(|| {
             let found = format!("{text:?} is not a direction (warp, weft, bias or mean)");
             self.context.error(row.line, row.column(index), Problem::BadTable { found })
@@ -320,23 +327,13 @@ impl<'t> Table<'t, '_> {
     }
 
     fn repeats(&self, row: &Row<'_>, index: usize, cell: &str) -> Result<usize, ReadError> {
-        let n = self.finite(row, index, cell)?.0;
+        let n = self.reading(row, index, cell)?.mean;
         if n >= 1.0 && n.fract() == 0.0 && n < 1e6 {
             // The range was just checked.
             return Ok(n as usize);
         }
         let found = format!("{cell:?} is not a number of repeats");
         Err(self.context.error(row.line, row.column(index), Problem::BadTable { found }))
-    }
-
-    /// A cell as a finite number with the deviation that may stand beside it.
-    fn finite(&self, row: &Row<'_>, index: usize, cell: &str) -> Result<(f64, Option<f64>), ReadError> {
-        let problem = match printed(cell, self.context.decimal) {
-            Printed::Plain(Number::Value(v), sd) | Printed::Marked(v, sd) => return Ok((v, sd)),
-            Printed::Plain(Number::NotFinite, _) => Problem::NotFinite { found: cell.to_string() },
-            _ => Problem::NotANumber { found: cell.to_string(), decimal: self.context.decimal },
-        };
-        Err(self.context.error(row.line, row.column(index), problem))
     }
 
     /// The values of a row.
@@ -364,8 +361,10 @@ impl<'t> Table<'t, '_> {
                 column.fabric.clone().or_else(|| facts.fabric.clone()).filter(|_| !facts.summary_of_fabrics);
             let of_row = facts.facets.statistic.is_some();
             if let Some(fast) = all.fast.filter(|_| all.parameter.is_none()) {
-                let factor = self.fast_unit(fast, all.unit.as_deref(), unit_place)?.factor;
-                let si = self.finite(row, column.index, cell)?.0 * factor;
+                let reading = self.reading(row, column.index, cell)?;
+                let (text, place) =
+                    self.stated_unit((row, column.index), all.unit.as_deref(), unit_place, &reading)?;
+                let si = reading.mean * self.fast_unit(fast, text, place)?.factor;
                 let (line, column) = (row.line, row.column(column.index));
                 self.fast.push(FastCell {
                     fabric,
@@ -388,8 +387,11 @@ impl<'t> Table<'t, '_> {
                 self.summary_only(facts, column, of_row, row.line);
                 continue;
             }
-            let unit = self.unit(parameter, all.unit.as_deref(), unit_place)?;
-            let (mean, sd) = self.finite(row, column.index, cell)?;
+            let mut reading = self.reading(row, column.index, cell)?;
+            reading.settle_percent(parameter, all.unit.as_deref());
+            let (text, place) =
+                self.stated_unit((row, column.index), all.unit.as_deref(), unit_place, &reading)?;
+            let unit = self.unit(parameter, text, place)?;
             let direction = all.direction.filter(|_| parameter.is_directional());
             let datum = Datum {
                 fabric,
@@ -399,8 +401,8 @@ impl<'t> Table<'t, '_> {
                 statistic: summary,
                 by_row: of_row,
                 row_direction: facts.facets.direction,
-                mean: mean * unit.factor,
-                sd: sd.map(|s| s * unit.factor),
+                mean: reading.mean * unit.factor,
+                sd: reading.sd.map(|s| s * unit.factor),
                 n: facts.n,
                 inferred: all.inferred,
                 line: row.line,
@@ -440,8 +442,9 @@ impl<'t> Table<'t, '_> {
             return Ok(());
         }
         let place = (row.line, row.column(at));
-        let factor = self.unit(parameter, facts.facets.unit.as_deref(), place)?.factor;
-        let sd = self.finite(row, at, cell)?.0 * factor;
+        let reading = self.reading(row, at, cell)?;
+        let (text, place) = self.stated_unit((row, at), facts.facets.unit.as_deref(), place, &reading)?;
+        let sd = reading.mean * self.unit(parameter, text, place)?.factor;
         if let Some(datum) = self.data.last_mut() {
             datum.sd = Some(sd);
         }
@@ -457,6 +460,10 @@ impl<'t> Table<'t, '_> {
             self.ignored.push(label.clone());
         }
     }
+}
+
+fn is_whole(text: &str) -> bool {
+    text.bytes().all(|b| b.is_ascii_digit())
 }
 
 impl RowFacts {

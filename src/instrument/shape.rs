@@ -2,14 +2,17 @@
 
 use std::collections::BTreeSet;
 
+use super::cell::parts;
 use super::column_name::ColumnName;
 use super::dialect::{Role, TableColumn};
 use super::facets::Facets;
 use super::layout::Context;
+use super::letters;
+use super::lines;
 use super::raw::Row;
 use super::sniff::{Number, number};
-use super::unit_text::{split_unit, unit};
-use super::value::{Printed, is_gap, printed};
+use super::unit_text::{split_unit, unbracketed, unit};
+use super::value::{Printed, is_gap};
 use super::words::folded;
 use super::{Direction, Parameter};
 
@@ -48,7 +51,16 @@ enum Kind {
 
 /// A cell that holds a number, and perhaps its deviation.
 pub(super) fn is_value(cell: &str, context: &Context<'_>) -> bool {
-    !matches!(printed(cell, context.decimal), Printed::Plain(Number::Text, _))
+    !matches!(parts(cell, context.decimal).printed, Printed::Plain(Number::Text, _))
+}
+
+/// Whether a cell may hold the value that a label names: with a unit of its own, one of the right kind or none that is known.
+fn is_value_of(cell: &str, label: &Facets, context: &Context<'_>) -> bool {
+    let parts = parts(cell, context.decimal);
+    let own = parts.unit.as_deref().and_then(|text| unit(text).ok());
+    let expected = label.parameter.and_then(|p| unit(p.kes_unit()).ok());
+    !matches!(parts.printed, Printed::Plain(Number::Text, _))
+        && own.zip(expected).is_none_or(|(own, expected)| own.dimension == expected.dimension)
 }
 
 /// Whether a row behind a table is laid out like its first or last one: the same cells are filled, with numbers in the same
@@ -78,9 +90,8 @@ pub(super) fn has_numbers(row: &Row<'_>, decimal: char) -> bool {
 
 /// Whether a cell stands for a unit; a dash does only among others.
 fn is_unit(cell: &str) -> bool {
-    let bare = folded(cell);
-    let bare = bare.trim_matches(['(', ')', '[', ']']).trim();
-    !bare.starts_with(|c: char| c.is_ascii_digit() && !bare.starts_with("1/")) && unit(bare).is_ok()
+    let bare = unbracketed(cell);
+    !bare.starts_with(|c: char| c.is_ascii_digit() && !bare.starts_with("1/")) && unit(&bare).is_ok()
 }
 
 /// The section that a row opens: a direction and nothing else, also `[WARP]`, `Direction: warp`.
@@ -128,8 +139,9 @@ fn kind(row: &Row<'_>, context: &Context<'_>) -> Kind {
     }
     let (mut words, mut numbers, mut units, mut unknown, mut dashes) = (0, 0, 0, 0, 0);
     let mut counting = true;
-    for (_, cell) in row.filled() {
-        let f = Facets::of(&cell.text, context.vocabulary);
+    let says = facets(row, context);
+    for (index, cell) in row.filled() {
+        let f = &says[index];
         if is_gap(&cell.text) {
             dashes += 1;
         } else if is_value(&cell.text, context) {
@@ -190,7 +202,11 @@ fn states_name(row: &Row<'_>, context: &Context<'_>) -> bool {
 
 /// The facets of every cell of a row.
 pub(super) fn facets(row: &Row<'_>, context: &Context<'_>) -> Vec<Facets> {
-    row.cells.iter().map(|c| Facets::of(&c.text, context.vocabulary)).collect()
+    let mut out: Vec<Facets> = row.cells.iter().map(|c| Facets::of(&c.text, context.vocabulary)).collect();
+    for (index, lettered) in letters::in_heads(row, context.vocabulary) {
+        out[index] = lettered;
+    }
+    out
 }
 
 /// The parameter or FAST value that labels a row: one of the cells before its first number.
@@ -199,9 +215,41 @@ pub(super) fn row_label(row: &Row<'_>, context: &Context<'_>) -> Option<(usize, 
     labels.map(|(i, c)| (i, Facets::of(&c.text, context.vocabulary))).find(|(_, f)| f.names_value())
 }
 
-fn is_labelled(row: &Row<'_>, context: &Context<'_>) -> bool {
-    let label = row_label(row, context).filter(|(_, f)| f.statistic.is_none());
-    label.is_some() && row.filled().any(|(_, c)| is_value(&c.text, context))
+/// Columns whose heads say that they name fabrics, directions or specimens, beside one that names a value with its unit or a
+/// column of directions: a sample called `T` there is no thickness. `Sample` alone may stand over parameters, beside names.
+fn named_columns(heads: &[&Row<'_>], context: &Context<'_>) -> BTreeSet<usize> {
+    use TableColumn::{Direction, Fabric, Id, N, Specimen};
+    let cells: Vec<Facets> = heads.iter().flat_map(|row| facets(row, context)).collect();
+    let has_directions = cells.iter().any(|f| f.meta == Some(Direction));
+    if !cells.iter().any(|f| f.names_value() && (f.unit.is_some() || has_directions)) {
+        return BTreeSet::new();
+    }
+    let all = heads.iter().flat_map(|row| facets(row, context).into_iter().enumerate());
+    all.filter(|(_, f)| matches!(f.meta, Some(Id | Fabric | Direction | Specimen | N)))
+        .map(|(i, _)| i)
+        .collect()
+}
+
+fn is_labelled(row: &Row<'_>, named: &BTreeSet<usize>, context: &Context<'_>) -> bool {
+    let label = row_label(row, context).filter(|(at, f)| f.statistic.is_none() && !named.contains(at));
+    label.is_some_and(|(_, f)| row.filled().any(|(_, c)| is_value_of(&c.text, &f, context)))
+}
+
+/// Why a value among header lines is not read.
+pub(super) const APART: &str =
+    "it stands apart from the table, as a header line does: put it into a row of the table";
+
+/// The label of a header line that names a parameter and states a value of it. The weight and the thickness of the sample have
+/// keys of their own.
+pub(super) fn value_of_header(row: &Row<'_>, context: &Context<'_>) -> Option<String> {
+    if let Some(name) = lines::name(row, context.decimal, context.vocabulary) {
+        return Some(name).filter(|name| context.vocabulary.key(name).is_none());
+    }
+    let (at, f) = row_label(row, context).filter(|(_, f)| f.statistic.is_none())?;
+    let label = row.get(at)?;
+    let is_key = context.vocabulary.key(&split_unit(label).0).is_some();
+    let has_value = row.filled().any(|(i, c)| i > at && is_value_of(&c.text, &f, context));
+    (has_value && !is_key).then(|| label.to_string())
 }
 
 /// What the heads from a row on are, if a table begins there.
@@ -271,7 +319,8 @@ fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
         end += 1;
     }
     let next = || rows[end..].iter().filter(|r| !r.is_blank());
-    let labelled = next().take(3).take_while(|r| is_labelled(r, context)).count();
+    let named = named_columns(&found, context);
+    let labelled = next().take(3).take_while(|r| is_labelled(r, &named, context)).count();
     let several = found.iter().flat_map(|r| facets(r, context)).filter(Facets::names_value).count() > 1;
     let parameter_column =
         found.iter().flat_map(|r| facets(r, context)).any(|f| f.meta == Some(TableColumn::Parameter));
@@ -281,9 +330,9 @@ fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
             row_label(r, context)
                 .is_some_and(|(_, f)| !matches!(f.parameter, Some(Parameter::T0 | Parameter::W)))
         };
-        let bare = rows.get(end).is_some_and(|r| is_labelled(r, context))
+        let bare = rows.get(end).is_some_and(|r| is_labelled(r, &named, context))
             && labelled >= 2
-            && next().take(2).any(|r| own(&r));
+            && next().take(labelled).any(|r| own(&r));
         return bare.then_some(Heads { end, down: true, section, first: end });
     }
     if parameter_column || (labelled > 0 && !several) {
@@ -309,7 +358,7 @@ pub(super) fn region<'t>(
     let first = row.filled().next()?.1;
     if first.text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '+' | '.'))
         && kind(row, context) != Kind::Head
-        && !is_labelled(row, context)
+        && !is_labelled(row, &BTreeSet::new(), context)
     {
         return None;
     }
@@ -319,7 +368,8 @@ pub(super) fn region<'t>(
     let mut i = found.end;
     let mut end = i;
     while let Some(row) = rows.get(i) {
-        let after_blank = i > end;
+        // A blank row may stand below the heads.
+        let after_blank = i > end && !region.rows.is_empty();
         if row.is_blank() {
             i += 1;
             continue;
@@ -378,7 +428,7 @@ fn belongs(
         // Heads of their own may follow the title of a section: then it is another table.
         Kind::Section(_) => heads(rows, at, context).is_none_or(|h| h.first == h.end),
         Kind::Values if region.down => {
-            is_labelled(row, context) || (!after_blank && !is_counting(row, context))
+            is_labelled(row, &BTreeSet::new(), context) || (!after_blank && !is_counting(row, context))
         }
         Kind::Values => !after_blank || fits(row, region, context),
         Kind::Head => !after_blank && heads(rows, at, context).is_none() && !is_header_line(row, context),

@@ -1,5 +1,6 @@
 //! Delimiter and decimal mark, decided together over all rows.
 
+use super::cell;
 use super::error::Problem;
 use super::raw;
 use super::words::folded;
@@ -134,12 +135,7 @@ fn score(text: &str, delimiter: char, decimal: char) -> i64 {
         let mut count = |cell: &str| match number(cell, decimal) {
             Number::Value(_) | Number::NotFinite => score += 1,
             Number::Broken => score -= 10,
-            // `0,081 ± 0,003` is a number with its deviation.
-            Number::Text if cell.contains('±') => {
-                let mean = cell.split('±').next().unwrap_or_default();
-                score += i64::from(matches!(number(mean, decimal), Number::Value(_)));
-            }
-            Number::Text => {}
+            Number::Text => score += of_words(cell, delimiter, decimal),
         };
         if line.contains('"') {
             raw::cells(line, delimiter).iter().for_each(|c| count(&c.text));
@@ -148,6 +144,45 @@ fn score(text: &str, delimiter: char, decimal: char) -> i64 {
         }
     }
     score
+}
+
+/// The decimal mark of lines of one value each, `B = 0,081 mm`, where no delimiter is: as if each line were a cell.
+pub(super) fn sniff_lines(text: &str, decimal: Option<char>) -> Option<Sniffed> {
+    let marks = ['.', ','].into_iter().filter(|mark| decimal.is_none_or(|known| known == *mark));
+    let won = marks.map(|mark| (text.lines().map(|line| of_words(line, '\t', mark)).sum::<i64>(), mark));
+    let (numbers, decimal) = won.reduce(|a, b| if b.0 > a.0 { b } else { a })?;
+    let why = format!("{numbers} lines of one value each are numbers so");
+    (numbers > 0).then_some(Sniffed { format: Format { delimiter: '\t', decimal }, why, numbers })
+}
+
+/// What a cell that is no number says of the marks: `0,081 ± 0,003` and `0,081 mm` begin with one, and in `LC;0` and `B: 1`
+/// something else than a comma separates words and numbers.
+fn of_words(cell: &str, delimiter: char, decimal: char) -> i64 {
+    if let Some(beginning) = cell::beginning(cell) {
+        return match number(beginning, decimal) {
+            Number::Value(_) => 1,
+            Number::Broken => -10,
+            _ => 0,
+        };
+    }
+    let other = [';', '=', ':', '\t']
+        .into_iter()
+        .filter(|_| delimiter == ',')
+        .find_map(|mark| cell.rsplit_once(mark));
+    // `B = 0,081 mm` in one cell.
+    if let Some((words, rest)) =
+        cell.split_once(['=', ':']).filter(|_| delimiter != ',' || cell.contains(','))
+    {
+        let rest = cell::beginning(rest).unwrap_or(rest.trim());
+        if words.contains(char::is_alphabetic) && matches!(number(rest, decimal), Number::Value(_)) {
+            return 1;
+        }
+    }
+    let cut = other.is_some_and(|(words, rest)| {
+        words.ends_with(|c: char| c.is_alphabetic() || matches!(c, ' ' | ')' | ']'))
+            && matches!(number(rest, decimal), Number::Value(_))
+    });
+    if cut { -10 } else { 0 }
 }
 
 /// Refuses `1,234` where every number with a comma could as well be a count of thousands.
@@ -206,6 +241,17 @@ mod tests {
         assert_eq!(f("a;b, c\n1;2\n3;4\n"), Ok((';', '.')));
         assert_eq!(f("a\tb\n1\t2\n"), Ok(('\t', '.')));
         assert_eq!(f("a;b\n0,081 ± 0,003;0,5 ± 0,1\n"), Ok((';', ',')));
+    }
+
+    #[test]
+    fn numbers_with_units_decide_too() {
+        let f = |text| sniff(text, None, None).map(|s| (s.format.delimiter, s.format.decimal));
+        assert_eq!(f("LC;0,49\nT0;0,494 mm\nRC;68,6 %\n"), Ok((';', ',')));
+        assert_eq!(f("B;0,0864 ± 0,0012 gf.cm²/cm\nEMT;4,23 ± 0,11 %\n"), Ok((';', ',')));
+        assert_eq!(f("B\t0,0864\tgf·cm²/cm\n2HB\t0,0686\tgf·cm/cm\n"), Ok(('\t', ',')));
+        let lines = sniff_lines("warp\nB = 0,0864 gf·cm²/cm\nLT: 0,85\n", None).map(|s| s.format);
+        assert_eq!(lines, Some(Format { delimiter: '\t', decimal: ',' }));
+        assert_eq!(sniff_lines("two words\nand more\n", None), None);
     }
 
     #[test]

@@ -32,14 +32,32 @@ pub(super) fn split_unit(cell: &str) -> (String, Option<String>) {
         let i = from + i;
         let rest = text[i + c.len_utf8()..].trim();
         let name = text[..i].trim();
+        // A bare `in` behind a blank is the word before a unit that is not there.
+        let is_word = c == ' ' && rest == "in";
         if !name.is_empty()
             && !rest.starts_with(|c: char| c.is_ascii_digit())
+            && !is_word
             && (is_volt(rest) || unit(rest).is_ok())
         {
+            let name = if c == ' ' { without_preposition(name) } else { name };
             return (name.to_string(), Some(rest.to_string()));
         }
     }
     (text, None)
+}
+
+/// `moment in gf·cm/cm`: what stands before the word that leads to a unit.
+fn without_preposition(name: &str) -> &str {
+    const WORDS: [&str; 3] = [" in", " en", " em"];
+    WORDS.iter().find_map(|word| name.strip_suffix(word)).map_or(name, str::trim_end)
+}
+
+/// A cell of a row of units without the brackets around it: `(mm)`, but not those of `gf/(cm·deg)`.
+pub(super) fn unbracketed(cell: &str) -> String {
+    let text = folded(cell);
+    let pairs = [('(', ')'), ('[', ']')];
+    let inner = pairs.iter().find_map(|(open, close)| text.strip_prefix(*open)?.strip_suffix(*close));
+    inner.filter(|inner| !inner.contains(')') || inner.contains('(')).unwrap_or(&text).trim().to_string()
 }
 
 /// Where the bracket opens that the text ends with.
@@ -112,6 +130,10 @@ pub(super) fn unit(text: &str) -> Result<Unit, QuantityError> {
 
 fn looked_up(text: &str) -> Result<Unit, QuantityError> {
     Unit::parse(text).or_else(|error| {
+        // The word before a unit, which would be a factor of it where blanks are.
+        if text.strip_prefix("in ").is_some_and(|rest| rest.trim_start().starts_with(char::is_alphabetic)) {
+            return Err(error);
+        }
         if let Some((power, rest)) = power_of_ten(text) {
             return unit(rest).map(|unit| Unit { factor: power * unit.factor, ..unit });
         }
@@ -202,7 +224,8 @@ fn per_angle(text: &str) -> Option<String> {
 
 /// `gfcm²/cm` as `gf·cm²/cm`: symbols that were set without a mark between them, where they come apart in one way only.
 fn unglued(text: &str) -> Cow<'_, str> {
-    let known = |s: &str| UNITS.iter().any(|u| u.0 == s);
+    // `in` ends too many words.
+    let known = |s: &str| s != "in" && UNITS.iter().any(|u| u.0 == s);
     let mut out = String::new();
     let mut changed = false;
     let mut rest = text;
@@ -263,6 +286,10 @@ mod tests {
         assert_eq!(split("bending moment"), ("bending moment".to_string(), None));
         assert_eq!(split("moment (gf·cm/N").1, None);
         assert_eq!(split("force (front) gf/cm"), pair("force (front)", "gf/cm"));
+        assert_eq!(split("Biegemoment in gf·cm/cm"), pair("Biegemoment", "gf·cm/cm"));
+        assert_eq!(split("Dicke in mm"), pair("Dicke", "mm"));
+        assert_eq!(split("Dicke in").1, None);
+        assert_eq!(split("thickness (in)"), pair("thickness", "in"));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::hash::Hash;
 use std::sync::OnceLock;
 
 use super::dialect::{BranchColumn, Dialect, DirectionWord, Key, Role, Statistic, TableColumn, dialects};
-use super::unit_text::split_unit;
+use super::unit_text::{split_unit, unit};
 use super::words::{folded, normalised};
 use super::{Direction, Parameter, Test};
 
@@ -210,6 +210,25 @@ impl<'a> Vocabulary<'a> {
         self.find(text, false, |d| &d.directions, &index().directions)
     }
 
+    /// The direction of a letter that is one in company only: beside its partner, or in a column of directions. Where dialects
+    /// differ it is none.
+    pub fn letter(self, text: &str) -> Option<Direction> {
+        let word = normalised(text);
+        let pairs = self.dialects().flat_map(|d| &d.direction_letters);
+        let mut found = pairs.filter_map(|pair| match pair.iter().position(|letter| *letter == word)? {
+            0 => Some(Direction::Warp),
+            _ => Some(Direction::Weft),
+        });
+        let first = found.next()?;
+        found.all(|other| other == first).then_some(first)
+    }
+
+    /// Whether two letters are partners: that of warp first.
+    pub fn are_partners(self, warp: &str, weft: &str) -> bool {
+        let own = [normalised(warp), normalised(weft)];
+        self.dialects().flat_map(|d| &d.direction_letters).any(|pair| *pair == own)
+    }
+
     pub fn test(self, text: &str) -> Option<Test> {
         // "KES-FB1 せん断": the longest word decides, and FB1 alone decides nothing.
         let word = normalised(text);
@@ -311,6 +330,7 @@ pub(super) fn known_letters(text: &str) -> usize {
         // Many words are known as parts of phrases only.
         let phrases = words.windows(2).filter(|w| w.iter().any(|w| !w.is_ascii())).map(|w| w.join(" "));
         sum += phrases.map(|p| weight(&normalised(&p), &p)).sum::<usize>();
+        sum += signs_of_units(line);
         // One letter means nothing, unless it is a whole word of Chinese or Japanese.
         let one =
             |w: &str| w.chars().nth(1).is_none() && w.chars().all(|c| !('\u{2e80}'..'\u{ff00}').contains(&c));
@@ -318,6 +338,16 @@ pub(super) fn known_letters(text: &str) -> usize {
         sum += words.map(|w| weight(&normalised(w), w)).sum::<usize>();
     }
     sum
+}
+
+fn is_sign(part: &str) -> bool {
+    !part.is_ascii() && (part == "±" || (part.chars().count() > 1 && unit(part).is_ok()))
+}
+
+/// How much of a line is units and signs of deviations beyond ASCII: `gf·cm²/cm` is one in the right encoding only.
+fn signs_of_units(line: &str) -> usize {
+    let parts = line.split(|c: char| c.is_whitespace() || ",;()[]\"=:".contains(c));
+    parts.filter(|part| is_sign(part)).map(|part| part.chars().count().pow(2)).sum()
 }
 
 fn weight(word: &str, written: &str) -> usize {

@@ -6,6 +6,7 @@ use std::io::{Cursor, Read};
 
 use calamine::{Data, DataRef, Ods, Range, Reader, SheetVisible, Xls, Xlsx};
 
+use super::cell;
 use super::error::{Problem, bad_workbook as bad};
 use super::limits;
 use super::marks::{self, Marks};
@@ -93,8 +94,8 @@ pub(super) fn sheets(bytes: &[u8], decimal: Option<char>) -> Result<Book, Proble
             Value::Number(_) => None,
         })
     };
-    let is = |t: &str, mark| matches!(number(t, mark), Number::Value(_));
-    let comma = text().any(|t| is(t, ',') && !is(t, '.')) && !text().any(|t| is(t, '.') && !is(t, ','));
+    let comma = text().any(|t| is_number(t, ',') && !is_number(t, '.'))
+        && !text().any(|t| is_number(t, '.') && !is_number(t, ','));
     let decimal = decimal.unwrap_or(if comma { ',' } else { '.' });
     let sheet = |(name, cells): (String, Cells)| Sheet { name, rows: rows(cells, decimal) };
     let sheets = cells.into_iter().filter(|(_, c)| !c.is_empty()).map(sheet).collect();
@@ -104,8 +105,8 @@ pub(super) fn sheets(bytes: &[u8], decimal: Option<char>) -> Result<Book, Proble
 /// The decimal mark of rows of texts: `,` if only that makes numbers of them.
 pub(super) fn mark(rows: &[Row<'_>]) -> char {
     let texts = || rows.iter().flat_map(|r| r.filled().map(|(_, c)| c.text.as_ref()));
-    let is = |t: &str, mark| matches!(number(t, mark), Number::Value(_));
-    let comma = texts().any(|t| is(t, ',') && !is(t, '.')) && !texts().any(|t| is(t, '.') && !is(t, ','));
+    let comma = texts().any(|t| is_number(t, ',') && !is_number(t, '.'))
+        && !texts().any(|t| is_number(t, '.') && !is_number(t, ','));
     if comma { ',' } else { '.' }
 }
 
@@ -132,6 +133,11 @@ pub(super) fn files(bytes: &[u8]) -> Result<Vec<(String, Vec<u8>)>, Problem> {
     }
     out.sort();
     Ok(out)
+}
+
+/// Whether a text is a number with this decimal mark, or begins with one before its unit.
+fn is_number(text: &str, mark: char) -> bool {
+    matches!(number(cell::beginning(text).unwrap_or(text), mark), Number::Value(_))
 }
 
 fn rows(cells: Cells, decimal: char) -> Vec<Row<'static>> {
@@ -168,8 +174,8 @@ fn insert(cells: &mut Cells, (row, column): (u32, u32), value: DataRef<'_>) -> R
         DataRef::Empty => return Ok(()),
         DataRef::Int(n) => Value::Number(n as f64),
         DataRef::Float(n) => Value::Number(n),
-        DataRef::String(text) => Value::Text(text),
-        DataRef::SharedString(text) => Value::Text(text.to_string()),
+        DataRef::String(text) => Value::Text(one_line(&text)),
+        DataRef::SharedString(text) => Value::Text(one_line(text)),
         DataRef::Bool(b) => Value::Text(b.to_string()),
         // "22.5" typed into a cell may have become 22 May: never a number again.
         DataRef::DateTime(d) => Value::Text(format!("date {}", d.as_f64())),
@@ -181,6 +187,14 @@ fn insert(cells: &mut Cells, (row, column): (u32, u32), value: DataRef<'_>) -> R
     }
     cells.insert((row, column), value);
     if cells.len() > limits::CELLS { Err(limits::too_many_cells()) } else { Ok(()) }
+}
+
+/// A text without the line breaks that people put into headings.
+fn one_line(text: &str) -> String {
+    if !text.contains(['\n', '\r']) {
+        return text.to_string();
+    }
+    text.split(['\n', '\r']).map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
 /// Places from the first column to the last cell of each row, empty ones included.

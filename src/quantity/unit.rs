@@ -99,6 +99,7 @@ pub const UNITS: &[(&str, f64, [i8; 3], &str)] = &[
     ("um", 1e-6, [0, 1, 0], "micrometre"),
     ("km", 1e3, [0, 1, 0], "kilometre"),
     ("inch", 0.0254, [0, 1, 0], "inch"),
+    ("in", 0.0254, [0, 1, 0], "inch"),
     ("yd", 0.9144, [0, 1, 0], "yard"),
     ("kg", 1.0, [1, 0, 0], "kilogram"),
     ("g", 1e-3, [1, 0, 0], "gram (mass)"),
@@ -229,12 +230,17 @@ impl<'a> Parser<'a> {
     fn factor(&mut self) -> Result<Unit, QuantityError> {
         if self.peek() == Some('(') {
             self.at += 1;
+            let inside = self.lengths.len();
             let unit = self.quotient()?;
             if self.peek() != Some(')') {
                 return Err(self.unknown("(".into()));
             }
             self.at += 1;
-            return Ok(unit);
+            let power = self.power()?;
+            self.lengths[inside..]
+                .iter_mut()
+                .for_each(|of_length| *of_length = of_length.saturating_mul(power));
+            return Ok(ONE.times(unit, power));
         }
         if self.peek() == Some('1') {
             self.at += 1;
@@ -245,7 +251,8 @@ impl<'a> Parser<'a> {
             self.at += 1;
         }
         let symbol: String = self.chars[start..self.at].iter().collect();
-        let Some(&(_, factor, [kg, m, s], _)) = UNITS.iter().find(|u| u.0 == symbol) else {
+        let known = UNITS.iter().find(|u| u.0 == symbol && !(symbol == "in" && self.is_preposition(start)));
+        let Some(&(_, factor, [kg, m, s], _)) = known else {
             let shown = if symbol.is_empty() { self.chars[start..].iter().collect() } else { symbol };
             return Err(self.unknown(shown));
         };
@@ -254,6 +261,13 @@ impl<'a> Parser<'a> {
             self.lengths.push(power);
         }
         Ok(ONE.times(Unit { factor, dimension: Dimension { kg, m, s } }, power))
+    }
+
+    /// Whether the word that ends here is that before a unit, as in `in gf/cm`, and no length.
+    fn is_preposition(&self, start: usize) -> bool {
+        let begins = self.chars[..start].iter().all(|c| matches!(c, ' ' | '('));
+        let mut behind = self.chars[self.at..].iter();
+        begins && behind.next() == Some(&' ') && behind.next().is_some_and(|c| c.is_alphabetic() || *c == '%')
     }
 
     fn power(&mut self) -> Result<i8, QuantityError> {
@@ -399,6 +413,27 @@ mod tests {
         assert_relative_eq!(factor("cm⁻¹"), 100.0, max_relative = 1e-15);
         assert_relative_eq!(factor("ｇｆ/㎝"), 0.980665, max_relative = 1e-15);
         assert_relative_eq!(factor("µN·m"), 1e-6, max_relative = 1e-15);
+    }
+
+    /// `in` is a length where one can stand, and else the word before a unit.
+    #[test]
+    fn inches_and_the_word_in() {
+        assert_relative_eq!(factor("in"), 0.0254);
+        assert_relative_eq!(factor("in²"), 6.4516e-4, max_relative = 1e-14);
+        assert_relative_eq!(factor("1/in"), 1.0 / 0.0254, max_relative = 1e-14);
+        assert_relative_eq!(factor("lbf.in2/in"), 4.4482216152605 * 0.0254, max_relative = 1e-14);
+        assert_relative_eq!(factor("lbf in/in"), 4.4482216152605, max_relative = 1e-14);
+        assert_relative_eq!(factor("in·lbf"), 4.4482216152605 * 0.0254, max_relative = 1e-14);
+        for text in ["in gf/cm", "in gf", "in mm", "in %", "(in mm)"] {
+            assert!(Unit::parse(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn brackets_have_powers() {
+        assert_relative_eq!(factor("gf·(cm·(°))-1"), factor("gf/(cm·deg)"), max_relative = 1e-14);
+        assert_relative_eq!(factor("gf·(cm²)^-1"), factor("gf/cm²"), max_relative = 1e-14);
+        assert!(divides_by_length("gf·cm²·(cm)-1") && !divides_by_length("N·(m)"));
     }
 
     #[test]

@@ -9,6 +9,10 @@ pub enum Cell {
     Number(Printing),
     /// A number in a workbook cell that shows percent: 6.2 % is stored as 0.062.
     Percent(Printing),
+    /// A number with something before and behind it: a unit, a mark.
+    With(String, Printing, String),
+    /// A number, its deviation, and something behind both.
+    Deviation(Printing, Printing, String),
 }
 
 impl Cell {
@@ -23,6 +27,8 @@ pub struct Grid {
     pub rows: Vec<Vec<Cell>>,
     /// Row, first column, number of columns.
     pub merged: Vec<(usize, usize, usize)>,
+    /// Row, column, number of rows.
+    pub merged_down: Vec<(usize, usize, usize)>,
     /// Rows that a spreadsheet hides.
     pub hidden: Vec<usize>,
 }

@@ -9,7 +9,9 @@
 //! others are refused or read with a finding.
 
 mod curves;
+mod dos;
 mod grid;
+mod newer;
 mod paper;
 mod tables;
 mod truth;

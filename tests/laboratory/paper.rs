@@ -104,6 +104,7 @@ fn encoded(text: &str, encoding: &str) -> Option<Vec<u8>> {
             let body: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
             Some([b"\xff\xfe".to_vec(), body].concat())
         }
+        "cp850" | "cp857" => super::dos::encoded(text, encoding),
         label => {
             let encoding = encoding_rs::Encoding::for_label(label.as_bytes())?;
             let (bytes, _, lost) = encoding.encode(text);
@@ -119,12 +120,14 @@ fn shown(cell: &Cell, comma: bool) -> String {
         Cell::Text(t) => t.clone(),
         Cell::Number(n) => mark(n.text()),
         Cell::Percent(n) => mark(format!("{}%", n.text())),
+        Cell::With(before, n, behind) => format!("{before}{}{behind}", mark(n.text())),
+        Cell::Deviation(n, sd, behind) => format!("{} ± {}{behind}", mark(n.text()), mark(sd.text())),
     }
 }
 
 fn delimited(grid: &Grid, delimiter: char, comma: bool) -> String {
     let quoted = |text: String| {
-        let special = text.contains(delimiter) || text.starts_with('"');
+        let special = text.contains([delimiter, '\n']) || text.starts_with('"');
         if special { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
     };
     let width = grid.width();
@@ -151,7 +154,7 @@ fn fixed(grid: &Grid) -> Option<String> {
         if row.iter().take(last).any(|c| *c == Cell::Empty) {
             return None;
         }
-        if row.iter().any(|c| text(c).contains("  ")) {
+        if row.iter().any(|c| text(c).contains("  ") || text(c).contains('\n')) {
             return None;
         }
     }
@@ -179,6 +182,9 @@ fn xlsx(grid: &Grid) -> Option<Vec<u8>> {
                 Cell::Number(n) => {
                     sheet.write_number(i, j, n.value).ok()?;
                 }
+                Cell::With(..) | Cell::Deviation(..) => {
+                    sheet.write_string(i, j, shown(cell, false)).ok()?;
+                }
                 Cell::Percent(n) => {
                     sheet.write_number_with_format(i, j, n.value / 100.0, &percent).ok()?;
                 }
@@ -192,6 +198,11 @@ fn xlsx(grid: &Grid) -> Option<Vec<u8>> {
         };
         let ((i, j), (k, l)) = (at(r, c), at(r, c + n - 1));
         sheet.merge_range(i, j, k, l, &text, &plain).ok()?;
+    }
+    for &(r, c, n) in grid.merged_down.iter().filter(|m| m.2 > 1) {
+        let Some(Cell::Text(text)) = grid.rows[r].get(c) else { continue };
+        let ((i, j), (k, l)) = (at(r, c), at(r + n - 1, c));
+        sheet.merge_range(i, j, k, l, text, &plain).ok()?;
     }
     for r in &grid.hidden {
         sheet.set_row_hidden(*r as u32).ok()?;
@@ -207,10 +218,11 @@ fn escaped(text: &str) -> String {
 fn ods(grid: &Grid) -> Vec<u8> {
     let cell = |c: &Cell| match c {
         Cell::Empty => "<table:table-cell/>".to_string(),
-        Cell::Text(t) => {
+        Cell::Text(_) | Cell::With(..) | Cell::Deviation(..) => {
+            // A line break begins a paragraph.
+            let text = escaped(&shown(c, false)).replace('\n', "</text:p><text:p>");
             format!(
-                "<table:table-cell office:value-type=\"string\"><text:p>{}</text:p></table:table-cell>",
-                escaped(t)
+                "<table:table-cell office:value-type=\"string\"><text:p>{text}</text:p></table:table-cell>"
             )
         }
         Cell::Number(n) => format!(

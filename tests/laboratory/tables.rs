@@ -4,10 +4,10 @@ use kesf::instrument::{Direction, Parameter};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
-use super::Expected;
 use super::grid::{Cell, Grid};
 use super::truth::{Fabric, GROUPS, Printed, Printing, Quantity, chance, fabrics, pick};
 use super::words::Language;
+use super::{Expected, newer};
 
 use Parameter as P;
 
@@ -21,20 +21,23 @@ pub struct Table {
 }
 
 /// How heads are written in one file.
-struct Style<'l> {
-    language: &'l Language,
+#[derive(Clone, Copy)]
+pub struct Style<'l> {
+    pub language: &'l Language,
     /// Around a unit: `B (unit)`, `B [unit]`, `B, unit`, `B/unit`; empty: in a row or column of its own.
-    unit: UnitPlace,
-    warp: &'l str,
-    weft: &'l str,
+    pub unit: UnitPlace,
+    pub warp: &'l str,
+    pub weft: &'l str,
     /// Full names beside or in place of symbols.
-    names: Names,
+    pub names: Names,
     /// EM for EMT, T for T0, TM for Tm.
-    old: bool,
+    pub old: bool,
+    /// Line breaks in headings, in place of the blanks before symbols and units.
+    pub breaks: bool,
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum UnitPlace {
+pub enum UnitPlace {
     Round,
     Square,
     Comma,
@@ -42,18 +45,18 @@ enum UnitPlace {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Names {
+pub enum Names {
     Symbol,
     Full,
     Both,
 }
 
 impl Style<'_> {
-    fn direction(&self, d: Direction) -> &str {
+    pub fn direction(&self, d: Direction) -> &str {
         if d == Direction::Warp { self.warp } else { self.weft }
     }
 
-    fn symbol(&self, p: P) -> &'static str {
+    pub fn symbol(&self, p: P) -> &'static str {
         match p {
             P::Emt if self.old => "EM",
             P::T0 if self.old => "T",
@@ -62,40 +65,44 @@ impl Style<'_> {
         }
     }
 
-    fn name(&self, p: P) -> String {
+    pub fn name(&self, p: P) -> String {
         match (self.names, self.language.full_name(p)) {
             (Names::Full, Some(name)) => name.to_string(),
-            (Names::Both, Some(name)) => format!("{name} {}", self.symbol(p)),
+            (Names::Both, Some(name)) => format!("{name}{}{}", self.blank(), self.symbol(p)),
             _ => self.symbol(p).to_string(),
         }
     }
 
-    fn with_unit(&self, name: String, (unit, _): Printed) -> String {
+    fn blank(&self) -> char {
+        if self.breaks { '\n' } else { ' ' }
+    }
+
+    pub fn with_unit(&self, name: String, (unit, _): Printed) -> String {
         match self.unit {
             _ if unit.is_empty() || (unit == "-" && self.unit != UnitPlace::Square) => name,
-            UnitPlace::Round => format!("{name} ({unit})"),
-            UnitPlace::Square => format!("{name} [{unit}]"),
+            UnitPlace::Round => format!("{name}{}({unit})", self.blank()),
+            UnitPlace::Square => format!("{name}{}[{unit}]", self.blank()),
             UnitPlace::Comma => format!("{name}, {unit}"),
             UnitPlace::Own => name,
         }
     }
 
-    fn head(&self, q: &Quantity) -> String {
+    pub fn head(&self, q: &Quantity) -> String {
         self.with_unit(self.name(q.parameter), q.unit)
     }
 }
 
-const BOTH: [Direction; 2] = [Direction::Warp, Direction::Weft];
+pub const BOTH: [Direction; 2] = [Direction::Warp, Direction::Weft];
 
 fn number(p: Printing) -> Cell {
     Cell::Number(p)
 }
 
-fn mean(q: &Quantity) -> Printing {
+pub fn mean(q: &Quantity) -> Printing {
     Printing::of(q.mean())
 }
 
-fn expect(fabric: &Fabric, q: &Quantity, value: f64, named: bool) -> Expected {
+pub fn expect(fabric: &Fabric, q: &Quantity, value: f64, named: bool) -> Expected {
     Expected::Value {
         fabric: named.then(|| fabric.name.clone()),
         parameter: q.parameter,
@@ -105,7 +112,7 @@ fn expect(fabric: &Fabric, q: &Quantity, value: f64, named: bool) -> Expected {
 }
 
 /// What the table says of a fabric if it prints the mean of each quantity.
-fn printed_means(fabric: &Fabric, named: bool) -> Vec<Expected> {
+pub fn printed_means(fabric: &Fabric, named: bool) -> Vec<Expected> {
     fabric.quantities.iter().map(|q| expect(fabric, q, mean(q).value, named)).collect()
 }
 
@@ -114,7 +121,7 @@ fn repeats(fabric: &Fabric, named: bool) -> Vec<Expected> {
     fabric.quantities.iter().map(|q| expect(fabric, q, q.mean(), named)).collect()
 }
 
-fn title(grid: &mut Grid, rng: &mut Pcg64, l: &Language) {
+pub fn title(grid: &mut Grid, rng: &mut Pcg64, l: &Language) {
     if chance(rng, 0.5) {
         grid.texts(&[l.title]);
         if chance(rng, 0.5) {
@@ -164,16 +171,17 @@ pub fn any(rng: &mut Pcg64, l: &Language) -> Table {
         weft: pick(rng, l.weft),
         names: pick(rng, &[Names::Symbol, Names::Symbol, Names::Symbol, Names::Both, Names::Full]),
         old: chance(rng, 0.3),
+        breaks: chance(rng, 0.12),
     };
     let directional: Vec<P> = group.iter().copied().filter(|p| p.is_directional()).collect();
     let n = rng.random_range(2..6);
-    let layout = rng.random_range(0..15);
+    let layout = rng.random_range(0..24);
     // Layouts with a head for each direction hold directional parameters alone, or all.
     let own = if directional.is_empty() { group } else { &directional[..] };
     let parameters = if matches!(layout, 0 | 4 | 5 | 11) { group } else { own };
-    let count = if matches!(layout, 4 | 6..=9 | 14) { 1 } else { rng.random_range(2..5) };
-    let repeats = if matches!(layout, 6..=10 | 14) { n } else { 1 };
-    let all = fabrics(rng, parameters, count, if layout == 13 { 3 } else { repeats }, si);
+    let count = if matches!(layout, 4 | 6..=9 | 14 | 16 | 17) { 1 } else { rng.random_range(2..5) };
+    let repeats = if matches!(layout, 6..=10 | 14 | 23) { n } else { 1 };
+    let all = fabrics(rng, parameters, count, if matches!(layout, 13 | 15) { 3 } else { repeats }, si);
     let one = &all[0];
     match layout {
         0 => wide(rng, &style, &all),
@@ -190,7 +198,15 @@ pub fn any(rng: &mut Pcg64, l: &Language) -> Table {
         11 => long(rng, &style, &all),
         12 => literature(rng, &style, &all),
         13 => plus_minus(rng, &style, &all),
-        _ => side_by_side(rng, &style, one),
+        14 => side_by_side(rng, &style, one),
+        15 => newer::units_in_cells(rng, &style, &all),
+        16 => newer::lines(rng, &style, one),
+        17 if one.quantities[0].direction.is_some() => newer::wrong_units(rng, &style, one),
+        17 | 18 => newer::conditions(rng, &style, &all),
+        19 | 20 => newer::marked(rng, &style, &all),
+        21 => newer::letters(rng, &style, &all),
+        22 => newer::strangers(rng, &style, &all),
+        _ => newer::merged_down(rng, &style, &all),
     }
 }
 

@@ -35,6 +35,7 @@ pub fn units(p: Parameter) -> &'static [Printed] {
         ("µN·m", 1e-6),
         ("uN.m", 1e-6),
         ("cN·cm²/cm", 1e-4),
+        ("lbf.in2/in", 4.4482216152605 * 0.0254),
     ];
     const HB: &[Printed] = &[
         ("gf·cm/cm", GF),
@@ -57,7 +58,8 @@ pub fn units(p: Parameter) -> &'static [Printed] {
         ("N/(m·deg)", 1.0 / DEG),
         ("cN/cm·deg", 1.0 / DEG),
     ];
-    const HG: &[Printed] = &[("gf/cm", GF / 1e-2), ("N/m", 1.0), ("cN/cm", 1.0)];
+    const HG: &[Printed] =
+        &[("gf/cm", GF / 1e-2), ("N/m", 1.0), ("cN/cm", 1.0), ("lbf/in", 4.4482216152605 / 0.0254)];
     const ENERGY: &[Printed] = &[
         ("gf·cm/cm²", GF / 1e-2),
         ("gf.cm/cm2", GF / 1e-2),
@@ -68,7 +70,7 @@ pub fn units(p: Parameter) -> &'static [Printed] {
     ];
     const PART: &[Printed] = &[("%", 0.01)];
     const ONE: &[Printed] = &[("", 1.0), ("-", 1.0)];
-    const T: &[Printed] = &[("mm", 1e-3), ("mm", 1e-3), ("µm", 1e-6)];
+    const T: &[Printed] = &[("mm", 1e-3), ("mm", 1e-3), ("µm", 1e-6), ("in", 0.0254)];
     const W: &[Printed] = &[("mg/cm²", 1e-2), ("mg/cm2", 1e-2), ("g/m²", 1e-3), ("g/m2", 1e-3)];
     const SMD: &[Printed] = &[("µm", 1e-6), ("um", 1e-6), ("micron", 1e-6), ("μm", 1e-6)];
     match p {
@@ -150,7 +152,7 @@ pub struct Printing {
 impl Printing {
     /// `value` to four figures.
     pub fn of(value: f64) -> Self {
-        let decimals = (3 - value.abs().max(1e-9).log10().floor() as i32).clamp(0, 6) as usize;
+        let decimals = (3 - value.abs().max(1e-9).log10().floor() as i32).clamp(0, 9) as usize;
         let text = format!("{value:.decimals$}");
         Self { value: text.parse().unwrap_or(value), decimals }
     }

@@ -211,7 +211,7 @@ pub const LANGUAGES: &[Language] = &[
     },
     Language {
         name: "tr",
-        encodings: &["windows-1254"],
+        encodings: &["windows-1254", "cp857"],
         comma: true,
         sample: &["Numune", "Kumaş", "Numune adı"],
         direction: &["Yön"],
@@ -307,7 +307,7 @@ pub const LANGUAGES: &[Language] = &[
     },
     Language {
         name: "nl",
-        encodings: &["windows-1252"],
+        encodings: &["windows-1252", "windows-1252", "cp850"],
         comma: true,
         sample: &["Monster", "Weefsel", "Stof"],
         direction: &["Richting"],
@@ -339,7 +339,7 @@ pub const LANGUAGES: &[Language] = &[
     },
     Language {
         name: "fr",
-        encodings: &["windows-1252"],
+        encodings: &["windows-1252", "windows-1252", "cp850"],
         comma: true,
         sample: &["Échantillon", "Tissu", "Réf. tissu"],
         direction: &["Sens", "Direction"],
@@ -371,7 +371,7 @@ pub const LANGUAGES: &[Language] = &[
     },
     Language {
         name: "it",
-        encodings: &["windows-1252"],
+        encodings: &["windows-1252", "windows-1252", "cp850"],
         comma: true,
         sample: &["Campione", "Tessuto"],
         direction: &["Direzione", "Senso"],
@@ -403,7 +403,7 @@ pub const LANGUAGES: &[Language] = &[
     },
     Language {
         name: "es",
-        encodings: &["windows-1252"],
+        encodings: &["windows-1252", "windows-1252", "cp850"],
         comma: true,
         sample: &["Muestra", "Tejido", "Tela"],
         direction: &["Dirección", "Sentido"],
@@ -435,7 +435,7 @@ pub const LANGUAGES: &[Language] = &[
     },
     Language {
         name: "de",
-        encodings: &["windows-1252"],
+        encodings: &["windows-1252", "windows-1252", "cp850"],
         comma: true,
         sample: &["Probe", "Gewebe", "Muster", "Stoff"],
         direction: &["Richtung", "Prüfrichtung"],
@@ -467,7 +467,7 @@ pub const LANGUAGES: &[Language] = &[
     },
     Language {
         name: "pt",
-        encodings: &["windows-1252"],
+        encodings: &["windows-1252", "windows-1252", "cp850"],
         comma: true,
         sample: &["Amostra", "Tecido"],
         direction: &["Direção", "Sentido"],

@@ -196,6 +196,18 @@ super::facts! {
             /// What stands in the cells.
             cells: Vec<String>,
         } = "bounds and ranges are no values, and left out: {}; enter the value if it is known", some(cells);
+        /// Numbers of specimens in a column whose heading is not understood.
+        "R132" CountedUnder {
+            /// Its heading.
+            column: String,
+        } = "the numbers in the column {column:?}, which is not understood, count as those of specimens, whose values are averaged: head \
+             it `specimen` if that is so, or give rows of different states different fabrics";
+        /// Letters that stand for directions.
+        "R133" DirectionsFromLetters {
+            /// The texts in which they stand.
+            texts: Vec<String>,
+        } = "single letters are read as warp and weft, because each stands beside its partner: {}; write the words if they are \
+             something else", some(texts);
         /// Blank cells below a direction or a parameter.
         "R124" MergedCells {} = "blank cells are read as the direction or parameter above them, as of merged cells: fill them in \
              if they are something else";

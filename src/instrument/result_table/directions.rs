@@ -11,13 +11,14 @@ use crate::kes::Key;
 
 impl Table<'_, '_> {
     /// `F1-warp`, `F1-weft` in the column of names: fabrics that end with a direction each, and occur in several of them.
-    pub(super) fn directions_in_names(&self, rows: &mut [(&Row<'_>, RowFacts)]) {
+    pub(super) fn directions_in_names(&mut self, rows: &mut [(&Row<'_>, RowFacts)]) {
         let v = self.context.vocabulary;
         let parts = |name: &str| {
             let name = name.trim_end_matches([')', ']']);
             let at = name.rfind(|c: char| !c.is_alphanumeric())?;
             let (stem, word) = name.split_at(at);
-            let direction = v.direction_exactly(word.trim_start_matches(|c: char| !c.is_alphanumeric()))?;
+            let word = word.trim_start_matches(|c: char| !c.is_alphanumeric());
+            let direction = v.direction_exactly(word).or_else(|| v.letter(word))?;
             let stem = stem.trim_end_matches(|c: char| !c.is_alphanumeric()).to_string();
             (!stem.is_empty()).then_some((stem, direction))
         };
@@ -32,6 +33,8 @@ impl Table<'_, '_> {
         }
         for ((_, facts), split) in rows.iter_mut().zip(&split) {
             if let Some((stem, direction)) = split {
+                let name = facts.fabric.iter().filter(|name| v.direction(name).is_none());
+                self.layout.letters.extend(name.cloned());
                 (facts.fabric, facts.facets.direction) = (Some(stem.clone()), Some(*direction));
             }
         }

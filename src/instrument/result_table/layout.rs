@@ -6,10 +6,11 @@ use crate::instrument::dialect::{Statistic, TableColumn};
 use crate::instrument::error::{Problem, ReadError};
 use crate::instrument::facets::Facets;
 use crate::instrument::layout::Context;
+use crate::instrument::letters;
 use crate::instrument::raw::Row;
 use crate::instrument::shape::{self, Region};
 use crate::instrument::sniff::{Number, number};
-use crate::instrument::unit_text::unit;
+use crate::instrument::unit_text::{unbracketed, unit};
 use crate::instrument::words::folded;
 
 /// Characters of the longest name of a fabric over columns; what is longer is a title.
@@ -53,6 +54,12 @@ pub(super) struct Layout {
     numbers: BTreeSet<usize>,
     /// Heads that were read as directions although they say more.
     pub texts_of_directions: Vec<String>,
+    /// Columns of numbers whose heads are not understood.
+    pub strangers: Vec<String>,
+    /// The head over numbers of specimens, where it is not understood.
+    pub counted_by: Option<String>,
+    /// Heads and names whose letters are directions.
+    pub letters: Vec<String>,
     /// What each column holds, for people.
     told: Vec<String>,
 }
@@ -72,6 +79,9 @@ impl Layout {
             left_out_rows: BTreeMap::new(),
             numbers: BTreeSet::new(),
             texts_of_directions: Vec::new(),
+            strangers: Vec::new(),
+            counted_by: None,
+            letters: heads.letters.clone(),
             told: Vec::new(),
         };
         let labels: Vec<(&Row<'_>, usize)> = region
@@ -189,6 +199,7 @@ impl Layout {
             self.numbers = labels.iter().filter_map(|f| f.index).collect();
             self.directions_over_columns(context);
             self.fabrics_over_columns(heads);
+            self.leave_out_strangers();
             return;
         }
         self.drop_numbers_that_do_not_count();
@@ -262,7 +273,10 @@ impl Layout {
                 Some(TableColumn::N) if (counts || labelled) && !has_specimen => {
                     label.meta = Some(TableColumn::Specimen)
                 }
-                None if is_first && counts && !has_specimen => label.meta = Some(TableColumn::Specimen),
+                None if is_first && counts && !has_specimen => {
+                    label.meta = Some(TableColumn::Specimen);
+                    self.counted_by = Some(label.name.clone()).filter(|name| !name.is_empty());
+                }
                 None if is_first && !named => {
                     // Anything else names fabrics.
                     label.meta = Some(if labelled { TableColumn::Specimen } else { TableColumn::Fabric });
@@ -334,10 +348,9 @@ fn counts(cells: &[&str]) -> bool {
 }
 
 fn is_units(row: &Row<'_>) -> bool {
-    let bare = |t: &str| folded(t).trim_matches(['(', ')', '[', ']']).trim().to_string();
     let mut any = false;
     for (_, c) in row.filled() {
-        let text = bare(&c.text);
+        let text = unbracketed(&c.text);
         if text != "-" && (number(&text, '.') != Number::Text || unit(&text).is_err()) {
             return false;
         }
@@ -365,19 +378,20 @@ struct Heads {
     /// From the lowest row up: facets, and whether the text was spread over the columns to the right.
     rows: Vec<Vec<Head>>,
     units: Option<Vec<(String, (usize, usize))>>,
+    /// Heads whose letters are directions.
+    letters: Vec<String>,
 }
 
 impl Heads {
     fn of(region: &Region<'_>, context: &Context<'_>) -> Self {
         let width = region.heads.iter().chain(&region.rows).map(|r| r.cells.len()).max().unwrap_or(0);
-        let mut units = None;
+        let (mut units, mut letter_texts) = (None, Vec::new());
         let mut rows = Vec::new();
         let words: Vec<&&Row<'_>> = region.heads.iter().filter(|h| !is_units(h)).collect();
         for head in region.heads.iter().filter(|h| is_units(h)) {
             let bare = |i| {
-                let text =
-                    head.get(i).map(|t| folded(t).trim_matches(['(', ')', '[', ']']).trim().to_string());
-                (text.unwrap_or_default(), (head.line, head.column(i)))
+                let text = head.get(i).map(unbracketed).unwrap_or_default();
+                (text, (head.line, head.column(i)))
             };
             units = Some((0..width).map(bare).collect());
         }
@@ -397,6 +411,11 @@ impl Heads {
                 let cell = cell.or_else(spread).unwrap_or_else(empty);
                 cells.push(cell);
             }
+            let lettered = letters::in_heads(head, context.vocabulary);
+            letter_texts.extend(lettered.iter().filter_map(|(i, _)| Some(cells.get(*i)?.1.clone())));
+            for (i, facets) in lettered {
+                cells[i].0 = facets;
+            }
             // Where rows are parameters, `B` and `G` beside `A` over their columns are names like it.
             let names = cells.iter().filter(|(f, ..)| f.unknown && f.meta.is_none());
             if region.down && !lowest && names.count() > 0 {
@@ -405,7 +424,7 @@ impl Heads {
             }
             rows.insert(0, cells);
         }
-        Self { rows, units }
+        Self { rows, units, letters: letter_texts }
     }
 
     /// The name that stands in a row above the lowest heads of a column.

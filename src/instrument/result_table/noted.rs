@@ -2,8 +2,9 @@
 
 use super::Table;
 use crate::finding::{Finding, Place, ReadFact};
+use crate::instrument::cell::parts;
 use crate::instrument::raw::Row;
-use crate::instrument::value::{Printed, printed};
+use crate::instrument::value::Printed;
 
 /// Where the first of some cells stands (line, column), and what they say.
 pub(super) type Cells = Option<((usize, usize), Vec<String>)>;
@@ -11,7 +12,7 @@ pub(super) type Cells = Option<((usize, usize), Vec<String>)>;
 impl Table<'_, '_> {
     /// Whether a cell bounds a value and is none; such cells, and marks behind numbers, are noted.
     pub(super) fn states_no_value(&mut self, row: &Row<'_>, index: usize, cell: &str) -> bool {
-        let found = printed(cell, self.context.decimal);
+        let found = parts(cell, self.context.decimal).printed;
         let noted = match found {
             Printed::Bound => &mut self.bounds,
             Printed::Marked(..) => &mut self.marked,

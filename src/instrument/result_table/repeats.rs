@@ -6,12 +6,13 @@ use super::rows_above::RowsAbove;
 use super::states::States;
 use super::{Contents, Datum, RowFacts, Table};
 use crate::finding::{Finding, Place, ReadFact};
+use crate::instrument::cell::parts;
 use crate::instrument::dialect::{Statistic, TableColumn};
 use crate::instrument::error::{Problem, ReadError};
 use crate::instrument::raw::Row;
 use crate::instrument::sniff::Number;
 use crate::instrument::statistic::{finding, names_statistics};
-use crate::instrument::value::value;
+use crate::instrument::value::Printed;
 use crate::instrument::vocabulary::Vocabulary;
 use crate::instrument::words::folded;
 use crate::instrument::{Direction, Parameter, ResultValue};
@@ -47,7 +48,9 @@ impl<'t> Table<'t, '_> {
     /// `Mean` in the column of fabrics.
     fn names_of_statistics(&mut self, rows: &mut [(&Row<'_>, RowFacts)]) {
         let v = self.context.vocabulary;
-        let word = |f: &RowFacts| f.fabric.clone().filter(|t| v.statistic(t).is_some());
+        let names = rows.iter().filter_map(|(_, f)| f.fabric.as_deref());
+        let beside_mean = names.into_iter().any(|t| v.statistic(t) == Some(Statistic::Mean));
+        let word = |f: &RowFacts| f.fabric.clone().filter(|t| statistic_of_row(t, beside_mean, v).is_some());
         let own = |(row, f): &(&Row<'_>, RowFacts)| {
             let named = self.layout.labels.iter().any(|l| {
                 matches!(l.meta, Some(TableColumn::Id | TableColumn::Fabric)) && row.get(l.index).is_some()
@@ -60,9 +63,9 @@ impl<'t> Table<'t, '_> {
         }
         let others = words.iter().zip(rows.iter()).any(|(w, (_, f))| w.is_none() && f.fabric.is_some());
         for ((_, facts), word) in rows.iter_mut().zip(words) {
-            let is_word = facts.fabric.as_ref().filter(|t| v.statistic(t).is_some()).cloned();
-            let Some(text) = word.or(is_word) else { continue };
-            facts.facets.statistic = v.statistic(&text);
+            let own = facts.fabric.clone().filter(|t| statistic_of_row(t, beside_mean, v).is_some());
+            let Some(text) = word.or(own) else { continue };
+            facts.facets.statistic = statistic_of_row(&text, beside_mean, v);
             facts.facets.sd = v.table_column(&text) == Some(TableColumn::Sd);
             // Beside fabrics it sums them up, and belongs to none.
             facts.fabric = None;
@@ -378,6 +381,13 @@ impl Datum {
     }
 }
 
+/// How a name says that its row sums up others. `s` and `V%` are deviations beside a mean, and else names.
+fn statistic_of_row(name: &str, beside_mean: bool, v: Vocabulary<'_>) -> Option<Statistic> {
+    let deviation =
+        beside_mean && (v.table_column(name) == Some(TableColumn::Sd) || name.trim_end().ends_with('%'));
+    v.statistic(name).or(deviation.then_some(Statistic::Spread))
+}
+
 /// The name, the statistic and its word in `F1 mean`, `F1 (SD)` and `mean of F1`.
 fn summed_up(text: &str, v: Vocabulary<'_>) -> Option<(String, Statistic, String)> {
     let edge = |c: char| !c.is_alphanumeric();
@@ -396,8 +406,9 @@ fn summed_up(text: &str, v: Vocabulary<'_>) -> Option<(String, Statistic, String
 
 /// A number and half of its last decimal.
 fn rounded(cell: &str, decimal: char) -> Option<(f64, f64)> {
-    let (Number::Value(v), None) = value(cell, decimal) else { return None };
-    let text = folded(cell);
+    let parts = parts(cell, decimal);
+    let Printed::Plain(Number::Value(v), None) = parts.printed else { return None };
+    let text = folded(&parts.number);
     let decimals = text.split_once(decimal).map_or(0, |(_, d)| d.bytes().filter(u8::is_ascii_digit).count());
     // The repeats are rounded as well.
     Some((v, 0.5001 * 10f64.powi(-(decimals.min(15) as i32)) + 1e-9 * v.abs()))

@@ -1,0 +1,82 @@
+//! Letters of directions, each beside its partner: `B_K` and `B_S`, `L` and `T` over columns.
+
+use super::Direction;
+use super::facets::Facets;
+use super::raw::Row;
+use super::vocabulary::Vocabulary;
+use super::words::{folded, normalised};
+
+/// A text without its letter of a direction.
+struct Lettered {
+    index: usize,
+    direction: Direction,
+    letter: String,
+    rest: String,
+}
+
+impl Lettered {
+    /// Whether the other is the same text with the letter of the other direction.
+    fn is_partner(&self, other: &Self, v: Vocabulary<'_>) -> bool {
+        let (warp, weft) = if self.direction == Direction::Warp { (self, other) } else { (other, self) };
+        normalised(&self.rest) == normalised(&other.rest) && v.are_partners(&warp.letter, &weft.letter)
+    }
+}
+
+/// What the cells of a row of heads say, where letters of directions stand in them, each beside its partner: facets by index.
+/// Letters alone are that only where nothing else in the row names a value or is not understood.
+pub(super) fn in_heads(row: &Row<'_>, v: Vocabulary<'_>) -> Vec<(usize, Facets)> {
+    // Most rows have no letter that stands alone.
+    if row.filled().filter(|(_, c)| has_letter(&c.text, v)).count() < 2 {
+        return Vec::new();
+    }
+    let found: Vec<Lettered> = row.filled().filter_map(|(i, c)| lettered(i, &c.text, v)).collect();
+    let paired: Vec<&Lettered> =
+        found.iter().filter(|one| found.iter().any(|other| one.is_partner(other, v))).collect();
+    let mut others = row.filled().filter(|(i, _)| paired.iter().all(|one| one.index != *i));
+    let alone = !others.any(|(_, c)| is_value_or_strange(&c.text, v));
+    let mut out = Vec::new();
+    for one in paired {
+        let rest = Facets::of(&one.rest, v);
+        if if one.rest.is_empty() { alone } else { rest.names_value() } {
+            out.push((one.index, Facets { direction: Some(one.direction), ..rest }));
+        }
+    }
+    out
+}
+
+fn is_value_or_strange(text: &str, v: Vocabulary<'_>) -> bool {
+    let says = Facets::of(text, v);
+    says.names_value() || (says.unknown && says.meta.is_none())
+}
+
+/// The letter of a direction behind the name of a value, or as the whole text.
+fn lettered(index: usize, text: &str, v: Vocabulary<'_>) -> Option<Lettered> {
+    let text = folded(text).into_owned();
+    if let Some(direction) = v.letter(&text) {
+        return Some(Lettered { index, direction, letter: text, rest: String::new() });
+    }
+    if Facets::of(&text, v).direction.is_some() {
+        return None;
+    }
+    let mut at = 0;
+    for word in text.split(|c: char| !c.is_alphanumeric()) {
+        let (start, end) = (at, at + word.len());
+        at = end + text[end..].chars().next().map_or(0, char::len_utf8);
+        let Some(direction) = v.letter(word).filter(|_| start > 0) else { continue };
+        let rest =
+            format!("{} {}", text[..start].trim_end_matches(['_', '-', ' ']), text[end..].trim_start());
+        let rest = rest.replace("( )", "").replace("()", "").trim().to_string();
+        if Facets::of(&rest, v).names_value() {
+            return Some(Lettered { index, direction, letter: word.to_string(), rest });
+        }
+    }
+    None
+}
+
+fn is_short(word: &str) -> bool {
+    word.starts_with(char::is_alphabetic) && word.chars().nth(1).is_none()
+}
+
+fn has_letter(text: &str, v: Vocabulary<'_>) -> bool {
+    text.split(|c: char| !c.is_alphanumeric()).any(|word| is_short(word) && v.letter(word).is_some())
+}
