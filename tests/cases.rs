@@ -7,8 +7,12 @@ use kesf::solve::Options;
 use kesf::study::{Case, Status, section, solve_case};
 
 fn shipped() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
-    let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    let below = |folder: &Path| -> Vec<PathBuf> {
+        std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect()
+    };
+    let all = below(&Path::new(env!("CARGO_MANIFEST_DIR")).join("cases"));
+    let mut files: Vec<PathBuf> =
+        all.into_iter().flat_map(|path| if path.is_dir() { below(&path) } else { vec![path] }).collect();
     files.sort();
     files
 }

@@ -10,7 +10,7 @@ use kesf::element::{Formulation, Mass};
 use kesf::mesh::rectangle;
 use kesf::model::{Load, Model, Support};
 use kesf::section::ShellSection;
-use kesf::solve::newmark::{LoadHistory, Rayleigh, Settings, newmark};
+use kesf::solve::newmark::{Beginning, LoadHistory, Rayleigh, Scheme, Settings, newmark};
 use kesf::solve::{Mode, Options, modes};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
@@ -87,6 +87,8 @@ fn a_step_load_follows_the_oscillator_at_second_order_and_keeps_energy() {
         damping: Rayleigh::default(),
         load: LoadHistory::Step,
         mass: Mass::Lumped,
+        scheme: Scheme::default(),
+        beginning: Beginning::default(),
     };
     let exact = |t: f64| (1.0 - (w * t).cos()) / (w * w);
     let (coarse, fine) =
@@ -117,6 +119,8 @@ fn damping_ratios_are_those_asked_for() {
             damping,
             load: LoadHistory::Step,
             mass: Mass::Lumped,
+            scheme: Scheme::default(),
+            beginning: Beginning::default(),
         };
         let out = run(&model, &mode, settings, exact);
         assert!(out.worst < 1e-3, "{}", out.worst);
@@ -136,6 +140,8 @@ fn the_adaptive_step_meets_its_tolerance_with_few_steps() {
         damping: Rayleigh::default(),
         load: LoadHistory::Step,
         mass: Mass::Lumped,
+        scheme: Scheme::default(),
+        beginning: Beginning::default(),
     };
     let out = run(&model, &mode, settings, |t| (1.0 - (w * t).cos()) / (w * w));
     assert!(out.steps < 200, "{}", out.steps);
@@ -193,8 +199,16 @@ fn the_adaptive_step_follows_what_moves() {
         ("damped sine", LoadHistory::Sine(5.0), damping),
     ];
     for (name, load, damping) in runs {
-        let settings =
-            Settings { duration: 0.5, step: 5e-5, tolerance: None, damping, load, mass: Mass::Lumped };
+        let settings = Settings {
+            duration: 0.5,
+            step: 5e-5,
+            tolerance: None,
+            damping,
+            load,
+            mass: Mass::Lumped,
+            scheme: Scheme::default(),
+            beginning: Beginning::default(),
+        };
         let fine = motion(&model, &settings, 6 * 40 + 2);
         for tolerance in [1e-2, 1e-3, 1e-4] {
             let adaptive = Settings { step: 0.01, tolerance: Some(tolerance), ..settings };
@@ -222,6 +236,8 @@ fn the_adaptive_step_of_a_free_sheet() {
         damping: Rayleigh::default(),
         load,
         mass: Mass::Lumped,
+        scheme: Scheme::default(),
+        beginning: Beginning::default(),
     };
     let free = motion(&model, &settings(LoadHistory::Step), 6 * 40 + 2);
     let (t, w) = free[free.len() - 1];
@@ -232,4 +248,29 @@ fn the_adaptive_step_of_a_free_sheet() {
     let worst = carried.iter().map(|(t, w)| (w - exact(*t)).abs()).fold(0.0, f64::max) / exact(1.0);
     println!("{} steps, off {worst:.1e}", carried.len());
     assert!(worst < 0.01 && carried.len() < 400, "{worst:e} after {} steps", carried.len());
+}
+
+/// Parameters and beginnings of a motion that have no meaning are refused where they stand.
+#[test]
+fn beta_gamma_and_the_beginning_are_refused_where_they_have_no_meaning() {
+    let text = std::fs::read_to_string(
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/paper/paper_newmark_released.toml"),
+    )
+    .unwrap();
+    let parse = |keys: &str| {
+        let text = text.replace("beta = 0.25\ngamma = 0.5\nstart = \"deflected\"\n", keys);
+        kesf::study::Case::parse("motion.toml".as_ref(), &text).map(|_| ()).map_err(|e| e.to_string())
+    };
+    assert_eq!(parse("start = \"deflected\"\n"), Ok(()));
+    assert_eq!(parse("gamma = 0.6\nstart_velocity = \"1 mm/s\"\n"), Ok(()));
+    for (keys, word) in [
+        ("beta = 0.16666666666666666\nstart = \"deflected\"\n", "beta"),
+        ("gamma = 0.4\nstart = \"deflected\"\n", "gamma"),
+        ("gamma = 0.6\ntolerance = 1e-3\nstart = \"deflected\"\n", "tolerance"),
+        ("", "off"),
+        ("large_rotations = true\nstart = \"deflected\"\n", "start"),
+    ] {
+        let refused = parse(keys).unwrap_err();
+        assert!(refused.contains("S003") && refused.contains(word), "{keys}: {refused}");
+    }
 }

@@ -16,7 +16,7 @@ use kesf::section::ShellSection;
 use kesf::solve::iterative::Settings as Iteration;
 use kesf::solve::linear::Method;
 use kesf::solve::modal::modes;
-use kesf::solve::newmark::{LoadHistory, Rayleigh, Settings, newmark};
+use kesf::solve::newmark::{Beginning, LoadHistory, Rayleigh, Scheme, Settings, newmark};
 use kesf::solve::{Options, solve};
 use kesf::study::{Case, validate};
 use nalgebra::{Matrix2, Matrix3, Rotation3, Vector3};
@@ -111,6 +111,8 @@ fn it_swings_as_the_one_along_the_axes() {
         damping: Rayleigh::default(),
         load: LoadHistory::Step,
         mass: Mass::Lumped,
+        scheme: Scheme::default(),
+        beginning: Beginning::default(),
     };
     let centre = 6 * (5 * 13 + 6);
     let history = |turn: &Rotation3<f64>| {

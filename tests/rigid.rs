@@ -10,7 +10,7 @@ use kesf::mesh::{QuadMesh, distorted, rectangle};
 use kesf::model::{Dof, DofGroup, Load, Model, RigidBody, Support};
 use kesf::section::ShellSection;
 use kesf::solve::assemble::{ElementMatrices, Kind, multiply};
-use kesf::solve::newmark::{LoadHistory, Rayleigh, Settings, newmark};
+use kesf::solve::newmark::{Beginning, LoadHistory, Rayleigh, Scheme, Settings, newmark};
 use kesf::solve::{self, Options, modes, modes_with};
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Point3, Vector3};
 
@@ -207,6 +207,8 @@ fn a_free_rigid_sheet_accelerates_steadily() {
         damping: Rayleigh { alpha: 0.0, beta: 0.3 },
         load: LoadHistory::Step,
         mass: Mass::Consistent,
+        scheme: Scheme::default(),
+        beginning: Beginning::default(),
     };
     let (m, inertia) = (0.5, 0.5 * (1.0 + 1e-4) / 12.0);
     newmark(&model, &settings, &Options::default(), |at| {

@@ -1,9 +1,11 @@
 //! The public verification suite holds, every line, and the command tells so.
 
+use std::fs;
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::process::{Command, Output};
 
-use kesf::verify::{Kind, Line, Outcome, run, suite};
+use kesf::verify::{Expected, Kind, Line, Outcome, claims, run, suite};
 
 fn describe((line, outcome): (&Line, &Outcome)) -> String {
     match &outcome.result {
@@ -64,4 +66,51 @@ fn the_command_prints_a_table_and_a_count() {
     assert_eq!(document["schema"], "kesf.verify/1");
     assert_eq!(document["lines"].as_array().unwrap().len(), 10);
     assert_eq!(kesf(&["verify", "--filter", "no such line"]).status.code(), Some(2));
+}
+
+/// The claims of the paper, with what does not hold, the cases that show it, and the pictures of the page.
+#[test]
+fn every_claim_comes_out_as_is_told_and_has_its_cases_and_pictures() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let page = fs::read_to_string(root.join("docs/src/paper.md")).unwrap();
+    let out = tempfile::tempdir().unwrap();
+    let run = Command::new(env!("CARGO_BIN_EXE_kesf"))
+        .args(["verify", "--paper", "--json", "-o"])
+        .arg(out.path())
+        .output()
+        .unwrap();
+    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+    let document: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
+    assert_eq!(document["claims"].as_array().unwrap().len(), claims().len());
+    for claim in claims() {
+        for case in &claim.cases {
+            let files = ["cases", "cases/paper"].map(|folder| root.join(folder).join(format!("{case}.toml")));
+            assert!(files.iter().any(|file| file.exists()), "{}: {case}", claim.id);
+        }
+        let curves = claim.charts.iter().map(|chart| chart.stem.clone());
+        let sheets =
+            claim.sheets.iter().flat_map(|s| ["stress", "view"].map(|what| format!("{}_{what}", s.stem)));
+        for stem in curves.chain(sheets) {
+            let name = format!("{stem}.png");
+            assert!(page.contains(&format!("(images/{name})")), "{name} is not on the page");
+            let [made, shown] = [out.path().join(&name), root.join("docs/src/images").join(&name)]
+                .map(|file| fs::read(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display())));
+            // Another machine may round a pixel otherwise; the sizes of the files then differ by little.
+            assert!(
+                made.len().abs_diff(shown.len()) < shown.len() / 50,
+                "{name} is not as the command draws it"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_claim_that_holds_where_it_is_told_not_to_fails() {
+    let all: Vec<Line> = claims().into_iter().flat_map(|claim| claim.lines).collect();
+    let find = |id: &str| all.iter().find(|line| line.id == id).unwrap().clone();
+    let locked = find("paper.locking.displacement.thickness=0.01");
+    assert!(locked.check().pass && !locked.check().within);
+    assert!(!Line { expected: Expected::Within, ..locked }.check().pass);
+    let holds = find("paper.locking.mitc4.thickness=0.01");
+    assert!(!Line { expected: Expected::Beyond, ..holds }.check().pass);
 }

@@ -13,8 +13,8 @@ use super::sheet::Sheet;
 use super::supports::SheetSupport;
 use crate::element::Mass;
 use crate::finding::{Located, Node, Place, TomlError};
-use crate::quantity::{Frequency, Time, counts_angles};
-use crate::solve::newmark::LoadHistory;
+use crate::quantity::{Frequency, Time, Velocity, counts_angles};
+use crate::solve::newmark::{Beginning, LoadHistory, Scheme};
 use crate::solve::nonlinear::{Method, Settings};
 
 /// `[analysis]`: what is computed; of several kinds, `linear` without the table.
@@ -25,7 +25,7 @@ pub(super) enum AnalysisTable {
     Linear(LinearTable),
     /// Natural frequencies and modes, without loads.
     Modal(ModalTable),
-    /// Dynamics from rest.
+    /// Dynamics.
     Newmark(NewmarkTable),
     /// Statics in large rotations.
     Nonlinear(NonlinearTable),
@@ -57,7 +57,8 @@ impl Default for ModalTable {
     }
 }
 
-/// `kind = "newmark"`: dynamics from rest (Newmark's method, average acceleration).
+/// `kind = "newmark"`: dynamics, from rest unless another beginning is given (Newmark's method, average acceleration
+/// unless β and γ are given).
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct NewmarkTable {
@@ -72,7 +73,8 @@ pub(super) struct NewmarkTable {
     /// Damping ratios of the first and the third natural frequency; undamped when left out.
     #[schemars(extend("examples" = [[0.02, 0.02]]))]
     damping: Option<[f64; 2]>,
-    /// `"step"`, `"ramp until 0.1 s"` or `"sine 5 Hz"` (the same as `"sine 31.416 rad/s"`).
+    /// `"step"`, `"ramp until 0.1 s"`, `"sine 5 Hz"` (the same as `"sine 31.416 rad/s"`), or `"off"`: nothing acts, and the
+    /// sheet goes on from its `start`.
     #[serde(default = "step_load")]
     #[schemars(example = &"ramp until 0.1 s")]
     load: String,
@@ -88,6 +90,29 @@ pub(super) struct NewmarkTable {
     /// in the place of the one that keeps the energy. With large rotations only.
     #[schemars(example = 0.9)]
     spectral_radius: Option<f64>,
+    /// β of Newmark's method, γ/2 to 1, so that no step is too long. With small displacements only.
+    #[schemars(extend("default" = 0.25))]
+    beta: Option<f64>,
+    /// γ of Newmark's method, 1/2 to 1: above 1/2 what is fast is damped, the order is the first, the step is constant,
+    /// and the imbalance of the energies in the result is what the method has taken. With small displacements only.
+    #[schemars(extend("default" = 0.5))]
+    gamma: Option<f64>,
+    /// The sheet at the first instant; another one than `rest` with small displacements only.
+    #[serde(default)]
+    start: StartingShape,
+    /// Velocity along z of every node that is not held, at the first instant. With small displacements only.
+    start_velocity: Option<Velocity>,
+}
+
+/// The sheet at the first instant of a motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum StartingShape {
+    /// Without deformation.
+    #[default]
+    Rest,
+    /// With the deflection that the whole loads cause in statics: with `load = "off"` they let go of it.
+    Deflected,
 }
 
 /// `kind = "drape"`: a round sheet hangs from a disc, an `annulus` held at `inner`, in large rotations.
@@ -131,7 +156,7 @@ pub enum Analysis {
     Linear(Linear),
     /// Natural frequencies and modes.
     Modal(Modal),
-    /// Dynamics from rest.
+    /// Dynamics.
     Newmark(Newmark),
     /// Statics in large rotations.
     Nonlinear(Box<Nonlinear>),
@@ -159,7 +184,7 @@ pub struct Modal {
     pub coarser: Option<Located<Vec<Sheet>>>,
 }
 
-/// Dynamics from rest: nothing is prescribed.
+/// Dynamics: nothing is prescribed.
 #[derive(Clone, Debug)]
 pub struct Newmark {
     /// Forces and moments.
@@ -178,6 +203,10 @@ pub struct Newmark {
     pub mass: Mass,
     /// The size of rotations.
     pub rotations: Rotations,
+    /// β and γ; those of the average acceleration in large rotations.
+    pub scheme: Scheme,
+    /// The state at the first instant; rest in large rotations.
+    pub beginning: Beginning,
 }
 
 /// The size of rotations in a motion.
@@ -348,7 +377,47 @@ impl NewmarkTable {
             history: load_history(&self.load).or_else(|reason| refused(at.value_place("load"), reason))?,
             mass: mass(self.mass, self.lumped, at)?,
             rotations: self.rotations(at)?,
+            scheme: self.scheme(at)?,
+            beginning: self.beginning(at)?,
         })
+    }
+
+    fn scheme(&self, at: &Node<'_>) -> Result<Scheme, CaseError> {
+        let start = Scheme::default();
+        let gamma = self.gamma.unwrap_or(start.gamma);
+        let scheme = Scheme { beta: self.beta.unwrap_or(start.beta.max(0.5 * gamma)), gamma };
+        let key = if self.beta.is_some() { "beta" } else { "gamma" };
+        if !(scheme.is_stable() && scheme.beta <= 1.0 && scheme.gamma <= 1.0) {
+            let message = format!(
+                "[analysis] beta = {} with gamma = {}: take 1/2 <= gamma <= 2 beta and both at most 1, for which no step is \
+                 too long; a thin sheet has frequencies that no step resolves",
+                scheme.beta, scheme.gamma
+            );
+            return refused(at.value_place(key), message);
+        }
+        if self.tolerance.is_some() && scheme.gamma != start.gamma {
+            let message = "`tolerance` adapts the step by the local error of gamma = 0.5: remove one of them";
+            return refused(at.value_place("gamma"), message);
+        }
+        Ok(scheme)
+    }
+
+    fn beginning(&self, at: &Node<'_>) -> Result<Beginning, CaseError> {
+        let small = ["beta", "gamma", "start", "start_velocity"];
+        if let Some(key) = small.into_iter().find(|key| self.large_rotations && at.has(key)) {
+            return refused(
+                at.key_place(key),
+                format!("`{key}` is for small displacements: remove it, or large_rotations"),
+            );
+        }
+        let velocity = self.start_velocity.map_or(0.0, Velocity::si);
+        let beginning = Beginning { deflected: self.start == StartingShape::Deflected, velocity };
+        if self.load == "off" && beginning == Beginning::default() {
+            let message =
+                "load = \"off\" lets nothing act: give start = \"deflected\" or a start_velocity too";
+            return refused(at.value_place("load"), message);
+        }
+        Ok(beginning)
     }
 
     fn rotations(&self, at: &Node<'_>) -> Result<Rotations, CaseError> {
@@ -386,6 +455,8 @@ fn step_load() -> String {
 fn load_history(text: &str) -> Result<LoadHistory, String> {
     let history = if text == "step" {
         Ok(LoadHistory::Step)
+    } else if text == "off" {
+        Ok(LoadHistory::Off)
     } else if let Some(until) = text.strip_prefix("ramp until ") {
         let end = until.parse::<Time>().map_err(|e| e.to_string());
         end.and_then(|end| above_zero(end.si())).map(LoadHistory::Ramp)
@@ -398,7 +469,7 @@ fn load_history(text: &str) -> Result<LoadHistory, String> {
         Err("no such history".into())
     };
     history.map_err(|reason| {
-        format!("load = \"{text}\": {reason}; write \"step\", \"ramp until 0.1 s\" or \"sine 5 Hz\"")
+        format!("load = \"{text}\": {reason}; write \"step\", \"ramp until 0.1 s\", \"sine 5 Hz\" or \"off\"")
     })
 }
 

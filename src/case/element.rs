@@ -9,7 +9,7 @@ use serde::{Deserialize, Deserializer};
 
 use super::CaseError;
 use super::error::refused;
-use crate::element::{Cells, Drilling, Formulation, Mass, Membrane};
+use crate::element::{Cells, Drilling, Formulation, Mass, Membrane, ShearInterpolation};
 use crate::finding::Node;
 
 /// `[element]`; what is left out is as in the profile, and that is the default one when left out.
@@ -24,6 +24,10 @@ pub(super) struct ElementTable {
     /// The membrane: `cells` (smoothed as bending), `one_cell`, or `assumed_stress`, which is the default of a drape.
     #[schemars(extend("default" = "cells"))]
     membrane: Option<Membrane>,
+    /// The transverse shear: `mitc4`, or for comparison only `displacement` (locks in thin sheets) and `reduced` (leaves
+    /// motions without energy); nothing else of the element changes.
+    #[schemars(extend("default" = "mitc4"))]
+    shear: Option<ShearInterpolation>,
     /// α of the transverse shear, 0 to 1; in the profile `seed` 0 when left out, and `fourth_order` has its own.
     #[schemars(extend("default" = 0.05))]
     shear_stabilisation: Option<f64>,
@@ -147,6 +151,7 @@ impl ElementTable {
         }
         let of_drape = purpose.drape.then_some(Membrane::AssumedStress);
         formulation.membrane = self.membrane.or(of_drape).unwrap_or(formulation.membrane);
+        formulation.shear = self.shear.unwrap_or_default();
         if let Some(alpha) = self.shear_stabilisation {
             if !(0.0..=1.0).contains(&alpha) {
                 let message = format!("shear_stabilisation = {alpha}: it must be 0 to 1");
@@ -166,6 +171,12 @@ impl ElementTable {
             return refused(
                 at.key_place("shear_stabilisation"),
                 "`shear_stabilisation` is given by the [element] profile \"fourth_order\": remove one of them",
+            );
+        }
+        if self.shear.is_some_and(|shear| shear != ShearInterpolation::Mitc4) {
+            return refused(
+                at.value_place("shear"),
+                "the [element] profile `fourth_order` is derived for the shear of MITC4: remove `shear`, or the profile",
             );
         }
         if purpose.mass.is_some_and(|mass| mass != Mass::Lumped) {

@@ -47,6 +47,8 @@ pub struct Formulation {
     pub membrane: Membrane,
     /// Smoothing of the curvature.
     pub bending: Bending,
+    /// Interpolation of the transverse shear strain.
+    pub shear: ShearInterpolation,
     /// Stabilisation α of the transverse shear, `1/S_i + α h_i² / (3.5 B_i)` with `h_i` the side along `i`: 0 in
     /// Nguyen-Trong et al., 0.05 by default. It removes the loss of digits of very thin sheets.
     pub shear_stabilisation: f64,
@@ -104,6 +106,20 @@ pub enum Bending {
     OneCell,
 }
 
+/// How the transverse shear strain of an element follows from its displacements.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ShearInterpolation {
+    /// Tied at the middles of the sides (MITC4): thin sheets do not lock.
+    #[default]
+    Mitc4,
+    /// For comparison only: the derivatives of the bilinear displacements themselves, at 2 x 2 points. Thin sheets lock.
+    Displacement,
+    /// For comparison only: the same at the middle of the element alone. Thin sheets do not lock, but motions without
+    /// energy are left, which nothing but the supports holds.
+    Reduced,
+}
+
 /// The stiffness given to the drilling rotation θz.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drilling {
@@ -125,6 +141,7 @@ impl Default for Formulation {
             cells: Cells::grid(2, 2),
             membrane: Membrane::Cells,
             bending: Bending::Cells,
+            shear: ShearInterpolation::Mitc4,
             shear_stabilisation: 0.05,
             drilling: Drilling::Scaled,
         }
@@ -155,6 +172,7 @@ impl Formulation {
             cells: Cells::grid(2, 2),
             membrane: Membrane::Cells,
             bending: Bending::Cells,
+            shear: ShearInterpolation::Mitc4,
             shear_stabilisation: 0.0,
             drilling: Drilling::Seed(1e-3),
         }

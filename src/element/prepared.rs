@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::arcs::Arcs;
 use super::assumed::Assumed;
 use super::cellwise::Cellwise;
-use super::quad4::{Frame, GAUSS_2X2, gauss_point};
+use super::quad4::{Frame, gauss_point};
 use super::yarns::Yarns;
 use super::{Bending, Cell, Cells, Drilling, Formulation, Membrane, drilling, hourglass, shear};
 use crate::finding::{Coded, Fields};
@@ -155,10 +155,11 @@ impl Prepared {
             Bending::Cells => self.bending_stiffness(self.formulation.cells),
             Bending::OneCell => self.bending_stiffness(Cells::grid(1, 1)) + self.hourglass_stiffness(),
         };
-        for point in GAUSS_2X2 {
-            let at = gauss_point(&self.frame.xy, point);
-            let b = shear::shear_matrix(&self.frame.xy, &at);
-            k += b.transpose() * (self.d_s * at.det) * b;
+        let (points, weight) = self.formulation.shear.points();
+        for point in points {
+            let at = gauss_point(&self.frame.xy, *point);
+            let b = self.shear_strain_matrix(*point);
+            k += b.transpose() * (self.d_s * (weight * at.det)) * b;
         }
         k
     }
@@ -330,7 +331,7 @@ impl Prepared {
 
     /// Transverse shear strains at a natural point for local displacements `(w, θx, θy)` node by node.
     pub fn shear_strain_matrix(&self, natural: [f64; 2]) -> SMatrix<f64, 2, 12> {
-        shear::shear_matrix(&self.frame.xy, &gauss_point(&self.frame.xy, natural))
+        self.formulation.shear.matrix(&self.frame.xy, natural)
     }
 }
 

@@ -1,8 +1,9 @@
-//! MITC4 transverse shear: strains tied at the mid-sides.
+//! Transverse shear: strains tied at the mid-sides (MITC4), and those of the displacements themselves for comparison.
 
 use nalgebra::{Matrix2, SMatrix};
 
-use super::quad4::GaussPoint;
+use super::ShearInterpolation;
+use super::quad4::{GAUSS_2X2, GaussPoint, gauss_point};
 use crate::section::ShellSection;
 
 /// `D_s` with the thickness-free stabilisation, axes of `section`: `D_s⁻¹ + α/3.5 H^½ B⁻¹ H^½`, B = diag(B1, B2),
@@ -56,8 +57,39 @@ fn inverse(m: &Matrix2<f64>) -> Matrix2<f64> {
         / (m[(0, 0)] * m[(1, 1)] - m[(0, 1)] * m[(0, 1)])
 }
 
+impl ShearInterpolation {
+    /// The points at which the energy of the shear is taken, in natural coordinates, and the weight of each.
+    pub(super) fn points(self) -> (&'static [[f64; 2]], f64) {
+        match self {
+            Self::Mitc4 | Self::Displacement => (&GAUSS_2X2, 1.0),
+            Self::Reduced => (&[[0.0, 0.0]], 4.0),
+        }
+    }
+
+    /// The shear strains (2 x 12) at a point in natural coordinates, dofs `(w, θx, θy)` node by node; those of a reduced
+    /// integration are known in the middle alone.
+    pub(super) fn matrix(self, xy: &[[f64; 2]; 4], natural: [f64; 2]) -> SMatrix<f64, 2, 12> {
+        match self {
+            Self::Mitc4 => shear_matrix(xy, &gauss_point(xy, natural)),
+            Self::Displacement => compatible_matrix(&gauss_point(xy, natural)),
+            Self::Reduced => compatible_matrix(&gauss_point(xy, [0.0, 0.0])),
+        }
+    }
+}
+
+/// `B_s` (2 x 12) of Eq. (9), corrected: `w,x + θy` and `w,y - θx` of the bilinear displacements.
+fn compatible_matrix(at: &GaussPoint) -> SMatrix<f64, 2, 12> {
+    let mut b = SMatrix::<f64, 2, 12>::zeros();
+    for i in 0..4 {
+        let [x, y] = at.gradient(i);
+        (b[(0, 3 * i)], b[(0, 3 * i + 2)]) = (x, at.n[i]);
+        (b[(1, 3 * i)], b[(1, 3 * i + 1)]) = (y, -at.n[i]);
+    }
+    b
+}
+
 /// `B̄_s` (2 x 12) at a point, dofs `(w, θx, θy)` node by node: Eqs. (14) to (16), corrected.
-pub(super) fn shear_matrix(xy: &[[f64; 2]; 4], at: &GaussPoint) -> SMatrix<f64, 2, 12> {
+fn shear_matrix(xy: &[[f64; 2]; 4], at: &GaussPoint) -> SMatrix<f64, 2, 12> {
     // Half the side vectors: x,ξ on the sides 1-2 and 4-3, x,η on the sides 1-4 and 2-3.
     let half = |a: usize, b: usize| [0.5 * (xy[b][0] - xy[a][0]), 0.5 * (xy[b][1] - xy[a][1])];
     let (along_xi, along_eta) = ([half(0, 1), half(3, 2)], [half(0, 3), half(1, 2)]);

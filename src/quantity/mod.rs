@@ -114,6 +114,8 @@ quantities! {
     ArealDensity: "kg/m²", "150 g/m²";
     /// An acceleration.
     Acceleration: "m/s²", "9.80665 m/s²";
+    /// A velocity.
+    Velocity: "m/s", "0.1 m/s";
     /// A time.
     Time: "s", "0.1 s";
     /// A frequency.

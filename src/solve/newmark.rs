@@ -1,4 +1,4 @@
-//! Linear dynamics by Newmark's method, Eq. (25): `M ü + C u̇ + K u = f(t)`, from rest.
+//! Linear dynamics by Newmark's method, Eq. (25): `M ü + C u̇ + K u = f(t)`, from rest or from another beginning.
 
 pub(super) mod adaptive;
 
@@ -13,11 +13,39 @@ use super::plan::Plan;
 use super::sparse::BlockMatrix;
 use super::{SolveError, StepLimit};
 use crate::element::Mass;
-use crate::model::{DofGroup, Links, Model, ModelError};
+use crate::model::{Dof, DofGroup, Links, Model, ModelError};
 
-/// β and γ of the average acceleration method: second order, no numerical damping.
-const BETA: f64 = 0.25;
-const GAMMA: f64 = 0.5;
+/// β and γ of Newmark's method: no step is too long where `2 β >= γ >= 1/2`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scheme {
+    /// Part of the new acceleration in the displacement.
+    pub beta: f64,
+    /// Part of the new acceleration in the velocity; above 1/2 it damps what is fast, and the order falls to the first.
+    pub gamma: f64,
+}
+
+impl Default for Scheme {
+    /// The average acceleration: second order, no numerical damping.
+    fn default() -> Self {
+        Self { beta: 0.25, gamma: 0.5 }
+    }
+}
+
+impl Scheme {
+    /// Whether no step is too long.
+    pub fn is_stable(self) -> bool {
+        2.0 * self.beta >= self.gamma && self.gamma >= 0.5
+    }
+}
+
+/// How a motion begins; at rest and undeformed by default.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Beginning {
+    /// Whether the sheet has the deflection that its whole loads cause in statics.
+    pub deflected: bool,
+    /// Velocity along z of every node that is not held (m/s).
+    pub velocity: f64,
+}
 
 /// How the load varies in time: a factor on all loads of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +56,8 @@ pub enum LoadHistory {
     Ramp(f64),
     /// sin(2π f t) with this frequency f (Hz).
     Sine(f64),
+    /// 0: nothing acts, and the sheet goes on from its [`Beginning`].
+    Off,
 }
 
 impl LoadHistory {
@@ -37,6 +67,7 @@ impl LoadHistory {
             Self::Step => 1.0,
             Self::Ramp(until) => (t / until).min(1.0),
             Self::Sine(frequency) => (std::f64::consts::TAU * frequency * t).sin(),
+            Self::Off => 0.0,
         }
     }
 }
@@ -81,6 +112,10 @@ pub struct Settings {
     pub load: LoadHistory,
     /// The mass matrix.
     pub mass: Mass,
+    /// β and γ.
+    pub scheme: Scheme,
+    /// The state at the first instant.
+    pub beginning: Beginning,
 }
 
 /// Energies of the sheet at one instant (J).
@@ -92,7 +127,7 @@ pub struct Energy {
     pub strain: f64,
     /// Work of the damping forces since the start.
     pub dissipated: f64,
-    /// Work of the loads since the start.
+    /// Work of the loads since the start, and the energy that the sheet began with.
     pub work: f64,
 }
 
@@ -114,7 +149,7 @@ pub struct Instant<'a> {
     pub energy: Energy,
 }
 
-/// Integrates from rest and shows every instant, the start included, to `observe`, which may stop it.
+/// Integrates and shows every instant, the start included, to `observe`, which may stop it.
 ///
 /// Prescribed values other than zero are not part of a dynamic run: they count as zero.
 ///
@@ -216,6 +251,7 @@ struct System<'a> {
     stiffness: BlockMatrix,
     mass: BlockMatrix,
     damping: Rayleigh,
+    scheme: Scheme,
     held: Vec<bool>,
     load: Vec<f64>,
     u: Vec<f64>,
@@ -258,6 +294,7 @@ impl<'a> System<'a> {
             stiffness: matrix(Kind::Stiffness)?,
             mass: matrix(Kind::Mass(settings.mass))?,
             damping: settings.damping,
+            scheme: settings.scheme,
             held,
             load,
             u: vec![0.0; n],
@@ -266,22 +303,42 @@ impl<'a> System<'a> {
             factor: None,
             energy: Energy::default(),
         };
+        system.begin(settings)?;
         let start = settings.load.at(0.0);
-        if start != 0.0 {
+        if start != 0.0 || settings.beginning != Beginning::default() {
             system.a = system.first_acceleration(start)?;
         }
         Ok(system)
     }
 
-    /// `M a = f` at the first instant, when nothing has moved and nothing is damped yet. Rotations about
-    /// the normal have no mass; their acceleration does not enter that balance and starts at 0.
+    /// Takes the displacements and velocities of the first instant, and their energy.
+    fn begin(&mut self, settings: &Settings) -> Result<(), SolveError> {
+        let Beginning { deflected, velocity } = settings.beginning;
+        if deflected {
+            let mut matrix = self.stiffness.clone();
+            unit_rows(&mut matrix, &self.held);
+            self.u.clone_from(&self.load);
+            self.factorised(&matrix)?.solve(&mut self.u, 1);
+            self.energy.strain = 0.5 * dot(&self.u, &product(&self.stiffness, &self.u));
+        }
+        if let Some(across) = self.group.dofs().iter().position(|dof| *dof == Dof::W) {
+            let moving = self.v.iter_mut().zip(&self.held).skip(across).step_by(self.group.dofs().len());
+            moving.filter(|(_, held)| !**held).for_each(|(v, _)| *v = velocity);
+            self.energy.kinetic = 0.5 * dot(&self.v, &product(&self.mass, &self.v));
+        }
+        self.energy.work = self.energy.strain + self.energy.kinetic;
+        Ok(())
+    }
+
+    /// `M a = f - C v - K u` at the first instant. Rotations about the normal have no mass; their acceleration does not enter
+    /// that balance and starts at 0.
     fn first_acceleration(&self, load_factor: f64) -> Result<Vec<f64>, SolveError> {
         let mut mass = self.mass.clone();
         add_rotary_trace(&mut mass);
         let massless: Vec<bool> = (0..mass.rows()).map(|k| mass.values[mass.diagonal(k)] <= 0.0).collect();
         unit_rows(&mut mass, &massless);
         let factor = self.factorised(&mass)?;
-        let mut a: Vec<f64> = self.load.iter().map(|f| f * load_factor).collect();
+        let mut a = self.balance(load_factor, &self.u, &self.v);
         a.iter_mut().zip(&massless).filter(|(_, m)| **m).for_each(|(f, _)| *f = 0.0);
         factor.solve(&mut a, 1);
         Ok(a)
@@ -301,8 +358,9 @@ impl<'a> System<'a> {
 
     /// Factor of `M + γ Δt C + β Δt² K`.
     fn factorise(&self, dt: f64) -> Result<Factor, SolveError> {
-        let m = 1.0 + GAMMA * dt * self.damping.alpha;
-        let k = BETA * dt * dt + GAMMA * dt * self.damping.beta;
+        let Scheme { beta, gamma } = self.scheme;
+        let m = 1.0 + gamma * dt * self.damping.alpha;
+        let k = beta * dt * dt + gamma * dt * self.damping.beta;
         let mut matrix = self.mass.clone();
         matrix.values.iter_mut().zip(&self.stiffness.values).for_each(|(a, b)| *a = m * *a + k * b);
         unit_rows(&mut matrix, &self.held);
@@ -314,20 +372,25 @@ impl<'a> System<'a> {
             Some((step, factor)) if step == dt => factor,
             _ => self.factorise(dt)?,
         };
-        let n = self.u.len();
+        let (n, Scheme { beta, gamma }) = (self.u.len(), self.scheme);
         let predicted_u: Vec<f64> =
-            (0..n).map(|i| self.u[i] + dt * self.v[i] + (0.5 - BETA) * dt * dt * self.a[i]).collect();
-        let predicted_v: Vec<f64> = (0..n).map(|i| self.v[i] + (1.0 - GAMMA) * dt * self.a[i]).collect();
-        let Rayleigh { alpha, beta } = self.damping;
-        let elastic: Vec<f64> = (0..n).map(|i| predicted_u[i] + beta * predicted_v[i]).collect();
-        let viscous: Vec<f64> = predicted_v.iter().map(|v| alpha * v).collect();
-        let (ku, mv) = (product(&self.stiffness, &elastic), product(&self.mass, &viscous));
-        let mut a: Vec<f64> = (0..n).map(|i| load_factor * self.load[i] - ku[i] - mv[i]).collect();
+            (0..n).map(|i| self.u[i] + dt * self.v[i] + (0.5 - beta) * dt * dt * self.a[i]).collect();
+        let predicted_v: Vec<f64> = (0..n).map(|i| self.v[i] + (1.0 - gamma) * dt * self.a[i]).collect();
+        let mut a = self.balance(load_factor, &predicted_u, &predicted_v);
         factor.solve(&mut a, 1);
-        let u = (0..n).map(|i| predicted_u[i] + BETA * dt * dt * a[i]).collect();
-        let v = (0..n).map(|i| predicted_v[i] + GAMMA * dt * a[i]).collect();
+        let u = (0..n).map(|i| predicted_u[i] + beta * dt * dt * a[i]).collect();
+        let v = (0..n).map(|i| predicted_v[i] + gamma * dt * a[i]).collect();
         self.factor = Some((dt, factor));
         Ok(Trial { u, v, a })
+    }
+
+    /// `f - C v - K u`.
+    fn balance(&self, load_factor: f64, u: &[f64], v: &[f64]) -> Vec<f64> {
+        let Rayleigh { alpha, beta } = self.damping;
+        let elastic: Vec<f64> = u.iter().zip(v).map(|(u, v)| u + beta * v).collect();
+        let viscous: Vec<f64> = v.iter().map(|v| alpha * v).collect();
+        let (ku, mv) = (product(&self.stiffness, &elastic), product(&self.mass, &viscous));
+        (0..u.len()).map(|i| load_factor * self.load[i] - ku[i] - mv[i]).collect()
     }
 
     fn commit(&mut self, trial: Trial, (before, after): (f64, f64)) {

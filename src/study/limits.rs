@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use super::result::CaseResult;
 use super::{Case, StudyError};
 use crate::case::{Analysis, Prescribed, SheetProblem};
-use crate::element::{Bending, Cells, Drilling, Membrane};
+use crate::element::{Bending, Cells, Drilling, Membrane, ShearInterpolation};
 use crate::finding::{Excess, Finding, Place, StudyFact};
 use crate::mesh::{QuadMesh, Unjoined, normal};
 use crate::model::{Dof, Model};
@@ -114,6 +114,10 @@ pub(super) fn findings(
     }
     if let Some(reasons) = against_one_cell(model) {
         facts.push(StudyFact::NotFourthOrder { reasons });
+    }
+    if model.formulation.shear != ShearInterpolation::Mitc4 {
+        let reduced = model.formulation.shear == ShearInterpolation::Reduced;
+        facts.push(StudyFact::ComparisonShear { reduced });
     }
     if in_plane && matches!(model.formulation.drilling, Drilling::Seed(_)) {
         facts.push(StudyFact::DrillingSpring { flat: extent.flat });

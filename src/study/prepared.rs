@@ -76,7 +76,9 @@ impl<'a> PreparedCase<'a> {
         let groups = match &problem.analysis {
             Analysis::Modal(_) => all.clone(),
             Analysis::Linear(_) => Plan::groups(&model, options),
-            Analysis::Newmark(_) if !problem.analysis.has_large_rotations() => Plan::groups(&model, options),
+            Analysis::Newmark(newmark) if !problem.analysis.has_large_rotations() => {
+                moving(Plan::groups(&model, options), newmark)
+            }
             Analysis::Newmark(_) | Analysis::Nonlinear(_) | Analysis::Steps(_) => vec![DofGroup::Shell],
         };
         let plan = match &problem.analysis {
@@ -112,6 +114,15 @@ impl<'a> PreparedCase<'a> {
     pub fn model(&self, section: ShellSection) -> Model {
         Model { section, ..self.model.clone() }
     }
+}
+
+/// The groups that move in a motion, of those that its loads move: one that begins with a velocity across the sheet bends it.
+fn moving(mut groups: Vec<DofGroup>, newmark: &Newmark) -> Vec<DofGroup> {
+    let has_bending = groups.iter().any(|group| *group != DofGroup::Membrane);
+    if newmark.beginning.velocity != 0.0 && !has_bending {
+        groups.insert(0, DofGroup::Plate);
+    }
+    groups
 }
 
 /// Whether a case can be solved, as far as that shows without solving it: its own section, mesh, supports, loads,

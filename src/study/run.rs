@@ -228,6 +228,8 @@ fn analyse(
                 damping: rayleigh(prepared, model, newmark.damping.as_ref(), newmark.mass)?,
                 load: newmark.history,
                 mass: newmark.mass,
+                scheme: newmark.scheme,
+                beginning: newmark.beginning,
             };
             dynamics(prepared, model, &settings, newmark.rotations, watch)
         }

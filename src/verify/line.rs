@@ -22,6 +22,10 @@ pub struct Line {
     pub reference: Reference,
     /// How far from the reference it may be.
     pub tolerance: Tolerance,
+    /// On which side of that it is known to be.
+    pub expected: Expected,
+    /// What the publication prints whose claim the line is, if it prints a value.
+    pub published: Option<f64>,
     /// Where the reference comes from.
     pub kind: Kind,
     /// Author and place, or method, of the reference.
@@ -46,6 +50,17 @@ pub enum Tolerance {
     Relative(f64),
     /// Of `value - reference`.
     Absolute(f64),
+}
+
+/// On which side of its tolerance a value is known to be.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Expected {
+    /// Within.
+    #[default]
+    Within,
+    /// Beyond: the line shows that something does not hold.
+    Beyond,
 }
 
 /// Where a reference comes from.
@@ -81,7 +96,9 @@ pub struct Outcome {
     pub result: Result<Comparison, VerifyError>,
     /// Largest `|K u - f| / |f|` of the linear static models that were solved; `None` without any.
     pub residual: Option<f64>,
-    /// Whether the difference is within the tolerance and the residual within [`RESIDUAL`].
+    /// Whether the difference is within the tolerance.
+    pub within: bool,
+    /// Whether that is so as it is known to be, with a value and with its residual within [`RESIDUAL`].
     pub pass: bool,
     /// Time taken (s).
     pub seconds: f64,
@@ -106,9 +123,14 @@ impl Line {
         let result = self.compare(&mut statics);
         let residual = statics.residual;
         // A value that is not a number compares as false.
-        let pass = result.as_ref().is_ok_and(|c| c.error.abs() <= self.tolerance.limit())
-            && residual.is_none_or(|r| r <= RESIDUAL);
-        Outcome { result, residual, pass, seconds: watch.seconds() }
+        let within = result.as_ref().is_ok_and(|c| c.error.abs() <= self.tolerance.limit());
+        let beyond = result.as_ref().is_ok_and(|c| c.error.abs() > self.tolerance.limit());
+        let known = match self.expected {
+            Expected::Within => within,
+            Expected::Beyond => beyond,
+        };
+        let pass = known && residual.is_none_or(|r| r <= RESIDUAL);
+        Outcome { result, residual, within, pass, seconds: watch.seconds() }
     }
 
     fn compare(&self, statics: &mut Statics) -> Result<Comparison, VerifyError> {

@@ -9,6 +9,8 @@
 mod error;
 mod function;
 mod line;
+mod paper;
+mod paper_table;
 mod problem;
 mod suite;
 mod table;
@@ -17,8 +19,11 @@ use std::ops::ControlFlow;
 
 pub use error::VerifyError;
 pub use function::Function;
-pub use line::{Comparison, Kind, Line, Outcome, RESIDUAL, Reference, Tolerance};
+pub use line::{Comparison, Expected, Kind, Line, Outcome, RESIDUAL, Reference, Tolerance};
+pub use paper::{Claim, CurveChart, PaperCurve, SheetPicture, claims};
+pub use paper_table::{CheckedClaim, paper_document, paper_text};
 pub use problem::Problem;
+pub use problem::plate::BentPlate;
 pub use suite::suite;
 pub use table::{Checked, Document, LineEntry, document, text};
 

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::line::{Kind, Line, Reference, Tolerance};
+use super::line::{Expected, Kind, Line, Reference, Tolerance};
 use super::problem::Problem;
 
 const FILES: [&str; 12] = [
@@ -30,7 +30,7 @@ struct File {
 /// One line, or several that differ in some parameters.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Entry {
+pub(super) struct Entry {
     id: String,
     quantity: String,
     /// One key: the family; its value: the parameters.
@@ -41,8 +41,27 @@ struct Entry {
     vary: Table,
     reference: References,
     tolerance: Tolerance,
+    #[serde(default)]
+    expect: Expectations,
+    /// What the publication that makes the claim prints.
+    published: Option<f64>,
     kind: Kind,
     citation: String,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Expectations {
+    /// The same for every combination.
+    One(Expected),
+    /// One for each combination.
+    Each(Vec<Expected>),
+}
+
+impl Default for Expectations {
+    fn default() -> Self {
+        Self::One(Expected::Within)
+    }
 }
 
 #[derive(Deserialize)]
@@ -67,7 +86,7 @@ pub fn suite() -> Vec<Line> {
 }
 
 impl Entry {
-    fn expand(self) -> Vec<Line> {
+    pub fn expand(self) -> Vec<Line> {
         let mut variants = vec![(self.id.clone(), self.problem.clone())];
         for (path, values) in &self.vary {
             let values = values.as_array().cloned().unwrap_or_default();
@@ -86,10 +105,15 @@ impl Entry {
             References::Each(each) => each,
         };
         assert_eq!(references.len(), variants.len(), "built-in suite: references of {}", self.id);
+        let expected = match self.expect {
+            Expectations::One(e) => vec![e; variants.len()],
+            Expectations::Each(each) => each,
+        };
+        assert_eq!(expected.len(), variants.len(), "built-in suite: expectations of {}", self.id);
         variants
             .into_iter()
-            .zip(references)
-            .map(|((id, problem), reference)| Line {
+            .zip(references.into_iter().zip(expected))
+            .map(|((id, problem), (reference, expected))| Line {
                 problem: problem
                     .try_into::<Problem>()
                     .unwrap_or_else(|e| panic!("built-in suite: {id}: {e}")),
@@ -97,6 +121,8 @@ impl Entry {
                 quantity: self.quantity.clone(),
                 reference,
                 tolerance: self.tolerance,
+                expected,
+                published: self.published,
                 kind: self.kind,
                 citation: self.citation.clone(),
             })
@@ -112,7 +138,7 @@ fn suffixed(id: &str, path: &str, value: &Value) -> String {
 }
 
 /// The problem with one parameter of its family set.
-fn with(problem: &Table, path: &str, value: &Value) -> Table {
+pub(super) fn with(problem: &Table, path: &str, value: &Value) -> Table {
     let mut problem = problem.clone();
     let mut at = problem.iter_mut().next().map(|(_, parameters)| parameters);
     for key in path.split('.') {

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::line::{Kind, Line, Outcome, RESIDUAL, Tolerance};
+use super::line::{Expected, Kind, Line, Outcome, RESIDUAL, Tolerance};
 
 /// A line of the suite with what came out.
 pub type Checked<'a> = (&'a Line, &'a Outcome);
@@ -37,7 +37,7 @@ pub fn text(all: &[Checked<'_>], seconds: f64) -> String {
 }
 
 /// Id, value, reference, error, tolerance, and whether it holds.
-fn row((line, outcome): &Checked<'_>) -> [String; 6] {
+pub(super) fn row((line, outcome): &Checked<'_>) -> [String; 6] {
     let relative = matches!(line.tolerance, Tolerance::Relative(_));
     let share = |v: f64| if relative { percent(v) } else { signed(v) };
     let [value, reference, error] = match &outcome.result {
@@ -53,7 +53,7 @@ fn row((line, outcome): &Checked<'_>) -> [String; 6] {
 }
 
 /// Names, values and references to the left, where their points are; errors and tolerances to the right.
-fn aligned(cells: &[String; 6], width: &[usize]) -> String {
+pub(super) fn aligned<const N: usize>(cells: &[String; N], width: &[usize]) -> String {
     let mut line = String::new();
     for (c, (cell, width)) in cells.iter().zip(width).enumerate() {
         let padding = " ".repeat(width - cell.chars().count());
@@ -64,7 +64,7 @@ fn aligned(cells: &[String; 6], width: &[usize]) -> String {
 }
 
 /// Counts by kind, the worst residual, what fails, and the time.
-fn summary(all: &[Checked<'_>], seconds: f64) -> String {
+pub(super) fn summary(all: &[Checked<'_>], seconds: f64) -> String {
     let mut text = String::from("\n");
     for kind in [Kind::Analytical, Kind::Independent, Kind::Published] {
         let of: Vec<_> = all.iter().filter(|(line, _)| line.kind == kind).collect();
@@ -118,7 +118,7 @@ fn short(v: f64) -> String {
 }
 
 /// A reference with the digits it was given with, at most ten.
-fn given(value: f64) -> String {
+pub(super) fn given(value: f64) -> String {
     let rounded: f64 = format!("{value:.9e}").parse().unwrap_or(value);
     let magnitude = rounded.abs();
     let sign = if rounded < 0.0 { "" } else { " " };
@@ -152,6 +152,24 @@ pub struct Document {
     largest_residual: Option<f64>,
     residual_limit: f64,
     seconds: f64,
+    /// The claims that the lines belong to, with `kesf verify --paper`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) claims: Option<Vec<ClaimEntry>>,
+}
+
+/// What a paper says, and how that came out.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+pub struct ClaimEntry {
+    pub(super) id: String,
+    pub(super) title: String,
+    /// Where in the paper.
+    pub(super) place: String,
+    pub(super) says: String,
+    pub(super) found: String,
+    /// Names of shipped cases.
+    pub(super) cases: Vec<String>,
+    /// Ids of its lines.
+    pub(super) lines: Vec<String>,
 }
 
 /// A line of the suite with its value, reference and outcome.
@@ -166,6 +184,12 @@ pub struct LineEntry {
     error: Option<f64>,
     tolerance: f64,
     tolerance_of: Cow<'static, str>,
+    /// What the publication prints whose claim the line is.
+    published: Option<f64>,
+    /// On which side of its tolerance the value is known to be.
+    expected: Expected,
+    /// Whether it is within.
+    within: bool,
     residual: Option<f64>,
     pass: bool,
     seconds: f64,
@@ -181,6 +205,7 @@ pub fn document(all: &[Checked<'_>], seconds: f64) -> Document {
         largest_residual: worst(all).map(|(_, residual)| residual),
         residual_limit: RESIDUAL,
         seconds,
+        claims: None,
     }
 }
 
@@ -200,6 +225,9 @@ fn line_entry((line, outcome): &Checked<'_>) -> LineEntry {
         error: compared.map(|c| c.error),
         tolerance,
         tolerance_of: tolerance_of.into(),
+        published: line.published,
+        expected: line.expected,
+        within: outcome.within,
         residual: outcome.residual,
         pass: outcome.pass,
         seconds: outcome.seconds,

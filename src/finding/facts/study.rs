@@ -122,6 +122,15 @@ super::facts! {
             residual: f64,
         } = "the sheet moves no further, but {residual:.1e} of the loads is left unbalanced: the rounding of its stiffest forces \
              is larger than loads so small; take kind = \"linear\" for them, and do not rely on reactions and energies here";
+        /// A transverse shear that is there for comparison.
+        "S128" ComparisonShear {
+            /// Whether the energy of the shear is taken in the middle of the element alone.
+            reduced: bool,
+        } = "{}: remove `shear`, unless it is the comparison that is meant", if *reduced {
+            "shear = \"reduced\" leaves an element motions without energy, which nothing but the supports holds"
+        } else {
+            "shear = \"displacement\" locks: the thinner the sheet, the stiffer it is, without limit"
+        };
         /// A sheet that buckled on the way.
         "S124" Buckled {
             /// Factors of the load after which it did.

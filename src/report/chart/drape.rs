@@ -6,6 +6,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use plotters::prelude::RGBColor;
 
+use super::camera::{ASIDE, Camera, SPLIT, TOP};
 use super::canvas::{Canvas, HEIGHT, Point, Stroke, Tones, WIDTH};
 use super::error::ChartError;
 use super::head::Head;
@@ -40,10 +41,6 @@ pub struct DrapePlot<'a> {
     pub remarks: Vec<String>,
 }
 
-/// Where the picture ends and the column of values begins.
-const SPLIT: f64 = 1310.0;
-/// Upper edge of picture and column.
-const TOP: f64 = 160.0;
 /// Corners of drawn circles.
 const ROUND: usize = 180;
 
@@ -103,7 +100,8 @@ pub fn drape_shadow(plot: &DrapePlot) -> Result<Chart, ChartError> {
 pub fn drape_view(plot: &DrapePlot) -> Result<Chart, ChartError> {
     let mut canvas = page(plot)?;
     let low = plot.nodes.iter().map(|p| p[2]).fold(0.0, f64::min) - 0.1 * plot.sheet_radius;
-    let camera = Camera::over(plot, low);
+    let shadow = plot.nodes.iter().map(|p| [p[0], p[1], low]);
+    let camera = Camera::around(plot.nodes.iter().copied().chain(shadow));
     let dark: Tones = Arc::new(|_| RGBColor(0xdd, 0xdd, 0xdd));
     for quad in plot.quads {
         let corners = quad.map(|n| plot.nodes[n as usize]).map(|p| camera.at(&[p[0], p[1], low]));
@@ -116,7 +114,7 @@ pub fn drape_view(plot: &DrapePlot) -> Result<Chart, ChartError> {
     canvas.polygon(&stand(plot, &camera, low), lighter(GREY, 0.25))?;
     let lit: Tones = Arc::new(toned);
     let mut faces = sheet(plot);
-    faces.sort_by(|a, b| camera.depth(a).total_cmp(&camera.depth(b)));
+    faces.sort_by(|a, b| camera.depth(&a.corners).total_cmp(&camera.depth(&b.corners)));
     for face in &faces {
         let corners = face.corners.map(|p| camera.at(&p));
         for [a, b, c] in [[0, 1, 2], [0, 2, 3]] {
@@ -177,49 +175,6 @@ fn closed(mut points: Vec<Point>) -> Vec<Point> {
 struct Face {
     corners: [[f64; 3]; 4],
     light: [f64; 4],
-}
-
-/// Direction to the camera: from the side, 32 degrees up.
-const ASIDE: f64 = 0.45;
-const UP: f64 = 0.56;
-
-/// Parallel projection.
-struct Camera {
-    right: Vector3<f64>,
-    upwards: Vector3<f64>,
-    towards: Vector3<f64>,
-    scale: f64,
-    origin: Point,
-}
-
-impl Camera {
-    fn over(plot: &DrapePlot, low: f64) -> Self {
-        let towards = Vector3::new(UP.cos() * ASIDE.cos(), UP.cos() * ASIDE.sin(), UP.sin());
-        let right = Vector3::z().cross(&towards).normalize();
-        let upwards = towards.cross(&right);
-        let all = plot.nodes.iter().copied().chain(plot.nodes.iter().map(|p| [p[0], p[1], low]));
-        let (mut from, mut to) = ((f64::INFINITY, f64::INFINITY), (f64::NEG_INFINITY, f64::NEG_INFINITY));
-        for p in all.map(Vector3::from) {
-            let (x, y) = (p.dot(&right), p.dot(&upwards));
-            from = (from.0.min(x), from.1.min(y));
-            to = (to.0.max(x), to.1.max(y));
-        }
-        let room = (SPLIT - 100.0, HEIGHT as f64 - TOP - 60.0);
-        let scale = (room.0 / (to.0 - from.0)).min(room.1 / (to.1 - from.1));
-        let middle = (0.5 * (from.0 + to.0), 0.5 * (from.1 + to.1));
-        let centre = (0.5 * SPLIT, 0.5 * (TOP + HEIGHT as f64 - 40.0));
-        let origin = (centre.0 - scale * middle.0, centre.1 + scale * middle.1);
-        Self { right, upwards, towards, scale, origin }
-    }
-
-    fn at(&self, p: &[f64; 3]) -> Point {
-        let p = Vector3::from(*p);
-        (self.origin.0 + self.scale * p.dot(&self.right), self.origin.1 - self.scale * p.dot(&self.upwards))
-    }
-
-    fn depth(&self, face: &Face) -> f64 {
-        face.corners.iter().map(|p| Vector3::from(*p).dot(&self.towards)).sum()
-    }
 }
 
 /// The hanging part, with the light smooth over it.

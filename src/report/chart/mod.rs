@@ -8,8 +8,10 @@
 
 mod axes;
 mod bitmap;
+mod camera;
 mod canvas;
 mod contour;
+mod curves;
 mod drape;
 mod error;
 mod fabric;
@@ -31,7 +33,9 @@ mod schematic;
 mod spread;
 mod surface;
 mod svg;
+mod view;
 
+pub use curves::{CurvesPlot, curves};
 pub use drape::{DrapePlot, drape_shadow, drape_view};
 pub use error::ChartError;
 pub use fabric::{SimulatedCurve, bending, compression, of_test, shear, tensile};
@@ -41,6 +45,7 @@ pub use friction::friction;
 pub use output::{Chart, Format};
 pub use parity::{ParityPoint, parity};
 pub use profile::{ProfileLine, ProfilePlot, profile};
+pub use view::{ViewPlot, sheet_view};
 
 /// Colour of a value that is a part (0 to 1) of the largest, red, green and blue.
 pub(crate) fn value_color(part: f64) -> [u8; 3] {

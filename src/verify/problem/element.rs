@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, Matrix3, Point3, Rotation3, SMatrix, Vector3};
 use serde::Deserialize;
 
 use super::setting::{DrillingChoice, Layout, default_alpha, formulation, isotropic};
-use crate::element::{Bending, Formulation, Membrane, Prepared, Vector24};
+use crate::element::{Bending, Formulation, Membrane, Prepared, ShearInterpolation, Vector24};
 use crate::section::ShellSection;
 use crate::verify::error::VerifyError;
 
@@ -20,6 +20,9 @@ pub struct ZeroModes {
     /// The membrane.
     #[serde(default)]
     membrane: Membrane,
+    /// Interpolation of the transverse shear.
+    #[serde(default)]
+    shear: ShearInterpolation,
     /// Shape of the element.
     shape: Shape,
     /// Which of its matrices.
@@ -76,6 +79,7 @@ impl ZeroModes {
         let formulation = Formulation {
             bending: self.bending,
             membrane: self.membrane,
+            shear: self.shear,
             ..formulation(self.cells, 0.0, DrillingChoice::HughesBrezzi)
         };
         let element = Prepared::from_corners(&self.shape.corners(), &section, formulation, &Vector3::x())?;

@@ -6,7 +6,8 @@ mod dynamics;
 mod element;
 mod large_shell;
 mod patch;
-mod plate;
+pub(super) mod plate;
+mod printed;
 mod quad_plate;
 mod rigid;
 pub(super) mod setting;
@@ -41,6 +42,8 @@ pub enum Problem {
     Mechanisms(plate::Mechanisms),
     /// A clamped square of 4 x 4 elements, nodes moved.
     Distorted(quad_plate::Distorted),
+    /// The matrices of Eqs. (4) and (5).
+    Printed(printed::Printed),
     /// A circular plate.
     Disc(disc::Disc),
     /// A rhombic plate.
@@ -80,6 +83,7 @@ impl Problem {
             Self::RigidMotion(p) => p.value(),
             Self::Mechanisms(p) => p.value(),
             Self::Distorted(p) => p.value(statics),
+            Self::Printed(p) => Ok(p.value()),
             Self::Disc(p) => p.value(statics),
             Self::Skew(p) => p.value(statics),
             Self::Triangle(p) => p.value(statics),

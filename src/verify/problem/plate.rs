@@ -7,7 +7,7 @@ use super::setting::{Law, Layout, Statics, nearest, unit};
 use crate::analytical::levy::Edge;
 use crate::analytical::mindlin::MindlinPlate;
 use crate::analytical::{Plate, PlateState};
-use crate::element::{Bending, Formulation, Mass};
+use crate::element::{Bending, Formulation, Mass, ShearInterpolation};
 use crate::fields;
 use crate::mesh::{distorted, rectangle};
 use crate::model::{Dof, DofGroup, Load, Model, Support};
@@ -37,6 +37,9 @@ pub struct PlateProblem {
     /// Smoothing of the curvature.
     #[serde(default)]
     bending: Bending,
+    /// Interpolation of the transverse shear.
+    #[serde(default)]
+    shear: ShearInterpolation,
     /// Shear stabilisation; 0.05, with one bending cell the residual flexibility.
     alpha: Option<f64>,
     /// Random distortion of the mesh, 0 to 0.5.
@@ -121,7 +124,7 @@ impl PlateProblem {
             Bending::OneCell => Formulation::fourth_order(),
         };
         let shear_stabilisation = self.alpha.unwrap_or(start.shear_stabilisation);
-        Formulation { cells: self.cells.0, shear_stabilisation, ..start }
+        Formulation { cells: self.cells.0, shear: self.shear, shear_stabilisation, ..start }
     }
 
     /// The same on elements half as large.
@@ -132,6 +135,22 @@ impl PlateProblem {
     /// The same on elements twice as large.
     pub fn coarsened(&self) -> Self {
         Self { n: self.n / 2, ..self.clone() }
+    }
+
+    /// Its mesh, the deflection of the nodes over the largest one, and their bending moment along x over `q a²`.
+    pub fn bent(&self) -> Result<BentPlate, VerifyError> {
+        let model = self.model()?;
+        let solution = Statics::default().solve(&model)?;
+        let w: Vec<f64> = solution.displacement.chunks_exact(6).map(|u| u[2]).collect();
+        let largest = w.iter().fold(0.0f64, |m, w| m.max(w.abs()));
+        let moments = fields::nodal(&model, &solution.displacement)?;
+        Ok(BentPlate {
+            side: self.a,
+            nodes: model.mesh.nodes.iter().map(|p| [p.x, p.y, p.z]).collect(),
+            quads: model.mesh.quads.clone(),
+            deflection: w.iter().map(|w| w / largest).collect(),
+            moment: moments.iter().map(|r| r.moment[0] / (self.a * self.a)).collect(),
+        })
     }
 
     /// The value, and the coordinates of the node at which it was taken.
@@ -233,6 +252,21 @@ impl PlateProblem {
 fn at_end(edges: &[[u32; 2]], values: &[[f64; 2]], node: usize) -> f64 {
     let mut ends = edges.iter().zip(values).flat_map(|(e, v)| e.iter().zip(v));
     ends.find(|(n, _)| **n as usize == node).map_or(f64::NAN, |(_, v)| *v)
+}
+
+/// A plate under pressure, for pictures.
+#[derive(Clone, Debug)]
+pub struct BentPlate {
+    /// Its length along x (m).
+    pub side: f64,
+    /// Its nodes at rest (m).
+    pub nodes: Vec<[f64; 3]>,
+    /// Corner nodes of each element.
+    pub quads: Vec<[u32; 4]>,
+    /// Of each node, over the largest.
+    pub deflection: Vec<f64>,
+    /// `M_x / (q a²)` of each node, from the nodal recovery.
+    pub moment: Vec<f64>,
 }
 
 /// Plate motions without energy, counted.
