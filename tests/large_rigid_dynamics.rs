@@ -165,6 +165,8 @@ fn small_motions_with_a_body_are_the_linear_ones() {
             damping,
             load: LoadHistory::Step,
             mass: Mass::Consistent,
+            scheme: newmark::Scheme::default(),
+            beginning: newmark::Beginning::default(),
         };
         let (mut straight, mut turned) = (Vec::new(), Vec::new());
         newmark(&model, &linear, &Options::default(), |at| {
