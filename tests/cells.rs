@@ -110,6 +110,9 @@ fn letters_are_directions_beside_their_partner_or_under_a_heading_of_directions(
         assert_relative_eq!(value(&content, Parameter::B, WEFT), 2.0 * TENTH, max_relative = 1e-12);
         assert_eq!(!told(&content, "R133").is_empty(), is_told, "{text}");
     }
+    // A course, or `chaîne`.
+    let knit = read("Sample,Direction,B (gf·cm²/cm)\nF,C,0.1\n".as_bytes());
+    assert!(knit.is_err() || !knit.unwrap().failures.is_empty());
     // Samples, and a thickness.
     let names = read("Parameter,Unit,K,L,T\nB,gf·cm²/cm,0.1,0.2,0.3\n".as_bytes()).unwrap();
     assert!(

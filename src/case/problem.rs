@@ -24,7 +24,7 @@ pub enum Problem {
     /// A bending test of another instrument.
     BendingTest(BendingTest),
     /// A sheet that hangs over a disc.
-    Drape(DrapeProblem),
+    Drape(Box<DrapeProblem>),
 }
 
 /// A sheet between supports and under loads.

@@ -67,7 +67,10 @@ impl CaseTable {
         let at = case.get("analysis").unwrap_or(*case);
         let (sheet, analysis) = match analysis {
             AnalysisTable::Drape(drape) => {
-                return self.drape_problem(case, material, (table, of_sheet), drape).map(Problem::Drape);
+                return self
+                    .drape_problem(case, material, (table, of_sheet), drape)
+                    .map(Box::new)
+                    .map(Problem::Drape);
             }
             AnalysisTable::Linear(_) => {
                 let sheet = table.sheet(of_sheet)?;

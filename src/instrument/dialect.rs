@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, de};
 
 use super::conditions::StatedConditions;
-use super::words::normalised;
+use super::words::{folded, normalised};
 use super::{Direction, Test};
 
 /// What a column of a curve holds.
@@ -259,9 +259,14 @@ where
     Ok(map.into_iter().map(|(k, v)| (k, v.iter().map(|w| normalised(w)).collect())).collect())
 }
 
+/// A letter as it is compared: with its accents, since `Ç` is a warp where `C` may be a course.
+pub(super) fn letter_of(text: &str) -> String {
+    folded(text).to_lowercase()
+}
+
 fn pairs<'de, D: Deserializer<'de>>(d: D) -> Result<Vec<[String; 2]>, D::Error> {
     let pairs = Vec::<[String; 2]>::deserialize(d)?;
-    Ok(pairs.into_iter().map(|pair| pair.map(|word| normalised(&word))).collect())
+    Ok(pairs.into_iter().map(|pair| pair.map(|letter| letter_of(&letter))).collect())
 }
 
 fn encoding<'de, D: Deserializer<'de>>(d: D) -> Result<Option<String>, D::Error> {

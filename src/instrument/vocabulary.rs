@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, HashMap};
 use std::hash::Hash;
 use std::sync::OnceLock;
 
-use super::dialect::{BranchColumn, Dialect, DirectionWord, Key, Role, Statistic, TableColumn, dialects};
+use super::dialect::{
+    BranchColumn, Dialect, DirectionWord, Key, Role, Statistic, TableColumn, dialects, letter_of,
+};
 use super::unit_text::{split_unit, unit};
 use super::words::{folded, normalised};
 use super::{Direction, Parameter, Test};
@@ -213,7 +215,7 @@ impl<'a> Vocabulary<'a> {
     /// The direction of a letter that is one in company only: beside its partner, or in a column of directions. Where dialects
     /// differ it is none.
     pub fn letter(self, text: &str) -> Option<Direction> {
-        let word = normalised(text);
+        let word = letter_of(text);
         let pairs = self.dialects().flat_map(|d| &d.direction_letters);
         let mut found = pairs.filter_map(|pair| match pair.iter().position(|letter| *letter == word)? {
             0 => Some(Direction::Warp),
@@ -225,7 +227,7 @@ impl<'a> Vocabulary<'a> {
 
     /// Whether two letters are partners: that of warp first.
     pub fn are_partners(self, warp: &str, weft: &str) -> bool {
-        let own = [normalised(warp), normalised(weft)];
+        let own = [letter_of(warp), letter_of(weft)];
         self.dialects().flat_map(|d| &d.direction_letters).any(|pair| *pair == own)
     }
 

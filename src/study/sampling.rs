@@ -137,8 +137,8 @@ pub fn sample(
             sampler(inputs, &test).map(Some)
         }
         Problem::Drape(problem) => {
-            let problem = DrapeProblem { refinements: 0, ..problem.clone() };
-            let coarse = Case { problem: Problem::Drape(problem), ..case.clone() };
+            let problem = DrapeProblem { refinements: 0, ..(**problem).clone() };
+            let coarse = Case { problem: Problem::Drape(Box::new(problem)), ..case.clone() };
             let (coarse, _) = as_measured(&coarse, sheet);
             let hang = |_: &FabricSheet, made: &Constitutive| {
                 let watch = Watch { stage: &|| (), ..watch };

@@ -275,7 +275,6 @@ pub fn letters(rng: &mut Pcg64, style: &Style<'_>, all: &[Fabric]) -> Table {
         "de" => &[["K", "S"], ["MD", "CD"]],
         "tr" => &[["Ç", "A"]],
         "pt" | "es" => &[["U", "T"]],
-        "fr" => &[["C", "T"]],
         "it" => &[["O", "T"]],
         _ => &[["L", "T"], ["MD", "CD"]],
     };

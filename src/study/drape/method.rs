@@ -43,6 +43,6 @@ pub fn as_measured<'c>(case: &'c Case, sheet: &FabricSheet) -> (Cow<'c, Case>, V
     }
     let ring =
         Annulus { inner_diameter: Length(method.disc), diameter: Length(method.sheet), ..problem.ring };
-    let problem = DrapeProblem { ring, ..problem.clone() };
-    (Cow::Owned(Case { problem: Problem::Drape(problem), ..case.clone() }), findings)
+    let problem = DrapeProblem { ring, ..(**problem).clone() };
+    (Cow::Owned(Case { problem: Problem::Drape(Box::new(problem)), ..case.clone() }), findings)
 }

@@ -163,7 +163,7 @@ pub fn drape(
         let message = "the case is no drape: write [analysis] kind = \"drape\"";
         return Err(refused(case, &Located::from(()), message));
     };
-    let DrapeProblem { folds, refinements, .. } = problem;
+    let DrapeProblem { folds, refinements, .. } = &**problem;
     within_limits(case, &case.options(options)?)?;
     let single = Options { threads: 1, ..case.options(options)? };
     let cloth = Cloth { case, problem, section, law, watch };
@@ -210,7 +210,7 @@ pub fn drape(
 /// How often [`Watch::stage`] is called for a case.
 pub fn drape_stages(case: &Case) -> usize {
     match &case.problem {
-        Problem::Drape(DrapeProblem { folds, refinements, .. }) => folds.len() + refinements,
+        Problem::Drape(problem) => problem.folds.len() + problem.refinements,
         Problem::Sheet(_) | Problem::InstrumentTest(_) | Problem::BendingTest(_) => 0,
     }
 }
