@@ -348,12 +348,14 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
     let ([low, high], s) = (d.band(), &d.finest);
     let mut values = vec![
         ("Drape coefficient".to_string(), format!("{} %", percent(s.coefficient))),
-        (
-            format!("band of {} of {} states", d.near().len(), d.states.len()),
-            format!("{} to {} %", percent(low), percent(high)),
-        ),
+        (format!("band of {} states", d.near().len()), format!("{} to {} %", percent(low), percent(high))),
     ];
     values.extend(sampled::values(task, "drape_coefficient", "%", 0.01));
+    values.extend(
+        d.hung
+            .as_ref()
+            .map(|hung| ("not yet shaken".to_string(), format!("{} %", percent(hung.coefficient)))),
+    );
     if let Some((value, _)) = measured(task) {
         values.push(("measured".into(), format!("{} %", percent(value))));
     }
