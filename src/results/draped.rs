@@ -1,7 +1,6 @@
 //! A drape: rows, document, charts and text.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -96,7 +95,7 @@ struct DrapeValues {
     /// Mean coefficient of those states, each as often as searches ended in it.
     mean: f64,
     /// How many searches ended in each number of nodes (folds), of those states.
-    node_numbers: BTreeMap<usize, usize>,
+    node_numbers: Vec<NodeNumber>,
     /// The state of lowest energy before it was shaken, on the mesh of its search; of sheets with friction only.
     hung: Option<StateEntry>,
     measured: Option<MeasuredDrape>,
@@ -106,6 +105,12 @@ struct DrapeValues {
     states: Vec<StateEntry>,
     failed_starts: Vec<FailedStart>,
     outline: OutlineEntry,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+struct NodeNumber {
+    nodes: usize,
+    searches: usize,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -174,7 +179,11 @@ pub(super) fn entry(task: &Task, d: &Drape) -> DrapeEntry {
         coefficient: d.finest.coefficient,
         band: d.band(),
         mean: d.mean(),
-        node_numbers: d.fold_numbers(),
+        node_numbers: d
+            .fold_numbers()
+            .into_iter()
+            .map(|(nodes, searches)| NodeNumber { nodes, searches })
+            .collect(),
         hung: d.hung.as_ref().map(StateEntry::new),
         measured: measured(task).map(|(value, method)| MeasuredDrape { value, method: method.to_string() }),
         uncertainty: task.sampling().map(|s| SamplingEntry::ending_with(s, "")),
