@@ -166,9 +166,11 @@ pub(super) fn beginning(cell: &str) -> Option<&str> {
     if behind.starts_with(['\t', ';']) {
         return None;
     }
+    if !before.contains(|c: char| c.is_ascii_digit()) || behind.chars().nth(LONGEST).is_some() {
+        return None;
+    }
     let behind = behind.trim();
-    let is_more = behind.starts_with('±') || is_unit(folded(behind).as_ref());
-    (before.contains(|c: char| c.is_ascii_digit()) && is_more).then_some(before)
+    (behind.starts_with('±') || is_unit(folded(behind).as_ref())).then_some(before)
 }
 
 #[cfg(test)]

@@ -158,10 +158,15 @@ const ONE: Unit = Unit { factor: 1.0, dimension: Dimension { kg: 0, m: 0, s: 0 }
 struct Parser<'a> {
     chars: Vec<char>,
     at: usize,
+    /// Brackets that are open.
+    depth: usize,
     whole: &'a str,
     /// The power of each length that was met: below a fraction bar it is negative.
     lengths: Vec<i8>,
 }
+
+/// Brackets within each other in a unit, at most: a text of nothing else would fill the stack.
+const MOST_BRACKETS: usize = 16;
 
 impl<'a> Parser<'a> {
     /// The unit of a text, and the powers of the lengths in it.
@@ -178,8 +183,13 @@ impl<'a> Parser<'a> {
                 c => c,
             })
             .collect();
-        let mut parser =
-            Parser { chars: folded.trim().chars().collect(), at: 0, whole: text, lengths: Vec::new() };
+        let mut parser = Parser {
+            chars: folded.trim().chars().collect(),
+            at: 0,
+            depth: 0,
+            whole: text,
+            lengths: Vec::new(),
+        };
         let unit = parser.quotient()?;
         if parser.at < parser.chars.len() {
             return Err(parser.unknown(parser.chars[parser.at..].iter().collect()));
@@ -229,13 +239,18 @@ impl<'a> Parser<'a> {
 
     fn factor(&mut self) -> Result<Unit, QuantityError> {
         if self.peek() == Some('(') {
+            if self.depth == MOST_BRACKETS {
+                return Err(self.unknown("(".into()));
+            }
             self.at += 1;
+            self.depth += 1;
             let inside = self.lengths.len();
             let unit = self.quotient()?;
             if self.peek() != Some(')') {
                 return Err(self.unknown("(".into()));
             }
             self.at += 1;
+            self.depth -= 1;
             let power = self.power()?;
             self.lengths[inside..]
                 .iter_mut()
@@ -431,6 +446,8 @@ mod tests {
 
     #[test]
     fn brackets_have_powers() {
+        assert!(Unit::parse(&format!("{}mm{}", "(".repeat(16), ")".repeat(16))).is_ok());
+        assert!(Unit::parse(&"(".repeat(1_000_000)).is_err());
         assert_relative_eq!(factor("gf·(cm·(°))-1"), factor("gf/(cm·deg)"), max_relative = 1e-14);
         assert_relative_eq!(factor("gf·(cm²)^-1"), factor("gf/cm²"), max_relative = 1e-14);
         assert!(divides_by_length("gf·cm²·(cm)-1") && !divides_by_length("N·(m)"));
