@@ -167,6 +167,15 @@ fn deviations_below_a_mean_are_no_samples() {
     assert!(told(&content, "R110").contains("\"V%\""));
 }
 
+/// A blend is a name, and `s` above a mean is a sample.
+#[test]
+fn names_with_per_cent_are_names() {
+    let text = "Sample,B warp (gf·cm²/cm)\nPES 35%,0.1\nPES 65%,0.2\ns,0.3\nmean,0.2\nCV%,50\n";
+    let content = read(text.as_bytes()).unwrap();
+    let names: Vec<Option<&str>> = content.results.iter().map(|(name, _)| name.as_deref()).collect();
+    assert_eq!(names, [Some("PES 35%"), Some("PES 65%"), Some("s")]);
+}
+
 /// In code page 850 of DOS the direction is `87 C6` within, and the unit has `FA` and `FD`.
 #[test]
 fn code_pages_of_dos_are_known_by_their_words_and_units() {

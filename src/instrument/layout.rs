@@ -142,12 +142,7 @@ pub(super) fn blocks<'t>(
         return Err(unread.unwrap_or_else(|| context.error(0, 0, Problem::Empty)));
     }
     let has_table = blocks.iter().any(|block| matches!(block, Block::Table { .. }));
-    if let Some((line, _)) = stray.first().filter(|_| has_table) {
-        let place = Place::at(context.path, *line, 0);
-        let names = stray.into_iter().map(|(_, name)| name).collect();
-        let fact = ReadFact::Unusable { names, reason: Some(shape::APART.to_string()) };
-        scanner.findings.push(Finding::new(fact).at(place));
-    }
+    scanner.findings.extend(Some(stray).filter(|_| has_table).and_then(|stray| shape::apart(stray, context)));
     if let Some(line) = behind.first() {
         let place = Place::at(context.path, *line, 0);
         scanner.findings.push(Finding::new(ReadFact::RowsNotRead { lines: behind }).at(place));

@@ -11,6 +11,7 @@ mod layout;
 mod merged_cells;
 mod noted;
 mod repeats;
+mod row_facts;
 mod rows_above;
 mod states;
 mod strangers;
@@ -20,6 +21,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use fast_cells::FastCell;
 use layout::{Column, Layout};
+use row_facts::RowFacts;
 
 use super::dialect::{Key, Statistic, TableColumn};
 use super::error::{Problem, ReadError};
@@ -27,7 +29,6 @@ use super::facets::Facets;
 use super::layout::{Context, Header};
 use super::raw::Row;
 use super::shape::{self, Region};
-use super::sniff::{Number, number};
 use super::value::is_gap;
 use super::words::{folded, normalised};
 use super::{Direction, Parameter, ResultValue, StatedStiffness};
@@ -68,24 +69,6 @@ struct Datum {
     column: usize,
     /// Index of its cell.
     cell: usize,
-}
-
-/// What a row says of its values.
-#[derive(Clone, Debug, Default)]
-struct RowFacts {
-    fabric: Option<String>,
-    facets: Facets,
-    /// The columns that state the direction and the parameter.
-    direction_at: Option<usize>,
-    parameter_at: Option<usize>,
-    /// Whether the row itself names its fabric.
-    names_fabric: bool,
-    /// The text of the label, for messages.
-    label: String,
-    n: usize,
-    unit_at: usize,
-    /// Whether the row sums up fabrics: it belongs to none.
-    summary_of_fabrics: bool,
 }
 
 /// Reads a table. In one of several fabrics a bad row leaves out its own fabric only.
@@ -286,7 +269,10 @@ impl<'t> Table<'t, '_> {
                     facts.take_label(&f, text, label.index);
                 }
                 // A number under a head that is not understood counts nothing.
-                None if f.index.is_some() && !label.name.is_empty() && is_whole(text) => {
+                None if f.index.is_some()
+                    && !label.name.is_empty()
+                    && text.bytes().all(|b| b.is_ascii_digit()) =>
+                {
                     facts.take(&Facets { index: None, ..f.clone() }, text);
                 }
                 _ => facts.take(&f, text),
@@ -459,48 +445,5 @@ impl<'t> Table<'t, '_> {
         } else {
             self.ignored.push(label.clone());
         }
-    }
-}
-
-fn is_whole(text: &str) -> bool {
-    text.bytes().all(|b| b.is_ascii_digit())
-}
-
-impl RowFacts {
-    /// Takes what a label says: direction, number, statistic.
-    fn take(&mut self, f: &Facets, text: &str) {
-        if f.parameter.is_some() || f.unknown {
-            if self.label.is_empty() {
-                self.label = text.to_string();
-            }
-            return;
-        }
-        if f.statistic.is_some() || self.label.is_empty() {
-            self.label = text.to_string();
-        }
-        let plain = Facets { unit: None, meta: None, ..f.clone() };
-        self.facets = self.facets.or(&plain);
-    }
-
-    /// Takes the label of a row that is a parameter.
-    fn take_label(&mut self, f: &Facets, text: &str, index: usize) {
-        if self.label.is_empty() {
-            self.label = text.to_string();
-        }
-        let bare = text.trim_matches(['(', ')', '[', ']']);
-        if !f.is_clear() || (f.parameter.is_none() && f.direction.is_none() && f.fast.is_none()) {
-            let is_unit = super::unit_text::unit(bare).is_ok()
-                && self.facets.names_value()
-                && number(bare, '.') == Number::Text;
-            if is_unit && self.facets.unit.is_none() {
-                (self.facets.unit, self.unit_at) = (Some(folded(bare).into_owned()), index);
-            }
-            return;
-        }
-        if f.unit.is_some() {
-            self.unit_at = index;
-        }
-        let plain = Facets { meta: None, ..f.clone() };
-        self.facets = self.facets.or(&plain);
     }
 }

@@ -15,6 +15,7 @@ use super::unit_text::{split_unit, unbracketed, unit};
 use super::value::{Printed, is_gap};
 use super::words::folded;
 use super::{Direction, Parameter};
+use crate::finding::{Finding, Place, ReadFact};
 
 /// The most rows of heads.
 const HEADS: usize = 5;
@@ -235,9 +236,13 @@ fn is_labelled(row: &Row<'_>, named: &BTreeSet<usize>, context: &Context<'_>) ->
     label.is_some_and(|(_, f)| row.filled().any(|(_, c)| is_value_of(&c.text, &f, context)))
 }
 
-/// Why a value among header lines is not read.
-pub(super) const APART: &str =
-    "it stands apart from the table, as a header line does: put it into a row of the table";
+/// What is told of values among the header lines of a table, each with its line.
+pub(super) fn apart(values: Vec<(usize, String)>, context: &Context<'_>) -> Option<Finding> {
+    let place = Place::at(context.path, values.first()?.0, 0);
+    let names = values.into_iter().map(|(_, name)| name).collect();
+    let reason = "it stands apart from the table, as a header line does: put it into a row of the table";
+    Some(Finding::new(ReadFact::Unusable { names, reason: Some(reason.to_string()) }).at(place))
+}
 
 /// The label of a header line that names a parameter and states a value of it. The weight and the thickness of the sample have
 /// keys of their own.

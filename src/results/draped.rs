@@ -360,11 +360,9 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
         (format!("band of {} states", d.near().len()), format!("{} to {} %", percent(low), percent(high))),
     ];
     values.extend(sampled::values(task, "drape_coefficient", "%", 0.01));
-    values.extend(
-        d.hung
-            .as_ref()
-            .map(|hung| ("not yet shaken".to_string(), format!("{} %", percent(hung.coefficient)))),
-    );
+    let hung =
+        |s: &DrapeState| (format!("hung, {} elements", s.elements), format!("{} %", percent(s.coefficient)));
+    values.extend(d.hung.as_ref().map(hung));
     if let Some((value, _)) = measured(task) {
         values.push(("measured".into(), format!("{} %", percent(value))));
     }

@@ -37,11 +37,9 @@ fn write_curves(chart: &CurveChart, folder: &Folder<'_>) -> Result<(), Failure> 
 fn write_sheet(sheet: &SheetPicture, folder: &Folder<'_>) -> Result<(), Failure> {
     let bent = sheet.bent().map_err(failed)?;
     let quantity = "M_x/(q L²)";
-    let subtitle =
-        "uniform pressure, B warp / B weft = 2, H = 0; bending stress of a homogeneous sheet: 6 M_x/t²";
     let map = FieldPlot {
         title: sheet.title.clone(),
-        subtitle: subtitle.into(),
+        subtitle: sheet.subtitle.clone(),
         quantity: quantity.into(),
         unit: String::new(),
         nodes: &bent.nodes,
@@ -53,7 +51,7 @@ fn write_sheet(sheet: &SheetPicture, folder: &Folder<'_>) -> Result<(), Failure>
     let nodes = raised(&bent);
     let view = ViewPlot {
         title: sheet.title.clone(),
-        subtitle: subtitle.into(),
+        subtitle: sheet.subtitle.clone(),
         origin: String::new(),
         quantity: quantity.into(),
         nodes: &nodes,

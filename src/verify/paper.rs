@@ -108,6 +108,8 @@ pub struct SheetPicture {
     pub stem: String,
     /// Headline.
     pub title: String,
+    /// Second line.
+    pub subtitle: String,
     problem: PlateProblem,
 }
 

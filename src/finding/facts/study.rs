@@ -131,6 +131,16 @@ super::facts! {
         } else {
             "shear = \"displacement\" locks: the thinner the sheet, the stiffer it is, without limit"
         };
+        /// A sheet with friction that was shaken.
+        "S129" ShakenDrape {
+            /// The largest change of its weight over the weight.
+            shaking: f64,
+            /// The drape coefficient before, 0 to 1.
+            coefficient: f64,
+            /// Elements of the mesh on which that was.
+            elements: usize,
+        } = "hung, and then shaken as if by hands (assumed): its weight changed by {shaking} of itself at first; before that the coefficient \
+             was {:.1} % on {elements} elements", 100.0 * coefficient;
         /// A sheet that buckled on the way.
         "S124" Buckled {
             /// Factors of the load after which it did.

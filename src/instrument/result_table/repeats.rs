@@ -48,24 +48,28 @@ impl<'t> Table<'t, '_> {
     /// `Mean` in the column of fabrics.
     fn names_of_statistics(&mut self, rows: &mut [(&Row<'_>, RowFacts)]) {
         let v = self.context.vocabulary;
-        let names = rows.iter().filter_map(|(_, f)| f.fabric.as_deref());
-        let beside_mean = names.into_iter().any(|t| v.statistic(t) == Some(Statistic::Mean));
-        let word = |f: &RowFacts| f.fabric.clone().filter(|t| statistic_of_row(t, beside_mean, v).is_some());
-        let own = |(row, f): &(&Row<'_>, RowFacts)| {
+        let is_mean =
+            |f: &RowFacts| f.fabric.as_deref().and_then(|t| v.statistic(t)) == Some(Statistic::Mean);
+        let first_mean = rows.iter().position(|(_, f)| is_mean(f)).unwrap_or(rows.len());
+        let statistics: Vec<Option<Statistic>> = rows
+            .iter()
+            .enumerate()
+            .map(|(i, (_, f))| statistic_of_row(f.fabric.as_deref()?, i > first_mean, v))
+            .collect();
+        let own = |((row, f), statistic): (&(&Row<'_>, RowFacts), &Option<Statistic>)| {
             let named = self.layout.labels.iter().any(|l| {
                 matches!(l.meta, Some(TableColumn::Id | TableColumn::Fabric)) && row.get(l.index).is_some()
             });
-            word(f).filter(|_| named)
+            f.fabric.clone().filter(|_| statistic.is_some() && named)
         };
-        let words: Vec<Option<String>> = rows.iter().map(own).collect();
+        let words: Vec<Option<String>> = rows.iter().zip(&statistics).map(own).collect();
         if !names_statistics(words.iter().flatten().map(String::as_str), v) {
             return;
         }
         let others = words.iter().zip(rows.iter()).any(|(w, (_, f))| w.is_none() && f.fabric.is_some());
-        for ((_, facts), word) in rows.iter_mut().zip(words) {
-            let own = facts.fabric.clone().filter(|t| statistic_of_row(t, beside_mean, v).is_some());
-            let Some(text) = word.or(own) else { continue };
-            facts.facets.statistic = statistic_of_row(&text, beside_mean, v);
+        for ((_, facts), statistic) in rows.iter_mut().zip(statistics) {
+            let Some(text) = facts.fabric.clone().filter(|_| statistic.is_some()) else { continue };
+            facts.facets.statistic = statistic;
             facts.facets.sd = v.table_column(&text) == Some(TableColumn::Sd);
             // Beside fabrics it sums them up, and belongs to none.
             facts.fabric = None;
@@ -381,10 +385,15 @@ impl Datum {
     }
 }
 
-/// How a name says that its row sums up others. `s` and `V%` are deviations beside a mean, and else names.
-fn statistic_of_row(name: &str, beside_mean: bool, v: Vocabulary<'_>) -> Option<Statistic> {
-    let deviation =
-        beside_mean && (v.table_column(name) == Some(TableColumn::Sd) || name.trim_end().ends_with('%'));
+/// Letters of the longest abbreviation of a deviation in per cent.
+const LONGEST_ABBREVIATION: usize = 3;
+
+/// How a name says that its row sums up others. `s` and `V%` are deviations below a mean, and else names; `PES 35%` is a name.
+fn statistic_of_row(name: &str, below_mean: bool, v: Vocabulary<'_>) -> Option<Statistic> {
+    let is_relative = name.trim().strip_suffix('%').map(str::trim_end).is_some_and(|letters| {
+        letters.chars().all(char::is_alphabetic) && letters.chars().count() <= LONGEST_ABBREVIATION
+    });
+    let deviation = below_mean && (v.table_column(name) == Some(TableColumn::Sd) || is_relative);
     v.statistic(name).or(deviation.then_some(Statistic::Spread))
 }
 

@@ -7,8 +7,8 @@
 //! ```
 //! The equilibria are many: a sheet hangs in four folds, or five, or six, and its coefficient moves by
 //! ten points between them. So there are several searches, each from a sheet that is given its number
-//! of folds at the start; every one ends in a stable equilibrium with whatever folds it then has. A search begins on cells of
-//! twice the width, where they are narrow enough for its folds: most of the way is gone there. The result is the state of
+//! of folds at the start; every one ends in a stable equilibrium with whatever folds it then has. The searches begin on
+//! cells of twice the width, where the mesh can be made of such: most of the way is gone there. The result is the state of
 //! lowest energy, refined, and the band of the coefficients of all states whose energy is nearly as low.
 //!
 //! A sheet with friction is hung, and then shaken: its weight swings about itself, less and less. A sheet that is laid on a disc by
@@ -190,7 +190,13 @@ pub fn drape(
     let states: Vec<DrapeState> = found.into_iter().map(|found| found.state).collect();
     let Hanging { ring, model, .. } = sheet;
     let outline = shadow::outline(&projected(&solution.state), &model.mesh.quads, ring.inner, 360);
-    let findings = findings(case, &meshes, &failed, folds.len(), law.is_none());
+    let shaken = hung.as_ref().map(|state| StudyFact::ShakenDrape {
+        shaking: problem.shaking,
+        coefficient: state.coefficient,
+        elements: state.elements,
+    });
+    let of_law = if law.is_none() { Some(StudyFact::ElasticDrape {}) } else { shaken };
+    let findings = findings(case, &meshes, &failed, folds.len(), of_law);
     Ok(Drape {
         case: case.name.clone(),
         states,
@@ -292,12 +298,9 @@ fn findings(
     meshes: &[DrapeState],
     failed: &[(usize, NonlinearError)],
     searches: usize,
-    elastic: bool,
+    of_law: Option<StudyFact>,
 ) -> Vec<Finding> {
-    let mut facts = Vec::new();
-    if elastic {
-        facts.push(StudyFact::ElasticDrape {});
-    }
+    let mut facts: Vec<StudyFact> = of_law.into_iter().collect();
     if !failed.is_empty() {
         let starts = failed.iter().map(|(start, _)| *start).collect();
         facts.push(StudyFact::FailedSearches { starts, searches });

@@ -1,0 +1,62 @@
+//! What the labels of a row say of its values.
+
+use crate::instrument::facets::Facets;
+use crate::instrument::sniff::{Number, number};
+use crate::instrument::unit_text::unit;
+use crate::instrument::words::folded;
+
+/// What a row says of its values.
+#[derive(Clone, Debug, Default)]
+pub(super) struct RowFacts {
+    pub(super) fabric: Option<String>,
+    pub(super) facets: Facets,
+    /// The columns that state the direction and the parameter.
+    pub(super) direction_at: Option<usize>,
+    pub(super) parameter_at: Option<usize>,
+    /// Whether the row itself names its fabric.
+    pub(super) names_fabric: bool,
+    /// The text of the label, for messages.
+    pub(super) label: String,
+    pub(super) n: usize,
+    pub(super) unit_at: usize,
+    /// Whether the row sums up fabrics: it belongs to none.
+    pub(super) summary_of_fabrics: bool,
+}
+
+impl RowFacts {
+    /// Takes what a label says: direction, number, statistic.
+    pub(super) fn take(&mut self, f: &Facets, text: &str) {
+        if f.parameter.is_some() || f.unknown {
+            if self.label.is_empty() {
+                self.label = text.to_string();
+            }
+            return;
+        }
+        if f.statistic.is_some() || self.label.is_empty() {
+            self.label = text.to_string();
+        }
+        let plain = Facets { unit: None, meta: None, ..f.clone() };
+        self.facets = self.facets.or(&plain);
+    }
+
+    /// Takes the label of a row that is a parameter.
+    pub(super) fn take_label(&mut self, f: &Facets, text: &str, index: usize) {
+        if self.label.is_empty() {
+            self.label = text.to_string();
+        }
+        let bare = text.trim_matches(['(', ')', '[', ']']);
+        if !f.is_clear() || (f.parameter.is_none() && f.direction.is_none() && f.fast.is_none()) {
+            let is_unit =
+                unit(bare).is_ok() && self.facets.names_value() && number(bare, '.') == Number::Text;
+            if is_unit && self.facets.unit.is_none() {
+                (self.facets.unit, self.unit_at) = (Some(folded(bare).into_owned()), index);
+            }
+            return;
+        }
+        if f.unit.is_some() {
+            self.unit_at = index;
+        }
+        let plain = Facets { meta: None, ..f.clone() };
+        self.facets = self.facets.or(&plain);
+    }
+}
