@@ -28,7 +28,6 @@ mod work;
 
 pub(crate) use document::RunDocument;
 
-use crate::case::Case;
 use crate::report::table::{FabricRow, PredictionRow, ProblemRow};
 use crate::results::{
     Catalogue, Columns, FabricReport, Failure, Folder, Job, JobInputs, Observer, Record, Sink,
@@ -36,7 +35,7 @@ use crate::results::{
 
 #[cfg(feature = "parquet")]
 pub(crate) use fabrics::key_of_case;
-pub use settings::{FieldFiles, RunSettings};
+pub use settings::{Drapes, FieldFiles, RunSettings};
 pub use tally::CaseTally;
 #[cfg(feature = "parquet")]
 pub(crate) use tally::of_batch;
@@ -181,7 +180,8 @@ pub fn read(job: &Job, settings: &RunSettings, observer: &Observer) -> Result<Ru
     }
     let mut catalogue = Catalogue::find(&job.reading, &fabrics, &moduli, job.share, observer)?;
     failures.append(&mut catalogue.failures);
-    let cases = without_drapes(cases, settings, observer);
+    let fabrics = job.share.is_none().then(|| catalogue.len());
+    let cases = settings.drapes.choose(cases, fabrics, observer);
     let (threads, limits, share) = (job.threads.max(1), job.limits, job.share);
     let work = RunWork { cases, catalogue, failures, threads, limits, share };
     // A shard may have nothing.
@@ -215,6 +215,7 @@ pub fn write(
     // Of a share, nobody knows yet what is true of all fabrics.
     let without_law = if job.share.is_some() { Vec::new() } else { shop.without_law() };
     without_law.iter().for_each(|finding| observer.found(None, finding));
+    shop.tell_of_quick_drapes();
     let cases = shop.suitable();
     let own = own_cases(work, &folder, observer)?;
 
@@ -256,15 +257,4 @@ pub fn write(
         tables,
         failures,
     })
-}
-
-fn without_drapes(mut cases: Vec<Case>, settings: &RunSettings, observer: &Observer) -> Vec<Case> {
-    cases.retain(|case| {
-        let is_left_out = !settings.drape && case.is_drape();
-        if is_left_out {
-            observer.note(&format!("{}: left out, it takes minutes; add --drape", case.path.display()));
-        }
-        !is_left_out
-    });
-    cases
 }

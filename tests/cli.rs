@@ -669,3 +669,33 @@ fn bands_of_sampled_inputs_and_fabrics_without_friction_are_told() {
     let problems = fs::read_to_string(results.join("problems.csv")).unwrap();
     assert!(stderr(&output).contains("S118") && problems.contains("S118"), "{}", stderr(&output));
 }
+
+/// A run hangs the fabrics with measured curves by itself, says of which fabrics and how well; `--drape=never` does not.
+#[test]
+fn a_run_hangs_quick_drapes() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = folder.path().join("drape.toml");
+    let text = fs::read_to_string("cases/drape.toml").unwrap();
+    let one = text.replace("folds = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]", "folds = [7]");
+    assert_ne!(text, one);
+    fs::write(&case, one).unwrap();
+    let hung = |name: &str, more: &[&str]| {
+        let out = folder.path().join(name);
+        let arguments =
+            ["run", "kesf_data/twill", "kesf_data/petrak_m1", case.to_str().unwrap(), "--no-charts", "-o"];
+        let output = run(&[&arguments[..], &[out.to_str().unwrap()], more].concat());
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        let read = |name: &str| fs::read_to_string(out.join(name)).unwrap();
+        (read("predictions.csv"), read("problems.csv"), stderr(&output), read("run.json"))
+    };
+    let (predictions, problems, told, document) = hung("quick", &[]);
+    assert!(predictions.contains("drape_coefficient") && problems.contains("S130"), "{problems}");
+    assert!(!predictions.contains("petrak_m1,drape"), "{predictions}");
+    assert!(told.contains("quick drapes for 1 of 2 fabrics"), "{told}");
+    assert!(document.contains("\"drape\": false") && document.contains("\"drapes\": \"auto\""), "{document}");
+    let (predictions, problems, told, _) = hung("never", &["--drape=never"]);
+    assert!(!predictions.contains("drape") && !problems.contains("S130"), "{predictions}");
+    assert!(!told.contains("drape"), "{told}");
+    let output = run(&["run", "kesf_data/twill", "--drape=often"]);
+    assert!(code(&output) == 2 && stderr(&output).contains("often"), "{}", stderr(&output));
+}

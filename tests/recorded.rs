@@ -55,7 +55,8 @@ fn the_main_job_gives_the_numbers_that_were_recorded() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("results");
     let run = Command::new(env!("CARGO_BIN_EXE_kesf"))
-        .args(["run", "kesf_data", "cases", "--no-charts", "-o"])
+        // Drapes end at a residual of 1e-6, and have fewer digits that stay: they are held in `study::drape`.
+        .args(["run", "kesf_data", "cases", "--drape=never", "--no-charts", "-o"])
         .arg(&out)
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .output()

@@ -9,10 +9,11 @@ use std::path::{Path, PathBuf};
 /// Two fabrics: all raw curves of one, a published table of another.
 const EXAMPLE: [&str; 2] = ["kesf_data/poplin", "kesf_data/petrak_m1"];
 
-/// Linear cases, simulated tests and the cantilever. Drape takes minutes and is the command's.
-const CASES: [&str; 8] = [
+/// Linear cases, simulated tests, the cantilever and the drape, which is made quick.
+const CASES: [&str; 9] = [
     "cantilever",
     "cantilever_strip",
+    "drape",
     "seed_clamped",
     "seed_simply_supported",
     "virtual_bending",

@@ -8,7 +8,7 @@ use kesf::parts::{self, Merged, Part, Request, TABLES, encode, evaluate as evalu
 use kesf::report::arrow::{batch, read};
 use kesf::report::table::CurveRow;
 use kesf::results::{Failure, Input, Job, Shard, Share, fabrics_of_curves};
-use kesf::run::RunSettings;
+use kesf::run::{Drapes, RunSettings};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
@@ -90,7 +90,7 @@ pub fn evaluate(
         }
         let reading = options.reading(settings);
         let job = Job { inputs, reading, threads: count(threads), share: share(shard)?, ..Job::default() };
-        evaluation(&job, &RunSettings { drape, ..RunSettings::default() }, observer)
+        evaluation(&job, &RunSettings { drapes: Drapes::asked(drape), ..RunSettings::default() }, observer)
     })?;
     let table = |made: Result<_, kesf::report::table::TableError>| {
         made.map(Table::new).map_err(Failure::from).or_raise(py)
@@ -127,7 +127,7 @@ pub fn make_part(
         let whole = share(shard)?.ok_or_else(|| Failure::new("O050", "no shard is named"))?;
         let (inputs, reading) = (inputs(paths, Vec::new()), options.reading(settings));
         let job = Job { inputs, reading, threads: count(threads), share: Some(whole), ..Job::default() };
-        let settings = RunSettings { drape, fresh, ..RunSettings::default() };
+        let settings = RunSettings { drapes: Drapes::asked(drape), fresh, ..RunSettings::default() };
         make(&Request { job: &job, settings: &settings, folder: &folder, force }, whole, observer)
     })?;
     Ok((done.kept, done.fabrics, done.rows, done.findings, done.failures))

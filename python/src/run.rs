@@ -8,7 +8,7 @@ use kesf::case::SolverChoice;
 use kesf::report::OutputFolder;
 use kesf::report::table::{FabricRow, PredictionRow, ProblemRow};
 use kesf::results::{Event, Failure, Job, MemorySink, Sink};
-use kesf::run::{RunReport, RunSettings, read, write};
+use kesf::run::{Drapes, RunReport, RunSettings, read, write};
 use kesf::verify::{document, run as check_all, suite};
 use pyo3::prelude::*;
 
@@ -24,7 +24,7 @@ pub struct Making {
     /// Whether files are kept where there is no folder.
     keep: bool,
     charts: bool,
-    drape: bool,
+    drape: Option<bool>,
     stamp: Option<String>,
     force: bool,
     solver: Option<String>,
@@ -80,7 +80,8 @@ pub fn run(
             ..Job::default()
         };
         let Making { charts, drape, stamp, out, force, keep, .. } = making;
-        let settings = RunSettings { charts, drape, stamp, ..RunSettings::default() };
+        let drapes = drape.map_or(Drapes::Auto, Drapes::asked);
+        let settings = RunSettings { charts, drapes, stamp, ..RunSettings::default() };
         let work = read(&job, &settings, observer)?;
         if work.is_empty() {
             let sink = MemorySink::default();

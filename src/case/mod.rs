@@ -216,6 +216,23 @@ impl Case {
         }
     }
 
+    /// Makes an elastic drape a quick one, for the fabrics of which curves were measured; false for another case.
+    pub fn make_quick(&mut self) -> bool {
+        let is_elastic = self.assumptions().is_none_or(|a| a.law == Mode::Elastic);
+        match &mut self.problem {
+            Problem::Drape(problem) if is_elastic => {
+                problem.make_quick();
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// Whether the case is a drape that was [made quick](Self::make_quick).
+    pub fn is_quick(&self) -> bool {
+        matches!(&self.problem, Problem::Drape(problem) if problem.is_quick)
+    }
+
     /// Whether the case is a drape.
     pub fn is_drape(&self) -> bool {
         matches!(self.problem, Problem::Drape(_))
@@ -237,7 +254,9 @@ impl Case {
 
     /// Whether a fabric has the records that the case compares with, and the law that it asks for.
     pub fn suits(&self, sheet: &FabricSheet) -> bool {
-        (!self.is_for_fab_records() || !sheet.bend_tests.is_empty()) && !self.lacks_law(sheet)
+        (!self.is_for_fab_records() || !sheet.bend_tests.is_empty())
+            && (!self.is_quick() || !sheet.specimens.is_empty())
+            && !self.lacks_law(sheet)
     }
 
     /// Whether the case asks for friction, and a fabric has no law of bending.

@@ -79,6 +79,9 @@ pub struct ShellSpecimen {
     pub solver: Solver,
 }
 
+/// Cells along the radius that a search for drapes needs at the start.
+const CELLS_OF_THE_RADIUS: usize = 6;
+
 /// A round sheet that hangs over a disc, clamped at its edge, under its own weight.
 #[derive(Clone, Debug)]
 pub struct DrapeProblem {
@@ -98,6 +101,8 @@ pub struct DrapeProblem {
     pub folds: Vec<usize>,
     /// How often the cells are halved for the state of lowest energy.
     pub refinements: usize,
+    /// Whether the cells are wider than the case says, and the refinements fewer, for a first look.
+    pub is_quick: bool,
     /// Whether the sizes of disc and sheet are those with which the fabric's drape was measured, where they are known.
     pub sizes_as_measured: bool,
     /// The largest change of the weight over itself when a sheet with friction is shaken, 0 to 1.
@@ -107,6 +112,21 @@ pub struct DrapeProblem {
 }
 
 impl DrapeProblem {
+    /// Cells of twice the width, along the radius and around, where a search can begin on such.
+    pub fn wider(cells: [usize; 2]) -> Option<[usize; 2]> {
+        let is_even = cells.iter().all(|n| n % 2 == 0);
+        (is_even && cells[0] / 2 >= CELLS_OF_THE_RADIUS).then(|| cells.map(|n| n / 2))
+    }
+
+    /// Searches on the widest cells alone, and halves those of the state of lowest energy once.
+    pub(super) fn make_quick(&mut self) {
+        while let Some(wider) = Self::wider(self.ring.cells) {
+            self.ring.cells = wider;
+        }
+        self.refinements = 1;
+        self.is_quick = true;
+    }
+
     /// The ring as a sheet.
     pub fn sheet(&self) -> Sheet {
         Sheet { outline: Outline::Annulus(self.ring), layout: self.layout, table: self.table }

@@ -318,6 +318,7 @@ impl CaseTable {
             gravity: weight(case)?,
             folds: drape.folds,
             refinements: drape.refinements,
+            is_quick: false,
             sizes_as_measured: drape.sizes == DrapeSizes::Measured,
             shaking: drape.shaking,
             solver,

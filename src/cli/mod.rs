@@ -11,6 +11,7 @@ mod compare;
 mod completions;
 mod diagnostics;
 mod drape_image;
+mod drapes;
 mod exit;
 mod explain;
 mod export;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::drapes::DrapesArg;
 use super::exit::Exit;
 use super::fields::FieldsArg;
 use super::output::open_folder;
@@ -30,9 +31,17 @@ pub struct Options {
     /// Do one part of many, as Parquet: the fabrics whose names fall to this shard; `kesf merge` joins the parts
     #[arg(long, value_name = "K/N", conflicts_with_all = ["fields", "stamp", "xlsx", "bom", "no_charts", "format", "population"])]
     shard: Option<Shard>,
-    /// Solve drape cases too: a minute or so for each fabric
-    #[arg(long)]
-    drape: bool,
+    /// Solve drape cases; alone it means always
+    #[arg(
+        long,
+        value_enum,
+        value_name = "WHEN",
+        num_args = 0..=1,
+        require_equals = true,
+        default_value_t,
+        default_missing_value = "always"
+    )]
+    drape: DrapesArg,
     /// Compute every fabric, also those that an earlier run into the folder has computed of the same inputs
     #[arg(long)]
     fresh: bool,
@@ -62,7 +71,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         formats: options.task.format.0.clone(),
         population: options.population.as_deref().map(population).transpose()?,
         fields: options.fields.into(),
-        drape: options.drape,
+        drapes: options.drape.into(),
         fresh: options.fresh,
         program: program(),
         stamp: options.stamp.then(now),

@@ -177,11 +177,34 @@ pub fn for_each_element(
     remembered: Option<Remembered<'_>>,
     quads: impl Iterator<Item = usize>,
     displacement: impl Fn(usize) -> Displacement,
+    visit: impl FnMut(usize, [Resultants; PLACES]),
+) -> Result<(), ModelError> {
+    let section = &model.section;
+    let d = remembered.map_or([section.d_m, section.d_b], |r| r.law.beside(section));
+    for_each_element_of(model, flat, (remembered, d), quads, displacement, visit)
+}
+
+/// The mean curvature of each element in material axes, `[κ_x, κ_y, κ_xy]` with κ_xy twice that of the tensor (1/m).
+pub fn for_each_curvature(
+    model: &Model,
+    displacement: impl Fn(usize) -> Displacement,
+    mut visit: impl FnMut([f64; 3]),
+) -> Result<(), ModelError> {
+    // A moment is the stiffness of bending times the curvature: that of the unit stiffness is the curvature.
+    let d = [model.section.d_m, Matrix3::identity()];
+    let quads = 0..model.mesh.quads.len();
+    for_each_element_of(model, false, (None, d), quads, displacement, |_, [.., mean]| visit(mean.moment))
+}
+
+fn for_each_element_of(
+    model: &Model,
+    flat: bool,
+    (remembered, d): (Option<Remembered<'_>>, [Matrix3<f64>; 2]),
+    quads: impl Iterator<Item = usize>,
+    displacement: impl Fn(usize) -> Displacement,
     mut visit: impl FnMut(usize, [Resultants; PLACES]),
 ) -> Result<(), ModelError> {
     let weights = extrapolation(model.formulation.cells);
-    let section = &model.section;
-    let d = remembered.map_or([section.d_m, section.d_b], |r| r.law.beside(section));
     let mut last: Option<Operator> = None;
     for quad in quads {
         let corners = model.mesh.corners(quad);

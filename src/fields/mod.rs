@@ -121,6 +121,32 @@ fn means_of(
     Ok(means)
 }
 
+/// Mean curvature of each element, `[κ_x, κ_y, κ_xy]` in material axes, κ_xy twice that of the tensor (1/m): D_b times it is the
+/// moment of an elastic sheet.
+///
+/// # Errors
+/// M008 if the warp direction is normal to an element.
+pub fn curvatures(model: &Model, displacement: &[f64]) -> Result<Vec<[f64; 3]>, ModelError> {
+    let mut all = Vec::with_capacity(model.mesh.quads.len());
+    element::for_each_curvature(model, small(model, displacement), |curvature| all.push(curvature))?;
+    Ok(all)
+}
+
+/// The same after large rotations, in the axes of the elements as they have turned.
+///
+/// # Errors
+/// M008 if the warp direction is normal to an element.
+pub fn curvatures_moved(model: &Model, state: &State) -> Result<Vec<[f64; 3]>, ModelError> {
+    let mut all = Vec::with_capacity(model.mesh.quads.len());
+    element::for_each_curvature(model, straining(model, state), |curvature| all.push(curvature))?;
+    Ok(all)
+}
+
+/// The largest absolute value of the two principal ones of a symmetric tensor `[xx, yy, xy]`.
+pub fn largest_principal([x, y, xy]: [f64; 3]) -> f64 {
+    (0.5 * (x + y)).abs() + (0.5 * (x - y)).hypot(xy)
+}
+
 /// Unit vector along the warp in each element at rest, the x of its resultants.
 pub fn warp_directions(model: &Model) -> Vec<Vector3<f64>> {
     let of_element = |quad| {

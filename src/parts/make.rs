@@ -143,7 +143,7 @@ fn keys(request: &Request, share: Share) -> Result<(String, String), Failure> {
     let set_up = json!({
         "inputs": named,
         "cases": cases,
-        "drape": settings.drape,
+        "drape": settings.drapes,
         "solver": job.solver,
         "evaluation": job.reading.entry(),
         "shards": share.shard.count(),

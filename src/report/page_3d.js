@@ -31,7 +31,17 @@
     }
     const corners = shorts(data.shapes.quads[Number(sheet.quads)]);
     for (let i = 0; i < corners.length; i += 4) quads.push(corners.slice(i, i + 4));
-    return { before: points.slice(0, sheet.outline), nodes: points.slice(sheet.outline), parts: bytes(sheet.values), quads };
+    return { before: points.slice(0, sheet.outline), nodes: points.slice(sheet.outline), quads };
+  }
+
+  const UNITS = {
+    m: [[1e-2, "cm"], [1e-3, "mm"], [1e-6, "µm"], [1e-9, "nm"]],
+    N: [[1, "N"], [1e-3, "mN"], [1e-6, "µN"], [1e-9, "nN"]],
+  };
+  /** A value in the largest of its units that makes it 1 or more. */
+  function inWords(value, unit) {
+    const all = UNITS[unit] || [[1, unit]], [factor, name] = all.find(([factor]) => value >= factor) || all.at(-1);
+    return `${significant(value / factor, 3)} ${name}`;
   }
 
   class Viewer {
@@ -39,12 +49,14 @@
       this.sheets = sheets;
       this.view = { ...START };
       this.before = true;
+      this.field = -1;
       this.canvas = element("canvas", { width: 960, height: 640, tabindex: "0", role: "application" });
       this.told = element("p", { class: "reading", role: "status" });
       this.select = element("select", { "aria-label": `Sheet of ${fabric}`, change: () => this.choose() },
         ...sheets.map((sheet, i) => element("option", { value: i }, sheet.title)));
       const button = (text, label, act) => element("button", { type: "button", "aria-label": label, click: () => { act(); this.draw(); } }, text);
       const box = element("input", { type: "checkbox", checked: true, change: () => { this.before = box.checked; this.draw(); } });
+      this.fields = element("select", { "aria-label": "Colour", change: () => { this.field = Number(this.fields.value); this.paint(); this.draw(); } });
       this.link = element("a", {}, "");
       this.node = element("div", { class: "chart viewer" },
         element("div", { class: "controls" }, this.select,
@@ -52,7 +64,7 @@
           button("▲", "From further above", () => this.tilt(3 * STEP)), button("▼", "From further below", () => this.tilt(-3 * STEP)),
           button("+", "Nearer", () => this.nearer(1.25)), button("−", "Further away", () => this.nearer(0.8)),
           button("Reset", "Reset the view", () => { this.view = { ...START }; }),
-          element("label", {}, box, " outline before")),
+          element("label", {}, box, " outline before"), element("label", {}, "Colour: ", this.fields)),
         this.canvas, this.scale(), this.told, element("p", {}, "As a file for Blender or a browser: ", this.link));
       this.listen(fabric);
       this.choose();
@@ -68,17 +80,28 @@
     choose() {
       const sheet = this.sheets[Number(this.select.value)];
       this.mesh = unpacked(sheet);
-      const [factor, unit] = sheet.largest >= 1e-2 ? [1e-2, "cm"] : sheet.largest >= 1e-4 ? [1e-3, "mm"] : sheet.largest >= 1e-7 ? [1e-6, "µm"] : [1e-9, "nm"];
-      const largest = `${significant(sheet.largest / factor, 3)} ${unit}`;
-      const shown = sheet.scale === 1 ? "shown as it is" : `shown ${significant(sheet.scale, 1)} times as large`;
-      this.ends[1].textContent = largest;
-      this.told.textContent = `Colour: length of the displacement, at most ${largest}; ${shown}.`;
-      this.canvas.setAttribute("aria-label", `${sheet.title}: largest displacement ${largest}, ${shown}. ` +
-        "Arrow keys turn it, plus and minus change the distance, 0 resets.");
+      const names = ["length of the displacement", ...(sheet.fields || []).map(({ name }) => name)];
+      if (this.field >= names.length - 1) this.field = -1;
+      this.fields.replaceChildren(...names.map((name, i) => element("option", { value: i - 1 }, name)));
+      this.fields.value = String(this.field);
+      this.paint();
       this.link.textContent = sheet.file;
       // A page that was sent has no files beside it.
       if (beside) this.link.setAttribute("href", "./" + sheet.file.split("/").map(encodeURIComponent).join("/"));
       this.draw();
+    }
+    /** What the colours are, and a part of 255 of the largest for each quad. */
+    paint() {
+      const sheet = this.sheets[Number(this.select.value)], field = (sheet.fields || [])[this.field];
+      const largest = field ? inWords(field.largest, field.unit) : inWords(sheet.largest, "m");
+      const values = bytes((field || sheet).values);
+      this.mesh.parts = field ? values : this.mesh.quads.map((quad) => quad.reduce((sum, n) => sum + values[n], 0) / 4);
+      const shown = sheet.scale === 1 ? "shown as it is" : `displacements shown ${significant(sheet.scale, 1)} times as large`;
+      const what = field ? `${field.name} of each element` : "length of the displacement";
+      this.ends[1].textContent = largest;
+      this.told.textContent = `Colour: ${what}, at most ${largest}; ${shown}.`;
+      this.canvas.setAttribute("aria-label", `${sheet.title}: ${field ? field.name : "largest displacement"} ${largest}, ${shown}. ` +
+        "Arrow keys turn it, plus and minus change the distance, 0 resets.");
     }
     tilt(by) { this.view.up = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, this.view.up + by)); }
     nearer(by) { this.view.zoom = Math.min(8, Math.max(0.4, this.view.zoom * by)); }
@@ -122,15 +145,14 @@
       paint.clearRect(0, 0, width, height);
       const ink = getComputedStyle(document.documentElement).getPropertyValue("--ink");
       const seen = nodes.map(at), depth = nodes.map((p) => along(towards, p));
-      const faces = quads.map((quad) => [quad, quad.reduce((sum, n) => sum + depth[n], 0)]).sort((a, b) => a[1] - b[1]);
+      const faces = quads.map((quad, i) => [quad, quad.reduce((sum, n) => sum + depth[n], 0), i]).sort((a, b) => a[1] - b[1]);
       if (this.before) this.outline(paint, before.map(at), ink, 0.55);
-      for (const [quad] of faces) {
+      for (const [quad, , face] of faces) {
         const [a, b, d, e] = quad.map((n) => nodes[n]);
         const [u, v] = [d.map((x, k) => x - a[k]), e.map((x, k) => x - b[k])];
         const normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
         const light = 0.62 + 0.38 * Math.abs(along(LAMP, normal)) / (Math.hypot(...normal) || 1);
-        const part = quad.reduce((sum, n) => sum + parts[n], 0) / (4 * 255);
-        paint.fillStyle = paint.strokeStyle = `rgb(${color(part).map((x) => Math.round(x * light))})`;
+        paint.fillStyle = paint.strokeStyle = `rgb(${color(parts[face] / 255).map((x) => Math.round(x * light))})`;
         paint.beginPath();
         quad.forEach((n, i) => (i ? paint.lineTo(...seen[n]) : paint.moveTo(...seen[n])));
         paint.closePath();

@@ -1,7 +1,7 @@
 
 // Correlation of parameters over the fabrics of the page: a matrix, and the points behind a pair of it.
 (() => {
-  const { data, element, shape, fixed, ticks, extent, standardised, wide, tall, fitted } = report;
+  const { data, element, shape, svgButton, fixed, ticks, extent, standardised, wide, tall, fitted } = report;
   const LEAST = 5; // fabrics behind a coefficient
   const place = document.getElementById("correlation");
   if (!place) return;
@@ -90,7 +90,8 @@
       parts.push(shape("circle", { class: "p0", cx: x(a), cy: y(b), r: 4 }, shape("title", {}, name)));
       if (points.length <= 30) parts.push(shape("text", { class: "soft", x: x(a) + (end ? -7 : 7), y: y(b) + 4, "text-anchor": end ? "end" : "start" }, name));
     }
-    chart.replaceChildren(shape("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `${names[1]} against ${names[0]} of ${n} fabrics: ${told}` }, ...parts), caption);
+    const svg = shape("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `${names[1]} against ${names[0]} of ${n} fabrics: ${told}` }, ...parts);
+    chart.replaceChildren(svg, caption, element("div", { class: "keys" }, svgButton(() => svg, () => `${names[1]} against ${names[0]}`)));
   }
   draw();
   fitted(chart, draw);

@@ -3,9 +3,10 @@
 use super::failure::Failure;
 use super::folder::Folder;
 use super::task::Task;
+use crate::fields::{Resultants, largest_principal};
 use crate::model::Model;
 use crate::report::gltf::{DeflectedSheet, glb};
-use crate::report::html::Shape;
+use crate::report::html::{Shape, ShapeField};
 
 /// A sheet before and after, of an outcome.
 pub(super) struct Deflected {
@@ -58,9 +59,25 @@ impl Deflected {
         folder.write(&self.file, &glb(&self.sheet())?)
     }
 
-    /// What the page shows.
-    pub fn shape(&self, is_drape: bool) -> Result<PageSheet, Failure> {
+    /// What the page shows; the resultants and the curvatures are those of its elements.
+    pub fn shape(
+        &self,
+        is_drape: bool,
+        resultants: &[Resultants],
+        curvatures: &[[f64; 3]],
+    ) -> Result<PageSheet, Failure> {
         let shape = Shape::of(&self.sheet(), self.file.clone())?;
-        Ok(shape.map_or(PageSheet::TooLarge, |shape| PageSheet::Shown(Box::new(Shape { is_drape, ..shape }))))
+        let fields = || {
+            let curvatures: Vec<f64> =
+                curvatures.iter().map(|[x, y, xy]| largest_principal([*x, *y, 0.5 * xy])).collect();
+            let moments: Vec<f64> = resultants.iter().map(|all| largest_principal(all.moment)).collect();
+            vec![
+                ShapeField::new("largest principal curvature", "1/m", &curvatures),
+                ShapeField::new("largest principal moment", "N", &moments),
+            ]
+        };
+        Ok(shape.map_or(PageSheet::TooLarge, |shape| {
+            PageSheet::Shown(Box::new(Shape { is_drape, fields: fields(), ..shape }))
+        }))
     }
 }

@@ -11,8 +11,9 @@ use super::draped_stage;
 use super::failure::Failure;
 use super::folder::Folder;
 use super::sampled::{self, SamplingEntry};
-use super::solved::ModelEntry;
+use super::solved::{ModelEntry, mesh_fields, resultants};
 use super::task::Task;
+use crate::fields::warp_directions;
 use crate::finding::Finding;
 use crate::law::Mode;
 use crate::quantity::significant;
@@ -341,7 +342,11 @@ pub(super) fn write(task: &Task, d: &Drape, folder: &Folder) -> Result<Vec<Strin
         MeshField { name: "rotation", components: 3, values: &rotation },
     ];
     if folder.fields() {
-        folder.write(&format!("{stem}.vtu"), &vtu(&position, &d.model.mesh.quads, &fields, &[])?)?;
+        let warp = warp_directions(&d.model).iter().flat_map(|d| [d.x, d.y, d.z]).collect();
+        let mut cells = vec![("warp_direction", 3, warp)];
+        cells.extend(resultants(&d.resultants));
+        let file = vtu(&position, &d.model.mesh.quads, &fields, &mesh_fields(&cells))?;
+        folder.write(&format!("{stem}.vtu"), &file)?;
         draped_stage::write(task, d, told(task, d), folder)?;
     }
     let mut drawn = Vec::new();

@@ -14,13 +14,14 @@ use super::sampled;
 use super::solved::{self, SolutionEntry};
 use super::task::Task;
 use super::tested::{self, TestEntry, Tested};
+use crate::fields::curvatures_moved;
 use crate::finding::Finding;
 use crate::quantity::significant;
 use crate::report::chart::ParityPoint;
 use crate::report::html::{Figure, FigureKind};
 use crate::report::table::PredictionRow;
 use crate::study::bending::BendingResult;
-use crate::study::{CaseResult, Drape, Status};
+use crate::study::{CaseResult, Drape, Status, StudyError};
 
 /// Most values that are told with a picture.
 const VALUES_SEEN: usize = 4;
@@ -220,8 +221,19 @@ impl Outcome {
 
     /// What the page shows of the sheet.
     pub(super) fn shape(&self, task: &Task) -> Result<Option<PageSheet>, Failure> {
-        let is_drape = matches!(self, Self::Draped(_));
-        self.deflected(task).map(|sheet| sheet.shape(is_drape)).transpose()
+        let Some(sheet) = self.deflected(task) else { return Ok(None) };
+        match self {
+            Self::Solved(result) => {
+                let fields = result.element_means().and_then(|all| Ok((all, result.curvatures()?)));
+                let (resultants, curvatures) = fields.map_err(StudyError::from)?;
+                sheet.shape(false, &resultants, &curvatures).map(Some)
+            }
+            Self::Draped(drape) => {
+                let curvatures = curvatures_moved(&drape.model, &drape.solution.state);
+                sheet.shape(true, &drape.resultants, &curvatures.map_err(StudyError::from)?).map(Some)
+            }
+            Self::Tested(_) | Self::Bent(..) => Ok(None),
+        }
     }
 
     /// What a reader of the outcome must know.

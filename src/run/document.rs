@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use serde::ser::SerializeSeq;
 use serde::{Serialize, Serializer};
 
-use super::settings::RunSettings;
+use super::settings::{Drapes, RunSettings};
 use crate::case::{Case, SolverChoice};
 use crate::instrument::Source;
 use crate::results::{Failure, FileEntry, Job, ReadingEntry, readable};
@@ -38,7 +38,9 @@ struct OptionsEntry {
     /// Source of the population that the page compares fabrics with.
     #[serde(skip_serializing_if = "Option::is_none")]
     population: Option<String>,
+    /// Whether all drapes were hung as their cases say.
     drape: bool,
+    drapes: Drapes,
     strict: bool,
     solver: Option<SolverChoice>,
     evaluation: ReadingEntry,
@@ -85,7 +87,8 @@ pub(super) fn document<'d>(
             charts: settings.charts,
             formats: settings.formats.iter().map(|format| format.ending()).collect(),
             population: settings.population.as_ref().map(|population| population.source.clone()),
-            drape: settings.drape,
+            drape: settings.drapes == Drapes::Always,
+            drapes: settings.drapes,
             strict: settings.strict,
             solver: job.solver,
             evaluation: job.reading.entry(),

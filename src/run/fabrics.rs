@@ -220,6 +220,18 @@ impl<'c> Workshop<'c> {
         self.jobs.iter().filter_map(|job| without_law(job.case, names(job))).collect()
     }
 
+    /// Says for how many fabrics a drape was made quick.
+    pub fn tell_of_quick_drapes(&self) {
+        for job in self.jobs.iter().filter(|job| job.case.is_quick()) {
+            let (hung, all) = (job.tally().tasks, self.work.catalogue.len());
+            self.observer.note(&format!(
+                "{}: quick drapes for {hung} of {all} fabrics, those with measured curves; --drape makes the whole of \
+                 the case for every fabric",
+                job.case.path.display()
+            ));
+        }
+    }
+
     /// What the fabrics are to each case.
     pub fn tallies(&self) -> Vec<CaseTally> {
         let of = |job: &CaseWork| {
@@ -244,7 +256,7 @@ impl<'c> Workshop<'c> {
             let job = self.jobs.iter().find(|job| std::ptr::eq(job.case, case));
             job.is_some_and(|job| {
                 let tally = job.tally();
-                (case.is_for_fab_records() || tally.lacked_by_any) && !tally.suits_any
+                (case.is_for_fab_records() || case.is_quick() || tally.lacked_by_any) && !tally.suits_any
             })
         };
         self.work.cases.iter().filter(|case| !left_out(case)).collect()

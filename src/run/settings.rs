@@ -1,7 +1,12 @@
 //! What is made of the results of a run.
 
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::case::Case;
 use crate::report::chart::Format;
 use crate::report::population::Population;
+use crate::results::Observer;
 
 /// Fabrics up to which fields are written where nobody says anything: they are nine tenths of a large folder.
 const WITH_FIELDS: usize = 100;
@@ -29,6 +34,51 @@ impl FieldFiles {
     }
 }
 
+/// Fabrics up to which drapes are hung where nobody says anything: each takes some seconds.
+const WITH_DRAPES: usize = 20;
+
+/// Which drape cases are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Drapes {
+    /// In runs of up to 20 fabrics, of the fabrics with measured curves: on coarse cells and without friction.
+    #[default]
+    Auto,
+    /// All, as their cases say: a minute or so for each fabric.
+    Always,
+    /// None.
+    Never,
+}
+
+impl Drapes {
+    /// All or none.
+    pub fn asked(all: bool) -> Self {
+        if all { Self::Always } else { Self::Never }
+    }
+
+    /// The cases of a run of so many fabrics; none are known of a share of a batch. What is left out is told.
+    pub(super) fn choose(self, cases: Vec<Case>, fabrics: Option<usize>, observer: &Observer) -> Vec<Case> {
+        let few = fabrics.is_some_and(|count| count <= WITH_DRAPES);
+        let mut chosen = Vec::with_capacity(cases.len());
+        for mut case in cases {
+            let is_in = match self {
+                _ if !case.is_drape() => true,
+                Self::Always => true,
+                Self::Auto => few && case.make_quick(),
+                Self::Never => false,
+            };
+            if is_in {
+                chosen.push(case);
+            } else if self == Self::Auto {
+                let why = if few { "with friction a drape" } else { "a drape" };
+                observer
+                    .note(&format!("{}: left out, {why} takes minutes; add --drape", case.path.display()));
+            }
+        }
+        chosen
+    }
+}
+
 /// What is made of the results.
 #[derive(Clone, Debug)]
 pub struct RunSettings {
@@ -40,8 +90,8 @@ pub struct RunSettings {
     pub population: Option<Population>,
     /// When fields are written.
     pub fields: FieldFiles,
-    /// Whether drape cases are solved too: a minute or so for each fabric.
-    pub drape: bool,
+    /// Which drape cases are solved.
+    pub drapes: Drapes,
     /// Whether every fabric is computed, also those that an earlier run has computed of the same inputs.
     pub fresh: bool,
     /// What else than the version tells this program from another that computes otherwise.
@@ -64,7 +114,7 @@ impl Default for RunSettings {
             formats: vec![Format::Png],
             population: None,
             fields: FieldFiles::Auto,
-            drape: false,
+            drapes: Drapes::Auto,
             fresh: false,
             program: None,
             stamp: None,

@@ -15,7 +15,8 @@ use super::uncertainty::Uncertainty;
 use crate::case::Reference;
 use crate::element::Mass;
 use crate::fields::{
-    ProbeValue, Recovery, Resultants, element_means, element_means_moved, reaction_resultants,
+    ProbeValue, Recovery, Resultants, curvatures, curvatures_moved, element_means, element_means_moved,
+    reaction_resultants,
 };
 use crate::finding::{Finding, Place, StudyFact};
 use crate::model::{Model, ModelError};
@@ -165,6 +166,17 @@ impl CaseResult {
         match &self.state {
             Some(state) => element_means_moved(&self.model, state, self.law.as_ref()),
             None => element_means(&self.model, &self.solution.displacement),
+        }
+    }
+
+    /// Curvatures of each element, the mean over its smoothing cells: see [`curvatures`].
+    ///
+    /// # Errors
+    /// M008 if the warp direction is normal to an element.
+    pub fn curvatures(&self) -> Result<Vec<[f64; 3]>, ModelError> {
+        match &self.state {
+            Some(state) => curvatures_moved(&self.model, state),
+            None => curvatures(&self.model, &self.solution.displacement),
         }
     }
 

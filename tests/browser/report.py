@@ -327,7 +327,8 @@ def turning(page, data):
     canvas = viewer.locator("canvas").first
     canvas.scroll_into_view_if_needed()
     check("no sheet is left out without a word", data["shapes"]["left_out"] == [] or "do not turn in this page" in page.locator(".lead").inner_text())
-    check("every sheet of the fabric can be chosen", viewer.locator("option").count() == len(mine) >= 2, len(mine))
+    chosen, colour = viewer.locator("select").first, viewer.get_by_label("Colour")
+    check("every sheet of the fabric can be chosen", chosen.locator("option").count() == len(mine) >= 2, len(mine))
     picture = canvas.screenshot
     ink = canvas.evaluate(
         "c => { const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; let n = 0;"
@@ -354,8 +355,18 @@ def turning(page, data):
     viewer.get_by_label("outline before").uncheck()
     check("the outline before can be left out", picture() != first)
     viewer.get_by_label("outline before").check()
+    check("deflection, curvature and moment can be seen", colour.locator("option").all_inner_texts() == [
+        "length of the displacement", "largest principal curvature", "largest principal moment"])
+    seen = [picture()]
+    for i, (unit, field) in enumerate(zip(("1/m", "N"), mine[0]["fields"])):
+        colour.select_option(index=i + 1)
+        told = viewer.locator(".reading").inner_text()
+        check("what the colours are is told with its largest value", field["name"] in told and unit in told and field["unit"] == unit, told)
+        seen.append(picture())
+    check("the colours differ", len(set(seen)) == 3)
+    colour.select_option(index=0)
     for i, sheet in enumerate(mine):
-        viewer.locator("select").select_option(index=i)
+        chosen.select_option(index=i)
         told = viewer.locator(".reading").inner_text()
         expected = "shown as it is" if sheet["scale"] == 1 else "times as large"
         check("the scale factor is told", expected in told, (told, sheet["scale"]))
@@ -408,6 +419,10 @@ def correlation(page, data):
     check("the points behind it are shown", place.locator(".chart circle").count() == len(pairs), place.locator(".chart circle").count())
     check("and told", re.search(r"log B against log W: r = .* to .*n = " + str(len(pairs)), place.locator(".reading").inner_text()) or
           re.search(r"log W against log B", place.locator(".reading").inner_text()), place.locator(".reading").inner_text())
+    with page.expect_download() as caught:
+        place.get_by_role("button", name=re.compile("^Save SVG of ")).click()
+    svg = Path(caught.value.path()).read_text()
+    check("and saved as SVG", svg.count("<circle") == len(pairs) and "log B" in svg, svg[:200])
 
 
 def touched(browser, index):

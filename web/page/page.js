@@ -53,6 +53,7 @@
     dialect: place("dialect").value,
     assume_kes_units: place("kes-units").checked,
     cases: place("cases").checked,
+    drape: place("drape").checked,
   });
 
   const loose = () => place("loose").value.trim().replace(/[/\\]/g, "-") || "dropped";
@@ -99,7 +100,7 @@
   const ANSWERS = {
     ready({ version, module }) {
       state.module = module;
-      place("about").textContent = `kesf ${version}. Drape takes minutes, and pictures need fonts: both are the command's. So are results to be resumed.`;
+      place("about").textContent = `kesf ${version}. Drapes are quick ones here, and pictures need fonts: the whole of a drape, pictures and results to be resumed are the command's.`;
       document.body.dataset.ready = "";
     },
     event({ event, text, steps }) {
@@ -179,15 +180,22 @@
       }));
   }
 
-  function results({ said, files, page, isFinal }) {
-    performance.mark(isFinal ? "kesf-report" : "kesf-fabrics");
+  const TO_COME = {
+    fabrics: "Parameters and curves; the simulations are on their way.",
+    cases: "Everything but drapes, which are on their way: some ten seconds or more for each fabric with curves.",
+    all: "",
+  };
+
+  function results({ said, files, page, part }) {
+    const isFinal = part === "all";
+    performance.mark({ fabrics: "kesf-fabrics", cases: "kesf-cases", all: "kesf-report" }[part]);
     if (!page) {
       if (isFinal) place("messages").append(...messages(said));
       return;
     }
     place("results").hidden = false;
     state.page = page;
-    place("stage").textContent = isFinal ? "" : "Parameters and curves; the simulations are on their way.";
+    place("stage").textContent = TO_COME[part];
     if (isFinal) place("stage").replaceChildren(...failed(said));
     show(page);
     downloads(isFinal ? files : []);

@@ -1,5 +1,5 @@
 // The thread of the engine: takes files and the form, gives a report of the fabrics alone, which is there at once, then what
-// was understood, then everything. To cancel, the page ends the thread and begins another.
+// was understood, then everything but drapes, then everything. To cancel, the page ends the thread and begins another.
 "use strict";
 
 // Named by the engine: an event of the work.
@@ -17,21 +17,25 @@ async function take({ files, example, loose }) {
   if (example) kesf_web.put_example();
 }
 
-function report(job, answer, isFinal) {
+// `part` is what of the work is in it: fabrics, cases without drapes, or all.
+function report(job, answer, part) {
   const bytes = kesf_web.read("report.html");
-  postMessage({ kind: "report", job, said: answer.said, files: answer.files || [], page: DECODER.decode(bytes), isFinal });
+  postMessage({ kind: "report", job, said: answer.said, files: answer.files || [], page: DECODER.decode(bytes), part });
 }
 
 async function work({ job, form, ...dropped }) {
   await take(dropped);
   const options = JSON.stringify(form);
-  const first = JSON.parse(kesf_web.run(options, true));
-  if ((first.files || []).length) report(job, first, false);
+  const first = JSON.parse(kesf_web.run(options, true, false));
+  if ((first.files || []).length) report(job, first, "fabrics");
   const checked = JSON.parse(kesf_web.check(options));
   postMessage({ kind: "checked", job, ...checked });
   const { document } = checked;
   if (document && (document.fabrics.length || document.cases.length)) {
-    report(job, JSON.parse(kesf_web.run(options, false)), true);
+    // Drapes take some ten seconds a fabric: what else there is, is shown before them.
+    const hang = form.drape && document.fabrics.some(({ curves }) => curves);
+    report(job, JSON.parse(kesf_web.run(options, false, false)), hang ? "cases" : "all");
+    if (hang) report(job, JSON.parse(kesf_web.run(options, false, true)), "all");
   }
   postMessage({ kind: "done", job });
 }

@@ -55,11 +55,12 @@ pub fn check(options: &str) -> String {
     work::answer(work::check(options))
 }
 
-/// What `kesf run` makes of the files; the names of the results as JSON. With `fabrics_only`, without any case.
+/// What `kesf run` makes of the files; the names of the results as JSON. With `fabrics_only`, without any case; with
+/// `drapes`, with quick drapes, which take long.
 #[wasm_bindgen]
 #[must_use]
-pub fn run(options: &str, fabrics_only: bool) -> String {
-    work::answer(work::run(options, fabrics_only))
+pub fn run(options: &str, fabrics_only: bool, drapes: bool) -> String {
+    work::answer(work::run(options, fabrics_only, drapes))
 }
 
 /// Adds the cards of `kesf export` for every program to the results; their names as JSON.

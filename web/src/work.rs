@@ -13,6 +13,7 @@ use kesf::results::{
     CheckDocument, Failure, Input, Job, Limits, MemorySink, Observer, Reading, cards as cards_of,
     check as checked_of, sections, write_cards,
 };
+use kesf::run::Drapes;
 use serde::{Deserialize, Serialize};
 use zip::write::SimpleFileOptions;
 
@@ -40,6 +41,8 @@ struct Form {
     assume_kes_units: bool,
     /// Whether the cases that the page brings with it are solved.
     cases: bool,
+    /// Whether drapes are hung, by those cases and by dropped ones. The page asks for them when all else is shown.
+    drape: bool,
 }
 
 /// The answer to `check`.
@@ -123,12 +126,13 @@ pub fn check(options: &str) -> Result<CheckAnswer, Failure> {
 }
 
 /// `kesf run`, and `kesf report` behind it.
-pub fn run(options: &str, fabrics_only: bool) -> Result<RunAnswer, Failure> {
+pub fn run(options: &str, fabrics_only: bool, drapes: bool) -> Result<RunAnswer, Failure> {
     let form = Form::read(options)?;
     let said = Said::default();
     let event = |event: kesf::results::Event<'_>| said.hear(event);
     let observer = Observer { event: &event, cancelled: &|| false };
-    let settings = RunSettings { charts: false, workbook: !fabrics_only, ..RunSettings::default() };
+    let drapes = if drapes && form.drape { Drapes::Auto } else { Drapes::Never };
+    let settings = RunSettings { charts: false, drapes, workbook: !fabrics_only, ..RunSettings::default() };
     let sink = MemorySink::default();
     keep(BTreeMap::new());
     kesf::run(&form.job(fabrics_only), &settings, &sink, &observer)?;

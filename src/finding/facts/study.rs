@@ -141,6 +141,14 @@ super::facts! {
             elements: usize,
         } = "hung, and then shaken as if by hands (assumed): its weight changed by {shaking} of itself at first; before that the coefficient \
              was {:.1} % on {elements} elements", 100.0 * coefficient;
+        /// A drape on coarse cells.
+        "S130" QuickDrape {
+            /// Elements of the finest mesh.
+            elements: usize,
+            /// What the last refinement changed in the coefficient.
+            change: f64,
+        } = "a quick drape, on {elements} elements: the last refinement changed the coefficient by {:+.1} points, and more refinement \
+             would change it again; `--drape` or `kesf solve` makes the whole of the case", 100.0 * change;
         /// A sheet that buckled on the way.
         "S124" Buckled {
             /// Factors of the load after which it did.

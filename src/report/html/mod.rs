@@ -31,7 +31,7 @@ pub use data::{
 pub use figure::{Figure, FigureKind};
 pub use one_file::{LIMIT, OneFile, self_contained};
 pub use problems::{DoubtfulValue, Problem, ProblemGroup};
-pub use shapes::{Shape, Shapes};
+pub use shapes::{Shape, ShapeField, Shapes};
 pub use tables::Cell;
 pub use text::{fabric_id, local, without_folders};
 

@@ -44,8 +44,45 @@ pub struct Shape {
     pub outline: usize,
     /// Displacement of each node as a part of 255 of the largest, in base64.
     pub values: String,
+    /// What the quads can be coloured by instead.
+    #[serde(default)]
+    pub fields: Vec<ShapeField>,
     /// Corners of the quads, 16 bits little endian in base64; on a page a number of [`Shapes::quads`].
     pub quads: String,
+}
+
+/// A value of each quad of a sheet, 0 or more.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ShapeField {
+    /// What it is.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// The largest value.
+    pub largest: f64,
+    /// Value of each quad as a part of 255 of the largest, in base64.
+    pub values: String,
+}
+
+#[cfg(feature = "results")]
+impl ShapeField {
+    /// Of a value of each quad.
+    pub fn new(name: &str, unit: &str, values: &[f64]) -> Self {
+        let largest = values.iter().copied().fold(0.0, f64::max);
+        Self {
+            name: name.into(),
+            unit: unit.into(),
+            largest: shortened(largest),
+            values: parts(values, largest),
+        }
+    }
+}
+
+/// Values as parts of 255 of the largest, in base64.
+#[cfg(feature = "results")]
+fn parts(values: &[f64], largest: f64) -> String {
+    let bytes: Vec<u8> = values.iter().map(|v| (255.0 * share(*v, largest)).round() as u8).collect();
+    STANDARD.encode(bytes)
 }
 
 /// The sheets of a page. Those of one mesh share its quads.
@@ -87,7 +124,6 @@ impl Shape {
         let short = |numbers: &mut dyn Iterator<Item = u16>| {
             STANDARD.encode(numbers.flat_map(u16::to_le_bytes).collect::<Vec<u8>>())
         };
-        let values: Vec<u8> = moved.iter().map(|m| (255.0 * share(*m, largest)).round() as u8).collect();
         Ok(Some(Self {
             fabric: 0,
             is_drape: false,
@@ -98,7 +134,8 @@ impl Shape {
             bounds: bounds.map(|b| b.map(shortened)),
             places: short(&mut places.iter().flat_map(part)),
             outline: 2 * sheet.outline.len(),
-            values: STANDARD.encode(values),
+            values: parts(&moved, largest),
+            fields: Vec::new(),
             // No more nodes than 16 bits tell apart.
             quads: short(&mut sheet.quads.as_flattened().iter().map(|n| *n as u16)),
         }))
@@ -115,7 +152,8 @@ impl Shapes {
         let mut known: BTreeMap<String, usize> = BTreeMap::new();
         let mut room = BYTES;
         for mut sheet in sheets {
-            let own = sheet.places.len() + sheet.values.len() + 300;
+            let of_fields: usize = sheet.fields.iter().map(|field| field.values.len() + 100).sum();
+            let own = sheet.places.len() + sheet.values.len() + of_fields + 300;
             let needed = own + if known.contains_key(&sheet.quads) { 0 } else { sheet.quads.len() };
             if needed > room {
                 all.left_out.push(sheet.fabric);

@@ -9,7 +9,7 @@ use crate::results::task::Task;
 use crate::study::{CaseResult, StudyError};
 
 /// Name, components and values of a field.
-type Field<'a> = (&'a str, usize, Vec<f64>);
+pub type Field<'a> = (&'a str, usize, Vec<f64>);
 
 /// Three components a node of values with six a node.
 fn three_of_six(values: &[f64], from: usize) -> Vec<f64> {
@@ -17,7 +17,7 @@ fn three_of_six(values: &[f64], from: usize) -> Vec<f64> {
 }
 
 /// Resultants as fields of nodes or cells, in material axes.
-fn resultants(all: &[Resultants]) -> [Field<'static>; 3] {
+pub fn resultants(all: &[Resultants]) -> [Field<'static>; 3] {
     [
         ("membrane_force", 3, all.iter().flat_map(|n| n.membrane).collect()),
         ("moment", 3, all.iter().flat_map(|n| n.moment).collect()),
@@ -25,7 +25,7 @@ fn resultants(all: &[Resultants]) -> [Field<'static>; 3] {
     ]
 }
 
-fn mesh_fields<'a>(fields: &'a [Field<'a>]) -> Vec<MeshField<'a>> {
+pub fn mesh_fields<'a>(fields: &'a [Field<'a>]) -> Vec<MeshField<'a>> {
     fields
         .iter()
         .map(|(name, components, values)| MeshField { name, components: *components, values })

@@ -10,6 +10,7 @@ mod text;
 pub(super) use document::entry;
 pub use document::{ModelEntry, QuantityEntry, SolutionEntry};
 pub use effort::{SolverEntry, TimingsEntry};
+pub(super) use fields::{mesh_fields, resultants};
 pub(crate) use text::checks;
 pub(super) use text::{status, text};
 

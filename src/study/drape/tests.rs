@@ -145,14 +145,43 @@ fn a_coarse_mesh_is_a_finding() {
         lowest_eigenvalue: 1.0,
         iterations: 1,
     };
-    let case = case(1e-6, "", "");
-    let told = |coefficients: &[f64]| {
+    let mut case = case(1e-6, "", "");
+    let told = |case: &Case, coefficients: &[f64]| {
         let meshes: Vec<DrapeState> = coefficients.iter().map(|c| state(*c)).collect();
-        findings(&case, &meshes, &[], 1, None).first().map(|f| (f.code(), f.message()))
+        let Problem::Drape(problem) = &case.problem else { panic!("a drape") };
+        findings(case, problem, &meshes, &[], None).first().map(|f| (f.code(), f.message()))
     };
-    let (code, message) = told(&[0.6, 0.503, 0.475]).unwrap();
+    let (code, message) = told(&case, &[0.6, 0.503, 0.475]).unwrap();
     assert!(code == "S119" && message.contains("5040 elements") && message.contains("by -2.8"), "{message}");
-    assert_eq!((told(&[0.288, 0.282]), told(&[0.5])), (None, None));
+    assert_eq!((told(&case, &[0.288, 0.282]), told(&case, &[0.5])), (None, None));
+    assert!(case.make_quick());
+    let (code, message) = told(&case, &[0.288, 0.282]).unwrap();
+    assert!(code == "S130" && message.contains("5040 elements") && message.contains("by -0.6"), "{message}");
+}
+
+/// A quick drape searches on the widest cells that a search can begin on, and refines once: it ends on the mesh of the
+/// case, and its energy is that of the whole search there.
+#[test]
+fn a_quick_drape_ends_near_the_whole_one() {
+    let whole = case(2e-5, "cells = [4, 48]", "cells = [12, 60]");
+    let mut quick = whole.clone();
+    assert!(quick.make_quick() && quick.is_quick() && !whole.is_quick());
+    let (whole, quick) = (run(&whole), run(&quick));
+    assert_eq!(quick.states[0].elements, 6 * 30);
+    assert_eq!(quick.finest.elements, whole.states[0].elements);
+    assert_relative_eq!(quick.finest.energy, whole.states[0].energy, max_relative = 1e-2);
+    assert!(quick.findings.iter().any(|f| f.code() == "S130"));
+}
+
+/// With friction a drape takes minutes also on wide cells.
+#[test]
+fn a_drape_with_friction_is_not_made_quick() {
+    let shipped = |name: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(name);
+        Case::parse(&path, &std::fs::read_to_string(&path).unwrap()).unwrap()
+    };
+    assert!(shipped("drape.toml").make_quick());
+    assert!(!shipped("drape_friction.toml").make_quick() && !shipped("cantilever.toml").make_quick());
 }
 
 /// A ring as stiff as card stays flat: its shadow is the sheet.
