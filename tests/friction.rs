@@ -15,7 +15,7 @@ use kesf::element::corotational::{Motion, Reference};
 use kesf::element::{
     Cellwise, Drilling, Formulation, Gradient, Matrix24, Prepared, Strains, Vector24, YarnStrain, Yarns,
 };
-use kesf::fields::{Recovery, element_means_moved};
+use kesf::fields::{Recovery, curvatures_moved, element_means_moved};
 use kesf::law::{Backbone, Channel, Family, Mode, Slider, State, Widening};
 use kesf::mesh::rectangle;
 use kesf::model::{Dof, Load, Model, RigidBody, Support};
@@ -325,6 +325,12 @@ fn resultants_are_those_of_the_laws() {
         let means = element_means_moved(&model, step.state, Some(&law)).unwrap();
         for found in nodal.iter().chain(&means) {
             assert!((found.moment[0] - at_clamp).abs() < 1e-7 * 250.0 * 3e-5, "{found:?} {at_clamp}");
+        }
+        // A circle; the law has a memory, and the curvature has none.
+        let curvature = 250.0 * step.state.factor;
+        for [along, across, twist] in curvatures_moved(&model, step.state).unwrap() {
+            assert!((along - curvature).abs() < 1e-6 * 250.0, "{along} {curvature}");
+            assert!(across.abs().max(twist.abs()) < 1e-6 * 250.0, "{across} {twist}");
         }
         ControlFlow::Continue(())
     })

@@ -147,6 +147,15 @@ fn the_shear_force_of_every_cell_is_that_on_the_edge() {
             let [qx, qy] = r.shear;
             assert!((qx - 3e-6 * x).abs() < 1e-12 && (qy - 3e-6 * y).abs() < 1e-12, "{:?}", r.shear);
         }
+        let curvatures = result.curvatures().unwrap();
+        for (r, curvature) in result.element_means().unwrap().iter().zip(curvatures) {
+            let moment = result.model.section.d_b * Vector3::from(curvature);
+            assert!(
+                (moment - Vector3::from(r.moment)).norm() < 1e-12 * 3e-6 * 0.4,
+                "{moment} {:?}",
+                r.moment
+            );
+        }
         let warp = warp_directions(&result.model);
         assert!(warp.iter().all(|d| (d - Vector3::new(x, -y, 0.0)).norm() < 1e-12));
         // 0.3 µN at (0.4, 0.05) m is held at the clamp.

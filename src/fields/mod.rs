@@ -295,3 +295,21 @@ impl Recovery {
         Ok(nodal)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: a uniaxial value that is turned by 45 degrees, pure shear, and two equal values.
+    #[test]
+    fn the_largest_principal_value_does_not_depend_on_the_axes() {
+        for (tensor, expected) in [
+            ([2.0, 0.0, 0.0], 2.0),
+            ([1.0, 1.0, 1.0], 2.0),
+            ([0.0, 0.0, -3.0], 3.0),
+            ([-1.0, -1.0, 0.0], 1.0),
+        ] {
+            assert_eq!(largest_principal(tensor), expected, "{tensor:?}");
+        }
+    }
+}

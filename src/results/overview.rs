@@ -65,8 +65,8 @@ fn modulus(sheet: &FabricSheet, direction: Direction) -> String {
 
 /// A column of predictions.
 enum Prediction<'c> {
-    /// The coefficient of a drape.
-    Drape(&'c str),
+    /// The coefficient of a drape, and whether it is a quick one.
+    Drape(&'c str, bool),
     /// The bending length of a cantilever.
     BendingLength(&'c str, Direction),
     /// Largest deflection over the bending thickness: what a linear solve can say of any cloth.
@@ -83,7 +83,7 @@ impl<'c> Prediction<'c> {
         }
         let name = case.name.as_str();
         match &case.problem {
-            Problem::Drape(_) => vec![Self::Drape(name)],
+            Problem::Drape(_) => vec![Self::Drape(name, case.is_quick())],
             Problem::BendingTest(BendingTest::Cantilever(_)) => [Direction::Warp, Direction::Weft]
                 .map(|direction| Self::BendingLength(name, direction))
                 .into(),
@@ -99,7 +99,7 @@ impl<'c> Prediction<'c> {
     /// What a laboratory measures stands before what it does not.
     fn rank(&self) -> u8 {
         match self {
-            Self::Drape(_) => 0,
+            Self::Drape(..) => 0,
             Self::BendingLength(..) => 1,
             Self::Relative(_) | Self::Deflection(_) => 2,
         }
@@ -107,7 +107,8 @@ impl<'c> Prediction<'c> {
 
     fn heading(&self) -> String {
         match self {
-            Self::Drape(case) => format!("{case} (%)"),
+            Self::Drape(case, false) => format!("{case} (%)"),
+            Self::Drape(case, true) => format!("{case}, quick (%)"),
             Self::BendingLength(case, direction) => format!("{case} {direction} (mm)"),
             Self::Relative(case) => format!("{case} (w/t_b)"),
             Self::Deflection(case) => format!("w_max {case} (mm)"),
@@ -123,7 +124,7 @@ impl<'c> Prediction<'c> {
             row.and_then(|row| row.simulated)
         };
         let value = match self {
-            Self::Drape(case) => predicted(case, "drape_coefficient").map(|part| 1e2 * part),
+            Self::Drape(case, _) => predicted(case, "drape_coefficient").map(|part| 1e2 * part),
             Self::BendingLength(case, direction) => {
                 predicted(case, &format!("bending_length {direction}")).map(|length| 1e3 * length)
             }
@@ -178,7 +179,7 @@ impl<'c> Overview<'c> {
 }
 
 /// The name of the case that a finding is about.
-fn stem(place: &Place) -> String {
+pub(super) fn stem(place: &Place) -> String {
     place.path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
 }
 

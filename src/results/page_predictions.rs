@@ -1,8 +1,10 @@
 //! Predictions of cases on the page: what a laboratory measures first, plates in a form without units after it.
 
 use super::fabric::FabricReport;
+use super::overview::stem;
 use super::page_values::rests_on;
 use super::rests_on::OF_PLATE;
+use crate::finding::{Fact, Finding, StudyFact};
 use crate::quantity::significant;
 use crate::report::html::{Block, Cell};
 use crate::report::table::PredictionRow;
@@ -95,8 +97,8 @@ fn leading_caption(columns: &[Column], friction: bool) -> String {
     };
     let mut caption = format!("{of}: {}.", named.join(", and "));
     if has(true) {
-        caption += " A drape coefficient is that of the state of lowest energy; the least and the greatest of all states that were \
-                    found stand in brackets, and then how many folds it has.";
+        caption += " A drape coefficient is that of the state of lowest energy; the least and the greatest of the \
+                    states of nearly that energy stand in brackets, and then how many folds it has.";
     }
     if columns.iter().any(|c| c.is_measured) {
         caption += " The measured value stands beside the simulated one where there is one.";
@@ -129,9 +131,23 @@ fn leading_cell(report: &FabricReport, column: &Column) -> Cell {
     let band = least.zip(greatest).map_or(String::new(), |(a, b)| format!(" ({}–{})", text(a), text(b)));
     Cell {
         text: format!("{}{band}{}", text(value), folds(counted.and_then(|row| row.simulated))),
-        remark: rests_on(report, &row.quantity),
+        remark: [quick(report, &row.case), rests_on(report, &row.quantity)]
+            .into_iter()
+            .filter(|remark| !remark.is_empty())
+            .collect::<Vec<_>>()
+            .join("; "),
         ..Cell::default()
     }
+}
+
+/// What is said of a case whose drape is a quick one.
+fn quick(report: &FabricReport, case: &str) -> String {
+    let is_of_case = |finding: &Finding| finding.place.as_ref().is_some_and(|place| stem(place) == case);
+    let elements = report.findings.iter().find_map(|finding| match &finding.fact {
+        Fact::Study(StudyFact::QuickDrape { elements, .. }) if is_of_case(finding) => Some(elements),
+        _ => None,
+    });
+    elements.map_or(String::new(), |elements| format!("quick, {elements} elements"))
 }
 
 /// Linear solves, one row a fabric and one column a case.
@@ -188,7 +204,10 @@ fn plates_caption(reports: &[FabricReport], cases: &[&str]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
+    use crate::finding::Place;
     use crate::report::table::FabricRow;
     use crate::results::rests_on::DOUBTFUL;
 
@@ -224,6 +243,10 @@ mod tests {
                 row("drape_friction", "drape_coefficient", 0.7, None),
                 row("virtual_bending", "B warp", 9.80665e-6, Some(9.80665e-6)),
             ],
+            findings: vec![
+                Finding::new(StudyFact::QuickDrape { elements: 1260, change: 0.02 })
+                    .at(Place::file(Path::new("cases/drape.toml"))),
+            ],
             ..FabricReport::default()
         };
         let blocks = leading(std::slice::from_ref(&report));
@@ -238,7 +261,9 @@ mod tests {
         ];
         assert_eq!(header, expected);
         let cells = ["poplin", "64.7 (62.2–67.4), 7 folds", "50.0, 6 folds", "21.20"];
-        assert_eq!(rows, [cells.map(Cell::from)]);
+        let mut expected = cells.map(Cell::from);
+        expected[1].remark = "quick, 1260 elements".into();
+        assert_eq!(rows, [expected]);
         assert!(caption.contains("drape, and the bending length") && caption.contains("folds"), "{caption}");
         let (caption, header, rows) = table(blocks.next());
         let expected =
