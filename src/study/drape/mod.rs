@@ -29,7 +29,7 @@ use rand_pcg::Pcg64Mcg;
 pub use method::{as_measured, drape_method};
 pub use rim::Folds;
 
-use self::search::{Cloth, Found, Hanging, Searches};
+use self::search::{Cloth, Found, Hanging, Searches, WORTH_CARRYING};
 use super::effort::within_limits;
 use super::{Case, StudyError, Watch, build, refused};
 use crate::case::{Annulus, DrapeProblem, Outline, Problem, Sheet};
@@ -54,6 +54,9 @@ pub struct Drape {
     pub failed: Vec<(usize, NonlinearError)>,
     /// The state of lowest energy before it was shaken, on the mesh of its search; of sheets with friction only.
     pub hung: Option<DrapeState>,
+    /// Energy above the lowest, relative to it, of states that a real sheet may hang in as well: two hundredths, and of a quick
+    /// drape three, as its states are those on wide cells and a finer mesh may find them in another order.
+    pub near_energy: f64,
     /// The state of lowest energy on each mesh, from that of the case to the finest.
     pub meshes: Vec<DrapeState>,
     /// The last of them.
@@ -109,10 +112,10 @@ impl Drape {
         all.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], c| [l.min(c), h.max(c)])
     }
 
-    /// States whose energy is higher than the lowest by two hundredths of it, at most: a real sheet may hang in any of them.
+    /// States whose energy is above the lowest by [`near_energy`](Self::near_energy) at most: a real sheet may hang in any of them.
     pub fn near(&self) -> &[DrapeState] {
         let lowest = self.states.first().map_or(0.0, |s| s.energy);
-        let near = self.states.partition_point(|s| s.energy - lowest <= NEARLY_AS_LOW * lowest.abs());
+        let near = self.states.partition_point(|s| s.energy - lowest <= self.near_energy * lowest.abs());
         &self.states[..near]
     }
 
@@ -203,6 +206,7 @@ pub fn drape(
         states,
         failed,
         hung,
+        near_energy: if problem.is_quick { WORTH_CARRYING } else { NEARLY_AS_LOW },
         meshes,
         finest,
         model,

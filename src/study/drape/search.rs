@@ -19,7 +19,7 @@ pub(super) const TOLERANCE: f64 = 1e-6;
 const STEPS: usize = 600;
 
 /// Energy above the lowest on wide cells, relative to it, with which a state is carried to the mesh of the case.
-const WORTH_CARRYING: f64 = 0.03;
+pub(super) const WORTH_CARRYING: f64 = 0.03;
 
 /// Relative difference of energies, and difference of coefficients, of states that are the same.
 const SAME: f64 = 1e-3;
