@@ -97,8 +97,9 @@ impl<'a> Hanging<'a> {
 
     /// The states that sheets with these folds at the start end in.
     ///
-    /// Where the mesh allows it the way is gone on cells of twice the width. The state of lowest energy there is carried to
-    /// the mesh itself, and so is every other that is above it by no more than the mesh changed its energy. If no search on wide cells ends anywhere, all are made on the mesh.
+    /// Where the mesh allows it the searches begin on cells of twice the width. The state of lowest energy there is carried to
+    /// the mesh itself, and so is every other that is above it by no more than the mesh changed its energy. If no search on
+    /// wide cells ends anywhere, all are made on the mesh.
     pub fn searches(&self, folds: &[usize], options: &Options) -> Result<Searches, StudyError> {
         let (stage, silent) = (self.cloth.watch.stage, &|| ());
         let Some(ring) = self.ring.widened() else { return Ok(self.hang_all(folds, options, stage)) };
