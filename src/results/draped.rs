@@ -91,8 +91,7 @@ struct DrapeValues {
     law: Cow<'static, str>,
     /// Of the state of lowest energy on the finest mesh, 0 to 1.
     coefficient: f64,
-    /// Least and greatest coefficient of the states whose energy is above the lowest by at most 2 %, or by what the first refinement
-    /// changed in the energy if that is more.
+    /// Least and greatest coefficient of the states whose energy is at most 2 % above the lowest, 5 % of a quick drape.
     band: [f64; 2],
     /// Mean coefficient of those states, each as often as searches ended in it.
     mean: f64,

@@ -29,7 +29,7 @@ use rand_pcg::Pcg64Mcg;
 pub use method::{as_measured, drape_method};
 pub use rim::Folds;
 
-use self::search::{Cloth, Found, Hanging, Searches};
+use self::search::{Cloth, Found, Hanging, Searches, WORTH_CARRYING};
 use super::effort::within_limits;
 use super::{Case, StudyError, Watch, build, refused};
 use crate::case::{Annulus, DrapeProblem, Outline, Problem, Sheet};
@@ -54,8 +54,8 @@ pub struct Drape {
     pub failed: Vec<(usize, NonlinearError)>,
     /// The state of lowest energy before it was shaken, on the mesh of its search; of sheets with friction only.
     pub hung: Option<DrapeState>,
-    /// Energy above the lowest, relative to it, of states that a real sheet may hang in as well: two hundredths, or what the
-    /// first refinement changed in the energy if that is more, for a finer mesh may then find them in another order.
+    /// Energy above the lowest, relative to it, of states that a real sheet may hang in as well: two hundredths, and of a quick
+    /// drape five, as its states are those on wide cells and a finer mesh may find them in another order.
     pub near_energy: f64,
     /// The state of lowest energy on each mesh, from that of the case to the finest.
     pub meshes: Vec<DrapeState>,
@@ -102,13 +102,6 @@ pub struct DrapeState {
     pub lowest_eigenvalue: f64,
     /// Iterations of the search.
     pub iterations: usize,
-}
-
-impl DrapeState {
-    /// What a finer mesh changed in the energy, relative to it.
-    fn energy_changed_by(&self, finer: &Self) -> f64 {
-        (finer.energy - self.energy).abs() / self.energy.abs()
-    }
 }
 
 impl Drape {
@@ -213,7 +206,7 @@ pub fn drape(
         states,
         failed,
         hung,
-        near_energy: meshes.get(1).map_or(0.0, |finer| meshes[0].energy_changed_by(finer)).max(NEARLY_AS_LOW),
+        near_energy: if problem.is_quick { WORTH_CARRYING } else { NEARLY_AS_LOW },
         meshes,
         finest,
         model,
