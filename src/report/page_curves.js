@@ -4,6 +4,13 @@
   const { data, state, redraw, fillers, element, shape, checkbox, button, svgButton, counted, fixed, significant, factor, unit, label, ticks, extent, wide, tall, fitted } = report;
   const FRAME = { left: 66, right: 12, top: 10, bottom: 46 };
 
+  /** 1, 2 and 5 times powers of ten in a range of positive numbers. */
+  function decades([low, high]) {
+    const all = [];
+    for (let e = Math.floor(Math.log10(low)); e <= Math.log10(high); e++) for (const d of [1, 2, 5]) all.push(d * 10 ** e);
+    return all.filter((v) => v >= low && v <= high);
+  }
+
   /** A chart of one test: measured loops, windows of the fits, simulated curves; hover, zoom, switches. */
   class Chart {
     constructor(curves, fabric) {
@@ -26,6 +33,10 @@
       this.windows = true;
       if (curves.specimens.some((s) => s.windows.length)) {
         keys.append(checkbox("windows of the fits", true, (on) => { this.windows = on; this.draw(); }));
+      }
+      this.log = false;
+      if (curves.test === "compression") {
+        keys.append(checkbox("logarithmic pressure", false, (on) => { this.log = on; this.reset(); }));
       }
       const remark = curves.specimens.length ? "" : " (no curve recorded, simulated only)";
       this.node = element("div", { class: "chart" },
@@ -68,15 +79,21 @@
       if (this.zoom) return this.zoom;
       const on = this.traces.filter((t) => t.on).flatMap((t) => t.lines);
       if (!on.length) return [[0, 1], [0, 1]];
-      return [extent(on.flatMap((l) => l.x)), extent(on.flatMap((l) => l.y))];
+      const heights = on.flatMap((l) => l.y), positive = heights.filter((y) => y > 0);
+      if (!this.log || !positive.length) return [extent(on.flatMap((l) => l.x)), extent(heights)];
+      const largest = positive.reduce((a, b) => Math.max(a, b));
+      return [extent(on.flatMap((l) => l.x)), [Math.max(positive.reduce((a, b) => Math.min(a, b)), largest / 1e3) / 1.1, 1.1 * largest]];
     }
+    /** To and from what the ordinate is even in. What a logarithm has no place for lies below. */
+    get even() { return this.log ? [(v) => Math.log10(Math.max(v, 1e-300)), (v) => 10 ** v] : [(v) => v, (v) => v]; }
     place([rx, ry]) {
+      const [to, from] = this.even, [low, high] = ry.map(to);
       const w = this.width - FRAME.left - FRAME.right, h = this.height - FRAME.top - FRAME.bottom;
       return {
         x: (v) => FRAME.left + ((v - rx[0]) / (rx[1] - rx[0])) * w,
-        y: (v) => FRAME.top + h - ((v - ry[0]) / (ry[1] - ry[0])) * h,
+        y: (v) => FRAME.top + h - Math.max(-1, (to(v) - low) / (high - low)) * h,
         backX: (p) => rx[0] + ((p - FRAME.left) / w) * (rx[1] - rx[0]),
-        backY: (p) => ry[0] + ((FRAME.top + h - p) / h) * (ry[1] - ry[0]),
+        backY: (p) => from(low + ((FRAME.top + h - p) / h) * (high - low)),
       };
     }
     draw() {
@@ -121,12 +138,13 @@
       const [right, bottom] = [this.width - FRAME.right, this.height - FRAME.bottom];
       ranges.forEach((range, i) => {
         const by = axes[i].by;
-        const [values, decimals] = ticks([range[0] / by, range[1] / by], i ? 6 : Math.round(this.width / 90));
+        const shown = [range[0] / by, range[1] / by];
+        const [values, decimals] = i && this.log ? [decades(shown)] : ticks(shown, i ? 6 : Math.round(this.width / 90));
         for (const v of values) {
           const p = i ? at.y(v * by) : at.x(v * by);
           group.append(shape("path", { class: "grid", d: i ? `M${FRAME.left} ${p}H${right}` : `M${p} ${FRAME.top}V${bottom}` }),
             shape("text", i ? { x: FRAME.left - 6, y: p + 4, "text-anchor": "end" } : { x: p, y: bottom + 16, "text-anchor": "middle" },
-              fixed(v, decimals)));
+              decimals === undefined ? significant(v, 1) : fixed(v, decimals)));
         }
       });
       const named = (a) => a.quantity + (a.unit ? ` (${a.unit})` : "");
@@ -189,7 +207,9 @@
     }
     /** A part of the range is cut off at each end; of a negative one it is added. */
     nearer(by) {
-      this.zoom = this.ranges().map(([a, b]) => [a + by * (b - a), b - by * (b - a)]);
+      const [to, from] = this.even;
+      const cut = ([a, b]) => [a + by * (b - a), b - by * (b - a)];
+      this.zoom = this.ranges().map((range, i) => (i ? cut(range.map(to)).map(from) : cut(range)));
       this.draw();
     }
     reset() {

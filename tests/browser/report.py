@@ -301,6 +301,22 @@ def curves(page, data):
     check("the keyboard reads", chart.locator(".reading").inner_text() != reading)
 
 
+def logarithmic(page):
+    """The pressure of compression on a logarithmic axis: decades are as far apart as others."""
+    chart = page.locator("#fabric-poplin .charts .chart", has=page.locator("h4", has_text="compression"))
+    svg = chart.locator("> svg")
+    linear = svg.locator("text").all_text_contents()
+    check("only compression has a logarithmic axis", page.locator("#fabric-poplin").get_by_label("logarithmic pressure").count() == 1)
+    chart.get_by_label("logarithmic pressure").check()
+    places = svg.evaluate(
+        "s => [...s.querySelectorAll('text[text-anchor=end]')].map((t) => [Number(t.textContent), Number(t.getAttribute('y'))])")
+    at = dict(map(tuple, places))
+    check("the axis changes", svg.locator("text").all_text_contents() != linear and {0.1, 1, 10} <= set(at), places)
+    check("decades are equal", abs((at[0.1] - at[1]) - (at[1] - at[10])) < 1, places)
+    chart.get_by_label("logarithmic pressure").uncheck()
+    check("and back", svg.locator("text").all_text_contents() == linear)
+
+
 def control_chart(page, data):
     place = page.locator("#control-chart")
     text = place.inner_text()
@@ -557,6 +573,7 @@ def main(index, report, absent, given=None, library=None, pictures=None):
         taken_away(page, data)
         problems(page, len(data["fabrics"]))
         curves(page, data)
+        logarithmic(page)
         control_chart(page, data)
         correlation(page, data)
         turning(page, data)
