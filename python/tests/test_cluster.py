@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import errno
+import io
 import os
 import shutil
 import signal
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -179,6 +181,78 @@ def test_a_killed_worker_costs_nothing(library: Path, tmp_path: Path) -> None:
             os.kill(victim, 0)
     assert len(done) == 7 and as_bytes(out) == as_bytes(expected)
     assert not list(out.rglob("*.half"))
+
+
+def test_progress_is_told_to_a_function_and_to_a_bar(library: Path, client: Any, tmp_path: Path) -> None:
+    told: list[tuple[str, int, int]] = []
+    dask.run(library / "lot0", CASE, tmp_path, client, shards=5, progress=lambda *step: told.append(step))
+    assert told == [("shards", done, 5) for done in range(6)]
+    tqdm = pytest.importorskip("tqdm")
+    with tqdm.tqdm(file=io.StringIO()) as bar:
+        assert all(one.kept for one in dask.run(library / "lot0", CASE, tmp_path, client, shards=5, progress=bar))
+        assert (bar.n, bar.total, bar.desc) == (5, 5, "shards: ")
+
+    def refuse(what: str, done: int, of: int) -> None:
+        raise RuntimeError("no more")
+
+    with pytest.raises(RuntimeError, match="no more"):
+        dask.run(library / "lot0", CASE, tmp_path / "other", client, shards=5, progress=refuse)
+
+
+def test_the_dashboard_shows_shards_as_one_bar(library: Path, tmp_path: Path) -> None:
+    pytest.importorskip("bokeh")
+    from distributed.dashboard.components.scheduler import TaskProgress
+
+    seen: list[tuple[int, int]] = []
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0") as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        # What the page of the dashboard draws, from the scheduler that it draws it of.
+        page = TaskProgress(cluster.scheduler)
+
+        def look(what: str, done: int, of: int) -> None:
+            page.update()
+            rows = dict(zip(page.source.data["name"], range(100), strict=False))
+            if "kesf-shard" in rows:
+                at = rows["kesf-shard"]
+                seen.append((page.source.data["memory"][at], page.source.data["all"][at]))
+
+        dask.run(library, CASE, tmp_path, client, shards=20, progress=look)
+    print("finished and all of the bar:", seen)
+    assert {total for _, total in seen} == {20}, "what is finished stays in the bar"
+    finished = [done for done, _ in seen]
+    assert finished == sorted(finished) and finished[-1] == 20 and len(set(finished)) > 5
+
+
+#: What the memory of a worker may grow by where it evaluates five times as many fabrics in shards of one size.
+FLAT = 1.15
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the most memory of a process is told in other units elsewhere")
+def test_memory_of_the_workers_is_flat(library: Path, tmp_path: Path) -> None:
+    for number in range(5):
+        shutil.copytree(library, tmp_path / "five" / f"times{number}")
+
+    def held() -> int:
+        import resource
+
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+    def most(inputs: Path, shards: int) -> float:
+        """The most memory that a worker has held (MB)."""
+        with (
+            distributed.LocalCluster(
+                n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
+            ) as cluster,
+            distributed.Client(cluster) as client,
+        ):
+            dask.run(inputs, CASE, tmp_path / f"out{shards}", client, shards=shards)
+            return 1e-3 * float(max(client.run(held).values()))
+
+    few, many = most(library, 6), most(tmp_path / "five", 30)
+    print(f"workers held {few:.0f} MB over 303 fabrics and {many:.0f} MB over 1515")
+    assert many < FLAT * few
 
 
 def test_finished_shards_are_not_done_again(library: Path, client: Any, tmp_path: Path) -> None:

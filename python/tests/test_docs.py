@@ -55,7 +55,7 @@ def ran(page: str, kind: str = "python") -> dict[str, Any]:
 
 
 def test_the_page_about_python_runs(clone: Path) -> None:
-    for module in ("tqdm", "polars", "pyarrow", "duckdb", "pandas"):
+    for module in ("tqdm", "polars", "pyarrow", "duckdb", "pandas", "daft"):
         pytest.importorskip(module)
     assert len(blocks("python.md")) >= 6
     names = ran("python.md")
@@ -64,7 +64,7 @@ def test_the_page_about_python_runs(clone: Path) -> None:
 
 
 def test_the_page_about_clusters_runs(clone: Path) -> None:
-    for module in ("distributed", "fsspec", "polars", "pyarrow"):
+    for module in ("distributed", "fsspec", "polars", "pyarrow", "tqdm"):
         pytest.importorskip(module)
     names = ran("cluster.md")
     assert names["table"].num_rows == len(kesf.evaluate("kesf_data", "cases/virtual_bending.toml"))

@@ -78,6 +78,8 @@ impl Library {
                 });
             }
         }
+        // Of a library of thousands of fabrics it knows as many folders.
+        library.own = OwnResults::default();
         library
     }
 
@@ -125,6 +127,11 @@ impl Library {
     /// several machines. A file may turn out to hold several fabrics.
     pub fn fabrics(&self) -> impl Iterator<Item = (&Path, &[PathBuf])> {
         self.groups.iter().map(|group| (group.path.as_path(), group.files.as_slice()))
+    }
+
+    /// The folder or file of one of the [`groups`](Self::groups).
+    pub fn path(&self, group: usize) -> Option<&Path> {
+        self.groups.get(group).map(|group| group.path.as_path())
     }
 
     /// Every file that what is read of each fabric depends on, with the folder or file of the fabric: its measurements,
@@ -325,6 +332,7 @@ impl Library {
     fn pass_by_own(&mut self, folder: &Path, files: &mut Vec<PathBuf>) {
         let before = files.len();
         files.retain(|file| !self.own.wrote(file));
+        files.shrink_to_fit();
         let left_out = before - files.len();
         if left_out > 0 {
             let fact = UsageFact::OwnResults { files: left_out };

@@ -8,6 +8,7 @@ pub mod arrow;
 #[cfg(feature = "parquet")]
 pub mod arrow_text;
 pub mod cards;
+mod file_list;
 #[cfg(feature = "polars")]
 pub mod frame;
 #[cfg(feature = "results")]

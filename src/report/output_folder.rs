@@ -1,8 +1,7 @@
 //! A folder of results on disk: what this program wrote there, and nobody else's work.
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File, TryLockError};
-use std::io::{self, BufWriter, Read as _, Write};
+use std::io::{self, BufRead as _, BufReader, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -10,8 +9,8 @@ use sha2::{Digest, Sha256};
 use tempfile::NamedTempFile;
 
 use super::write::{
-    Bytes, Digest32, Hashes, MANIFEST, OutputError, digest, existing, from_hexadecimal, hexadecimal, inside,
-    is_temporary, manifest, place, temporary, write_manifest,
+    Bytes, Digest32, FileList, MANIFEST, OutputError, digest, existing, from_hexadecimal, hexadecimal,
+    inside, is_temporary, manifest, place, temporary, write_manifest,
 };
 
 /// What a run is writing, until its manifest is there: a line for each file, ahead of it, so that a run that was
@@ -28,7 +27,7 @@ pub struct OutputFolder {
     root: PathBuf,
     force: bool,
     /// What earlier runs wrote; several hashes where one of them was killed.
-    earlier: BTreeMap<Box<str>, Vec<Digest32>>,
+    earlier: FileList,
     written: Mutex<Written>,
     finished: bool,
 }
@@ -36,7 +35,7 @@ pub struct OutputFolder {
 /// What this run wrote.
 #[derive(Debug)]
 struct Written {
-    files: Hashes,
+    files: FileList,
     /// Locked as long as this run lasts.
     journal: File,
 }
@@ -61,23 +60,15 @@ impl OutputFolder {
     pub fn open(root: &Path, force: bool) -> Result<Self, OutputError> {
         fs::create_dir_all(root).map_err(|source| OutputError::Write { path: root.to_path_buf(), source })?;
         drop(temporary(&root.join(MANIFEST))?);
-        let files = match manifest(root) {
-            Err(OutputError::Manifest { .. }) if force => Hashes::new(),
+        let mut earlier = match manifest(root) {
+            Err(OutputError::Manifest { .. }) if force => FileList::default(),
             files => files?,
         };
-        let mut earlier: BTreeMap<Box<str>, Vec<Digest32>> =
-            files.into_iter().map(|(name, hash)| (name, vec![hash])).collect();
-        let (journal, lines, is_alone) = open_journal(root)?;
-        // The last line may have been cut short.
-        for (name, hash) in
-            lines.lines().filter_map(|line| serde_json::from_str::<(Box<str>, String)>(line).ok())
-        {
-            earlier.entry(name).or_default().extend(from_hexadecimal(&hash));
-        }
+        let (journal, is_alone) = open_journal(root, &mut earlier)?;
         if is_alone {
-            remove_orphans(root, earlier.keys());
+            remove_orphans(root, earlier.folders());
         }
-        let written = Mutex::new(Written { files: Hashes::new(), journal });
+        let written = Mutex::new(Written { files: FileList::default(), journal });
         Ok(Self { root: root.to_path_buf(), force, earlier, written, finished: false })
     }
 
@@ -99,7 +90,7 @@ impl OutputFolder {
             file.write_all(bytes).map_err(|source| OutputError::Write { path: path.clone(), source })?;
             place(file, &path)?;
         }
-        self.written().files.insert(name.into(), new);
+        self.written().files.set(name, new);
         Ok(())
     }
 
@@ -130,7 +121,7 @@ impl OutputFolder {
     /// [`OutputError::Write`] if it cannot be read.
     pub fn keep(&self, name: &str) -> Result<bool, OutputError> {
         let Some(bytes) = self.read(name)? else { return Ok(false) };
-        self.written().files.insert(name.into(), digest(&bytes));
+        self.written().files.set(name, digest(&bytes));
         Ok(true)
     }
 
@@ -154,8 +145,8 @@ impl OutputFolder {
 
     /// Whether a file is as an earlier run left it, or written by this one.
     fn is_ours(&self, name: &str, hash: &Digest32) -> bool {
-        self.earlier.get(name).is_some_and(|hashes| hashes.contains(hash))
-            || self.written().files.get(name) == Some(hash)
+        self.earlier.of(name).any(|known| known == hash)
+            || self.written().files.of(name).any(|known| known == hash)
     }
 
     fn written(&self) -> MutexGuard<'_, Written> {
@@ -173,7 +164,7 @@ impl OutputFolder {
 
     /// Whether this run wrote a file of that name.
     pub fn wrote(&self, name: &str) -> bool {
-        self.written().files.contains_key(name)
+        self.written().files.has(name)
     }
 
     /// Writes the manifest. Returns the names that earlier runs wrote, this one did not, and are still there:
@@ -190,12 +181,12 @@ impl OutputFolder {
         self.finished = true;
         let mut files = std::mem::take(&mut self.written().files);
         let mut left_over = Vec::new();
-        for (name, hashes) in std::mem::take(&mut self.earlier) {
-            if files.contains_key(&name) {
+        for (name, hashes) in self.earlier.iter() {
+            if files.has(&name) {
                 continue;
             }
             // Of a run that was killed, the file may be as it was before or after.
-            let path = self.root.join(&*name);
+            let path = self.root.join(&name);
             let now = || existing(&path).ok().flatten().map(|bytes| digest(&bytes));
             let left = match &hashes[..] {
                 [only] => path.exists().then_some(*only),
@@ -204,9 +195,9 @@ impl OutputFolder {
             if let Some(left) = left {
                 // What is ours alone is no left-over to anybody.
                 if !is_hidden(&name) {
-                    left_over.push(name.to_string());
+                    left_over.push(name.clone());
                 }
-                files.insert(name, left);
+                files.set(&name, left);
             }
         }
         write_manifest(&self.root, &files)?;
@@ -259,7 +250,7 @@ impl Pending<'_> {
             folder.announce(&name, &new)?;
             place(file, &path)?;
         }
-        folder.written().files.insert(name.into(), new);
+        folder.written().files.set(&name, new);
         Ok(())
     }
 }
@@ -273,8 +264,9 @@ fn below(path: &Path) -> Result<NamedTempFile, OutputError> {
     temporary(path)
 }
 
-/// The journal, locked for this run, what is in it, and whether the lock says that no other run writes here.
-fn open_journal(root: &Path) -> Result<(File, String, bool), OutputError> {
+/// The journal, locked for this run, and whether the lock says that no other run writes here; what it says of files joins
+/// those of the manifest.
+fn open_journal(root: &Path, files: &mut FileList) -> Result<(File, bool), OutputError> {
     let path = root.join(JOURNAL);
     let failed = |source: io::Error| OutputError::Write { path: path.clone(), source };
     let mut journal = File::options().create(true).read(true).append(true).open(&path).map_err(failed)?;
@@ -284,22 +276,30 @@ fn open_journal(root: &Path) -> Result<(File, String, bool), OutputError> {
         Err(TryLockError::WouldBlock) => return Err(OutputError::Busy { path: root.to_path_buf() }),
         Err(TryLockError::Error(_)) => false,
     };
-    let mut lines = Vec::new();
-    journal.read_to_end(&mut lines).map_err(failed)?;
-    if lines.last().is_some_and(|last| *last != b'\n') {
+    let mut reader = BufReader::new(&journal);
+    let mut line = Vec::new();
+    let mut is_cut_short = false;
+    while reader.read_until(b'\n', &mut line).map_err(failed)? > 0 {
+        is_cut_short = line.last() != Some(&b'\n');
+        // The last line may have been cut short.
+        if let Ok((name, hash)) = serde_json::from_slice::<(String, String)>(&line)
+            && let Some(digest) = from_hexadecimal(&hash)
+        {
+            files.add(&name, digest);
+        }
+        line.clear();
+    }
+    if is_cut_short {
         // The run before was killed within a line: the next one is not to become a part of it.
         journal.write_all(b"\n").map_err(failed)?;
     }
-    Ok((journal, String::from_utf8_lossy(&lines).into_owned(), is_alone))
+    Ok((journal, is_alone))
 }
 
 /// Removes the temporary files that runs left which were killed: in the folder, and in those of their files.
-fn remove_orphans<'a>(root: &Path, names: impl Iterator<Item = &'a Box<str>>) {
-    let inner = names
-        .filter(|name| inside(name))
-        .filter_map(|name| root.join(&**name).parent().map(Path::to_path_buf));
-    let folders: BTreeSet<PathBuf> = inner.chain([root.to_path_buf()]).collect();
-    for folder in folders {
+fn remove_orphans<'a>(root: &Path, folders: impl Iterator<Item = &'a str>) {
+    let inner = folders.filter(|folder| inside(folder)).map(|folder| root.join(folder));
+    for folder in inner.chain([root.to_path_buf()]) {
         let Ok(entries) = fs::read_dir(&folder) else { continue };
         for entry in entries.flatten().filter(|entry| is_temporary(&entry.file_name().to_string_lossy())) {
             // One that cannot be removed does no harm.
@@ -400,7 +400,8 @@ mod tests {
         for name in orphans.into_iter().chain(others) {
             fs::write(folder.path().join(name), "").unwrap();
         }
-        fs::write(folder.path().join(JOURNAL), "[\"poplin/sheet.json\",\"00\"]\n").unwrap();
+        let line = format!("{:?}\n", ["poplin/sheet.json", &hash(b"")]);
+        fs::write(folder.path().join(JOURNAL), line).unwrap();
         OutputFolder::open(folder.path(), false).unwrap().finish().unwrap();
         assert!(orphans.iter().all(|name| !folder.path().join(name).exists()));
         assert!(others.iter().all(|name| folder.path().join(name).exists()));

@@ -2,14 +2,16 @@
 
 use crate::finding::{Place, as_text, errors, path_as_text};
 use std::collections::BTreeMap;
-use std::fs;
-use std::io::{self, BufWriter, Write as _};
+use std::fs::{self, File};
+use std::io::{self, BufReader, BufWriter, Write as _};
 use std::path::{Component, Path, PathBuf};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use tempfile::NamedTempFile;
+
+pub(super) use super::file_list::{Digest32, FileList, from_hexadecimal, hexadecimal};
 
 /// The list of files that this program wrote into a folder, with their hashes; readers of measurements pass by.
 pub const MANIFEST: &str = crate::instrument::MANIFEST;
@@ -66,9 +68,6 @@ const LETTERS: usize = 6;
 
 /// What the names of parts end with that are being written.
 const HALF: &str = ".half";
-
-/// SHA-256 of the bytes of a file.
-pub(super) type Digest32 = [u8; 32];
 
 /// Writes a file under a temporary name beside it, lets the system put its bytes on the disk, and renames it: readers
 /// see the old bytes or the new, also after the power has failed.
@@ -167,23 +166,6 @@ pub(super) fn digest(bytes: &[u8]) -> Digest32 {
     Sha256::digest(bytes).into()
 }
 
-/// A digest in hexadecimal digits.
-pub(super) fn hexadecimal(digest: &Digest32) -> String {
-    digest.iter().map(|b| format!("{b:02x}")).collect()
-}
-
-/// The digest of hexadecimal digits, if they are 64.
-pub(super) fn from_hexadecimal(text: &str) -> Option<Digest32> {
-    let mut digest = [0; 32];
-    if text.len() != 64 || !text.is_ascii() {
-        return None;
-    }
-    for (byte, at) in digest.iter_mut().zip((0..64).step_by(2)) {
-        *byte = u8::from_str_radix(&text[at..at + 2], 16).ok()?;
-    }
-    Some(digest)
-}
-
 /// SHA-256 in hexadecimal digits.
 pub fn hash(bytes: &[u8]) -> String {
     hexadecimal(&digest(bytes))
@@ -196,27 +178,26 @@ pub(crate) struct Manifest {
     #[schemars(extend("const" = "kesf.manifest/1"))]
     schema: String,
     /// Name in the folder (with `/`) and SHA-256 of what was written.
-    files: BTreeMap<Box<str>, String>,
+    #[schemars(with = "BTreeMap<Box<str>, String>")]
+    files: FileList,
 }
 
-/// Names in a folder and the hashes of what was written.
-pub(super) type Hashes = BTreeMap<Box<str>, Digest32>;
-
 /// The list of our files in a folder; empty where there is none.
-pub(super) fn manifest(root: &Path) -> Result<Hashes, OutputError> {
+pub(super) fn manifest(root: &Path) -> Result<FileList, OutputError> {
     let path = root.join(MANIFEST);
-    match existing(&path)? {
-        None => Ok(Hashes::new()),
-        Some(bytes) => read_manifest(&bytes).map_err(|problem| OutputError::Manifest { path, problem }),
+    match File::open(&path) {
+        Ok(file) => read_manifest(file).map_err(|problem| OutputError::Manifest { path, problem }),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(FileList::default()),
+        Err(source) => Err(OutputError::Write { path, source }),
     }
 }
 
 /// Writes the list of our files; of a large folder it is long, and never in memory as a text.
-pub(super) fn write_manifest(root: &Path, files: &Hashes) -> Result<(), OutputError> {
+pub(super) fn write_manifest(root: &Path, files: &FileList) -> Result<(), OutputError> {
     let path = root.join(MANIFEST);
     let failed = |source: io::Error| OutputError::Write { path: path.clone(), source };
     let mut file = BufWriter::new(temporary(&path)?);
-    serde_json::to_writer_pretty(&mut file, &ManifestOut { schema: SCHEMA, files: Listed(files) })
+    serde_json::to_writer_pretty(&mut file, &ManifestOut { schema: SCHEMA, files })
         .map_err(|e| failed(e.into()))?;
     file.write_all(b"\n").map_err(failed)?;
     place(file.into_inner().map_err(|e| failed(e.into_error()))?, &path)
@@ -226,15 +207,7 @@ pub(super) fn write_manifest(root: &Path, files: &Hashes) -> Result<(), OutputEr
 #[derive(Serialize)]
 struct ManifestOut<'f> {
     schema: &'static str,
-    files: Listed<'f>,
-}
-
-struct Listed<'f>(&'f Hashes);
-
-impl Serialize for Listed<'_> {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().map(|(name, digest)| (name, hexadecimal(digest))))
-    }
+    files: &'f FileList,
 }
 
 /// Bytes of a file, if it is there as it should be.
@@ -246,22 +219,18 @@ pub type Bytes = Result<Option<Vec<u8>>, OutputError>;
 /// [`OutputError::Manifest`] if the list of our files is none, [`OutputError::Write`] if a file cannot be read.
 pub fn left(root: &Path) -> Result<impl Fn(&str) -> Bytes, OutputError> {
     let files = manifest(root)?;
-    Ok(move |name: &str| match files.get(name).filter(|_| inside(name)) {
+    Ok(move |name: &str| match files.of(name).next().filter(|_| inside(name)) {
         Some(known) => Ok(existing(&root.join(name))?.filter(|bytes| digest(bytes) == *known)),
         None => Ok(None),
     })
 }
 
-fn read_manifest(bytes: &[u8]) -> Result<Hashes, String> {
-    let manifest: Manifest = serde_json::from_slice(bytes).map_err(|e| e.to_string())?;
+fn read_manifest(file: File) -> Result<FileList, String> {
+    let manifest: Manifest = serde_json::from_reader(BufReader::new(file)).map_err(|e| e.to_string())?;
     if manifest.schema != SCHEMA {
         return Err(format!("its schema is `{}`, not `{SCHEMA}`", manifest.schema));
     }
-    let known = |(name, text): (Box<str>, String)| match from_hexadecimal(&text) {
-        Some(digest) => Ok((name, digest)),
-        None => Err(format!("the hash of `{name}` is none")),
-    };
-    manifest.files.into_iter().map(known).collect()
+    Ok(manifest.files)
 }
 
 #[cfg(test)]

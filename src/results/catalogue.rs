@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 use std::path::Path;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 use super::failure::Failure;
 use super::inputs::{Fabric, Input, Reading, without_memory};
@@ -38,7 +38,8 @@ pub(crate) struct Catalogue {
 /// A fabric of the catalogue.
 struct Entry {
     origin: Origin,
-    path: Arc<Path>,
+    /// Its folder or file; none where it is that of its group, which the library knows.
+    path: Option<Box<Path>>,
     /// Hash of all that was read of it.
     inputs: [u8; 32],
     kept: Mutex<Option<Box<FabricInput>>>,
@@ -80,7 +81,8 @@ impl Catalogue {
             platform::map_several((0..library.groups()).collect(), |group| {
                 observer.go_on().ok()?;
                 let (fabrics, errors) = library.read(group, &|_: &Path| observer.step());
-                let entry = |fabric: FabricInput| Entry::new(Origin::Group(group), fabric, keep);
+                let of_group = library.path(group);
+                let entry = |fabric: FabricInput| Entry::new(Origin::Group(group), of_group, fabric, keep);
                 Some((fabrics.into_iter().map(entry).collect::<Result<Vec<_>, _>>(), errors))
             })
         })?;
@@ -103,15 +105,16 @@ impl Catalogue {
         for (at, input) in catalogue.memory.clone().iter().enumerate() {
             match input.in_memory(&catalogue.reading) {
                 Some(Ok((fabric, left_out))) => {
-                    catalogue.add(vec![Entry::new(Origin::Memory(at), fabric, true)?]);
+                    catalogue.add(vec![Entry::new(Origin::Memory(at), None, fabric, true)?]);
                     errors.extend(left_out);
                 }
                 Some(Err(error)) => errors.push(error),
                 None => {}
             }
         }
-        let paths: Vec<&Path> = catalogue.entries.iter().map(|entry| &*entry.path).collect();
-        distinguish(&mut catalogue.names, |at| paths[at]);
+        let mut names = std::mem::take(&mut catalogue.names);
+        distinguish(&mut names, |at| catalogue.path(at));
+        catalogue.names = names;
         catalogue.failures = errors.into_iter().map(Failure::from).collect();
         catalogue.failures.iter().for_each(|failure| observer.failed(failure));
         Ok(catalogue)
@@ -135,7 +138,12 @@ impl Catalogue {
 
     /// The folder or file of a fabric.
     pub fn path(&self, at: usize) -> &Path {
-        &self.entries[at].path
+        let Entry { origin, path, .. } = &self.entries[at];
+        let of_group = || match origin {
+            Origin::Group(group) => self.library.path(*group),
+            Origin::Memory(_) => None,
+        };
+        path.as_deref().or_else(of_group).unwrap_or(Path::new(""))
     }
 
     /// Hash of all that was read of a fabric.
@@ -196,9 +204,16 @@ fn is_wanted_in_memory(input: &Input, share: Option<Share>) -> bool {
 }
 
 impl Entry {
-    fn new(origin: Origin, fabric: FabricInput, keep: bool) -> Result<(Self, Named), Failure> {
+    /// `of_group` is the folder or file of its group.
+    fn new(
+        origin: Origin,
+        of_group: Option<&Path>,
+        fabric: FabricInput,
+        keep: bool,
+    ) -> Result<(Self, Named), Failure> {
         let named = Named::new(fabric.name.as_str());
-        let (path, inputs) = (Arc::from(fabric.path.as_path()), digest_of(&fabric)?);
+        let path = (of_group != Some(&fabric.path)).then(|| fabric.path.as_path().into());
+        let inputs = digest_of(&fabric)?;
         let kept = Mutex::new(keep.then(|| Box::new(fabric)));
         Ok((Self { origin, path, inputs, kept }, named))
     }

@@ -8,14 +8,26 @@ use crate::report::html::{Block, Cell};
 /// Fabrics that the index lists: a longer table takes a browser seconds. All of them are in `fabrics.csv`.
 const LISTED: usize = 5000;
 
+/// What stands between the cells of a line; no cell has it.
+const BETWEEN: char = '\t';
+
 /// Pages of fabrics that are written.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pages {
     /// File and what it holds.
     pages: Vec<(String, String)>,
     /// A line a fabric, up to [`LISTED`].
-    rows: Vec<Vec<Cell>>,
+    lines: Vec<Line>,
     fabrics: usize,
+}
+
+/// A fabric in the index. Its cells are made when the index is: they take ten times as much memory as their text.
+#[derive(Clone, Debug)]
+struct Line {
+    /// The place of its page.
+    page: usize,
+    name: Box<str>,
+    cells: Box<str>,
 }
 
 /// The name of a page of fabrics; pages count from 1.
@@ -30,6 +42,11 @@ impl Pages {
         (name_of_page(number), number)
     }
 
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.pages.len()
+    }
+
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.pages.is_empty()
@@ -39,15 +56,14 @@ impl Pages {
     pub fn add(&mut self, page: String, reports: &[FabricReport]) {
         let name = |report: Option<&FabricReport>| report.map_or("", |r| &r.name).to_string();
         let text = format!("{}… to {}…", name(reports.first()), name(reports.last()));
-        for report in reports.iter().take(LISTED.saturating_sub(self.rows.len())) {
-            let first = Cell {
-                text: report.name.clone(),
-                leads_to: Some((page.clone(), report.name.clone())),
-                ..Cell::default()
-            };
-            let cells = report.cells.iter().map(Cell::from);
-            let status = Cell::from(&report.status);
-            self.rows.push(std::iter::once(first).chain(cells).chain([status]).collect());
+        for report in reports.iter().take(LISTED.saturating_sub(self.lines.len())) {
+            let cells: Vec<&str> =
+                report.cells.iter().chain([&report.status]).map(|cell| cell.as_str()).collect();
+            self.lines.push(Line {
+                page: self.pages.len(),
+                name: report.name.as_str().into(),
+                cells: cells.join(&BETWEEN.to_string()).into(),
+            });
         }
         self.fabrics += reports.len();
         self.pages.push((page, text));
@@ -59,19 +75,29 @@ impl Pages {
             return Vec::new();
         }
         let text = format!(
-            "Parameters, curves and charts are on pages of {FABRICS_OF_PAGE} fabrics, in name order:"
+            "Parameters, curves and charts are on pages of up to {FABRICS_OF_PAGE} fabrics, in name order:"
         );
-        let rest = match self.fabrics - self.rows.len() {
+        let rest = match self.fabrics - self.lines.len() {
             0 => String::new(),
             more => format!(" The first {LISTED} fabrics; {more} more are on the pages and in fabrics.csv."),
         };
         let table = Block::Table {
             caption: format!("{CAPTION}.{rest}"),
             header: HEADINGS.into_iter().chain(["status"]).map(String::from).collect(),
-            rows: self.rows.clone(),
+            rows: self.lines.iter().map(|line| self.row(line)).collect(),
             of_fabrics: true,
         };
         vec![Block::Text(text), Block::Pages(self.pages.clone()), table]
+    }
+
+    fn row(&self, Line { page, name, cells }: &Line) -> Vec<Cell> {
+        let page = self.pages.get(*page).map(|(page, _)| page.clone());
+        let first = Cell {
+            text: name.to_string(),
+            leads_to: page.map(|page| (page, name.to_string())),
+            ..Cell::default()
+        };
+        std::iter::once(first).chain(cells.split(BETWEEN).map(Cell::from)).collect()
     }
 }
 

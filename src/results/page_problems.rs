@@ -57,17 +57,23 @@ impl Problems {
     /// The groups: what failed first, then implausible values and what else makes values doubtful, then in the order of the
     /// rows; linear solves beyond their meaning last.
     /// `fabrics` are the names of all fabrics in the order of their pages, `page` that of the page of each place among them.
-    pub fn groups(self, fabrics: &[String], page: impl Fn(usize) -> String) -> Vec<ProblemGroup> {
+    pub fn groups(self, fabrics: &[&str], page: impl Fn(usize) -> String) -> Vec<ProblemGroup> {
         let is_error = |code: &str| explain(code).is_some_and(|e| e.kind == "error");
         let Self { mut groups, speak_against } = self;
         groups.sort_by_key(|group| {
             let code = group.code.as_str();
             (code == BEYOND_LINEAR, !is_error(code), code != IMPLAUSIBLE, !speak_against.contains(code))
         });
-        let place: BTreeMap<&String, usize> =
-            fabrics.iter().enumerate().map(|(at, name)| (name, at)).collect();
+        let told: BTreeSet<String> =
+            groups.iter().flat_map(|group| &group.lines).filter_map(|line| line.fabric.clone()).collect();
+        let place: BTreeMap<&str, usize> = fabrics
+            .iter()
+            .enumerate()
+            .filter(|(_, name)| told.contains(**name))
+            .map(|(at, name)| (*name, at))
+            .collect();
         for line in groups.iter_mut().flat_map(|group| &mut group.lines) {
-            line.page = line.fabric.as_ref().and_then(|name| place.get(name)).map(|at| page(*at));
+            line.page = line.fabric.as_deref().and_then(|name| place.get(name)).map(|at| page(*at));
         }
         groups.into_iter().map(|group| group.made(fabrics.len())).collect()
     }
@@ -129,7 +135,7 @@ mod tests {
             problems.add(&row(code, fabric));
         }
         [row("S101", Some("b")), row("K011", Some("b"))].iter().for_each(|row| problems.add(row));
-        let fabrics = ["a", "c", "b"].map(String::from);
+        let fabrics = ["a", "c", "b"];
         let groups = problems.groups(&fabrics, |at| format!("fabrics-{at}.html"));
         let pages: Vec<Option<&str>> = groups[1].lines.iter().map(|l| l.page.as_deref()).collect();
         assert_eq!(pages, [Some("fabrics-2.html"); 2]);
@@ -144,7 +150,7 @@ mod tests {
         let mut problems = Problems::default();
         ["K040", "K001", "K002", "K011"].iter().for_each(|code| problems.add(&row(code, Some("a"))));
         problems.speak_against(["K002".to_string(), "K011".to_string()].iter());
-        let groups = problems.groups(&["a".to_string()], |_| String::new());
+        let groups = problems.groups(&["a"], |_| String::new());
         let codes: Vec<&str> = groups.iter().map(|g| g.code.as_str()).collect();
         assert_eq!(codes, ["K011", "K002", "K040", "K001"]);
     }
@@ -154,6 +160,7 @@ mod tests {
         let mut problems = Problems::default();
         (0..1500).for_each(|i| problems.add(&row("K011", Some(&format!("fabric {i}")))));
         let fabrics: Vec<String> = (0..1500).map(|i| format!("fabric {i}")).collect();
+        let fabrics: Vec<&str> = fabrics.iter().map(String::as_str).collect();
         let groups = problems.groups(&fabrics, |_| String::new());
         assert_eq!((groups.len(), groups[0].lines.len()), (1, 1000));
         let count = "more than 1000 of 1500 fabrics; the first 1000 of 1500 here, all in problems.csv";

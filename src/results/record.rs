@@ -30,6 +30,9 @@ pub(crate) struct Record {
     pub lacking: Vec<String>,
     /// Rows, charts, findings and failures.
     pub report: FabricReport,
+    /// How long it is as it was read (bytes).
+    #[serde(skip)]
+    pub length: usize,
 }
 
 impl Record {
@@ -42,7 +45,7 @@ impl Record {
         report: FabricReport,
     ) -> Self {
         let key = report.is_final().then(|| key.to_string());
-        Self { schema: SCHEMA.into(), key, files, sources, suited, lacking, report }
+        Self { schema: SCHEMA.into(), key, files, sources, suited, lacking, report, length: 0 }
     }
 
     /// The record of a fabric; none where there is none that can be read.
@@ -50,9 +53,9 @@ impl Record {
     /// # Errors
     /// Those of the sink.
     pub fn read(sink: &dyn Sink, fabric: &str) -> Result<Option<Self>, Failure> {
-        let bytes = sink.read(&name(fabric))?;
-        let record = bytes.and_then(|bytes| serde_json::from_slice::<Self>(&bytes).ok());
-        Ok(record.filter(|record| record.schema == SCHEMA))
+        let Some(bytes) = sink.read(&name(fabric))? else { return Ok(None) };
+        let record = serde_json::from_slice::<Self>(&bytes).ok().filter(|record| record.schema == SCHEMA);
+        Ok(record.map(|record| Self { length: bytes.len(), ..record }))
     }
 
     /// The record of a fabric, if it has this key and every file is as it was left; the files then count as written.
@@ -88,19 +91,19 @@ impl Record {
         self.key.is_some()
     }
 
-    /// Writes the record. Where JSON cannot hold what is in it, such as a number that is not finite, nothing is
-    /// written and it comes back.
+    /// Writes the record, and says how long it is (bytes). Where JSON cannot hold what is in it, such as a number that is
+    /// not finite, nothing is written.
     ///
     /// # Errors
     /// Those of the sink.
-    pub fn write(self, sink: &dyn Sink) -> Result<Option<Box<Self>>, Failure> {
-        let mut bytes = serde_json::to_vec(&self)?;
+    pub fn write(&self, sink: &dyn Sink) -> Result<Option<usize>, Failure> {
+        let mut bytes = serde_json::to_vec(self)?;
         if serde_json::from_slice::<Self>(&bytes).is_err() {
-            return Ok(Some(Box::new(self)));
+            return Ok(None);
         }
         bytes.push(b'\n');
         sink.write(&name(&self.report.name), &bytes)?;
-        Ok(None)
+        Ok(Some(bytes.len()))
     }
 }
 

@@ -27,6 +27,8 @@ pub(super) struct Made {
     pub resumed: bool,
     /// Whether another run of the same would find nothing more.
     pub is_final: bool,
+    /// How long its record is (bytes): what it takes on a page.
+    pub length: usize,
     /// What could not be written, for JSON cannot hold it.
     pub held: Option<Box<Record>>,
 }
@@ -103,35 +105,38 @@ impl<'c> Workshop<'c> {
         let mine = |at: usize| self.jobs.iter().filter(move |job| job.is_for(self.work, at));
         let stages = |at: usize| mine(at).map(|job| job.task(None).stages()).sum::<usize>();
         let steps = (0..fabrics.len()).map(|at| 1 + stages(at)).sum();
-        let made =
-            self.observer.part("fabrics", steps, || map_several(fabrics.units(), |unit| self.unit(unit)))?;
-        made.into_iter().flatten().collect()
+        // Of thousands of fabrics there are as many results: a failure that is large is kept elsewhere.
+        let unit = |unit| self.unit(unit).map_err(Box::new);
+        let made = self.observer.part("fabrics", steps, || map_several(fabrics.units(), unit))?;
+        let mut all = Vec::with_capacity(fabrics.len());
+        for unit in made {
+            all.extend(unit.map_err(|failure| *failure)?);
+        }
+        Ok(all)
     }
 
     /// The fabrics that are read together.
-    fn unit(&self, unit: Range<usize>) -> Vec<Result<Made, Failure>> {
-        let finished: Vec<_> = unit.clone().map(|at| self.finished(at)).collect();
-        if finished.iter().all(|found| matches!(found, Ok(Some(_)))) {
-            return finished.into_iter().flatten().flatten().map(Ok).collect();
+    fn unit(&self, unit: Range<usize>) -> Result<Vec<Made>, Failure> {
+        let finished: Vec<_> = unit.clone().map(|at| self.finished(at)).collect::<Result<_, _>>()?;
+        if finished.iter().all(Option::is_some) {
+            return Ok(finished.into_iter().flatten().collect());
         }
-        if let Err(failure) = self.go_on() {
-            return vec![Err(failure)];
-        }
+        self.go_on()?;
         let fabrics = self.work.catalogue.fabrics(unit.clone()).into_iter();
         let all = unit.zip(fabrics).zip(finished).collect();
-        map_several(all, |((at, fabric), finished)| match finished {
-            Ok(Some(made)) => Ok(made),
-            Err(failure) => Err(failure),
-            Ok(None) => {
-                self.go_on()?;
-                let made = self.make(at, fabric);
-                if let Err(failure) = &made {
-                    self.ended.get_or_init(|| failure.clone());
-                }
-                self.observer.step();
-                made
+        let made = map_several(all, |((at, fabric), finished)| {
+            if let Some(made) = finished {
+                return Ok(made);
             }
-        })
+            self.go_on()?;
+            let made = self.make(at, fabric);
+            if let Err(failure) = &made {
+                self.ended.get_or_init(|| failure.clone());
+            }
+            self.observer.step();
+            made
+        });
+        made.into_iter().collect()
     }
 
     /// The failure of another fabric that ended the run, or that it was cancelled.
@@ -194,8 +199,9 @@ impl<'c> Workshop<'c> {
         let key = self.key(at, self.with_fields)?;
         let record = Record::new(&key, folder.into_names(), fabric.sheet.sources, of_cases, report);
         self.count(at, &record);
-        let made = Made::of(&record);
-        Ok(Made { held: record.write(self.folder.sink())?, ..made })
+        let (made, length) = (Made::of(&record), record.write(self.folder.sink())?);
+        let held = length.is_none().then(|| Box::new(record));
+        Ok(Made { length: length.unwrap_or_default(), held, ..made })
     }
 
     /// Counts what a fabric is to the cases.
@@ -291,6 +297,7 @@ impl Made {
             fails_a_check: *fails_a_check,
             resumed: false,
             is_final: record.is_final(),
+            length: record.length,
             held: None,
         }
     }

@@ -27,6 +27,13 @@ use crate::results::{
 /// Fabrics that the overview for people lists; all of them are in `fabrics.csv`.
 pub(super) const LISTED: usize = 200;
 
+/// Bytes of records from which a page is full: fabrics of many curves are fewer to a page, which a browser opens and memory
+/// holds. A fabric of 21 records has 94 kB of them, and takes seven times as much memory while its page is made.
+const LENGTH_OF_PAGE: usize = 8_000_000;
+
+/// So many fabrics share a page whatever they hold.
+const SHARING: usize = 40;
+
 /// What there is to write about.
 pub(super) struct Results<'r, 'w> {
     pub work: &'w RunWork,
@@ -70,8 +77,25 @@ struct Kept {
     drapes: Vec<DrapePoint>,
     /// Reports for the page that is being filled.
     reports: Vec<FabricReport>,
+    /// Where pages begin, by the places of their fabrics; one if all of them are on the index.
+    begin: Vec<usize>,
     /// The pages that are full.
     pages: Pages,
+}
+
+/// Where pages begin of fabrics whose records are so long.
+fn pages_begin(lengths: impl Iterator<Item = usize>) -> Vec<usize> {
+    let (mut begin, mut fabrics, mut length) = (Vec::new(), 0, 0);
+    for (at, of_fabric) in lengths.enumerate() {
+        let is_full = fabrics >= SHARING && length + of_fabric > LENGTH_OF_PAGE;
+        if at == 0 || is_full || fabrics == FABRICS_OF_PAGE {
+            begin.push(at);
+            (fabrics, length) = (0, 0);
+        }
+        fabrics += 1;
+        length += of_fabric;
+    }
+    begin
 }
 
 impl Results<'_, '_> {
@@ -85,7 +109,8 @@ impl Results<'_, '_> {
         }
         self.add_problems(&mut tables)?;
         let mut overview = Overview::new(self.cases.iter().copied());
-        let mut kept = Kept::default();
+        let begin = pages_begin(self.made.iter().map(|made| made.length));
+        let mut kept = Kept { begin, ..Kept::default() };
         for at in 0..self.made.len() {
             observer.go_on()?;
             let mut report = self.record(at)?.report;
@@ -98,7 +123,7 @@ impl Results<'_, '_> {
             if at < LISTED {
                 overview.row(&report);
             }
-            self.keep(report, &mut kept)?;
+            self.keep(at, report, &mut kept)?;
         }
         for own in self.own {
             own.findings().into_iter().for_each(|finding| observer.found_in_batch(finding));
@@ -119,6 +144,9 @@ impl Results<'_, '_> {
 
     /// What could not be read of each fabric.
     fn unread(&self) -> BTreeMap<String, Vec<Failure>> {
+        if self.work.failures.is_empty() {
+            return BTreeMap::new();
+        }
         let mut unread: BTreeMap<String, Vec<Failure>> = BTreeMap::new();
         for (fabric, failure) in unread_by_fabric(&self.known(), &self.work.failures) {
             unread.entry(fabric).or_default().push(failure.clone());
@@ -134,7 +162,7 @@ impl Results<'_, '_> {
 
     /// Rows of inputs that could not be read.
     pub fn unread_rows(&self) -> Vec<FabricRow> {
-        unread_of(&self.known(), &self.work.failures)
+        if self.work.failures.is_empty() { Vec::new() } else { unread_of(&self.known(), &self.work.failures) }
     }
 
     /// Rows of findings that belong to no fabric.
@@ -186,15 +214,15 @@ impl Results<'_, '_> {
         Ok(tables.shown)
     }
 
-    /// Keeps what charts and pages need of a fabric, and writes a page that is full.
-    fn keep(&self, report: FabricReport, kept: &mut Kept) -> Result<(), Failure> {
+    /// Keeps what charts and pages need of the fabric at a place, and writes a page that is full.
+    fn keep(&self, at: usize, report: FabricReport, kept: &mut Kept) -> Result<(), Failure> {
         if self.folder.charts() {
             kept.parity.extend(report.parity.iter().cloned());
             kept.re_extracted.extend(report.re_extracted.iter().cloned());
         }
         kept.drapes.extend(report.drapes.iter().cloned());
         kept.reports.push(report);
-        let is_full = kept.reports.len() == FABRICS_OF_PAGE && self.made.len() > FABRICS_OF_PAGE;
+        let is_full = kept.begin.get(kept.pages.len() + 1) == Some(&(at + 1));
         if is_full { self.write_page_of_fabrics(kept) } else { Ok(()) }
     }
 
@@ -220,11 +248,13 @@ impl Results<'_, '_> {
         if !kept.pages.is_empty() && !kept.reports.is_empty() {
             self.write_page_of_fabrics(&mut kept)?;
         }
-        let Kept { drapes, reports, pages, .. } = kept;
+        let Kept { drapes, reports, begin, pages, .. } = kept;
         let fabrics = self.made.len();
-        let names: Vec<String> = (0..fabrics).map(|at| self.work.catalogue.name(at).to_string()).collect();
-        let page_of =
-            |at: usize| if pages.is_empty() { String::new() } else { name_of_page(at / FABRICS_OF_PAGE + 1) };
+        let names: Vec<&str> = (0..fabrics).map(|at| self.work.catalogue.name(at)).collect();
+        let page_of = |at: usize| match pages.is_empty() {
+            true => String::new(),
+            false => name_of_page(begin.partition_point(|first| *first <= at)),
+        };
         let problems = problems.groups(&names, page_of);
         let RunSettings { charts, formats, population, .. } = self.settings;
         let (formats, population) = (if *charts { formats.as_slice() } else { &[] }, population.as_ref());
@@ -308,4 +338,20 @@ impl Tables<'_> {
 fn figure(caption: &str, picture: &str) -> Figure {
     let alt = format!("{caption}: one point a fabric and parameter, on the line where both are equal.");
     Figure { caption: caption.into(), alt, picture: picture.into(), kind: FigureKind::Overview }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_has_so_many_fabrics_and_not_more_than_so_much_of_them() {
+        let begin = |lengths: &[usize]| pages_begin(lengths.iter().copied());
+        assert_eq!(begin(&[]), [0usize; 0]);
+        assert_eq!(begin(&[10; FABRICS_OF_PAGE]), [0]);
+        assert_eq!(begin(&[10; 2 * FABRICS_OF_PAGE + 1]), [0, FABRICS_OF_PAGE, 2 * FABRICS_OF_PAGE]);
+        let long = LENGTH_OF_PAGE / 50;
+        assert_eq!(begin(&[long; 101]), [0, 50, 100]);
+        assert_eq!(begin(&[LENGTH_OF_PAGE; 41]), [0, SHARING]);
+    }
 }

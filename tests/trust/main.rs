@@ -9,6 +9,10 @@ mod common;
 mod factors;
 mod folders;
 mod limits;
+#[cfg(target_os = "linux")]
+#[allow(dead_code, reason = "the bench of the same runs uses the rest")]
+#[path = "../common/many.rs"]
+mod many;
 mod memory;
 mod names;
 mod resume;

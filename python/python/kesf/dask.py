@@ -9,12 +9,15 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from . import _kesf, parts
-from ._calls import sources
+from ._calls import follower, sources
 from ._errors import KesfError
 from ._evaluate import Evaluation, evaluation_of, find
 from ._functions import Readable, _options
 from ._table import Table
-from ._types import Path
+from ._types import Path, Progress
+
+#: What the tasks of shards are called, in the dashboard and in logs; number, number of shards and hash follow.
+TASK = "kesf-shard"
 
 #: Fabrics of a shard, where no number of shards is given: some seconds of work.
 PER_SHARD = 1000
@@ -45,6 +48,11 @@ class Task:
     set_up: str
     drape: bool
     options: dict[str, Any]
+
+    @property
+    def name(self) -> str:
+        """What the task is called: ``kesf-shard-3-of-7-`` and its key. Dask shows tasks of one kind as one bar."""
+        return f"{TASK}-{self.shard.number}-of-{self.shard.count}-{self.key}"
 
 
 @dataclass(frozen=True)
@@ -77,6 +85,7 @@ def run(
     drape: bool = False,
     retries: int = 3,
     storage_options: dict[str, Any] | None = None,
+    progress: Progress | None = None,
 ) -> list[Done]:
     """Evaluates a library of fabrics on a cluster: every fabric and every case, a Parquet part a shard.
 
@@ -92,6 +101,8 @@ def run(
         drape: Whether drape cases are solved too.
         retries: How often a shard is tried again whose worker failed.
         storage_options: Options of the file systems, such as ``endpoint_url``.
+        progress: A bar such as ``tqdm.tqdm()``, or a function of what is done (``"shards"``), shards done and shards in
+            all: called here and not on the workers. The dashboard shows the same as one bar, ``kesf-shard``.
 
     Returns:
         What became of each shard, in order. A part that is there with the same key is kept.
@@ -109,19 +120,27 @@ def run(
         ) from error
     own = client is None
     client = Client() if own else client
+    follow = follower(progress) or (lambda what, done, of: None)
     done: list[Done] = []
     failed: list[tuple[Task, BaseException]] = []
+    futures: dict[Any, Task] = {}
     try:
-        futures = {client.submit(work, task, key=f"kesf-{task.key}", retries=retries): task for task in tasks}
+        futures = {client.submit(work, task, key=task.name, retries=retries): task for task in tasks}
+        follow("shards", 0, len(tasks))
+        # None is released before all are done: a bar of the dashboard would lose what is finished. What a worker keeps
+        # of a shard are these few numbers.
         for future in as_completed(list(futures)):
             reason = future.exception()
             if reason is None:
                 done.append(future.result())
             else:
                 failed.append((futures[future], reason))
-            # The scheduler forgets it: memory does not grow with the number of shards.
-            future.release()
+            follow("shards", len(done) + len(failed), len(tasks))
     finally:
+        # Where the caller gave up, what has not begun never does.
+        client.cancel([future for future in futures if not future.done()])
+        for future in futures:
+            future.release()
         if own:
             client.close()
     if failed:
