@@ -21,6 +21,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use fast_cells::FastCell;
 use layout::{Column, Layout};
+pub(super) use layout::{differ, two_units};
 use row_facts::RowFacts;
 
 use super::dialect::{Key, Statistic, TableColumn};
