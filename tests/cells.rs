@@ -189,3 +189,23 @@ fn code_pages_of_dos_are_known_by_their_words_and_units() {
         assert_relative_eq!(value(&content, Parameter::B, WEFT), 2.0 * TENTH, max_relative = 1e-12);
     }
 }
+
+/// A heading or a label that was lost, cells that slipped by one, a line with other delimiters.
+#[test]
+fn rows_and_columns_that_lost_their_name_are_told() {
+    for (text, expected) in [
+        ("Fabric,B (gf.cm2/cm),,RT (%)\nP,0.1,0.3,52\nQ,0.2,0.4,51\n", "column 3 without a heading"),
+        ("Parameter,Warp,Weft\nB (gf.cm2/cm),0.1,0.2\n,52,51\nLT,0.7,0.6\n", "line 3 without a name"),
+        ("Parameter,Warp,Weft\nB (gf.cm2/cm),0.1,0.2\nRT (%);52;51\nLT,0.7,0.6\n", "line 3, which is one cell"),
+    ] {
+        let content = read(text.as_bytes()).unwrap_or_else(|e| panic!("{text}: {e}"));
+        assert!(told(&content, "R104").contains(expected), "{text}: {:?}", content.findings);
+    }
+    let shifted = "Fabric,B (gf.cm2/cm),RT (%)\nP,0.1,52\n0.2,51,\nR,0.3,50\n";
+    let content = read(shifted.as_bytes()).unwrap();
+    assert_eq!(content.failures.len(), 1, "{:?}", content.results);
+    assert!(content.failures[0].to_string().starts_with("lab.csv:3:1: R018"), "{}", content.failures[0]);
+    // Names may be numbers.
+    let numbered = "Fabric,B (gf.cm2/cm),RT (%)\n101,0.1,52\n1.5,0.2,51\n";
+    assert!(read(numbered.as_bytes()).unwrap().failures.is_empty());
+}

@@ -35,6 +35,7 @@ mod marks;
 mod measurement;
 mod number_format;
 mod own_results;
+mod pages;
 mod pairs;
 #[cfg(feature = "pictures")]
 pub mod picture;

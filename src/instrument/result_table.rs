@@ -13,6 +13,7 @@ mod noted;
 mod repeats;
 mod row_facts;
 mod rows_above;
+mod shifted;
 mod states;
 mod strangers;
 mod units;
@@ -108,6 +109,7 @@ pub(super) fn read(
     let rows = table.facts(region)?;
     let names: BTreeSet<&Option<String>> = rows.iter().map(|(_, facts)| &facts.fabric).collect();
     table.several = names.len() > 1 || table.layout.names_fabrics();
+    let rows = table.without_shifted(rows)?;
     for (row, facts) in &rows {
         let read = table.values_of(row, facts);
         // An error in the heading is every row's.
@@ -189,6 +191,7 @@ impl<'t> Table<'t, '_> {
                 self.above = Some(title.clone());
                 continue;
             }
+            self.note_row_in_one_cell(row);
             let facts = self.within_heads(row, region).and_then(|()| self.row_facts(row));
             match facts {
                 Ok(facts) => out.push((*row, facts)),
@@ -329,6 +332,8 @@ impl<'t> Table<'t, '_> {
             let any = self.layout.values.iter().any(|c| row.get(c.index).is_some());
             if any && !facts.label.is_empty() {
                 self.ignored.push(facts.label.clone());
+            } else if any && row.filled().any(|(_, c)| shape::is_value(&c.text, self.context)) {
+                self.ignored.push(format!("line {} without a name", row.line));
             }
             return Ok(());
         }
