@@ -68,6 +68,7 @@ const CASES: &[(&str, &str, &str)] = &[
     ("R132", "r132-setting.csv", "r132-setting.csv:1"),
     ("R133", "r133-letters.csv", "r133-letters.csv:1"),
     ("R134", "r134-formats.xlsx", "r134-formats.xlsx"),
+    ("R136", "r136-direction.csv", "r136-direction.csv:3:8"),
     ("R135", "r135-page.csv", "r135-page.csv"),
     ("R123", "r123-colours.xlsx", "r123-colours.xlsx[Colour]:3:1"),
     ("K001", "k001-five-samples.csv", "k001-five-samples.csv:6"),

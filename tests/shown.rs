@@ -181,6 +181,11 @@ fn sheets_that_are_named_by_letters_are_of_these_directions() {
             told(&content, "R133")
         );
     }
+    let curve: Vec<_> = (0..9).map(|i| vec![Number(f64::from(i)), Number(0.1 * f64::from(i))]).collect();
+    let record = |name| (name, [vec![vec![Text("K (1/cm)"), Text("M (gf·cm/cm)")]], curve.clone()].concat());
+    let content = read("a.xlsx", &book(&[record("K"), record("S")])).unwrap();
+    assert_eq!(content.measurements.iter().map(|m| m.direction).collect::<Vec<_>>(), [WARP, WEFT]);
+    assert!(told(&content, "R105").is_empty());
     // Without its partner a letter is a name; so are numbers and letters of two languages.
     for (one, other) in [("L", "M"), ("1", "2"), ("K", "T"), ("L a", "T b")] {
         let content = read("a.xlsx", &book(&[(one, rows(0.1)), (other, rows(0.2))])).unwrap();

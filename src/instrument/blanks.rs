@@ -60,11 +60,12 @@ fn by_gaps(text: &str) -> Option<String> {
 
 /// Where the last of the first cells of rows ends.
 fn end_of_first_cells(text: &str, is_row: impl Fn(&str) -> bool) -> usize {
-    let end = |line: &str| {
-        let lead = line.len() - line.trim_start_matches(' ').len();
-        lead + line[lead..].find("  ").unwrap_or(line.len() - lead)
-    };
-    text.lines().filter(|line| is_row(line)).map(end).max().unwrap_or(usize::MAX)
+    text.lines().filter(|line| is_row(line)).map(end_of_first_cell).max().unwrap_or(usize::MAX)
+}
+
+fn end_of_first_cell(line: &str) -> usize {
+    let lead = line.len() - line.trim_start_matches(' ').len();
+    lead + line[lead..].find("  ").unwrap_or(line.len() - lead)
 }
 
 /// Copies a line, with a tab in place of the last blank of each gap of at least so many blanks.

@@ -45,16 +45,17 @@ pub(super) fn to_headings<'r>(
 
 /// Whether every cell begins as a number: one look at each.
 fn is_of_numbers(row: &Row<'_>) -> bool {
-    let begins =
-        |c: &Cell<'_>| c.text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "-+.−".contains(c));
-    row.filled().all(|(_, c)| begins(c))
+    row.filled()
+        .all(|(_, c)| c.text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "-+.−".contains(c)))
 }
 
 /// Whether all begin so, and one of them ends as none.
 fn is_united(row: &Row<'_>) -> bool {
-    let ends =
-        |c: &Cell<'_>| c.text.trim_end().ends_with(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | ',')));
-    row.filled().nth(1).is_some() && is_of_numbers(row) && row.filled().any(|(_, c)| ends(c))
+    row.filled().nth(1).is_some()
+        && is_of_numbers(row)
+        && row.filled().any(|(_, c)| {
+            !c.text.trim_end().ends_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | ','))
+        })
 }
 
 /// A number and the unit behind it. An angle is one here: a curve has no directions in its cells.
@@ -64,8 +65,7 @@ fn parts(cell: &str, decimal: char) -> Option<(String, String)> {
     let exponent = text[end..].starts_with(['e', 'E'])
         && text[end + 1..].starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-'));
     let end = if exponent {
-        let digits = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-');
-        end + 1 + text[end + 1..].find(|c| !digits(c))?
+        end + 1 + text[end + 1..].find(|c: char| !(c.is_ascii_digit() || matches!(c, '+' | '-')))?
     } else {
         end
     };

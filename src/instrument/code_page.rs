@@ -55,8 +55,7 @@ impl Page {
 
     /// The byte of each character beyond ASCII; of a page with one byte a character.
     fn bytes(self) -> Vec<(char, u8)> {
-        let of = |b: u8| Some((self.decode(&[b])?.chars().next()?, b));
-        (0x80..=0xff).filter_map(of).collect()
+        (0x80..=0xff).filter_map(|b| Some((self.decode(&[b])?.chars().next()?, b))).collect()
     }
 }
 
@@ -68,14 +67,32 @@ struct Way {
 }
 
 impl Way {
+    fn byte(&self, c: char) -> Option<u8> {
+        let ascii = u8::try_from(c).ok().filter(|b| *b < 0x80);
+        ascii.or_else(|| self.bytes.iter().find(|(of, _)| *of == c).map(|(_, b)| *b))
+    }
+
     /// The text in the other page; none if it cannot have come that way.
     fn apply(&self, text: &str) -> Option<String> {
-        let byte = |c: char| match u8::try_from(c) {
-            Ok(b) if b < 0x80 => Some(b),
-            _ => self.bytes.iter().find(|(of, _)| *of == c).map(|(_, b)| *b),
-        };
-        let bytes: Vec<u8> = text.chars().map(byte).collect::<Option<_>>()?;
+        let bytes: Vec<u8> = text.chars().map(|c| self.byte(c)).collect::<Option<_>>()?;
         self.to.decode(&bytes)
+    }
+
+    /// A text as it was, with the unit in it, where no known word is lost by that.
+    fn unit_of<'t>(&self, text: &'t str) -> Option<(&'t str, String, Unit)> {
+        let other = self.apply(text).filter(|other| known_letters(other) >= known_letters(text))?;
+        let unit = unit_in(&other)?;
+        Some((text, other, unit))
+    }
+
+    fn row<'r>(&self, row: &'r Row<'_>) -> Row<'r> {
+        let mut cells = Vec::with_capacity(row.cells.len());
+        for cell in &row.cells {
+            let other = is_strange(&cell.text).then(|| self.apply(&cell.text)).flatten();
+            let text = other.map_or(Cow::Borrowed(cell.text.as_ref()), Cow::Owned);
+            cells.push(Cell { text, column: cell.column });
+        }
+        Row { line: row.line, cells, in_cells: row.in_cells }
     }
 }
 
@@ -101,10 +118,13 @@ fn unit_in(text: &str) -> Option<Unit> {
     if found.is_ascii() { None } else { unit(&found).ok() }
 }
 
+/// Whether a text has characters beyond ASCII and no unit among them.
+fn is_strange(text: &str) -> bool {
+    !text.is_ascii() && text.chars().nth(HEADING).is_none() && unit_in(text).is_none()
+}
+
 /// The rows as they were written, and what is told of it; none where no unit speaks for another page.
 pub(super) fn restored<'r>(rows: &'r [Row<'_>]) -> Option<(Vec<Row<'r>>, ReadFact)> {
-    let is_strange =
-        |text: &str| !text.is_ascii() && text.chars().nth(HEADING).is_none() && unit_in(text).is_none();
     let texts = rows.iter().flat_map(|r| &r.cells).map(|c| c.text.as_ref());
     // A single letter may be a name: `ø` is a diameter.
     let strange: BTreeSet<&str> =
@@ -114,12 +134,7 @@ pub(super) fn restored<'r>(rows: &'r [Row<'_>]) -> Option<(Vec<Row<'r>>, ReadFac
     }
     let (mut best, mut found): (Option<&Way>, Vec<(&str, String, Unit)>) = (None, Vec::new());
     for way in ways() {
-        let of = |text: &&'r str| {
-            let other = way.apply(text).filter(|other| known_letters(other) >= known_letters(text))?;
-            let unit = unit_in(&other)?;
-            Some((*text, other, unit))
-        };
-        let units: Vec<_> = strange.iter().filter_map(of).collect();
+        let units: Vec<_> = strange.iter().filter_map(|text| way.unit_of(text)).collect();
         if units.len() > found.len() {
             (best, found) = (Some(way), units);
         } else if !units.is_empty() && units.len() == found.len() {
@@ -132,23 +147,13 @@ pub(super) fn restored<'r>(rows: &'r [Row<'_>]) -> Option<(Vec<Row<'r>>, ReadFac
     }
     let way = best?;
     let (was, is, _) = found.into_iter().next()?;
-    let cell = |c: &'r Cell<'_>| {
-        let other = is_strange(&c.text).then(|| way.apply(&c.text)).flatten();
-        let text = other.map_or(Cow::Borrowed(c.text.as_ref()), Cow::Owned);
-        Cell { text, column: c.column }
-    };
-    let row = |r: &'r Row<'_>| Row {
-        line: r.line,
-        cells: r.cells.iter().map(cell).collect(),
-        in_cells: r.in_cells,
-    };
     let fact = ReadFact::OtherCodePage {
         written: is,
         found: was.to_string(),
         written_in: way.to.name().to_string(),
         read_in: way.from.name().to_string(),
     };
-    Some((rows.iter().map(row).collect(), fact))
+    Some((rows.iter().map(|row| way.row(row)).collect(), fact))
 }
 
 #[cfg(test)]

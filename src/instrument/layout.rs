@@ -180,8 +180,9 @@ impl<'t> Scanner<'t, '_> {
             Some(Column { index, role, name, unit, line: row.line, column: cell.column, says })
         };
         let columns: Vec<Column> = pairs::along_sweep(row.filled().filter_map(column).collect());
-        let has_unit = |c: &Column| c.unit.is_some() || self.has_unit_below(row, c.index);
-        let sweep = columns.iter().any(|c| c.role == Role::Position && has_unit(c));
+        let sweep = columns
+            .iter()
+            .any(|c| c.role == Role::Position && (c.unit.is_some() || self.has_unit_below(row, c.index)));
         let abscissa = columns.iter().any(|c| c.role.is_abscissa());
         let ordinate = columns.iter().any(|c| !c.role.is_abscissa() && c.role != Role::Ignored);
         // A result table may have columns named thickness and pressure too; then it has symbols.
@@ -241,6 +242,7 @@ impl<'t> Scanner<'t, '_> {
             rows.extend(self.data_rows(&columns));
         }
         self.check_width(heading, &rows)?;
+        self.note_strange_columns(heading, &columns, &rows);
         let mut pairs = self.pairs(columns)?;
         self.distribute(&mut pairs)?;
         self.leave_out_statistics(&mut pairs);

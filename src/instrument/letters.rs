@@ -90,11 +90,7 @@ fn lettered_name(index: usize, name: &str, v: Vocabulary<'_>) -> Option<Lettered
     if words.iter().any(|word| v.direction(word).is_some()) {
         return None;
     }
-    let of = |word: &&str| {
-        let letter = word.trim_end_matches(|c: char| c.is_ascii_digit());
-        Some((v.letter(letter).filter(|_| is_short(letter))?, letter.to_string(), word.to_string()))
-    };
-    let mut letters = words.iter().filter_map(of);
+    let mut letters = words.iter().filter_map(|word| letter_of_word(word, v));
     let (direction, letter, whole) = letters.next()?;
     if letters.next().is_some() {
         return None;
@@ -103,6 +99,12 @@ fn lettered_name(index: usize, name: &str, v: Vocabulary<'_>) -> Option<Lettered
     let rest: Vec<String> =
         words.iter().map(|word| if **word == whole { number.clone() } else { word.to_string() }).collect();
     Some(Lettered { index, direction, letter, rest: rest.join(" ") })
+}
+
+/// The direction of a word that is a letter with or without a number behind it, the letter and the word.
+fn letter_of_word(word: &str, v: Vocabulary<'_>) -> Option<(Direction, String, String)> {
+    let letter = word.trim_end_matches(|c: char| c.is_ascii_digit());
+    Some((v.letter(letter).filter(|_| is_short(letter))?, letter.to_string(), word.to_string()))
 }
 
 fn is_short(word: &str) -> bool {

@@ -276,8 +276,11 @@ impl OdsCell {
         let digits = number.replace([' ', '\u{a0}', '-', '−', '+'], "").replace(',', ".");
         let is_marked = digits.split('.').next_back().is_some_and(|part| part.len() == 3);
         let shown: f64 = digits.parse().unwrap_or(0.0);
-        let near = |power: i32| (self.value.abs() * 10f64.powi(power) / shown - 1.0).abs() < 0.1;
-        [-3, -6].into_iter().find(|power| !is_marked && shown > 0.0 && near(*power)).unwrap_or(0)
+        if is_marked || shown <= 0.0 {
+            return 0;
+        }
+        let ratio = self.value.abs() / shown;
+        [-3, -6].into_iter().find(|power| (ratio * 10f64.powi(*power) - 1.0).abs() < 0.1).unwrap_or(0)
     }
 }
 

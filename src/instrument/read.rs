@@ -247,7 +247,8 @@ fn sheets(
         if is_used && letter.is_some() {
             of_letters.push(sheet.name.clone());
         }
-        if content.measurements.len() > curves {
+        // A letter of a direction names no sample.
+        if content.measurements.len() > curves && letter.is_none() {
             with_curves.push(sheet.name.as_str());
         }
     }

@@ -123,6 +123,7 @@ pub(super) fn read(
     table.ignored.extend(unused);
     table.note_strangers();
     table.directions_of_numbers();
+    table.note_without_direction();
     table.finish()
 }
 

@@ -75,9 +75,14 @@ pub(super) fn continues(row: &Row<'_>, region: &Region<'_>, context: &Context<'_
         let name = c.text.split([':', '=']).next().unwrap_or_default();
         context.vocabulary.key(name.trim_start_matches('#').trim()).is_some()
     });
-    let is_within = |own: &[(usize, bool)], other: &[(usize, bool)]| own.iter().all(|c| other.contains(c));
     let mut ends = [region.rows.first(), region.rows.last()].into_iter().flatten();
-    own.len() > 1 && own.iter().any(|c| c.1) && !is_header && ends.any(|r| is_within(&own, &form(r)))
+    own.len() > 1
+        && own.iter().any(|c| c.1)
+        && !is_header
+        && ends.any(|r| {
+            let other = form(r);
+            own.iter().all(|c| other.contains(c))
+        })
 }
 
 /// Several numbers and nothing else.

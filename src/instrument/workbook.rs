@@ -165,12 +165,10 @@ fn rows(cells: Cells, left_out: &BTreeSet<u32>, decimal: char) -> Vec<Row<'stati
             }
             rows.push(Row { line, cells: Vec::new(), in_cells: true });
         }
-        // The shortest text that reads back as the same number.
-        let number = |n: f64| if decimal == ',' { n.to_string().replace('.', ",") } else { n.to_string() };
         let text = match value {
             Value::Text(text) => text,
-            Value::Number(n) => number(n),
-            Value::United(n, unit) => format!("{} {unit}", number(n)),
+            Value::Number(n) => number_text(n, decimal),
+            Value::United(n, unit) => format!("{} {unit}", number_text(n, decimal)),
         };
         if let Some(row) = rows.last_mut() {
             for c in row.cells.len()..column as usize {
@@ -180,6 +178,11 @@ fn rows(cells: Cells, left_out: &BTreeSet<u32>, decimal: char) -> Vec<Row<'stati
         }
     }
     rows
+}
+
+/// The shortest text that reads back as the same number.
+fn number_text(n: f64, decimal: char) -> String {
+    if decimal == ',' { n.to_string().replace('.', ",") } else { n.to_string() }
 }
 
 /// Adds a cell that holds something.
@@ -297,8 +300,9 @@ fn apply(name: String, mut cells: Cells, marks: &Marks, left: &mut LeftOut) -> S
             units.entry(unit).or_default().push(*at);
         }
     }
-    let of = |(unit, at): (&&str, &Vec<_>)| format!("{unit:?} in {} of sheet {name:?}", cells_text(at));
-    left.units.extend(units.iter().map(of));
+    for (unit, at) in &units {
+        left.units.push(format!("{unit:?} in {} of sheet {name:?}", cells_text(at)));
+    }
     let kept: BTreeSet<u32> = cells.keys().map(|(r, _)| *r).collect();
     Shown { left_out: &all - &kept, name, cells }
 }

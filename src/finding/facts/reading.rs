@@ -226,6 +226,12 @@ super::facts! {
             read_in: String,
         } = "{found:?} is no unit, and is {written:?} where a text of {written_in} was taken for {read_in}: all texts of the table are \
              read so; save the file as UTF-8 from the program that wrote it";
+        /// A value without a direction among others with one.
+        "R136" WithoutDirection {
+            /// The parameters, without a direction.
+            keys: Vec<Key>,
+        } = "{} stands without a direction beside values of it with one, and is read as one of the fabric: name its direction",
+            several_keys(keys);
         /// Blank cells below a direction or a parameter.
         "R124" MergedCells {} = "blank cells are read as the direction or parameter above them, as of merged cells: fill them in \
              if they are something else";

@@ -85,25 +85,29 @@ impl Book {
             _ => {}
         }
     }
+
+    /// What the format of a cell says of it.
+    fn mark(&self, at: (u32, u32), format: u32, marks: &mut Marks) {
+        let Some((font, number)) = self.cells.get(format as usize) else { return };
+        if self.struck_out.get(*font as usize).is_some_and(|struck| *struck) {
+            marks.struck_out.insert(at);
+        }
+        if let Some(shown) = self.formats.get(number).filter(|shown| !shown.is_plain()) {
+            marks.shown.insert(at, Rc::clone(shown));
+        }
+    }
 }
 
 fn take(book: &Book, record: &Record<'_>, marks: &mut Marks) {
     let data = record.data;
     let (row, column) = (short(data, 0), short(data, 2));
-    let mut cell = |at: (u32, u32), format: u32| {
-        let Some((font, number)) = book.cells.get(format as usize) else { return };
-        if book.struck_out.get(*font as usize).is_some_and(|struck| *struck) {
-            marks.struck_out.insert(at);
-        }
-        if let Some(shown) = book.formats.get(number).filter(|shown| !shown.is_plain()) {
-            marks.shown.insert(at, Rc::clone(shown));
-        }
-    };
     match record.kind {
-        kind if NUMBERS.contains(&kind) || TEXTS.contains(&kind) => cell((row, column), short(data, 4)),
+        kind if NUMBERS.contains(&kind) || TEXTS.contains(&kind) => {
+            book.mark((row, column), short(data, 4), marks);
+        }
         SEVERAL_NUMBERS => {
             for (i, of) in data.get(4..).unwrap_or_default().chunks_exact(6).enumerate() {
-                cell((row, column + i as u32), short(of, 0));
+                book.mark((row, column + i as u32), short(of, 0), marks);
             }
         }
         ROW if short(data, 12) & 0x0020 != 0 => {

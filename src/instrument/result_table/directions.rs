@@ -127,6 +127,28 @@ impl Table<'_, '_> {
         }
     }
 
+    /// R136: a value without a direction beside one of the same parameter and fabric with one.
+    pub(super) fn note_without_direction(&mut self) {
+        let singles: Vec<&Datum> =
+            self.data.iter().filter(|d| d.parameter.is_directional() && d.statistic.is_none()).collect();
+        let directed: BTreeSet<(Option<&str>, Parameter)> = singles
+            .iter()
+            .filter(|d| d.direction.is_some())
+            .map(|d| (d.fabric.as_deref(), d.parameter))
+            .collect();
+        let found: Vec<&&Datum> = singles
+            .iter()
+            .filter(|d| d.direction.is_none() && directed.contains(&(d.fabric.as_deref(), d.parameter)))
+            .collect();
+        let parameters: BTreeSet<Parameter> = found.iter().map(|d| d.parameter).collect();
+        let keys: Vec<Key> =
+            parameters.into_iter().map(|parameter| Key { parameter, direction: None }).collect();
+        if let Some(first) = found.first() {
+            let place = Place::at(self.context.path, first.line, first.column);
+            self.findings.push(Finding::new(ReadFact::WithoutDirection { keys }).at(place));
+        }
+    }
+
     /// R121: `B1, B2, B3` of no direction.
     fn numbers_of_specimens(&mut self) {
         let without = |d: &&Datum| d.parameter.is_directional() && d.index.is_some();

@@ -298,12 +298,11 @@ impl Layout {
             .filter(|l| matches!(l.meta, Some(TableColumn::Id | TableColumn::Fabric)))
             .map(|l| l.index)
             .collect();
-        let cells = |i: usize| region.rows.iter().filter_map(move |r| r.get(i)).collect::<Vec<_>>();
         let [one, other] = names[..] else { return None };
-        let come_again = |i: usize| cells(i).iter().collect::<BTreeSet<_>>().len() < cells(i).len();
-        let is_counted =
-            |i: usize, names: usize| counts(&cells(i)) && !counts(&cells(names)) && come_again(names);
-        if is_counted(one, other) { Some(one) } else { Some(other).filter(|other| is_counted(*other, one)) }
+        if counts_beside(region, one, other) {
+            return Some(one);
+        }
+        counts_beside(region, other, one).then_some(other)
     }
 
     pub fn names_fabrics(&self) -> bool {
@@ -330,8 +329,9 @@ impl Layout {
         };
         let unused = head.filled().filter(|(i, _)| !self.down && unknown(*i) && numeric(*i));
         let width = region.rows.iter().map(|r| r.cells.len()).max().unwrap_or(0);
-        let is_headed = |i: usize| region.heads.iter().any(|h| !is_units(h) && h.get(i).is_some());
-        let without = (0..width).filter(|i| !self.down && unknown(*i) && numeric(*i) && !is_headed(*i));
+        let without = (0..width)
+            .filter(|i| !self.down && unknown(*i) && numeric(*i))
+            .filter(|i| !region.heads.iter().any(|h| !is_units(h) && h.get(*i).is_some()));
         let without = without.map(|i| format!("column {} without a heading", i + 1));
         unused.map(|(_, c)| c.text.to_string()).chain(without).collect()
     }
@@ -355,6 +355,13 @@ fn described(name: &str, f: &Facets) -> String {
         (None, _) => String::new(),
     };
     format!("{name:?} is {what}{direction}")
+}
+
+/// Whether a column counts beside one of names that come again.
+fn counts_beside(region: &Region<'_>, index: usize, names: usize) -> bool {
+    let numbers: Vec<&str> = region.rows.iter().filter_map(|r| r.get(index)).collect();
+    let names: Vec<&str> = region.rows.iter().filter_map(|r| r.get(names)).collect();
+    counts(&numbers) && !counts(&names) && names.iter().collect::<BTreeSet<_>>().len() < names.len()
 }
 
 /// Whether cells count from 1, again and again; labels of statistics may stand between.

@@ -7,17 +7,20 @@ use crate::instrument::error::{Problem, ReadError};
 use crate::instrument::raw::Row;
 use crate::instrument::sniff::{Number, number};
 
+fn is_number(text: &str, decimal: char) -> bool {
+    matches!(number(text, decimal), Number::Value(_))
+}
+
 impl Table<'_, '_> {
     /// Tells of a row whose delimiters are others than those of the table: names and numbers in one cell.
     pub(super) fn note_row_in_one_cell(&mut self, row: &Row<'_>) {
         let mut filled = row.filled();
         let (Some((_, cell)), None) = (filled.next(), filled.next()) else { return };
         let decimal = self.context.decimal;
-        let tokens = |mark: char| {
-            cell.text.split(mark).filter(|t| matches!(number(t.trim(), decimal), Number::Value(_)))
-        };
-        let holds_several =
-            [';', '\t', ',', ' '].into_iter().any(|mark| mark != decimal && tokens(mark).nth(1).is_some());
+        let holds_several = [';', '\t', ',', ' '].into_iter().any(|mark| {
+            let mut numbers = cell.text.split(mark).filter(|t| is_number(t.trim(), decimal));
+            mark != decimal && numbers.nth(1).is_some()
+        });
         if holds_several {
             self.ignored.push(format!("line {}, which is one cell", row.line));
         }
@@ -32,14 +35,16 @@ impl Table<'_, '_> {
         rows: Vec<(&'r Row<'r>, RowFacts)>,
     ) -> Result<Vec<(&'r Row<'r>, RowFacts)>, ReadError> {
         let decimal = self.context.decimal;
-        let is_number = |name: &str| matches!(number(name, decimal), Number::Value(_));
         let names: BTreeSet<&str> = rows.iter().filter_map(|(_, f)| f.fabric.as_deref()).collect();
-        if names.iter().all(|name| is_number(name)) || !names.iter().any(|name| is_number(name)) {
+        if names.iter().all(|name| is_number(name, decimal))
+            || !names.iter().any(|name| is_number(name, decimal))
+        {
             return Ok(rows);
         }
         let mut out = Vec::with_capacity(rows.len());
         for (row, facts) in rows {
-            let name = facts.fabric.as_deref().filter(|name| name.contains(decimal) && is_number(name));
+            let name =
+                facts.fabric.as_deref().filter(|name| name.contains(decimal) && is_number(name, decimal));
             let Some(name) = name else {
                 out.push((row, facts));
                 continue;
