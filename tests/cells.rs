@@ -189,3 +189,56 @@ fn code_pages_of_dos_are_known_by_their_words_and_units() {
         assert_relative_eq!(value(&content, Parameter::B, WEFT), 2.0 * TENTH, max_relative = 1e-12);
     }
 }
+
+/// A heading or a label that was lost, cells that slipped by one, a line with other delimiters.
+#[test]
+fn rows_and_columns_that_lost_their_name_are_told() {
+    for (text, expected) in [
+        ("Fabric,B (gf.cm2/cm),,RT (%)\nP,0.1,0.3,52\nQ,0.2,0.4,51\n", "column 3 without a heading"),
+        ("Parameter,Warp,Weft\nB (gf.cm2/cm),0.1,0.2\n,52,51\nLT,0.7,0.6\n", "line 3 without a name"),
+        (
+            "Parameter,Warp,Weft\nB (gf.cm2/cm),0.1,0.2\nRT (%);52;51\nLT,0.7,0.6\n",
+            "line 3, which is one cell",
+        ),
+    ] {
+        let content = read(text.as_bytes()).unwrap_or_else(|e| panic!("{text}: {e}"));
+        assert!(told(&content, "R104").contains(expected), "{text}: {:?}", content.findings);
+    }
+    let lost =
+        "Fabric,B (gf.cm2/cm),,2HB (gf.cm/cm),\n,,weft,warp,weft\nP,0.1,0.2,0.3,0.3\nQ,0.3,0.4,0.3,0.3\n";
+    assert!(told(&read(lost.as_bytes()).unwrap(), "R136").starts_with("lab.csv:3:3"));
+    let rows: String = (0..9).map(|i| format!("{i}.5,{i}.25,{}.5\n", 2 * i)).collect();
+    let curves = format!("Direction,warp\nK (1/cm),M (gf.cm/cm),Mm (gf.cm/cm),N\n{rows}");
+    let curves = read(curves.as_bytes());
+    assert!(told(&curves.unwrap(), "R104").contains("Mm (gf.cm/cm)"));
+    let shifted = "Fabric,B (gf.cm2/cm),RT (%)\nP,0.1,52\n0.2,51,\nR,0.3,50\n";
+    let content = read(shifted.as_bytes()).unwrap();
+    assert_eq!(content.failures.len(), 1, "{:?}", content.results);
+    assert!(content.failures[0].to_string().starts_with("lab.csv:3:1: R018"), "{}", content.failures[0]);
+    // Names may be numbers.
+    let numbered = "Fabric,B (gf.cm2/cm),RT (%)\n101,0.1,52\n1.5,0.2,51\n";
+    assert!(read(numbered.as_bytes()).unwrap().failures.is_empty());
+}
+
+/// As laboratories write them: numbers of specimens once more below each direction, specimens beside fabrics under a heading for
+/// samples, a report of fixed width with nothing over the labels of its rows.
+#[test]
+fn numbers_over_columns_numbers_beside_names_and_rows_without_a_head() {
+    for text in [
+        "Parametr;Jednostka;Osnowa;;;Wątek;;\n;;1;2;3;1;2;3\nB;gf·cm²/cm;0,09;0,11;0,10;0,19;0,21;0,20\n",
+        "Prova;Ordito;;;Trama;;\n;1;2;3;1;2;3\nB (gf·cm²/cm);0,09;0,11;0,10;0,19;0,21;0,20\n2HB (gf·cm/cm);1,0;1,1;1,2;1,3;1,4;1,5\n",
+        "织物,方向,试样,B (gf·cm²/cm)\nP,经,1,0.09\nP,经,2,0.11\nP,经,平均值,0.10\nP,纬,1,0.19\nP,纬,2,0.21\nP,纬,平均值,0.20\n",
+        "Bending\n\n           B           2HB\n        gf.cm2/cm    gf.cm/cm\nWARP 1    0.0900     0.0420\nWARP 2    0.1100     0.0440\n\
+         WEFT 1    0.1900     0.0270\nWEFT 2    0.2100     0.0290\n",
+    ] {
+        let content = read(text.as_bytes()).unwrap_or_else(|e| panic!("{text}: {e}"));
+        assert_relative_eq!(value(&content, Parameter::B, WARP), TENTH, max_relative = 1e-9);
+        assert_relative_eq!(value(&content, Parameter::B, WEFT), 2.0 * TENTH, max_relative = 1e-9);
+    }
+    // CP852 of DOS.
+    let polish =
+        b"Pr\xa2bka;Kierunek;B [gf.cm2/cm]\r\nP\x88\xa2tno;osnowa;0,1\r\nP\x88\xa2tno;w\xa5tek;0,2\r\n";
+    let content = read(polish).unwrap();
+    assert_eq!(content.source.encoding, "CP852");
+    assert_relative_eq!(value(&content, Parameter::B, WEFT), 2.0 * TENTH, max_relative = 1e-9);
+}

@@ -227,6 +227,7 @@ fn of_reading<'a>(fact: &'a ReadFact, place: Option<&'a Place>) -> Option<(Scope
         ReadFact::RecordsOfStates { record, .. } => Some((Scope::Record(record), ValueStatus::Doubtful)),
         ReadFact::SeveralTables { keys, .. }
         | ReadFact::NumbersAsSpecimens { keys }
+        | ReadFact::WithoutDirection { keys }
         | ReadFact::ColumnOfStates { keys, .. } => Some((Scope::Values(keys), ValueStatus::Doubtful)),
         _ => None,
     }

@@ -139,7 +139,7 @@ impl Replacing {
         if is_zip {
             limits::archive(bytes)?
         } else {
-            limits::compound(bytes)?
+            limits::compound(bytes)?;
         }
         let book = workbook::sheets(bytes, None)?;
         Ok(book.sheets.iter().map(|sheet| self.grid(&sheet.name, &sheet.rows, book.decimal)).collect())

@@ -43,9 +43,29 @@ fn by_gaps(text: &str) -> Option<String> {
     if !whole || rows < ROWS || usual < 2 {
         return None;
     }
+    let first = end_of_first_cells(text, |line| has_number(line) && cells(line) == usual);
     let mut out = String::with_capacity(text.len());
-    text.split_inclusive('\n').for_each(|line| split_gaps(line, 2, &mut out));
+    for line in text.split_inclusive('\n') {
+        // Heads over numbers, with nothing over the labels of rows.
+        let lead = line.len() - line.trim_start_matches(' ').len();
+        let is_beyond = lead > first && cells(line) > 0;
+        if is_beyond {
+            out.push_str(&line[..lead - 1]);
+            out.push('\t');
+        }
+        split_gaps(if is_beyond { &line[lead..] } else { line }, 2, &mut out);
+    }
     Some(out)
+}
+
+/// Where the last of the first cells of rows ends.
+fn end_of_first_cells(text: &str, is_row: impl Fn(&str) -> bool) -> usize {
+    text.lines().filter(|line| is_row(line)).map(end_of_first_cell).max().unwrap_or(usize::MAX)
+}
+
+fn end_of_first_cell(line: &str) -> usize {
+    let lead = line.len() - line.trim_start_matches(' ').len();
+    lead + line[lead..].find("  ").unwrap_or(line.len() - lead)
 }
 
 /// Copies a line, with a tab in place of the last blank of each gap of at least so many blanks.

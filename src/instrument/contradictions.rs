@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::dialect::{Key, Role};
-use super::layout::{Entry, Pair, Scanner};
+use super::layout::{Column, Entry, Pair, Scanner};
 use super::raw::Row;
 use super::sniff::{Number, number};
 use super::vocabulary::Vocabulary;
@@ -84,6 +84,25 @@ impl Scanner<'_, '_> {
         }
     }
 
+    /// R104: columns of numbers beside those of curves, whose headings are not understood.
+    pub(super) fn note_strange_columns(&mut self, heading: &Row<'_>, columns: &[Column], rows: &[&Row<'_>]) {
+        let decimal = self.context.decimal;
+        let names: Vec<String> = heading
+            .filled()
+            .filter(|(i, c)| {
+                columns.iter().all(|column| column.index != *i)
+                    && number(&c.text, decimal) == Number::Text
+                    && is_measured(rows, *i, decimal)
+            })
+            .map(|(_, c)| c.text.to_string())
+            .collect();
+        if !names.is_empty() {
+            let reason = Some("their headings are not understood".to_string());
+            let place = Place::at(self.context.path, heading.line, 0);
+            self.findings.push(Finding::new(ReadFact::Unusable { names, reason }).at(place));
+        }
+    }
+
     /// R119: ordinates of one kind that are named by different words are other fabrics, or one was made of another; they are
     /// read as specimens, and told.
     pub(super) fn note_words(&mut self, pairs: &[Pair]) {
@@ -99,6 +118,18 @@ impl Scanner<'_, '_> {
                 self.findings.push(Finding::new(ReadFact::ColumnsAsSpecimens { names }).at(place));
             }
         }
+    }
+}
+
+/// Whether a column holds numbers that do not count 1, 2, 3, as those of samples do.
+fn is_measured(rows: &[&Row<'_>], index: usize, decimal: char) -> bool {
+    let samples = [0, 1, rows.len() / 2].map(|k| match number(rows.get(k)?.get(index)?, decimal) {
+        Number::Value(value) => Some(value),
+        _ => None,
+    });
+    match samples {
+        [Some(first), Some(second), Some(_)] => second != first + 1.0 || first.fract() != 0.0,
+        _ => false,
     }
 }
 

@@ -180,7 +180,9 @@ impl<'t> Scanner<'t, '_> {
             Some(Column { index, role, name, unit, line: row.line, column: cell.column, says })
         };
         let columns: Vec<Column> = pairs::along_sweep(row.filled().filter_map(column).collect());
-        let sweep = columns.iter().any(|c| c.role == Role::Position && c.unit.is_some());
+        let sweep = columns
+            .iter()
+            .any(|c| c.role == Role::Position && (c.unit.is_some() || self.has_unit_below(row, c.index)));
         let abscissa = columns.iter().any(|c| c.role.is_abscissa());
         let ordinate = columns.iter().any(|c| !c.role.is_abscissa() && c.role != Role::Ignored);
         // A result table may have columns named thickness and pressure too; then it has symbols.
@@ -190,6 +192,13 @@ impl<'t> Scanner<'t, '_> {
             return Some(columns);
         }
         self.headless(row)
+    }
+
+    /// Whether a unit stands in the next row, below a heading.
+    fn has_unit_below(&self, row: &Row<'_>, index: usize) -> bool {
+        let next = self.rows.partition_point(|r| r.line <= row.line);
+        let below = self.rows.get(next).and_then(|r| r.get(index)).map(unbracketed);
+        below.is_some_and(|t| !t.starts_with(|c: char| c.is_ascii_digit()) && unit(&t).is_ok())
     }
 
     /// A single known column over numbers: a heading row that lacks its other half.
@@ -233,57 +242,12 @@ impl<'t> Scanner<'t, '_> {
             rows.extend(self.data_rows(&columns));
         }
         self.check_width(heading, &rows)?;
+        self.note_strange_columns(heading, &columns, &rows);
         let mut pairs = self.pairs(columns)?;
         self.distribute(&mut pairs)?;
         self.leave_out_statistics(&mut pairs);
         self.note_words(&pairs);
         Ok(Block::Curves { pairs, rows })
-    }
-
-    /// The first row behind headings that stand once more, where the curves below go on: pages repeat the headings.
-    /// Curves that begin anew are other specimens.
-    fn next_page(&mut self, heading: &Row<'_>, rows: &[&Row<'_>], columns: &[Column]) -> Option<usize> {
-        let mut at = self.at;
-        while self.rows.get(at)?.is_blank() {
-            at += 1;
-        }
-        let same =
-            |a: &Row<'_>, b: &Row<'_>| a.cells.iter().map(|c| &c.text).eq(b.cells.iter().map(|c| &c.text));
-        if is_numeric(heading, self.context.decimal) || !same(heading, self.rows.get(at)?) {
-            return None;
-        }
-        // A row of units below the headings stands again, too.
-        let first = self.rows.iter().position(|r| r.line == heading.line)?;
-        let units = self
-            .rows
-            .get(first + 1)
-            .filter(|r| rows.first().is_some_and(|d| d.line > r.line) && !r.is_blank());
-        at += 1;
-        if let (Some(units), Some(row)) = (units, self.rows.get(at)) {
-            at += usize::from(same(units, row));
-        }
-        let below = self.rows[at..].iter().find(|r| !r.is_blank())?;
-        let x = columns.iter().find(|c| c.role.is_abscissa())?;
-        let number = |r: &Row<'_>| match r.get(x.index).map(|c| number(c, self.context.decimal)) {
-            Some(Number::Value(v)) => Some(v),
-            _ => None,
-        };
-        let before: Vec<f64> = rows.iter().filter_map(|r| number(r)).collect();
-        let (start, last, next) = (*before.first()?, *before.last()?, number(below)?);
-        let step = before.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0f64, f64::max);
-        // Half a cycle that goes on to the other side is not over.
-        let second = self.rows[at..].iter().filter(|r| !r.is_blank()).nth(1).and_then(number).unwrap_or(next);
-        let side = |v: f64| if (v - start).abs() <= step { 0.0 } else { (v - start).signum() };
-        let sides: Vec<f64> = before.iter().map(|v| side(*v)).filter(|s| *s != 0.0).collect();
-        let one_sided = sides.windows(2).all(|w| w[0] == w[1]);
-        let beyond = (second - start) * sides.first().copied().unwrap_or(0.0) < 0.0;
-        let closed = (last - start).abs() <= step && !(one_sided && beyond);
-        let goes_on = (next - last).abs() <= 2.0 * step;
-        if goes_on && closed {
-            let place = Place::at(self.context.path, below.line, 0);
-            self.findings.push(Finding::new(ReadFact::HeadingsAgain {}).at(place));
-        }
-        (goes_on && !closed).then_some(at)
     }
 
     /// A row of units below headings that have none.

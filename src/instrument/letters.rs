@@ -1,5 +1,7 @@
 //! Letters of directions, each beside its partner: `B_K` and `B_S`, `L` and `T` over columns.
 
+use std::collections::BTreeMap;
+
 use super::Direction;
 use super::facets::Facets;
 use super::raw::Row;
@@ -71,6 +73,38 @@ fn lettered(index: usize, text: &str, v: Vocabulary<'_>) -> Option<Lettered> {
         }
     }
     None
+}
+
+/// The directions that names state by letters, each beside its partner: sheets `L` and `T`, `silk O` and `silk T`.
+pub(super) fn in_names<'n>(names: &[&'n str], v: Vocabulary<'_>) -> BTreeMap<&'n str, Direction> {
+    let found: Vec<Lettered> =
+        names.iter().enumerate().filter_map(|(i, name)| lettered_name(i, name, v)).collect();
+    let paired = found.iter().filter(|one| found.iter().any(|other| one.is_partner(other, v)));
+    paired.map(|one| (names[one.index], one.direction)).collect()
+}
+
+/// A name with one letter of a direction, which may have a number behind it.
+fn lettered_name(index: usize, name: &str, v: Vocabulary<'_>) -> Option<Lettered> {
+    let text = folded(name).into_owned();
+    let words: Vec<&str> = text.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).collect();
+    if words.iter().any(|word| v.direction(word).is_some()) {
+        return None;
+    }
+    let mut letters = words.iter().filter_map(|word| letter_of_word(word, v));
+    let (direction, letter, whole) = letters.next()?;
+    if letters.next().is_some() {
+        return None;
+    }
+    let number = whole[letter.len()..].to_string();
+    let rest: Vec<String> =
+        words.iter().map(|word| if **word == whole { number.clone() } else { word.to_string() }).collect();
+    Some(Lettered { index, direction, letter, rest: rest.join(" ") })
+}
+
+/// The direction of a word that is a letter with or without a number behind it, the letter and the word.
+fn letter_of_word(word: &str, v: Vocabulary<'_>) -> Option<(Direction, String, String)> {
+    let letter = word.trim_end_matches(|c: char| c.is_ascii_digit());
+    Some((v.letter(letter).filter(|_| is_short(letter))?, letter.to_string(), word.to_string()))
 }
 
 fn is_short(word: &str) -> bool {

@@ -58,16 +58,12 @@ mod record {
     pub const CELL: [u16; 8] = [0x0006, 0x00bd, 0x00d6, 0x00fd, 0x0203, 0x0204, 0x0205, 0x027e];
 }
 
-/// Refuses a compound document whose sheets declare or span more cells than can be meant.
+/// The records of a compound document; refuses one whose sheets declare or span more cells than can be meant.
 ///
 /// # Errors
 /// `R021`.
-pub(super) fn compound(bytes: &[u8]) -> Result<(), Problem> {
-    let mut file = cfb::CompoundFile::open(Cursor::new(bytes)).map_err(bad)?;
-    let name = ["/Workbook", "/Book"].into_iter().find(|n| file.is_stream(n));
-    let name = name.ok_or_else(|| bad("it has no stream `Workbook`"))?;
-    let mut stream = Vec::new();
-    file.open_stream(name).and_then(|mut s| s.read_to_end(&mut stream)).map_err(bad)?;
+pub(super) fn compound(bytes: &[u8]) -> Result<Vec<u8>, Problem> {
+    let stream = workbook_stream(bytes)?;
     let mut sheets = vec![0];
     let mut seen = BTreeSet::new();
     let mut cells = 0;
@@ -77,7 +73,38 @@ pub(super) fn compound(bytes: &[u8]) -> Result<(), Problem> {
             return Err(too_many_cells());
         }
     }
-    Ok(())
+    Ok(stream)
+}
+
+/// The records of an .xls.
+fn workbook_stream(bytes: &[u8]) -> Result<Vec<u8>, Problem> {
+    let mut file = cfb::CompoundFile::open(Cursor::new(bytes)).map_err(bad)?;
+    let name = ["/Workbook", "/Book"].into_iter().find(|n| file.is_stream(n));
+    let name = name.ok_or_else(|| bad("it has no stream `Workbook`"))?;
+    let mut stream = Vec::new();
+    file.open_stream(name).and_then(|mut s| s.read_to_end(&mut stream)).map_err(bad)?;
+    Ok(stream)
+}
+
+/// A record of an .xls.
+pub(super) struct Record<'b> {
+    /// Where it begins.
+    pub at: usize,
+    pub kind: u16,
+    pub data: &'b [u8],
+}
+
+/// The records from the beginning on, up to one that is cut.
+pub(super) fn records(stream: &[u8]) -> impl Iterator<Item = Record<'_>> {
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        let head = stream.get(at..at + 4)?;
+        let (kind, length) = (short(head, 0) as u16, short(head, 2) as usize);
+        let data = stream.get(at + 4..at + 4 + length)?;
+        let record = Record { at, kind, data };
+        at += 4 + length;
+        Some(record)
+    })
 }
 
 /// Number of places that the cells of a substream span. Offsets of sheets go to `sheets`; a walk
@@ -121,7 +148,7 @@ fn span(
 }
 
 /// Two bytes of a record, 0 behind its end.
-fn short(data: &[u8], i: usize) -> u32 {
+pub(super) fn short(data: &[u8], i: usize) -> u32 {
     data.get(i..i + 2).map_or(0, |b| u32::from(b[0]) | u32::from(b[1]) << 8)
 }
 

@@ -10,6 +10,8 @@ mod axis;
 mod blanks;
 mod browzwear;
 mod cell;
+mod cell_units;
+mod code_page;
 mod column_name;
 mod condition;
 mod conditions;
@@ -31,7 +33,9 @@ mod limits;
 mod lines;
 mod marks;
 mod measurement;
+mod number_format;
 mod own_results;
+mod pages;
 mod pairs;
 #[cfg(feature = "pictures")]
 pub mod picture;

@@ -157,7 +157,7 @@ fn has_escapes(bytes: &[u8]) -> bool {
 }
 
 /// Encodings that laboratories have besides Unicode, and what they are called in messages.
-const OLD: [(Set, &str); 10] = [
+const OLD: [(Set, &str); 11] = [
     (Set::Web(SHIFT_JIS), "not UTF-8, and the byte pairs are Japanese"),
     (Set::Web(WINDOWS_1252), "not UTF-8, and its words are known in this Western encoding"),
     (Set::Web(EUC_JP), "not UTF-8, and its words are known in Japanese"),
@@ -167,6 +167,10 @@ const OLD: [(Set, &str); 10] = [
     (Set::Web(WINDOWS_1250), "not UTF-8, and its words are known in this Central European encoding"),
     (Set::Web(WINDOWS_1254), "not UTF-8, and its words are known in Turkish"),
     (Set::Dos(CodePage::Cp850), "not UTF-8, and its words are known in this Western code page of DOS"),
+    (
+        Set::Dos(CodePage::Cp852),
+        "not UTF-8, and its words are known in this Central European code page of DOS",
+    ),
     (Set::Dos(CodePage::Cp857), "not UTF-8, and its words are known in the Turkish code page of DOS"),
 ];
 /// Bytes of lines that are looked at for words.

@@ -20,7 +20,7 @@ use super::sniff::{Sniffed, sniff, sniff_lines};
 use super::vocabulary::Vocabulary;
 use super::workbook::{self, Archive};
 use super::{Measurement, Parameter, ResultValue, Source, StatedStiffness};
-use super::{limits, lines, web_page};
+use super::{cell_units, code_page, letters, limits, lines, web_page};
 use crate::finding::{Fact, Finding, Place, ReadFact};
 use crate::platform;
 use crate::quantity::ArealDensity;
@@ -203,7 +203,7 @@ fn sheets(
 ) -> Result<(), ReadError> {
     let error = |problem| ReadError::new(Place::file(path), problem);
     let decimal = settings.decimal.or_else(|| settings.dialects.iter().find_map(|d| d.decimal));
-    let workbook::Book { sheets, decimal, hidden, without_value } =
+    let workbook::Book { sheets, decimal, hidden, without_value, units } =
         workbook::sheets(bytes, decimal).map_err(error)?;
     if !hidden.is_empty() {
         content.findings.push(Finding::new(ReadFact::HiddenCells { hidden }).at(Place::file(path)));
@@ -212,8 +212,13 @@ fn sheets(
         let fact = ReadFact::WithoutValue { cells: without_value };
         content.findings.push(Finding::new(fact).at(Place::file(path)));
     }
+    if !units.is_empty() {
+        content.findings.push(Finding::new(ReadFact::UnitsOfFormats { units }).at(Place::file(path)));
+    }
+    let names: Vec<&str> = sheets.iter().map(|sheet| sheet.name.as_str()).collect();
+    let letters = letters::in_names(&names, Vocabulary::new(&settings.dialects));
     let several = sheets.len() > 1;
-    let (mut with_curves, mut unread) = (Vec::new(), Vec::new());
+    let (mut with_curves, mut unread, mut of_letters) = (Vec::new(), Vec::new(), Vec::new());
     for sheet in &sheets {
         // The place of a cell needs its sheet: `book.xlsx[sheet]:line:column`.
         let named = PathBuf::from(format!("{}[{}]", path.display(), sheet.name));
@@ -221,8 +226,12 @@ fn sheets(
         let dialect = settings.dialects.iter().find(|d| d.matches.is_empty());
         let mut context = context(path, settings, dialect, '\t', decimal);
         context.path = at;
-        context.label = Label::parse(&sheet.name, context.vocabulary).or(context.label);
-        let (before, curves) = (content.inference.len(), content.measurements.len());
+        let own = Label::parse(&sheet.name, context.vocabulary);
+        let letter = letters.get(sheet.name.as_str()).copied();
+        let own = Label { direction: own.direction.or(letter), ..own };
+        context.label = own.or(context.label);
+        let before = content.inference.len();
+        let (curves, values) = (content.measurements.len(), content.results.len());
         content.inference.push(format!("sheet {:?}: {} rows", sheet.name, sheet.rows.len()));
         match table(&sheet.rows, &context, true, content) {
             // A sheet of remarks or charts among others.
@@ -234,9 +243,18 @@ fn sheets(
             }
             result => result?,
         }
-        if content.measurements.len() > curves {
+        let is_used = content.measurements.len() > curves || content.results.len() > values;
+        if is_used && letter.is_some() {
+            of_letters.push(sheet.name.clone());
+        }
+        // A letter of a direction names no sample.
+        if content.measurements.len() > curves && letter.is_none() {
             with_curves.push(sheet.name.as_str());
         }
+    }
+    if !of_letters.is_empty() {
+        let fact = ReadFact::DirectionsFromLetters { texts: of_letters };
+        content.findings.push(Finding::new(fact).at(Place::file(path)));
     }
     if content.measurements.is_empty() && content.results.is_empty() {
         return Err(unread.into_iter().next().unwrap_or_else(|| error(Problem::Empty)));
@@ -298,8 +316,15 @@ fn table(
     complete: bool,
     content: &mut FileContent,
 ) -> Result<(), ReadError> {
+    let restored = code_page::restored(rows);
+    if let Some((_, fact)) = &restored {
+        content.findings.push(Finding::new(fact.clone()).at(Place::file(context.path)));
+    }
+    let rows = restored.as_ref().map_or(rows, |(rows, _)| rows.as_slice());
     let split = lines::split(rows, context.decimal, context.vocabulary);
     let rows = split.as_deref().unwrap_or(rows);
+    let bare = cell_units::to_headings(rows, context)?;
+    let rows = bare.as_deref().unwrap_or(rows);
     let (blocks, findings) = layout::blocks(rows, context)?;
     content.findings.extend(findings);
     content.source.dialect = dialect_name(rows, context, &mut content.inference);

@@ -13,6 +13,7 @@ mod noted;
 mod repeats;
 mod row_facts;
 mod rows_above;
+mod shifted;
 mod states;
 mod strangers;
 mod units;
@@ -21,6 +22,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use fast_cells::FastCell;
 use layout::{Column, Layout};
+pub(super) use layout::{differ, two_units};
 use row_facts::RowFacts;
 
 use super::dialect::{Key, Statistic, TableColumn};
@@ -107,6 +109,7 @@ pub(super) fn read(
     let rows = table.facts(region)?;
     let names: BTreeSet<&Option<String>> = rows.iter().map(|(_, facts)| &facts.fabric).collect();
     table.several = names.len() > 1 || table.layout.names_fabrics();
+    let rows = table.without_shifted(rows)?;
     for (row, facts) in &rows {
         let read = table.values_of(row, facts);
         // An error in the heading is every row's.
@@ -120,6 +123,7 @@ pub(super) fn read(
     table.ignored.extend(unused);
     table.note_strangers();
     table.directions_of_numbers();
+    table.note_without_direction();
     table.finish()
 }
 
@@ -188,6 +192,7 @@ impl<'t> Table<'t, '_> {
                 self.above = Some(title.clone());
                 continue;
             }
+            self.note_row_in_one_cell(row);
             let facts = self.within_heads(row, region).and_then(|()| self.row_facts(row));
             match facts {
                 Ok(facts) => out.push((*row, facts)),
@@ -328,6 +333,8 @@ impl<'t> Table<'t, '_> {
             let any = self.layout.values.iter().any(|c| row.get(c.index).is_some());
             if any && !facts.label.is_empty() {
                 self.ignored.push(facts.label.clone());
+            } else if any && row.filled().any(|(_, c)| shape::is_value(&c.text, self.context)) {
+                self.ignored.push(format!("line {} without a name", row.line));
             }
             return Ok(());
         }

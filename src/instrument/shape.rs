@@ -64,7 +64,7 @@ fn is_value_of(cell: &str, label: &Facets, context: &Context<'_>) -> bool {
         && own.zip(expected).is_none_or(|(own, expected)| own.dimension == expected.dimension)
 }
 
-/// Whether a row behind a table is laid out like its first or last one: the same cells are filled, with numbers in the same
+/// Whether a row behind a table is laid out like its first or last one: no other cells are filled, with numbers in the same
 /// places and words that are no header line in the others.
 pub(super) fn continues(row: &Row<'_>, region: &Region<'_>, context: &Context<'_>) -> bool {
     let form = |row: &Row<'_>| -> Vec<(usize, bool)> {
@@ -76,7 +76,13 @@ pub(super) fn continues(row: &Row<'_>, region: &Region<'_>, context: &Context<'_
         context.vocabulary.key(name.trim_start_matches('#').trim()).is_some()
     });
     let mut ends = [region.rows.first(), region.rows.last()].into_iter().flatten();
-    own.len() > 1 && own.iter().any(|c| c.1) && !is_header && ends.any(|r| form(r) == own)
+    own.len() > 1
+        && own.iter().any(|c| c.1)
+        && !is_header
+        && ends.any(|r| {
+            let other = form(r);
+            own.iter().all(|c| other.contains(c))
+        })
 }
 
 /// Several numbers and nothing else.
@@ -201,6 +207,17 @@ fn states_name(row: &Row<'_>, context: &Context<'_>) -> bool {
     }
 }
 
+/// Whether a row numbers columns: nothing in its first cell, then 1, 2 and so on, and perhaps from 1 again.
+fn counts_columns(row: &Row<'_>) -> bool {
+    let numbers: Option<Vec<usize>> = row.filled().map(|(_, c)| c.text.trim().parse().ok()).collect();
+    let begins_later = row.filled().next().is_some_and(|(i, _)| i > 0);
+    let Some(numbers) = numbers.filter(|n| begins_later && n.first() == Some(&1) && n.get(1) == Some(&2))
+    else {
+        return false;
+    };
+    numbers.windows(2).all(|pair| pair[1] == pair[0] + 1 || pair[1] == 1)
+}
+
 /// The facets of every cell of a row.
 pub(super) fn facets(row: &Row<'_>, context: &Context<'_>) -> Vec<Facets> {
     let mut out: Vec<Facets> = row.cells.iter().map(|c| Facets::of(&c.text, context.vocabulary)).collect();
@@ -315,6 +332,8 @@ fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
                 }
                 found.push(row);
             }
+            // `1 2 3` below `Warp` and again below `Weft`.
+            Kind::Values if !found.is_empty() && counts_columns(row) => found.push(row),
             Kind::Section(direction) if found.is_empty() && titles < TITLES => {
                 section = Some(direction);
                 titles += 1;

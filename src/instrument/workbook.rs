@@ -1,7 +1,7 @@
 //! Workbooks (.xlsx, .xlsm, .xls) to the same rows of cells that text files give.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{Cursor, Read};
 
 use calamine::{Data, DataRef, Ods, Range, Reader, SheetVisible, Xls, Xlsx};
@@ -26,10 +26,20 @@ const COLUMNS: u32 = 1024;
 /// A cell as the workbook types it.
 enum Value {
     Number(f64),
+    /// A number with the unit that its format shows behind it.
+    United(f64, String),
     Text(String),
 }
 
 type Cells = BTreeMap<(u32, u32), Value>;
+
+/// The cells of a sheet that are shown.
+struct Shown {
+    name: String,
+    cells: Cells,
+    /// Rows whose cells were left out: they are no gap between those around them.
+    left_out: BTreeSet<u32>,
+}
 
 /// What a workbook holds that is visible.
 pub(super) struct Book {
@@ -40,6 +50,8 @@ pub(super) struct Book {
     pub hidden: Vec<String>,
     /// Cells of formulas without a stored value, for people.
     pub without_value: Vec<String>,
+    /// Units that number formats show, with their cells, for people.
+    pub units: Vec<String>,
 }
 
 /// Kinds of archives.
@@ -85,21 +97,21 @@ pub(super) fn sheets(bytes: &[u8], decimal: Option<char>) -> Result<Book, Proble
     });
     let cells =
         read.unwrap_or_else(|| Err(bad("it is damaged: a record of it is not as the format has it")))?;
-    if cells.iter().map(|(_, c)| places(c)).sum::<usize>() > limits::CELLS {
+    if cells.iter().map(|sheet| places(&sheet.cells)).sum::<usize>() > limits::CELLS {
         return Err(limits::too_many_cells());
     }
     let text = || {
-        cells.iter().flat_map(|(_, c)| c.values()).filter_map(|v| match v {
+        cells.iter().flat_map(|sheet| sheet.cells.values()).filter_map(|v| match v {
             Value::Text(t) => Some(t.as_str()),
-            Value::Number(_) => None,
+            Value::Number(_) | Value::United(..) => None,
         })
     };
     let comma = text().any(|t| is_number(t, ',') && !is_number(t, '.'))
         && !text().any(|t| is_number(t, '.') && !is_number(t, ','));
     let decimal = decimal.unwrap_or(if comma { ',' } else { '.' });
-    let sheet = |(name, cells): (String, Cells)| Sheet { name, rows: rows(cells, decimal) };
-    let sheets = cells.into_iter().filter(|(_, c)| !c.is_empty()).map(sheet).collect();
-    Ok(Book { sheets, decimal, hidden: left.hidden, without_value: left.without_value })
+    let sheet = |of: Shown| Sheet { name: of.name, rows: rows(of.cells, &of.left_out, decimal) };
+    let sheets = cells.into_iter().filter(|of| !of.cells.is_empty()).map(sheet).collect();
+    Ok(Book { sheets, decimal, hidden: left.hidden, without_value: left.without_value, units: left.units })
 }
 
 /// The decimal mark of rows of texts: `,` if only that makes numbers of them.
@@ -140,13 +152,14 @@ fn is_number(text: &str, mark: char) -> bool {
     matches!(number(cell::beginning(text).unwrap_or(text), mark), Number::Value(_))
 }
 
-fn rows(cells: Cells, decimal: char) -> Vec<Row<'static>> {
+fn rows(cells: Cells, left_out: &BTreeSet<u32>, decimal: char) -> Vec<Row<'static>> {
     let mut rows: Vec<Row<'static>> = Vec::new();
     for ((row, column), value) in cells {
         let line = row as usize + 1;
         let last = rows.last().map_or(0, |r| r.line);
         if last != line {
-            if last + 1 < line {
+            // Rows from 0 are lines from 1.
+            if (last..row as usize).any(|between| !left_out.contains(&(between as u32))) {
                 // One blank row stands for a gap of any height.
                 rows.push(Row { line: line - 1, cells: Vec::new(), in_cells: true });
             }
@@ -154,9 +167,8 @@ fn rows(cells: Cells, decimal: char) -> Vec<Row<'static>> {
         }
         let text = match value {
             Value::Text(text) => text,
-            // The shortest text that reads back as the same number.
-            Value::Number(n) if decimal == ',' => n.to_string().replace('.', ","),
-            Value::Number(n) => n.to_string(),
+            Value::Number(n) => number_text(n, decimal),
+            Value::United(n, unit) => format!("{} {unit}", number_text(n, decimal)),
         };
         if let Some(row) = rows.last_mut() {
             for c in row.cells.len()..column as usize {
@@ -166,6 +178,11 @@ fn rows(cells: Cells, decimal: char) -> Vec<Row<'static>> {
         }
     }
     rows
+}
+
+/// The shortest text that reads back as the same number.
+fn number_text(n: f64, decimal: char) -> String {
+    if decimal == ',' { n.to_string().replace('.', ",") } else { n.to_string() }
 }
 
 /// Adds a cell that holds something.
@@ -218,6 +235,7 @@ fn visible(sheets: &[calamine::Sheet], hidden: &mut Vec<String>) -> Vec<String> 
 struct LeftOut {
     hidden: Vec<String>,
     without_value: Vec<String>,
+    units: Vec<String>,
 }
 
 /// The first cells of a list, as a spreadsheet program names them.
@@ -239,16 +257,15 @@ fn cells_text(cells: &[(u32, u32)]) -> String {
     format!("cell{s} {}{more}", first.join(", "))
 }
 
-/// Leaves out cells that are hidden or struck out, and makes numbers that show per cent what they show.
-fn apply(name: &str, cells: &mut Cells, marks: &Marks, left: &mut LeftOut) {
+/// Leaves out cells that are hidden or struck out, and makes numbers what their formats show.
+fn apply(name: String, mut cells: Cells, marks: &Marks, left: &mut LeftOut) -> Shown {
+    let all: BTreeSet<u32> = cells.keys().map(|(r, _)| *r).collect();
     let is_hidden = |(r, c): &(u32, u32)| marks.hidden_rows.contains(r) || marks.hidden_columns.contains(c);
-    let rows: std::collections::BTreeSet<u32> =
+    let rows: BTreeSet<u32> =
         cells.keys().filter(|(r, _)| marks.hidden_rows.contains(r)).map(|(r, _)| r + 1).collect();
-    let columns: std::collections::BTreeSet<u32> =
+    let columns: BTreeSet<u32> =
         cells.keys().filter(|(_, c)| marks.hidden_columns.contains(c)).map(|(_, c)| c + 1).collect();
-    let list = |numbers: &std::collections::BTreeSet<u32>| {
-        numbers.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")
-    };
+    let list = |numbers: &BTreeSet<u32>| numbers.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
     for (what, numbers) in [("row", &rows), ("column", &columns)] {
         if !numbers.is_empty() {
             let s = if numbers.len() > 1 { "s" } else { "" };
@@ -268,16 +285,29 @@ fn apply(name: &str, cells: &mut Cells, marks: &Marks, left: &mut LeftOut) {
     if !without.is_empty() {
         left.without_value.push(format!("{} of sheet {name:?}", cells_text(&without)));
     }
-    for at in &marks.percent {
-        if let Some(Value::Number(n)) = cells.get_mut(at) {
-            // 0.062 shows as 6.2 %; the product must not show the binary fraction.
-            let shown = format!("{:.12e}", *n * 100.0).parse().unwrap_or(*n * 100.0);
-            *n = shown;
+    let mut units: BTreeMap<&str, Vec<(u32, u32)>> = BTreeMap::new();
+    for (at, shown) in &marks.shown {
+        let Some(value) = cells.get_mut(at) else { continue };
+        let Value::Number(n) = *value else { continue };
+        // 0.062 shows as 6.2 %; the product must not show the binary fraction.
+        let scaled = n * 10f64.powi(shown.power);
+        let n = if shown.power == 0 { n } else { format!("{scaled:.12e}").parse().unwrap_or(scaled) };
+        *value = match &shown.unit {
+            Some(unit) => Value::United(n, unit.clone()),
+            None => Value::Number(n),
+        };
+        if let Some(unit) = shown.unit.as_deref().filter(|_| !shown.is_percent) {
+            units.entry(unit).or_default().push(*at);
         }
     }
+    for (unit, at) in &units {
+        left.units.push(format!("{unit:?} in {} of sheet {name:?}", cells_text(at)));
+    }
+    let kept: BTreeSet<u32> = cells.keys().map(|(r, _)| *r).collect();
+    Shown { left_out: &all - &kept, name, cells }
 }
 
-fn xlsx(bytes: &[u8], left: &mut LeftOut) -> Result<Vec<(String, Cells)>, Problem> {
+fn xlsx(bytes: &[u8], left: &mut LeftOut) -> Result<Vec<Shown>, Problem> {
     limits::archive(bytes)?;
     let mut book = Xlsx::new(Cursor::new(bytes)).map_err(bad)?;
     let mut marks = marks::xlsx(bytes)?;
@@ -289,13 +319,13 @@ fn xlsx(bytes: &[u8], left: &mut LeftOut) -> Result<Vec<(String, Cells)>, Proble
         while let Some(cell) = reader.next_cell().map_err(bad)? {
             insert(&mut cells, cell.get_position(), cell.get_value().clone())?;
         }
-        apply(&name, &mut cells, &marks.remove(&name).unwrap_or_default(), left);
-        out.push((name, cells));
+        let marks = marks.remove(&name).unwrap_or_default();
+        out.push(apply(name, cells, &marks, left));
     }
     Ok(out)
 }
 
-fn ods(bytes: &[u8], left: &mut LeftOut) -> Result<Vec<(String, Cells)>, Problem> {
+fn ods(bytes: &[u8], left: &mut LeftOut) -> Result<Vec<Shown>, Problem> {
     limits::archive(bytes)?;
     // First, as it refuses XML that was cut.
     let mut marks = marks::ods(bytes)?;
@@ -303,20 +333,22 @@ fn ods(bytes: &[u8], left: &mut LeftOut) -> Result<Vec<(String, Cells)>, Problem
     let mut out = Vec::new();
     for name in visible(book.sheets_metadata(), &mut left.hidden) {
         let range = book.worksheet_range(&name).map_err(bad)?;
-        let mut cells = used(&range)?;
-        apply(&name, &mut cells, &marks.remove(&name).unwrap_or_default(), left);
-        out.push((name, cells));
+        let cells = used(&range)?;
+        let marks = marks.remove(&name).unwrap_or_default();
+        out.push(apply(name, cells, &marks, left));
     }
     Ok(out)
 }
 
-fn xls(bytes: &[u8], left: &mut LeftOut) -> Result<Vec<(String, Cells)>, Problem> {
-    limits::compound(bytes)?;
+fn xls(bytes: &[u8], left: &mut LeftOut) -> Result<Vec<Shown>, Problem> {
+    let mut marks = marks::xls::marks(&limits::compound(bytes)?);
     let mut book = Xls::new(Cursor::new(bytes)).map_err(bad)?;
     let mut out = Vec::new();
     for name in visible(book.sheets_metadata(), &mut left.hidden) {
         let range = book.worksheet_range(&name).map_err(bad)?;
-        out.push((name, used(&range)?));
+        let cells = used(&range)?;
+        let marks = marks.remove(&name).unwrap_or_default();
+        out.push(apply(name, cells, &marks, left));
     }
     Ok(out)
 }

@@ -9,6 +9,7 @@
 //! others are refused or read with a finding.
 
 mod curves;
+mod damage;
 mod dos;
 mod grid;
 mod newer;
@@ -24,6 +25,7 @@ use kesf::instrument::{Direction, FileContent, Parameter, ReadError, ReadSetting
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
+use grid::Grid;
 use paper::Paper;
 use truth::pick;
 use words::LANGUAGES;
@@ -47,11 +49,12 @@ pub enum Expected {
 }
 
 /// A file and its truth.
-struct Trial {
+struct Drawn {
     name: String,
     bytes: Vec<u8>,
     layout: &'static str,
-    paper: String,
+    grid: Grid,
+    paper: Paper,
     language: &'static str,
     expected: Vec<Expected>,
 }
@@ -66,7 +69,7 @@ enum Outcome {
     Silent,
 }
 
-fn trial(seed: u64) -> Trial {
+fn drawn(seed: u64) -> Drawn {
     let mut rng = Pcg64::seed_from_u64(seed);
     loop {
         let language = pick(&mut rng, LANGUAGES.iter().collect::<Vec<_>>().as_slice());
@@ -81,8 +84,7 @@ fn trial(seed: u64) -> Trial {
         let paper = Paper::any(&mut rng, language, workbook);
         let Some(bytes) = paper.bytes(&grid) else { continue };
         let name = format!("{stem}.{}", paper.extension());
-        let paper = paper.name();
-        return Trial { name, bytes, layout, paper, language: language.name, expected };
+        return Drawn { name, bytes, layout, grid, paper, language: language.name, expected };
     }
 }
 
@@ -156,7 +158,7 @@ fn wrong(content: &FileContent, expected: &[Expected]) -> Option<String> {
     extra.map(|((n, v), _)| format!("a value too many: {n:?} {} {:?} {}", v.parameter, v.direction, v.mean))
 }
 
-fn judge(trial: &Trial, result: &Result<FileContent, ReadError>) -> (Outcome, String) {
+fn judge(trial: &Drawn, result: &Result<FileContent, ReadError>) -> (Outcome, String) {
     let refusal = matches!(trial.expected[..], [Expected::Refusal]);
     match result {
         Err(_) if refusal => (Outcome::Right, String::new()),
@@ -212,11 +214,11 @@ fn nothing_is_wrong_in_silence_and_nearly_all_is_right() {
     let mut totals: BTreeMap<Outcome, u64> = BTreeMap::new();
     let mut silent = Vec::new();
     for seed in first..first + count {
-        let trial = trial(seed);
+        let trial = drawn(seed);
         let result = parse(Path::new(&trial.name), &trial.bytes, &ReadSettings::default());
         let (outcome, what) = judge(&trial, &result);
         let described =
-            format!("{seed} {} | {} | {} | {}", trial.layout, trial.paper, trial.language, trial.name);
+            format!("{seed} {} | {} | {} | {}", trial.layout, trial.paper.name(), trial.language, trial.name);
         if outcome != Outcome::Right && show.as_ref().is_some_and(|s| described.contains(s.as_str())) {
             println!("{outcome:?} {described}\n   {what}");
             if let Some(folder) = &keep {
@@ -228,7 +230,7 @@ fn nothing_is_wrong_in_silence_and_nearly_all_is_right() {
             silent.push(format!("{described}: {what}"));
         }
         layouts.add(trial.layout, outcome);
-        papers.add(&trial.paper, outcome);
+        papers.add(&trial.paper.name(), outcome);
         languages.add(trial.language, outcome);
         all.add("all", outcome);
         *totals.entry(outcome).or_default() += 1;

@@ -165,6 +165,16 @@ fn fixed(grid: &Grid) -> Option<String> {
     Some(grid.rows.iter().map(line).collect())
 }
 
+/// Whether a workbook has the unit behind a number in its format: so it is in every second of them.
+fn is_shown(grid: &Grid, before: &str, behind: &str) -> bool {
+    let is_unit = behind.chars().filter(|c| c.is_alphabetic()).count() > 1 || behind.contains('%');
+    grid.rows.len() % 2 == 0 && before.is_empty() && is_unit
+}
+
+fn digits(decimals: usize) -> String {
+    if decimals == 0 { "0".into() } else { format!("0.{}", "0".repeat(decimals)) }
+}
+
 fn xlsx(grid: &Grid) -> Option<Vec<u8>> {
     let mut book = Workbook::new();
     let sheet = book.add_worksheet();
@@ -181,6 +191,11 @@ fn xlsx(grid: &Grid) -> Option<Vec<u8>> {
                 }
                 Cell::Number(n) => {
                     sheet.write_number(i, j, n.value).ok()?;
+                }
+                Cell::With(before, n, behind) if is_shown(grid, before, behind) => {
+                    let code = format!("{}\"{behind}\"", digits(n.decimals));
+                    let format = Format::new().set_num_format(code);
+                    sheet.write_number_with_format(i, j, n.value, &format).ok()?;
                 }
                 Cell::With(..) | Cell::Deviation(..) => {
                     sheet.write_string(i, j, shown(cell, false)).ok()?;
@@ -218,6 +233,11 @@ fn escaped(text: &str) -> String {
 fn ods(grid: &Grid) -> Vec<u8> {
     let cell = |c: &Cell| match c {
         Cell::Empty => "<table:table-cell/>".to_string(),
+        Cell::With(before, n, behind) if is_shown(grid, before, behind) => format!(
+            "<table:table-cell office:value-type=\"float\" office:value=\"{}\"><text:p>{}</text:p></table:table-cell>",
+            n.value,
+            escaped(&shown(c, false))
+        ),
         Cell::Text(_) | Cell::With(..) | Cell::Deviation(..) => {
             // A line break begins a paragraph.
             let text = escaped(&shown(c, false)).replace('\n', "</text:p><text:p>");

@@ -208,6 +208,30 @@ super::facts! {
             texts: Vec<String>,
         } = "single letters are read as warp and weft, because each stands beside its partner: {}; write the words if they are \
              something else", some(texts);
+        /// Units that number formats of a workbook add.
+        "R134" UnitsOfFormats {
+            /// Each unit with its cells.
+            units: Vec<String>,
+        } = "units that number formats show beside the numbers are taken as if they stood in the cells: {}; write them in the \
+             headings", units.join("; ");
+        /// A text that was read in another code page than it was written in.
+        "R135" OtherCodePage {
+            /// What stands there.
+            found: String,
+            /// What was written.
+            written: String,
+            /// The page it was written in.
+            written_in: String,
+            /// The page it was read in.
+            read_in: String,
+        } = "{found:?} is no unit, and is {written:?} where a text of {written_in} was taken for {read_in}: all texts of the table are \
+             read so; save the file as UTF-8 from the program that wrote it";
+        /// A value without a direction among others with one.
+        "R136" WithoutDirection {
+            /// The parameters, without a direction.
+            keys: Vec<Key>,
+        } = "{} stands without a direction beside values of it with one, and is read as one of the fabric: name its direction",
+            several_keys(keys);
         /// Blank cells below a direction or a parameter.
         "R124" MergedCells {} = "blank cells are read as the direction or parameter above them, as of merged cells: fill them in \
              if they are something else";

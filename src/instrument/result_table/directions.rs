@@ -55,6 +55,7 @@ impl Table<'_, '_> {
     pub(super) fn direction_of_the_sheet(&mut self) {
         let directional = |d: &Datum| d.parameter.is_directional();
         let stated = self.data.iter().any(|d| d.direction.is_some() || d.row_direction.is_some());
+        self.note_two_directions();
         let Some(direction) = self.context.label.direction.filter(|_| !stated) else { return };
         if !self.fast.is_empty() || !self.layout.numbers_of_symbols().is_empty() {
             return;
@@ -67,6 +68,20 @@ impl Table<'_, '_> {
         if any {
             let place = Place::at(self.context.path, self.layout.line, 0);
             self.findings.push(Finding::new(ReadFact::DirectionFromName {}).at(place));
+        }
+    }
+
+    /// R106: the table is of one direction, and the name of the sheet or file says another.
+    fn note_two_directions(&mut self) {
+        let stated: BTreeSet<Direction> =
+            self.data.iter().filter_map(|d| d.direction.or(d.row_direction)).collect();
+        let mut stated = stated.into_iter();
+        if let (Some(header), None, Some(file_name)) =
+            (stated.next(), stated.next(), self.context.label.direction)
+            && header != file_name
+        {
+            let place = Place::at(self.context.path, self.layout.line, 0);
+            self.findings.push(Finding::new(ReadFact::TwoDirections { header, file_name }).at(place));
         }
     }
 
@@ -109,6 +124,28 @@ impl Table<'_, '_> {
         if !is_fast_table {
             let place = Place::at(self.context.path, self.layout.line, 0);
             self.findings.push(Finding::new(ReadFact::NumbersAsDirections {}).at(place));
+        }
+    }
+
+    /// R136: a value without a direction beside one of the same parameter and fabric with one.
+    pub(super) fn note_without_direction(&mut self) {
+        let singles: Vec<&Datum> =
+            self.data.iter().filter(|d| d.parameter.is_directional() && d.statistic.is_none()).collect();
+        let directed: BTreeSet<(Option<&str>, Parameter)> = singles
+            .iter()
+            .filter(|d| d.direction.is_some())
+            .map(|d| (d.fabric.as_deref(), d.parameter))
+            .collect();
+        let found: Vec<&&Datum> = singles
+            .iter()
+            .filter(|d| d.direction.is_none() && directed.contains(&(d.fabric.as_deref(), d.parameter)))
+            .collect();
+        let parameters: BTreeSet<Parameter> = found.iter().map(|d| d.parameter).collect();
+        let keys: Vec<Key> =
+            parameters.into_iter().map(|parameter| Key { parameter, direction: None }).collect();
+        if let Some(first) = found.first() {
+            let place = Place::at(self.context.path, first.line, first.column);
+            self.findings.push(Finding::new(ReadFact::WithoutDirection { keys }).at(place));
         }
     }
 

@@ -259,6 +259,10 @@ impl Layout {
         let named = has(&self.labels, TableColumn::Fabric) || has(&self.labels, TableColumn::Id);
         let has_specimen = has(&self.labels, TableColumn::Specimen);
         let first = self.labels.first().map(|l| l.index);
+        let counted = self.names_that_count(region);
+        for label in self.labels.iter_mut().filter(|l| !has_specimen && Some(l.index) == counted) {
+            label.meta = Some(TableColumn::Specimen);
+        }
         for label in &mut self.labels {
             let cells: Vec<&str> = region.rows.iter().filter_map(|r| r.get(label.index)).collect();
             let counts = counts(&cells);
@@ -286,6 +290,21 @@ impl Layout {
         }
     }
 
+    /// A column of names that counts, `1, 2, 3, mean`, beside another in which names come again.
+    fn names_that_count(&self, region: &Region<'_>) -> Option<usize> {
+        let names: Vec<usize> = self
+            .labels
+            .iter()
+            .filter(|l| matches!(l.meta, Some(TableColumn::Id | TableColumn::Fabric)))
+            .map(|l| l.index)
+            .collect();
+        let [one, other] = names[..] else { return None };
+        if counts_beside(region, one, other) {
+            return Some(one);
+        }
+        counts_beside(region, other, one).then_some(other)
+    }
+
     pub fn names_fabrics(&self) -> bool {
         self.values.iter().filter(|c| c.fabric.is_some()).count() > 1
     }
@@ -309,7 +328,12 @@ impl Layout {
                 && self.sd_column != Some(i)
         };
         let unused = head.filled().filter(|(i, _)| !self.down && unknown(*i) && numeric(*i));
-        unused.map(|(_, c)| c.text.to_string()).collect()
+        let width = region.rows.iter().map(|r| r.cells.len()).max().unwrap_or(0);
+        let without = (0..width)
+            .filter(|i| !self.down && unknown(*i) && numeric(*i))
+            .filter(|i| !region.heads.iter().any(|h| !is_units(h) && h.get(*i).is_some()));
+        let without = without.map(|i| format!("column {} without a heading", i + 1));
+        unused.map(|(_, c)| c.text.to_string()).chain(without).collect()
     }
 
     /// The form of the table and what its columns hold, for people.
@@ -331,6 +355,13 @@ fn described(name: &str, f: &Facets) -> String {
         (None, _) => String::new(),
     };
     format!("{name:?} is {what}{direction}")
+}
+
+/// Whether a column counts beside one of names that come again.
+fn counts_beside(region: &Region<'_>, index: usize, names: usize) -> bool {
+    let numbers: Vec<&str> = region.rows.iter().filter_map(|r| r.get(index)).collect();
+    let names: Vec<&str> = region.rows.iter().filter_map(|r| r.get(names)).collect();
+    counts(&numbers) && !counts(&names) && names.iter().collect::<BTreeSet<_>>().len() < names.len()
 }
 
 /// Whether cells count from 1, again and again; labels of statistics may stand between.
@@ -360,13 +391,13 @@ fn is_units(row: &Row<'_>) -> bool {
 }
 
 /// Whether two texts are units that are not the same.
-pub(super) fn differ(a: &str, b: &str) -> bool {
+pub(in crate::instrument) fn differ(a: &str, b: &str) -> bool {
     let (Ok(a), Ok(b)) = (unit(a), unit(b)) else { return false };
     a.dimension != b.dimension || (a.factor - b.factor).abs() > 1e-9 * a.factor.abs()
 }
 
 /// Of two units of one value.
-pub(super) fn two_units(first: &str, second: &str) -> String {
+pub(in crate::instrument) fn two_units(first: &str, second: &str) -> String {
     format!("the unit of these values is {first:?} and {second:?}: remove the one that does not hold")
 }
 
