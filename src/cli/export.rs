@@ -3,19 +3,20 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use clap::builder::PossibleValuesParser;
 
 use super::assumptions::AssumptionArgs;
 use super::exit::Exit;
+use super::export_target::TargetName;
 use super::inputs::{EvaluateArgs, inputs};
 use super::output::{is_folder, is_stdin};
 use super::program::now;
 use super::ui::Ui;
 use crate::documents::ExportDocument;
+use crate::quantity::Ratio;
 use crate::report::OutputFolder;
-use crate::report::cards::{ALL, EXPORTERS, targets};
+use crate::report::cards::{Target, targets};
 use crate::report::write::write_file;
-use crate::results::{Card, Curves, Failure, cards, sections_with, write_cards};
+use crate::results::{Card, CardOptions, Curves, Failure, cards_with, sections_with, write_cards};
 
 /// Write fabrics as material files of other programs
 #[derive(Debug, Args)]
@@ -27,7 +28,7 @@ pub struct Options {
     #[arg(value_name = "INPUT", required = true)]
     inputs: Vec<PathBuf>,
     /// The program, several with commas between them, or `all`
-    #[arg(long, value_name = "TARGETS", required = true, value_parser = names(), value_delimiter = ',')]
+    #[arg(long, value_name = "TARGETS", required = true, value_parser = TargetName, value_delimiter = ',')]
     to: Vec<String>,
     /// Write to this file, or to this folder if it is one or ends in `/` [default: standard output]
     #[arg(short, long, value_name = "PATH", default_value = "-", hide_default_value = true)]
@@ -38,25 +39,53 @@ pub struct Options {
     /// Put the date into the file; without it the same input gives the same bytes
     #[arg(long)]
     stamp: bool,
+    /// What warp yarns are longer than the cloth, such as "8 %" (ISO 7211-3), for `radioss-fabric-a` [default: 10 %, assumed]
+    #[arg(long, allow_hyphen_values = true, value_name = "RATIO", requires = "crimp_weft")]
+    crimp_warp: Option<Ratio>,
+    /// The same of weft yarns
+    #[arg(long, allow_hyphen_values = true, value_name = "RATIO", requires = "crimp_warp")]
+    crimp_weft: Option<Ratio>,
     #[command(flatten)]
     assume: AssumptionArgs,
     #[command(flatten)]
     evaluate: EvaluateArgs,
 }
 
-fn names() -> PossibleValuesParser {
-    PossibleValuesParser::new(EXPORTERS.iter().map(|t| t.name).chain([ALL]))
+/// Greatest crimp that is taken: beyond it the law has no angle at which its yarns lock.
+const GREATEST_CRIMP: f64 = 0.4;
+
+/// A crimp of none is written as this one, as the law takes a zero for its default.
+const LEAST_CRIMP: f64 = 1e-6;
+
+/// The crimp of both yarns, if it is stated.
+fn crimp(options: &Options, targets: &[Target]) -> Result<Option<[f64; 2]>, Failure> {
+    let (Some(warp), Some(weft)) = (options.crimp_warp, options.crimp_weft) else { return Ok(None) };
+    if !targets.iter().any(|target| target.name == "radioss-fabric-a") {
+        return Err(Failure::new("O050", "no chosen program asks for the crimp of yarns")
+            .hint("leave --crimp-warp and --crimp-weft out, or add `radioss-fabric-a` to --to"));
+    }
+    for (option, crimp) in [("--crimp-warp", warp), ("--crimp-weft", weft)] {
+        if !(0.0..=GREATEST_CRIMP).contains(&crimp.si()) {
+            let text = format!("{option} is {} %, and a crimp is between 0 % and 40 %", 100.0 * crimp.si());
+            return Err(
+                Failure::new("O050", text).hint("state what a yarn is longer than the cloth, such as `8 %`")
+            );
+        }
+    }
+    Ok(Some([warp, weft].map(|crimp| crimp.si().max(LEAST_CRIMP))))
 }
 
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let (inputs, reading, targets) =
         (inputs(&options.inputs)?, options.evaluate.reading(), targets(&options.to));
     let assumptions = options.assume.assumptions();
+    let crimp = crimp(options, &targets)?;
     let (cards, mut failures) = ui.observe(|observer| {
         let (sections, mut failures) =
             sections_with(&inputs, &reading, &assumptions, Curves::Kept, observer)?;
         let stamp = options.stamp.then(now);
-        let (cards, refused) = cards(&sections, &targets, stamp.as_deref(), observer);
+        let told = CardOptions { stamp: stamp.as_deref(), crimp };
+        let (cards, refused) = cards_with(&sections, &targets, told, observer);
         failures.extend(refused);
         Ok::<_, Failure>((cards, failures))
     })?;

@@ -14,6 +14,7 @@ mod drape_image;
 mod exit;
 mod explain;
 mod export;
+mod export_target;
 mod fields;
 mod format;
 mod global;

@@ -26,6 +26,15 @@ pub struct Card {
     pub text: String,
 }
 
+/// What is told to programs beside the fabric.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CardOptions<'a> {
+    /// The date to be noted.
+    pub stamp: Option<&'a str>,
+    /// What yarns along warp and weft are longer than the cloth, over the cloth's length, if it is known.
+    pub crimp: Option<[f64; 2]>,
+}
+
 /// A card for each section that a target can hold, target by target, and why the others have none. `stamp` is the date to
 /// be noted.
 pub fn cards(
@@ -34,10 +43,20 @@ pub fn cards(
     stamp: Option<&str>,
     observer: &Observer,
 ) -> (Vec<Card>, Vec<Failure>) {
+    cards_with(sections, targets, CardOptions { stamp, ..CardOptions::default() }, observer)
+}
+
+/// The same with all that can be told.
+pub fn cards_with(
+    sections: &[Sectioned],
+    targets: &[Target],
+    CardOptions { stamp, crimp }: CardOptions<'_>,
+    observer: &Observer,
+) -> (Vec<Card>, Vec<Failure>) {
     let (mut cards, mut failures) = (Vec::new(), Vec::new());
     let pairs = targets.iter().flat_map(|target| sections.iter().map(move |section| (*target, section)));
     for (target, Sectioned { path, sheet, made }) in pairs {
-        match card(target, &Material { sheet, made, stamp }) {
+        match card(target, &Material { sheet, made, stamp, crimp }) {
             Ok(card) => {
                 for finding in card.findings {
                     observer.found(Some(&sheet.name), &finding.at(Place::file(path)));

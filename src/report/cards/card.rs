@@ -80,6 +80,9 @@ pub struct Material<'a> {
     pub made: &'a Constitutive,
     /// Date and time (RFC 3339), if they are wanted; a format that must have a date gets a fixed one without.
     pub stamp: Option<&'a str>,
+    /// What yarns along warp and weft are longer than the cloth, over the cloth's length, if it is known: only LAW58 of
+    /// OpenRadioss asks for it.
+    pub crimp: Option<[f64; 2]>,
 }
 
 impl Material<'_> {
