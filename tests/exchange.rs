@@ -480,7 +480,7 @@ fn u3m_files_are_valid() {
         ("\"name\": null", "\"name\": \"of my own\""),
         // The curves under `custom`, in the form that is proposed.
         ("\"standard\": \"KES-FB", "\"method\": \"KES-FB"),
-        ("\"unit\": \"N/m\",\n", "\"units\": \"N/m\",\n"),
+        ("\"name\": \"strain\"", "\"name\": \"\""),
     ];
     judge_cards("u3m", "tests/exchange/schemas/u3m-1.1.json", &faults);
 }

@@ -1,12 +1,13 @@
 //! `kesf export`: fabrics as material files of other programs.
 
+mod target;
+
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::assumptions::AssumptionArgs;
 use super::exit::Exit;
-use super::export_target::TargetName;
 use super::inputs::{EvaluateArgs, inputs};
 use super::output::{is_folder, is_stdin};
 use super::program::now;
@@ -14,9 +15,12 @@ use super::ui::Ui;
 use crate::documents::ExportDocument;
 use crate::quantity::Ratio;
 use crate::report::OutputFolder;
-use crate::report::cards::{Target, targets};
+use crate::report::cards::targets;
 use crate::report::write::write_file;
-use crate::results::{Card, CardOptions, Curves, Failure, cards_with, sections_with, write_cards};
+use crate::results::{
+    Card, CardOptions, Curves, Failure, cards_with, sections_with, stated_crimp, write_cards,
+};
+use target::TargetName;
 
 /// Write fabrics as material files of other programs
 #[derive(Debug, Args)]
@@ -51,35 +55,11 @@ pub struct Options {
     evaluate: EvaluateArgs,
 }
 
-/// Greatest crimp that is taken: beyond it the law has no angle at which its yarns lock.
-const GREATEST_CRIMP: f64 = 0.4;
-
-/// A crimp of none is written as this one, as the law takes a zero for its default.
-const LEAST_CRIMP: f64 = 1e-6;
-
-/// The crimp of both yarns, if it is stated.
-fn crimp(options: &Options, targets: &[Target]) -> Result<Option<[f64; 2]>, Failure> {
-    let (Some(warp), Some(weft)) = (options.crimp_warp, options.crimp_weft) else { return Ok(None) };
-    if !targets.iter().any(|target| target.name == "radioss-fabric-a") {
-        return Err(Failure::new("O050", "no chosen program asks for the crimp of yarns")
-            .hint("leave --crimp-warp and --crimp-weft out, or add `radioss-fabric-a` to --to"));
-    }
-    for (option, crimp) in [("--crimp-warp", warp), ("--crimp-weft", weft)] {
-        if !(0.0..=GREATEST_CRIMP).contains(&crimp.si()) {
-            let text = format!("{option} is {} %, and a crimp is between 0 % and 40 %", 100.0 * crimp.si());
-            return Err(
-                Failure::new("O050", text).hint("state what a yarn is longer than the cloth, such as `8 %`")
-            );
-        }
-    }
-    Ok(Some([warp, weft].map(|crimp| crimp.si().max(LEAST_CRIMP))))
-}
-
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let (inputs, reading, targets) =
         (inputs(&options.inputs)?, options.evaluate.reading(), targets(&options.to));
     let assumptions = options.assume.assumptions();
-    let crimp = crimp(options, &targets)?;
+    let crimp = stated_crimp(&targets, [options.crimp_warp, options.crimp_weft])?;
     let (cards, mut failures) = ui.observe(|observer| {
         let (sections, mut failures) =
             sections_with(&inputs, &reading, &assumptions, Curves::Kept, observer)?;

@@ -14,7 +14,6 @@ mod drape_image;
 mod exit;
 mod explain;
 mod export;
-mod export_target;
 mod fields;
 mod format;
 mod global;

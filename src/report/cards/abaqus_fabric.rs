@@ -90,7 +90,7 @@ fn response(
     stiffness: f64,
 ) -> Response {
     let measured = run(sheet, test, direction, 0).map(|(curve, n)| (rising(&curve), n));
-    match measured.filter(|(curve, _)| curve.len() > 2) {
+    match measured.filter(|(curve, _)| curve.len() > 2 && curve.y.iter().any(|y| *y > 0.0)) {
         Some((curve, n)) => {
             let source = format!("measured by KES-FB1 along the {}, mean of n = {n}", direction.name());
             Response {

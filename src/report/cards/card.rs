@@ -20,6 +20,13 @@ pub struct Exporter {
     pub(super) write: fn(&Material<'_>, &ShellSection) -> Result<Card, CardError>,
 }
 
+impl Exporter {
+    /// Whether the card depends on [`Material::crimp`].
+    pub fn asks_for_crimp(&self) -> bool {
+        self.name == "radioss-fabric-a"
+    }
+}
+
 /// A program of [`super::EXPORTERS`].
 pub type Target = &'static Exporter;
 

@@ -25,21 +25,20 @@ const STIFFEST: f64 = 1e30;
 
 impl Crimp {
     /// The softest spring that gives strips no more contraction than that of the section, whose compliance `ν12 / E1` is
-    /// `contraction` (1/Pa), and that leaves yarns [`LEAST_OF_YARNS`] of every step of the curves (strain, nominal stress).
-    pub fn of(excess: [f64; 2], contraction: f64, curves: [&[[f64; 2]]; 2]) -> Self {
-        let with = |spring: f64| Self { excess, spring };
-        let [warp, weft] = [0, 1].map(|i| with(1.0).height(i));
-        let least = warp * weft / contraction.max(warp * weft / STIFFEST);
-        let holds = |spring: f64| [0, 1].iter().all(|i| with(spring).leaves_to_yarns(*i, curves[*i]));
-        if holds(least) {
-            return with(least);
+    /// `contraction` (1/Pa), and that leaves yarns [`LEAST_OF_YARNS`] of every step of the curves (a yarn; strain, nominal stress).
+    pub fn of(excess: [f64; 2], contraction: f64, curves: &[(usize, &[[f64; 2]])]) -> Self {
+        let mut soft = Self { excess, spring: 1.0 };
+        let heights = soft.height(0) * soft.height(1);
+        soft.spring = heights / contraction.max(heights / STIFFEST);
+        if soft.leaves_to_yarns(curves) {
+            return soft;
         }
-        let (mut soft, mut stiff) = (least, STIFFEST);
-        while stiff / soft > 1.0 + 1e-9 {
-            let middle = (soft * stiff).sqrt();
-            if holds(middle) { stiff = middle } else { soft = middle }
+        let mut stiff = Self { excess, spring: STIFFEST };
+        while stiff.spring / soft.spring > 1.0 + 1e-9 {
+            let middle = Self { excess, spring: (soft.spring * stiff.spring).sqrt() };
+            if middle.leaves_to_yarns(curves) { stiff = middle } else { soft = middle }
         }
-        with(stiff)
+        stiff
     }
 
     /// `H0` of a yarn.
@@ -74,19 +73,22 @@ impl Crimp {
 
     /// The factor by which a spring of this stiffness is written, of the stiffness that yarns begin with (Pa).
     pub fn flex(&self, stiffness: [f64; 2]) -> f64 {
-        let share = |i: usize| stiffness[i] * self.height(i) / (1.0 + self.excess[i]);
-        self.spring / (share(0) + share(1))
+        let shares = [0, 1].map(|i| stiffness[i] * self.height(i) / (1.0 + self.excess[i]));
+        self.spring / (shares[0] + shares[1])
     }
 
-    fn leaves_to_yarns(&self, yarn: usize, curve: &[[f64; 2]]) -> bool {
+    fn leaves_to_yarns(&self, curves: &[(usize, &[[f64; 2]])]) -> bool {
         let stiff = Self { spring: f64::INFINITY, ..*self };
-        curve.windows(2).all(|pair| {
-            let step = |crimp: &Self| {
-                let [from, to] = [0, 1].map(|k| crimp.yarn(yarn, pair[k]));
-                [to[0] - from[0], to[1] - from[1]]
-            };
-            let [length, tension] = step(self);
-            length >= LEAST_OF_YARNS * step(&stiff)[0] && tension > 0.0
+        let mut steps = curves.iter().flat_map(|(yarn, curve)| curve.windows(2).map(|pair| (*yarn, pair)));
+        steps.all(|(yarn, pair)| {
+            let ([length, tension], [whole, _]) = (self.step(yarn, pair), stiff.step(yarn, pair));
+            length >= LEAST_OF_YARNS * whole && tension > 0.0
         })
+    }
+
+    /// What the function of a yarn grows by between two points of the cloth's curve.
+    fn step(&self, yarn: usize, pair: &[[f64; 2]]) -> [f64; 2] {
+        let [from, to] = [0, 1].map(|k| self.yarn(yarn, pair[k]));
+        [to[0] - from[0], to[1] - from[1]]
     }
 }

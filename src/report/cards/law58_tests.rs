@@ -155,11 +155,12 @@ impl Fabric {
                 2 => law.at(id, x.to_degrees()),
                 _ => law.strip(i, id, x)[0],
             };
-            for (run, id) in [(runs.0, law.id[i]), (runs.1, law.id[i + 3])] {
+            // A mean has a hundred points, of which those that do not rise are left out.
+            for (run, id, part) in [(runs.0, law.id[i], 1e-3), (runs.1, law.id[i + 3], 1e-2)] {
                 let end = run.iter().map(|p| p.1).fold(0.0, f64::max);
                 for (x, own) in run {
                     let found = t * force(id, *x);
-                    if (found - own).abs() > 1e-3 * end {
+                    if (found - own).abs() > part * end {
                         return Some(format!("function {id} at {x}: {found} N/m, not {own}"));
                     }
                 }
@@ -180,7 +181,7 @@ fn a_straight_fabric_has_its_section_back() {
     );
     let tensile = [0, 1].map(|i| s.d_m[(i, i)] - s.d_m[(0, 1)].powi(2) / s.d_m[(1 - i, 1 - i)]);
     for (i, e) in tensile.into_iter().enumerate() {
-        // A tenth of a per mille: the formulas are not linear.
+        // A strain of a tenth of a per mille, as the formulas are not linear.
         let [stress, contraction] = law.strip(i, law.id[i], 1e-4);
         approx::assert_relative_eq!(stress * s.thickness / 1e-4, e, max_relative = 5e-3);
         let poisson = s.d_m[(0, 1)] / s.d_m[(1 - i, 1 - i)];
@@ -299,7 +300,11 @@ fn mistakes_in_a_card_of_law58_are_seen() {
 fn a_section_without_contraction_is_written() {
     let mut s = section();
     (s.d_m[(0, 1)], s.d_m[(1, 0)]) = (0.0, 0.0);
-    let law = read(&written("radioss-fabric-a", s).unwrap());
+    let law = read(&written("radioss-fabric-a", s.clone()).unwrap());
+    let apart = constitutive(s);
+    let material = Material { sheet: &sheet(), made: &apart, stamp: None, crimp: None };
+    let told = card(named("radioss-fabric-a").unwrap(), &material).unwrap().findings;
+    assert!(!told.iter().any(|f| f.message().to_string().contains("Poisson")), "{told:?}");
     assert!(law.strip(0, 1, 1e-3)[1].abs() < 1e-9 && law.flex.iter().all(|f| f.is_finite()), "{law:?}");
     let made = constitutive(section());
     let material = Material { sheet: &sheet(), made: &made, stamp: None, crimp: None };
