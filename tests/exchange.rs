@@ -148,7 +148,7 @@ const PROGRAMS: &[Program] = &[
         target: "usd",
         script: "newton_usd.py",
         needs: ("venv", "newton"),
-        // `as_read_*` is newton's own reading of the proposal: all but nothing of the rigidity.
+        // `as_read_*` is newton's own reading of the proposal: all but nothing of the rigidity, a strip that hangs like a rope.
         problems: &[
             ("tensile_warp", SINGLE),
             ("tensile_weft", SINGLE),
@@ -157,6 +157,10 @@ const PROGRAMS: &[Program] = &[
             ("rigidity_weft", 1e-3),
             ("as_read_warp", 1.0),
             ("as_read_weft", 1.0),
+            ("strip_warp", 0.02),
+            ("strip_weft", 0.02),
+            ("as_read_strip_warp", 1.0),
+            ("as_read_strip_weft", 1.0),
             ("mass", 1e-3),
             // The material of the sheet, which is isotropic.
             ("mean_tensile", SINGLE),
@@ -203,7 +207,7 @@ fn reference(section: &ShellSection, problem: &str) -> f64 {
     match problem.trim_end_matches("_warp").trim_end_matches("_weft") {
         "mean_tensile" => mean(tensile),
         "mean_rigidity" => mean(bending),
-        "strip" | "mesh_strip" => strip(bending[yarn]),
+        "strip" | "mesh_strip" | "as_read_strip" => strip(bending[yarn]),
         "hang" => hang(tensile[yarn]),
         "tensile" => tensile[yarn],
         "rigidity" | "as_read" => bending[yarn],
@@ -262,7 +266,7 @@ impl Program {
     fn answers(&self, section: &ShellSection, problems: &[&str]) -> Result<Answers, String> {
         let (sheet, made) = poplin();
         let made = Constitutive { section: section.clone(), ..made };
-        let material = Material { sheet: &sheet, made: &made, stamp: None };
+        let material = Material { sheet: &sheet, made: &made, stamp: None, crimp: None };
         let folder = tempfile::tempdir().unwrap();
         let written = |target: Target| {
             let file = folder.path().join(format!("card.{}", target.ending));
@@ -435,7 +439,8 @@ fn shipped(target: &str) -> Vec<String> {
     let of = |measured| {
         let sheet = characterise::characterise(measured, &Default::default());
         let made = constitutive::section(&sheet, &Default::default()).ok()?;
-        let material = Material { sheet: &sheet, made: &made, stamp: Some("2026-01-02T03:04:05Z") };
+        let material =
+            Material { sheet: &sheet, made: &made, stamp: Some("2026-01-02T03:04:05Z"), crimp: None };
         Some(card(named(target).unwrap(), &material).unwrap().text)
     };
     let cards: Vec<String> = batch.fabrics.iter().filter_map(of).collect();
@@ -473,6 +478,9 @@ fn u3m_files_are_valid() {
         ("2026-01-02T03:04:05Z", "2 January"),
         ("\"id\": \"", "\"id\": \"x"),
         ("\"name\": null", "\"name\": \"of my own\""),
+        // The curves under `custom`, in the form that is proposed.
+        ("\"standard\": \"KES-FB", "\"method\": \"KES-FB"),
+        ("\"name\": \"strain\"", "\"name\": \"\""),
     ];
     judge_cards("u3m", "tests/exchange/schemas/u3m-1.1.json", &faults);
 }

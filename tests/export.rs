@@ -357,3 +357,54 @@ fn cards_of_abaqus_and_calculix_give_the_section_back() {
         stderr(&run)
     );
 }
+
+/// Names of programs for which nothing is written are answered with the reason, whatever their capitals and dashes.
+#[test]
+fn a_program_for_which_nothing_is_written_is_answered_with_the_reason() {
+    for (name, reason) in [
+        ("gnatv", "nothing is written for GNATV: no published format was found"),
+        ("LS-DYNA-235", "undulation along fill and warp (BFI, BWI)"),
+        ("*MAT_235", "density alone"),
+        ("PAM-FORM", "manuals are not public"),
+        ("aniform", "manuals are not public"),
+        ("Optitex", "neither their units"),
+        ("clo-fabric-kit", "`clo` writes"),
+    ] {
+        let output = kesf(&["export", "kesf_data/poplin", "--to", name]);
+        let said = stderr(&output);
+        assert!(code(&output) == 2 && said.contains(reason), "{name}: {said}");
+    }
+}
+
+/// The crimp of yarns is stated for the one program that asks for it, or assumed and told.
+#[test]
+fn crimp_is_stated_or_told() {
+    let to =
+        |more: &[&str]| kesf(&[&["export", "kesf_data/poplin", "--to", "radioss-fabric-a"], more].concat());
+    let assumed = to(&[]);
+    assert!(code(&assumed) == 0 && stderr(&assumed).contains("O047"), "{}", stderr(&assumed));
+    let stated = to(&["--crimp-warp", "8 %", "--crimp-weft", "0 %"]);
+    let card = String::from_utf8(stated.stdout.clone()).unwrap();
+    assert!(code(&stated) == 0 && !stderr(&stated).contains("O047"), "{}", stderr(&stated));
+    assert!(card.contains("         1         1      8.000000000E-2      1.000000000E-6"), "{card}");
+    for (refused, why) in [
+        (to(&["--crimp-warp", "8 %"]), "--crimp-weft"),
+        (to(&["--crimp-warp", "80 %", "--crimp-weft", "6 %"]), "between 0 % and 40 %"),
+        (to(&["--crimp-warp=-1 %", "--crimp-weft", "6 %"]), "between 0 % and 40 %"),
+        (
+            kesf(&[
+                "export",
+                "kesf_data/poplin",
+                "--to",
+                "usd",
+                "--crimp-warp",
+                "8 %",
+                "--crimp-weft",
+                "6 %",
+            ]),
+            "add `radioss-fabric-a`",
+        ),
+    ] {
+        assert!(code(&refused) == 2 && stderr(&refused).contains(why), "{}", stderr(&refused));
+    }
+}

@@ -1,9 +1,10 @@
 //! `kesf export`: fabrics as material files of other programs.
 
+mod target;
+
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use clap::builder::PossibleValuesParser;
 
 use super::assumptions::AssumptionArgs;
 use super::exit::Exit;
@@ -12,10 +13,14 @@ use super::output::{is_folder, is_stdin};
 use super::program::now;
 use super::ui::Ui;
 use crate::documents::ExportDocument;
+use crate::quantity::Ratio;
 use crate::report::OutputFolder;
-use crate::report::cards::{ALL, EXPORTERS, targets};
+use crate::report::cards::targets;
 use crate::report::write::write_file;
-use crate::results::{Card, Curves, Failure, cards, sections_with, write_cards};
+use crate::results::{
+    Card, CardOptions, Curves, Failure, cards_with, sections_with, stated_crimp, write_cards,
+};
+use target::TargetName;
 
 /// Write fabrics as material files of other programs
 #[derive(Debug, Args)]
@@ -27,7 +32,7 @@ pub struct Options {
     #[arg(value_name = "INPUT", required = true)]
     inputs: Vec<PathBuf>,
     /// The program, several with commas between them, or `all`
-    #[arg(long, value_name = "TARGETS", required = true, value_parser = names(), value_delimiter = ',')]
+    #[arg(long, value_name = "TARGETS", required = true, value_parser = TargetName, value_delimiter = ',')]
     to: Vec<String>,
     /// Write to this file, or to this folder if it is one or ends in `/` [default: standard output]
     #[arg(short, long, value_name = "PATH", default_value = "-", hide_default_value = true)]
@@ -38,25 +43,29 @@ pub struct Options {
     /// Put the date into the file; without it the same input gives the same bytes
     #[arg(long)]
     stamp: bool,
+    /// What warp yarns are longer than the cloth, such as "8 %" (ISO 7211-3), for `radioss-fabric-a` [default: 10 %, assumed]
+    #[arg(long, allow_hyphen_values = true, value_name = "RATIO", requires = "crimp_weft")]
+    crimp_warp: Option<Ratio>,
+    /// The same of weft yarns
+    #[arg(long, allow_hyphen_values = true, value_name = "RATIO", requires = "crimp_warp")]
+    crimp_weft: Option<Ratio>,
     #[command(flatten)]
     assume: AssumptionArgs,
     #[command(flatten)]
     evaluate: EvaluateArgs,
 }
 
-fn names() -> PossibleValuesParser {
-    PossibleValuesParser::new(EXPORTERS.iter().map(|t| t.name).chain([ALL]))
-}
-
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let (inputs, reading, targets) =
         (inputs(&options.inputs)?, options.evaluate.reading(), targets(&options.to));
     let assumptions = options.assume.assumptions();
+    let crimp = stated_crimp(&targets, [options.crimp_warp, options.crimp_weft])?;
     let (cards, mut failures) = ui.observe(|observer| {
         let (sections, mut failures) =
             sections_with(&inputs, &reading, &assumptions, Curves::Kept, observer)?;
         let stamp = options.stamp.then(now);
-        let (cards, refused) = cards(&sections, &targets, stamp.as_deref(), observer);
+        let told = CardOptions { stamp: stamp.as_deref(), crimp };
+        let (cards, refused) = cards_with(&sections, &targets, told, observer);
         failures.extend(refused);
         Ok::<_, Failure>((cards, failures))
     })?;

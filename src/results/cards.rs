@@ -13,6 +13,7 @@ use super::folder::Sink;
 use super::observer::Observer;
 use super::section::Sectioned;
 use crate::finding::Place;
+use crate::quantity::Ratio;
 use crate::report::cards::{Material, Target, card, named};
 
 /// The material file of a fabric.
@@ -26,6 +27,41 @@ pub struct Card {
     pub text: String,
 }
 
+/// What is told to programs beside the fabric.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CardOptions<'a> {
+    /// The date to be noted.
+    pub stamp: Option<&'a str>,
+    /// What yarns along warp and weft are longer than the cloth, over the cloth's length, if it is known.
+    pub crimp: Option<[f64; 2]>,
+}
+
+/// Greatest crimp that is taken: beyond it the law of the program has no angle at which its yarns lock.
+const GREATEST_CRIMP: f64 = 0.4;
+
+/// A crimp of none is written as this one, as the program takes a zero for its default.
+const LEAST_CRIMP: f64 = 1e-6;
+
+/// The crimp of warp and weft, if both are stated and some program asks for it.
+///
+/// # Errors
+/// O050: no chosen program asks for it, or it is none of a yarn.
+pub fn stated_crimp(targets: &[Target], stated: [Option<Ratio>; 2]) -> Result<Option<[f64; 2]>, Failure> {
+    let [Some(warp), Some(weft)] = stated else { return Ok(None) };
+    if !targets.iter().any(|target| target.asks_for_crimp()) {
+        return Err(Failure::new("O050", "no chosen program asks for the crimp of yarns")
+            .hint("leave --crimp-warp and --crimp-weft out, or add `radioss-fabric-a` to --to"));
+    }
+    for (option, crimp) in [("--crimp-warp", warp), ("--crimp-weft", weft)] {
+        if !(0.0..=GREATEST_CRIMP).contains(&crimp.si()) {
+            let text = format!("{option} is {} %, and a crimp is between 0 % and 40 %", 100.0 * crimp.si());
+            let hint = "state what a yarn is longer than the cloth, such as `8 %`";
+            return Err(Failure::new("O050", text).hint(hint));
+        }
+    }
+    Ok(Some([warp, weft].map(|crimp| crimp.si().max(LEAST_CRIMP))))
+}
+
 /// A card for each section that a target can hold, target by target, and why the others have none. `stamp` is the date to
 /// be noted.
 pub fn cards(
@@ -34,10 +70,20 @@ pub fn cards(
     stamp: Option<&str>,
     observer: &Observer,
 ) -> (Vec<Card>, Vec<Failure>) {
+    cards_with(sections, targets, CardOptions { stamp, ..CardOptions::default() }, observer)
+}
+
+/// The same with all that can be told.
+pub fn cards_with(
+    sections: &[Sectioned],
+    targets: &[Target],
+    CardOptions { stamp, crimp }: CardOptions<'_>,
+    observer: &Observer,
+) -> (Vec<Card>, Vec<Failure>) {
     let (mut cards, mut failures) = (Vec::new(), Vec::new());
     let pairs = targets.iter().flat_map(|target| sections.iter().map(move |section| (*target, section)));
     for (target, Sectioned { path, sheet, made }) in pairs {
-        match card(target, &Material { sheet, made, stamp }) {
+        match card(target, &Material { sheet, made, stamp, crimp }) {
             Ok(card) => {
                 for finding in card.findings {
                     observer.found(Some(&sheet.name), &finding.at(Place::file(path)));

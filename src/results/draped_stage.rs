@@ -11,7 +11,7 @@ use crate::study::Drape;
 pub(super) fn write(task: &Task, d: &Drape, about: String, folder: &Folder) -> Result<(), Failure> {
     let (Some(sheet), (_, Some(made))) = (task.fabric, task.section()?) else { return Ok(()) };
     let made = Constitutive { section: d.model.section.clone(), ..made };
-    let card = cards::draped(&Material { sheet, made: &made, stamp: None }, &whole(d, about))?;
+    let card = cards::draped(&Material { sheet, made: &made, stamp: None, crimp: None }, &whole(d, about))?;
     folder.write(&format!("{}.usda", task.stem()), card.text.as_bytes())
 }
 

@@ -11,7 +11,7 @@ use super::columns::Columns;
 use crate::finding::explanations;
 use crate::instrument::dialects;
 use crate::quantity::UNITS;
-use crate::report::cards::{EXPORTERS, NOT_WRITTEN, Target};
+use crate::report::cards::{EXPORTERS, NOT_WRITTEN, NotWritten, Target};
 use crate::schema::SchemaFile;
 
 /// Headings and rows of a list.
@@ -115,7 +115,7 @@ pub fn exports() -> List {
     let row =
         |t: &Target| vec![json!(t.name), json!(format!(".{}", t.ending)), json!(t.title), json!(t.holds)];
     let headings = &["name", "ending", "what is written", "what it can hold of a fabric"];
-    let none = |(name, why): &(&str, &str)| vec![json!(name), json!("-"), json!("nothing"), json!(why)];
+    let none = |n: &NotWritten| vec![json!(n.title), json!("-"), json!("nothing"), json!(n.why)];
     List { headings, rows: EXPORTERS.iter().map(row).chain(NOT_WRITTEN.iter().map(none)).collect() }
 }
 

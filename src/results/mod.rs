@@ -56,7 +56,7 @@ mod work;
 pub use crate::finding::FailureKind;
 pub use batch::{Batch, Kind};
 pub use bent::BendingEntry;
-pub use cards::{Card, cards, write_cards};
+pub use cards::{Card, CardOptions, cards, cards_with, stated_crimp, write_cards};
 pub(crate) use catalogue::Catalogue;
 pub use checked::{CheckDocument, Checked, check};
 pub use columns::Columns;

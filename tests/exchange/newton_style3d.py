@@ -89,11 +89,16 @@ def drop(card, along):
     points, triangles = grid(h, tuple(-h / 2 if axis == i else 0.0 for i in (0, 1)))
     place = np.array(points)[:, axis]
     model = model_of(card, points, triangles, SOFTER, np.where(place < 0.6 * h)[0])
+    return rest(model, place > problems.STRIP - 0.5 * h)
+
+
+def rest(model, tip):
+    """Drop of some points over the length of the strip when it rests; not a number if it does not."""
     config = newton.solvers.SolverStyle3D.Config(iterations=ITERATIONS, linear_iterations=LINEAR)
     solver = newton.solvers.SolverStyle3D(model, config=config)
     solver.collision = None
     before, after, control = model.state(), model.state(), model.control()
-    mass, tip = model.particle_mass.numpy(), place > problems.STRIP - 0.5 * h
+    mass = model.particle_mass.numpy()
     last, peaks = 0.0, []
     for step in range(STEPS):
         solver.step(before, after, control, None, STEP)

@@ -27,6 +27,8 @@ pub(super) struct Response {
     pub curve: Curve,
     /// Where the curve comes from.
     pub source: String,
+    /// The way back from its end, as recorded: towards the origin.
+    pub back: Option<Curve>,
 }
 
 /// Abaqus Keywords Guide, `*FABRIC`, `*UNIAXIAL`, `*LOADING DATA`: nominal stress and nominal strain a line, strains rising;
@@ -87,11 +89,16 @@ fn response(
     direction: Direction,
     stiffness: f64,
 ) -> Response {
-    let measured = loading(sheet, test, Some(direction)).map(|(curve, n)| (rising(&curve), n));
-    match measured.filter(|(curve, _)| curve.len() > 2) {
+    let measured = run(sheet, test, direction, 0).map(|(curve, n)| (rising(&curve), n));
+    match measured.filter(|(curve, _)| curve.len() > 2 && curve.y.iter().any(|y| *y > 0.0)) {
         Some((curve, n)) => {
             let source = format!("measured by KES-FB1 along the {}, mean of n = {n}", direction.name());
-            Response { component, curve, source }
+            Response {
+                component,
+                curve,
+                source,
+                back: run(sheet, test, direction, 1).map(|(curve, _)| curve),
+            }
         }
         None => {
             // As far as the test goes: to a force, or to an angle.
@@ -99,20 +106,21 @@ fn response(
             let end = if test == Test::Shear { (end, end * stiffness) } else { (end / stiffness, end) };
             let line = Curve::from_points([(0.0, 0.0), end]);
             let source = "a straight line, the stiffness of the section: the input has no curve".into();
-            Response { component, curve: line, source }
+            Response { component, curve: line, source, back: None }
         }
     }
 }
 
-/// The first way out, over all specimens or of the only one, and how many there are.
-fn loading(sheet: &FabricSheet, test: Test, direction: Option<Direction>) -> Option<(Curve, usize)> {
-    let mean = mean_branches(sheet, test).into_iter().find(|m| m.direction == direction);
-    if let Some(mean) = mean {
+/// A run of the drive, the first of which is the way out and the second the way back: the mean over all specimens, or that of the
+/// only one, and how many there are.
+fn run(sheet: &FabricSheet, test: Test, direction: Direction, place: usize) -> Option<(Curve, usize)> {
+    let mut means = mean_branches(sheet, test).into_iter().filter(|m| m.direction == Some(direction));
+    if let Some(mean) = means.nth(place) {
         return Some((mean.mean, mean.n));
     }
-    let mine = |m: &crate::instrument::Measurement| (m.test, m.direction) == (test, direction);
+    let mine = |m: &crate::instrument::Measurement| (m.test, m.direction) == (test, Some(direction));
     let specimen = sheet.specimens.iter().find(|s| mine(&s.measurement))?;
-    Some((specimen.branches.first()?.curve.clone(), 1))
+    Some((specimen.branches.get(place)?.curve.clone(), 1))
 }
 
 /// From the origin, with strains and forces that never fall: noise at the start is left out.

@@ -20,6 +20,13 @@ pub struct Exporter {
     pub(super) write: fn(&Material<'_>, &ShellSection) -> Result<Card, CardError>,
 }
 
+impl Exporter {
+    /// Whether the card depends on [`Material::crimp`].
+    pub fn asks_for_crimp(&self) -> bool {
+        self.name == "radioss-fabric-a"
+    }
+}
+
 /// A program of [`super::EXPORTERS`].
 pub type Target = &'static Exporter;
 
@@ -80,6 +87,9 @@ pub struct Material<'a> {
     pub made: &'a Constitutive,
     /// Date and time (RFC 3339), if they are wanted; a format that must have a date gets a fixed one without.
     pub stamp: Option<&'a str>,
+    /// What yarns along warp and weft are longer than the cloth, over the cloth's length, if it is known: only LAW58 of
+    /// OpenRadioss asks for it.
+    pub crimp: Option<[f64; 2]>,
 }
 
 impl Material<'_> {

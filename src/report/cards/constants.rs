@@ -120,18 +120,18 @@ fn left_out(program: &str, name: &str, own: Vec<f64>, unit: &str) -> Finding {
 
 /// O044: the hysteresis of bending and of shear, as far as they were measured.
 pub fn hysteresis(program: &str, sheet: &FabricSheet) -> Vec<Finding> {
-    let known = |(name, parameter): (&str, Parameter)| {
-        let value = |direction| Some(sheet.get(parameter, direction)?.mean);
-        let mut own: Vec<f64> =
-            [Direction::Warp, Direction::Weft].into_iter().filter_map(|d| value(Some(d))).collect();
-        if own.is_empty() {
-            own.extend(value(None));
-        }
-        let name = format!("{name} {parameter}");
-        (!own.is_empty()).then(|| left_out(program, &name, own, &format!(" {}", parameter.si_unit())))
-    };
-    [("the hysteresis of bending", Parameter::Hb), ("the hysteresis of shear", Parameter::Hg)]
-        .into_iter()
-        .filter_map(known)
-        .collect()
+    [Parameter::Hb, Parameter::Hg].into_iter().filter_map(|p| hysteresis_of(program, sheet, p)).collect()
+}
+
+/// O044: the width of one kind of loop, as far as it was measured.
+pub fn hysteresis_of(program: &str, sheet: &FabricSheet, parameter: Parameter) -> Option<Finding> {
+    let value = |direction| Some(sheet.get(parameter, direction)?.mean);
+    let mut own: Vec<f64> =
+        [Direction::Warp, Direction::Weft].into_iter().filter_map(|d| value(Some(d))).collect();
+    if own.is_empty() {
+        own.extend(value(None));
+    }
+    let test = if parameter == Parameter::Hb { "bending" } else { "shear" };
+    let name = format!("the hysteresis of {test} {parameter}");
+    (!own.is_empty()).then(|| left_out(program, &name, own, &format!(" {}", parameter.si_unit())))
 }

@@ -21,7 +21,7 @@ pub static EXPORTER: Exporter = Exporter {
 /// The schema is `docs/schemas/open-fabric.json`.
 fn write(material: &Material<'_>, _: &ShellSection) -> Result<Card, CardError> {
     let wrong = |e: serde_json::Error| CardError::Json { program: "kesf.fabric/1", reason: e.to_string() };
-    let Material { sheet, made, stamp } = *material;
+    let Material { sheet, made, stamp, .. } = *material;
     let section = section_document([(sheet, made)]);
     let mut parameters = serde_json::to_value(sheet_document([sheet], None)).map_err(wrong)?;
     file_names(&mut parameters);

@@ -23,6 +23,7 @@
 //! | `lsdyna.rs` | LS-DYNA `*MAT_FABRIC` | tension, shear and mass of a membrane |
 //! | `nastran.rs` | Nastran and MYSTRAN | all of it |
 //! | `radioss.rs` | OpenRadioss `/MAT/LAW19` | tension, shear and mass of a membrane |
+//! | `radioss_fabric_a.rs` | OpenRadioss `/MAT/LAW58` | measured curves of tension and shear, out and back, and a crimp |
 //! | `radioss_fabric.rs` | OpenRadioss `/MAT/LAW158` | measured curves of tension and shear of a membrane |
 //! | `mujoco.rs` | MuJoCo 4 | strips along warp and weft; an isotropic sheet |
 //! | `usd.rs` | USD, as newton reads it | strips along warp and weft, shear; an isotropic sheet |
@@ -40,6 +41,7 @@ mod calculix;
 mod card;
 mod clo;
 mod constants;
+mod crimp;
 mod fabric;
 mod kratos;
 mod kratos_mesh;
@@ -51,6 +53,7 @@ mod newton;
 mod opensees;
 mod radioss;
 mod radioss_fabric;
+mod radioss_fabric_a;
 pub mod read;
 mod swatch;
 mod text;
@@ -85,33 +88,65 @@ pub static EXPORTERS: &[Target] = &[
     &opensees::EXPORTER,
     &radioss::EXPORTER,
     &radioss_fabric::EXPORTER,
+    &radioss_fabric_a::EXPORTER,
     &u3m::EXPORTER,
     &usd::EXPORTER,
 ];
 
-/// Programs for which nothing is written, and why: a card of fields that nobody has defined would be invented.
-pub const NOT_WRITTEN: &[(&str, &str)] = &[
-    (
-        "CLO Fabric Kit",
-        "the file that the Emulator of CLO reads is not published; `clo` writes the attributes of CLO's USD.",
-    ),
-    (
-        "Optitex",
-        "its public help names stretch, shear and bending, but neither their units nor their definitions.",
-    ),
-    (
-        "Style3D Studio",
-        "its fabric file is not published; `newton` writes the constants of the solver that Style3D published.",
-    ),
-    ("LS-DYNA *MAT_235", "it asks for the geometry and the moduli of yarns, which KES does not measure."),
-    (
-        "OpenRadioss LAW58",
-        "its crimp decides how warp and weft move each other, which KES does not measure; its defaults (N1 = N2 = 1, \
-         S1 = S2 = 0.1) are no fabric's. `radioss-fabric` writes the curves for LAW158.",
-    ),
-    ("GNATV", "no published format was found."),
-    ("PAM-FORM, AniForm", "their manuals are not public."),
+/// A program for which nothing is written: a card of fields that nobody has defined, or measured, would be invented.
+#[derive(Debug)]
+pub struct NotWritten {
+    /// Its name.
+    pub title: &'static str,
+    /// Names on the command line, in small letters and digits alone.
+    names: &'static [&'static str],
+    /// Why nothing is written.
+    pub why: &'static str,
+}
+
+/// Programs for which nothing is written, and why.
+pub const NOT_WRITTEN: &[NotWritten] = &[
+    NotWritten {
+        title: "CLO Fabric Kit",
+        names: &["clofabrickit", "clokit", "marvelousdesigner"],
+        why: "the file that the Emulator of CLO reads is not published; `clo` writes the attributes of CLO's USD.",
+    },
+    NotWritten {
+        title: "Optitex",
+        names: &["optitex"],
+        why: "its public help names stretch, shear and bending, but neither their units nor their definitions.",
+    },
+    NotWritten {
+        title: "Style3D Studio",
+        names: &["style3d", "style3dstudio"],
+        why: "its fabric file is not published; `newton` writes the constants of the solver that Style3D published.",
+    },
+    NotWritten {
+        title: "LS-DYNA *MAT_235",
+        names: &[
+            "lsdyna235",
+            "lsdynamat235",
+            "mat235",
+            "matmicromechanicsdryfabric",
+            "micromechanicsdryfabric",
+        ],
+        why: "it asks for moduli, Poisson's ratios and damping of yarns (E1, E2, G12, G23, V12, V23, VMB, VME), braid and \
+              locking angle (THI, THL), undulation along fill and warp (BFI, BWI), and DSCF, CNST, ATLR and TRS: of all its numbers a \
+              KES record has the density alone. `lsdyna` writes *MAT_FABRIC (034).",
+    },
+    NotWritten { title: "GNATV", names: &["gnatv"], why: "no published format was found." },
+    NotWritten {
+        title: "PAM-FORM, AniForm",
+        names: &["pamform", "pam", "aniform"],
+        why: "their manuals are not public.",
+    },
 ];
+
+/// The program of a name for which nothing is written, whatever its capitals, dashes and asterisks.
+pub fn not_written(name: &str) -> Option<&'static NotWritten> {
+    let plain = name.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_lowercase();
+    NOT_WRITTEN.iter().find(|none| none.names.contains(&plain.as_str()))
+}
 
 /// The target of a name.
 pub fn named(name: &str) -> Option<Target> {
@@ -151,8 +186,9 @@ pub fn card(target: Target, material: &Material<'_>) -> Result<Card, CardError> 
     Ok(card)
 }
 
-/// Targets whose file has the hysteresis, wherever in it: no other program knows friction within a sheet.
-const WITH_FRICTION: &[&str] = &["fabric", "u3m"];
+/// Targets whose file has the hysteresis, wherever in it, or that tell what they have of it: no other program knows friction
+/// within a sheet.
+const WITH_FRICTION: &[&str] = &["fabric", "radioss-fabric-a", "u3m"];
 
 /// A stiffness, mass or thickness (SI) beyond 1e-30 to 1e30: fields of eight or ten columns have no room for more, and
 /// quotients of such numbers are none.
@@ -162,6 +198,9 @@ fn beyond_cards(section: &ShellSection) -> Option<f64> {
     let others = [section.areal_density, section.thickness];
     d_m.chain(d_b).chain(section.d_s.iter()).chain(&others).copied().find(beyond)
 }
+
+#[cfg(test)]
+mod law58_tests;
 
 #[cfg(test)]
 mod layer_tests;

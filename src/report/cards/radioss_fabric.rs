@@ -70,18 +70,23 @@ fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardEr
     }
     let _ = writeln!(text, "#  FCT_ID4   FCT_ID5\n{:>10}{:>10}", 0, 0);
     for (function, response) in (1..).zip(&responses) {
-        let _ = writeln!(text, "/FUNCT/{function}\nKESF_{title}_{function}");
         let stress = response.curve.points().map(|(strain, force)| [strain, force / thickness]);
-        for [x, y] in function_points(stress, function == 3) {
-            let _ = writeln!(text, "{:>20}{:>20}", number(x), number(y));
-        }
+        funct(&mut text, function, &title, &function_points(stress, function == 3));
     }
     let lost = [Property::Bending, Property::Torsion, Property::TransverseShear, Property::Poisson];
     Ok(Card { text, findings: lost.map(|what| no_place("OpenRadioss LAW158", section, what)).into() })
 }
 
+/// A function with its number and title: abscissa and ordinate in 20 columns each.
+pub(super) fn funct(text: &mut String, function: usize, title: &str, points: &[[f64; 2]]) {
+    let _ = writeln!(text, "/FUNCT/{function}\nKESF_{title}_{function}");
+    for [x, y] in points {
+        let _ = writeln!(text, "{:>20}{:>20}", number(*x), number(*y));
+    }
+}
+
 /// Names as a comment, and their values below them in fields of twenty columns.
-fn line(text: &mut String, names: &str, values: &[f64]) {
+pub(super) fn line(text: &mut String, names: &str, values: &[f64]) {
     let heads: String = names.split(' ').map(|n| format!("{n:>20}")).collect();
     let fields: String = values.iter().map(|v| format!("{:>20}", number(*v))).collect();
     let _ = writeln!(text, "#{}\n{fields}", &heads[1..]);
@@ -90,20 +95,30 @@ fn line(text: &mut String, names: &str, values: &[f64]) {
 /// A curve with positive slopes on both sides of the origin: that of shear is the same to both sides and has degrees, that of a
 /// yarn has next to nothing where it is pushed.
 fn function_points(curve: impl Iterator<Item = [f64; 2]>, shear: bool) -> Vec<[f64; 2]> {
+    let mut out = rising(curve);
+    if shear {
+        return both_sides(&out);
+    }
+    let [_, end] = out[out.len() - 1];
+    out.insert(0, [-1.0, -PUSHED * end]);
+    out
+}
+
+/// From the origin, with positive slopes. Points that print alike would be a vertical or a level part.
+pub(super) fn rising(curve: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
     let mut out: Vec<[f64; 2]> = vec![[0.0; 2]];
     for [x, y] in curve {
-        // Points that print alike would be a vertical or a level part.
         let [before, level] = out[out.len() - 1].map(|v| v + 1e-8 * v.abs());
         if x > before && y > level {
             out.push([x, y]);
         }
     }
-    let [_, end] = out[out.len() - 1];
-    if !shear {
-        out.insert(0, [-1.0, -PUSHED * end]);
-        return out;
-    }
+    out
+}
+
+/// A curve of shear from the origin, the same to both sides, in degrees.
+pub(super) fn both_sides(curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let degrees = |[angle, stress]: [f64; 2]| [angle.to_degrees(), stress];
-    let other = out.iter().skip(1).rev().map(|[x, y]| [-x, -y]);
-    other.chain(out.iter().copied()).map(degrees).collect()
+    let other = curve.iter().skip(1).rev().map(|[x, y]| [-x, -y]);
+    other.chain(curve.iter().copied()).map(degrees).collect()
 }

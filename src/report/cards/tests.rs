@@ -35,7 +35,8 @@ pub(super) fn constitutive(section: ShellSection) -> Constitutive {
 
 pub(super) fn written(name: &str, section: ShellSection) -> Result<String, CardError> {
     let made = constitutive(section);
-    card(named(name).unwrap(), &Material { sheet: &sheet(), made: &made, stamp: None }).map(|c| c.text)
+    card(named(name).unwrap(), &Material { sheet: &sheet(), made: &made, stamp: None, crimp: None })
+        .map(|c| c.text)
 }
 
 fn numbers(line: &str) -> Vec<f64> {
@@ -250,8 +251,11 @@ fn abaqus_fabric_has_measured_curves_as_stress_over_strain() {
     let section = section();
     let made =
         Constitutive { section, law: None, used: Vec::new(), inputs: Vec::new(), findings: Vec::new() };
-    let card =
-        card(named("abaqus-fabric").unwrap(), &Material { sheet: &sheet, made: &made, stamp: None }).unwrap();
+    let card = card(
+        named("abaqus-fabric").unwrap(),
+        &Material { sheet: &sheet, made: &made, stamp: None, crimp: None },
+    )
+    .unwrap();
     let [warp, weft, shear] = loading_data(&card.text).try_into().unwrap();
     let (t, last) = (4e-4, warp.len() - 2);
     assert_relative_eq!(warp[last], 500.0 / t, max_relative = 1e-9);
@@ -390,7 +394,8 @@ fn clo_is_what_unreal_reads() {
 fn a_lost_factor_in_bending_is_another_card() {
     let plants: [fn(&mut ShellSection); 2] = [|s| s.d_b *= 2.0, |s| s.d_b[(0, 0)] = 9e-6];
     for target in EXPORTERS.iter().filter(|t| {
-        !["lsdyna", "radioss", "radioss-fabric", "abaqus-fabric", "kratos-mesh"].contains(&t.name)
+        !["lsdyna", "radioss", "radioss-fabric", "radioss-fabric-a", "abaqus-fabric", "kratos-mesh"]
+            .contains(&t.name)
     }) {
         let own = written(target.name, section()).unwrap();
         for plant in plants {
@@ -423,7 +428,7 @@ fn what_has_no_place_is_told_with_its_size() {
         sheet.values.insert(Key { parameter, direction }, Estimate::single(mean));
     }
     for target in EXPORTERS {
-        let card = card(target, &Material { sheet: &sheet, made: &made, stamp: None }).unwrap();
+        let card = card(target, &Material { sheet: &sheet, made: &made, stamp: None, crimp: None }).unwrap();
         let told: Vec<String> =
             card.findings.iter().filter(|f| f.code() == "O044").map(|f| f.message().to_string()).collect();
         for told in &told {

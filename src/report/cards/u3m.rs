@@ -2,6 +2,11 @@
 //!
 //! The format has a place for thickness, weight, composition, kind and construction of a material. Stiffness it knows
 //! as a file of one device only (FAB), so that of KES stands under `custom`, which programs pass over.
+//!
+//! That file (`u3m1.1/physics/physics_schema.json`) has `raw_data` or null. What is there must be all of B, L and W, each with the
+//! five tests of the device (D1, D2, S1, S2, U1: clamps 2 and 8 cm apart) and its serial number, and T and M: a record of KES-FB
+//! would be passed off as one of another instrument. Curves as recorded stand under `custom.kesf.tests`, in the form that is
+//! proposed for all instruments (`docs/src/exchange.md`).
 
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
@@ -10,15 +15,16 @@ use uuid::Builder;
 use super::card::{Card, CardError, Exporter, Material};
 use super::constants::{Property, no_place};
 use super::fabric::file_names;
+use crate::characterise::SpecimenResult;
+use crate::instrument::Test;
 use crate::report::json::{section_document, sheet_document, text};
-
 use crate::section::ShellSection;
 
 /// `kesf export --to u3m`.
 pub static EXPORTER: Exporter = Exporter {
     name: "u3m",
     ending: "u3m",
-    title: "U3M 1.1 material: thickness, weight, composition; everything else under custom.kesf",
+    title: "U3M 1.1 material: thickness, weight, composition; curves and everything else under custom.kesf",
     holds: "thickness, mass per area and composition; stiffness stands under `custom`, which other programs pass over.",
     write: document,
 };
@@ -79,7 +85,7 @@ const NO_DATE: &str = "1970-01-01T00:00:00Z";
 /// The document.
 fn document(material: &Material<'_>, checked: &ShellSection) -> Result<Card, CardError> {
     let wrong = |e: serde_json::Error| CardError::Json { program: "U3M", reason: e.to_string() };
-    let Material { sheet, made, stamp } = *material;
+    let Material { sheet, made, stamp, .. } = *material;
     let section = section_document([(sheet, made)]);
     let parameters = serde_json::to_value(sheet_document([sheet], None)).map_err(wrong)?;
     let mut ours = Map::new();
@@ -91,15 +97,20 @@ fn document(material: &Material<'_>, checked: &ShellSection) -> Result<Card, Car
     let name = if sheet.info.title.is_empty() { &sheet.name } else { &sheet.info.title };
     let date = stamp.unwrap_or(NO_DATE);
     let origin = sheet.info.origin.name();
+    let id = identifier(&text(&ours).map_err(wrong)?);
+    ours.insert(
+        "tests".into(),
+        sheet.specimens.iter().map(|s| tested(s, sheet.info.climate.as_deref())).collect(),
+    );
     let document = json!({
         "schema": "1.1",
         "material": {
             "name": name,
-            "id": identifier(&text(&ours).map_err(wrong)?),
+            "id": id,
             "created": date,
             "modified": date,
             "description": format!(
-                "{origin} KES data; stiffness, friction and the assumptions behind them under custom.kesf (SI units)"
+                "{origin} KES data; curves, stiffness, friction and the assumptions behind them under custom.kesf (SI units)"
             ),
             "front": null,
             "back": null,
@@ -119,6 +130,30 @@ fn document(material: &Material<'_>, checked: &ShellSection) -> Result<Card, Car
     let outside = [Property::Tensile, Property::Bending, Property::Shear, Property::Torsion];
     let findings = outside.map(|what| no_place("U3M outside of `custom`", checked, what)).into();
     Ok(Card { text: text(&document).map_err(wrong)?, findings })
+}
+
+/// What a specimen was recorded to do, in the form that `docs/src/exchange.md` proposes.
+fn tested(specimen: &SpecimenResult, climate: Option<&str>) -> Value {
+    let m = &specimen.measurement;
+    let names = match m.test {
+        Test::Tensile => ["strain", "force per width"],
+        Test::Shear => ["shear angle", "force per width"],
+        Test::Bending => ["curvature", "moment per width"],
+        Test::Compression => ["thickness", "pressure"],
+        Test::Friction => ["position", "coefficient of friction"],
+        Test::Roughness => ["position", "height"],
+    };
+    let units = m.test.axes();
+    let axis = |k: usize, values: &[f64]| json!({"name": names[k], "unit": units[k], "values": values});
+    json!({
+        "standard": m.test.instrument(),
+        "quantity": m.test,
+        "direction": m.direction,
+        "specimen": {"width": m.conditions.width, "length": m.conditions.gauge, "unit": "m", "number": m.specimen},
+        "climate": climate,
+        "x": axis(0, &m.curve.x),
+        "y": axis(1, &m.curve.y),
+    })
 }
 
 /// A sheet without the samples of its friction laws, which are in `sheet.json`, and without the paths of its files:

@@ -85,7 +85,7 @@ mod tests {
 
     fn written(shape: &DrapedSheet) -> Result<Card, CardError> {
         let (sheet, made) = (sheet(), constitutive(section()));
-        draped(&Material { sheet: &sheet, made: &made, stamp: None }, shape)
+        draped(&Material { sheet: &sheet, made: &made, stamp: None, crimp: None }, shape)
     }
 
     #[test]
