@@ -171,8 +171,7 @@ fn damaged_grid(rng: &mut Pcg64, kind: &str, grid: &Grid) -> Option<Grid> {
         "a sign lost or added" => {
             let (r, c) = any_number(rng)?;
             let whole = chance(rng, 0.5);
-            for (k, row) in out.rows.iter_mut().enumerate().filter(|(k, _)| whole || *k == r) {
-                let _ = k;
+            for (_, row) in out.rows.iter_mut().enumerate().filter(|(k, _)| whole || *k == r) {
                 if let Some(n) = row.get_mut(c).and_then(number_mut) {
                     n.value = -n.value;
                 }
