@@ -97,9 +97,8 @@ impl Scanner<'_, '_> {
             .map(|(_, c)| c.text.to_string())
             .collect();
         if !names.is_empty() {
-            let reason = Some("their headings are not understood".to_string());
             let place = Place::at(self.context.path, heading.line, 0);
-            self.findings.push(Finding::new(ReadFact::Unusable { names, reason }).at(place));
+            self.findings.push(Finding::new(ReadFact::Unusable { names, reason: None }).at(place));
         }
     }
 
