@@ -114,8 +114,11 @@ const TEXTS: usize = 100;
 
 /// The unit beyond ASCII that a text holds.
 fn unit_in(text: &str) -> Option<Unit> {
-    let found = split_unit(text).1.unwrap_or_else(|| unbracketed(text));
-    if found.is_ascii() { None } else { unit(&found).ok() }
+    // Before it is folded: `cm²` is `cm2` then.
+    if text.rsplit(['(', '[']).next().is_none_or(str::is_ascii) {
+        return None;
+    }
+    unit(&split_unit(text).1.unwrap_or_else(|| unbracketed(text))).ok()
 }
 
 /// Whether a text has characters beyond ASCII and no unit among them.
