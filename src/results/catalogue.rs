@@ -83,7 +83,13 @@ impl Catalogue {
                 let (fabrics, errors) = library.read(group, &|_: &Path| observer.step());
                 let of_group = library.path(group);
                 let entry = |fabric: FabricInput| Entry::new(Origin::Group(group), of_group, fabric, keep);
-                Some((fabrics.into_iter().map(entry).collect::<Result<Vec<_>, _>>(), errors))
+                let entries = fabrics.into_iter().map(entry).collect::<Result<Vec<_>, _>>();
+                // What is collected in the place of inputs keeps their room.
+                let entries = entries.map(|mut entries| {
+                    entries.shrink_to_fit();
+                    entries
+                });
+                Some((entries, errors))
             })
         })?;
         let mut catalogue = Self {

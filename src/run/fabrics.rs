@@ -136,7 +136,10 @@ impl<'c> Workshop<'c> {
             self.observer.step();
             made
         });
-        made.into_iter().collect()
+        let mut made: Vec<Made> = made.into_iter().collect::<Result<_, _>>()?;
+        // What is collected in the place of fabrics keeps their room.
+        made.shrink_to_fit();
+        Ok(made)
     }
 
     /// The failure of another fabric that ended the run, or that it was cancelled.
