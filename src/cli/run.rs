@@ -4,14 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::drapes::DrapesArg;
 use super::exit::Exit;
-use super::fields::FieldsArg;
 use super::output::open_folder;
 use super::program::{now, program};
 use super::shard::{self, Request};
 use super::tasks::TaskArgs;
 use super::ui::Ui;
+use super::when::When;
 use crate::documents::ResultsDocument;
 use crate::results::{Failure, Shard, population};
 use crate::run::{self, RunSettings};
@@ -31,23 +30,16 @@ pub struct Options {
     /// Do one part of many, as Parquet: the fabrics whose names fall to this shard; `kesf merge` joins the parts
     #[arg(long, value_name = "K/N", conflicts_with_all = ["fields", "stamp", "xlsx", "bom", "no_charts", "format", "population"])]
     shard: Option<Shard>,
-    /// Solve drape cases; alone it means always
-    #[arg(
-        long,
-        value_enum,
-        value_name = "WHEN",
-        num_args = 0..=1,
-        require_equals = true,
-        default_value_t,
-        default_missing_value = "always"
-    )]
-    drape: DrapesArg,
+    /// Solve drape cases, a minute or so for each fabric; auto: a quick one, without friction, of each fabric with measured
+    /// curves in runs of up to 20 fabrics
+    #[arg(long, value_name = "WHEN", num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "always")]
+    drape: When,
     /// Compute every fabric, also those that an earlier run into the folder has computed of the same inputs
     #[arg(long)]
     fresh: bool,
     /// Write fields of sheets (VTU); auto: in runs of up to 100 fabrics
-    #[arg(long, value_enum, value_name = "WHEN", default_value_t)]
-    fields: FieldsArg,
+    #[arg(long, value_enum, value_name = "WHEN", default_value = "auto")]
+    fields: When,
     /// Compare fabrics on the page with this population: a folder of results, or a file with mean and SD (TOML, CSV)
     #[arg(long, value_name = "PATH")]
     population: Option<PathBuf>,

@@ -18,7 +18,7 @@ use crate::report::OutputError;
 use crate::report::arrow::read;
 use crate::report::write::{hash, write_part};
 use crate::results::{Failure, Input, Job, Observer, Share, hash_of};
-use crate::run::{RunSettings, key_of_case};
+use crate::run::{Drapes, RunSettings, key_of_case};
 
 /// What part is to be made, and where.
 #[derive(Clone, Copy, Debug)]
@@ -143,7 +143,8 @@ fn keys(request: &Request, share: Share) -> Result<(String, String), Failure> {
     let set_up = json!({
         "inputs": named,
         "cases": cases,
-        "drape": settings.drapes,
+        // A share of a batch has no quick drapes.
+        "drape": settings.drapes == Drapes::Always,
         "solver": job.solver,
         "evaluation": job.reading.entry(),
         "shards": share.shard.count(),

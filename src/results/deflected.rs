@@ -66,18 +66,16 @@ impl Deflected {
         resultants: &[Resultants],
         curvatures: &[[f64; 3]],
     ) -> Result<PageSheet, Failure> {
-        let shape = Shape::of(&self.sheet(), self.file.clone())?;
-        let fields = || {
-            let curvatures: Vec<f64> =
-                curvatures.iter().map(|[x, y, xy]| largest_principal([*x, *y, 0.5 * xy])).collect();
-            let moments: Vec<f64> = resultants.iter().map(|all| largest_principal(all.moment)).collect();
-            vec![
-                ShapeField::new("largest principal curvature", "1/m", &curvatures),
-                ShapeField::new("largest principal moment", "N", &moments),
-            ]
+        let Some(shape) = Shape::of(&self.sheet(), self.file.clone())? else {
+            return Ok(PageSheet::TooLarge);
         };
-        Ok(shape.map_or(PageSheet::TooLarge, |shape| {
-            PageSheet::Shown(Box::new(Shape { is_drape, fields: fields(), ..shape }))
-        }))
+        let curvatures: Vec<f64> =
+            curvatures.iter().map(|[x, y, xy]| largest_principal([*x, *y, 0.5 * xy])).collect();
+        let moments: Vec<f64> = resultants.iter().map(|all| largest_principal(all.moment)).collect();
+        let fields = vec![
+            ShapeField::new("largest principal curvature", "1/m", &curvatures),
+            ShapeField::new("largest principal moment", "N", &moments),
+        ];
+        Ok(PageSheet::Shown(Box::new(Shape { is_drape, fields, ..shape })))
     }
 }

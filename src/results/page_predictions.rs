@@ -4,7 +4,7 @@ use super::fabric::FabricReport;
 use super::overview::stem;
 use super::page_values::rests_on;
 use super::rests_on::OF_PLATE;
-use crate::finding::{Fact, Finding, StudyFact};
+use crate::finding::{Fact, StudyFact};
 use crate::quantity::significant;
 use crate::report::html::{Block, Cell};
 use crate::report::table::PredictionRow;
@@ -142,12 +142,13 @@ fn leading_cell(report: &FabricReport, column: &Column) -> Cell {
 
 /// What is said of a case whose drape is a quick one.
 fn quick(report: &FabricReport, case: &str) -> String {
-    let is_of_case = |finding: &Finding| finding.place.as_ref().is_some_and(|place| stem(place) == case);
-    let elements = report.findings.iter().find_map(|finding| match &finding.fact {
-        Fact::Study(StudyFact::QuickDrape { elements, .. }) if is_of_case(finding) => Some(elements),
-        _ => None,
-    });
-    elements.map_or(String::new(), |elements| format!("quick, {elements} elements"))
+    for finding in &report.findings {
+        let Fact::Study(StudyFact::QuickDrape { elements, .. }) = &finding.fact else { continue };
+        if finding.place.as_ref().is_some_and(|place| stem(place) == case) {
+            return format!("quick, {elements} elements");
+        }
+    }
+    String::new()
 }
 
 /// Linear solves, one row a fabric and one column a case.
@@ -207,7 +208,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::finding::Place;
+    use crate::finding::{Finding, Place};
     use crate::report::table::FabricRow;
     use crate::results::rests_on::DOUBTFUL;
 
