@@ -168,7 +168,7 @@ fn fixed(grid: &Grid) -> Option<String> {
 /// Whether a workbook has the unit behind a number in its format: so it is in every second of them.
 fn is_shown(grid: &Grid, before: &str, behind: &str) -> bool {
     let is_unit = behind.chars().filter(|c| c.is_alphabetic()).count() > 1 || behind.contains('%');
-    grid.rows.len() % 2 == 0 && before.is_empty() && is_unit
+    grid.rows.len().is_multiple_of(2) && before.is_empty() && is_unit
 }
 
 fn digits(decimals: usize) -> String {
