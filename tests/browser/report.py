@@ -379,7 +379,8 @@ def turning(page, data):
         told = viewer.locator(".reading").inner_text()
         check("what the colours are is told with its largest value", field["name"] in told and unit in told and field["unit"] == unit, told)
         seen.append(picture())
-    check("the colours differ", len(set(seen)) == 3)
+    # Where one rigidity counts, moments are curvatures times it, and look the same.
+    check("the colours differ", seen[0] not in seen[1:])
     colour.select_option(index=0)
     for i, sheet in enumerate(mine):
         chosen.select_option(index=i)

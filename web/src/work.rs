@@ -10,8 +10,8 @@ use kesf::constitutive::Assumptions;
 use kesf::report::cards::EXPORTERS;
 use kesf::report::html::{LIMIT, self_contained};
 use kesf::results::{
-    CheckDocument, Failure, Input, Job, Limits, MemorySink, Observer, Reading, cards as cards_of,
-    check as checked_of, sections, write_cards,
+    CheckDocument, Curves, Failure, Input, Job, Limits, MemorySink, Observer, Reading, cards as cards_of,
+    check as checked_of, sections_with, write_cards,
 };
 use kesf::run::Drapes;
 use serde::{Deserialize, Serialize};
@@ -158,7 +158,8 @@ pub fn cards(options: &str) -> Result<RunAnswer, Failure> {
     let event = |event: kesf::results::Event<'_>| said.hear(event);
     let observer = Observer { event: &event, cancelled: &|| false };
     let fabrics: Vec<Input> = inputs().into_iter().filter(|input| !input.is_case()).collect();
-    let (sections, _) = sections(&fabrics, &form.reading(), &Assumptions::default(), &observer)?;
+    let (sections, _) =
+        sections_with(&fabrics, &form.reading(), &Assumptions::default(), Curves::Kept, &observer)?;
     let mut made = results(Clone::clone);
     for target in EXPORTERS {
         let sink = MemorySink::default();
