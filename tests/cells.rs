@@ -7,24 +7,12 @@ use std::path::Path;
 use approx::assert_relative_eq;
 use kesf::instrument::{Direction, FileContent, Parameter, ReadError, ReadSettings, parse};
 
+#[path = "common/content.rs"]
+mod content;
+use content::{told, value};
+
 fn read(text: &[u8]) -> Result<FileContent, ReadError> {
     parse(Path::new("lab.csv"), text, &ReadSettings::default())
-}
-
-fn told(content: &FileContent, code: &str) -> String {
-    let found: Vec<String> =
-        content.findings.iter().filter(|f| f.code() == code).map(ToString::to_string).collect();
-    found.join("\n")
-}
-
-fn value(content: &FileContent, parameter: Parameter, direction: Option<Direction>) -> f64 {
-    let same: Vec<_> = content
-        .results
-        .iter()
-        .filter(|(_, r)| r.parameter == parameter && r.direction == direction)
-        .collect();
-    assert_eq!(same.len(), 1, "{parameter} {direction:?}: {:?}", content.results);
-    same[0].1.mean
 }
 
 const WARP: Option<Direction> = Some(Direction::Warp);

@@ -9,6 +9,10 @@ use approx::assert_relative_eq;
 use kesf::instrument::{Direction, FileContent, Parameter, ReadError, ReadSettings, parse};
 use rust_xlsxwriter::{Format, Workbook};
 
+#[path = "common/content.rs"]
+mod content;
+use content::{told, value};
+
 const WARP: Option<Direction> = Some(Direction::Warp);
 const WEFT: Option<Direction> = Some(Direction::Weft);
 /// 0.1 gf·cm²/cm.
@@ -47,22 +51,6 @@ fn book(sheets: &[(&str, Vec<Vec<Cell<'_>>>)]) -> Vec<u8> {
         }
     }
     book.save_to_buffer().unwrap()
-}
-
-fn told(content: &FileContent, code: &str) -> String {
-    let found: Vec<String> =
-        content.findings.iter().filter(|f| f.code() == code).map(ToString::to_string).collect();
-    found.join("\n")
-}
-
-fn value(content: &FileContent, parameter: Parameter, direction: Option<Direction>) -> f64 {
-    let same: Vec<_> = content
-        .results
-        .iter()
-        .filter(|(_, r)| r.parameter == parameter && r.direction == direction)
-        .collect();
-    assert_eq!(same.len(), 1, "{parameter} {direction:?}: {:?}", content.results);
-    same[0].1.mean
 }
 
 fn table(b: [&str; 2], head: &str) -> Vec<u8> {

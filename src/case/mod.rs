@@ -216,11 +216,12 @@ impl Case {
         }
     }
 
-    /// Makes an elastic drape a quick one, for the fabrics of which curves were measured; false for another case.
+    /// Makes an elastic drape a quick one, for the fabrics of which curves were measured; false for another case, and for one
+    /// that is solved at many points of its inputs.
     pub fn make_quick(&mut self) -> bool {
-        let is_elastic = self.assumptions().is_none_or(|a| a.law == Mode::Elastic);
+        let is_once = self.law() == Mode::Elastic && self.sampling().is_none();
         match &mut self.problem {
-            Problem::Drape(problem) if is_elastic => {
+            Problem::Drape(problem) if is_once => {
                 problem.make_quick();
                 true
             }

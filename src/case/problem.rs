@@ -101,7 +101,7 @@ pub struct DrapeProblem {
     pub folds: Vec<usize>,
     /// How often the cells are halved for the state of lowest energy.
     pub refinements: usize,
-    /// Whether the cells are wider than the case says, and the refinements fewer, for a first look.
+    /// Whether a run hangs it by itself, for a first look: on the widest cells that it can have, and refined once at most.
     pub is_quick: bool,
     /// Whether the sizes of disc and sheet are those with which the fabric's drape was measured, where they are known.
     pub sizes_as_measured: bool,
@@ -118,12 +118,14 @@ impl DrapeProblem {
         (is_even && cells[0] / 2 >= CELLS_OF_THE_RADIUS).then(|| cells.map(|n| n / 2))
     }
 
-    /// Searches on the widest cells alone, and halves those of the state of lowest energy once.
+    /// Searches on the widest cells alone, and halves those of the state of lowest energy once; where the cells stay, no more
+    /// often than the case says.
     pub(super) fn make_quick(&mut self) {
+        let before = self.ring.cells;
         while let Some(wider) = Self::wider(self.ring.cells) {
             self.ring.cells = wider;
         }
-        self.refinements = 1;
+        self.refinements = if self.ring.cells == before { self.refinements.min(1) } else { 1 };
         self.is_quick = true;
     }
 

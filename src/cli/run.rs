@@ -30,8 +30,8 @@ pub struct Options {
     /// Do one part of many, as Parquet: the fabrics whose names fall to this shard; `kesf merge` joins the parts
     #[arg(long, value_name = "K/N", conflicts_with_all = ["fields", "stamp", "xlsx", "bom", "no_charts", "format", "population"])]
     shard: Option<Shard>,
-    /// Solve drape cases, a minute or so for each fabric; auto: a quick one, without friction, of each fabric with measured
-    /// curves in runs of up to 20 fabrics
+    /// Solve drape cases: `--drape` alone all as they say, a minute or so for each fabric; auto: a quick one, without friction,
+    /// of each fabric with measured curves in runs of up to 20 fabrics
     #[arg(long, value_name = "WHEN", num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "always")]
     drape: When,
     /// Compute every fabric, also those that an earlier run into the folder has computed of the same inputs

@@ -5,6 +5,7 @@
 //! heads, `parameter,unit,warp,weft`, `1 2 3 AVE` under WARP and WEFT and one row for each value are one kind of table.
 
 mod cells;
+mod counting;
 mod directions;
 mod fast_cells;
 mod layout;

@@ -41,7 +41,7 @@ const WITH_DRAPES: usize = 20;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Drapes {
-    /// In runs of up to 20 fabrics, of the fabrics with measured curves: on coarse cells and without friction.
+    /// In runs of up to 20 fabrics, of the fabrics with measured curves: on coarse cells, without friction and bands.
     #[default]
     Auto,
     /// All, as their cases say: a minute or so for each fabric.
@@ -70,7 +70,7 @@ impl Drapes {
             if is_in {
                 chosen.push(case);
             } else if self == Self::Auto {
-                let why = if few { "with friction a drape" } else { "a drape" };
+                let why = if few { "with friction or [uncertainty] a drape" } else { "a drape" };
                 observer
                     .note(&format!("{}: left out, {why} takes minutes; add --drape", case.path.display()));
             }

@@ -148,7 +148,7 @@ super::facts! {
             /// What the last refinement changed in the coefficient.
             change: f64,
         } = "a quick drape, on {elements} elements: the last refinement changed the coefficient by {:+.1} points, and more refinement \
-             would change it again; `--drape` or `kesf solve` makes the whole of the case", 100.0 * change;
+             would change it again; `--drape` or `kesf solve` hangs it as the case says", 100.0 * change;
         /// A sheet that buckled on the way.
         "S124" Buckled {
             /// Factors of the load after which it did.
