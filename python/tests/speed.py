@@ -1,9 +1,9 @@
 """Fabrics a second and core through the package, beside the command: ``python tests/speed.py COMMAND [FABRICS]``.
 
 Both read copies of a shipped fabric of 21 records (seven files of three specimens each), evaluate them and solve a
-virtual bending test and a clamped square of 40 x 40 elements, on one thread, in turns. What counts is the processor time
-of the best of five turns, which other work on the machine changes least; that of starting Python is left out, that of the
-command is in.
+virtual bending test and a clamped square of 40 x 40 elements, on one thread, in turns. What counts is the processor
+time of the best of five turns, which other work on the machine changes least; that of starting Python is left out,
+that of the command is in.
 """
 
 from __future__ import annotations
