@@ -696,6 +696,12 @@ fn a_run_hangs_quick_drapes() {
     let (predictions, problems, told, _) = hung("never", &["--drape=never"]);
     assert!(!predictions.contains("drape") && !problems.contains("S130"), "{predictions}");
     assert!(!told.contains("drape"), "{told}");
+    // A case that is named and finds no fabric at all is an error, quick or not.
+    let empty = folder.path().join("empty");
+    fs::create_dir(&empty).unwrap();
+    let out = folder.path().join("nothing");
+    let output = run(&["run", empty.to_str().unwrap(), case.to_str().unwrap(), "-o", out.to_str().unwrap()]);
+    assert_eq!(code(&output), 2, "{}", stderr(&output));
     let output = run(&["run", "kesf_data/twill", "--drape=often"]);
     assert!(code(&output) == 2 && stderr(&output).contains("often"), "{}", stderr(&output));
 }

@@ -232,8 +232,9 @@ impl<'c> Workshop<'c> {
 
     /// Says for how many fabrics a drape was made quick.
     pub fn tell_of_quick_drapes(&self) {
-        for job in self.jobs.iter().filter(|job| job.case.is_quick()) {
-            let (hung, all) = (job.tally().tasks, self.work.catalogue.len());
+        let all = self.work.catalogue.len();
+        for job in self.jobs.iter().filter(|job| all > 0 && job.case.is_quick()) {
+            let hung = job.tally().tasks;
             self.observer.note(&format!(
                 "{}: quick drapes for {hung} of {all} fabrics, those with measured curves; --drape makes the whole of \
                  the case for every fabric",
@@ -260,13 +261,16 @@ impl<'c> Workshop<'c> {
         self.jobs.iter().map(of).collect()
     }
 
-    /// The cases that a batch of these fabrics is for: one for FAB records or laws is nothing to fabrics without them.
+    /// The cases that a batch of these fabrics is for: one for FAB records or laws is nothing to fabrics without them,
+    /// and a drape that nobody asked for nothing to fabrics without curves.
     pub fn suitable(&self) -> Vec<&'c Case> {
+        let some_fabrics = self.work.catalogue.len() > 0;
         let left_out = |case: &Case| {
             let job = self.jobs.iter().find(|job| std::ptr::eq(job.case, case));
             job.is_some_and(|job| {
                 let tally = job.tally();
-                (case.is_for_fab_records() || case.is_quick() || tally.lacked_by_any) && !tally.suits_any
+                let may_suit_none = case.is_for_fab_records() || tally.lacked_by_any;
+                (may_suit_none || case.is_quick() && some_fabrics) && !tally.suits_any
             })
         };
         self.work.cases.iter().filter(|case| !left_out(case)).collect()
