@@ -54,7 +54,9 @@ impl StepTable {
         let analysis = match at.get("analysis") {
             None => default.checked(&case.get("analysis").unwrap_or(*case), loads)?,
             Some(of_step) => match AnalysisTable::read(at)? {
-                AnalysisTable::Nonlinear(table) => table.checked(&of_step, loads)?,
+                AnalysisTable::Nonlinear(table) => {
+                    table.with_obstacles(case, &of_step)?.checked(&of_step, loads)?
+                }
                 _ => {
                     let message = "the [analysis] of a step is of kind = \"nonlinear\"";
                     return refused(of_step.value_place("kind"), message);

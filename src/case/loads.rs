@@ -209,10 +209,10 @@ impl LoadTable {
             Self::Gravity(table) => table.load(at)?,
             Self::Point(table) => table.load(at)?,
             Self::EdgeForce(EdgeForceTable { set, value, direction }) => {
-                edge(set, [unit(direction, at)? * value.si(), Vector3::zeros()])
+                edge(set, [unit(direction, "direction", at)? * value.si(), Vector3::zeros()])
             }
             Self::EdgeMoment(EdgeMomentTable { set, value, direction }) => {
-                edge(set, [Vector3::zeros(), unit(direction, at)? * value.si()])
+                edge(set, [Vector3::zeros(), unit(direction, "direction", at)? * value.si()])
             }
             Self::Prescribed(_) => return Ok(None),
         }))
@@ -241,13 +241,13 @@ impl SheetLoads {
 impl GravityTable {
     fn load(&self, at: &Node<'_>) -> Result<SheetLoad, CaseError> {
         let g = self.value.map_or(STANDARD_GRAVITY, Acceleration::si);
-        Ok(SheetLoad::Gravity(unit(self.direction.unwrap_or([0.0, 0.0, -1.0]), at)? * g))
+        Ok(SheetLoad::Gravity(unit(self.direction.unwrap_or([0.0, 0.0, -1.0]), "direction", at)? * g))
     }
 }
 
 impl PointTable {
     fn load(self, at: &Node<'_>) -> Result<SheetLoad, CaseError> {
-        let along = unit(self.direction, at)?;
+        let along = unit(self.direction, "direction", at)?;
         let (force, moment) = match (self.value.parse::<Force>(), self.value.parse::<Moment>()) {
             (Ok(force), _) => (along * force.si(), Vector3::zeros()),
             (_, Ok(moment)) => (Vector3::zeros(), along * moment.si()),
@@ -278,15 +278,15 @@ impl PrescribedTable {
     }
 }
 
-/// A direction of any length as a unit vector.
-fn unit(direction: [f64; 3], at: &Node<'_>) -> Result<Vector3<f64>, CaseError> {
+/// A direction of any length, the value of a key, as a unit vector.
+pub(super) fn unit(direction: [f64; 3], key: &str, at: &Node<'_>) -> Result<Vector3<f64>, CaseError> {
     let v = Vector3::from(direction);
     let length = v.norm();
     if length > 0.0 && length.is_finite() {
         return Ok(v / length);
     }
     refused(
-        at.value_place("direction"),
-        format!("direction {direction:?} has no direction: give a vector such as [0, 0, -1]"),
+        at.value_place(key),
+        format!("{key} {direction:?} has no direction: give a vector such as [0, 0, -1]"),
     )
 }

@@ -16,6 +16,7 @@ mod kind;
 mod loads;
 mod material;
 mod nonlinear;
+mod obstacles;
 mod point;
 mod problem;
 mod sheet;
@@ -49,6 +50,7 @@ pub use error::CaseError;
 pub use loads::{PointOfAction, Prescribed, SheetLoad, SheetLoads};
 pub use material::{FabricMaterial, Material, SectionTable};
 pub use nonlinear::{MethodChoice, SheetStep};
+pub use obstacles::SheetObstacle;
 pub use point::SheetPoint;
 pub use problem::{DrapeProblem, InstrumentTest, Mounting, Problem, SheetProblem, ShellSpecimen};
 pub use sheet::{Annulus, Layout, Outline, Sheet, Warp};
@@ -104,6 +106,10 @@ pub(crate) struct CaseTable {
     #[serde(default, rename = "loads")]
     #[schemars(with = "Vec<loads::LoadTable>")]
     _loads: ReadLater,
+    /// What the sheet cannot pass in large rotations.
+    #[serde(default, rename = "obstacles")]
+    #[schemars(with = "Vec<obstacles::ObstacleTable>")]
+    _obstacles: ReadLater,
     /// What the sheet is taken through in large rotations, one step after the other.
     #[serde(default)]
     steps: Vec<steps::StepTable>,

@@ -102,7 +102,29 @@ impl MethodChoice {
     ];
 }
 
+/// Largest step of the load factor beside obstacles.
+const STEP_WITH_OBSTACLES: f64 = 0.1;
+
 impl NonlinearTable {
+    /// The table of a case, which may have `[[obstacles]]`: what touches and rubs depends on the way, so that steps are short.
+    pub fn with_obstacles(mut self, case: &Node<'_>, at: &Node<'_>) -> Result<Self, CaseError> {
+        if !case.has("obstacles") {
+            return Ok(self);
+        }
+        match self.method {
+            MethodChoice::Newton | MethodChoice::Stable => {
+                self.largest_step.get_or_insert(STEP_WITH_OBSTACLES);
+            }
+            MethodChoice::Flow => {}
+            MethodChoice::ArcLength => {
+                let message =
+                    "[[obstacles]] are for method = \"newton\", \"stable\" or \"flow\": choose one of them";
+                return refused(at.value_place("method"), message);
+            }
+        }
+        Ok(self)
+    }
+
     /// Settings and method under loads of the table at a node.
     pub fn checked(&self, at: &Node<'_>, loads: SheetLoads) -> Result<Nonlinear, CaseError> {
         self.check_keys(at)?;

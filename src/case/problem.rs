@@ -7,6 +7,7 @@ use super::bending_test::BendingTest;
 use super::check::{Check, ProbePoint};
 use super::loads::SheetLoad;
 use super::material::{FabricMaterial, Material, SectionTable};
+use super::obstacles::SheetObstacle;
 use super::sheet::{Annulus, Layout, Outline, Sheet};
 use super::solver::Solver;
 use super::supports::{RigidSet, SheetSupport};
@@ -36,6 +37,8 @@ pub struct SheetProblem {
     pub sheet: Sheet,
     /// How it is held.
     pub mounting: Mounting,
+    /// What it cannot pass; nothing but in statics in large rotations.
+    pub obstacles: Vec<SheetObstacle>,
     /// What is computed, and under which loads.
     pub analysis: Analysis,
     /// How the equations are solved.

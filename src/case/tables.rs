@@ -10,6 +10,7 @@ use super::error::refused;
 use super::history::steps;
 use super::loads::{LoadTable, SheetLoad, SheetLoads};
 use super::material::{FabricMaterial, Material, SectionTable, check_assumptions};
+use super::obstacles::SheetObstacle;
 use super::problem::{DrapeProblem, InstrumentTest, Mounting, Problem, SheetProblem, ShellSpecimen};
 use super::sheet::{Sheet, SheetTable};
 use super::virtual_test::VirtualTestTable;
@@ -57,6 +58,7 @@ impl CaseTable {
         let analysis = AnalysisTable::read(case)?;
         if !matches!(analysis, AnalysisTable::Nonlinear(_)) {
             foreign(case, &["steps"], NO_STEPS)?;
+            foreign(case, &["obstacles"], NO_OBSTACLES)?;
         }
         let abilities = Abilities {
             friction: analysis.can_have_friction(),
@@ -90,6 +92,7 @@ impl CaseTable {
             }
             AnalysisTable::Nonlinear(nonlinear) => {
                 foreign(case, &["convergence"], NO_CONVERGENCE)?;
+                let nonlinear = nonlinear.with_obstacles(case, &at)?;
                 let analysis = match steps(&self.steps, case, &nonlinear)? {
                     Some(steps) => Analysis::Steps(steps),
                     None => Analysis::Nonlinear(Box::new(nonlinear.checked(&at, loads(case)?)?)),
@@ -173,8 +176,8 @@ impl CaseTable {
         foreign(case, &["element"], "a [bending_test] has its own elements: remove [element]")?;
         foreign(
             case,
-            &["supports", "rigid", "loads", "probes"],
-            "a [bending_test] brings its own supports and loads: remove [[supports]], [[rigid]], [[loads]], [[probes]]",
+            &["supports", "rigid", "loads", "probes", "obstacles"],
+            "a [bending_test] brings its own supports and loads: remove [[supports]], [[rigid]], [[loads]], [[obstacles]], [[probes]]",
         )?;
         foreign(
             case,
@@ -205,8 +208,8 @@ impl CaseTable {
         foreign(case, &["sheet"], message)?;
         foreign(
             case,
-            &["supports", "rigid", "loads", "probes"],
-            "a [virtual_test] brings its own supports and loads: remove [[supports]], [[rigid]], [[loads]], [[probes]]",
+            &["supports", "rigid", "loads", "probes", "obstacles"],
+            "a [virtual_test] brings its own supports and loads: remove [[supports]], [[rigid]], [[loads]], [[obstacles]], [[probes]]",
         )?;
         let test = table.checked(at)?;
         let large = test.is_some_and(|test| test.is_large());
@@ -267,7 +270,8 @@ impl CaseTable {
         let mounting = self.mounting(case, formulation)?;
         let probes = probes(&self.probes, case)?;
         let checks = checks(&self.checks, case, &analysis, &probes)?;
-        Ok(SheetProblem { material, sheet, mounting, analysis, solver, probes, checks })
+        let obstacles = SheetObstacle::read(case)?;
+        Ok(SheetProblem { material, sheet, mounting, obstacles, analysis, solver, probes, checks })
     }
 
     /// The coarser meshes of `[convergence]`.
@@ -328,6 +332,9 @@ impl CaseTable {
 
 const NO_CONVERGENCE: &str =
     "[convergence] is for linear and modal analyses: remove it (a drape has `refinements`)";
+
+const NO_OBSTACLES: &str = "[[obstacles]] are for statics in large rotations: write [analysis] kind = \"nonlinear\", or remove them (a drape is \
+                            clamped between its discs)";
 
 const NO_STEPS: &str =
     "[[steps]] are for large rotations: write [analysis] kind = \"nonlinear\", or remove them";

@@ -25,7 +25,7 @@ use std::borrow::Cow;
 
 use crate::characterise::FabricSheet;
 use crate::finding::{Finding, SectionFact};
-use crate::instrument::Parameter;
+use crate::instrument::{Direction, Parameter};
 use crate::quantity::{Estimate, significant};
 use crate::section::{SheetLaw, ShellSection};
 
@@ -49,6 +49,8 @@ pub struct Constitutive {
     pub used: Vec<Used>,
     /// Measured inputs with their spread, and how the section depends on each.
     pub inputs: Vec<Input>,
+    /// Coefficient of friction of the sheet on steel, the mean of MIU over warp and weft; `None` if it was not measured.
+    pub surface_friction: Option<f64>,
     /// What a reader of the section must know.
     pub findings: Vec<Finding>,
 }
@@ -91,7 +93,19 @@ pub fn section(sheet: &FabricSheet, assumptions: &Assumptions) -> Result<Constit
         .map_err(|source| ConstitutiveError::Section { fabric: sheet.name.clone(), source })?;
     let law = friction::law(&section, assumptions, &mut notes)?;
     let inputs = sensitivity::inputs(&section, assumptions, notes.origins);
-    Ok(Constitutive { section, law, used: notes.used, inputs, findings: notes.findings })
+    let surface_friction = surface_friction(sheet);
+    Ok(Constitutive { section, law, used: notes.used, inputs, surface_friction, findings: notes.findings })
+}
+
+/// The mean of MIU over the directions that have one.
+fn surface_friction(sheet: &FabricSheet) -> Option<f64> {
+    let directions = [Some(Direction::Warp), Some(Direction::Weft)];
+    let measured: Vec<f64> =
+        directions.into_iter().filter_map(|d| Some(sheet.get(Parameter::Miu, d)?.mean)).collect();
+    if measured.is_empty() {
+        return sheet.get(Parameter::Miu, None).map(|miu| miu.mean);
+    }
+    Some(measured.iter().sum::<f64>() / measured.len() as f64)
 }
 
 /// Of what people measured with other instruments.

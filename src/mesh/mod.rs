@@ -1,5 +1,6 @@
 //! Quadrilateral meshes with named node sets, and the checks that a mesh must pass.
 
+mod crossings;
 mod generate;
 mod gmsh;
 mod joined;
@@ -9,6 +10,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use nalgebra::{Point3, Vector3};
 
+pub use crossings::{Crossings, crossings};
 pub use generate::{annulus, disc, distorted, graded_annulus, rectangle};
 pub use gmsh::parse_gmsh;
 pub use joined::Unjoined;

@@ -4,6 +4,7 @@ mod dof;
 mod hard;
 pub mod rigid;
 mod support;
+mod surface;
 
 use std::sync::Arc;
 
@@ -13,6 +14,7 @@ pub use dof::{Dof, DofGroup};
 pub use hard::{HardEdge, OwnAxes};
 pub use rigid::{Links, RigidBody, RigidBodyError};
 pub use support::Support;
+pub use surface::{Gap, RigidSurface, SurfaceShape};
 
 use crate::element::{
     Bending, Formulation, Frame, MaterialAxisError, Prepared, gravity_load, pressure_load, pressure_moments,

@@ -192,6 +192,7 @@ fn section(entry: SectionEntry) -> Result<(FabricSheet, Constitutive), DocumentE
         law: None,
         used: entry.assumptions.into_iter().map(used).collect(),
         inputs: Vec::new(),
+        surface_friction: None,
         findings: Vec::new(),
     };
     let sheet = FabricSheet {

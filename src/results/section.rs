@@ -87,8 +87,14 @@ fn of_card(input: &Input, card: StatedSection, assumptions: &Assumptions) -> (Fa
         let source = "assumed (--thickness): the card states none".into();
         used.push(entry("thickness", assumptions.thickness.to_string(), Provenance::Assumed, source));
     }
-    let made =
-        Constitutive { section: card.section, law: None, used, inputs: Vec::new(), findings: Vec::new() };
+    let made = Constitutive {
+        section: card.section,
+        law: None,
+        used,
+        inputs: Vec::new(),
+        surface_friction: None,
+        findings: Vec::new(),
+    };
     (FabricSheet { name: name.into_owned(), info, ..FabricSheet::default() }, made)
 }
 

@@ -21,6 +21,9 @@
 //! ([`SheetLaw`](crate::section::SheetLaw)): each step is then the minimum of a convex potential of the cells, from a memory
 //! that is kept when the step has converged and restored when it is tried again.
 //!
+//! Nodes may touch rigid surfaces, with friction: see [`RigidSurface`](crate::model::RigidSurface) and [`Settings::surfaces`].
+//! Not on a path by arc length, which knows no unloading.
+//!
 //! Loads are dead: they keep their direction and size, pressure the normals and areas at rest; only a
 //! [`FollowerPressure`](crate::model::Load::FollowerPressure) goes with the sheet. A moment is
 //! conjugate to the spin about fixed axes. A held rotation is a spin about a global
@@ -29,6 +32,7 @@
 //! tangent then converges linearly; hold a plane of symmetry by both of its rotations.
 
 mod arc;
+mod contact;
 mod descent;
 mod drive;
 pub mod dynamics;
@@ -47,6 +51,7 @@ mod system;
 use std::ops::ControlFlow;
 
 pub use arc::{ArcLength, follow};
+pub use contact::{ACCEPTED, Touch};
 pub use descent::descend_from;
 pub use drive::{Leg, drive};
 pub use error::{NonlinearError, Obstacle};

@@ -7,7 +7,7 @@ use super::history::History;
 use super::limits::largest_displacement;
 use super::nonlinear::largest_w;
 use super::result::Outcome;
-use super::{Case, PreparedCase, StudyError, Watch, refused};
+use super::{Case, PreparedCase, StudyError, Watch, refused, through_itself};
 use crate::case::Rotations;
 use crate::element::Mass;
 use crate::fields::Locator;
@@ -150,5 +150,7 @@ pub(super) fn dynamics(
         let fact = StudyFact::OutOfTime { seconds, reached, duration: settings.duration };
         findings.push(Finding::new(fact).at(Place::file(&case.path)));
     }
+    let through = state.as_ref().and_then(|state| through_itself(&model.mesh, state));
+    findings.extend(through.map(|fact| Finding::new(fact).at(Place::file(&case.path))));
     Ok(Outcome { history: Some(history), state, findings, ..Outcome::of(solution) })
 }

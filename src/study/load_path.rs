@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use serde::Serialize;
 
+use super::contact::ContactResult;
 use crate::case::MethodChoice;
 use crate::solve::nonlinear::{Stability, State};
 
@@ -45,6 +46,9 @@ pub struct LoadStepEnd {
     /// Forces and moments of the supports, six a node.
     #[serde(skip)]
     pub reaction: Vec<f64>,
+    /// What the obstacles of the case bear.
+    #[serde(skip)]
+    pub contacts: Vec<ContactResult>,
 }
 
 /// A step of a search: an equilibrium, or a state on the way of the flow.

@@ -1,13 +1,14 @@
 //! The `[[steps]]` of a case, one after the other.
 
+use super::contact::{contacts, surfaces, touching};
 use super::load_path::LoadStepEnd;
 use super::nonlinear::{Record, check_perturbation, conclude, helped, turned_about_more};
+use super::of_fabric::OfFabric;
 use super::result::Outcome;
 use super::{PreparedCase, StudyError, Watch};
 use crate::case::{MethodChoice, SheetStep};
 use crate::finding::Finding;
 use crate::model::Model;
-use crate::section::SheetLaw;
 use crate::solve::nonlinear::{Carried, LoadStep, Settings, continue_from};
 
 /// Takes the sheet of a model through the steps of its case. The last one that has an equilibrium is the result; where
@@ -15,7 +16,7 @@ use crate::solve::nonlinear::{Carried, LoadStep, Settings, continue_from};
 pub(super) fn load_steps(
     prepared: &PreparedCase<'_>,
     model: &Model,
-    law: Option<&SheetLaw>,
+    fabric: OfFabric<'_>,
     steps: &[SheetStep],
     watch: Watch<'_>,
 ) -> Result<Outcome, StudyError> {
@@ -28,7 +29,8 @@ pub(super) fn load_steps(
         let model =
             Model { supports: actions.supports.clone(), loads: actions.loads.clone(), ..model.clone() };
         check_perturbation(prepared.case, &model, &step.analysis)?;
-        let settings = Settings { law: law.cloned(), ..step.analysis.settings.clone() };
+        let surfaces = surfaces(&prepared.problem.obstacles, fabric.friction);
+        let settings = Settings { law: fabric.law.cloned(), surfaces, ..step.analysis.settings.clone() };
         let (moved, plan, options) = (&actions.moved, &prepared.plan, &prepared.options);
         let from = record.path.steps.len();
         let found = helped(
@@ -54,12 +56,14 @@ pub(super) fn load_steps(
             stability: record.path.stability,
             state: record.state.clone(),
             reaction: record.solution.reaction.clone(),
+            contacts: contacts(&prepared.problem.obstacles, fabric.friction, &record.state),
         });
         if let Some(next) = next {
             held_throughout(&model, &actions.moved, next.turned(), &mut held);
             carried = next;
         }
-        let own = own.into_iter().chain(turned_about_more(&held, &record.state));
+        let touching = touching(&prepared.problem.obstacles, &model, fabric.friction, &record.state);
+        let own = own.into_iter().chain(turned_about_more(&held, &record.state)).chain(touching);
         findings.extend(own.map(|finding: Finding| finding.at(prepared.case.place(&step.name))));
         if !record.path.converged {
             break;

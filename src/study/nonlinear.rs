@@ -2,7 +2,9 @@
 
 use std::ops::ControlFlow;
 
+use super::contact::{surfaces, touching};
 use super::load_path::{LoadPath, PathStep};
+use super::of_fabric::OfFabric;
 use super::result::Outcome;
 use super::{Case, PreparedCase, StudyError, Watch, refused};
 use crate::case::{MethodChoice, Nonlinear};
@@ -10,7 +12,6 @@ use crate::fields::Locator;
 use crate::finding::{Finding, Place, StudyFact};
 use crate::mesh::QuadMesh;
 use crate::model::Model;
-use crate::section::SheetLaw;
 use crate::solve::nonlinear::{self, Method, NonlinearError, Obstacle, Settings, State, Step};
 use crate::solve::{self, Solution};
 
@@ -92,13 +93,14 @@ pub(super) fn largest_w(mesh: &QuadMesh, displacement: &[f64]) -> f64 {
 pub(super) fn equilibrium(
     prepared: &PreparedCase<'_>,
     model: &Model,
-    law: Option<&SheetLaw>,
+    fabric: OfFabric<'_>,
     analysis: &Nonlinear,
     watch: Watch<'_>,
 ) -> Result<Outcome, StudyError> {
     let (case, options) = (prepared.case, &prepared.options);
     let Nonlinear { settings, method, .. } = analysis;
-    let settings = Settings { law: law.cloned(), ..settings.clone() };
+    let surfaces = surfaces(&prepared.problem.obstacles, fabric.friction);
+    let settings = Settings { law: fabric.law.cloned(), surfaces, ..settings.clone() };
     check_perturbation(case, model, analysis)?;
     let linear = solve::solve(model, options).ok();
     let mut record = Record::new(prepared, model, MethodChoice::of(method), watch);
@@ -117,6 +119,7 @@ pub(super) fn equilibrium(
     let factor = record.state.factor;
     let given = given.into_iter().map(|held| held.map(|value| factor * value));
     findings.extend(turned_about_more(&given.collect::<Vec<_>>(), &record.state));
+    findings.extend(touching(&prepared.problem.obstacles, model, fabric.friction, &record.state));
     let findings = findings.into_iter().map(|f| f.at(Place::file(&case.path))).collect();
     let mut solution = record.solution;
     solution.dofs = model.constraints().iter().filter(|c| c.is_none()).count();

@@ -8,6 +8,7 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use super::contact::ContactResult;
 use super::history::History;
 use super::load_path::{LoadPath, LoadStepEnd};
 use super::mesh_series::Convergence;
@@ -121,6 +122,8 @@ pub struct CaseResult {
     pub state: Option<State>,
     /// What the sheet followed beside its section; of an analysis with friction only.
     pub law: Option<SheetLaw>,
+    /// What each obstacle of the case bears; of statics in large rotations only.
+    pub contacts: Vec<ContactResult>,
     /// How certain the results are; of a linear or modal analysis with measured inputs only.
     pub uncertainty: Option<Uncertainty>,
     /// What the mesh leaves open in the results; of a case with `[convergence]` only.
@@ -138,6 +141,7 @@ impl CaseResult {
         let mut then = Self { state: Some(step.state.clone()), nodal: OnceLock::new(), ..self.clone() };
         then.solution.displacement = step.state.displacement(&self.model.mesh);
         then.solution.reaction.clone_from(&step.reaction);
+        then.contacts.clone_from(&step.contacts);
         then
     }
 

@@ -3,12 +3,14 @@
 use std::sync::{Arc, OnceLock};
 
 use super::checked::check;
+use super::contact::contacts;
 use super::dynamics::{dynamics, is_out_of_time, rayleigh};
 use super::finite::finite;
 use super::limits::{Beyond, buckles, findings, is_compressed};
 use super::load_steps::load_steps;
 use super::mesh_series::Convergence;
 use super::nonlinear::{equilibrium, largest_w};
+use super::of_fabric::OfFabric;
 use super::result::{CaseResult, Kept, Outcome, Probe, Status};
 use super::uncertainty::{linear_uncertainty, modal_uncertainty};
 use super::{Case, PreparedCase, StudyError, Watch, build};
@@ -17,7 +19,7 @@ use crate::constitutive::{Constitutive, Input};
 use crate::fields::{Locator, Recovery};
 use crate::finding::{Finding, Place, StudyFact};
 use crate::model::Model;
-use crate::section::{SheetLaw, ShellSection};
+use crate::section::ShellSection;
 use crate::solve::newmark;
 use crate::solve::nonlinear::lost_directions;
 use crate::solve::{self, Options, Solution};
@@ -45,7 +47,7 @@ impl PreparedCase<'_> {
     /// # Errors
     /// See [`StudyError`].
     pub fn solve_measured(&self, section: ShellSection, inputs: &[Input]) -> Result<CaseResult, StudyError> {
-        self.solve_with_law(section, None, inputs, Watch::default())
+        self.solve_of(section, OfFabric::default(), inputs, Watch::default())
     }
 
     /// Solves the case for what was made of a fabric: its section, its friction and the spread of its
@@ -62,7 +64,7 @@ impl PreparedCase<'_> {
     /// # Errors
     /// See [`StudyError`]; O054 if it was stopped.
     pub fn solve_watched(&self, made: &Constitutive, watch: Watch<'_>) -> Result<CaseResult, StudyError> {
-        self.solve_with_law(made.section.clone(), made.law.as_ref(), &made.inputs, watch)
+        self.solve_of(made.section.clone(), OfFabric::of(made), &made.inputs, watch)
     }
 
     /// [`solve`](Self::solve), watched like [`solve_watched`](Self::solve_watched).
@@ -74,18 +76,18 @@ impl PreparedCase<'_> {
         section: ShellSection,
         watch: Watch<'_>,
     ) -> Result<CaseResult, StudyError> {
-        self.solve_with_law(section, None, &[], watch)
+        self.solve_of(section, OfFabric::default(), &[], watch)
     }
 
-    fn solve_with_law(
+    fn solve_of(
         &self,
         section: ShellSection,
-        law: Option<&SheetLaw>,
+        fabric: OfFabric<'_>,
         inputs: &[Input],
         watch: Watch<'_>,
     ) -> Result<CaseResult, StudyError> {
         let case = self.case;
-        let mut result = self.results(section, law, inputs, watch)?;
+        let mut result = self.results(section, fabric, inputs, watch)?;
         // A mesh that is too large to factorise is not examined, and the result stands where that cannot be done.
         let examined = matches!(self.problem.analysis, Analysis::Linear(_)) && !self.plan.iterates();
         if result.status == Status::Ok && examined && is_compressed(&result, &self.extent)? {
@@ -97,7 +99,7 @@ impl PreparedCase<'_> {
         }
         if !self.coarser.is_empty() {
             let section = &result.model.section;
-            let on = |coarser: &Self| coarser.results(section.clone(), law, &[], watch);
+            let on = |coarser: &Self| coarser.results(section.clone(), fabric, &[], watch);
             let coarser = self.coarser.iter().map(on).collect::<Result<Vec<_>, _>>()?;
             let meshes: Vec<&CaseResult> = coarser.iter().chain([&result]).collect();
             let convergence = Convergence::of(self.problem, &meshes)?;
@@ -120,7 +122,7 @@ impl PreparedCase<'_> {
     fn results(
         &self,
         section: ShellSection,
-        law: Option<&SheetLaw>,
+        fabric: OfFabric<'_>,
         inputs: &[Input],
         watch: Watch<'_>,
     ) -> Result<CaseResult, StudyError> {
@@ -128,7 +130,7 @@ impl PreparedCase<'_> {
         let model = self.model(section);
         build::weighed(&model)?;
         let Outcome { solution, frequencies, modes: shapes, history, path, state, kept, findings: own } =
-            analyse(self, &model, law, watch)?;
+            analyse(self, &model, fabric, watch)?;
         let uncertainty = match kept {
             _ if inputs.is_empty() => None,
             Kept::Nothing => None,
@@ -162,6 +164,8 @@ impl PreparedCase<'_> {
             _ if beyond.is_some() => Status::BeyondLinear,
             _ => Status::Ok,
         };
+        let contacts = state.as_ref().map(|state| contacts(&self.problem.obstacles, fabric.friction, state));
+        let contacts = contacts.unwrap_or_default();
         let profile = self.middle.profile(&model.mesh, w);
         let mut result = CaseResult {
             case: case.name.clone(),
@@ -178,9 +182,10 @@ impl PreparedCase<'_> {
             history,
             path,
             state,
-            law: law.cloned(),
+            law: fabric.law.cloned(),
             uncertainty,
             convergence: None,
+            contacts,
             findings,
             modal: matches!(self.problem.analysis, Analysis::Modal(_)),
             recovery: Arc::clone(&self.recovery),
@@ -194,7 +199,7 @@ impl PreparedCase<'_> {
 fn analyse(
     prepared: &PreparedCase<'_>,
     model: &Model,
-    law: Option<&SheetLaw>,
+    fabric: OfFabric<'_>,
     watch: Watch<'_>,
 ) -> Result<Outcome, StudyError> {
     let (case, options) = (prepared.case, &prepared.options);
@@ -233,8 +238,8 @@ fn analyse(
             };
             dynamics(prepared, model, &settings, newmark.rotations, watch)
         }
-        Analysis::Nonlinear(nonlinear) => equilibrium(prepared, model, law, nonlinear, watch),
-        Analysis::Steps(steps) => load_steps(prepared, model, law, steps, watch),
+        Analysis::Nonlinear(nonlinear) => equilibrium(prepared, model, fabric, nonlinear, watch),
+        Analysis::Steps(steps) => load_steps(prepared, model, fabric, steps, watch),
     }
 }
 

@@ -149,6 +149,53 @@ super::facts! {
             change: f64,
         } = "a quick drape, on {elements} elements: the last refinement changed the coefficient by {:+.1} points, and more refinement \
              would change it again; `--drape` or `kesf solve` hangs it as the case says", 100.0 * change;
+        /// A sheet that takes the place of another part of itself.
+        "S141" ThroughItself {
+            /// Pairs of elements that pass through each other.
+            pairs: usize,
+            /// Where they do so the most (m).
+            at: [f64; 3],
+            /// How far at least (m).
+            depth: f64,
+        } = "the sheet passes through itself: {pairs} pair(s) of elements cross, the deepest by {} mm at least, at ({}, {}, {}) m; nothing \
+             keeps folds apart here, and from where they meet the shape is not that of cloth",
+            significant(1e3 * depth), significant(at[0]), significant(at[1]), significant(at[2]);
+        /// A drape that takes the place of its disc.
+        "S142" ThroughDisc {
+            /// How far inside the edge of the disc the sheet reaches (m).
+            reach: f64,
+            /// Where it does so the most (m).
+            at: [f64; 3],
+        } = "the sheet reaches {} mm inside the edge of the disc, at ({}, {}, {}) m: {}",
+            significant(1e3 * reach), significant(at[0]), significant(at[1]), significant(at[2]),
+            if at[2] > 0.0 {
+                "it would lift the upper disc, which lies on it"
+            } else {
+                "what the disc stands on is in its way, unless it is a thin plate on a stem"
+            };
+        /// A sheet that is pressed into a rigid surface.
+        "S143" Penetrates {
+            /// Name of the surface.
+            obstacle: String,
+            /// How far at most (m).
+            depth: f64,
+            /// What is accepted (m).
+            accepted: f64,
+        } = "`{obstacle}` is passed through by {} mm, {} mm are accepted: the contact has not converged there; take more cells, or a \
+             smaller largest_step", significant(1e3 * depth), significant(1e3 * accepted);
+        /// A friction that nobody stated.
+        "S144" AssumedFriction {
+            /// Name of the surface.
+            obstacle: String,
+            /// The coefficient that is taken.
+            friction: f64,
+            /// Whether it is MIU of the fabric.
+            measured: bool,
+        } = "`{obstacle}` states no friction: {} is taken, {}", significant(*friction), if *measured {
+            "MIU of the fabric, which was measured against the contactor of KES-FB4"
+        } else {
+            "an assumption, as MIU of the fabric was not measured"
+        };
         /// A sheet that buckled on the way.
         "S124" Buckled {
             /// Factors of the load after which it did.

@@ -30,7 +30,14 @@ pub(super) fn sheet() -> FabricSheet {
 }
 
 pub(super) fn constitutive(section: ShellSection) -> Constitutive {
-    Constitutive { section, law: None, used: Vec::new(), inputs: Vec::new(), findings: Vec::new() }
+    Constitutive {
+        section,
+        law: None,
+        used: Vec::new(),
+        inputs: Vec::new(),
+        surface_friction: None,
+        findings: Vec::new(),
+    }
 }
 
 pub(super) fn written(name: &str, section: ShellSection) -> Result<String, CardError> {
@@ -249,8 +256,14 @@ fn abaqus_fabric_has_measured_curves_as_stress_over_strain() {
     };
     let sheet = FabricSheet { specimens: vec![specimen(2000.0), specimen(4000.0)], ..sheet() };
     let section = section();
-    let made =
-        Constitutive { section, law: None, used: Vec::new(), inputs: Vec::new(), findings: Vec::new() };
+    let made = Constitutive {
+        section,
+        law: None,
+        used: Vec::new(),
+        inputs: Vec::new(),
+        surface_friction: None,
+        findings: Vec::new(),
+    };
     let card = card(
         named("abaqus-fabric").unwrap(),
         &Material { sheet: &sheet, made: &made, stamp: None, crimp: None },
@@ -417,6 +430,7 @@ fn what_has_no_place_is_told_with_its_size() {
         law: None,
         used: Vec::new(),
         inputs: Vec::new(),
+        surface_friction: None,
         findings: Vec::new(),
     };
     let mut sheet = sheet();

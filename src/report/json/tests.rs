@@ -63,7 +63,14 @@ fn a_section_is_written_by_rows() {
         provenance: Provenance::Assumed,
         source: "assumed".into(),
     }];
-    let made = Constitutive { section, law: None, used, inputs: Vec::new(), findings: Vec::new() };
+    let made = Constitutive {
+        section,
+        law: None,
+        used,
+        inputs: Vec::new(),
+        surface_friction: None,
+        findings: Vec::new(),
+    };
     let sheet = FabricSheet { name: "poplin".into(), ..Default::default() };
     let document = section_document([(&sheet, &made)]);
     let v = serde_json::to_value(&document).unwrap();

@@ -12,7 +12,9 @@ use crate::finding::Finding;
 use crate::quantity::Band;
 use crate::results::sampled::{InputEntry, SamplingEntry};
 use crate::results::task::Task;
-use crate::study::{CaseResult, CheckResult, Convergence, History, Prediction, Probe, Status, Uncertainty};
+use crate::study::{
+    CaseResult, CheckResult, ContactResult, Convergence, History, Prediction, Probe, Status, Uncertainty,
+};
 
 /// An entry of `kesf.solution/1`: a solved case (SI).
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -66,6 +68,9 @@ struct ResultsEntry {
     reactions: Option<[f64; 3]>,
     reaction_moments: Option<[f64; 3]>,
     strain_energy: Option<f64>,
+    /// What the obstacles of the case bear.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    contacts: Vec<ContactResult>,
     frequencies: Vec<f64>,
     convergence: Option<Convergence>,
     uncertainty: Option<UncertaintyEntry>,
@@ -139,6 +144,7 @@ fn results(task: &Task, result: &CaseResult) -> ResultsEntry {
         reactions: reactions.map(|[force, _]| force.into()),
         reaction_moments: reactions.map(|[_, moment]| moment.into()),
         strain_energy: (!result.is_modal()).then_some(result.solution.strain_energy),
+        contacts: result.contacts.clone(),
         frequencies: result.frequencies.clone(),
         convergence: result.convergence.clone(),
         uncertainty,

@@ -16,6 +16,15 @@ fn three_of_six(values: &[f64], from: usize) -> Vec<f64> {
     values.chunks_exact(6).flat_map(|v| [v[from], v[from + 1], v[from + 2]]).collect()
 }
 
+/// Forces of all obstacles on the nodes.
+fn contact_forces(result: &CaseResult) -> Vec<f64> {
+    let mut sum = vec![0.0; 3 * result.model.mesh.nodes.len()];
+    for contact in &result.contacts {
+        sum.iter_mut().zip(contact.forces.iter().flatten()).for_each(|(sum, force)| *sum += force);
+    }
+    sum
+}
+
 /// Resultants as fields of nodes or cells, in material axes.
 pub fn resultants(all: &[Resultants]) -> [Field<'static>; 3] {
     [
@@ -65,6 +74,9 @@ impl Mesh {
                 ("reaction_force", 3, three_of_six(reaction, 0)),
                 ("reaction_moment", 3, three_of_six(reaction, 3)),
             ]);
+        }
+        if !result.contacts.is_empty() {
+            fields.push(("contact_force", 3, contact_forces(result)));
         }
         fields.extend(resultants(nodal));
         fields.extend(modes.iter().map(|(name, shape)| (name.as_str(), 3, shape.clone())));

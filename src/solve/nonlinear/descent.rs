@@ -41,7 +41,7 @@ const FIRST_DRAG: f64 = 1e5;
 /// model. An equilibrium that turns out to be unstable is left along its lowest eigenvector. Every step is shown to
 /// `observe`, which may stop.
 ///
-/// A sheet with a law that remembers, and one whose descent ends nowhere, flows there as with
+/// A sheet with a law that remembers or with rigid surfaces, and one whose descent ends nowhere, flows there as with
 /// [`relax_from`](super::relax_from) in at most `steps` steps.
 ///
 /// # Errors
@@ -57,6 +57,7 @@ pub fn descend_from(
 ) -> Result<Solution, NonlinearError> {
     let system = System::new(model, plan, settings, options)?;
     if settings.law.is_none()
+        && settings.surfaces.is_empty()
         && let Some(found) = descend(&system, start.clone(), settings, &mut observe)?
     {
         return Ok(found);

@@ -110,6 +110,9 @@ impl Balance {
     }
 }
 
+/// Rounds of augmentation of rigid surfaces, at most; each has as many iterations as a step.
+const ROUNDS: usize = 30;
+
 /// From an equilibrium to that at another factor.
 pub(super) fn newton(
     system: &System<'_>,
@@ -139,7 +142,9 @@ pub(super) fn newton_with(
     let mut travelled = vec![0.0; system.held.len()];
     let mut balance = system.balance(&state, drag.extra);
     let mut forces = balance.forces();
-    for iterations in 1..=settings.iterations {
+    let (mut iterations, mut allowed, mut rounds) = (0, settings.iterations, 0);
+    while iterations < allowed {
+        iterations += 1;
         let failure = |residual, obstacle| Failure { iterations, residual, obstacle };
         if let Some(failure) = Failure::out_of_time(iterations, balance.relative_residual()) {
             return Err(failure);
@@ -176,11 +181,16 @@ pub(super) fn newton_with(
             if System::largest_rotation(&balance) > LARGEST_FOLD {
                 return Err(failure(balance.relative_residual(), Obstacle::Folded));
             }
+            if rounds < ROUNDS && system.augment(&balance, &mut state) {
+                (rounds, allowed) = (rounds + 1, iterations + settings.iterations);
+                balance = system.balance(&state, drag.extra);
+                continue;
+            }
             system.remember(&balance, &mut state);
             return Ok(Converged { state, balance, iterations, at_rest });
         }
     }
-    let (iterations, residual) = (settings.iterations, balance.relative_residual());
+    let residual = balance.relative_residual();
     Err(Failure { iterations, residual, obstacle: Obstacle::Residual })
 }
 

@@ -1,5 +1,6 @@
 //! How a search goes.
 
+use crate::model::RigidSurface;
 use crate::section::SheetLaw;
 
 /// How to solve.
@@ -19,6 +20,8 @@ pub struct Settings {
     pub smallest_step: f64,
     /// Laws with friction in the place of diagonal entries of the section.
     pub law: Option<SheetLaw>,
+    /// What the sheet cannot pass.
+    pub surfaces: Vec<RigidSurface>,
 }
 
 impl Default for Settings {
@@ -32,6 +35,7 @@ impl Default for Settings {
             smallest_step: 1e-5,
             path: vec![1.0],
             law: None,
+            surfaces: Vec::new(),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use nalgebra::{Point3, UnitQuaternion};
 
+use super::contact::Touch;
 use crate::law;
 use crate::mesh::QuadMesh;
 
@@ -24,8 +25,10 @@ pub struct Memory {
     /// That of the laws of each smoothing cell, in the order of elements and cells; empty for new
     /// cloth, and without a law.
     pub cells: Vec<[law::State; 6]>,
-    /// Energy lost since the rest (J).
+    /// Energy that the laws lost since the rest (J).
     pub dissipated: f64,
+    /// What nodes touch, for each node as many as there are surfaces; empty before the first equilibrium, and without.
+    pub touches: Vec<Touch>,
 }
 
 impl State {

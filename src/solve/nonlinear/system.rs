@@ -1,11 +1,13 @@
 //! The equations of a model in large rotations: forces, tangent, and the motion of the nodes.
 
+mod presses;
 mod rates;
 
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector3};
 
+use super::contact::{Press, Surfaces};
 use super::sheet::{Answer, Forces, Sheet};
 use super::{NonlinearError, Settings, State};
 use crate::element::corotational::Motion;
@@ -38,6 +40,7 @@ pub(super) struct System<'a> {
     pub plan: &'a Plan,
     threads: usize,
     sheet: Sheet<'a>,
+    contact: Surfaces<'a>,
     links: Arc<Links>,
     /// Dead loads at factor 1.
     load: Vec<f64>,
@@ -71,6 +74,8 @@ pub(super) struct Before {
 /// The forces in a state.
 pub(super) struct Balance {
     answers: Vec<Answer>,
+    /// Nodes at rigid surfaces.
+    presses: Vec<Press>,
     /// Internal minus external forces at each node, followers not yet added to their leads.
     nodal: Vec<f64>,
     /// Internal minus external forces by dof: the reactions where held, what must vanish elsewhere.
@@ -103,6 +108,7 @@ impl<'a> System<'a> {
             plan,
             threads: options.threads,
             sheet: Sheet::new(model, settings.law.as_ref()),
+            contact: Surfaces::new(&[], &model.mesh, &[], [0.0; 2]),
             links,
             load: model.dead_load_vector(),
             pressure: model.follower_pressure(),
@@ -114,6 +120,8 @@ impl<'a> System<'a> {
             size: (high - low).norm(),
         };
         system.prepare_elements()?;
+        let of_sheet = [system.stiffest(), system.size];
+        system.contact = Surfaces::new(&settings.surfaces, &model.mesh, &system.metric, of_sheet);
         Ok(system)
     }
 
@@ -176,12 +184,17 @@ impl<'a> System<'a> {
             }
             energy += answer.energy;
         }
+        let presses = self.contact.presses(&state.position, &state.memory);
+        for press in &presses {
+            let force = press.force();
+            (0..3).for_each(|d| nodal[6 * press.node + d] -= force[d]);
+        }
         let unbalanced = self.to_leads(state, &nodal);
         let residual = self.norm(&unbalanced, false);
         let loads = self.to_leads(state, &external);
         let scale = self.norm(&unbalanced, true).max(self.norm(&loads, false));
         let scale = self.before.as_ref().map_or(scale, |before| scale.max(before.scale));
-        Balance { answers, nodal, unbalanced, energy, residual, scale }
+        Balance { answers, presses, nodal, unbalanced, energy, residual, scale }
     }
 
     /// Norm of the forces on the held or the free dofs (N), moments over the side of an element.
@@ -329,6 +342,7 @@ impl<'a> System<'a> {
             (0..pattern.quads.len()).for_each(|q| add(q, of_element(q)));
         }
         self.add_body_terms(state, &balance.nodal, &mut matrix);
+        self.add_presses(state, &balance.presses, &mut matrix, &mut push);
         let graph = &pattern.graph;
         for dof in (0..self.held.len()).filter(|d| !self.held[*d]) {
             matrix.values[graph.col_ptr[dof / 6] * 36 + (dof % 6) * 7] += shift * self.metric[dof];
@@ -407,6 +421,12 @@ impl<'a> System<'a> {
     /// Keeps what the sheet has been through on the way to a state.
     pub fn remember(&self, balance: &Balance, state: &mut State) {
         self.sheet.remember(&balance.answers, &mut state.memory);
+        self.contact.remember(&balance.presses, &mut state.memory);
+    }
+
+    /// Gives the forces of rigid surfaces in an equilibrium to their multipliers; whether it is one no longer.
+    pub fn augment(&self, balance: &Balance, state: &mut State) -> bool {
+        self.contact.augment(&balance.presses, &mut state.memory)
     }
 
     /// Reactions at the held dofs; 0 elsewhere.

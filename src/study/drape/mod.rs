@@ -14,6 +14,7 @@
 //! A sheet with friction is hung, and then shaken: its weight swings about itself, less and less. A sheet that is laid on a disc by
 //! hands has been through more than the way down from flat, and what friction holds up in it is less.
 
+mod interference;
 mod method;
 mod refine;
 mod rim;
@@ -200,7 +201,8 @@ pub fn drape(
         elements: state.elements,
     });
     let of_law = if law.is_none() { Some(StudyFact::ElasticDrape {}) } else { shaken };
-    let findings = findings(case, problem, &meshes, &failed, of_law);
+    let mut findings = findings(case, problem, &meshes, &failed, of_law);
+    findings.extend(interference::of(case, &model, &solution.state, ring.inner));
     Ok(Drape {
         case: case.name.clone(),
         states,

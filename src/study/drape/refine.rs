@@ -45,7 +45,7 @@ fn divided(memory: &Memory, [radial, around]: [usize; 2]) -> Memory {
     };
     let fine = (0..2 * radial).flat_map(|i| (0..2 * around).map(move |k| (i, k)));
     let cells = fine.flat_map(|(i, k)| parent(i, k)).cloned().collect();
-    Memory { cells, dissipated: memory.dissipated }
+    Memory { cells, dissipated: memory.dissipated, touches: Vec::new() }
 }
 
 /// Places a node halfway between two others.
@@ -106,7 +106,7 @@ mod tests {
         let marked =
             |n: usize| std::array::from_fn(|_| law::State { strain: n as f64, ..law::State::default() });
         let cells = (0..2 * radial * around).map(marked).collect();
-        let fine = divided(&Memory { cells, dissipated: 0.5 }, [radial, around]);
+        let fine = divided(&Memory { cells, dissipated: 0.5, touches: Vec::new() }, [radial, around]);
         assert_eq!((fine.cells.len(), fine.dissipated), (4 * 2 * radial * around, 0.5));
         for (i, k) in (0..2 * radial).flat_map(|i| (0..2 * around).map(move |k| (i, k))) {
             for cell in 0..2 {

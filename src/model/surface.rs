@@ -1,0 +1,179 @@
+//! Rigid surfaces that a sheet in large rotations cannot pass.
+
+use nalgebra::{Matrix3, Point3, Vector3};
+
+/// A rigid surface and how it rubs on the sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigidSurface {
+    /// Name used in results.
+    pub name: String,
+    /// Where it is. The middle surface of the sheet stops there.
+    pub shape: SurfaceShape,
+    /// Coulomb's coefficient of friction.
+    pub friction: f64,
+}
+
+/// The shape of a rigid surface; directions are of length 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SurfaceShape {
+    /// Flat ground, and everything under it.
+    Plane {
+        /// A point of it (m).
+        at: Point3<f64>,
+        /// The side on which the sheet is.
+        normal: Vector3<f64>,
+    },
+    /// A round bar without ends.
+    Cylinder {
+        /// A point of its axis (m).
+        at: Point3<f64>,
+        /// Its axis.
+        axis: Vector3<f64>,
+        /// Its radius (m).
+        radius: f64,
+    },
+    /// A round table with a rounded edge, and everything under it.
+    Disc {
+        /// The middle of its face (m).
+        at: Point3<f64>,
+        /// The side on which the sheet is.
+        normal: Vector3<f64>,
+        /// Its radius (m).
+        radius: f64,
+        /// The radius of its edge (m), at most that of the disc.
+        edge_radius: f64,
+    },
+}
+
+/// How far a point is from a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap {
+    /// Distance, negative inside (m).
+    pub distance: f64,
+    /// Direction away from the surface, of length 1.
+    pub normal: Vector3<f64>,
+    /// What a motion of the point changes in the normal (1/m).
+    pub turning: Matrix3<f64>,
+}
+
+impl SurfaceShape {
+    /// The gap at a point.
+    pub fn gap(&self, point: &Point3<f64>) -> Gap {
+        match self {
+            Self::Plane { at, normal } => Gap::flat((point - at).dot(normal), *normal),
+            Self::Cylinder { at, axis, radius } => {
+                let (r, out) = around(&(point - at), axis);
+                let tangent = axis.cross(&out);
+                Gap {
+                    distance: r - radius,
+                    normal: out,
+                    turning: tangent * tangent.transpose() / r.max(*radius),
+                }
+            }
+            Self::Disc { at, normal, radius, edge_radius } => {
+                let from = point - at;
+                let (r, out) = around(&from, normal);
+                let (beyond, above) = (r - (radius - edge_radius), from.dot(normal) + edge_radius);
+                if beyond <= 0.0 || above <= 0.0 {
+                    return if beyond < above {
+                        Gap::flat(above - edge_radius, *normal)
+                    } else {
+                        let around = normal.cross(&out);
+                        let turning = around * around.transpose() / r;
+                        Gap { distance: beyond - edge_radius, normal: out, turning }
+                    };
+                }
+                let off = beyond.hypot(above);
+                let (sin, cos) = (beyond / off, above / off);
+                let (along, around) = (out * cos - normal * sin, normal.cross(&out));
+                let turning = along * along.transpose() / off + around * around.transpose() * (sin / r);
+                Gap { distance: off - edge_radius, normal: out * sin + normal * cos, turning }
+            }
+        }
+    }
+}
+
+impl Gap {
+    fn flat(distance: f64, normal: Vector3<f64>) -> Self {
+        Self { distance, normal, turning: Matrix3::zeros() }
+    }
+}
+
+/// Distance from an axis, and the direction away from it; any across it for a point of the axis.
+fn around(from: &Vector3<f64>, axis: &Vector3<f64>) -> (f64, Vector3<f64>) {
+    let across = from - axis * from.dot(axis);
+    let r = across.norm();
+    if r > 0.0 {
+        return (r, across / r);
+    }
+    let other = if axis.x.abs() < 0.5 { Vector3::x() } else { Vector3::y() };
+    (0.0, axis.cross(&other).normalize())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn shapes() -> [SurfaceShape; 3] {
+        let at = Point3::new(0.1, -0.2, 0.3);
+        let normal = Vector3::new(0.2, 0.3, 1.0).normalize();
+        [
+            SurfaceShape::Plane { at, normal },
+            SurfaceShape::Cylinder { at, axis: normal, radius: 0.3 },
+            SurfaceShape::Disc { at, normal, radius: 0.4, edge_radius: 0.1 },
+        ]
+    }
+
+    /// The normal is the gradient of the distance, and `turning` that of the normal, by central differences.
+    #[test]
+    fn normals_and_their_turning_are_gradients() {
+        let h = 1e-5;
+        for shape in shapes() {
+            for k in 0..60 {
+                let t = f64::from(k);
+                let point = Point3::new((1.3 * t).sin(), (2.1 * t).cos(), 0.3 + 0.6 * (0.7 * t).sin());
+                let gap = shape.gap(&point);
+                assert_relative_eq!(gap.normal.norm(), 1.0, epsilon = 1e-12);
+                if gap.distance < 0.0 {
+                    // Inside, a crease may be between the two points.
+                    continue;
+                }
+                for d in 0..3 {
+                    let mut step = Vector3::zeros();
+                    step[d] = h;
+                    let [up, down] = [shape.gap(&(point + step)), shape.gap(&(point - step))];
+                    let slope = (up.distance - down.distance) / (2.0 * h);
+                    assert_relative_eq!(slope, gap.normal[d], epsilon = 1e-8);
+                    let turning = (up.normal - down.normal) / (2.0 * h);
+                    // Where two parts of a disc meet, the curvature jumps.
+                    let off = (turning - gap.turning.column(d)).amax();
+                    assert!(
+                        off < 1e-6 || matches!(shape, SurfaceShape::Disc { .. }) && off > 1e-2,
+                        "{shape:?} {off}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_disc_is_a_table_with_a_rounded_edge() {
+        let disc = SurfaceShape::Disc {
+            at: Point3::origin(),
+            normal: Vector3::z(),
+            radius: 0.09,
+            edge_radius: 0.01,
+        };
+        let distance = |x: f64, z: f64| disc.gap(&Point3::new(x, 0.0, z)).distance;
+        for (x, z, expected) in [
+            (0.0, 0.02, 0.02),
+            (0.05, -0.003, -0.003),
+            (0.1, -0.05, 0.01),
+            (0.08 + 0.02, -0.01 + 0.02, 0.02 * 2f64.sqrt() - 0.01),
+            (0.089, -0.05, -0.001),
+        ] {
+            assert_relative_eq!(distance(x, z), expected, epsilon = 1e-15);
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! What a sheet touches: itself, and the obstacles of its case.
+
+use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::case::SheetObstacle;
+use crate::finding::{Finding, StudyFact};
+use crate::mesh::{Crossings, QuadMesh, crossings};
+use crate::model::{Model, RigidSurface};
+use crate::solve::nonlinear::{ACCEPTED, State, Touch};
+
+/// What an obstacle bears (SI).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ContactResult {
+    /// Its name.
+    pub obstacle: String,
+    /// The coefficient of friction that it has.
+    pub friction: f64,
+    /// Force on the sheet, global axes (N).
+    pub force: [f64; 3],
+    /// Sum of the sizes of the forces along its normals (N).
+    pub normal_force: f64,
+    /// Nodes that it presses.
+    pub nodes: usize,
+    /// Those of them that slip, or that have come to it in the last step.
+    pub slipping: usize,
+    /// How far a node is beyond it at most (m).
+    pub penetration: f64,
+    /// Force on each node of the sheet (N).
+    #[serde(skip)]
+    pub forces: Vec<[f64; 3]>,
+}
+
+/// Friction of cloth on what nobody described: about that of cotton on steel and on wood.
+const ASSUMED_FRICTION: f64 = 0.2;
+
+fn friction(obstacle: &SheetObstacle, of_fabric: Option<f64>) -> f64 {
+    obstacle.friction.or(of_fabric).unwrap_or(ASSUMED_FRICTION)
+}
+
+/// The obstacles of a case for a fabric.
+pub(super) fn surfaces(obstacles: &[SheetObstacle], of_fabric: Option<f64>) -> Vec<RigidSurface> {
+    let surfaces = obstacles.iter().map(|obstacle| RigidSurface {
+        name: obstacle.name.value.clone(),
+        shape: obstacle.shape,
+        friction: friction(obstacle, of_fabric),
+    });
+    surfaces.collect()
+}
+
+/// What each obstacle bears in a state.
+pub(super) fn contacts(
+    obstacles: &[SheetObstacle],
+    of_fabric: Option<f64>,
+    state: &State,
+) -> Vec<ContactResult> {
+    let mut contacts = Vec::with_capacity(obstacles.len());
+    for (k, obstacle) in obstacles.iter().enumerate() {
+        let mut contact = ContactResult {
+            obstacle: obstacle.name.value.clone(),
+            friction: friction(obstacle, of_fabric),
+            force: [0.0; 3],
+            normal_force: 0.0,
+            nodes: 0,
+            slipping: 0,
+            penetration: 0.0,
+            forces: vec![[0.0; 3]; state.position.len()],
+        };
+        let touches = state.memory.touches.iter().skip(k).step_by(obstacles.len());
+        for (node, touch) in touches.enumerate().filter(|(_, touch)| touch.pressing > 0.0) {
+            contact.add(obstacle, state, node, touch);
+        }
+        contacts.push(contact);
+    }
+    contacts
+}
+
+impl ContactResult {
+    fn add(&mut self, obstacle: &SheetObstacle, state: &State, node: usize, touch: &Touch) {
+        let gap = obstacle.shape.gap(&state.position[node]);
+        let force: Vector3<f64> = gap.normal * touch.pressing + touch.traction;
+        self.forces[node] = force.into();
+        (0..3).for_each(|d| self.force[d] += force[d]);
+        self.normal_force += touch.pressing;
+        self.nodes += 1;
+        self.slipping +=
+            usize::from(touch.slips || (self.friction > 0.0 && touch.traction == Vector3::zeros()));
+        self.penetration = self.penetration.max(-gap.distance);
+    }
+}
+
+/// S141, S143 and S144 of a sheet in a state.
+pub(super) fn touching(
+    obstacles: &[SheetObstacle],
+    model: &Model,
+    of_fabric: Option<f64>,
+    state: &State,
+) -> Vec<Finding> {
+    let [low, high] = model.mesh.bounds();
+    let accepted = ACCEPTED * (high - low).norm();
+    let mut facts: Vec<StudyFact> = through_itself(&model.mesh, state).into_iter().collect();
+    for (contact, obstacle) in contacts(obstacles, of_fabric, state).into_iter().zip(obstacles) {
+        let ContactResult { obstacle: name, friction, penetration: depth, .. } = contact;
+        if depth > 1.01 * accepted {
+            facts.push(StudyFact::Penetrates { obstacle: name.clone(), depth, accepted });
+        }
+        if obstacle.friction.is_none() {
+            facts.push(StudyFact::AssumedFriction {
+                obstacle: name,
+                friction,
+                measured: of_fabric.is_some(),
+            });
+        }
+    }
+    facts.into_iter().map(Finding::new).collect()
+}
+
+/// S141 of a sheet that passes through itself.
+pub(super) fn through_itself(mesh: &QuadMesh, state: &State) -> Option<StudyFact> {
+    let Crossings { pairs, at, depth, .. } = crossings(&state.position, &mesh.quads)?;
+    Some(StudyFact::ThroughItself { pairs, at, depth })
+}
