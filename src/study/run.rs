@@ -4,6 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::checked::check;
 use super::dynamics::{dynamics, is_out_of_time, rayleigh};
+use super::eigen_steps::buckling_of;
 use super::finite::finite;
 use super::limits::{Beyond, buckles, findings, is_compressed};
 use super::load_steps::load_steps;
@@ -127,8 +128,18 @@ impl PreparedCase<'_> {
         let case = self.case;
         let model = self.model(section);
         build::weighed(&model)?;
-        let Outcome { solution, frequencies, modes: shapes, history, path, state, kept, findings: own } =
-            analyse(self, &model, law, watch)?;
+        let outcome = analyse(self, &model, law, watch)?;
+        let Outcome {
+            solution,
+            frequencies,
+            load_factors,
+            modes: shapes,
+            history,
+            path,
+            state,
+            kept,
+            findings: own,
+        } = outcome;
         let uncertainty = match kept {
             _ if inputs.is_empty() => None,
             Kept::Nothing => None,
@@ -148,7 +159,7 @@ impl PreparedCase<'_> {
             None => self.extent.deflection(&model.mesh, &solution.displacement, w_max),
         };
         let w_over_thickness = deflection / model.section.bending_thickness_squared().sqrt();
-        let is_linear = frequencies.is_empty() && state.is_none();
+        let is_linear = frequencies.is_empty() && load_factors.is_empty() && state.is_none();
         let ratio = [deflection, w_over_thickness];
         let beyond =
             is_linear.then(|| Beyond::of(&model, &self.extent, &solution.displacement, ratio)).flatten();
@@ -174,6 +185,7 @@ impl PreparedCase<'_> {
             checks: Vec::new(),
             profile,
             frequencies,
+            load_factors,
             modes: shapes,
             history,
             path,
@@ -182,7 +194,7 @@ impl PreparedCase<'_> {
             uncertainty,
             convergence: None,
             findings,
-            modal: matches!(self.problem.analysis, Analysis::Modal(_)),
+            modal: matches!(self.problem.analysis, Analysis::Modal(_) | Analysis::Buckling(_)),
             recovery: Arc::clone(&self.recovery),
             nodal: OnceLock::new(),
         };
@@ -220,6 +232,7 @@ fn analyse(
                 ..Outcome::of(solution)
             })
         }
+        Analysis::Buckling(buckling) => buckling_of(prepared, model, buckling.factors),
         Analysis::Newmark(newmark) => {
             let settings = newmark::Settings {
                 duration: newmark.duration.si(),
@@ -231,7 +244,7 @@ fn analyse(
                 scheme: newmark.scheme,
                 beginning: newmark.beginning,
             };
-            dynamics(prepared, model, &settings, newmark.rotations, watch)
+            dynamics(prepared, model, law, &settings, newmark.rotations, watch)
         }
         Analysis::Nonlinear(nonlinear) => equilibrium(prepared, model, law, nonlinear, watch),
         Analysis::Steps(steps) => load_steps(prepared, model, law, steps, watch),
@@ -239,7 +252,7 @@ fn analyse(
 }
 
 /// A mode with a largest displacement of 1 m; of 1 rad if it has rotations only.
-fn of_unit_size(shape: &[f64]) -> Vec<f64> {
+pub(super) fn of_unit_size(shape: &[f64]) -> Vec<f64> {
     let size = |part: std::ops::Range<usize>| {
         shape.chunks_exact(6).flat_map(|node| &node[part.clone()]).fold(0.0f64, |m, v| m.max(v.abs()))
     };
@@ -247,7 +260,7 @@ fn of_unit_size(shape: &[f64]) -> Vec<f64> {
     shape.iter().map(|v| v / largest).collect()
 }
 
-fn fewer_modes(case: &Case, found: usize, wanted: usize) -> Finding {
+pub(super) fn fewer_modes(case: &Case, found: usize, wanted: usize) -> Finding {
     Finding::new(StudyFact::FewerModes { found, wanted }).at(Place::file(&case.path))
 }
 

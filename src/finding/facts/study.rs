@@ -72,6 +72,31 @@ super::facts! {
             /// Modes that were asked for.
             wanted: usize,
         } = "the model has {found} modes, and {wanted} were asked for: refine the mesh, or ask for fewer";
+        /// Vibrations about a state that is left.
+        "S141" GrowingModes {
+            /// How many of those that were found.
+            modes: usize,
+            /// The rate of the fastest (1/s).
+            rate: f64,
+        } = "the equilibrium is unstable: {modes} of the modes about it have no frequency (0 Hz stands for them), they grow by a factor of \
+             e in {} s at the fastest; take less load, or method = \"stable\" in the step before", significant(1.0 / rate);
+        /// A model with fewer load factors than were asked for.
+        "S142" FewerFactors {
+            /// Load factors of the model.
+            found: usize,
+            /// Load factors that were asked for.
+            wanted: usize,
+        } = "the loads buckle the sheet at {found} factors, and {wanted} were asked for: {}", if *found == 0 {
+            "before they turn it by a radian, where a linear answer means nothing, they press it nowhere enough"
+        } else {
+            "refine the mesh, or ask for fewer"
+        };
+        /// Loads that buckle a sheet only when they are turned round.
+        "S143" BucklesTurnedRound {
+            /// The factor nearest to zero.
+            nearest: f64,
+        } = "all load factors that were found are below zero ({} is nearest to it): the sheet buckles under these loads turned round; ask \
+             for more `factors` to see one above zero, if there is any", significant(*nearest);
         /// A sheet that would buckle.
         "S105" Buckles {
             /// Directions without stiffness.

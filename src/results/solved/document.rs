@@ -67,6 +67,9 @@ struct ResultsEntry {
     reaction_moments: Option<[f64; 3]>,
     strain_energy: Option<f64>,
     frequencies: Vec<f64>,
+    /// Of a buckling analysis: factors of the loads, those nearest to zero first, of either sign.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    load_factors: Vec<f64>,
     convergence: Option<Convergence>,
     uncertainty: Option<UncertaintyEntry>,
 }
@@ -140,6 +143,7 @@ fn results(task: &Task, result: &CaseResult) -> ResultsEntry {
         reaction_moments: reactions.map(|[_, moment]| moment.into()),
         strain_energy: (!result.is_modal()).then_some(result.solution.strain_energy),
         frequencies: result.frequencies.clone(),
+        load_factors: result.load_factors.clone(),
         convergence: result.convergence.clone(),
         uncertainty,
     }
