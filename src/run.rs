@@ -28,6 +28,7 @@ mod work;
 
 pub(crate) use document::RunDocument;
 
+use crate::platform::in_pool;
 use crate::report::table::{FabricRow, PredictionRow, ProblemRow};
 use crate::results::{
     Catalogue, Columns, FabricReport, Failure, Folder, Job, JobInputs, Observer, Record, Sink,
@@ -235,7 +236,7 @@ pub fn write(
         without_law: &without_law,
         cases: &cases,
     };
-    let tables = results.write(job, observer)?;
+    let tables = in_pool(|| results.write(job, observer))?;
     let (unread, of_batch, of_own) =
         (results.unread_rows(), results.problems_of_batch(), results.problems_of_own());
     Ok(RunReport {

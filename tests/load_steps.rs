@@ -298,7 +298,10 @@ fn steps_that_mean_nothing_are_refused_at_their_place() {
         (format!("{NONLINEAR}{step}"), "nothing acts"),
         (format!("{NONLINEAR}{WEIGHT}{step}{step}"), "a name of its own"),
         (format!("{NONLINEAR}{WEIGHT}[[steps]]\nname = \" \"\n"), "a name of its own"),
-        (format!("{NONLINEAR}{WEIGHT}{step}[steps.analysis]\nkind = \"modal\"\n"), "of kind = \"nonlinear\""),
+        (
+            format!("{NONLINEAR}{WEIGHT}{step}[steps.analysis]\nkind = \"linear\"\n"),
+            "of kind = \"nonlinear\"",
+        ),
         (format!("{NONLINEAR}{WEIGHT}{step}[[steps.supports]]\nset = \"left\"\n"), "either `kind` or `fix`"),
         (format!("{NONLINEAR}{WEIGHT}{step}[[steps.loads]]\nkind = \"push\"\n"), "unknown variant `push`"),
         (format!("{NONLINEAR}{WEIGHT}{step}of = 1\n"), "unknown field `of`"),

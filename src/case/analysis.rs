@@ -1,20 +1,18 @@
 //! `[analysis]`: what is computed.
 
-use std::f64::consts::TAU;
-
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
 use super::error::refused;
 use super::loads::{Prescribed, SheetLoad, SheetLoads};
-use super::nonlinear::{NonlinearTable, SheetStep};
+use super::motion::{Newmark, NewmarkTable, Rotations};
+use super::nonlinear::NonlinearTable;
 use super::sheet::Sheet;
+use super::step_analysis::SheetStep;
 use super::supports::SheetSupport;
 use crate::element::Mass;
-use crate::finding::{Located, Node, Place, TomlError};
-use crate::quantity::{Frequency, Time, Velocity, counts_angles};
-use crate::solve::newmark::{Beginning, LoadHistory, Scheme};
+use crate::finding::{Located, Node, TomlError};
 use crate::solve::nonlinear::{Method, Settings};
 
 /// `[analysis]`: what is computed; of several kinds, `linear` without the table.
@@ -25,6 +23,8 @@ pub(super) enum AnalysisTable {
     Linear(LinearTable),
     /// Natural frequencies and modes, without loads.
     Modal(ModalTable),
+    /// Load factors at which a sheet buckles, and the shapes.
+    Buckling(BucklingTable),
     /// Dynamics.
     Newmark(NewmarkTable),
     /// Statics in large rotations.
@@ -57,62 +57,32 @@ impl Default for ModalTable {
     }
 }
 
-/// `kind = "newmark"`: dynamics, from rest unless another beginning is given (Newmark's method, average acceleration
-/// unless β and γ are given).
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct NewmarkTable {
-    /// End of the time range.
-    duration: Time,
-    /// Time step; the first one when a tolerance is given.
-    step: Time,
-    /// Relative local error at which the step adapts, above 0 and below 1; constant step when left out. The
-    /// errors of the steps add up, over a few periods to about its power 2/3.
-    #[schemars(example = 1e-3)]
-    tolerance: Option<f64>,
-    /// Damping ratios of the first and the third natural frequency; undamped when left out.
-    #[schemars(extend("examples" = [[0.02, 0.02]]))]
-    damping: Option<[f64; 2]>,
-    /// `"step"`, `"ramp until 0.1 s"`, `"sine 5 Hz"` (the same as `"sine 31.416 rad/s"`), or `"off"`: nothing acts, and the
-    /// sheet goes on from its `start`.
-    #[serde(default = "step_load")]
-    #[schemars(example = &"ramp until 0.1 s")]
-    load: String,
-    /// How the mass of an element goes to its nodes.
-    #[schemars(extend("default" = "lumped"))]
-    mass: Option<Mass>,
-    /// The older word: `true` is `mass = "lumped"`, `false` is `mass = "consistent"`.
-    lumped: Option<bool>,
-    /// Rotations of any size instead of small displacements; the energies balance in every step.
-    #[serde(default)]
-    large_rotations: bool,
-    /// How much of the highest frequencies is left after a step, 0 to 1, and the method that damps them (generalised-α)
-    /// in the place of the one that keeps the energy. With large rotations only.
-    #[schemars(example = 0.9)]
-    spectral_radius: Option<f64>,
-    /// β of Newmark's method, γ/2 to 1, so that no step is too long. With small displacements only.
-    #[schemars(extend("default" = 0.25))]
-    beta: Option<f64>,
-    /// γ of Newmark's method, 1/2 to 1: above 1/2 what is fast is damped, the order is the first, the step is constant,
-    /// and the imbalance of the energies in the result is what the method has taken. With small displacements only.
-    #[schemars(extend("default" = 0.5))]
-    gamma: Option<f64>,
-    /// The sheet at the first instant; another one than `rest` with small displacements only.
-    #[serde(default)]
-    start: StartingShape,
-    /// Velocity along z of every node that is not held, at the first instant. With small displacements only.
-    start_velocity: Option<Velocity>,
+/// `kind = "buckling"`: the factors of the loads at which a sheet buckles, those nearest to zero first, and the shapes. One below
+/// zero is a factor of the loads turned round. The stresses are those of a linear answer to the loads.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct BucklingTable {
+    /// How many factors.
+    factors: usize,
 }
 
-/// The sheet at the first instant of a motion.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub(super) enum StartingShape {
-    /// Without deformation.
-    #[default]
-    Rest,
-    /// With the deflection that the whole loads cause in statics: with `load = "off"` they let go of it.
-    Deflected,
+impl Default for BucklingTable {
+    fn default() -> Self {
+        Self { factors: 4 }
+    }
+}
+
+impl BucklingTable {
+    /// How many factors the table at a node asks for.
+    pub fn checked(&self, at: &Node<'_>) -> Result<usize, CaseError> {
+        if self.factors == 0 {
+            return refused(
+                at.value_place("factors"),
+                "[analysis] factors = 0 asks for nothing: take 1 or more",
+            );
+        }
+        Ok(self.factors)
+    }
 }
 
 /// `kind = "drape"`: a round sheet hangs from a disc, an `annulus` held at `inner`, in large rotations.
@@ -156,11 +126,13 @@ pub enum Analysis {
     Linear(Linear),
     /// Natural frequencies and modes.
     Modal(Modal),
+    /// Buckling under loads that grow from nothing.
+    Buckling(Buckling),
     /// Dynamics.
     Newmark(Newmark),
     /// Statics in large rotations.
     Nonlinear(Box<Nonlinear>),
-    /// Statics in large rotations in steps, each from where the one before has ended; one at least.
+    /// Steps in large rotations, each from where the one before has ended; one at least, and the first is static.
     Steps(Vec<SheetStep>),
 }
 
@@ -184,42 +156,15 @@ pub struct Modal {
     pub coarser: Option<Located<Vec<Sheet>>>,
 }
 
-/// Dynamics: nothing is prescribed.
+/// Buckling under loads that grow from nothing.
 #[derive(Clone, Debug)]
-pub struct Newmark {
-    /// Forces and moments.
-    pub loads: Vec<SheetLoad>,
-    /// End of the time range, not before the first step.
-    pub duration: Time,
-    /// Time step, above 0; the first one with a tolerance.
-    pub step: Time,
-    /// Relative local error at which the step adapts; constant step without.
-    pub tolerance: Option<f64>,
-    /// Damping ratios of the first and the third natural frequency, 0 to below 1; undamped without.
-    pub damping: Option<Located<[f64; 2]>>,
-    /// How the loads vary in time.
-    pub history: LoadHistory,
-    /// How the mass of an element goes to its nodes.
-    pub mass: Mass,
-    /// The size of rotations.
-    pub rotations: Rotations,
-    /// β and γ; those of the average acceleration in large rotations.
-    pub scheme: Scheme,
-    /// The state at the first instant; rest in large rotations.
-    pub beginning: Beginning,
-}
-
-/// The size of rotations in a motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Rotations {
-    /// Small displacements (Newmark's method).
-    Small,
-    /// Any size.
-    Large {
-        /// How much of the highest frequencies is left after a step of the generalised-α method, 0 to 1; without, the
-        /// energy is conserved.
-        spectral_radius: Option<f64>,
-    },
+pub struct Buckling {
+    /// What grows.
+    pub loads: SheetLoads,
+    /// How many factors, 1 or more.
+    pub factors: usize,
+    /// Coarser meshes, coarsest first, that show what the mesh leaves open.
+    pub coarser: Option<Located<Vec<Sheet>>>,
 }
 
 /// Statics in large rotations.
@@ -236,40 +181,45 @@ pub struct Nonlinear {
 }
 
 impl Analysis {
-    /// What acts, in the last of its steps; nothing in a modal analysis.
+    /// What acts, in the last of its steps that changes anything; nothing in a modal analysis.
     pub fn loads(&self) -> &[SheetLoad] {
         match self {
-            Self::Steps(steps) => steps.last().map_or(&[], |step| &step.analysis.loads.acting),
+            Self::Steps(steps) => SheetStep::last_state(steps).map_or(&[], |step| step.acting()),
             Self::Linear(linear) => &linear.loads.acting,
             Self::Nonlinear(nonlinear) => &nonlinear.loads.acting,
+            Self::Buckling(buckling) => &buckling.loads.acting,
             Self::Newmark(newmark) => &newmark.loads,
             Self::Modal(_) => &[],
         }
     }
 
-    /// What is prescribed, in the last of its steps; nothing in a modal analysis and in a motion.
+    /// What is prescribed, in the last of its steps that changes anything; nothing in a modal analysis and in a motion.
     pub fn prescribed(&self) -> &[Prescribed] {
         match self {
-            Self::Steps(steps) => steps.last().map_or(&[], |step| &step.analysis.loads.prescribed),
+            Self::Steps(steps) => SheetStep::last_state(steps).map_or(&[], |step| step.prescribed()),
             Self::Linear(linear) => &linear.loads.prescribed,
             Self::Nonlinear(nonlinear) => &nonlinear.loads.prescribed,
+            Self::Buckling(buckling) => &buckling.loads.prescribed,
             Self::Modal(_) | Self::Newmark(_) => &[],
         }
     }
 
-    /// Where the sheet is held in the last of its steps, beside the supports of the case; nowhere without steps.
+    /// Where the sheet is held in the last of its steps that changes anything, beside the supports of the case; nowhere
+    /// without steps.
     pub fn supports(&self) -> &[SheetSupport] {
         match self {
-            Self::Steps(steps) => steps.last().map_or(&[], |step| &step.supports),
-            Self::Linear(_) | Self::Modal(_) | Self::Newmark(_) | Self::Nonlinear(_) => &[],
+            Self::Steps(steps) => SheetStep::last_state(steps).map_or(&[], |step| &step.supports),
+            Self::Linear(_) | Self::Modal(_) | Self::Buckling(_) | Self::Newmark(_) | Self::Nonlinear(_) => {
+                &[]
+            }
         }
     }
 
     /// Everything that is prescribed, in any of its steps.
     pub fn all_prescribed(&self) -> Vec<&Prescribed> {
         match self {
-            Self::Steps(steps) => steps.iter().flat_map(|step| &step.analysis.loads.prescribed).collect(),
-            Self::Linear(_) | Self::Modal(_) | Self::Newmark(_) | Self::Nonlinear(_) => {
+            Self::Steps(steps) => steps.iter().flat_map(|step| step.prescribed()).collect(),
+            Self::Linear(_) | Self::Modal(_) | Self::Buckling(_) | Self::Newmark(_) | Self::Nonlinear(_) => {
                 self.prescribed().iter().collect()
             }
         }
@@ -278,7 +228,9 @@ impl Analysis {
     /// Coarser meshes that show what the mesh leaves open, coarsest first.
     pub fn coarser(&self) -> Option<&Located<Vec<Sheet>>> {
         match self {
-            Self::Linear(Linear { coarser, .. }) | Self::Modal(Modal { coarser, .. }) => coarser.as_ref(),
+            Self::Linear(Linear { coarser, .. })
+            | Self::Modal(Modal { coarser, .. })
+            | Self::Buckling(Buckling { coarser, .. }) => coarser.as_ref(),
             Self::Newmark(_) | Self::Nonlinear(_) | Self::Steps(_) => None,
         }
     }
@@ -288,16 +240,16 @@ impl Analysis {
         match self {
             Self::Modal(modal) => Some(modal.mass),
             Self::Newmark(newmark) => Some(newmark.mass),
-            Self::Linear(_) | Self::Nonlinear(_) | Self::Steps(_) => None,
+            Self::Linear(_) | Self::Buckling(_) | Self::Nonlinear(_) | Self::Steps(_) => None,
         }
     }
 
-    /// Whether rotations may be large.
+    /// Whether rotations may be large, or the equations are those of large rotations.
     pub fn has_large_rotations(&self) -> bool {
         match self {
             Self::Linear(_) | Self::Modal(_) => false,
             Self::Newmark(newmark) => newmark.rotations != Rotations::Small,
-            Self::Nonlinear(_) | Self::Steps(_) => true,
+            Self::Buckling(_) | Self::Nonlinear(_) | Self::Steps(_) => true,
         }
     }
 }
@@ -305,22 +257,24 @@ impl Analysis {
 impl AnalysisTable {
     /// Reads the `[analysis]` of a case; a linear one when left out.
     pub fn read(case: &Node<'_>) -> Result<Self, TomlError> {
-        const KINDS: [&str; 5] = ["linear", "modal", "newmark", "nonlinear", "drape"];
+        const KINDS: [&str; 6] = ["linear", "modal", "buckling", "newmark", "nonlinear", "drape"];
         let Some(at) = case.get("analysis") else { return Ok(Self::Linear(LinearTable {})) };
         Ok(match super::kind::kind_of(&at, &KINDS)? {
             "linear" => Self::Linear(at.read_without("kind")?),
             "modal" => Self::Modal(at.read_without("kind")?),
+            "buckling" => Self::Buckling(at.read_without("kind")?),
             "newmark" => Self::Newmark(at.read_without("kind")?),
             "nonlinear" => Self::Nonlinear(at.read_without("kind")?),
             _ => Self::Drape(at.read_without("kind")?),
         })
     }
 
-    /// Whether a law with friction has a meaning: in statics in large rotations.
+    /// Whether a law with friction has a meaning: in large rotations.
     pub fn can_have_friction(&self) -> bool {
         match self {
             Self::Nonlinear(_) | Self::Drape(_) => true,
-            Self::Linear(_) | Self::Modal(_) | Self::Newmark(_) => false,
+            Self::Newmark(newmark) => newmark.has_large_rotations(),
+            Self::Linear(_) | Self::Modal(_) | Self::Buckling(_) => false,
         }
     }
 
@@ -328,7 +282,7 @@ impl AnalysisTable {
     pub fn can_be_sampled(&self) -> bool {
         match self {
             Self::Newmark(_) | Self::Nonlinear(_) | Self::Drape(_) => true,
-            Self::Linear(_) | Self::Modal(_) => false,
+            Self::Linear(_) | Self::Modal(_) | Self::Buckling(_) => false,
         }
     }
 }
@@ -343,98 +297,8 @@ impl ModalTable {
     }
 }
 
-impl NewmarkTable {
-    /// The motion under loads of the table at a node.
-    pub fn checked(&self, at: &Node<'_>, loads: SheetLoads) -> Result<Newmark, CaseError> {
-        if let Some(prescribed) = loads.prescribed.first() {
-            let place = Place { line: prescribed.table.line, column: prescribed.table.column, ..at.place() };
-            return refused(place, "a dynamic analysis has no prescribed values: remove them");
-        }
-        let in_range = |ratio: &f64| (0.0..1.0).contains(ratio);
-        if self.damping.is_some_and(|ratios| !ratios.iter().all(in_range)) {
-            return refused(
-                at.value_place("damping"),
-                "[analysis] damping ratios are parts of the critical damping: take 0 to below 1",
-            );
-        }
-        if self.tolerance.is_some_and(|t| !(t > 0.0 && t < 1.0)) {
-            return refused(
-                at.value_place("tolerance"),
-                "[analysis] tolerance is the local error of a step relative to the displacement: take one above 0 and \
-                 below 1, such as 1e-3",
-            );
-        }
-        let (step, duration) = (self.step.si(), self.duration.si());
-        if !(step > 0.0 && duration >= step) {
-            return refused(at.value_place("step"), "newmark needs 0 < step <= duration");
-        }
-        Ok(Newmark {
-            loads: loads.acting,
-            duration: self.duration,
-            step: self.step,
-            tolerance: self.tolerance,
-            damping: self.damping.map(|ratios| at.located_at("damping", ratios)),
-            history: load_history(&self.load).or_else(|reason| refused(at.value_place("load"), reason))?,
-            mass: mass(self.mass, self.lumped, at)?,
-            rotations: self.rotations(at)?,
-            scheme: self.scheme(at)?,
-            beginning: self.beginning(at)?,
-        })
-    }
-
-    fn scheme(&self, at: &Node<'_>) -> Result<Scheme, CaseError> {
-        let start = Scheme::default();
-        let gamma = self.gamma.unwrap_or(start.gamma);
-        let scheme = Scheme { beta: self.beta.unwrap_or(start.beta.max(0.5 * gamma)), gamma };
-        let key = if self.beta.is_some() { "beta" } else { "gamma" };
-        if !(scheme.is_stable() && scheme.beta <= 1.0 && scheme.gamma <= 1.0) {
-            let message = format!(
-                "[analysis] beta = {} with gamma = {}: take 1/2 <= gamma <= 2 beta and both at most 1, for which no step is \
-                 too long; a thin sheet has frequencies that no step resolves",
-                scheme.beta, scheme.gamma
-            );
-            return refused(at.value_place(key), message);
-        }
-        if self.tolerance.is_some() && scheme.gamma != start.gamma {
-            let message = "`tolerance` adapts the step by the local error of gamma = 0.5: remove one of them";
-            return refused(at.value_place("gamma"), message);
-        }
-        Ok(scheme)
-    }
-
-    fn beginning(&self, at: &Node<'_>) -> Result<Beginning, CaseError> {
-        let small = ["beta", "gamma", "start", "start_velocity"];
-        if let Some(key) = small.into_iter().find(|key| self.large_rotations && at.has(key)) {
-            return refused(
-                at.key_place(key),
-                format!("`{key}` is for small displacements: remove it, or large_rotations"),
-            );
-        }
-        let velocity = self.start_velocity.map_or(0.0, Velocity::si);
-        let beginning = Beginning { deflected: self.start == StartingShape::Deflected, velocity };
-        if self.load == "off" && beginning == Beginning::default() {
-            let message =
-                "load = \"off\" lets nothing act: give start = \"deflected\" or a start_velocity too";
-            return refused(at.value_place("load"), message);
-        }
-        Ok(beginning)
-    }
-
-    fn rotations(&self, at: &Node<'_>) -> Result<Rotations, CaseError> {
-        let message = "spectral_radius is 0 to 1, and needs large_rotations = true";
-        match (self.large_rotations, self.spectral_radius) {
-            (false, None) => Ok(Rotations::Small),
-            (false, Some(_)) => refused(at.key_place("spectral_radius"), message),
-            (true, Some(radius)) if !(0.0..=1.0).contains(&radius) => {
-                refused(at.value_place("spectral_radius"), message)
-            }
-            (true, spectral_radius) => Ok(Rotations::Large { spectral_radius }),
-        }
-    }
-}
-
 /// The mass matrix: the key `mass`, or the older `lumped`.
-fn mass(mass: Option<Mass>, lumped: Option<bool>, at: &Node<'_>) -> Result<Mass, CaseError> {
+pub(super) fn mass(mass: Option<Mass>, lumped: Option<bool>, at: &Node<'_>) -> Result<Mass, CaseError> {
     match (mass, lumped) {
         (Some(_), Some(_)) => {
             let message = "[analysis] gives both `mass` and `lumped`: remove `lumped`";
@@ -444,53 +308,5 @@ fn mass(mass: Option<Mass>, lumped: Option<bool>, at: &Node<'_>) -> Result<Mass,
         (None, Some(false)) => Ok(Mass::Consistent),
         (None, Some(true)) => Ok(Mass::Lumped),
         (None, None) => Ok(Mass::default()),
-    }
-}
-
-fn step_load() -> String {
-    "step".into()
-}
-
-/// A history as it is written, or why it is none.
-fn load_history(text: &str) -> Result<LoadHistory, String> {
-    let history = if text == "step" {
-        Ok(LoadHistory::Step)
-    } else if text == "off" {
-        Ok(LoadHistory::Off)
-    } else if let Some(until) = text.strip_prefix("ramp until ") {
-        let end = until.parse::<Time>().map_err(|e| e.to_string());
-        end.and_then(|end| above_zero(end.si())).map(LoadHistory::Ramp)
-    } else if let Some(frequency) = text.strip_prefix("sine ") {
-        // In rad/s it is an angular frequency.
-        let turn = if counts_angles(frequency) { TAU } else { 1.0 };
-        let hertz = frequency.parse::<Frequency>().map_err(|e| e.to_string());
-        hertz.and_then(|f| above_zero(f.si() / turn)).map(LoadHistory::Sine)
-    } else {
-        Err("no such history".into())
-    };
-    history.map_err(|reason| {
-        format!("load = \"{text}\": {reason}; write \"step\", \"ramp until 0.1 s\", \"sine 5 Hz\" or \"off\"")
-    })
-}
-
-fn above_zero(value: f64) -> Result<f64, String> {
-    if value > 0.0 { Ok(value) } else { Err(format!("{value} is not above 0")) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_angular_frequency_is_no_frequency_in_hertz() {
-        let sine = |text: &str| match load_history(text) {
-            Ok(LoadHistory::Sine(hertz)) => hertz,
-            other => panic!("{other:?}"),
-        };
-        assert_eq!(sine("sine 5 Hz"), 5.0);
-        for one in ["sine 6.283185307179586 rad/s", "sine 360 deg/s", "sine 60 1/min"] {
-            assert!((sine(one) - 1.0).abs() < 1e-12, "{one}");
-        }
-        assert!(load_history("sine 0 rad/s").is_err());
     }
 }

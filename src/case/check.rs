@@ -7,9 +7,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::CaseError;
-use super::analysis::{Analysis, Modal};
+use super::analysis::{Analysis, Buckling, Modal};
 use super::error::refused;
 use super::point::SheetPoint;
+use super::step_analysis::{SheetStep, StepAnalysis};
 use crate::fields::Resultants;
 use crate::finding::{Located, Node};
 use crate::quantity::{Unit, counts_angles, parse_quantity};
@@ -38,7 +39,7 @@ pub struct ProbePoint {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CheckTable {
-    /// `w_max`, `strain_energy`, `frequency_1` ..., or `<probe>.<u|v|w|theta_x|...|moment_x|membrane_x|shear_x ...>`. `w_max` is the
+    /// `w_max`, `strain_energy`, `frequency_1` ..., `load_factor_1` ..., those of a step as `<step>.frequency_1`, or `<probe>.<u|v|w|theta_x|...|moment_x|membrane_x|shear_x ...>`. `w_max` is the
     /// largest displacement along z, whatever the plane of the sheet. Moments, membrane and shear forces are per width and along
     /// the yarns at rest, x the warp and y the weft; displacements and rotations are along the axes of the case.
     #[schemars(example = &"centre.w")]
@@ -143,7 +144,7 @@ impl CheckTable {
         let Some(unit) = unit_of(&self.quantity, analysis, probes) else {
             let names: Vec<&str> = probes.iter().map(|p| p.name.as_str()).collect();
             let message = format!(
-                "there is no quantity `{}` to check: take w_max, strain_energy, frequency_1 ..., or PROBE.COMPONENT with the probes [{}] and \
+                "there is no quantity `{}` to check: take w_max, strain_energy, frequency_1 ..., load_factor_1 ... (of a step: STEP.frequency_1), or PROBE.COMPONENT with the probes [{}] and \
                  u v w theta_x theta_y theta_z moment_x moment_y moment_xy membrane_x membrane_y membrane_xy shear_x shear_y",
                 self.quantity,
                 names.join(", ")
@@ -171,24 +172,49 @@ impl CheckTable {
 
 /// SI unit of a quantity by name, if an analysis with these probes has it.
 pub(crate) fn unit_of(quantity: &str, analysis: &Analysis, probes: &[ProbePoint]) -> Option<&'static str> {
-    let modes = match analysis {
-        Analysis::Modal(Modal { modes, .. }) => *modes,
-        Analysis::Linear(_) | Analysis::Newmark(_) | Analysis::Nonlinear(_) | Analysis::Steps(_) => 0,
-    };
     match quantity {
         "w_max" => return Some("m"),
-        "strain_energy" => return (modes == 0).then_some("J"),
+        "strain_energy" => {
+            return (!matches!(analysis, Analysis::Modal(_) | Analysis::Buckling(_))).then_some("J");
+        }
         _ => {}
     }
-    if let Some(number) = quantity.strip_prefix("frequency_") {
-        return number.parse::<usize>().is_ok_and(|n| (1..=modes).contains(&n)).then_some("1/s");
+    let wanted = match analysis {
+        Analysis::Modal(Modal { modes, .. }) => Some(("frequency", *modes, "1/s")),
+        Analysis::Buckling(Buckling { factors, .. }) => Some(("load_factor", *factors, "1")),
+        Analysis::Linear(_) | Analysis::Newmark(_) | Analysis::Nonlinear(_) | Analysis::Steps(_) => None,
+    };
+    if let Some((kind, number)) = numbered(quantity) {
+        return wanted.filter(|(name, count, _)| *name == kind && number <= *count).map(|(.., unit)| unit);
     }
     let (name, component) = quantity.split_once('.')?;
+    if let (Analysis::Steps(steps), Some((kind, number))) = (analysis, numbered(component)) {
+        let step = steps.iter().find(|step| step.name.value == name)?;
+        let (wanted, count, unit) = eigenvalues(step)?;
+        return (wanted == kind && number <= count).then_some(unit);
+    }
     probes.iter().find(|p| p.name == name)?;
     let resultant = Resultants::COMPONENTS.iter().find(|(name, _)| *name == component);
     match component {
         "u" | "v" | "w" => Some("m"),
         "theta_x" | "theta_y" | "theta_z" => Some("rad"),
         _ => resultant.map(|(_, unit)| *unit),
+    }
+}
+
+/// The name and number of an eigenvalue, such as `frequency_1`; from 1.
+pub(crate) fn numbered(quantity: &str) -> Option<(&'static str, usize)> {
+    ["frequency", "load_factor"].into_iter().find_map(|name| {
+        let number = quantity.strip_prefix(name)?.strip_prefix('_')?.parse::<usize>().ok()?;
+        (number > 0).then_some((name, number))
+    })
+}
+
+/// Name, number and unit of what a step looks for.
+fn eigenvalues(step: &SheetStep) -> Option<(&'static str, usize, &'static str)> {
+    match step.analysis {
+        StepAnalysis::Modal { modes, .. } => Some(("frequency", modes, "1/s")),
+        StepAnalysis::Buckling { factors, .. } => Some(("load_factor", factors, "1")),
+        StepAnalysis::Static(_) | StepAnalysis::Motion(_) => None,
     }
 }

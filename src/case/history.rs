@@ -1,10 +1,10 @@
 //! How the `[[steps]]` of a case become its history.
 
 use super::CaseError;
-use super::analysis::AnalysisTable;
 use super::error::refused;
 use super::loads::SheetLoads;
-use super::nonlinear::{NonlinearTable, SheetStep};
+use super::nonlinear::NonlinearTable;
+use super::step_analysis::{SheetStep, StepAnalysis, step_analysis};
 use super::steps::StepTable;
 use crate::finding::Node;
 
@@ -22,6 +22,7 @@ pub(super) fn steps(
     let mut steps: Vec<SheetStep> = Vec::with_capacity(tables.len());
     for (table, at) in tables.iter().zip(places.iter().flat_map(Node::items)) {
         let step = table.step(&at, case, &always, default)?;
+        in_order(&steps, &step, &at)?;
         let name = &step.name.value;
         if name.trim().is_empty() || steps.iter().any(|s| s.name.value == *name) {
             let message =
@@ -30,7 +31,7 @@ pub(super) fn steps(
         }
         steps.push(step);
     }
-    if steps.iter().all(|step| step.analysis.loads.is_empty()) {
+    if steps.iter().all(SheetStep::is_idle) {
         return refused(
             case.key_place("steps"),
             "nothing acts on the sheet in any step: add [[steps.loads]]",
@@ -47,28 +48,33 @@ impl StepTable {
         always: &SheetLoads,
         default: &NonlinearTable,
     ) -> Result<SheetStep, CaseError> {
-        let mut loads = always.clone();
-        let own = SheetLoads::read(at)?;
-        loads.acting.extend(own.acting);
-        loads.prescribed.extend(own.prescribed);
-        let analysis = match at.get("analysis") {
-            None => default.checked(&case.get("analysis").unwrap_or(*case), loads)?,
-            Some(of_step) => match AnalysisTable::read(at)? {
-                AnalysisTable::Nonlinear(table) => {
-                    table.with_obstacles(case, &of_step)?.checked(&of_step, loads)?
-                }
-                _ => {
-                    let message = "the [analysis] of a step is of kind = \"nonlinear\"";
-                    return refused(of_step.value_place("kind"), message);
-                }
-            },
-        };
         let places = at.get("supports");
         let supports = self.supports.iter().zip(places.iter().flat_map(Node::items));
         Ok(SheetStep {
             name: at.located_at("name", self.name.clone()),
+            analysis: step_analysis(at, case, always, default)?,
             supports: supports.map(|(table, at)| table.clone().support(&at)).collect::<Result<_, _>>()?,
-            analysis,
         })
+    }
+}
+
+/// Refuses a step after what leaves no equilibrium, or before there is any.
+fn in_order(steps: &[SheetStep], step: &SheetStep, at: &Node<'_>) -> Result<(), CaseError> {
+    let place = || at.get("analysis").unwrap_or(*at).value_place("kind");
+    let is_static = matches!(step.analysis, StepAnalysis::Static(_));
+    if steps.is_empty() && !is_static {
+        let message = "the first of the [[steps]] is of kind = \"nonlinear\": modes, load factors and motions of a sheet at rest are \
+                       cases without [[steps]]";
+        return refused(place(), message);
+    }
+    match steps.last() {
+        Some(SheetStep { name, analysis: StepAnalysis::Motion(_), .. }) => {
+            let message = format!(
+                "step `{}` before it is a motion, which ends in no equilibrium: a motion is the last of the [[steps]]",
+                name.value
+            );
+            refused(at.place(), message)
+        }
+        _ => Ok(()),
     }
 }

@@ -6,14 +6,17 @@ use serde::Deserialize;
 
 use super::CaseError;
 use super::error::refused;
+use super::motion::load_history;
 use super::point::SheetPoint;
 use super::supports::dof_named;
-use crate::finding::{Located, Node, TomlError};
+use crate::finding::{Located, Node, Place, TomlError};
 use crate::model::Dof;
 use crate::quantity::{
     Acceleration, Angle, Force, Length, LineForce, LineMoment, Moment, Pressure, QuantityError,
-    STANDARD_GRAVITY,
+    STANDARD_GRAVITY, Time,
 };
+use crate::solve::newmark::LoadHistory;
+use crate::solve::nonlinear::dynamics::Course;
 
 /// `[[loads]]`: what acts on the sheet, or what a part of it is given; of several kinds.
 #[derive(Clone, Debug, JsonSchema)]
@@ -115,7 +118,17 @@ pub(super) struct PrescribedTable {
     dof: String,
     /// Displacement, such as `"1 mm"`, or rotation, such as `"2 deg"`.
     #[schemars(extend("x-unit" = "m or rad"), example = &"1 mm")]
-    value: String,
+    value: Option<String>,
+    /// How it comes to the value in a motion of `[[steps]]`: `"ramp until 0.1 s"`, or `"sine 5 Hz"`, which goes to and fro between
+    /// the value and its opposite. It counts from where the set is when the motion begins.
+    #[schemars(example = &"sine 5 Hz")]
+    course: Option<String>,
+    /// Times of `values` instead, ascending from 0 s.
+    #[schemars(extend("examples" = [["0 s", "0.1 s", "0.3 s"]]))]
+    times: Option<Vec<Time>>,
+    /// Displacements or rotations at these times, from 0; straight from one to the next, and after the last it stays.
+    #[schemars(extend("x-unit" = "m or rad"), extend("examples" = [["0 mm", "1 mm", "0 mm"]]))]
+    values: Option<Vec<String>>,
 }
 
 /// What acts on a sheet.
@@ -166,8 +179,10 @@ pub struct Prescribed {
     pub set: Located<String>,
     /// Which.
     pub dof: Dof,
-    /// Displacement (m) or rotation (rad).
+    /// Displacement (m) or rotation (rad); of one with a course, 0.
     pub value: f64,
+    /// How it goes in a motion.
+    pub course: Option<Located<Course>>,
     /// Position of the table in the case file.
     pub table: Located<()>,
 }
@@ -220,8 +235,33 @@ impl LoadTable {
 }
 
 impl SheetLoads {
-    /// Reads the `[[loads]]` of a case.
+    /// Reads the `[[loads]]` of a case or a step without motion.
     pub(super) fn read(case: &Node<'_>) -> Result<Self, CaseError> {
+        let loads = Self::of_motion_or_not(case)?;
+        match loads.prescribed.iter().find_map(|p| p.course.as_ref()) {
+            Some(course) => refused(
+                Place { line: course.line, column: course.column, ..case.place() },
+                "a `course`, or `times` and `values`, are of a motion in [[steps]] ([steps.analysis] kind = \"newmark\"): give `value` \
+                 alone",
+            ),
+            None => Ok(loads),
+        }
+    }
+
+    /// Reads those of a motion in `[[steps]]`, whose prescribed values all have a course.
+    pub(super) fn of_motion(step: &Node<'_>) -> Result<Self, CaseError> {
+        let loads = Self::of_motion_or_not(step)?;
+        match loads.prescribed.iter().find(|p| p.course.is_none()) {
+            Some(jump) => refused(
+                Place { line: jump.table.line, column: jump.table.column, ..step.place() },
+                "a support cannot jump in a motion: give its value a `course`, such as \"ramp until 0.1 s\", or `times` and `values`; \
+                 [[steps.supports]] hold it where it is",
+            ),
+            None => Ok(loads),
+        }
+    }
+
+    fn of_motion_or_not(case: &Node<'_>) -> Result<Self, CaseError> {
         let mut loads = Self::default();
         for at in case.get("loads").iter().flat_map(Node::items) {
             match LoadTable::read(&at)? {
@@ -268,14 +308,74 @@ impl PointTable {
 impl PrescribedTable {
     fn prescribed(self, at: &Node<'_>) -> Result<Prescribed, CaseError> {
         let dof = dof_named(&self.dof, &at.get("dof").unwrap_or(*at))?;
-        let value = match dof {
-            Dof::U | Dof::V | Dof::W => self.value.parse().map(Length::si),
-            Dof::ThetaX | Dof::ThetaY | Dof::ThetaZ => self.value.parse().map(Angle::si),
+        let course = self.course(dof, at)?;
+        let value = match (&self.value, &course) {
+            (Some(value), None) => of_dof(value, dof, "value", at)?,
+            (_, Some(_)) => 0.0,
+            (None, None) => {
+                return refused(at.place(), "a prescribed load needs a `value`, such as \"1 mm\"");
+            }
         };
-        let wrong = |e: QuantityError| refused(at.value_place("value"), format!("prescribed value: {e}"));
-        let value = value.or_else(wrong)?;
-        Ok(Prescribed { set: at.located_at("set", self.set), dof, value, table: at.located(()) })
+        Ok(Prescribed { set: at.located_at("set", self.set), dof, value, course, table: at.located(()) })
     }
+
+    fn course(&self, dof: Dof, at: &Node<'_>) -> Result<Option<Located<Course>>, CaseError> {
+        match (&self.course, &self.times, &self.values) {
+            (None, None, None) => Ok(None),
+            (Some(course), None, None) => {
+                let Some(value) = &self.value else {
+                    return refused(at.key_place("course"), "a `course` needs a `value` to come to");
+                };
+                let value = of_dof(value, dof, "value", at)?;
+                match load_history(course) {
+                    Ok(LoadHistory::Ramp(until)) => {
+                        Ok(Some(at.located_at("course", Course::Ramp { value, until })))
+                    }
+                    Ok(LoadHistory::Sine(frequency)) => {
+                        Ok(Some(at.located_at("course", Course::Sine { value, frequency })))
+                    }
+                    Ok(LoadHistory::Step | LoadHistory::Off) | Err(_) => {
+                        let message = format!(
+                            "course = \"{course}\" is none that a support can take: write \"ramp until 0.1 s\" or \"sine 5 Hz\", or \
+                             give `times` and `values`"
+                        );
+                        refused(at.value_place("course"), message)
+                    }
+                }
+            }
+            (None, Some(times), Some(values)) => {
+                if self.value.is_some() {
+                    return refused(at.key_place("value"), "`times` and `values` need no `value`: remove it");
+                }
+                let values =
+                    values.iter().map(|v| of_dof(v, dof, "values", at)).collect::<Result<Vec<_>, _>>()?;
+                let points: Vec<[f64; 2]> =
+                    times.iter().map(|t| t.si()).zip(values.iter().copied()).map(<[f64; 2]>::from).collect();
+                let ascends = points.windows(2).all(|pair| pair[0][0] < pair[1][0]);
+                let fits =
+                    times.len() == values.len() && times.len() >= 2 && ascends && points[0] == [0.0, 0.0];
+                if !fits {
+                    let message =
+                        "`times` and `values` are as many, two or more, and begin with 0; `times` ascend";
+                    return refused(at.value_place("times"), message);
+                }
+                Ok(Some(at.located_at("times", Course::Table(points))))
+            }
+            _ => {
+                let message = "give `value` and `course`, or `times` and `values`, and not both";
+                refused(at.place(), message)
+            }
+        }
+    }
+}
+
+/// A displacement or rotation as it is written under a key.
+fn of_dof(text: &str, dof: Dof, key: &str, at: &Node<'_>) -> Result<f64, CaseError> {
+    let value = match dof {
+        Dof::U | Dof::V | Dof::W => text.parse().map(Length::si),
+        Dof::ThetaX | Dof::ThetaY | Dof::ThetaZ => text.parse().map(Angle::si),
+    };
+    value.or_else(|e: QuantityError| refused(at.value_place(key), format!("prescribed value: {e}")))
 }
 
 /// A direction of any length, the value of a key, as a unit vector.

@@ -7,8 +7,7 @@ use super::CaseError;
 use super::analysis::Nonlinear;
 use super::error::refused;
 use super::loads::SheetLoads;
-use super::supports::SheetSupport;
-use crate::finding::{Located, Node};
+use crate::finding::Node;
 use crate::solve::nonlinear::{ArcLength, Flow, Method, Perturbation, Settings};
 
 /// `kind = "nonlinear"`: statics in large rotations; what is left out is chosen by the method.
@@ -57,17 +56,6 @@ pub enum MethodChoice {
     /// Newton's method along stable equilibria: a sheet that buckles goes on with the shape into which it buckles. This is
     /// what `newton` does by itself where its own path ends unstable or nowhere, and it is told.
     Stable,
-}
-
-/// One of the steps that a sheet is taken through.
-#[derive(Clone, Debug)]
-pub struct SheetStep {
-    /// Name used in results; no other step of the case has it.
-    pub name: Located<String>,
-    /// Where the sheet is held beside the supports of the case; each node stays where it is at the beginning.
-    pub supports: Vec<SheetSupport>,
-    /// What acts at its end, what is moved, and how the equilibrium is found; the loads of the case included.
-    pub analysis: Nonlinear,
 }
 
 impl MethodChoice {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::analysis::{Analysis, AnalysisTable, DrapeSizes, DrapeTable, Linear, Modal};
+use super::analysis::{Analysis, AnalysisTable, Buckling, DrapeSizes, DrapeTable, Linear, Modal};
 use super::bending_test::{BendingTest, BendingTestTable};
 use super::check::{checks, probes};
 use super::element::Purpose;
@@ -86,6 +86,11 @@ impl CaseTable {
                 let coarser = self.coarser(case, &sheet)?;
                 (sheet, Analysis::Modal(Modal { modes, mass, coarser }))
             }
+            AnalysisTable::Buckling(buckling) => {
+                let sheet = table.sheet(of_sheet)?;
+                let (factors, coarser) = (buckling.checked(&at)?, self.coarser(case, &sheet)?);
+                (sheet, Analysis::Buckling(Buckling { loads: loads(case)?, factors, coarser }))
+            }
             AnalysisTable::Newmark(newmark) => {
                 foreign(case, &["convergence"], NO_CONVERGENCE)?;
                 (table.sheet(of_sheet)?, Analysis::Newmark(newmark.checked(&at, loads(case)?)?))
@@ -123,8 +128,8 @@ impl CaseTable {
         if assumptions.law != Mode::Elastic && !abilities.friction {
             return refused(
                 case.get("assumptions").unwrap_or(*case).value_place("law"),
-                "friction needs large rotations: write [analysis] kind = \"nonlinear\" or \"drape\" (or [virtual_test] \
-                 formulation = \"nonlinear\"), or [assumptions] law = \"elastic\"",
+                "friction needs large rotations: write [analysis] kind = \"nonlinear\", \"drape\" or \"newmark\" with large_rotations = true (or \
+                 [virtual_test] formulation = \"nonlinear\"), or [assumptions] law = \"elastic\"",
             );
         }
         let sampling = match (&self.uncertainty, case.get("uncertainty")) {
@@ -331,7 +336,7 @@ impl CaseTable {
 }
 
 const NO_CONVERGENCE: &str =
-    "[convergence] is for linear and modal analyses: remove it (a drape has `refinements`)";
+    "[convergence] is for linear, modal and buckling analyses: remove it (a drape has `refinements`)";
 
 const NO_OBSTACLES: &str = "[[obstacles]] are for statics in large rotations: write [analysis] kind = \"nonlinear\", or remove them (a drape is \
                             clamped between its discs)";

@@ -80,6 +80,7 @@ impl Library {
         }
         // Of a library of thousands of fabrics it knows as many folders.
         library.own = OwnResults::default();
+        library.groups.shrink_to_fit();
         library
     }
 

@@ -14,4 +14,4 @@ pub use clock::Stopwatch;
 pub use deadline::{over, within};
 pub(crate) use guard::guarded;
 pub use guard::is_guarded;
-pub use parallel::{Items, map, map_several, run_all, try_map};
+pub use parallel::{Items, in_pool, map, map_several, run_all, try_map};

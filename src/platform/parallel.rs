@@ -64,6 +64,20 @@ pub fn try_map<T: Send, R: Send>(
     items.into_iter().map(function).collect()
 }
 
+/// `function` on a thread of the pool. What work there has given back is used again; a thread that allocates for the first
+/// time takes memory of its own from the system.
+#[cfg(feature = "threads")]
+pub fn in_pool<R: Send>(function: impl FnOnce() -> R + Send) -> R {
+    let deadline = deadline::current();
+    rayon::scope(|_| deadline::under(deadline, function))
+}
+
+/// `function`.
+#[cfg(not(feature = "threads"))]
+pub fn in_pool<R: Send>(function: impl FnOnce() -> R + Send) -> R {
+    function()
+}
+
 /// Runs `task` of every item on at most so many threads and returns when all are done. The current
 /// pool is used where it has no more threads than that.
 #[cfg(feature = "threads")]
@@ -100,6 +114,7 @@ mod tests {
     fn results_are_in_the_order_of_the_items() {
         assert_eq!(map(0..1000usize, |i| 2 * i), (0..2000).step_by(2).collect::<Vec<_>>());
         assert_eq!(map(&["a", "b"], |s| s.len()), [1, 1]);
+        assert_eq!(in_pool(|| map([1, 2], |i| i + 1)), [2, 3]);
         assert_eq!(try_map(vec![1, 2, 3], Some), Some(vec![1, 2, 3]));
         assert_eq!(try_map([1, 2, 3], |i| (i != 2).then_some(i)), None);
     }

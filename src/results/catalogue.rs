@@ -121,6 +121,8 @@ impl Catalogue {
         let mut names = std::mem::take(&mut catalogue.names);
         distinguish(&mut names, |at| catalogue.path(at));
         catalogue.names = names;
+        catalogue.names.shrink_to_fit();
+        catalogue.entries.shrink_to_fit();
         catalogue.failures = errors.into_iter().map(Failure::from).collect();
         catalogue.failures.iter().for_each(|failure| observer.failed(failure));
         Ok(catalogue)

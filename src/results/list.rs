@@ -61,7 +61,16 @@ const FORMATS: &[&[&str]] = &[
 
 const ANALYSES: &[&[&str]] = &[
     &["linear", "[analysis] kind = \"linear\" (default)", "small displacements, one solve; for [sheet]"],
-    &["modal", "[analysis] kind = \"modal\"", "natural frequencies and modes; for [sheet]"],
+    &[
+        "modal",
+        "[analysis] kind = \"modal\"",
+        "natural frequencies and modes; for [sheet]; in [[steps]] of the sheet in its state",
+    ],
+    &[
+        "buckling",
+        "[analysis] kind = \"buckling\"",
+        "load factors at which a sheet buckles, and shapes; for [sheet] and in [[steps]]",
+    ],
     &[
         "newmark",
         "[analysis] kind = \"newmark\"",

@@ -55,7 +55,7 @@ pub(crate) struct Head<'a> {
     /// Files of each chart; none where no charts are drawn.
     pub formats: &'a [Format],
     /// Pages with the fabrics, where there are too many for this one.
-    pub pages: &'a Pages,
+    pub pages: Pages,
 }
 
 /// The page of a batch; `reports` are the fabrics, unless they have pages of their own.

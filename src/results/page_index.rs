@@ -1,15 +1,14 @@
 //! The index of a run of many fabrics, which have pages of their own: a line a fabric, and links to the pages.
 
+use std::sync::Arc;
+
 use super::fabric::FabricReport;
 use super::overview::{CAPTION, HEADINGS};
 use super::page::FABRICS_OF_PAGE;
-use crate::report::html::{Block, Cell};
+use crate::report::html::{Block, IndexLine};
 
 /// Fabrics that the index lists: a longer table takes a browser seconds. All of them are in `fabrics.csv`.
 const LISTED: usize = 5000;
-
-/// What stands between the cells of a line; no cell has it.
-const BETWEEN: char = '\t';
 
 /// Pages of fabrics that are written.
 #[derive(Clone, Debug, Default)]
@@ -17,17 +16,8 @@ pub(crate) struct Pages {
     /// File and what it holds.
     pages: Vec<(String, String)>,
     /// A line a fabric, up to [`LISTED`].
-    lines: Vec<Line>,
+    lines: Vec<IndexLine>,
     fabrics: usize,
-}
-
-/// A fabric in the index. Its cells are made when the index is: they take ten times as much memory as their text.
-#[derive(Clone, Debug)]
-struct Line {
-    /// The place of its page.
-    page: usize,
-    name: Box<str>,
-    cells: Box<str>,
 }
 
 /// The name of a page of fabrics; pages count from 1.
@@ -56,13 +46,14 @@ impl Pages {
     pub fn add(&mut self, page: String, reports: &[FabricReport]) {
         let name = |report: Option<&FabricReport>| report.map_or("", |r| &r.name).to_string();
         let text = format!("{}… to {}…", name(reports.first()), name(reports.last()));
+        let shared: Arc<str> = page.as_str().into();
         for report in reports.iter().take(LISTED.saturating_sub(self.lines.len())) {
             let cells: Vec<&str> =
                 report.cells.iter().chain([&report.status]).map(|cell| cell.as_str()).collect();
-            self.lines.push(Line {
-                page: self.pages.len(),
+            self.lines.push(IndexLine {
+                page: Arc::clone(&shared),
                 name: report.name.as_str().into(),
-                cells: cells.join(&BETWEEN.to_string()).into(),
+                cells: cells.join(IndexLine::BETWEEN).into(),
             });
         }
         self.fabrics += reports.len();
@@ -70,7 +61,7 @@ impl Pages {
     }
 
     /// Links and the table; nothing without pages.
-    pub fn blocks(&self) -> Vec<Block> {
+    pub fn blocks(self) -> Vec<Block> {
         if self.is_empty() {
             return Vec::new();
         }
@@ -81,23 +72,12 @@ impl Pages {
             0 => String::new(),
             more => format!(" The first {LISTED} fabrics; {more} more are on the pages and in fabrics.csv."),
         };
-        let table = Block::Table {
+        let table = Block::Index {
             caption: format!("{CAPTION}.{rest}"),
             header: HEADINGS.into_iter().chain(["status"]).map(String::from).collect(),
-            rows: self.lines.iter().map(|line| self.row(line)).collect(),
-            of_fabrics: true,
+            lines: self.lines,
         };
-        vec![Block::Text(text), Block::Pages(self.pages.clone()), table]
-    }
-
-    fn row(&self, Line { page, name, cells }: &Line) -> Vec<Cell> {
-        let page = self.pages.get(*page).map(|(page, _)| page.clone());
-        let first = Cell {
-            text: name.to_string(),
-            leads_to: page.map(|page| (page, name.to_string())),
-            ..Cell::default()
-        };
-        std::iter::once(first).chain(cells.split(BETWEEN).map(Cell::from)).collect()
+        vec![Block::Text(text), Block::Pages(self.pages), table]
     }
 }
 
@@ -114,18 +94,19 @@ mod tests {
             ..FabricReport::default()
         };
         let mut pages = Pages::default();
-        assert!(pages.blocks().is_empty());
+        assert!(pages.clone().blocks().is_empty());
         for names in [["a", "f"], ["g", "m"]] {
             let (page, _) = pages.next();
             pages.add(page, &names.map(report));
         }
         let blocks = pages.blocks();
-        let [Block::Text(_), Block::Pages(links), Block::Table { header, rows, .. }] = &blocks[..] else {
+        let [Block::Text(_), Block::Pages(links), Block::Index { header, lines, .. }] = &blocks[..] else {
             panic!("{blocks:?}")
         };
         assert_eq!(links[1], ("fabrics-2.html".to_string(), "g… to m…".to_string()));
-        assert_eq!((rows.len(), rows[3].len()), (4, header.len()));
-        assert_eq!(rows[3][0].leads_to, Some(("fabrics-2.html".into(), "m".into())));
+        let last = lines[3].row();
+        assert_eq!((lines.len(), last.len()), (4, header.len()));
+        assert_eq!(last[0].leads_to, Some(("fabrics-2.html".into(), "m".into())));
     }
 
     #[test]
@@ -136,8 +117,8 @@ mod tests {
         let mut pages = Pages::default();
         pages.add("fabrics-1.html".into(), &reports);
         let blocks = pages.blocks();
-        let [.., Block::Table { caption, rows, .. }] = &blocks[..] else { panic!("{blocks:?}") };
-        assert_eq!(rows.len(), LISTED);
+        let [.., Block::Index { caption, lines, .. }] = &blocks[..] else { panic!("{blocks:?}") };
+        assert_eq!(lines.len(), LISTED);
         assert!(caption.ends_with("3 more are on the pages and in fabrics.csv."), "{caption}");
     }
 }

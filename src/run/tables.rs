@@ -260,8 +260,7 @@ impl Results<'_, '_> {
         let (formats, population) = (if *charts { formats.as_slice() } else { &[] }, population.as_ref());
         let unread = self.work.failures.len();
         let failed = [unread, self.failures.len().saturating_sub(unread)];
-        let head =
-            Head { fabrics, failed, figures, problems, drapes: &drapes, population, formats, pages: &pages };
+        let head = Head { fabrics, failed, figures, problems, drapes: &drapes, population, formats, pages };
         self.folder.write("index.html", html(&page(&reports, benchmarks, head)).as_bytes())
     }
 

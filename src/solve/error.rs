@@ -97,6 +97,9 @@ errors! {
             /// What cut it.
             limit: StepLimit,
         } = "the time step vanished at t = {time} s: {}", limit.cure();
+        /// N021: a load factor was asked for about a state that is not stable.
+        "N021" BuckledAlready = "the state about which load factors are asked for is unstable, the sheet has buckled before: take \
+             less load in the steps before, or method = \"stable\", which goes on with the shape into which it buckles";
         /// N008: weight or motion in time without mass.
         "N008" NoMass = "the sheet has no mass: weight, frequencies and motion in time need an areal density above 0; give \
              `areal_density` in [section], or the fabric its weight W";

@@ -1,19 +1,18 @@
 //! Natural frequencies and modes: subspace iteration on the sparse factorisation.
 
 mod dense;
-
-use nalgebra::{DMatrix, SymmetricEigen};
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64Mcg;
+mod subspace;
 
 use super::SolveError;
 use super::assemble::{Kind, Pattern, assemble, unit_rows};
-use super::factor::{Analysis, Factor};
+use super::factor::Analysis;
 use super::linear::Options;
 use super::plan::Plan;
 use super::sparse::BlockMatrix;
 use crate::element::Mass;
 use crate::model::{Dof, DofGroup, Model, ModelError};
+pub(super) use dense::eigen as dense_modes;
+pub(super) use subspace::{Wanted, columns, nearest_about, of_either_sign, subspace};
 
 /// One mode of vibration.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,10 +31,6 @@ impl Mode {
         self.angular_frequency / std::f64::consts::TAU
     }
 }
-
-/// Relative change of an eigenvalue at which the iteration stops, and its limit of rounds.
-const TOLERANCE: f64 = 1e-11;
-const ROUNDS: usize = 200;
 
 /// The lowest `count` modes of the model, in order of frequency; prescribed values count as zero.
 ///
@@ -93,7 +88,7 @@ fn group_modes(
     unit_rows(&mut stiffness, &held);
     let threads = analysis.worth(options.threads);
     let factor = analysis.factorise(&stiffness, threads).map_err(|e| SolveError::of(e, model, group))?;
-    let columns = count.saturating_mul(2).max(count.saturating_add(8));
+    let columns = columns(count);
     let Massive { with_mass, translations } = Massive::of(&mass, group, &held);
     if with_mass == 0 {
         return Ok(Vec::new());
@@ -107,7 +102,7 @@ fn group_modes(
         // the mass, are too far away to be held beside the others.
         dense::eigen(&stiffness, &mass, &held).map_err(|e| SolveError::of(e, model, group))?
     } else {
-        subspace(&factor, &mass, &held, count, columns)?
+        subspace(&factor, &mass, &held, count, Wanted::Lowest)?
     };
     let expanded = |x: &[f64]| {
         let mut part = x.to_vec();
@@ -116,71 +111,6 @@ fn group_modes(
     };
     let pairs = values.iter().zip(vectors.column_iter()).take(count);
     Ok(pairs.map(|(value, x)| mode(group, value - shift, shift, &expanded(x.as_slice()))).collect())
-}
-
-/// The lowest `count` eigenvalues and vectors by subspace iteration with `columns` vectors.
-fn subspace(
-    factor: &Factor,
-    mass: &BlockMatrix,
-    held: &[bool],
-    count: usize,
-    columns: usize,
-) -> Result<(Vec<f64>, DMatrix<f64>), SolveError> {
-    let n = held.len();
-    let mut random = Pcg64Mcg::seed_from_u64(1);
-    let mut x =
-        DMatrix::from_fn(n, columns, |i, _| if held[i] { 0.0 } else { random.random_range(-1.0..1.0) });
-    let mut previous = vec![f64::INFINITY; count];
-    for round in 1..=ROUNDS {
-        SolveError::in_time()?;
-        let y = times(mass, &x);
-        let mut z = y.clone();
-        factor.solve(z.as_mut_slice(), columns);
-        let (values, vectors) = rayleigh_ritz(z.tr_mul(&y), z.tr_mul(&times(mass, &z)))
-            .ok_or(SolveError::ModesNotSettled { rounds: round })?;
-        x = z * vectors;
-        let settled =
-            previous.iter().zip(values.iter()).all(|(old, new)| (old - new).abs() <= TOLERANCE * new.abs());
-        previous.copy_from_slice(&values.as_slice()[..count]);
-        if settled {
-            return Ok((previous, x));
-        }
-    }
-    Err(SolveError::ModesNotSettled { rounds: ROUNDS })
-}
-
-/// Eigenvalues (ascending) and coefficients of the small problem `a c = λ b c`, `bᵀ`-orthonormal; `None`
-/// where the columns are dependent.
-fn rayleigh_ritz(a: DMatrix<f64>, b: DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
-    let symmetric = |m: DMatrix<f64>| 0.5 * (&m + m.transpose());
-    // Scale first: columns of the iterate differ by orders of magnitude in the first rounds.
-    let scale: Vec<f64> = (0..b.nrows()).map(|i| 1.0 / b[(i, i)].max(f64::MIN_POSITIVE).sqrt()).collect();
-    let scaled =
-        |m: DMatrix<f64>| DMatrix::from_fn(m.nrows(), m.ncols(), |i, j| m[(i, j)] * scale[i] * scale[j]);
-    let (a, b) = (scaled(symmetric(a)), scaled(symmetric(b)));
-    let l = b.cholesky()?.l();
-    let left = l.solve_lower_triangular(&a)?;
-    let reduced = l.solve_lower_triangular(&left.transpose())?;
-    let eigen = SymmetricEigen::new(symmetric(reduced));
-    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
-    order.sort_by(|i, j| eigen.eigenvalues[*i].total_cmp(&eigen.eigenvalues[*j]));
-    let values = DMatrix::from_iterator(order.len(), 1, order.iter().map(|k| eigen.eigenvalues[*k]));
-    let sorted = DMatrix::from_fn(order.len(), order.len(), |i, k| eigen.eigenvectors[(i, order[k])]);
-    let mut vectors = l.tr_solve_lower_triangular(&sorted)?;
-    for (i, mut row) in vectors.row_iter_mut().enumerate() {
-        row *= scale[i];
-    }
-    Some((values, vectors))
-}
-
-fn times(matrix: &BlockMatrix, x: &DMatrix<f64>) -> DMatrix<f64> {
-    let mut y = DMatrix::zeros(x.nrows(), x.ncols());
-    for (x, y) in
-        x.as_slice().chunks_exact(matrix.rows()).zip(y.as_mut_slice().chunks_exact_mut(matrix.rows()))
-    {
-        matrix.mul(x, y);
-    }
-    y
 }
 
 /// Free dofs with mass.
@@ -202,7 +132,7 @@ impl Massive {
 }
 
 /// A hundredth of the order of the lowest eigenvalue: stiffness over mass at the size of the sheet.
-fn shift(model: &Model, group: DofGroup) -> f64 {
+pub(super) fn shift(model: &Model, group: DofGroup) -> f64 {
     let [low, high] = model.mesh.bounds();
     let size = (high - low).norm();
     let s = &model.section;
@@ -216,12 +146,17 @@ fn mode(group: DofGroup, eigenvalue: f64, shift: f64, part: &[f64]) -> Mode {
     let n = part.len() / group.dofs().len();
     let mut shape = vec![0.0; 6 * n];
     group.scatter(part, &mut shape);
+    turn_positive(&mut shape);
+    // What is left of the shift by rounding is a rigid motion.
+    let eigenvalue = if eigenvalue.abs() < 1e-6 * shift { 0.0 } else { eigenvalue.max(0.0) };
+    Mode { angular_frequency: eigenvalue.sqrt(), shape, group }
+}
+
+/// Gives a shape, six a node, the sign with which its largest displacement is positive.
+pub(super) fn turn_positive(shape: &mut [f64]) {
     let translations = shape.chunks_exact(6).flat_map(|node| &node[..3]);
     let largest = translations.fold(0.0, |m: f64, v| if v.abs() > m.abs() { *v } else { m });
     if largest < 0.0 {
         shape.iter_mut().for_each(|v| *v = -*v);
     }
-    // What is left of the shift by rounding is a rigid motion.
-    let eigenvalue = if eigenvalue.abs() < 1e-6 * shift { 0.0 } else { eigenvalue.max(0.0) };
-    Mode { angular_frequency: eigenvalue.sqrt(), shape, group }
 }

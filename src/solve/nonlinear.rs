@@ -32,6 +32,7 @@
 //! tangent then converges linearly; hold a plane of symmetry by both of its rotations.
 
 mod arc;
+mod buckling;
 mod contact;
 mod descent;
 mod drive;
@@ -47,10 +48,12 @@ mod sheet;
 mod stability;
 mod state;
 mod system;
+mod vibration;
 
 use std::ops::ControlFlow;
 
 pub use arc::{ArcLength, follow};
+pub use buckling::{Buckle, buckles};
 pub use contact::{ACCEPTED, Touch};
 pub use descent::descend_from;
 pub use drive::{Leg, drive};
@@ -64,6 +67,7 @@ pub use shake::shake;
 pub use stability::{Stability, lost_directions};
 pub use state::{Memory, State};
 pub use system::plan;
+pub use vibration::{Vibration, vibrations};
 
 use self::flow::noise;
 use self::newton::{Drag, longest_travel, newton};

@@ -7,8 +7,8 @@ use nalgebra::{Matrix2, Matrix3, Point3, Vector3};
 
 use super::{Case, StudyError, placed, refused};
 use crate::case::{
-    Analysis, Held, Layout, Mounting, Outline, PointOfAction, Prescribed, RigidSet, SectionTable, Sheet,
-    SheetLoad, SheetPoint, SheetProblem, SheetStep, SheetSupport, SupportKind, Warp,
+    Analysis, GuidedSet, Held, Layout, Mounting, Outline, PointOfAction, Prescribed, RigidSet, SectionTable,
+    Sheet, SheetLoad, SheetMotion, SheetPoint, SheetProblem, SheetSupport, StepAnalysis, SupportKind, Warp,
 };
 use crate::fields::{Finder, Locator, nearest};
 use crate::finding::{Located, Place};
@@ -18,6 +18,7 @@ use crate::platform::files;
 use crate::quantity::significant;
 use crate::section::ShellSection;
 use crate::solve::SolveError;
+use crate::solve::nonlinear::dynamics::Guided;
 
 /// The section of a `[section]` table (`geometric` rule: the given Poisson ratio is √(ν12 ν21)).
 ///
@@ -53,7 +54,7 @@ pub(super) fn model(
     let mut mesh = placed(case, &sheet.table, sheet_mesh(case, sheet))?;
     let bodies = bodies(case, &mut mesh, &mounting.bodies)?;
     let supports: Vec<&SheetSupport> = mounting.supports.iter().collect();
-    let Actions { mut supports, moved, loads } = actions(case, &mesh, &supports, (loads, prescribed))?;
+    let Actions { mut supports, moved, loads, .. } = actions(case, &mesh, &supports, (loads, prescribed))?;
     supports.extend(moved);
     let formulation = mounting.formulation;
     let warp = sheet.layout.warp.direction();
@@ -69,6 +70,8 @@ pub(super) struct Actions {
     pub moved: Vec<Support>,
     /// What acts.
     pub loads: Vec<Load>,
+    /// What a motion moves; the supports hold it.
+    pub guided: Vec<Guided>,
 }
 
 /// What the tables of a case say of a mesh.
@@ -96,7 +99,7 @@ pub(super) fn actions(
         moved.push(Support::at(nodes.to_vec(), vec![(*dof, *value)]));
     }
     Support::agree(mesh, &moved)?;
-    Ok(Actions { supports, moved, loads: acting })
+    Ok(Actions { supports, moved, loads: acting, guided: Vec::new() })
 }
 
 /// The model of a sheet of a case that is solved, which may be coarser than its own.
@@ -121,19 +124,75 @@ pub(super) fn model_on(
 /// Those of [`actions`]; M009 where a support cannot be held in large rotations.
 pub(super) fn steps(case: &Case, problem: &SheetProblem, model: &Model) -> Result<Vec<Actions>, StudyError> {
     let Analysis::Steps(steps) = &problem.analysis else { return Ok(Vec::new()) };
-    let of_step = |step: &SheetStep| {
+    let mut all: Vec<Actions> = Vec::with_capacity(steps.len());
+    // Of the last step that has led to an equilibrium.
+    let mut state = None;
+    for step in steps {
         let held: Vec<&SheetSupport> = problem.mounting.supports.iter().chain(&step.supports).collect();
-        let loads = &step.analysis.loads;
-        let actions = actions(case, &model.mesh, &held, (&loads.acting, &loads.prescribed))?;
+        let on = |loads: (&[SheetLoad], &[Prescribed])| actions(case, &model.mesh, &held, loads);
+        let actions = match &step.analysis {
+            StepAnalysis::Static(_) => on((step.acting(), step.prescribed()))?,
+            StepAnalysis::Modal { .. } => {
+                Actions { loads: Vec::new(), ..as_in(state.and_then(|k: usize| all.get(k))) }
+            }
+            StepAnalysis::Buckling { .. } => {
+                let Actions { moved, loads, .. } = on((step.acting(), step.prescribed()))?;
+                Actions { moved, loads, ..as_in(state.and_then(|k: usize| all.get(k))) }
+            }
+            StepAnalysis::Motion(motion) => guided(case, &model.mesh, motion, on((&motion.acting, &[]))?)?,
+        };
         let held = Model {
             supports: actions.supports.iter().chain(&actions.moved).cloned().collect(),
             loads: actions.loads.clone(),
             ..model.clone()
         };
         placed(case, &step.name, check(&held, true))?;
-        Ok(actions)
+        if step.changes() {
+            state = Some(all.len());
+        }
+        all.push(actions);
+    }
+    Ok(all)
+}
+
+/// What a step holds, without what it moves it by and what acts: everything stays where it is.
+fn as_in(step: Option<&Actions>) -> Actions {
+    let still = |support: &Support| {
+        let mut support = support.clone();
+        support.held.iter_mut().for_each(|(_, value)| *value = 0.0);
+        support
     };
-    steps.iter().map(of_step).collect()
+    let held = step.iter().flat_map(|actions| actions.supports.iter().chain(&actions.moved));
+    Actions { supports: held.map(still).collect(), moved: Vec::new(), loads: Vec::new(), guided: Vec::new() }
+}
+
+/// The actions of a motion with what it moves.
+fn guided(
+    case: &Case,
+    mesh: &QuadMesh,
+    motion: &SheetMotion,
+    mut actions: Actions,
+) -> Result<Actions, StudyError> {
+    for GuidedSet { set, dof, course } in &motion.guided {
+        let nodes = placed(case, set, mesh.set(&set.value))?;
+        actions.supports.push(Support::at(nodes.to_vec(), vec![(*dof, 0.0)]));
+        if let Some(course) = course {
+            let of_node = |node: &u32| Guided { node: *node, dof: *dof as usize, course: course.clone() };
+            for guided in nodes.iter().map(of_node) {
+                let twice = |other: &Guided| other.node == guided.node && other.dof == guided.dof;
+                if actions.guided.iter().any(|other| twice(other) && other.course != guided.course) {
+                    let message = format!(
+                        "{} of a node of set `{}` is moved in two ways: give each node one `course`",
+                        dof.name(),
+                        set.value
+                    );
+                    return Err(refused(case, set, message));
+                }
+                actions.guided.push(guided);
+            }
+        }
+    }
+    Ok(actions)
 }
 
 /// Weight and supports of a model.

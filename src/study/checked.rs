@@ -2,7 +2,7 @@
 
 use super::result::{CaseResult, CheckResult};
 use super::{Case, StudyError, refused};
-use crate::case::Check;
+use crate::case::{Check, numbered};
 use crate::fields::Resultants;
 
 /// The value of a quantity by name (SI), one of those that a check can name.
@@ -12,10 +12,18 @@ pub(super) fn lookup(quantity: &str, results: &CaseResult) -> Option<f64> {
         "strain_energy" => return Some(results.solution.strain_energy),
         _ => {}
     }
-    if let Some(number) = quantity.strip_prefix("frequency_") {
-        return results.frequencies.get(number.parse::<usize>().ok()?.checked_sub(1)?).copied();
+    let of = |(kind, number): (&str, usize), frequencies: &[f64], load_factors: &[f64]| {
+        let all = if kind == "frequency" { frequencies } else { load_factors };
+        all.get(number - 1).copied()
+    };
+    if let Some(wanted) = numbered(quantity) {
+        return of(wanted, &results.frequencies, &results.load_factors);
     }
     let (name, component) = quantity.split_once('.')?;
+    if let Some(wanted) = numbered(component) {
+        let end = results.path.as_ref()?.load_steps.iter().find(|step| step.name == name)?;
+        return of(wanted, &end.frequencies, &end.load_factors);
+    }
     let v = &results.probes.iter().find(|p| p.name == name)?.value;
     match ["u", "v", "w", "theta_x", "theta_y", "theta_z"].iter().position(|c| *c == component) {
         Some(k) if k < 3 => Some(v.u[k]),
@@ -30,11 +38,11 @@ pub(super) fn lookup(quantity: &str, results: &CaseResult) -> Option<f64> {
 /// A check of the case with its outcome.
 ///
 /// # Errors
-/// S003 for a frequency of a mode that was not found.
+/// S003 for a frequency or load factor that was not found.
 pub(super) fn check(case: &Case, check: &Check, results: &CaseResult) -> Result<CheckResult, StudyError> {
     let Check { quantity, expected, unit, relative_tolerance, reference } = check;
     let value = lookup(&quantity.value, results).ok_or_else(|| {
-        let message = format!("the result has no {}: fewer modes were found", quantity.value);
+        let message = format!("the result has no {}: fewer were found", quantity.value);
         refused(case, quantity, message)
     })?;
     let relative_error = (value - expected).abs() / expected.abs();

@@ -90,7 +90,7 @@ impl ContactResult {
     }
 }
 
-/// S141, S143 and S144 of a sheet in a state.
+/// S144, S146 and S147 of a sheet in a state.
 pub(super) fn touching(
     obstacles: &[SheetObstacle],
     model: &Model,
@@ -116,7 +116,7 @@ pub(super) fn touching(
     facts.into_iter().map(Finding::new).collect()
 }
 
-/// S141 of a sheet that passes through itself.
+/// S144 of a sheet that passes through itself.
 pub(super) fn through_itself(mesh: &QuadMesh, state: &State) -> Option<StudyFact> {
     let Crossings { pairs, at, depth, .. } = crossings(&state.position, &mesh.quads)?;
     Some(StudyFact::ThroughItself { pairs, at, depth })

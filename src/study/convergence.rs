@@ -4,7 +4,7 @@ use super::checked::lookup;
 use super::mesh_series::{Convergence, MeshSeries};
 use super::result::CaseResult;
 use super::{Case, StudyError};
-use crate::case::{Analysis, Modal, ProbePoint, SheetProblem, unit_of};
+use crate::case::{Analysis, Buckling, Modal, ProbePoint, SheetProblem, unit_of};
 use crate::fields::{Extrapolation, Resultants};
 use crate::finding::{CoarseQuantity, Finding, Place, StudyFact};
 use crate::model::Dof;
@@ -94,6 +94,9 @@ impl Sizes {
 fn names(problem: &SheetProblem) -> Vec<String> {
     if let Analysis::Modal(Modal { modes, .. }) = &problem.analysis {
         return (1..=*modes).map(|k| format!("frequency_{k}")).collect();
+    }
+    if let Analysis::Buckling(Buckling { factors, .. }) = &problem.analysis {
+        return (1..=*factors).map(|k| format!("load_factor_{k}")).collect();
     }
     let components = || {
         let dofs = Dof::ALL.into_iter().map(Dof::name);
@@ -222,7 +225,7 @@ at = ["0 m", "0.5 m"]
         let with = |more: &str| format!("{PRESSED}{more}");
         refused(18, &with("[convergence]\n"), "multiples of 4");
         refused(16, &with("[convergence]\nmeshes = 4\n"), "take 2 or 3");
-        refused(16, &with("[convergence]\n[analysis]\nkind = \"nonlinear\"\n"), "linear and modal");
+        refused(16, &with("[convergence]\n[analysis]\nkind = \"nonlinear\"\n"), "linear, modal");
         let file = SQUARE.replace("cells = [CELLS, CELLS]", "cells = [16, 16]\ndistortion = 0.2");
         let e = Case::parse(Path::new("c.toml"), &format!("{file}{PRESSED}[convergence]\n")).unwrap_err();
         assert!(e.to_string().contains("distorted"), "{e}");

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 
 use super::history::History;
 use super::limits::largest_displacement;
+use super::load_path::Frame;
 use super::nonlinear::largest_w;
 use super::result::Outcome;
 use super::{Case, PreparedCase, StudyError, Watch, refused, through_itself};
@@ -15,8 +16,9 @@ use crate::finding::{Fact, Finding, Located, Place, StudyFact};
 use crate::mesh::QuadMesh;
 use crate::model::Model;
 use crate::platform;
-use crate::solve::newmark::{self, Instant, Rayleigh};
-use crate::solve::nonlinear::dynamics::{Dynamics, integrate_with};
+use crate::section::SheetLaw;
+use crate::solve::newmark::{self, Energy, Instant, Rayleigh};
+use crate::solve::nonlinear::dynamics::{Dynamics, Launch, integrate_with};
 use crate::solve::{self, Solution};
 
 /// Above this part of the largest work a balance of energies that does not close is worth a word.
@@ -60,7 +62,7 @@ pub(super) fn rayleigh(
 }
 
 /// What an observer keeps.
-struct Record<'a> {
+pub(super) struct Record<'a> {
     mesh: &'a QuadMesh,
     locators: &'a [Locator],
     history: History,
@@ -68,10 +70,14 @@ struct Record<'a> {
     watch: Watch<'a>,
     /// What the motion may take (s), once it has taken more.
     over: Option<f64>,
+    /// Time between shapes that are kept (s), where some are.
+    every: Option<f64>,
+    /// These shapes.
+    pub frames: Vec<Frame>,
 }
 
 impl Record<'_> {
-    fn see(&mut self, at: &Instant<'_>) -> ControlFlow<()> {
+    pub fn see(&mut self, at: &Instant<'_>) -> ControlFlow<()> {
         let history = &mut self.history;
         history.time.push(at.time);
         history.energy.push(at.energy);
@@ -85,6 +91,11 @@ impl Record<'_> {
         history.displacement_max =
             history.displacement_max.max(largest_displacement(self.mesh, at.displacement));
         self.solution.displacement.copy_from_slice(at.displacement);
+        // The first instant from each time on; rounding of the sum of steps is no delay.
+        let due = self.every.map(|every| every * (1.0 - 1e-9) * (self.frames.len() + 1) as f64);
+        if due.is_some_and(|due| at.time >= due) {
+            self.frames.push(Frame { time: at.time, displacement: at.displacement.to_vec() });
+        }
         self.solution.strain_energy = at.energy.strain;
         self.over = platform::over();
         if self.over.is_some() { ControlFlow::Break(()) } else { self.watch.go_on() }
@@ -106,51 +117,81 @@ pub(super) fn is_out_of_time(finding: &Finding) -> bool {
 pub(super) fn dynamics(
     prepared: &PreparedCase<'_>,
     model: &Model,
+    law: Option<&SheetLaw>,
     settings: &newmark::Settings,
     rotations: Rotations,
     watch: Watch<'_>,
 ) -> Result<Outcome, StudyError> {
-    let case = prepared.case;
-    let mut record = Record {
-        mesh: &model.mesh,
-        locators: &prepared.probes,
-        history: History {
-            probes: vec![Vec::new(); prepared.probes.len()],
-            probe_displacements: vec![Vec::new(); prepared.probes.len()],
-            ..History::default()
-        },
-        solution: Solution { dofs: prepared.plan.rows(model), ..Solution::at_rest(model) },
-        watch,
-        over: None,
-    };
+    let mut record = Record::new(prepared, model, watch);
     let state = if let Rotations::Large { spectral_radius } = rotations {
         let newmark::Settings { duration, step, tolerance, damping, load, mass, .. } = *settings;
         let dynamics = Dynamics { duration, step, tolerance, spectral_radius, damping, load, mass };
-        Some(integrate_with(model, &prepared.plan, &dynamics, &prepared.options, |at| record.see(at))?)
+        let launch = Launch { law, ..Launch::default() };
+        let (plan, options) = (&prepared.plan, &prepared.options);
+        Some(integrate_with(model, plan, &launch, &dynamics, options, |at| record.see(at))?)
     } else {
         newmark::newmark_with(model, &prepared.plan, settings, &prepared.options, |at| record.see(at))?;
         None
     };
     watch.not_stopped()?;
-    // A motion that ran out of time within a step ends there, and nobody was asked.
-    if record.history.time.last().is_some_and(|time| *time < (1.0 - 1e-6) * settings.duration) {
-        record.over = record.over.or_else(platform::over);
-    }
-    let Record { mut history, solution, over, .. } = record;
-    let work = history.energy.iter().map(|e| e.work.abs()).fold(f64::MIN_POSITIVE, f64::max);
-    history.imbalance = history.energy.iter().map(|e| e.imbalance().abs()).fold(0.0, f64::max) / work;
-    let given = history.energy.iter().map(|e| -e.dissipated / work).fold(0.0, f64::max);
     // What a γ above 1/2 takes away is what it is there for; what it gives is not.
     let damps = settings.scheme.gamma > newmark::Scheme::default().gamma;
-    let gained = history.energy.iter().map(|e| e.imbalance() / work).fold(0.0, f64::max);
-    let missed = if damps { gained } else { history.imbalance };
-    let mut findings: Vec<Finding> = unbalanced(case, missed, given).into_iter().collect();
-    let reached = history.time.last().copied().unwrap_or_default();
-    if let Some(seconds) = over.filter(|_| reached < settings.duration) {
-        let fact = StudyFact::OutOfTime { seconds, reached, duration: settings.duration };
-        findings.push(Finding::new(fact).at(Place::file(&case.path)));
-    }
+    let (history, solution, mut findings) = record.finish(prepared.case, settings.duration, damps);
     let through = state.as_ref().and_then(|state| through_itself(&model.mesh, state));
-    findings.extend(through.map(|fact| Finding::new(fact).at(Place::file(&case.path))));
+    findings.extend(through.map(|fact| Finding::new(fact).at(Place::file(&prepared.case.path))));
     Ok(Outcome { history: Some(history), state, findings, ..Outcome::of(solution) })
+}
+
+impl<'a> Record<'a> {
+    /// Of a motion that has not begun.
+    pub fn new(prepared: &'a PreparedCase<'_>, model: &'a Model, watch: Watch<'a>) -> Self {
+        Self {
+            mesh: &model.mesh,
+            locators: &prepared.probes,
+            history: History {
+                probes: vec![Vec::new(); prepared.probes.len()],
+                probe_displacements: vec![Vec::new(); prepared.probes.len()],
+                ..History::default()
+            },
+            solution: Solution { dofs: prepared.plan.rows(model), ..Solution::at_rest(model) },
+            watch,
+            over: None,
+            every: None,
+            frames: Vec::new(),
+        }
+    }
+
+    /// The same, which keeps so many shapes of a motion that lasts so long (s).
+    pub fn keeping(self, frames: usize, duration: f64) -> Self {
+        Self { every: (frames > 0).then(|| duration / frames as f64), ..self }
+    }
+
+    /// The history of a motion that was to last so long (s), its end, and what a reader must know. `damps` says that the method
+    /// takes energy.
+    pub fn finish(mut self, case: &Case, duration: f64, damps: bool) -> (History, Solution, Vec<Finding>) {
+        // A motion that ran out of time within a step ends there, and nobody was asked.
+        if self.history.time.last().is_some_and(|time| *time < (1.0 - 1e-6) * duration) {
+            self.over = self.over.or_else(platform::over);
+        }
+        let Self { mut history, solution, over, .. } = self;
+        // What it began with is no work of the motion.
+        let began = history.energy.first().map_or(0.0, |e| e.strain.min(e.work));
+        let size = |e: &Energy| (e.work - began).abs().max(e.kinetic);
+        let work = if began == 0.0 {
+            history.energy.iter().map(|e| e.work.abs()).fold(f64::MIN_POSITIVE, f64::max)
+        } else {
+            history.energy.iter().map(size).fold(f64::MIN_POSITIVE, f64::max)
+        };
+        history.imbalance = history.energy.iter().map(|e| e.imbalance().abs()).fold(0.0, f64::max) / work;
+        let given = history.energy.iter().map(|e| -e.dissipated / work).fold(0.0, f64::max);
+        let gained = history.energy.iter().map(|e| e.imbalance() / work).fold(0.0, f64::max);
+        let missed = if damps { gained } else { history.imbalance };
+        let mut findings: Vec<Finding> = unbalanced(case, missed, given).into_iter().collect();
+        let reached = history.time.last().copied().unwrap_or_default();
+        if let Some(seconds) = over.filter(|_| reached < duration) {
+            let fact = StudyFact::OutOfTime { seconds, reached, duration };
+            findings.push(Finding::new(fact).at(Place::file(&case.path)));
+        }
+        (history, solution, findings)
+    }
 }

@@ -6,7 +6,9 @@
 //! known the factor is too, and [`Plan`](crate::solve::Plan) looks again.
 
 use super::{Case, StudyError, placed};
-use crate::case::{Analysis, Annulus, BendingTest, InstrumentTest, Outline, Problem, SheetProblem};
+use crate::case::{
+    Analysis, Annulus, BendingTest, InstrumentTest, Outline, Problem, SheetProblem, SheetStep, StepAnalysis,
+};
 use crate::finding::Located;
 use crate::solve::{Method, Options, SolveError};
 
@@ -94,18 +96,31 @@ fn of_sheet(problem: &SheetProblem, quads: f64, options: &Options) -> f64 {
             Method::Iterative => true,
         };
     let mut bytes = of_system(quads, dofs, iterates);
+    // The subspace has twice as many columns, and its products are kept beside it.
+    let of_subspace = |count: usize| 6.0 * (count as f64).min(dofs * quads) * dofs * quads * BYTES;
+    let of_instants = |duration: f64, step: f64| {
+        duration / step * (PER_INSTANT + PER_PROBE * problem.probes.len() as f64) * BYTES
+    };
     match &problem.analysis {
-        Analysis::Modal(modal) => {
-            let wanted = (modal.modes as f64).min(dofs * quads);
-            // The subspace has twice as many columns, and its products are kept beside it.
-            bytes += 3.0 * 2.0 * wanted * dofs * quads * BYTES;
-        }
+        Analysis::Modal(modal) => bytes += of_subspace(modal.modes),
+        Analysis::Buckling(buckling) => bytes += of_subspace(buckling.factors),
         // An adaptive step grows and shrinks as it must.
         Analysis::Newmark(motion) if motion.tolerance.is_none() => {
-            let instants = motion.duration.si() / motion.step.si();
-            bytes += instants * (PER_INSTANT + PER_PROBE * problem.probes.len() as f64) * BYTES;
+            bytes += of_instants(motion.duration.si(), motion.step.si());
         }
-        Analysis::Linear(_) | Analysis::Newmark(_) | Analysis::Nonlinear(_) | Analysis::Steps(_) => {}
+        Analysis::Steps(steps) => {
+            let of_step = |step: &SheetStep| match &step.analysis {
+                StepAnalysis::Static(_) => 0.0,
+                StepAnalysis::Modal { modes, .. } => of_subspace(*modes),
+                StepAnalysis::Buckling { factors, .. } => of_subspace(*factors),
+                StepAnalysis::Motion(motion) => {
+                    let frames = motion.frames as f64 * dofs * quads * BYTES;
+                    of_instants(motion.duration.si(), motion.step.si()) + frames
+                }
+            };
+            bytes += steps.iter().map(of_step).sum::<f64>();
+        }
+        Analysis::Linear(_) | Analysis::Newmark(_) | Analysis::Nonlinear(_) => {}
     }
     bytes
 }

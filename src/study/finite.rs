@@ -18,6 +18,11 @@ pub(super) fn finite(result: &CaseResult) -> Result<(), StudyError> {
     for frequency in &result.frequencies {
         number("a natural frequency", *frequency)?;
     }
+    let steps = result.path.iter().flat_map(|path| &path.load_steps);
+    let of_steps = steps.flat_map(|step| step.frequencies.iter().chain(&step.load_factors));
+    for eigenvalue in result.load_factors.iter().chain(of_steps) {
+        number("a frequency or load factor", *eigenvalue)?;
+    }
     for probe in &result.probes {
         let value = &probe.value;
         let all = value.u.iter().chain(&value.theta).copied().chain(value.resultants.components());

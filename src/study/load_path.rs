@@ -5,6 +5,7 @@ use std::ops::Range;
 use serde::Serialize;
 
 use super::contact::ContactResult;
+use super::history::History;
 use crate::case::MethodChoice;
 use crate::solve::nonlinear::{Stability, State};
 
@@ -38,6 +39,18 @@ pub struct LoadStepEnd {
     pub steps: Range<usize>,
     /// Whether it came to its end.
     pub converged: bool,
+    /// Natural frequencies (Hz), ascending, of a modal step; 0 of a motion that grows, as the state is unstable.
+    pub frequencies: Vec<f64>,
+    /// Factors of the loads of a buckling step, those nearest to zero first.
+    pub load_factors: Vec<f64>,
+    /// The shape of each, six a node, with a largest displacement of 1 m.
+    #[serde(skip)]
+    pub shapes: Vec<Vec<f64>>,
+    /// What happened in time, in a motion.
+    pub history: Option<History>,
+    /// Shapes on the way, in a motion that keeps some.
+    #[serde(skip)]
+    pub frames: Vec<Frame>,
     /// Whether its last equilibrium is stable; unknown where it did not converge.
     pub stability: Option<Stability>,
     /// The sheet.
@@ -49,6 +62,15 @@ pub struct LoadStepEnd {
     /// What the obstacles of the case bear.
     #[serde(skip)]
     pub contacts: Vec<ContactResult>,
+}
+
+/// The shape of a sheet at a time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Time (s).
+    pub time: f64,
+    /// Displacements and rotations, six a node.
+    pub displacement: Vec<f64>,
 }
 
 /// A step of a search: an equilibrium, or a state on the way of the flow.
@@ -68,6 +90,13 @@ pub struct PathStep {
     pub dissipated: f64,
     /// The largest |w|, with its sign (m).
     pub w_max: f64,
+}
+
+impl LoadStepEnd {
+    /// Whether it looked at a state, and changed nothing.
+    pub fn looks(&self) -> bool {
+        !self.shapes.is_empty() || !self.frequencies.is_empty() || !self.load_factors.is_empty()
+    }
 }
 
 impl LoadPath {

@@ -79,13 +79,17 @@ impl<'a> PreparedCase<'a> {
             Analysis::Newmark(newmark) if !problem.analysis.has_large_rotations() => {
                 moving(Plan::groups(&model, options), newmark)
             }
-            Analysis::Newmark(_) | Analysis::Nonlinear(_) | Analysis::Steps(_) => vec![DofGroup::Shell],
+            Analysis::Buckling(_) | Analysis::Newmark(_) | Analysis::Nonlinear(_) | Analysis::Steps(_) => {
+                vec![DofGroup::Shell]
+            }
         };
         let plan = match &problem.analysis {
             Analysis::Linear(_) => Plan::of(&model, options)?,
-            Analysis::Modal(_) | Analysis::Newmark(_) | Analysis::Nonlinear(_) | Analysis::Steps(_) => {
-                Plan::direct(&model, &groups, options)?
-            }
+            Analysis::Modal(_)
+            | Analysis::Buckling(_)
+            | Analysis::Newmark(_)
+            | Analysis::Nonlinear(_)
+            | Analysis::Steps(_) => Plan::direct(&model, &groups, options)?,
         };
         let damped = matches!(&problem.analysis, Analysis::Newmark(Newmark { damping: Some(_), .. }));
         let all_groups =

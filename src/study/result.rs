@@ -112,7 +112,10 @@ pub struct CaseResult {
     /// Natural frequencies (Hz), ascending; of a modal analysis only, whose displacements are the
     /// first mode. It has no loads, reactions and energy.
     pub frequencies: Vec<f64>,
-    /// The shape of each mode, six a node, with a largest displacement of 1 m; of a modal analysis only.
+    /// Factors of the loads at which the sheet buckles, those nearest to zero first; of a buckling analysis only, whose
+    /// displacements are the first shape.
+    pub load_factors: Vec<f64>,
+    /// The shape of each mode, six a node, with a largest displacement of 1 m; of a modal or buckling analysis only.
     pub modes: Vec<Vec<f64>>,
     /// What happened in time; of a dynamic analysis only, whose displacements are those at the end.
     pub history: Option<History>,
@@ -138,7 +141,9 @@ pub struct CaseResult {
 impl CaseResult {
     /// The sheet at the end of one of the `[[steps]]` of the case.
     pub fn at_end_of(&self, step: &LoadStepEnd) -> Self {
-        let mut then = Self { state: Some(step.state.clone()), nodal: OnceLock::new(), ..self.clone() };
+        let (state, modes) = (Some(step.state.clone()), step.shapes.clone());
+        let history = step.history.clone();
+        let mut then = Self { state, modes, history, nodal: OnceLock::new(), ..self.clone() };
         then.solution.displacement = step.state.displacement(&self.model.mesh);
         then.solution.reaction.clone_from(&step.reaction);
         then.contacts.clone_from(&step.contacts);
@@ -150,7 +155,7 @@ impl CaseResult {
         self.history.is_none() && !self.is_modal()
     }
 
-    /// Whether this is a natural mode, which has a shape and no size.
+    /// Whether this is a natural mode or a shape of buckling, which has no size.
     pub fn is_modal(&self) -> bool {
         self.modal
     }
@@ -205,6 +210,7 @@ impl CaseResult {
 pub(super) struct Outcome {
     pub solution: Solution,
     pub frequencies: Vec<f64>,
+    pub load_factors: Vec<f64>,
     pub modes: Vec<Vec<f64>>,
     pub history: Option<History>,
     pub path: Option<LoadPath>,
@@ -230,6 +236,7 @@ impl Outcome {
         Self {
             solution,
             frequencies: Vec::new(),
+            load_factors: Vec::new(),
             modes: Vec::new(),
             history: None,
             path: None,

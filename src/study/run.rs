@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 use super::checked::check;
 use super::contact::contacts;
 use super::dynamics::{dynamics, is_out_of_time, rayleigh};
+use super::eigen_steps::buckling_of;
 use super::finite::finite;
 use super::limits::{Beyond, buckles, findings, is_compressed};
 use super::load_steps::load_steps;
@@ -129,8 +130,18 @@ impl PreparedCase<'_> {
         let case = self.case;
         let model = self.model(section);
         build::weighed(&model)?;
-        let Outcome { solution, frequencies, modes: shapes, history, path, state, kept, findings: own } =
-            analyse(self, &model, fabric, watch)?;
+        let outcome = analyse(self, &model, fabric, watch)?;
+        let Outcome {
+            solution,
+            frequencies,
+            load_factors,
+            modes: shapes,
+            history,
+            path,
+            state,
+            kept,
+            findings: own,
+        } = outcome;
         let uncertainty = match kept {
             _ if inputs.is_empty() => None,
             Kept::Nothing => None,
@@ -150,7 +161,7 @@ impl PreparedCase<'_> {
             None => self.extent.deflection(&model.mesh, &solution.displacement, w_max),
         };
         let w_over_thickness = deflection / model.section.bending_thickness_squared().sqrt();
-        let is_linear = frequencies.is_empty() && state.is_none();
+        let is_linear = frequencies.is_empty() && load_factors.is_empty() && state.is_none();
         let ratio = [deflection, w_over_thickness];
         let beyond =
             is_linear.then(|| Beyond::of(&model, &self.extent, &solution.displacement, ratio)).flatten();
@@ -178,6 +189,7 @@ impl PreparedCase<'_> {
             checks: Vec::new(),
             profile,
             frequencies,
+            load_factors,
             modes: shapes,
             history,
             path,
@@ -187,7 +199,7 @@ impl PreparedCase<'_> {
             convergence: None,
             contacts,
             findings,
-            modal: matches!(self.problem.analysis, Analysis::Modal(_)),
+            modal: matches!(self.problem.analysis, Analysis::Modal(_) | Analysis::Buckling(_)),
             recovery: Arc::clone(&self.recovery),
             nodal: OnceLock::new(),
         };
@@ -225,6 +237,7 @@ fn analyse(
                 ..Outcome::of(solution)
             })
         }
+        Analysis::Buckling(buckling) => buckling_of(prepared, model, buckling.factors),
         Analysis::Newmark(newmark) => {
             let settings = newmark::Settings {
                 duration: newmark.duration.si(),
@@ -236,7 +249,7 @@ fn analyse(
                 scheme: newmark.scheme,
                 beginning: newmark.beginning,
             };
-            dynamics(prepared, model, &settings, newmark.rotations, watch)
+            dynamics(prepared, model, fabric.law, &settings, newmark.rotations, watch)
         }
         Analysis::Nonlinear(nonlinear) => equilibrium(prepared, model, fabric, nonlinear, watch),
         Analysis::Steps(steps) => load_steps(prepared, model, fabric, steps, watch),
@@ -244,7 +257,7 @@ fn analyse(
 }
 
 /// A mode with a largest displacement of 1 m; of 1 rad if it has rotations only.
-fn of_unit_size(shape: &[f64]) -> Vec<f64> {
+pub(super) fn of_unit_size(shape: &[f64]) -> Vec<f64> {
     let size = |part: std::ops::Range<usize>| {
         shape.chunks_exact(6).flat_map(|node| &node[part.clone()]).fold(0.0f64, |m, v| m.max(v.abs()))
     };
@@ -252,7 +265,7 @@ fn of_unit_size(shape: &[f64]) -> Vec<f64> {
     shape.iter().map(|v| v / largest).collect()
 }
 
-fn fewer_modes(case: &Case, found: usize, wanted: usize) -> Finding {
+pub(super) fn fewer_modes(case: &Case, found: usize, wanted: usize) -> Finding {
     Finding::new(StudyFact::FewerModes { found, wanted }).at(Place::file(&case.path))
 }
 

@@ -72,6 +72,31 @@ super::facts! {
             /// Modes that were asked for.
             wanted: usize,
         } = "the model has {found} modes, and {wanted} were asked for: refine the mesh, or ask for fewer";
+        /// Vibrations about a state that is left.
+        "S141" GrowingModes {
+            /// How many of those that were found.
+            modes: usize,
+            /// The rate of the fastest (1/s).
+            rate: f64,
+        } = "the equilibrium is unstable: {modes} of the modes about it have no frequency (0 Hz stands for them), they grow by a factor of \
+             e in {} s at the fastest; take less load, or method = \"stable\" in the step before", significant(1.0 / rate);
+        /// A model with fewer load factors than were asked for.
+        "S142" FewerFactors {
+            /// Load factors of the model.
+            found: usize,
+            /// Load factors that were asked for.
+            wanted: usize,
+        } = "the loads buckle the sheet at {found} factors, and {wanted} were asked for: {}", if *found == 0 {
+            "before they turn it by a radian, where a linear answer means nothing, they press it nowhere enough"
+        } else {
+            "refine the mesh, or ask for fewer"
+        };
+        /// Loads that buckle a sheet only when they are turned round.
+        "S143" BucklesTurnedRound {
+            /// The factor nearest to zero.
+            nearest: f64,
+        } = "all load factors that were found are below zero ({} is nearest to it): the sheet buckles under these loads turned round; ask \
+             for more `factors` to see one above zero, if there is any", significant(*nearest);
         /// A sheet that would buckle.
         "S105" Buckles {
             /// Directions without stiffness.
@@ -150,7 +175,7 @@ super::facts! {
         } = "a quick drape, on {elements} elements: the last refinement changed the coefficient by {:+.1} points, and more refinement \
              would change it again; `--drape` or `kesf solve` hangs it as the case says", 100.0 * change;
         /// A sheet that takes the place of another part of itself.
-        "S141" ThroughItself {
+        "S144" ThroughItself {
             /// Pairs of elements that pass through each other.
             pairs: usize,
             /// Where they do so the most (m).
@@ -161,7 +186,7 @@ super::facts! {
              keeps folds apart here, and from where they meet the shape is not that of cloth",
             significant(1e3 * depth), significant(at[0]), significant(at[1]), significant(at[2]);
         /// A drape that takes the place of its disc.
-        "S142" ThroughDisc {
+        "S145" ThroughDisc {
             /// How far inside the edge of the disc the sheet reaches (m).
             reach: f64,
             /// Where it does so the most (m).
@@ -174,7 +199,7 @@ super::facts! {
                 "what the disc stands on is in its way, unless it is a thin plate on a stem"
             };
         /// A sheet that is pressed into a rigid surface.
-        "S143" Penetrates {
+        "S146" Penetrates {
             /// Name of the surface.
             obstacle: String,
             /// How far at most (m).
@@ -184,7 +209,7 @@ super::facts! {
         } = "`{obstacle}` is passed through by {} mm, {} mm are accepted: the contact has not converged there; take more cells, or a \
              smaller largest_step", significant(1e3 * depth), significant(1e3 * accepted);
         /// A friction that nobody stated.
-        "S144" AssumedFriction {
+        "S147" AssumedFriction {
             /// Name of the surface.
             obstacle: String,
             /// The coefficient that is taken.

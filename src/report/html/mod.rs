@@ -32,7 +32,7 @@ pub use figure::{Figure, FigureKind};
 pub use one_file::{LIMIT, OneFile, self_contained};
 pub use problems::{DoubtfulValue, Problem, ProblemGroup};
 pub use shapes::{Shape, ShapeField, Shapes};
-pub use tables::Cell;
+pub use tables::{Cell, IndexLine};
 pub use text::{fabric_id, local, without_folders};
 
 use text::{address, breakable, escape, prose};
@@ -96,6 +96,15 @@ pub enum Block {
         rows: Vec<Vec<Cell>>,
         /// Whether each row is of the fabric that its first cell names, which then leads to it: the script filters and sorts them.
         of_fabrics: bool,
+    },
+    /// The table of the fabrics that have pages of their own.
+    Index {
+        /// A line above it.
+        caption: String,
+        /// Column headings.
+        header: Vec<String>,
+        /// A line a fabric.
+        lines: Vec<IndexLine>,
     },
     /// Pictures beside each other as the window allows.
     Figures(Vec<Figure>),
@@ -209,7 +218,12 @@ fn block(out: &mut String, part: &Block, data: &PageData) {
             let known: BTreeSet<&str> = data.fabrics.iter().map(|fabric| fabric.name.as_str()).collect();
             let is_linked = |name: &str| *of_fabrics && known.contains(name);
             let class = if *of_fabrics { "of-fabrics" } else { "" };
-            tables::table(out, [caption, class], header, rows, &is_linked);
+            tables::table(out, [caption, class], header, rows.iter(), &is_linked);
+        }
+        Block::Index { caption, header, lines } => {
+            out.reserve(lines.iter().map(IndexLine::length).sum());
+            let rows = lines.iter().map(IndexLine::row);
+            tables::table(out, [caption, "of-fabrics"], header, rows, &|_| false);
         }
         Block::Figures(figures) => {
             out.push_str("<div class=\"figures\">\n");

@@ -1,5 +1,7 @@
 //! Tables of the page. What stands above one is a paragraph of its own: a caption would scroll away with a wide table.
 
+use std::sync::Arc;
+
 use super::text::{address, breakable, escape, fabric_id, prose};
 
 /// A cell of a table.
@@ -16,6 +18,39 @@ pub struct Cell {
 impl<T: Into<String>> From<T> for Cell {
     fn from(text: T) -> Self {
         Self { text: text.into(), ..Self::default() }
+    }
+}
+
+/// A fabric in the index of a run of many. Its cells are made when it is written: they take ten times the memory of their text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct IndexLine {
+    /// The page that has the fabric.
+    pub page: Arc<str>,
+    /// Its name, the first cell.
+    pub name: Box<str>,
+    /// The other cells, with tabs between them.
+    pub cells: Box<str>,
+}
+
+impl IndexLine {
+    /// What stands between the cells.
+    pub const BETWEEN: &str = "\t";
+
+    /// About how long its row is (bytes): links name the fabric twice, and every cell has tags.
+    pub(super) fn length(&self) -> usize {
+        100 + self.page.len()
+            + 2 * self.name.len()
+            + self.cells.len()
+            + 27 * self.cells.split(Self::BETWEEN).count()
+    }
+
+    /// The cells of its row.
+    pub fn row(&self) -> Vec<Cell> {
+        let first = Cell {
+            leads_to: Some((self.page.to_string(), self.name.to_string())),
+            ..Cell::from(self.name.as_ref())
+        };
+        std::iter::once(first).chain(self.cells.split(Self::BETWEEN).map(Cell::from)).collect()
     }
 }
 
@@ -43,32 +78,39 @@ pub(super) fn end(out: &mut String) {
 /// A table; columns of numbers are set to the right.
 ///
 /// First cells that are to be links to a fabric of the page are told by `is_linked`.
-pub(super) fn table(
+pub(super) fn table<R: AsRef<[Cell]>>(
     out: &mut String,
     above: [&str; 2],
     header: &[String],
-    rows: &[Vec<Cell>],
+    rows: impl Iterator<Item = R> + Clone,
     is_linked: &dyn Fn(&str) -> bool,
 ) {
-    let text = |row: &[Cell], column: usize| row.get(column).map_or(String::new(), |cell| cell.text.clone());
-    let is_numeric = |column: usize| {
-        let mut filled =
-            rows.iter().map(|r| text(r, column)).filter(|c| !c.is_empty() && c != "-").peekable();
-        filled.peek().is_some() && filled.all(|c| is_number(&c))
-    };
-    let numeric: Vec<bool> = (0..header.len()).map(is_numeric).collect();
+    let numeric = numeric(header.len(), rows.clone());
     let of_head = |column: usize| if numeric[column] { " class=\"number\"" } else { "" };
     begin(out, above, header.iter().enumerate().map(|(column, name)| (name.as_str(), of_head(column))));
     for row in rows {
         out.push_str("<tr>");
         for (column, is_numeric) in numeric.iter().enumerate() {
             let none = Cell::default();
-            let found = row.get(column).unwrap_or(&none);
+            let found = row.as_ref().get(column).unwrap_or(&none);
             cell(out, found, *is_numeric, column == 0 && is_linked(&found.text));
         }
         out.push_str("</tr>\n");
     }
     end(out);
+}
+
+/// Which columns hold numbers and nothing else.
+fn numeric<R: AsRef<[Cell]>>(columns: usize, rows: impl Iterator<Item = R>) -> Vec<bool> {
+    let mut numeric = vec![None; columns];
+    for row in rows {
+        for (is_numeric, Cell { text, .. }) in numeric.iter_mut().zip(row.as_ref()) {
+            if !text.is_empty() && text != "-" {
+                *is_numeric = Some(is_numeric.unwrap_or(true) && is_number(text));
+            }
+        }
+    }
+    numeric.into_iter().map(|is_numeric| is_numeric.unwrap_or(false)).collect()
 }
 
 fn cell(out: &mut String, Cell { text, remark, leads_to }: &Cell, is_numeric: bool, is_linked: bool) {

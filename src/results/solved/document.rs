@@ -72,6 +72,9 @@ struct ResultsEntry {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     contacts: Vec<ContactResult>,
     frequencies: Vec<f64>,
+    /// Of a buckling analysis: factors of the loads, those nearest to zero first, of either sign.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    load_factors: Vec<f64>,
     convergence: Option<Convergence>,
     uncertainty: Option<UncertaintyEntry>,
 }
@@ -146,6 +149,7 @@ fn results(task: &Task, result: &CaseResult) -> ResultsEntry {
         strain_energy: (!result.is_modal()).then_some(result.solution.strain_energy),
         contacts: result.contacts.clone(),
         frequencies: result.frequencies.clone(),
+        load_factors: result.load_factors.clone(),
         convergence: result.convergence.clone(),
         uncertainty,
     }

@@ -86,6 +86,15 @@ impl Mesh {
         Ok(vtu(&self.nodes, &self.quads, &mesh_fields(&fields), &mesh_fields(&cells))?)
     }
 
+    /// The sheet with displacements and rotations alone, six a node.
+    pub fn moved(&self, displacement: &[f64]) -> Result<Vec<u8>, Failure> {
+        let fields = [
+            ("displacement", 3, three_of_six(displacement, 0)),
+            ("rotation", 3, three_of_six(displacement, 3)),
+        ];
+        Ok(vtu(&self.nodes, &self.quads, &mesh_fields(&fields), &[])?)
+    }
+
     pub fn plot(&self, task: &Task, result: &CaseResult) -> FieldPlot<'_> {
         let fabric = task.fabric_name().unwrap_or("section of the case");
         let cells = match result.model.formulation.bending_cells() {

@@ -44,15 +44,26 @@ pub(super) fn unconverged(task: &Task, result: &CaseResult) -> Option<Failure> {
     Some(Failure::from(finding).of(&task.name()))
 }
 
-/// The largest deflection and that of each probe, or the natural frequencies.
+/// The largest deflection, that of each probe and what steps have looked for; or the natural frequencies or load factors.
 pub(super) fn rows(task: &Task, result: &CaseResult) -> Vec<PredictionRow> {
-    if !result.frequencies.is_empty() {
-        let numbered = result.frequencies.iter().enumerate();
-        return numbered.map(|(k, f)| row(task, result, format!("frequency_{}", k + 1), *f, "1/s")).collect();
+    let eigenvalues = |name: String, frequencies: &[f64], load_factors: &[f64]| {
+        let of = |kind: &str, unit: &str, values: &[f64]| {
+            let numbered = values.iter().enumerate();
+            numbered
+                .map(|(k, v)| row(task, result, format!("{name}{kind}_{}", k + 1), *v, unit))
+                .collect::<Vec<_>>()
+        };
+        [of("frequency", "1/s", frequencies), of("load_factor", "1", load_factors)].concat()
+    };
+    if result.is_modal() {
+        return eigenvalues(String::new(), &result.frequencies, &result.load_factors);
     }
     let mut rows = vec![row(task, result, "w_max".into(), result.w_max, "m")];
     for probe in &result.probes {
         rows.push(row(task, result, format!("{}.w", probe.name), probe.value.u[2], "m"));
+    }
+    for step in result.path.iter().flat_map(|path| &path.load_steps) {
+        rows.extend(eigenvalues(format!("{}.", step.name), &step.frequencies, &step.load_factors));
     }
     rows
 }
@@ -78,8 +89,8 @@ pub(super) fn deflected(task: &Task, result: &CaseResult) -> Option<Deflected> {
 }
 
 /// Writes `<stem>.vtu`, the chart `<stem>`, `<stem>.csv` of what there is of a history, and `<stem>-step-<k>.vtu` of each of its
-/// `[[steps]]`; the chart, if
-/// there is one.
+/// `[[steps]]`, with
+/// `<stem>-step-<k>-frame-<j>.vtu` of the shapes that a motion has kept; the chart, if there is one.
 pub(super) fn write(task: &Task, result: &CaseResult, folder: &Folder) -> Result<Option<String>, Failure> {
     let stem = task.stem();
     let history = history_rows(result);
@@ -92,6 +103,12 @@ pub(super) fn write(task: &Task, result: &CaseResult, folder: &Folder) -> Result
         for (k, step) in result.path.iter().flat_map(|path| path.load_steps.iter().enumerate()) {
             let then = result.at_end_of(step);
             folder.write(&format!("{stem}-step-{}.vtu", k + 1), &fields::Mesh::new(&then).vtu(&then)?)?;
+            for (j, frame) in step.frames.iter().enumerate() {
+                folder.write(
+                    &format!("{stem}-step-{}-frame-{}.vtu", k + 1, j + 1),
+                    &mesh.moved(&frame.displacement)?,
+                )?;
+            }
         }
     }
     folder.chart(&stem, || chart::field(&mesh.plot(task, result)))

@@ -84,7 +84,7 @@ pub(super) fn load_steps(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
     let mut table = Columns::new(headings);
     for (task, r) in solved {
         let Some(path) = &r.path else { continue };
-        for end in &path.load_steps {
+        for end in path.load_steps.iter().filter(|end| !end.looks() && end.history.is_none()) {
             let steps = &path.steps[end.steps.clone()];
             let last = steps.last();
             table.row([
@@ -99,6 +99,27 @@ pub(super) fn load_steps(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
                 or_dash(last.map(|s| s.strain_energy)),
                 or_dash(last.map(|s| s.dissipated)),
             ]);
+        }
+    }
+    table.filled()
+}
+
+/// What steps have found that look at a state: one line for each frequency and load factor, with the name of the step.
+pub(super) fn eigenvalues(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
+    let headings = ["step", "case", "fabric", "mode", "frequency (Hz)", "load factor"];
+    let mut table = Columns::new(headings);
+    for (task, r) in solved {
+        for end in r.path.iter().flat_map(|path| &path.load_steps) {
+            let head = |k: usize| {
+                let fabric = task.fabric_name().unwrap_or_default();
+                [end.name.clone(), r.case.clone(), fabric.into(), (k + 1).to_string()]
+            };
+            for (k, f) in end.frequencies.iter().enumerate() {
+                table.row(head(k).into_iter().chain([significant(*f), "-".into()]));
+            }
+            for (k, f) in end.load_factors.iter().enumerate() {
+                table.row(head(k).into_iter().chain(["-".into(), significant(*f)]));
+            }
         }
     }
     table.filled()
@@ -126,6 +147,12 @@ pub struct LoadStepEntry {
     steps: [usize; 2],
     converged: bool,
     stability: Option<Stability>,
+    /// Of a modal step (Hz).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    frequencies: Vec<f64>,
+    /// Of a buckling step, those nearest to zero first, of either sign.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    load_factors: Vec<f64>,
 }
 
 /// A step of `steps` (SI).
@@ -163,6 +190,8 @@ impl LoadStepEntry {
             steps: [end.steps.start, end.steps.end],
             converged: end.converged,
             stability: end.stability,
+            frequencies: end.frequencies.clone(),
+            load_factors: end.load_factors.clone(),
         }
     }
 }

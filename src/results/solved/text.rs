@@ -15,6 +15,7 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
         Columns::new(["case", "fabric", "w_max (mm)", "± 95 % (mm)", "w/t_b", "elements", "status"]);
     let mut probes = Columns::new(["probe", "case", "fabric", "u (mm)", "v (mm)", "w (mm)", "± 95 % (mm)"]);
     let mut modes = Columns::new(["mode", "case", "fabric", "frequency (Hz)", "± 95 % (Hz)", "elements"]);
+    let mut factors = Columns::new(["buckle", "case", "fabric", "load factor", "elements"]);
     // That a linear solve cannot hold for cloth is said once, however many fabrics there are.
     let beyond = solved.iter().filter(|(_, r)| r.status == Status::BeyondLinear).count();
     for (task, r) in solved {
@@ -24,7 +25,11 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
             let half = half_width(r, &format!("frequency_{}", k + 1), 1.0);
             modes.row([(k + 1).to_string(), r.case.clone(), fabric.clone(), significant(*f), half, elements]);
         }
-        if !r.frequencies.is_empty() {
+        for (k, f) in r.load_factors.iter().enumerate() {
+            let elements = r.model.mesh.quads.len().to_string();
+            factors.row([(k + 1).to_string(), r.case.clone(), fabric.clone(), significant(*f), elements]);
+        }
+        if r.is_modal() {
             // The shape of a mode has no size.
             continue;
         }
@@ -57,11 +62,13 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
     let parts = [
         table.filled(),
         modes.filled(),
+        factors.filled(),
         probes.filled(),
         convergence::table(solved),
         histories(solved),
         search::searches(solved),
         search::load_steps(solved),
+        search::eigenvalues(solved),
         steps,
         checks(solved.iter().map(|(_, r)| *r)),
     ];

@@ -17,7 +17,7 @@ const MASSLESS: f64 = 1e-10;
 ///
 /// # Errors
 /// N001 if A is not positive definite.
-pub(super) fn eigen(
+pub(in crate::solve) fn eigen(
     a: &BlockMatrix,
     mass: &BlockMatrix,
     held: &[bool],
@@ -39,6 +39,39 @@ pub(super) fn eigen(
         vectors.row_mut(*dof).copy_from(&x.row(k));
     }
     Ok((order.iter().map(|k| svd.singular_values[*k].powi(-2)).collect(), vectors))
+}
+
+/// Inverse eigenvalues 1/λ (ascending) and vectors (columns over all dofs) of `A x = λ B x`, with `A` positive definite on the
+/// free dofs and `B` symmetric.
+///
+/// # Errors
+/// N001 if A is not positive definite.
+pub(super) fn of_either_sign(
+    a: &BlockMatrix,
+    b: &BlockMatrix,
+    held: &[bool],
+) -> Result<(DMatrix<f64>, DMatrix<f64>), FactorError> {
+    let free: Vec<usize> = (0..held.len()).filter(|k| !held[*k]).collect();
+    let singular = || FactorError::NotPositiveDefinite { node: 0, dof: 0, pivot: 0.0 };
+    // With A of unit diagonal the root of it keeps digits that membrane and bending would cost each other.
+    let full = dense(a, &free);
+    let scale = full.diagonal().map(|d| 1.0 / d.max(f64::MIN_POSITIVE).sqrt());
+    let scaled =
+        |m: &DMatrix<f64>| DMatrix::from_fn(m.nrows(), m.ncols(), |i, j| m[(i, j)] * scale[i] * scale[j]);
+    let r = scaled(&full).cholesky().ok_or_else(singular)?.l();
+    let left = r.solve_lower_triangular(&scaled(&dense(b, &free))).ok_or_else(singular)?;
+    let both = r.solve_lower_triangular(&left.transpose()).ok_or_else(singular)?;
+    let eigen = SymmetricEigen::new(0.5 * (&both + both.transpose()));
+    let mut order: Vec<usize> = (0..free.len()).collect();
+    order.sort_by(|i, j| eigen.eigenvalues[*i].total_cmp(&eigen.eigenvalues[*j]));
+    let sorted = DMatrix::from_fn(free.len(), free.len(), |i, k| eigen.eigenvectors[(i, order[k])]);
+    let x = r.tr_solve_lower_triangular(&sorted).ok_or_else(singular)?;
+    let mut vectors = DMatrix::zeros(held.len(), free.len());
+    for (k, dof) in free.iter().enumerate() {
+        vectors.row_mut(*dof).copy_from(&(x.row(k) * scale[k]));
+    }
+    let inverse = DMatrix::from_iterator(free.len(), 1, order.iter().map(|k| eigen.eigenvalues[*k]));
+    Ok((inverse, vectors))
 }
 
 /// Rows and columns `free` of a symmetric matrix.

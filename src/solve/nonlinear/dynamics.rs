@@ -1,4 +1,4 @@
-//! Dynamics in large rotations, from rest: `M q̈ + α M v + f_visc(q, v) + f_int(q) = λ(t) f_ext`. Rotations advance by
+//! Dynamics in large rotations, from rest or from the state of a load step ([`Launch`]): `M q̈ + α M v + f_visc(q, v) + f_int(q) = λ(t) f_ext`. Rotations advance by
 //! `R_{n+1} = exp(Δθ) R_n` with spatial increments. Two methods, both of second order in the step:
 //!
 //! 1. the rule of the mean with a correction by which the energies balance in every step (the default; `conserving`);
@@ -19,16 +19,18 @@ mod adaptive;
 mod alpha;
 mod conserving;
 mod guard;
-mod inertia;
+pub(super) mod inertia;
+mod launch;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use self::guard::Guard;
 use self::inertia::Inertia;
+pub use self::launch::{Course, Guided, Launch};
 use super::newton::{is_rounding, limit};
 use super::sheet::Forces;
-use super::system::{Balance, System};
+use super::system::{Balance, Before, System};
 use super::{NonlinearError, Settings, State, plan};
 use crate::element::{Mass, Vector24};
 use crate::model::Model;
@@ -82,31 +84,46 @@ pub fn integrate(
     options: &Options,
     observe: impl FnMut(&Instant<'_>) -> ControlFlow<()>,
 ) -> Result<State, NonlinearError> {
-    integrate_with(model, &plan(model, options)?, dynamics, options, observe)
+    integrate_with(model, &plan(model, options)?, &Launch::default(), dynamics, options, observe)
 }
 
-/// [`integrate`] with a plan that was made before by [`plan`].
+/// [`integrate`] with a plan that was made before by [`plan`], from rest or from where a launch says.
 ///
 /// # Errors
 /// As [`integrate`].
 pub fn integrate_with(
     model: &Model,
     plan: &Plan,
+    launch: &Launch<'_>,
     dynamics: &Dynamics,
     options: &Options,
     mut observe: impl FnMut(&Instant<'_>) -> ControlFlow<()>,
 ) -> Result<State, NonlinearError> {
-    let settings = Settings::default();
-    let system = System::new(model, plan, &settings, options)?;
-    let motion = Motion::new(&system, dynamics);
-    let mut now = motion.start()?;
+    let settings = Settings { law: launch.law.cloned(), ..Settings::default() };
+    let mut system = System::new(model, plan, &settings, options)?;
+    let rest = State::rest(&model.mesh);
+    let start = launch.carried.map_or(&rest, |carried| &carried.state);
+    // Energies count from the start, where the sheet may be strained; they are shown with what it began with.
+    let mut began = 0.0;
+    if let Some(carried) = launch.carried {
+        system.before = Some(Before { load: carried.load.clone(), pressure: carried.pressure, scale: 0.0 });
+        let balance = system.balance(start, None);
+        system.before.iter_mut().for_each(|before| before.scale = balance.scale);
+        began = balance.energy;
+    }
+    let motion = Motion::new(&system, dynamics, launch, began);
+    let mut now = motion.start(start)?;
     let tolerance = dynamics.tolerance;
     let longest = tolerance.map_or(dynamics.step, |_| dynamics.load.longest_step());
     let (mut time, mut step) = (0.0, dynamics.step.min(longest));
     // The largest displacement so far; at the start, what the load can cause.
     let mut largest = tolerance.map_or(Ok(0.0), |_| motion.reach(&now))?;
-    let (mut energy, mut guard) = (Energy::default(), Guard::new(dynamics.duration, step));
-    let show = |time, now: &Now, energy, observe: &mut dyn FnMut(&Instant<'_>) -> ControlFlow<()>| {
+    // What supports that move from the first instant on have given by then.
+    let kinetic = motion.kinetic(&now);
+    let (mut energy, mut guard) =
+        (Energy { kinetic, work: kinetic, ..Energy::default() }, Guard::new(dynamics.duration, step));
+    let show = |time, now: &Now, energy: Energy, observe: &mut dyn FnMut(&Instant<'_>) -> ControlFlow<()>| {
+        let energy = Energy { strain: energy.strain + began, work: energy.work + began, ..energy };
         observe(&Instant { time, displacement: &now.state.displacement(&model.mesh), energy })
     };
     if show(0.0, &now, energy, &mut observe).is_break() {
@@ -171,6 +188,8 @@ struct Now {
     load: Vec<f64>,
     /// Displacements and rotations since the instant before.
     travelled: Vec<f64>,
+    /// Work of moved supports since then (J).
+    supported: f64,
     /// Of Newton's last matrix, where a tolerance asks for the local error.
     factor: Option<Factor>,
 }
@@ -184,21 +203,26 @@ struct Motion<'a> {
     alpha_f: f64,
     beta: f64,
     gamma: f64,
+    /// Dofs that supports move.
+    guided: Vec<(usize, &'a Course)>,
+    /// Energy stored in the state of the start (J).
+    began: f64,
 }
 
 impl<'a> Motion<'a> {
-    fn new(system: &'a System<'a>, dynamics: &'a Dynamics) -> Self {
+    fn new(system: &'a System<'a>, dynamics: &'a Dynamics, launch: &Launch<'a>, began: f64) -> Self {
+        let guided = launch.guided.iter().map(|g| (6 * g.node as usize + g.dof, &g.course)).collect();
         let rho = dynamics.spectral_radius.unwrap_or(1.0);
         let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
         let gamma = 0.5 + alpha_f - alpha_m;
         let beta = 0.25 * (0.5 + gamma) * (0.5 + gamma);
-        Self { inertia: Inertia::new(system, dynamics.mass), system, dynamics, alpha_m, alpha_f, beta, gamma }
+        let inertia = Inertia::new(system, dynamics.mass);
+        Self { inertia, system, dynamics, alpha_m, alpha_f, beta, gamma, guided, began }
     }
 
-    /// At rest under the loads of the first instant.
-    fn start(&self) -> Result<Now, NonlinearError> {
-        let mut state = State::rest(&self.system.model.mesh);
-        state.factor = self.dynamics.load.at(0.0);
+    /// Still in a state, under the loads of the first instant.
+    fn start(&self, from: &State) -> Result<Now, NonlinearError> {
+        let state = State { factor: self.dynamics.load.at(0.0), ..from.clone() };
         let balance = self.system.balance(&state, None);
         let mut matrix = BlockMatrix::zeros(Arc::clone(&self.system.plan.pattern.graph), 6);
         self.inertia.add(self.system, &state, 1.0, &mut matrix);
@@ -207,8 +231,10 @@ impl<'a> Motion<'a> {
         self.free(&mut acceleration);
         self.system.factorise(&matrix).map_err(SolveError::Factor)?.solve(&mut acceleration, 1);
         let still = vec![0.0; acceleration.len()];
+        let mut velocity = still.clone();
+        self.guided.iter().for_each(|(d, course)| velocity[*d] = course.rate(0.0));
         Ok(Now {
-            velocity: still.clone(),
+            velocity,
             mean_acceleration: acceleration.clone(),
             acceleration,
             balance,
@@ -216,13 +242,14 @@ impl<'a> Motion<'a> {
             viscous: vec![Vector24::zeros(); self.system.model.mesh.quads.len()],
             load: self.load(&state),
             travelled: still,
+            supported: 0.0,
             factor: None,
             state,
         })
     }
 
     fn load(&self, state: &State) -> Vec<f64> {
-        self.system.reference_load(state).iter().map(|f| f * state.factor).collect()
+        self.system.loads(state)
     }
 
     /// Empties the held entries of a vector.
@@ -235,7 +262,7 @@ impl<'a> Motion<'a> {
         if self.conserves() {
             return self.advance_conserving((now, energy), time, dt);
         }
-        self.newton(now, self.straight_on(now, time, dt), dt, |travelled| {
+        self.newton(now, self.straight_on(now, time, dt), (time, dt), |travelled| {
             self.alpha_rates(now, travelled, dt)
         })
     }
@@ -243,7 +270,8 @@ impl<'a> Motion<'a> {
     /// Where the velocities and accelerations of an instant lead until a time.
     fn straight_on(&self, now: &Now, time: f64, dt: f64) -> Guess {
         let by_dof = now.velocity.iter().zip(&now.mean_acceleration);
-        let travelled: Vec<f64> = by_dof.map(|(v, a)| dt * v + 0.5 * dt * dt * a).collect();
+        let mut travelled: Vec<f64> = by_dof.map(|(v, a)| dt * v + 0.5 * dt * dt * a).collect();
+        self.guide(&mut travelled, time, dt);
         let mut state = State { factor: self.dynamics.load.at(time), ..now.state.clone() };
         self.system.advance(&mut state, &travelled);
         // The straight prediction stretches a sheet that turns: its own forces say nothing.
@@ -251,36 +279,54 @@ impl<'a> Motion<'a> {
     }
 
     /// From a guess of the end of a step to the end itself; `None` if Newton's method does not converge.
-    fn newton(&self, now: &Now, guess: Guess, dt: f64, rates: impl Fn(&[f64]) -> Rates) -> Option<Now> {
+    fn newton(
+        &self,
+        now: &Now,
+        guess: Guess,
+        (time, dt): (f64, f64),
+        rates: impl Fn(&[f64]) -> Rates,
+    ) -> Option<Now> {
         let n = now.velocity.len();
         let Guess { mut state, mut travelled, forces: mut predicted } = guess;
         let mut factor = None;
         for _ in 0..ITERATIONS {
-            let rates = rates(&travelled);
+            let rates = self.steer(rates(&travelled), now, time, dt);
             let balance = self.system.balance(&state, None);
             let Resistance { inertia, drag, damping, nodal, viscous } =
                 self.resistance(&state, &balance, &rates);
-            let mut force: Vec<f64> = if self.conserves() {
-                // Means over the step, twice.
-                let forces = self.twice_the_mean(&now.balance, (&state, &balance));
-                (0..n).map(|d| -(2.0 * (inertia[d] + damping[d]) + forces[d])).collect()
+            // Means over the step where energy is conserved, and then what vanishes is twice of them.
+            let (acting, times) = if self.conserves() {
+                let twice = self.twice_the_mean(&now.balance, (&state, &balance));
+                (twice.iter().map(|f| 0.5 * f).collect(), 2.0)
             } else {
-                (0..n).map(|d| -(inertia[d] + damping[d] + balance.unbalanced[d])).collect()
+                (balance.unbalanced.clone(), 1.0)
             };
+            let mut force: Vec<f64> =
+                (0..n).map(|d| -(times * (inertia[d] + damping[d] + acting[d]))).collect();
             self.free(&mut force);
             let (size, scale) =
                 (self.system.norm(&force, false), balance.scale.max(self.system.norm(&inertia, false)));
-            let done = |state, balance, factor: Option<Factor>| Now {
-                load: self.load(&state),
-                velocity: rates.velocity.clone(),
-                acceleration: rates.acceleration.clone(),
-                mean_acceleration: rates.mean_acceleration.clone(),
-                balance,
-                drag: drag.clone(),
-                viscous: self.without_correction(&viscous, rates.correction),
-                travelled: travelled.clone(),
-                factor: factor.filter(|_| self.dynamics.tolerance.is_some()),
-                state,
+            let supported = || {
+                let end = if self.conserves() { 1.0 } else { 0.5 };
+                let before = |d: usize| (1.0 - end) * now.balance.unbalanced[d];
+                let steady: Vec<f64> = (0..n).map(|d| damping[d] + end * acting[d] + before(d)).collect();
+                self.work_of_supports(now, (&rates, &travelled), (&steady, &inertia), dt)
+            };
+            let done = |mut state: State, balance: Balance, factor: Option<Factor>| {
+                self.system.remember(&balance, &mut state);
+                Now {
+                    load: self.load(&state),
+                    velocity: rates.velocity.clone(),
+                    acceleration: rates.acceleration.clone(),
+                    mean_acceleration: rates.mean_acceleration.clone(),
+                    balance,
+                    drag: drag.clone(),
+                    viscous: self.without_correction(&viscous, rates.correction),
+                    travelled: travelled.clone(),
+                    supported: if self.guided.is_empty() { 0.0 } else { supported() },
+                    factor: factor.filter(|_| self.dynamics.tolerance.is_some()),
+                    state,
+                }
             };
             if !size.is_finite() {
                 return None;
@@ -303,6 +349,7 @@ impl<'a> Motion<'a> {
             travelled = travel(&now.state, &state);
             // Followers have moved, but their dofs are held.
             self.free(&mut travelled);
+            self.guide(&mut travelled, time, dt);
         }
         None
     }
@@ -361,15 +408,20 @@ impl<'a> Motion<'a> {
         };
         // Where the energy is conserved damping is a mean already.
         let before = if self.conserves() { next } else { now };
-        energy.work += mean(&now.load, &next.load);
+        energy.work += mean(&now.load, &next.load) + next.supported;
         energy.dissipated += mean(&before.drag, &next.drag);
         let strained = now.balance.deformations().zip(next.balance.deformations()).map(|(a, b)| b - a);
         let viscous = before.viscous.iter().zip(&next.viscous).map(|(a, b)| 0.5 * (a + b));
         energy.dissipated += viscous.zip(strained).map(|(force, strained)| force.dot(&strained)).sum::<f64>();
-        energy.strain = next.balance.energy;
-        let velocities = self.system.node_velocities(&next.state, &next.velocity);
+        energy.dissipated += next.state.memory.dissipated - now.state.memory.dissipated;
+        energy.strain = next.balance.energy - self.began;
+        energy.kinetic = self.kinetic(next);
+    }
+
+    fn kinetic(&self, now: &Now) -> f64 {
+        let velocities = self.system.node_velocities(&now.state, &now.velocity);
         let momentum = self.inertia.times(self.system, &velocities);
-        energy.kinetic = 0.5 * momentum.iter().zip(&velocities).map(|(p, v)| p * v).sum::<f64>();
+        0.5 * momentum.iter().zip(&velocities).map(|(p, v)| p * v).sum::<f64>()
     }
 }
 

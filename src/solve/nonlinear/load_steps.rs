@@ -32,13 +32,13 @@ pub struct Carried {
     /// The nodes, and what friction remembers; the factor of its loads is 0.
     pub state: State,
     /// Dead loads, six a node.
-    load: Vec<f64>,
+    pub(super) load: Vec<f64>,
     /// Follower pressure (Pa).
-    pressure: f64,
+    pub(super) pressure: f64,
     /// Forces and moments of the supports on the sheet, six a node; 0 at free dofs.
     reaction: Vec<f64>,
     /// Whether a dof was held.
-    held: Vec<bool>,
+    pub(super) held: Vec<bool>,
     /// How far held rotations have been turned (rad), six a node.
     turned: Vec<f64>,
 }

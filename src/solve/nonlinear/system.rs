@@ -2,16 +2,19 @@
 
 mod presses;
 mod rates;
+mod stress;
 
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector3};
 
+pub(super) use stress::Stressing;
+
 use super::contact::{Press, Surfaces};
 use super::sheet::{Answer, Forces, Sheet};
 use super::{NonlinearError, Settings, State};
 use crate::element::corotational::Motion;
-use crate::element::{Matrix24, Vector24, follower_pressure, follower_pressure_tangent, lumped_mass};
+use crate::element::{Matrix24, Vector24, follower_pressure, lumped_mass};
 use crate::model::rigid::lever;
 use crate::model::{DofGroup, Links, Model, ModelError};
 use crate::platform;
@@ -241,11 +244,7 @@ impl<'a> System<'a> {
         if pressure == 0.0 {
             return;
         }
-        let tangent = follower_pressure_tangent(&self.corners(state, quad), pressure);
-        for (i, j) in (0..12).flat_map(|i| (0..12).map(move |j| (i, j))) {
-            let mean = 0.5 * (tangent[(i, j)] + tangent[(j, i)]);
-            k[(6 * (i / 3) + i % 3, 6 * (j / 3) + j % 3)] -= mean;
-        }
+        self.take_pressure(&self.corners(state, quad), pressure, k);
     }
 
     /// Dead loads at a factor, six a node.
@@ -273,6 +272,14 @@ impl<'a> System<'a> {
             self.add_pressure(state, pressure, &mut nodal);
         }
         self.to_leads(state, &nodal)
+    }
+
+    /// All loads in a state, by dof.
+    pub fn loads(&self, state: &State) -> Vec<f64> {
+        if self.before.is_none() {
+            return self.reference_load(state).iter().map(|f| f * state.factor).collect();
+        }
+        self.loads_of(state, &self.dead_loads(state.factor), self.pressure_at(state.factor))
     }
 
     /// Sum of the sizes of the nodal loads at factor 1 (N).

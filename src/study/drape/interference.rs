@@ -5,7 +5,7 @@ use crate::model::Model;
 use crate::solve::nonlinear::State;
 use crate::study::{Case, through_itself};
 
-/// S141 and S142 of a sheet that hangs from a disc.
+/// S144 and S145 of a sheet that hangs from a disc.
 pub(super) fn of(case: &Case, model: &Model, state: &State, disc_radius: f64) -> Vec<Finding> {
     let inside = inside(state, disc_radius, model.section.thickness);
     let facts = through_itself(&model.mesh, state).into_iter().chain(inside);

@@ -39,14 +39,17 @@ impl Motion<'_> {
         let (mut guess, mut correction) = (self.straight_on(now, time, dt), 0.0);
         let mut best: Option<(f64, Now)> = None;
         for _ in 0..ROUNDS {
-            let next = self.newton(now, guess, dt, |travelled| mean_rates(now, travelled, dt, correction));
+            let next =
+                self.newton(now, guess, (time, dt), |travelled| mean_rates(now, travelled, dt, correction));
             let Some(next) = next else { break };
             let mut balance = *energy;
             self.account(now, &next, &mut balance);
             let missed = balance.imbalance();
-            let scale = balance.work.abs().max(balance.kinetic + balance.strain);
+            let scale = balance.work.abs().max(balance.kinetic + balance.strain.abs());
             let work = self.work_of_stiffness(&next, dt);
-            guess = Guess { state: next.state.clone(), travelled: next.travelled.clone(), forces: None };
+            // The sheet has not been through this step yet.
+            let state = State { memory: now.state.memory.clone(), ..next.state.clone() };
+            guess = Guess { state, travelled: next.travelled.clone(), forces: None };
             if best.as_ref().is_none_or(|(least, _)| missed.abs() < *least) {
                 best = Some((missed.abs(), next));
             }

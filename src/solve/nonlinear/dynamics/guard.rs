@@ -54,7 +54,8 @@ impl Guard {
     }
 
     fn with(&self, energy: &Energy) -> f64 {
-        self.largest.max(energy.work.abs()).max(energy.kinetic + energy.strain)
+        // Energy that was stored at the start counts as it is given back.
+        self.largest.max(energy.work.abs()).max(energy.kinetic + energy.strain.abs())
     }
 
     /// A step was kept.

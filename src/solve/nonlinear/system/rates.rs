@@ -40,15 +40,20 @@ impl System<'_> {
     /// Element forces that a step is expected to lead to: those of the mixed integration point.
     pub fn predict(&self, state: &State, balance: &Balance, step: &[f64]) -> Vec<Forces> {
         self.each(0..self.plan.pattern.quads.len(), |q| {
-            let mut spins = Vector24::zeros();
-            for (i, node) in self.model.mesh.quads[q].iter().enumerate() {
-                let (du, spin) = self.node_step(state, step, *node as usize);
-                spins.fixed_rows_mut::<3>(6 * i).copy_from(&du);
-                spins.fixed_rows_mut::<3>(6 * i + 3).copy_from(&spin);
-            }
-            let answer = &balance.answers[q];
-            answer.forces.plus(&self.sheet.change(q, answer, &answer.motion.deformation_rate(&spins)))
+            balance.answers[q].forces.plus(&self.change(state, balance, step, q))
         })
+    }
+
+    /// What a step adds to the forces of an element, to first order.
+    pub fn change(&self, state: &State, balance: &Balance, step: &[f64], q: usize) -> Forces {
+        let mut spins = Vector24::zeros();
+        for (i, node) in self.model.mesh.quads[q].iter().enumerate() {
+            let (du, spin) = self.node_step(state, step, *node as usize);
+            spins.fixed_rows_mut::<3>(6 * i).copy_from(&du);
+            spins.fixed_rows_mut::<3>(6 * i + 3).copy_from(&spin);
+        }
+        let answer = &balance.answers[q];
+        self.sheet.change(q, answer, &answer.motion.deformation_rate(&spins))
     }
 
     /// `(G1 - G0)ᵀ (n1 - n0)` of two states on the nodes: `n` are the forces of the elements in their frames and `G` the rates
