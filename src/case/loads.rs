@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use super::CaseError;
 use super::error::refused;
-use super::motion::load_history;
+use super::load_history::load_history;
 use super::point::SheetPoint;
 use super::supports::dof_named;
 use crate::finding::{Located, Node, Place, TomlError};

@@ -13,6 +13,7 @@ mod element;
 mod error;
 mod history;
 mod kind;
+mod load_history;
 mod loads;
 mod material;
 mod motion;
