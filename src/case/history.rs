@@ -60,12 +60,11 @@ impl StepTable {
 
 /// Refuses a step after what leaves no equilibrium, or before there is any.
 fn in_order(steps: &[SheetStep], step: &SheetStep, at: &Node<'_>) -> Result<(), CaseError> {
-    let place = || at.get("analysis").unwrap_or(*at).value_place("kind");
     let is_static = matches!(step.analysis, StepAnalysis::Static(_));
     if steps.is_empty() && !is_static {
         let message = "the first of the [[steps]] is of kind = \"nonlinear\": modes, load factors and motions of a sheet at rest are \
                        cases without [[steps]]";
-        return refused(place(), message);
+        return refused(at.get("analysis").unwrap_or(*at).value_place("kind"), message);
     }
     match steps.last() {
         Some(SheetStep { name, analysis: StepAnalysis::Motion(_), .. }) => {

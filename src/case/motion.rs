@@ -144,8 +144,7 @@ impl NewmarkTable {
             let place = Place { line: prescribed.table.line, column: prescribed.table.column, ..at.place() };
             return refused(place, "a dynamic analysis has no prescribed values: remove them");
         }
-        let in_range = |ratio: &f64| (0.0..1.0).contains(ratio);
-        if self.damping.is_some_and(|ratios| !ratios.iter().all(in_range)) {
+        if self.damping.is_some_and(|ratios| !ratios.iter().all(|ratio| (0.0..1.0).contains(ratio))) {
             return refused(
                 at.value_place("damping"),
                 "[analysis] damping ratios are parts of the critical damping: take 0 to below 1",

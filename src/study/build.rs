@@ -157,13 +157,10 @@ pub(super) fn steps(case: &Case, problem: &SheetProblem, model: &Model) -> Resul
 
 /// What a step holds, without what it moves it by and what acts: everything stays where it is.
 fn as_in(step: Option<&Actions>) -> Actions {
-    let still = |support: &Support| {
-        let mut support = support.clone();
-        support.held.iter_mut().for_each(|(_, value)| *value = 0.0);
-        support
-    };
     let held = step.iter().flat_map(|actions| actions.supports.iter().chain(&actions.moved));
-    Actions { supports: held.map(still).collect(), moved: Vec::new(), loads: Vec::new(), guided: Vec::new() }
+    let mut supports: Vec<Support> = held.cloned().collect();
+    supports.iter_mut().flat_map(|support| &mut support.held).for_each(|(_, value)| *value = 0.0);
+    Actions { supports, moved: Vec::new(), loads: Vec::new(), guided: Vec::new() }
 }
 
 /// The actions of a motion with what it moves.
@@ -177,10 +174,11 @@ fn guided(
         let nodes = placed(case, set, mesh.set(&set.value))?;
         actions.supports.push(Support::at(nodes.to_vec(), vec![(*dof, 0.0)]));
         if let Some(course) = course {
-            let of_node = |node: &u32| Guided { node: *node, dof: *dof as usize, course: course.clone() };
-            for guided in nodes.iter().map(of_node) {
-                let twice = |other: &Guided| other.node == guided.node && other.dof == guided.dof;
-                if actions.guided.iter().any(|other| twice(other) && other.course != guided.course) {
+            for node in nodes {
+                let guided = Guided { node: *node, dof: *dof as usize, course: course.clone() };
+                let mut twice =
+                    actions.guided.iter().filter(|o| o.node == guided.node && o.dof == guided.dof);
+                if twice.any(|other| other.course != guided.course) {
                     let message = format!(
                         "{} of a node of set `{}` is moved in two ways: give each node one `course`",
                         dof.name(),

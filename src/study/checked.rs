@@ -12,17 +12,13 @@ pub(super) fn lookup(quantity: &str, results: &CaseResult) -> Option<f64> {
         "strain_energy" => return Some(results.solution.strain_energy),
         _ => {}
     }
-    let of = |(kind, number): (&str, usize), frequencies: &[f64], load_factors: &[f64]| {
-        let all = if kind == "frequency" { frequencies } else { load_factors };
-        all.get(number - 1).copied()
-    };
     if let Some(wanted) = numbered(quantity) {
-        return of(wanted, &results.frequencies, &results.load_factors);
+        return eigenvalue(wanted, &results.frequencies, &results.load_factors);
     }
     let (name, component) = quantity.split_once('.')?;
     if let Some(wanted) = numbered(component) {
         let end = results.path.as_ref()?.load_steps.iter().find(|step| step.name == name)?;
-        return of(wanted, &end.frequencies, &end.load_factors);
+        return eigenvalue(wanted, &end.frequencies, &end.load_factors);
     }
     let v = &results.probes.iter().find(|p| p.name == name)?.value;
     match ["u", "v", "w", "theta_x", "theta_y", "theta_z"].iter().position(|c| *c == component) {
@@ -33,6 +29,12 @@ pub(super) fn lookup(quantity: &str, results: &CaseResult) -> Option<f64> {
             Some(v.resultants.components()[k])
         }
     }
+}
+
+/// One of the natural frequencies or load factors, counted from 1.
+fn eigenvalue((kind, number): (&str, usize), frequencies: &[f64], load_factors: &[f64]) -> Option<f64> {
+    let all = if kind == "frequency" { frequencies } else { load_factors };
+    all.get(number - 1).copied()
 }
 
 /// A check of the case with its outcome.

@@ -176,12 +176,11 @@ impl<'a> Record<'a> {
         let Self { mut history, solution, over, .. } = self;
         // What it began with is no work of the motion.
         let began = history.energy.first().map_or(0.0, |e| e.strain.min(e.work));
-        let size = |e: &Energy| (e.work - began).abs().max(e.kinetic);
-        let work = if began == 0.0 {
-            history.energy.iter().map(|e| e.work.abs()).fold(f64::MIN_POSITIVE, f64::max)
-        } else {
-            history.energy.iter().map(size).fold(f64::MIN_POSITIVE, f64::max)
-        };
+        let sizes = history
+            .energy
+            .iter()
+            .map(|e| if began == 0.0 { e.work.abs() } else { (e.work - began).abs().max(e.kinetic) });
+        let work = sizes.fold(f64::MIN_POSITIVE, f64::max);
         history.imbalance = history.energy.iter().map(|e| e.imbalance().abs()).fold(0.0, f64::max) / work;
         let given = history.energy.iter().map(|e| -e.dissipated / work).fold(0.0, f64::max);
         let gained = history.energy.iter().map(|e| e.imbalance() / work).fold(0.0, f64::max);

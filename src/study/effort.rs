@@ -7,7 +7,7 @@
 
 use super::{Case, StudyError, placed};
 use crate::case::{
-    Analysis, Annulus, BendingTest, InstrumentTest, Outline, Problem, SheetProblem, SheetStep, StepAnalysis,
+    Analysis, Annulus, BendingTest, InstrumentTest, Outline, Problem, SheetProblem, StepAnalysis,
 };
 use crate::finding::Located;
 use crate::solve::{Method, Options, SolveError};
@@ -109,16 +109,17 @@ fn of_sheet(problem: &SheetProblem, quads: f64, options: &Options) -> f64 {
             bytes += of_instants(motion.duration.si(), motion.step.si());
         }
         Analysis::Steps(steps) => {
-            let of_step = |step: &SheetStep| match &step.analysis {
-                StepAnalysis::Static(_) => 0.0,
-                StepAnalysis::Modal { modes, .. } => of_subspace(*modes),
-                StepAnalysis::Buckling { factors, .. } => of_subspace(*factors),
-                StepAnalysis::Motion(motion) => {
-                    let frames = motion.frames as f64 * dofs * quads * BYTES;
-                    of_instants(motion.duration.si(), motion.step.si()) + frames
-                }
-            };
-            bytes += steps.iter().map(of_step).sum::<f64>();
+            for step in steps {
+                bytes += match &step.analysis {
+                    StepAnalysis::Static(_) => 0.0,
+                    StepAnalysis::Modal { modes, .. } => of_subspace(*modes),
+                    StepAnalysis::Buckling { factors, .. } => of_subspace(*factors),
+                    StepAnalysis::Motion(motion) => {
+                        let frames = motion.frames as f64 * dofs * quads * BYTES;
+                        of_instants(motion.duration.si(), motion.step.si()) + frames
+                    }
+                };
+            }
         }
         Analysis::Linear(_) | Analysis::Newmark(_) | Analysis::Nonlinear(_) => {}
     }

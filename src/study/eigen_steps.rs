@@ -12,7 +12,7 @@ use crate::element::Mass;
 use crate::finding::{Finding, StudyFact};
 use crate::model::Model;
 use crate::solve::Solution;
-use crate::solve::nonlinear::{Buckle, Carried, Settings, Vibration, buckles, vibrations};
+use crate::solve::nonlinear::{Buckle, Carried, Settings, buckles, vibrations};
 
 /// What a step finds that looks at a state.
 pub(super) struct Looked {
@@ -43,14 +43,13 @@ impl<'a> State<'a> {
     pub fn vibrations(&self, modes: usize, mass: Mass) -> Result<Looked, StudyError> {
         let Self { prepared, model, carried, settings } = self;
         let found = vibrations(carried, model, (modes, mass), settings, &prepared.plan, &prepared.options)?;
-        let frequency = |v: &Vibration| v.square.max(0.0).sqrt() / TAU;
         let growing: Vec<f64> = found.iter().map(|v| -v.square).filter(|s| *s > 0.0).map(f64::sqrt).collect();
         let mut findings = self.fewer(found.len(), modes);
         if let Some(fastest) = growing.first() {
             findings.push(Finding::new(StudyFact::GrowingModes { modes: growing.len(), rate: *fastest }));
         }
         Ok(Looked {
-            frequencies: found.iter().map(frequency).collect(),
+            frequencies: found.iter().map(|v| v.square.max(0.0).sqrt() / TAU).collect(),
             load_factors: Vec::new(),
             shapes: found.iter().map(|v| of_unit_size(&v.shape)).collect(),
             findings,

@@ -100,8 +100,8 @@ impl PreparedCase<'_> {
         }
         if !self.coarser.is_empty() {
             let section = &result.model.section;
-            let on = |coarser: &Self| coarser.results(section.clone(), fabric, &[], watch);
-            let coarser = self.coarser.iter().map(on).collect::<Result<Vec<_>, _>>()?;
+            let coarser = self.coarser.iter().map(|mesh| mesh.results(section.clone(), fabric, &[], watch));
+            let coarser = coarser.collect::<Result<Vec<_>, _>>()?;
             let meshes: Vec<&CaseResult> = coarser.iter().chain([&result]).collect();
             let convergence = Convergence::of(self.problem, &meshes)?;
             result.findings.extend(convergence.finding(case));

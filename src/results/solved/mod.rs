@@ -46,26 +46,28 @@ pub(super) fn unconverged(task: &Task, result: &CaseResult) -> Option<Failure> {
 
 /// The largest deflection, that of each probe and what steps have looked for; or the natural frequencies or load factors.
 pub(super) fn rows(task: &Task, result: &CaseResult) -> Vec<PredictionRow> {
-    let eigenvalues = |name: String, frequencies: &[f64], load_factors: &[f64]| {
-        let of = |kind: &str, unit: &str, values: &[f64]| {
-            let numbered = values.iter().enumerate();
-            numbered
-                .map(|(k, v)| row(task, result, format!("{name}{kind}_{}", k + 1), *v, unit))
-                .collect::<Vec<_>>()
-        };
-        [of("frequency", "1/s", frequencies), of("load_factor", "1", load_factors)].concat()
-    };
     if result.is_modal() {
-        return eigenvalues(String::new(), &result.frequencies, &result.load_factors);
+        return eigenvalues(task, result, "", [&result.frequencies, &result.load_factors]);
     }
     let mut rows = vec![row(task, result, "w_max".into(), result.w_max, "m")];
     for probe in &result.probes {
         rows.push(row(task, result, format!("{}.w", probe.name), probe.value.u[2], "m"));
     }
     for step in result.path.iter().flat_map(|path| &path.load_steps) {
-        rows.extend(eigenvalues(format!("{}.", step.name), &step.frequencies, &step.load_factors));
+        let values = [step.frequencies.as_slice(), &step.load_factors];
+        rows.extend(eigenvalues(task, result, &format!("{}.", step.name), values));
     }
     rows
+}
+
+/// Natural frequencies and load factors; the name of the step with a dot before each, if they are of one.
+fn eigenvalues(task: &Task, result: &CaseResult, step: &str, values: [&[f64]; 2]) -> Vec<PredictionRow> {
+    let kinds = [("frequency", "1/s"), ("load_factor", "1")].into_iter().zip(values);
+    let numbered = kinds
+        .flat_map(|(kind, values)| values.iter().enumerate().map(move |(k, value)| (kind, k + 1, *value)));
+    numbered
+        .map(|((kind, unit), k, value)| row(task, result, format!("{step}{kind}_{k}"), value, unit))
+        .collect()
 }
 
 fn row(task: &Task, result: &CaseResult, quantity: String, value: f64, unit: &str) -> PredictionRow {

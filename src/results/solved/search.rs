@@ -110,15 +110,12 @@ pub(super) fn eigenvalues(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
     let mut table = Columns::new(headings);
     for (task, r) in solved {
         for end in r.path.iter().flat_map(|path| &path.load_steps) {
-            let head = |k: usize| {
+            let frequencies = end.frequencies.iter().map(|f| [significant(*f), "-".into()]).enumerate();
+            let factors = end.load_factors.iter().map(|f| ["-".into(), significant(*f)]).enumerate();
+            for (k, values) in frequencies.chain(factors) {
                 let fabric = task.fabric_name().unwrap_or_default();
-                [end.name.clone(), r.case.clone(), fabric.into(), (k + 1).to_string()]
-            };
-            for (k, f) in end.frequencies.iter().enumerate() {
-                table.row(head(k).into_iter().chain([significant(*f), "-".into()]));
-            }
-            for (k, f) in end.load_factors.iter().enumerate() {
-                table.row(head(k).into_iter().chain(["-".into(), significant(*f)]));
+                let head = [end.name.clone(), r.case.clone(), fabric.into(), (k + 1).to_string()];
+                table.row(head.into_iter().chain(values));
             }
         }
     }

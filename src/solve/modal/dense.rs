@@ -23,7 +23,6 @@ pub(in crate::solve) fn eigen(
     held: &[bool],
 ) -> Result<(Vec<f64>, DMatrix<f64>), FactorError> {
     let free: Vec<usize> = (0..held.len()).filter(|k| !held[*k]).collect();
-    let singular = || FactorError::NotPositiveDefinite { node: 0, dof: 0, pivot: 0.0 };
     let r = dense(a, &free).cholesky().ok_or_else(singular)?.l();
     let w = root(&dense(mass, &free));
     let image = r.solve_lower_triangular(&w).ok_or_else(singular)?;
@@ -52,7 +51,6 @@ pub(super) fn of_either_sign(
     held: &[bool],
 ) -> Result<(DMatrix<f64>, DMatrix<f64>), FactorError> {
     let free: Vec<usize> = (0..held.len()).filter(|k| !held[*k]).collect();
-    let singular = || FactorError::NotPositiveDefinite { node: 0, dof: 0, pivot: 0.0 };
     // With A of unit diagonal the root of it keeps digits that membrane and bending would cost each other.
     let full = dense(a, &free);
     let scale = full.diagonal().map(|d| 1.0 / d.max(f64::MIN_POSITIVE).sqrt());
@@ -72,6 +70,11 @@ pub(super) fn of_either_sign(
     }
     let inverse = DMatrix::from_iterator(free.len(), 1, order.iter().map(|k| eigen.eigenvalues[*k]));
     Ok((inverse, vectors))
+}
+
+/// Which of its dofs is at fault is not known.
+fn singular() -> FactorError {
+    FactorError::NotPositiveDefinite { node: 0, dof: 0, pivot: 0.0 }
 }
 
 /// Rows and columns `free` of a symmetric matrix.

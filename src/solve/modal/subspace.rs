@@ -133,8 +133,8 @@ fn subspace_to(
             .ok_or(SolveError::ModesNotSettled { rounds: round })?;
         x = z * vectors;
         // Two of opposite sign may be equally near to zero, and change places.
-        let change = |(old, new): (&f64, &f64)| (old.abs() - new.abs()).abs() / new.abs();
-        let changes = previous.iter().zip(values.iter()).map(change);
+        let pairs = previous.iter().zip(values.iter());
+        let changes = pairs.map(|(old, new)| (old.abs() - new.abs()).abs() / new.abs());
         let largest = changes.fold(0.0, |m: f64, c| if c > m || c.is_nan() { c } else { m });
         let grows = largest > last && largest <= ROUNDING;
         (risen, last) = (risen + usize::from(grows), largest);
@@ -146,10 +146,13 @@ fn subspace_to(
     Err(SolveError::ModesNotSettled { rounds: ROUNDS })
 }
 
+fn symmetric(m: DMatrix<f64>) -> DMatrix<f64> {
+    0.5 * (&m + m.transpose())
+}
+
 /// Eigenvalues (ascending) and coefficients of the small problem `a c = λ b c`, `bᵀ`-orthonormal; `None`
 /// where the columns are dependent.
 fn rayleigh_ritz(a: DMatrix<f64>, b: DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
-    let symmetric = |m: DMatrix<f64>| 0.5 * (&m + m.transpose());
     // Scale first: columns of the iterate differ by orders of magnitude in the first rounds.
     let scale: Vec<f64> = (0..b.nrows()).map(|i| 1.0 / b[(i, i)].max(f64::MIN_POSITIVE).sqrt()).collect();
     let scaled =

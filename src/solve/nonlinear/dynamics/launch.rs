@@ -115,11 +115,11 @@ impl Motion<'_> {
         dt: f64,
     ) -> f64 {
         let ((rates, travelled), (steady, inertia)) = (next, forces);
-        let of = |d: usize| {
+        let works = self.guided.iter().map(|&(d, _)| {
             let mean = 0.5 * (now.velocity[d] + rates.velocity[d]);
             steady[d] * travelled[d] + inertia[d] * mean * dt
-        };
-        self.guided.iter().map(|(d, _)| of(*d)).sum()
+        });
+        works.sum()
     }
 }
 
