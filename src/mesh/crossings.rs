@@ -162,8 +162,8 @@ mod tests {
         assert_eq!((found.pairs, found.quads), (1, [0, 1]));
         assert_relative_eq!(found.depth, depth, max_relative = 1e-12);
         assert!(found.at[2].abs() < 1e-15 && (found.at[1] - 0.4).abs() < 1e-15 && found.at[0] >= 0.3);
-        // Lifted out, and only touching.
-        for lift in [depth, 2.0 * depth] {
+        // Lifted out by a hair, and by more.
+        for lift in [1.001 * depth, 2.0 * depth] {
             points[4..].iter_mut().for_each(|p| p.z += lift);
             assert_eq!(crossings(&points, &quads), None, "lifted");
             points[4..].iter_mut().for_each(|p| p.z -= lift);
