@@ -6,7 +6,7 @@ use serde::Deserialize;
 use super::CaseError;
 use super::error::refused;
 use super::loads::{Prescribed, SheetLoad, SheetLoads};
-use super::motion::{Newmark, NewmarkTable, Rotations};
+use super::motion::{Newmark, NewmarkTable, Rotations, mass};
 use super::nonlinear::NonlinearTable;
 use super::sheet::Sheet;
 use super::step_analysis::SheetStep;
@@ -294,19 +294,5 @@ impl ModalTable {
             return refused(at.value_place("modes"), "[analysis] modes = 0 asks for nothing: take 1 or more");
         }
         Ok((self.modes, mass(self.mass, self.lumped, at)?))
-    }
-}
-
-/// The mass matrix: the key `mass`, or the older `lumped`.
-pub(super) fn mass(mass: Option<Mass>, lumped: Option<bool>, at: &Node<'_>) -> Result<Mass, CaseError> {
-    match (mass, lumped) {
-        (Some(_), Some(_)) => {
-            let message = "[analysis] gives both `mass` and `lumped`: remove `lumped`";
-            refused(at.key_place("lumped"), message)
-        }
-        (Some(mass), None) => Ok(mass),
-        (None, Some(false)) => Ok(Mass::Consistent),
-        (None, Some(true)) => Ok(Mass::Lumped),
-        (None, None) => Ok(Mass::default()),
     }
 }

@@ -4,7 +4,6 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
-use super::analysis::mass;
 use super::error::refused;
 use super::load_history::load_history;
 use super::loads::{SheetLoad, SheetLoads};
@@ -228,4 +227,18 @@ impl NewmarkTable {
 
 fn step_load() -> String {
     "step".into()
+}
+
+/// The mass matrix: the key `mass`, or the older `lumped`.
+pub(super) fn mass(mass: Option<Mass>, lumped: Option<bool>, at: &Node<'_>) -> Result<Mass, CaseError> {
+    match (mass, lumped) {
+        (Some(_), Some(_)) => {
+            let message = "[analysis] gives both `mass` and `lumped`: remove `lumped`";
+            refused(at.key_place("lumped"), message)
+        }
+        (Some(mass), None) => Ok(mass),
+        (None, Some(false)) => Ok(Mass::Consistent),
+        (None, Some(true)) => Ok(Mass::Lumped),
+        (None, None) => Ok(Mass::default()),
+    }
 }

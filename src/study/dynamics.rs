@@ -17,7 +17,7 @@ use crate::mesh::QuadMesh;
 use crate::model::Model;
 use crate::platform;
 use crate::section::SheetLaw;
-use crate::solve::newmark::{self, Energy, Instant, Rayleigh};
+use crate::solve::newmark::{self, Instant, Rayleigh};
 use crate::solve::nonlinear::dynamics::{Dynamics, Launch, integrate_with};
 use crate::solve::{self, Solution};
 
