@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use super::history::History;
 use super::limits::largest_displacement;
-use super::load_path::Frame;
+use super::load_path::MotionFrame;
 use super::nonlinear::largest_w;
 use super::result::Outcome;
 use super::{Case, PreparedCase, StudyError, Watch, refused, through_itself};
@@ -73,7 +73,7 @@ pub(super) struct Record<'a> {
     /// Time between shapes that are kept (s), where some are.
     every: Option<f64>,
     /// These shapes.
-    pub frames: Vec<Frame>,
+    pub frames: Vec<MotionFrame>,
 }
 
 impl Record<'_> {
@@ -94,7 +94,7 @@ impl Record<'_> {
         // The first instant from each time on; rounding of the sum of steps is no delay.
         let due = self.every.map(|every| every * (1.0 - 1e-9) * (self.frames.len() + 1) as f64);
         if due.is_some_and(|due| at.time >= due) {
-            self.frames.push(Frame { time: at.time, displacement: at.displacement.to_vec() });
+            self.frames.push(MotionFrame { time: at.time, displacement: at.displacement.to_vec() });
         }
         self.solution.strain_energy = at.energy.strain;
         self.over = platform::over();

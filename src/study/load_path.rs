@@ -50,7 +50,7 @@ pub struct LoadStepEnd {
     pub history: Option<History>,
     /// Shapes on the way, in a motion that keeps some.
     #[serde(skip)]
-    pub frames: Vec<Frame>,
+    pub frames: Vec<MotionFrame>,
     /// Whether its last equilibrium is stable; unknown where it did not converge.
     pub stability: Option<Stability>,
     /// The sheet.
@@ -66,7 +66,7 @@ pub struct LoadStepEnd {
 
 /// The shape of a sheet at a time.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Frame {
+pub struct MotionFrame {
     /// Time (s).
     pub time: f64,
     /// Displacements and rotations, six a node.

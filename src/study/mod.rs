@@ -41,7 +41,7 @@ pub use contact::ContactResult;
 pub use drape::{Drape, DrapeState, Folds, as_measured, drape, drape_method, drape_stages, measured_drape};
 pub use effort::within_limits;
 pub use history::History;
-pub use load_path::{Frame, LoadPath, LoadStepEnd, PathStep};
+pub use load_path::{LoadPath, LoadStepEnd, MotionFrame, PathStep};
 pub use mesh_series::{Convergence, MeshSeries};
 pub use prepared::{PreparedCase, validate};
 pub use result::{CaseResult, CheckResult, Probe, Status};
