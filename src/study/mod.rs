@@ -49,6 +49,7 @@ pub use virtual_test::{EdgeEffect, PreparedTest, Tension, VirtualCurve, compress
 pub use watch::Watch;
 
 use crate::case::{Problem, SheetProblem};
+use crate::characterise::bend_loop::LoopError;
 use crate::finding::{Coded, Fields, Located, Place, errors};
 use crate::law::LawError;
 use crate::mesh::MeshError;
@@ -76,6 +77,8 @@ errors! {
             Nonlinear(NonlinearError),
             /// M020: numbers that make no law.
             Law(LawError),
+            /// A strip that cannot be bent as its record says.
+            Loop(LoopError),
         }
         inner {
             /// Any of these, about a value of the case file.
