@@ -129,6 +129,7 @@ fn card_holds(bytes: &[u8]) -> bool {
         law: None,
         used: Vec::new(),
         inputs: Vec::new(),
+        surface_friction: None,
         findings: Vec::new(),
     };
     let sheet = FabricSheet::default();
