@@ -11,24 +11,47 @@
 
 mod common;
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use kesf::analytical::beam::heart_load;
 use kesf::analytical::hanging::slack_strip;
-use kesf::characterise::{FabricSheet, Key};
+use kesf::characterise::bend_loop::simulate_loop;
+use kesf::characterise::{FabricSheet, Key, Settings};
+use kesf::element::Formulation;
 use kesf::instrument::fab::{FabKind, FabTest};
 use kesf::instrument::{Direction, Parameter, ReadSettings, read};
-use kesf::law::{Backbone, Channel, Family, Slider, Widening};
+use kesf::law::{Backbone, Channel, Family, Mode, Slider, Widening};
+use kesf::mesh;
+use kesf::model::{Dof, Load, Model, Support};
 use kesf::quantity::{Curve, Estimate, STANDARD_GRAVITY};
-use kesf::section::ShellSection;
+use kesf::section::{SheetLaw, ShellSection};
+use kesf::solve::Options;
+use kesf::solve::nonlinear::{Leg, Settings as Numerics, drive};
 use kesf::study::Case;
 use kesf::study::bending::{
-    BendLoops, BendingResult, FabSettings, bend_loops, cantilever, heart_cells, heart_loop, simulate_records,
+    BendLoops, BendingResult, LoopSettings, bend_loops, cantilever, heart_cells, heart_loop, simulate_records,
 };
 use nalgebra::{Matrix2, Matrix3};
 
 /// 1 gf·cm²/cm.
 const KES: f64 = 9.80665e-5;
+
+/// What the bend tests of one direction give.
+fn loops_of(
+    tests: &[FabTest],
+    direction: Direction,
+    density: f64,
+    settings: &LoopSettings,
+) -> Option<BendLoops> {
+    let found = bend_loops(tests, density, settings, &Settings::default());
+    assert!(found.failed.is_empty(), "{:?}", found.failed);
+    found.directions.into_iter().find(|l| l.direction == direction)
+}
+
+fn settings(cells: usize, steps: usize) -> LoopSettings {
+    LoopSettings { cells, steps, ..LoopSettings::default() }
+}
 
 /// A cloth of 150 g/m² that hardly stretches; `nu` couples its bending.
 fn cloth(warp: f64, weft: f64, nu: f64) -> ShellSection {
@@ -141,9 +164,8 @@ fn an_elastic_fab_record_gives_its_rigidity_and_the_long_test() {
     let (b, density) = (6e-6, 0.1056);
     let tests = [(FabKind::D1, -0.02), (FabKind::U1, 0.03), (FabKind::D2, 0.004)]
         .map(|(kind, zero)| record(kind, b, density, zero));
-    let at =
-        |settings: FabSettings| bend_loops(&tests, Direction::Warp, density, &settings).unwrap().unwrap();
-    let [coarse, fine] = [12, 24].map(|cells| at(FabSettings { cells, steps: 1 }));
+    let at = |settings: LoopSettings| loops_of(&tests, Direction::Warp, density, &settings).unwrap();
+    let [coarse, fine] = [12, 24].map(|cells| at(settings(cells, 1)));
     let off = [&coarse, &fine].map(|l| (l.elastic.rigidity / b - 1.0).abs());
     assert!(off[0] < 0.02 && off[1] < 0.3 * off[0] + 1e-4, "{off:?}: O(h²)");
     for (of, (kind, zero)) in
@@ -153,12 +175,12 @@ fn an_elastic_fab_record_gives_its_rigidity_and_the_long_test() {
         assert_eq!(of.kind, kind);
         assert!((elastic.zero - zero).abs() < 3e-4, "{:?}: zero {}", of.kind, elastic.zero);
         assert!(elastic.outer.unwrap().nrmse < 2e-3, "{:?}: {:?}", of.kind, elastic.outer);
-        assert_eq!(of.fitted, of.kind != FabKind::D2);
+        assert!(of.fitted);
     }
     // An elastic strip does not remember how it came: more steps change nothing.
-    let steps = at(FabSettings { cells: 12, steps: 3 });
+    let steps = at(settings(12, 3));
     assert!((steps.elastic.rigidity / coarse.elastic.rigidity - 1.0).abs() < 1e-6);
-    assert_eq!(bend_loops(&tests, Direction::Weft, density, &FabSettings::default()).unwrap(), None);
+    assert_eq!(loops_of(&tests, Direction::Weft, density, &LoopSettings::default()), None);
 }
 
 #[test]
@@ -176,9 +198,13 @@ fn a_direction_that_fails_leaves_the_others() {
     let mut sheet = FabricSheet { bend_tests: vec![good, torn], ..FabricSheet::default() };
     let case = "title = \"t\"\nfabric = \"*\"\n[bending_test]\ntest = \"fab_bend_loop\"\ncells = 12\n";
     let case = Case::parse(Path::new("t.toml"), case).unwrap();
-    assert_eq!(simulate_records(&case, Some(12), &sheet).unwrap_err().code(), "S003", "no areal density");
+    assert_eq!(
+        simulate_records(&case, Some(12), &[], &sheet).unwrap_err().code(),
+        "S003",
+        "no areal density"
+    );
     sheet.values.insert(Key { parameter: Parameter::W, direction: None }, Estimate::single(density));
-    let (result, failed) = simulate_records(&case, Some(12), &sheet).unwrap();
+    let (result, failed) = simulate_records(&case, Some(12), &[], &sheet).unwrap();
     let BendingResult::FabBendLoop(found) = result else { unreachable!("it is a FAB case") };
     assert!(found.len() == 1 && found[0].direction == Direction::Warp);
     assert!(failed.len() == 1 && failed[0].0 == Direction::Weft, "{failed:?}");
@@ -255,8 +281,7 @@ fn inclined_clamps_are_found() {
     };
     let at = |kinds: &[FabKind], inclination: f64| {
         let tests: Vec<FabTest> = kinds.iter().map(|kind| record(*kind, inclination)).collect();
-        let settings = FabSettings { cells: 24, steps: 1 };
-        bend_loops(&tests, Direction::Warp, 0.01, &settings).unwrap().unwrap().elastic
+        loops_of(&tests, Direction::Warp, 0.01, &settings(24, 1)).unwrap().elastic
     };
     let both = [FabKind::U1, FabKind::D1];
     for inclination in [inclination, 0.0, -inclination] {
@@ -268,6 +293,118 @@ fn inclined_clamps_are_found() {
     }
     // One way only: a strip in inclined clamps looks stiffer or limper.
     assert_eq!(at(&both[..1], inclination).inclination, 0.0);
+}
+
+/// The force of a shell of the same elements that hangs between level clamps, driven through the distances of a test.
+fn shell_loop(test: &FabTest, law: &Channel, density: f64, cells: usize) -> Vec<f64> {
+    let half = 0.5 * test.length;
+    let (side, thickness) = (half / cells as f64, 1e-3 * test.length);
+    let b = law.virgin(1e-3).stress / 1e-3;
+    let plane = Matrix3::from_diagonal(&nalgebra::Vector3::new(1.0, 1.0, 0.5));
+    let section = ShellSection {
+        d_m: plane * (12.0 * b / (thickness * thickness)),
+        d_b: plane * law.backbone().tangents().next().unwrap(),
+        d_s: Matrix2::identity() * (5.0 * b / (thickness * thickness)),
+        areal_density: density,
+        thickness,
+    };
+    let mesh = mesh::rectangle(half, side, cells, 1).unwrap();
+    let [start, end, all] = ["left", "right", "all"].map(|set| mesh.set(set).unwrap().to_vec());
+    let planar = Support::fix(&all, &[Dof::V, Dof::ThetaX, Dof::ThetaZ]);
+    let middle = Support::fix(&start, &[Dof::U, Dof::ThetaY, Dof::ThetaZ]);
+    let model = Model {
+        mesh,
+        section,
+        warp: nalgebra::Vector3::x(),
+        formulation: Formulation::default(),
+        supports: vec![planar, middle, Support::clamped(&end)],
+        loads: vec![Load::Gravity(nalgebra::Vector3::new(0.0, 0.0, -STANDARD_GRAVITY))],
+        bodies: Vec::new(),
+    };
+    let distances: Vec<f64> = test.branches.iter().flat_map(|c| c.x.clone()).collect();
+    let leg = |d: f64, steps: usize| {
+        let held = vec![(Dof::U, 0.5 * (d - test.length)), (Dof::ThetaY, 0.0)];
+        Leg { load: 1.0, held: vec![Support::at(end.clone(), held)], steps }
+    };
+    let mounting = [leg(test.length, 1), leg(distances[0], 6), leg(distances[0], 4)];
+    let legs: Vec<Leg> = mounting.into_iter().chain(distances.iter().map(|d| leg(*d, 1))).collect();
+    let channels = [None, None, None, Some(law.clone()), None, None];
+    let law = Some(SheetLaw::new(Mode::Friction, channels));
+    let numerics = Numerics { law, iterations: 12, tolerance: 1e-6, ..Numerics::default() };
+    let mut force = Vec::new();
+    drive(&model, &numerics, &legs, &Options::default(), |step| {
+        let pull: f64 = end.iter().map(|n| step.reaction[6 * *n as usize]).sum();
+        force.push(pull / side * test.width);
+        ControlFlow::Continue(())
+    })
+    .unwrap();
+    force.split_off(force.len() - distances.len())
+}
+
+/// The rod of bend loops against the corotational shell (no code shared): the same elements, elastic and with sliders that grow.
+#[test]
+fn the_rod_of_a_bend_loop_is_the_shell() {
+    let density = 0.1056;
+    let grows = Widening::Quadratic { alpha: 1.0, e_max: 500.0 };
+    let sliders = [4.0, 20.0, 60.0].map(|slip| Slider { stiffness: 4e-6, slip }).to_vec();
+    let rubbing =
+        Channel::new(Backbone::line(5e-6).unwrap(), vec![Family { widening: grows, sliders }], false)
+            .unwrap();
+    let elastic = Channel::elastic(Backbone::line(6e-6).unwrap());
+    for kind in [FabKind::D1, FabKind::D2] {
+        let test = record(kind, 6e-6, density, 0.0);
+        for (law, name) in [(&elastic, "elastic"), (&rubbing, "friction")] {
+            let rod = simulate_loop(&test, density, law, 0.0, &settings(24, 1)).unwrap().unwrap();
+            let shell = shell_loop(&test, law, density, 24);
+            let span = shell.iter().fold(f64::NEG_INFINITY, |m, f| m.max(*f))
+                - shell.iter().fold(f64::INFINITY, |m, f| m.min(*f));
+            let off = rod.iter().zip(&shell).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / span;
+            println!("{kind:?} {name}: {off:e} of the span");
+            assert!(off < 2e-3, "{kind:?} {name}: {off}");
+        }
+    }
+}
+
+/// Records of a strip whose law is known, bent up and down: the law that is identified has its B, and the band holds its 2HB.
+#[test]
+fn a_known_law_of_bend_loops_is_found() {
+    let density = 0.1056;
+    let sliders = [4.0, 20.0, 60.0].map(|slip| Slider { stiffness: 5e-6, slip }).to_vec();
+    let family = |alpha: f64| Family {
+        widening: Widening::Quadratic { alpha, e_max: 450.0 },
+        sliders: sliders.clone(),
+    };
+    for (alpha, inclination) in [(0.0, 0.0), (1.5, 0.15)] {
+        let law = Channel::new(Backbone::line(6e-6).unwrap(), vec![family(alpha)], false).unwrap();
+        let tests: Vec<FabTest> = [FabKind::U1, FabKind::D1, FabKind::D2]
+            .into_iter()
+            .map(|kind| {
+                let mut test = record(kind, 6e-6, density, 0.0);
+                let force =
+                    simulate_loop(&test, density, &law, inclination, &settings(32, 1)).unwrap().unwrap();
+                let mut force = force.into_iter();
+                for branch in &mut test.branches {
+                    branch.y.iter_mut().for_each(|f| *f = force.next().unwrap() + 0.01);
+                }
+                test
+            })
+            .collect();
+        let found = loops_of(&tests, Direction::Warp, density, &settings(32, 1)).unwrap();
+        let friction = found.friction.unwrap();
+        println!("{alpha} {inclination}: {friction:?}");
+        assert!((friction.inclination - inclination).abs() < 0.01, "{friction:?}");
+        let kes = |law: &Channel| {
+            let law = kesf::characterise::FrictionLaw::of_bend_loops(
+                Direction::Warp,
+                law.clone(),
+                &Settings::default(),
+            );
+            [law.values[&Parameter::B], 0.5 * law.values[&Parameter::Hb]]
+        };
+        let [b, couple] = kes(&law);
+        assert!((friction.kes_rigidity / b - 1.0).abs() < 0.05, "{} {b}", friction.kes_rigidity);
+        assert!((friction.kes_couple / couple - 1.0).abs() < 0.1, "{} {couple}", friction.kes_couple);
+    }
 }
 
 /// The cupro weave of the U3M repository (Vizoo GmbH, BSD-3-Clause): a regression of what was reached (own). NRMSE in %, elastic
@@ -282,24 +419,43 @@ fn a_measured_fab_record() {
     }
     let file = read(&path, &ReadSettings::default()).unwrap().fab.unwrap();
     let density = file.areal_density.unwrap();
-    let settings = FabSettings { cells: 24, steps: 1 };
-    // B of an elastic strip, then B and 2HB/2 as KES-FB2 would read the law (uN m, uN).
+    let of = |settings: &LoopSettings| {
+        let found = bend_loops(&file.tests, density, settings, &Settings::default());
+        assert!(found.failed.is_empty(), "{:?}", found.failed);
+        found.directions
+    };
+    // B of an elastic strip, then B and 2HB/2 as KES-FB2 would read the law (uN m, uN), then the tests U1, D1, D2.
     let reached = [
-        (Direction::Warp, [9.77, 5.44, 129.6], [[10.2, 1.9, 4.5, 4.3], [17.9, 4.5, 13.8, 8.7]]),
-        (Direction::Weft, [13.90, 8.26, 204.0], [[13.6, 2.7, 5.1, 5.0], [19.7, 4.7, 12.3, 9.3]]),
-        (Direction::Bias, [5.06, 2.65, 74.2], [[11.5, 2.4, 4.8, 3.7], [17.4, 3.6, 12.6, 12.5]]),
+        (
+            Direction::Warp,
+            [9.232, 7.074, 95.32],
+            [[12.5, 3.6, 10.2, 3.6], [18.3, 7.4, 34.5, 14.3], [5.8, 4.1, 7.8, 6.8]],
+        ),
+        (
+            Direction::Weft,
+            [14.006, 7.362, 204.0],
+            [[13.9, 4.1, 7.8, 7.3], [20.0, 7.2, 13.4, 11.7], [5.7, 4.7, 5.9, 5.0]],
+        ),
+        (
+            Direction::Bias,
+            [5.246, 4.108, 48.85],
+            [[12.7, 5.1, 9.0, 4.0], [18.2, 8.8, 26.0, 10.2], [15.2, 15.0, 21.9, 20.2]],
+        ),
     ];
-    for (direction, values, bounds) in reached {
-        let loops: BendLoops = bend_loops(&file.tests, direction, density, &settings).unwrap().unwrap();
+    let directions = of(&LoopSettings { held_out: true, ..LoopSettings::default() });
+    for (loops, (direction, values, bounds)) in directions.iter().zip(reached) {
+        assert_eq!(loops.direction, direction);
         let friction = loops.friction.as_ref().unwrap();
         let found = [loops.elastic.rigidity, friction.kes_rigidity, friction.kes_couple];
         for (found, value) in found.into_iter().zip(values) {
             assert!((found * 1e6 / value - 1.0).abs() < 0.02, "{direction}: {found} {value}");
         }
+        let [b, couple] = friction.band;
+        assert!(b[0] < friction.kes_rigidity && friction.kes_rigidity < b[1], "{b:?}");
+        assert!(couple[0] < friction.kes_couple && friction.kes_couple < couple[1], "{couple:?}");
         let kinds: Vec<FabKind> = loops.loops.iter().map(|l| l.kind).collect();
         assert_eq!(kinds, [FabKind::U1, FabKind::D1, FabKind::D2]);
-        let inclination = friction.inclination.to_degrees();
-        assert!((7.0..17.0).contains(&inclination), "{direction}: {inclination}°");
+        assert!((8.0..9.5).contains(&friction.inclination.to_degrees()), "{}", friction.inclination);
         for (of, bounds) in loops.loops.iter().zip(bounds) {
             let with = of.friction.as_ref().unwrap();
             let all = [of.elastic.outer, with.outer, with.inner, with.inner_with_own_zero];
@@ -308,20 +464,29 @@ fn a_measured_fab_record() {
             assert!(all.iter().zip(bounds).all(|(a, b)| *a < b), "{direction} {:?}: {all:?}", of.kind);
             // The elastic strip predicts the inner cycles worse.
             assert!(of.elastic.inner.unwrap().nrmse > with.inner.unwrap().nrmse);
+            let [line, law] = of.held_out.each_ref().map(|s| s.as_ref().unwrap());
+            for (line, law) in [(line.outer, law.outer), (line.inner, law.inner)] {
+                let [line, law] = [line, law].map(|a| 100.0 * a.unwrap().nrmse);
+                println!(
+                    "{direction} {:?} by the others: {line:.2} elastic, {law:.2} with friction",
+                    of.kind
+                );
+                // The long test, where the weight governs, is predicted better without friction along the weft and the bias.
+                assert!(of.kind == FabKind::D2 || law < line, "{direction} {:?}: {law} {line}", of.kind);
+            }
         }
     }
     // Neither the mesh nor the steps between samples make the figures.
-    let of = |cells: usize, steps: usize| {
-        let settings = FabSettings { cells, steps };
-        let loops = bend_loops(&file.tests, Direction::Warp, density, &settings).unwrap().unwrap();
-        let figures = loops.loops.iter().filter_map(|l| l.friction.as_ref());
-        figures.flat_map(|s| [s.outer, s.inner]).map(|a| a.unwrap().nrmse).collect::<Vec<f64>>()
+    let figures = |directions: &[BendLoops]| -> Vec<f64> {
+        let loops = directions.iter().flat_map(|d| &d.loops).filter_map(|l| l.friction.as_ref());
+        loops.flat_map(|s| [s.outer, s.inner]).map(|a| a.unwrap().nrmse).collect()
     };
-    let reference = of(24, 1);
-    for (cells, steps) in [(12, 1), (24, 3)] {
-        let moved = reference.iter().zip(of(cells, steps)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let reference = figures(&directions);
+    for (cells, steps) in [(16, 1), (32, 3)] {
+        let other = figures(&of(&settings(cells, steps)));
+        let moved = reference.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         println!("{cells} elements, {steps} steps: NRMSE by {:.2} %", 100.0 * moved);
-        assert!(moved < 5e-3, "{cells} elements, {steps} steps: {moved}");
+        assert!(moved < 2e-2, "{cells} elements, {steps} steps: {moved}");
     }
 }
 

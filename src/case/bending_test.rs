@@ -7,6 +7,7 @@ use super::CaseError;
 use super::error::refused;
 use super::material::{FabricMaterial, Material};
 use crate::finding::Node;
+use crate::instrument::fab::FabKind;
 use crate::quantity::Length;
 
 /// `[bending_test]`: a strip in large rotations, once along the warp and once along the weft (a FAB test
@@ -24,6 +25,30 @@ pub(super) struct BendingTestTable {
     width: Option<Length>,
     /// Length of the strip of a heart loop.
     length: Option<Length>,
+    /// Tests of a FAB record that the law is identified from, a short one among them: the others are predicted by it. All
+    /// tests of a direction when left out.
+    from: Option<Vec<BendTestName>>,
+}
+
+/// The bend tests of a FAB record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+pub(super) enum BendTestName {
+    /// Bent upwards at the short clamp distance.
+    U1,
+    /// Bent downwards at the short clamp distance.
+    D1,
+    /// Bent downwards at the long clamp distance.
+    D2,
+}
+
+impl BendTestName {
+    fn kind(self) -> FabKind {
+        match self {
+            Self::U1 => FabKind::U1,
+            Self::D1 => FabKind::D1,
+            Self::D2 => FabKind::D2,
+        }
+    }
 }
 
 /// The bending tests of a strip.
@@ -56,6 +81,8 @@ pub enum BendingTest {
         fabric: FabricMaterial,
         /// Elements along half of the strip, 4 at least, where the case says so.
         cells: Option<usize>,
+        /// The tests that serve to identify the law; empty for all.
+        from: Vec<FabKind>,
     },
 }
 
@@ -98,6 +125,15 @@ impl BendingTestTable {
             }
         }
         let (cells, width) = (self.cells, self.width);
+        let from: Vec<FabKind> = self.from.iter().flatten().map(|t| t.kind()).collect();
+        if self.from.is_some() && !self.uses_records() {
+            return refused(at.key_place("from"), "only a fab_bend_loop has `from`: remove it");
+        }
+        if self.from.is_some() && from.iter().all(|kind| *kind == FabKind::D2) {
+            let message =
+                "`from` needs a short test, \"U1\" or \"D1\": the long one is governed by its weight";
+            return refused(at.value_place("from"), message);
+        }
         match (self.test, self.length, material) {
             (BendingKind::Cantilever, None, material) => {
                 Ok(BendingTest::Cantilever(Strip { material, cells, width }))
@@ -120,7 +156,7 @@ impl BendingTestTable {
                 )
             }
             (BendingKind::FabBendLoop, _, Material::Fabric(fabric)) => {
-                Ok(BendingTest::FabBendLoop { fabric, cells })
+                Ok(BendingTest::FabBendLoop { fabric, cells, from })
             }
             (BendingKind::FabBendLoop, _, Material::Section(_)) => refused(
                 case.key_place("section"),

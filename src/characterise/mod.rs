@@ -4,7 +4,9 @@
 //! differently is a field of [`Settings`]. Raw curves are never altered: corrected branches, the
 //! correction itself and the fitted lines stand beside them in [`SpecimenResult`].
 
+pub mod bend_loop;
 mod branch;
+mod buckled;
 mod checks;
 mod choices;
 mod closed_loop;
@@ -29,6 +31,7 @@ mod spread;
 mod statistics;
 mod status;
 mod strip;
+mod strip_bending;
 mod surface;
 mod tables;
 mod tensile;

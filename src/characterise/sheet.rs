@@ -76,6 +76,9 @@ pub struct FabricSheet {
     pub statuses: BTreeMap<Key, ValueStatus>,
     /// How each of the moduli was had.
     pub modulus_statuses: BTreeMap<(String, Direction), ValueStatus>,
+    /// Ranges of values (SI) over what was identified together with them and is not measured: B and 2HB of bend loops. They hold
+    /// no scatter of repeats.
+    pub model_bands: BTreeMap<Key, [f64; 2]>,
     /// Specimens in order of test, direction, number; empty for fabrics known from tables only.
     pub specimens: Vec<SpecimenResult>,
     /// Stretch tests of FAB strips, in file order.

@@ -194,6 +194,7 @@ fn of_evaluation(fact: &EvaluationFact) -> Option<(Scope<'_>, ValueStatus)> {
         F::OtherThickness { .. } => (value(Parameter::T0, None), Doubtful),
         F::Inferred { key } => (Scope::Value(*key), Inferred),
         F::BuckledStrips { direction, .. } => (value(Parameter::B, Some(*direction)), Inferred),
+        F::BendLoopLaw { keys, .. } => (Scope::Values(keys), Inferred),
         F::LowLoad { direction, .. } => (value(Parameter::B, Some(*direction)), Doubtful),
         F::BiasStrip { .. } => (value(Parameter::G, None), Inferred),
         F::FabThickness { .. } => (value(Parameter::T0, None), Inferred),

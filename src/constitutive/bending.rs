@@ -15,7 +15,7 @@ use nalgebra::Matrix3;
 use super::notes::{Because, Notes};
 use super::{Assumptions, BendingCoupling, Constant, ConstitutiveError, Provenance, Torsion};
 use crate::characterise::{Key, ValueStatus};
-use crate::finding::{EvaluationFact, Fact, SectionFact};
+use crate::finding::{EvaluationFact, Fact, Finding, SectionFact};
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::significant;
 
@@ -58,32 +58,74 @@ pub(super) fn matrix(
 /// homogeneous plate (1 - ν)/2 or G t²/12, which a thick sheet of stiff shear may raise.
 const STIFF_TORSION: f64 = 100.0;
 
-/// Whether B in a direction is that of buckled strips.
-fn is_of_strips(notes: &Notes, direction: Direction) -> bool {
-    notes.sheet.findings.iter().any(|f| match &f.fact {
-        Fact::Evaluation(EvaluationFact::BuckledStrips { direction: of, .. }) => *of == direction,
-        _ => false,
-    })
+/// What a B of the sheet is of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Origin {
+    /// KES-FB2, or a table that does not say otherwise.
+    Fb2,
+    /// A table of another instrument.
+    Table,
+    /// The friction law of bend loops.
+    BendLoops,
+    /// The slope of buckled strips.
+    Buckled,
 }
 
-/// Where B comes from; C018 if it is that of strips.
-fn rigidity_source(notes: &mut Notes) -> Because {
-    let directions: Vec<Direction> =
-        [Direction::Warp, Direction::Weft].into_iter().filter(|d| is_of_strips(notes, *d)).collect();
-    let of_table = |direction: Option<Direction>| {
+impl Origin {
+    fn of(notes: &Notes, direction: Option<Direction>) -> Self {
+        let tells = |f: &Finding| match &f.fact {
+            Fact::Evaluation(EvaluationFact::BuckledStrips { direction: of, .. })
+                if Some(*of) == direction =>
+            {
+                Some(Self::Buckled)
+            }
+            Fact::Evaluation(EvaluationFact::BendLoopLaw { direction: of, .. }) if Some(*of) == direction => {
+                Some(Self::BendLoops)
+            }
+            _ => None,
+        };
         let key = Key { parameter: Parameter::B, direction };
-        notes.sheet.status(key) == ValueStatus::Inferred
-    };
-    if directions.is_empty() && [None, Some(Direction::Warp), Some(Direction::Weft)].into_iter().any(of_table)
-    {
-        let why = "B of a table that was not measured on KES-FB2 (a cantilever of FAST), for D11, D22";
-        return (Provenance::Inferred, why.into());
+        let inferred = notes.sheet.status(key) == ValueStatus::Inferred;
+        let other = if inferred { Self::Table } else { Self::Fb2 };
+        notes.sheet.findings.iter().find_map(tells).unwrap_or(other)
     }
-    if directions.is_empty() {
-        return (Provenance::Measured, "B of KES-FB2 is D11, D22".into());
+
+    fn provenance(self) -> Provenance {
+        if self == Self::Fb2 { Provenance::Measured } else { Provenance::Inferred }
     }
-    notes.finding(SectionFact::StripRigidity { fabric: notes.fabric(), directions });
-    (Provenance::Inferred, "buckled FAB strips, whose B stands for D11, D22".into())
+
+    fn text(self) -> &'static str {
+        match self {
+            Self::Fb2 => "B of KES-FB2 is D11, D22",
+            Self::Table => {
+                "B of a table that was not measured on KES-FB2 (a cantilever of FAST), for D11, D22"
+            }
+            Self::BendLoops => "friction law of FAB bend loops, as KES-FB2 would read it, for D11, D22",
+            Self::Buckled => "slope of buckled FAB strips, which stands for D11, D22",
+        }
+    }
+}
+
+/// Where B comes from; C018 if it is the slope of buckled strips.
+fn rigidity_source(notes: &mut Notes) -> Because {
+    let along = [Direction::Warp, Direction::Weft];
+    let known = |d: &Option<Direction>| notes.sheet.get(Parameter::B, *d).is_some();
+    let directed: Vec<Option<Direction>> = along.into_iter().map(Some).filter(known).collect();
+    // One value for the fabric, or what is left of both.
+    let used = if directed.is_empty() { vec![None] } else { directed };
+    let origins: Vec<(Option<Direction>, Origin)> =
+        used.into_iter().map(|d| (d, Origin::of(notes, d))).collect();
+    let buckled = origins.iter().filter(|(_, o)| *o == Origin::Buckled);
+    let directions: Vec<Direction> = buckled.filter_map(|(d, _)| *d).collect();
+    if !directions.is_empty() {
+        notes.finding(SectionFact::StripRigidity { fabric: notes.fabric(), directions });
+    }
+    let first = origins[0].1;
+    if origins.iter().all(|(_, o)| *o == first) {
+        return (first.provenance(), first.text().into());
+    }
+    let each = origins.iter().map(|(d, o)| format!("{}: {}", d.map_or("", Direction::name), o.text()));
+    (Provenance::Inferred, each.collect::<Vec<_>>().join("; ").into())
 }
 
 fn assumed(why: &'static str) -> Because {
@@ -109,14 +151,15 @@ fn torsion(
             };
             notes.origin_value(Parameter::B, Some(Direction::Bias), &[(Constant::Bias, 1.0)]);
             let b45 = b45.mean;
-            let had = if is_of_strips(notes, Direction::Bias) {
-                Provenance::Inferred
-            } else {
-                Provenance::Measured
+            let origin = Origin::of(notes, Some(Direction::Bias));
+            let of = match origin {
+                Origin::Fb2 => "",
+                Origin::Table => "of a table that was not measured on KES-FB2, ",
+                Origin::BendLoops => "friction law of FAB bend loops, ",
+                Origin::Buckled => "slope of buckled strips, ",
             };
-            let of = if had == Provenance::Inferred { "buckled strips, " } else { "" };
             let why = format!("{of}B at 45° = {} N·m", significant(b45));
-            (b45 - (b1 + b2 + 2.0 * d12) / 4.0, (had, why.into()))
+            (b45 - (b1 + b2 + 2.0 * d12) / 4.0, (origin.provenance(), why.into()))
         }
         Torsion::Shear => (g * thickness.powi(2) / 12.0, assumed("G t²/12")),
         Torsion::Value(h) => (h.si(), assumed("stated")),

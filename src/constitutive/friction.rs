@@ -152,7 +152,9 @@ fn source(law: &FrictionLaw) -> Because {
     let why = match law.basis {
         Basis::Loop => format!("loop of specimen {}, with the means of the fabric", law.specimen).into(),
         Basis::Strip => "cycle of a strip".into(),
+        Basis::BendLoops => "bend loops of FAB strips, all tests of a direction together".into(),
         Basis::AssumedSpectrum => "width of the loop; assumed: how friction begins".into(),
     };
-    (Provenance::Measured, why)
+    let provenance = if law.basis == Basis::BendLoops { Provenance::Inferred } else { Provenance::Measured };
+    (provenance, why)
 }

@@ -111,6 +111,9 @@ pub struct ValueEntry {
     /// How it was had.
     #[serde(default)]
     pub status: ValueStatus,
+    /// Range, in the unit, over what was identified together with the value and is not measured: B and 2HB of bend loops.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model_band: Option<[f64; 2]>,
 }
 
 /// A mean over repeats with its spread.
@@ -359,7 +362,8 @@ fn parameters(sheet: &FabricSheet) -> IndexMap<String, ParameterEntry> {
         let found = sheet.values.iter().filter(|(key, _)| key.parameter == parameter);
         let mut found = found.map(|(key, e)| {
             let estimate = EstimateEntry::new(e, unit);
-            (key.direction, ValueEntry { estimate, status: sheet.status(*key) })
+            let model_band = sheet.model_bands.get(key).copied();
+            (key.direction, ValueEntry { estimate, status: sheet.status(*key), model_band })
         });
         let entry = if parameter.is_directional() {
             let directions: IndexMap<String, ValueEntry> =
@@ -382,7 +386,7 @@ fn moduli(sheet: &FabricSheet) -> IndexMap<String, IndexMap<Direction, ValueEntr
     let mut all: IndexMap<String, IndexMap<Direction, ValueEntry>> = IndexMap::new();
     for ((name, direction), e) in &sheet.moduli {
         let status = sheet.modulus_status(name, *direction);
-        let value = ValueEntry { estimate: EstimateEntry::new(e, "N/m"), status };
+        let value = ValueEntry { estimate: EstimateEntry::new(e, "N/m"), status, model_band: None };
         all.entry(name.clone()).or_default().insert(*direction, value);
     }
     all

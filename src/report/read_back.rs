@@ -151,6 +151,7 @@ fn sheet(entry: SheetEntry) -> Result<FabricSheet, DocumentError> {
             let key = Key { parameter, direction };
             sheet.values.insert(key, estimate(value.estimate, parameter.si_unit(), &name, &symbol)?);
             sheet.statuses.insert(key, value.status);
+            sheet.model_bands.extend(value.model_band.map(|band| (key, band)));
         }
     }
     for (modulus, values) in entry.moduli {

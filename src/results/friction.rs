@@ -22,6 +22,7 @@ pub(super) fn text(sheet: &FabricSheet, units: UnitSystem) -> String {
         let basis = match law.basis {
             Basis::Loop => format!("specimen {}", law.specimen),
             Basis::Strip => format!("strip S{}", law.specimen),
+            Basis::BendLoops => "bend loops".into(),
             Basis::AssumedSpectrum => "assumed spectrum".into(),
         };
         let direction = law.direction.map_or("", Direction::name);

@@ -18,8 +18,10 @@ pub fn parameters_text(sheet: &FabricSheet, units: UnitSystem) -> String {
         let cells: Vec<String> = directions
             .clone()
             .map(|direction| {
-                let status = sheet.status(Key { parameter, direction });
-                sheet.get(parameter, direction).map(|e| estimate(e, factor, status)).unwrap_or_default()
+                let key = Key { parameter, direction };
+                let cell =
+                    |e| format!("{}{}", estimate(e, factor, sheet.status(key)), band(sheet, key, factor));
+                sheet.get(parameter, direction).map(cell).unwrap_or_default()
             })
             .collect();
         if cells.iter().any(|c| !c.is_empty()) {
@@ -86,6 +88,12 @@ fn estimate(e: &Estimate, factor: f64, status: ValueStatus) -> String {
     let spread = e.sd.map(|sd| format!(" ± {}", significant(sd / factor))).unwrap_or_default();
     let n = stated_repeats(e.n as u64, e.sd).map_or("n?".into(), |n| n.to_string());
     format!("{}{spread} ({n}){}", significant(e.mean / factor), mark(status))
+}
+
+/// The range of a value over what was identified together with it, where there is one.
+fn band(sheet: &FabricSheet, key: Key, factor: f64) -> String {
+    let ends = sheet.model_bands.get(&key).map(|band| band.map(|end| significant(end / factor)));
+    ends.map(|[low, high]| format!(" [{low} to {high}]")).unwrap_or_default()
 }
 
 /// What stands behind a value that is not plainly measured.

@@ -89,8 +89,8 @@ fn bend(task: &Task, spec: &BendingTest) -> Result<(BendingResult, Vec<Failure>)
     let sheet = task.fabric.unwrap_or(&nothing);
     match spec {
         // It finds a rigidity of its own and needs no section.
-        BendingTest::FabBendLoop { cells, .. } => {
-            let (result, failed) = simulate_records(task.case, *cells, sheet)?;
+        BendingTest::FabBendLoop { cells, from, .. } => {
+            let (result, failed) = simulate_records(task.case, *cells, from, sheet)?;
             Ok((result, failed.into_iter().map(|(d, e)| failed_direction(task, d, e)).collect()))
         }
         BendingTest::Cantilever(strip) => {

@@ -1,9 +1,9 @@
-//! Bending tests of other laboratories, as shells in large rotations: cantilever, heart loop,
-//! and the bend loop of FAB strips.
+//! Bending tests of other laboratories: cantilever and heart loop, as shells in large rotations, and the bend loops of FAB strips,
+//! as the rods that they were identified with.
 
 use crate::characterise::FabricSheet;
+use crate::instrument::fab::FabKind;
 use crate::instrument::{Direction, Parameter, Test};
-use crate::platform;
 use crate::quantity::Length;
 use crate::section::ShellSection;
 
@@ -12,12 +12,13 @@ use crate::case::Strip;
 use crate::finding::Located;
 
 mod cantilever;
-mod fab;
 mod heart;
 mod strip;
 
+pub use crate::characterise::bend_loop::{
+    Agreement, BendLoop, BendLoops, BendRecords, Elastic, Friction, LoopSettings, Simulated, bend_loops,
+};
 pub use cantilever::{CHORD_ANGLE_DEG, Cantilever, WithFriction, cantilever};
-pub use fab::{Agreement, BendLoop, BendLoops, Elastic, FabSettings, Friction, Simulated, bend_loops};
 pub use heart::{HeartLoop, heart_cells, heart_loop};
 
 /// What a bending test gives, by direction.
@@ -68,33 +69,30 @@ pub fn simulate_heart_loop(
 
 const WARP_AND_WEFT: [Direction; 2] = [Direction::Warp, Direction::Weft];
 
-/// Simulates the FAB bend tests of a sheet along every direction that has them, with `cells` elements along half of the
-/// strip, or the usual number. A direction that fails does not take the others with it: it comes back beside the result,
-/// with its error.
+/// Simulates the FAB bend tests of a sheet along every direction that has them, as the law that the sheet has of them does: with the
+/// number of elements and the tests that serve to identify as a case may say. Every test is predicted by a law of the others
+/// too. A direction that fails does not take the others with it: it comes back beside the result, with its error.
 ///
 /// # Errors
 /// S003 for a sheet without areal density.
 pub fn simulate_records(
     case: &Case,
     cells: Option<usize>,
+    from: &[FabKind],
     sheet: &FabricSheet,
 ) -> Result<(BendingResult, Vec<(Direction, StudyError)>), StudyError> {
-    let density = sheet.get(Parameter::W, None).ok_or_else(|| {
+    let density = sheet.get(Parameter::W, None).map(|e| e.mean).or(sheet.info.areal_density);
+    let density = density.ok_or_else(|| {
         let message = "a fab_bend_loop needs the areal density of the fabric (`M` of its file)";
         refused(case, &Located::from(()), message)
     })?;
-    let usual = FabSettings::default();
-    let settings = FabSettings { cells: cells.unwrap_or(usual.cells), ..usual };
-    let along: Vec<_> =
-        platform::map(Direction::ALL, |d| (d, bend_loops(&sheet.bend_tests, d, density.mean, &settings)));
-    let (mut loops, mut failed) = (Vec::new(), Vec::new());
-    for (direction, result) in along {
-        match result {
-            Ok(found) => loops.extend(found),
-            Err(error) => failed.push((direction, error)),
-        }
-    }
-    Ok((BendingResult::FabBendLoop(loops), failed))
+    let usual = LoopSettings::default();
+    let settings =
+        LoopSettings { cells: cells.unwrap_or(usual.cells), from: from.to_vec(), held_out: true, ..usual };
+    let BendRecords { directions, failed } =
+        bend_loops(&sheet.bend_tests, density, &settings, &sheet.settings);
+    let failed = failed.into_iter().map(|(d, e)| (d, e.into())).collect();
+    Ok((BendingResult::FabBendLoop(directions), failed))
 }
 
 /// A measured bending length (m) of the fabric's `[[results]]`: along the direction, or without one.

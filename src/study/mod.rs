@@ -54,6 +54,7 @@ pub use watch::Watch;
 
 use self::contact::through_itself;
 use crate::case::{Problem, SheetProblem};
+use crate::characterise::bend_loop::LoopError;
 use crate::finding::{Coded, Fields, Located, Place, errors};
 use crate::law::LawError;
 use crate::mesh::MeshError;
@@ -81,6 +82,8 @@ errors! {
             Nonlinear(NonlinearError),
             /// M020: numbers that make no law.
             Law(LawError),
+            /// A strip that cannot be bent as its record says.
+            Loop(LoopError),
         }
         inner {
             /// Any of these, about a value of the case file.

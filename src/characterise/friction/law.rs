@@ -51,6 +51,8 @@ pub enum Basis {
     Loop,
     /// A cycle of a FAB strip.
     Strip,
+    /// Bend loops of FAB strips: one law over all tests of a direction.
+    BendLoops,
     /// Summary values: stiffness and loop width are measured, how friction begins is assumed.
     AssumedSpectrum,
 }

@@ -25,7 +25,7 @@ use std::collections::BTreeMap;
 use self::identify::Path;
 use super::{Branch, CycleChoice, FabricSheet, Key, Settings, SpecimenResult};
 use crate::finding::{EvaluationFact, Finding, Place, Subject};
-use crate::instrument::{Conditions, Parameter, Shape, Test};
+use crate::instrument::{Conditions, Direction, Parameter, Shape, Test, standard_conditions};
 use crate::law::Channel;
 use crate::platform;
 use crate::quantity::Estimate;
@@ -39,6 +39,26 @@ pub use strip_memory::{Relaxation, StripMemory};
 pub use summary::bending_law;
 
 impl FrictionLaw {
+    /// The law of bend loops along a direction, with what KES-FB2 would read of it.
+    pub fn of_bend_loops(direction: Direction, channel: Channel, settings: &Settings) -> Self {
+        let mut law = Self {
+            test: Test::Bending,
+            direction: Some(direction),
+            specimen: 0,
+            strip: None,
+            basis: Basis::BendLoops,
+            thickness: None,
+            channel,
+            memory: None,
+            fit: None,
+            closed_form: None,
+            values: BTreeMap::new(),
+            backbone_stiffness: None,
+        };
+        law.evaluate(&standard_conditions(Test::Bending), settings);
+        law
+    }
+
     /// Finds the values of the law in a cycle under the conditions of a test.
     fn evaluate(&mut self, conditions: &Conditions, settings: &Settings) {
         self.values = extract(self, conditions, settings);
@@ -126,7 +146,12 @@ impl FabricSheet {
     }
 
     fn re_extracted_value(&self, key: Key, measured: &Estimate) -> Option<ReExtracted> {
-        let mine = |l: &&FrictionLaw| Some(l.test) == key.parameter.test() && l.direction == key.direction;
+        // The values of bend loops are read from the law itself: nothing else measured them.
+        let mine = |l: &&FrictionLaw| {
+            Some(l.test) == key.parameter.test()
+                && l.direction == key.direction
+                && l.basis != Basis::BendLoops
+        };
         let laws = || self.laws.iter().filter(mine);
         let values: Vec<f64> = laws().filter_map(|l| l.values.get(&key.parameter).copied()).collect();
         Some(ReExtracted {

@@ -236,8 +236,39 @@ super::facts! {
             direction: Direction,
             /// B of each (N·m).
             values: Vec<f64>,
-        } = "B {direction} is an estimate from buckled strips ({} µN·m down and up): friction and an unknown load zero are in it, \
-             expect it up to twice too high", micro(values);
+            /// Why there is no law of their loops.
+            reason: String,
+            /// How many times too high it may be.
+            factor: f64,
+        } = "B {direction} is the slope of buckled strips against the elastica ({} µN·m down and up), as their bend loops gave no friction \
+             law: {reason}; friction and an unknown load zero are in it: it may be up to {factor} times too high, and 2HB is not known", micro(values);
+        /// B and 2HB from the law of bend loops.
+        "K064" BendLoopLaw {
+            /// Direction of the strips.
+            direction: Direction,
+            /// The values that are read of the law.
+            keys: Vec<Key>,
+            /// The tests that it was identified from.
+            tests: Vec<String>,
+            /// B (N·m).
+            rigidity: f64,
+            /// Its range (N·m).
+            rigidity_band: [f64; 2],
+            /// 2HB (N).
+            width: f64,
+            /// Its range (N).
+            width_band: [f64; 2],
+            /// Inclination of the clamps (rad).
+            inclination: f64,
+            /// Growth of the slip levels up to the largest curvature of the tests.
+            growth: f64,
+            /// Root of the mean squared difference over the spans of the loops.
+            misfit: f64,
+        } = "B {direction}, {} µN·m ({}), and 2HB, {} µN ({}), are what KES-FB2 would read of the friction law of FAB bend loops ({}), \
+             which misses them by {:.1} % of their spans; the ranges are over the inclination of the clamps ({:.1}° here) and the growth \
+             of slip levels ({growth:.2}), which were identified and not measured",
+            micro(&[*rigidity]), range(*rigidity_band), micro(&[*width]), range(*width_band), tests.join(", "), 100.0 * misfit,
+            inclination.to_degrees();
         /// T0 from a FAB file.
         "K032" FabThickness {
             /// The thickness (m).
@@ -463,6 +494,12 @@ fn warned(warnings: &[String]) -> String {
 
 fn micro(values: &[f64]) -> String {
     values.iter().map(|b| significant(1e6 * b)).collect::<Vec<_>>().join(", ")
+}
+
+/// Ends of a range in millionths.
+fn range(ends: [f64; 2]) -> String {
+    let [low, high] = ends.map(|v| significant(1e6 * v));
+    format!("{low} to {high}")
 }
 
 fn no_loop(reason: Option<&str>, missed: &[Missed]) -> String {

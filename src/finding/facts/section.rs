@@ -58,9 +58,8 @@ super::facts! {
             fabric: String,
             /// Directions of the strips.
             directions: Vec<Direction>,
-        } = "{fabric}: B {} is that of buckled FAB strips: the section uses the rigidity of the elastic strip, with friction in \
-             it; a law with friction, which a comparison with the strips' bend loops identifies, is softer (1.7 to 1.9 times on the \
-             one cloth where both were fitted)",
+        } = "{fabric}: B {} is the slope of buckled FAB strips, as no friction law was found in their bend loops: friction is in it, and it \
+             may be up to twice too high",
             directions.iter().map(|d| d.name()).collect::<Vec<_>>().join(" and ");
         /// A torsional rigidity far beyond that of cloth.
         "C019" StiffTorsion {

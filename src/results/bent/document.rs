@@ -130,7 +130,12 @@ struct FabEntry {
 struct FabFrictionEntry {
     rigidity: QuantityEntry,
     as_kes: AsKesEntry,
+    /// Over the inclination of the clamps and the growth of slip levels.
+    band: KesBandEntry,
     clamp_inclination: QuantityEntry,
+    /// α of `1 + α (κ/κ_max)²`.
+    slip_level_growth: f64,
+    largest_curvature: QuantityEntry,
     law: Channel,
     rounds: usize,
 }
@@ -145,6 +150,24 @@ struct AsKesEntry {
     unit: [Cow<'static, str>; 2],
 }
 
+/// Lowest and highest value of what KES-FB2 would read.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+struct KesBandEntry {
+    #[serde(rename = "B")]
+    b: [f64; 2],
+    #[serde(rename = "half_2HB")]
+    half_2hb: [f64; 2],
+    unit: [Cow<'static, str>; 2],
+}
+
+/// The agreement of a test with laws that were identified without it.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+struct HeldOutEntry {
+    load_zero: QuantityEntry,
+    outer: Option<Agreement>,
+    inner: Option<Agreement>,
+}
+
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 struct LoopEntry {
     test: Cow<'static, str>,
@@ -155,6 +178,8 @@ struct LoopEntry {
     unit: [Cow<'static, str>; 2],
     elastic: SimulatedEntry,
     friction: Option<SimulatedEntry>,
+    held_out_elastic: Option<HeldOutEntry>,
+    held_out_friction: Option<HeldOutEntry>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -297,7 +322,10 @@ impl FabFrictionEntry {
                 half_2hb: f.kes_couple,
                 unit: ["N·m".into(), "N".into()],
             },
+            band: KesBandEntry { b: f.band[0], half_2hb: f.band[1], unit: ["N·m".into(), "N".into()] },
             clamp_inclination: quantity(f.inclination, "rad"),
+            slip_level_growth: f.growth,
+            largest_curvature: quantity(f.largest_curvature, "1/m"),
             law: f.law.clone(),
             rounds: f.rounds,
         }
@@ -315,7 +343,15 @@ impl LoopEntry {
             unit: ["m".into(), "N".into()],
             elastic: SimulatedEntry::new(&l.elastic),
             friction: l.friction.as_ref().map(SimulatedEntry::new),
+            held_out_elastic: l.held_out[0].as_ref().map(HeldOutEntry::new),
+            held_out_friction: l.held_out[1].as_ref().map(HeldOutEntry::new),
         }
+    }
+}
+
+impl HeldOutEntry {
+    fn new(s: &Simulated) -> Self {
+        Self { load_zero: quantity(s.zero, "N"), outer: s.outer, inner: s.inner }
     }
 }
 

@@ -77,13 +77,16 @@ fn fab_rows(task: &Task, d: &BendLoops) -> Vec<PredictionRow> {
         .map(|(name, value, unit)| row(task, format!("{name} {}", d.direction), value, None, unit))
         .collect();
     for l in &d.loops {
-        rows.push(nrmse_row(task, d, l, "elastic", Some(&l.elastic)));
-        rows.push(nrmse_row(task, d, l, "friction", l.friction.as_ref()));
+        let [line, law] = l.held_out.each_ref().map(Option::as_ref);
+        rows.push(nrmse_row(task, d, l, "nrmse_elastic", Some(&l.elastic)));
+        rows.push(nrmse_row(task, d, l, "nrmse_friction", l.friction.as_ref()));
+        rows.push(nrmse_row(task, d, l, "nrmse_held_out_elastic", line));
+        rows.push(nrmse_row(task, d, l, "nrmse_held_out_friction", law));
     }
     rows
 }
 
-fn nrmse_row(task: &Task, d: &BendLoops, l: &BendLoop, law: &str, s: Option<&Simulated>) -> PredictionRow {
+fn nrmse_row(task: &Task, d: &BendLoops, l: &BendLoop, name: &str, s: Option<&Simulated>) -> PredictionRow {
     let value = s.and_then(|s| s.outer).map(|agreement| agreement.nrmse);
-    row(task, format!("nrmse_{law} {} {}", l.kind.name(), d.direction), value, None, "1")
+    row(task, format!("{name} {} {}", l.kind.name(), d.direction), value, None, "1")
 }

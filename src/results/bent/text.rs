@@ -43,6 +43,8 @@ pub(in crate::results) fn texts(results: &[(&Task, &BendingResult)]) -> Vec<Stri
         "R²",
         "inner NRMSE",
         "own zero",
+        "held out",
+        "its inner",
         "zero (gf)",
     ]);
     for (task, result) in results {
@@ -98,7 +100,7 @@ fn heart_row(task: &Task, h: &HeartLoop) -> Vec<String> {
 fn fab_rows(task: &Task, d: &BendLoops) -> Vec<Vec<String>> {
     let percent = |a: Option<Agreement>| or_dash(a, |a| format!("{} %", significant(100.0 * a.nrmse)));
     let degrees = |angle: f64| significant(angle.to_degrees());
-    let row = |l: &BendLoop, law: [String; 4], s: &Simulated| {
+    let row = |l: &BendLoop, law: [String; 4], s: &Simulated, held_out: Option<&Simulated>| {
         let head = [
             d.direction.to_string(),
             task.fabric_name().unwrap_or_default().into(),
@@ -110,6 +112,8 @@ fn fab_rows(task: &Task, d: &BendLoops) -> Vec<Vec<String>> {
             or_dash(s.outer, |a| significant(a.r2)),
             percent(s.inner),
             percent(s.inner_with_own_zero),
+            percent(held_out.and_then(|s| s.outer)),
+            percent(held_out.and_then(|s| s.inner)),
             significant(s.zero / GRAM_FORCE),
         ];
         head.into_iter().chain(law).chain(figures).collect()
@@ -119,10 +123,11 @@ fn fab_rows(task: &Task, d: &BendLoops) -> Vec<Vec<String>> {
         .flat_map(|l| {
             let e = &d.elastic;
             let law = ["elastic".into(), micro(e.rigidity), "-".into(), degrees(e.inclination)];
-            let elastic = row(l, law, &l.elastic);
+            let elastic = row(l, law, &l.elastic, l.held_out[0].as_ref());
             let friction = d.friction.as_ref().zip(l.friction.as_ref()).map(|(f, s)| {
                 let [b, hb] = [f.kes_rigidity, f.kes_couple].map(micro);
-                row(l, ["friction".into(), b, hb, degrees(f.inclination)], s)
+                let law = ["friction".into(), b, hb, degrees(f.inclination)];
+                row(l, law, s, l.held_out[1].as_ref())
             });
             std::iter::once(elastic).chain(friction)
         })

@@ -29,8 +29,6 @@ pub(super) struct Strip {
     pub end: Vec<u32>,
     /// Nodes along the middle, from start to end.
     pub line: Vec<u32>,
-    /// Width of the mesh (m); half of the strip where it has free edges.
-    pub width: f64,
 }
 
 impl Strip {
@@ -72,7 +70,6 @@ impl Strip {
             start,
             end,
             line,
-            width,
         })
     }
 
