@@ -6,10 +6,14 @@
 use std::path::Path;
 
 use kesf::analytical::elastica::heavy_elastica;
+use kesf::characterise::{FabricSheet, Key};
+use kesf::constitutive::{Constitutive, face_laws};
 use kesf::finding::{Fact, StudyFact};
+use kesf::instrument::{Direction, Parameter};
+use kesf::quantity::Estimate;
 use kesf::section::ShellSection;
 use kesf::solve::Options;
-use kesf::study::{Case, CaseResult, PreparedCase, Status, StudyError, section, solve_case};
+use kesf::study::{Case, CaseResult, PreparedCase, Status, StudyError, Watch, section, solve_case};
 
 /// A strip of cloth 20 x 1 cm along x, clamped on the left, in plane strain.
 fn strip(analysis: &str, load: &str) -> Case {
@@ -107,6 +111,42 @@ fn a_prepared_case_gives_the_same_for_every_fabric() {
         let shared = prepared.solve(s).unwrap();
         assert_eq!(apart.solution.displacement, shared.solution.displacement);
         assert_eq!(apart.path, shared.path);
+    }
+}
+
+/// A strip that hangs from its clamp is convex on its upper side all along: with its face up it bends with Bf, and with its face
+/// down with Bb. Reference: the heavy elastica of each.
+#[test]
+fn a_strip_hangs_by_the_rigidity_of_the_face_that_is_up() {
+    let case = strip(NONLINEAR, WEIGHT);
+    let [bf, bb] = [1.2e-5, 0.6e-5];
+    let mut sheet = FabricSheet { name: "two-sided".into(), ..FabricSheet::default() };
+    for (parameter, value) in [(Parameter::B, 0.5 * (bf + bb)), (Parameter::Bf, bf), (Parameter::Bb, bb)] {
+        for direction in [Direction::Warp, Direction::Weft] {
+            let key = Key { parameter, direction: Some(direction) };
+            sheet.values.insert(key, Estimate::single(value));
+        }
+    }
+    let mut section = cloth(&case);
+    section.d_b[(0, 0)] = 0.5 * (bf + bb);
+    section.d_b[(1, 1)] = section.d_b[(0, 0)];
+    let mut made = Constitutive {
+        section,
+        law: None,
+        used: Vec::new(),
+        inputs: Vec::new(),
+        surface_friction: None,
+        findings: Vec::new(),
+    };
+    let laws = face_laws(&sheet, &made).unwrap().unwrap();
+    let prepared = PreparedCase::new(&case, &Options::default()).unwrap();
+    for (law, b) in laws.into_iter().zip([bf, bb]) {
+        made.law = Some(law);
+        let result = prepared.solve_watched(&made, Watch::default()).unwrap();
+        let exact = heavy_elastica(0.15 * 9.80665 * 0.2f64.powi(3) / b).unwrap().drop * 0.2;
+        let drop = -result.probes[0].value.u[2];
+        println!("B = {b:e}: {drop} exact {exact}");
+        assert!((drop / exact - 1.0).abs() < 2e-3, "{drop} {exact}");
     }
 }
 

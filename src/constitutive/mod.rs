@@ -14,6 +14,7 @@
 mod assumptions;
 mod bending;
 mod error;
+mod faces;
 mod friction;
 mod membrane;
 mod notes;
@@ -31,6 +32,7 @@ use crate::section::{SheetLaw, ShellSection};
 
 pub use assumptions::{Assumptions, BendingCoupling, ChoiceError, PoissonRule, Torsion, TransverseShear};
 pub use error::ConstitutiveError;
+pub use faces::face_laws;
 pub use friction::tension;
 use notes::{Because, Notes, value};
 pub use notes::{Provenance, Used};

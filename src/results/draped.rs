@@ -20,7 +20,7 @@ use crate::quantity::significant;
 use crate::report::chart::{self, DrapePlot, ParityPoint};
 use crate::report::table::{PredictionRow, relative_error};
 use crate::report::vtu::{MeshField, vtu};
-use crate::study::{Drape, DrapeState, measured_drape};
+use crate::study::{Drape, DrapeState, Faces, measured_drape};
 
 /// The chart of simulated against measured coefficients of all fabrics.
 const PARITY: &str = "drape_parity";
@@ -99,6 +99,8 @@ struct DrapeValues {
     node_numbers: Vec<NodeNumber>,
     /// The state of lowest energy before it was shaken, on the mesh of its search; of sheets with friction only.
     hung: Option<StateEntry>,
+    /// With bending that differs by face, from the state of lowest energy; where both Bf and Bb are known.
+    faces: Option<FacesEntry>,
     measured: Option<MeasuredDrape>,
     uncertainty: Option<SamplingEntry>,
     finest: StateEntry,
@@ -106,6 +108,13 @@ struct DrapeValues {
     states: Vec<StateEntry>,
     failed_starts: Vec<FailedStart>,
     outline: OutlineEntry,
+}
+
+/// A sheet with its face up, and with its face down.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+struct FacesEntry {
+    up: StateEntry,
+    down: StateEntry,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -186,6 +195,10 @@ pub(super) fn entry(task: &Task, d: &Drape) -> DrapeEntry {
             .map(|(nodes, searches)| NodeNumber { nodes, searches })
             .collect(),
         hung: d.hung.as_ref().map(StateEntry::new),
+        faces: d
+            .faces
+            .as_ref()
+            .map(|faces| FacesEntry { up: StateEntry::new(&faces.up), down: StateEntry::new(&faces.down) }),
         measured: measured(task).map(|(value, method)| MeasuredDrape { value, method: method.to_string() }),
         uncertainty: task.sampling().map(|s| SamplingEntry::ending_with(s, "")),
         finest: StateEntry::new(&d.finest),
@@ -209,7 +222,7 @@ pub(super) fn entry(task: &Task, d: &Drape) -> DrapeEntry {
 }
 
 /// Rows of `predictions.csv`: the coefficient beside what was measured, the mean, least and greatest of the states of nearly
-/// the lowest energy, and what it was before the sheet was shaken.
+/// the lowest energy, what it was before the sheet was shaken, and what it is with either face up.
 pub(super) fn rows(task: &Task, d: &Drape) -> Vec<PredictionRow> {
     let [low, high] = d.band();
     let nodes = task.fabric.and_then(|sheet| {
@@ -225,6 +238,10 @@ pub(super) fn rows(task: &Task, d: &Drape) -> Vec<PredictionRow> {
         row(task, "drape_nodes", d.finest.folds.count as f64, nodes),
     ];
     rows.extend(d.hung.as_ref().map(|hung| row(task, "drape_coefficient_hung", hung.coefficient, None)));
+    if let Some(Faces { up, down }) = &d.faces {
+        rows.push(row(task, "drape_coefficient_face_up", up.coefficient, None));
+        rows.push(row(task, "drape_coefficient_face_down", down.coefficient, None));
+    }
     rows
 }
 
@@ -368,6 +385,10 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
     let hung =
         |s: &DrapeState| (format!("hung, {} elements", s.elements), format!("{} %", percent(s.coefficient)));
     values.extend(d.hung.as_ref().map(hung));
+    if let Some(Faces { up, down }) = &d.faces {
+        let both = format!("{} %, {} %", percent(up.coefficient), percent(down.coefficient));
+        values.push(("face up, face down".into(), both));
+    }
     if let Some((value, _)) = measured(task) {
         values.push(("measured".into(), format!("{} %", percent(value))));
     }

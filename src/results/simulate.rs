@@ -6,13 +6,15 @@ use super::outcome::Outcome;
 use super::rests_on::assumed_of_test;
 use super::task::Task;
 use super::tested::Tested;
-use crate::case::{BendingTest, InstrumentTest, Problem, ShellSpecimen};
+use crate::case::{BendingTest, Case, InstrumentTest, Problem, ShellSpecimen};
 use crate::characterise::FabricSheet;
+use crate::constitutive::{Constitutive, face_laws};
+use crate::finding::{Finding, Place, StudyFact};
 use crate::instrument::Direction;
 use crate::platform::within;
 use crate::solve::SolveError;
 use crate::study::bending::{BendingResult, simulate_cantilever, simulate_heart_loop, simulate_records};
-use crate::study::{self, CaseResult, Drape, StudyError};
+use crate::study::{self, CaseResult, Drape, StudyError, Watch};
 
 /// Simulates what the case describes, its bands included; `observer` is told of every stage.
 ///
@@ -80,7 +82,31 @@ fn drape(task: &Task, observer: &Observer) -> Result<Drape, Failure> {
     };
     let mut hung = study::drape(&case, &section, law, &task.options().single(), watch)?;
     hung.findings.extend(told);
+    if let (Some(sheet), Some(made)) = (task.fabric, &made) {
+        by_face(task, &case, (sheet, made), &mut hung, watch)?;
+    }
     Ok(hung)
+}
+
+/// The drape with either face up, where bending differs by face. That it cannot be had is told, and costs nothing else.
+fn by_face(
+    task: &Task,
+    case: &Case,
+    (sheet, made): (&FabricSheet, &Constitutive),
+    hung: &mut Drape,
+    watch: Watch<'_>,
+) -> Result<(), Failure> {
+    let why = match face_laws(sheet, made) {
+        Ok(None) => return Ok(()),
+        Ok(Some(laws)) => match study::hang_by_face(case, hung, &laws, &task.options().single(), watch) {
+            Ok(()) => return Ok(()),
+            Err(StudyError::Stopped) => return Err(StudyError::Stopped.into()),
+            Err(error) => error.to_string(),
+        },
+        Err(error) => error.to_string(),
+    };
+    hung.findings.push(Finding::new(StudyFact::NoDrapeByFace { why }).at(Place::file(&case.path)));
+    Ok(())
 }
 
 /// A `[bending_test]`; with the result, the directions that failed.

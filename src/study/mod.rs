@@ -38,7 +38,10 @@ pub use crate::case::{Case, CaseError};
 pub use build::section;
 pub use compare::{Comparison, compare_curves, measured_curve};
 pub use contact::ContactResult;
-pub use drape::{Drape, DrapeState, Folds, as_measured, drape, drape_method, drape_stages, measured_drape};
+pub use drape::{
+    Drape, DrapeState, Faces, Folds, as_measured, drape, drape_method, drape_stages, hang_by_face,
+    measured_drape,
+};
 pub use effort::within_limits;
 pub use history::History;
 pub use load_path::{LoadPath, LoadStepEnd, MotionFrame, PathStep};

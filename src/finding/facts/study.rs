@@ -166,6 +166,20 @@ super::facts! {
             elements: usize,
         } = "hung, and then shaken as if by hands (assumed): its weight changed by {shaking} of itself at first; before that the coefficient \
              was {:.1} % on {elements} elements", 100.0 * coefficient;
+        /// A sheet whose bending differs by face.
+        "S148" DrapeByFace {
+            /// The drape coefficient with the face up, 0 to 1.
+            up: f64,
+            /// With the face down.
+            down: f64,
+        } = "Bf and Bb differ: with them the coefficient is {:.1} % with the face up and {:.1} % with the face down, in the state of \
+             lowest energy (assumed: the face is on the outside of the bend while the curvature K of the record is positive)",
+            100.0 * up, 100.0 * down;
+        /// A sheet whose bending differs by face, hung without that.
+        "S149" NoDrapeByFace {
+            /// Why.
+            why: String,
+        } = "Bf and Bb differ, but the sheet was not hung with either face up: {why}";
         /// A drape on coarse cells.
         "S130" QuickDrape {
             /// Elements of the finest mesh.

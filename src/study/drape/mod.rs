@@ -14,6 +14,7 @@
 //! A sheet with friction is hung, and then shaken: its weight swings about itself, less and less. A sheet that is laid on a disc by
 //! hands has been through more than the way down from flat, and what friction holds up in it is less.
 
+mod faces;
 mod interference;
 mod method;
 mod refine;
@@ -27,6 +28,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
+pub use faces::{Faces, hang_by_face};
 pub use method::{as_measured, drape_method};
 pub use rim::Folds;
 
@@ -62,6 +64,8 @@ pub struct Drape {
     pub meshes: Vec<DrapeState>,
     /// The last of them.
     pub finest: DrapeState,
+    /// The same with bending that differs by face; `None` where that was not asked for, [`hang_by_face`].
+    pub faces: Option<Faces>,
     /// The model on the finest mesh.
     pub model: Model,
     /// The equilibrium on the finest mesh.
@@ -211,6 +215,7 @@ pub fn drape(
         near_energy: if problem.is_quick { WORTH_CARRYING } else { NEARLY_AS_LOW },
         meshes,
         finest,
+        faces: None,
         model,
         solution,
         resultants,

@@ -3,7 +3,7 @@
 use super::search::TOLERANCE;
 use super::*;
 use crate::characterise::bending_law;
-use crate::law::Mode;
+use crate::law::{Backbone, Channel, Mode};
 use approx::assert_relative_eq;
 use std::path::Path;
 
@@ -102,6 +102,36 @@ fn a_shaken_sheet_hangs_between_one_without_friction_and_one_that_was_only_hung(
         "{:?}",
         shaken.meshes
     );
+}
+
+/// Over the edge of the disc the upper side is convex, so the stiffer face holds the sheet up where it is the upper one. Faces
+/// that are alike change nothing.
+#[test]
+fn a_sheet_hangs_by_the_face_that_is_up() {
+    let b = 2e-5;
+    let case = case(b, "folds = [3, 5]", "folds = [5]\nrefinements = 0");
+    let drape = run(&case);
+    let bending =
+        |below, above| Some(Channel::elastic(Backbone::new(0.0, &[-1.0, 1.0], &[below, above]).unwrap()));
+    let law = |below: f64, above: f64| {
+        let channels = [None, None, None, bending(below * b, above * b), bending(below * b, above * b), None];
+        SheetLaw::new(Mode::Elastic, channels)
+    };
+    let hang = |below, above| {
+        let mut drape = drape.clone();
+        let laws = [law(below, above), law(above, below)];
+        hang_by_face(&case, &mut drape, &laws, &Options::default(), Watch::default()).unwrap();
+        assert!(drape.findings.iter().any(|f| f.code() == "S148"));
+        drape.faces.unwrap()
+    };
+    let alike = hang(1.0, 1.0);
+    assert_relative_eq!(alike.up.coefficient, drape.finest.coefficient, epsilon = 1e-4);
+    assert_eq!(alike.up, alike.down);
+    let Faces { up, down } = hang(0.7, 1.3);
+    println!("{:.3} {:.3} {:.3}", down.coefficient, drape.finest.coefficient, up.coefficient);
+    assert!(up.negative_pivots == 0 && down.negative_pivots == 0);
+    assert!(down.coefficient + 0.005 < drape.finest.coefficient);
+    assert!(drape.finest.coefficient + 0.005 < up.coefficient);
 }
 
 /// States that differ in the turn of the whole only are one, which counts as often as it was found.

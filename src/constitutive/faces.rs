@@ -1,0 +1,135 @@
+//! Bending that differs by face: Bf where the face is convex, Bb where the back is.
+//!
+//! The record of KES-FB2 bends a specimen to both sides. Which of them is the face is a convention: here the face is on the
+//! outside of the bend while the curvature K is positive, as the manual's Bf (face) belongs to K > 0.
+
+use super::{Constitutive, ConstitutiveError};
+use crate::characterise::FabricSheet;
+use crate::instrument::{Direction, Parameter};
+use crate::law::{Backbone, Channel, LawError, Mode};
+use crate::section::SheetLaw;
+
+/// Half of the width of the change from Bb to Bf about the flat sheet (1/m): a fiftieth of where the windows of both begin.
+const CHANGE: f64 = 1.0;
+
+/// The laws of a sheet that hangs with its face up, and with its face down: those of the section, or those with friction, with
+/// the slopes Bf and Bb of the record to either side, along warp and weft. `None` where they are not known, or are the same.
+///
+/// # Errors
+/// M020 for slopes that make no law; C003 if the coupling D12 of the section is too great beside the lower ones.
+pub fn face_laws(
+    sheet: &FabricSheet,
+    made: &Constitutive,
+) -> Result<Option<[SheetLaw; 2]>, ConstitutiveError> {
+    let of = |parameter, direction| sheet.get(parameter, Some(direction)).map(|e| e.mean);
+    // Over B itself, which the section has as D11 and D22.
+    let sides = |direction| {
+        let b = of(Parameter::B, direction)?;
+        Some([of(Parameter::Bb, direction)? / b, of(Parameter::Bf, direction)? / b])
+    };
+    let (Some(warp), Some(weft)) = (sides(Direction::Warp), sides(Direction::Weft)) else { return Ok(None) };
+    if warp[0] == warp[1] && weft[0] == weft[1] {
+        return Ok(None);
+    }
+    let section = &made.section;
+    let make = |sides: [[f64; 2]; 2]| {
+        let mut law = match &made.law {
+            Some(law) => law.clone(),
+            None => SheetLaw::new(Mode::Elastic, [const { None }; 6]),
+        };
+        for (along, sides) in sides.into_iter().enumerate() {
+            let channel = &mut law.channels[3 + along];
+            let either = match channel {
+                Some(channel) => channel.symmetric(),
+                None => Channel::elastic(Backbone::line(section.d_b[(along, along)])?),
+            };
+            *channel = Some(by_face(&either, sides)?);
+        }
+        Ok(law)
+    };
+    let turned = |[back, face]: [f64; 2]| [face, back];
+    let of_fabric = |law: Result<SheetLaw, LawError>| {
+        let fabric = || sheet.name.clone();
+        let law = law.map_err(|source| ConstitutiveError::Law { fabric: fabric(), source })?;
+        law.checked(section).map_err(|source| ConstitutiveError::Section { fabric: fabric(), source })
+    };
+    Ok(Some([of_fabric(make([warp, weft]))?, of_fabric(make([turned(warp), turned(weft)]))?]))
+}
+
+/// A law to both sides with the tangents of its backbone multiplied by one factor below zero and another above.
+fn by_face(either: &Channel, [below, above]: [f64; 2]) -> Result<Channel, LawError> {
+    let backbone = either.backbone();
+    let near = |k: &f64| k.abs() > CHANGE;
+    let mut knots: Vec<f64> = backbone.knots().filter(near).chain([-CHANGE, CHANGE]).collect();
+    knots.sort_by(f64::total_cmp);
+    let tangent = |k: &f64| backbone.at(*k).tangent * if *k < 0.0 { below } else { above };
+    let tangents: Vec<f64> = knots.iter().map(tangent).collect();
+    Channel::new(Backbone::new(0.0, &knots, &tangents)?, either.families().to_vec(), false)
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+    use crate::characterise::Key;
+    use crate::constitutive::{Assumptions, section};
+    use crate::quantity::Estimate;
+
+    fn sheet(sides: &[(Parameter, f64)]) -> FabricSheet {
+        let mut sheet = FabricSheet { name: "one-sided".into(), ..FabricSheet::default() };
+        let common = [(Parameter::B, 1e-5), (Parameter::W, 0.15), (Parameter::T0, 5e-4)];
+        for (parameter, value) in common.iter().chain(sides) {
+            let directions = match parameter {
+                Parameter::W | Parameter::T0 => vec![None],
+                _ => vec![Some(Direction::Warp), Some(Direction::Weft)],
+            };
+            for direction in directions {
+                sheet.values.insert(Key { parameter: *parameter, direction }, Estimate::single(*value));
+            }
+        }
+        sheet
+    }
+
+    fn laws(sides: &[(Parameter, f64)], assumptions: &Assumptions) -> Option<[SheetLaw; 2]> {
+        let sheet = sheet(sides);
+        face_laws(&sheet, &section(&sheet, assumptions).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn a_sheet_bends_with_bf_to_one_side_and_with_bb_to_the_other() {
+        let given = [(Parameter::Bf, 1.2e-5), (Parameter::Bb, 0.8e-5)];
+        let [up, down] = laws(&given, &Assumptions::default()).unwrap();
+        for along in [3, 4] {
+            let moment = |law: &SheetLaw, k: f64| law.channels[along].as_ref().unwrap().backbone().at(k);
+            for k in [1.0, 30.0, 100.0] {
+                assert_relative_eq!(moment(&up, k).tangent, 1.2e-5, max_relative = 1e-12);
+                assert_relative_eq!(moment(&up, -k).tangent, 0.8e-5, max_relative = 1e-12);
+                assert_relative_eq!(moment(&down, -k).stress, -moment(&up, k).stress, max_relative = 1e-12);
+            }
+            assert_eq!(moment(&up, 0.0).stress, 0.0);
+            assert_relative_eq!(moment(&up, 0.0).tangent, 1e-5, max_relative = 1e-12);
+        }
+    }
+
+    #[test]
+    fn friction_stays_beside_the_slopes_of_either_side() {
+        let given = [(Parameter::Bf, 1.2e-5), (Parameter::Bb, 0.8e-5), (Parameter::Hb, 4e-4)];
+        let friction = Assumptions { law: Mode::Friction, ..Assumptions::default() };
+        let sheet = sheet(&given);
+        let made = section(&sheet, &friction).unwrap();
+        let [up, _] = face_laws(&sheet, &made).unwrap().unwrap();
+        let (own, with) = (made.law.as_ref().unwrap(), &up);
+        let couple = |law: &SheetLaw| law.channels[3].as_ref().unwrap().couple();
+        assert!(couple(own) > 0.0);
+        assert_eq!(couple(own), couple(with));
+        assert_eq!(own.channels[5], with.channels[5]);
+    }
+
+    #[test]
+    fn there_is_nothing_to_tell_apart_without_both_sides() {
+        assert_eq!(laws(&[], &Assumptions::default()), None);
+        assert_eq!(laws(&[(Parameter::Bf, 1.2e-5)], &Assumptions::default()), None);
+        assert_eq!(laws(&[(Parameter::Bf, 1e-5), (Parameter::Bb, 1e-5)], &Assumptions::default()), None);
+    }
+}
