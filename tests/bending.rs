@@ -365,11 +365,12 @@ fn the_rod_of_a_bend_loop_is_the_shell() {
     }
 }
 
-/// Records of a strip whose law is known, bent up and down: the law that is identified has its B, and the band holds its 2HB.
+/// Records of a strip whose law is known, bent up and down: the law that is identified has its B and 2HB. Its sliders slip within the
+/// range that is offered, 0.3 of the largest curvature, where they have grown.
 #[test]
 fn a_known_law_of_bend_loops_is_found() {
     let density = 0.1056;
-    let sliders = [4.0, 20.0, 60.0].map(|slip| Slider { stiffness: 5e-6, slip }).to_vec();
+    let sliders = [4.0, 15.0, 40.0].map(|slip| Slider { stiffness: 5e-6, slip }).to_vec();
     let family = |alpha: f64| Family {
         widening: Widening::Quadratic { alpha, e_max: 450.0 },
         sliders: sliders.clone(),
@@ -402,8 +403,8 @@ fn a_known_law_of_bend_loops_is_found() {
             [law.values[&Parameter::B], 0.5 * law.values[&Parameter::Hb]]
         };
         let [b, couple] = kes(&law);
-        assert!((friction.kes_rigidity / b - 1.0).abs() < 0.05, "{} {b}", friction.kes_rigidity);
-        assert!((friction.kes_couple / couple - 1.0).abs() < 0.1, "{} {couple}", friction.kes_couple);
+        assert!((friction.kes_rigidity / b - 1.0).abs() < 0.01, "{} {b}", friction.kes_rigidity);
+        assert!((friction.kes_couple / couple - 1.0).abs() < 0.01, "{} {couple}", friction.kes_couple);
     }
 }
 

@@ -110,6 +110,8 @@ const CASES: &[(&str, &str, &str)] = &[
     ("K060", "k060-tilted.csv", "k060-tilted.csv:6"),
     ("K063", "k063-several.csv", "k063-several.csv:2:3"),
     ("K061", "k061-fast.csv", "k061-fast.csv:2:23"),
+    // Made from a known law.
+    ("K064", "k064-loops.json", "k064-loops.json"),
 ];
 
 /// Codes that no file can trigger, because reading refuses it or sets it right before; programs

@@ -7,7 +7,7 @@ use super::{Constitutive, ConstitutiveError};
 use crate::characterise::FabricSheet;
 use crate::instrument::{Direction, Parameter};
 use crate::law::{Backbone, Channel, LawError, Mode};
-use crate::section::SheetLaw;
+use crate::section::{SheetLaw, ShellSection};
 
 /// Half of the width of the change from Bb to Bf about the flat sheet (1/m): a fiftieth of where the windows of both begin.
 const CHANGE: f64 = 1.0;
@@ -21,49 +21,61 @@ pub fn face_laws(
     sheet: &FabricSheet,
     made: &Constitutive,
 ) -> Result<Option<[SheetLaw; 2]>, ConstitutiveError> {
-    let of = |parameter, direction| sheet.get(parameter, Some(direction)).map(|e| e.mean);
-    // Over B itself, which the section has as D11 and D22.
-    let sides = |direction| {
-        let b = of(Parameter::B, direction)?;
-        Some([of(Parameter::Bb, direction)? / b, of(Parameter::Bf, direction)? / b])
+    let [Some(warp), Some(weft)] = [Direction::Warp, Direction::Weft].map(|d| sides(sheet, d)) else {
+        return Ok(None);
     };
-    let (Some(warp), Some(weft)) = (sides(Direction::Warp), sides(Direction::Weft)) else { return Ok(None) };
     if warp[0] == warp[1] && weft[0] == weft[1] {
         return Ok(None);
     }
-    let section = &made.section;
-    let make = |sides: [[f64; 2]; 2]| {
-        let mut law = match &made.law {
-            Some(law) => law.clone(),
-            None => SheetLaw::new(Mode::Elastic, [const { None }; 6]),
+    let up = law_of(sheet, made, [warp, weft])?;
+    let down = law_of(sheet, made, [warp, weft].map(|[back, face]| [face, back]))?;
+    Ok(Some([up, down]))
+}
+
+/// Bb and Bf over B, which the section has as D11 and D22.
+fn sides(sheet: &FabricSheet, direction: Direction) -> Option<[f64; 2]> {
+    let [b, back, face] =
+        [Parameter::B, Parameter::Bb, Parameter::Bf].map(|p| sheet.get(p, Some(direction)).map(|e| e.mean));
+    let b = b?;
+    Some([back? / b, face? / b])
+}
+
+/// The laws of a sheet with these slopes over B to either side of K = 0, along warp and weft.
+fn law_of(
+    sheet: &FabricSheet,
+    made: &Constitutive,
+    sides: [[f64; 2]; 2],
+) -> Result<SheetLaw, ConstitutiveError> {
+    let law = match &made.law {
+        Some(law) => law.clone(),
+        None => SheetLaw::new(Mode::Elastic, [const { None }; 6]),
+    };
+    let with_sides = bent(law, &made.section, sides)
+        .map_err(|source| ConstitutiveError::Law { fabric: sheet.name.clone(), source })?;
+    let checked = with_sides.checked(&made.section);
+    checked.map_err(|source| ConstitutiveError::Section { fabric: sheet.name.clone(), source })
+}
+
+fn bent(mut law: SheetLaw, section: &ShellSection, sides: [[f64; 2]; 2]) -> Result<SheetLaw, LawError> {
+    for (along, sides) in sides.into_iter().enumerate() {
+        let channel = &mut law.channels[3 + along];
+        let either = match channel {
+            Some(channel) => channel.symmetric(),
+            None => Channel::elastic(Backbone::line(section.d_b[(along, along)])?),
         };
-        for (along, sides) in sides.into_iter().enumerate() {
-            let channel = &mut law.channels[3 + along];
-            let either = match channel {
-                Some(channel) => channel.symmetric(),
-                None => Channel::elastic(Backbone::line(section.d_b[(along, along)])?),
-            };
-            *channel = Some(by_face(&either, sides)?);
-        }
-        Ok(law)
-    };
-    let turned = |[back, face]: [f64; 2]| [face, back];
-    let of_fabric = |law: Result<SheetLaw, LawError>| {
-        let fabric = || sheet.name.clone();
-        let law = law.map_err(|source| ConstitutiveError::Law { fabric: fabric(), source })?;
-        law.checked(section).map_err(|source| ConstitutiveError::Section { fabric: fabric(), source })
-    };
-    Ok(Some([of_fabric(make([warp, weft]))?, of_fabric(make([turned(warp), turned(weft)]))?]))
+        *channel = Some(by_face(&either, sides)?);
+    }
+    Ok(law)
 }
 
 /// A law to both sides with the tangents of its backbone multiplied by one factor below zero and another above.
 fn by_face(either: &Channel, [below, above]: [f64; 2]) -> Result<Channel, LawError> {
     let backbone = either.backbone();
-    let near = |k: &f64| k.abs() > CHANGE;
-    let mut knots: Vec<f64> = backbone.knots().filter(near).chain([-CHANGE, CHANGE]).collect();
+    let mut knots: Vec<f64> =
+        backbone.knots().filter(|k| k.abs() > CHANGE).chain([-CHANGE, CHANGE]).collect();
     knots.sort_by(f64::total_cmp);
-    let tangent = |k: &f64| backbone.at(*k).tangent * if *k < 0.0 { below } else { above };
-    let tangents: Vec<f64> = knots.iter().map(tangent).collect();
+    let tangents: Vec<f64> =
+        knots.iter().map(|k| backbone.at(*k).tangent * if *k < 0.0 { below } else { above }).collect();
     Channel::new(Backbone::new(0.0, &knots, &tangents)?, either.families().to_vec(), false)
 }
 

@@ -47,9 +47,11 @@ pub(super) fn band(
         }
     }
     let least = tried.iter().map(|t| t.0).fold(f64::INFINITY, f64::min);
-    let inside = || tried.iter().filter(|t| t.0 <= least + WITHIN * found.scatter).map(|t| t.1);
+    tried.retain(|t| t.0 <= least + WITHIN * found.scatter);
+    // What was found, of shapes a round earlier, is inside as well.
+    let own = guess.law().map(|law| read(&law)).unwrap_or([f64::NAN; 2]);
     [0, 1].map(|i| {
-        let low = inside().map(|v| v[i]).fold(f64::INFINITY, f64::min);
-        [low, inside().map(|v| v[i]).fold(f64::NEG_INFINITY, f64::max)]
+        let low = tried.iter().map(|t| t.1[i]).fold(own[i], f64::min);
+        [low, tried.iter().map(|t| t.1[i]).fold(own[i], f64::max)]
     })
 }

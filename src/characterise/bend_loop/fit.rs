@@ -14,7 +14,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::record::{Mounted, Record, Run};
-use super::{LoopError, LoopSettings};
+use super::settings::{LoopError, LoopSettings};
 use crate::characterise::nnls;
 use crate::law::{MAX_SLIDERS, Slider, Widening};
 
@@ -55,15 +55,12 @@ impl<'a> Shapes<'a> {
         turns: bool,
         settings: &LoopSettings,
     ) -> Result<Self, LoopError> {
-        let all = |strip: &Mounted| {
-            records.iter().map(|r| r.simulate(strip, settings)).collect::<Result<Vec<_>, _>>()
-        };
-        let runs = all(strip)?;
+        let runs = simulated(records, strip, settings)?;
         let turned = if turns {
-            let other = all(&Mounted { inclination: strip.inclination + TURN, law: strip.law.clone() })?;
-            let slope = |(a, b): (&f64, &f64)| (b - a) / TURN;
-            let of_run = |(a, b): (&Run, &Run)| a.force.iter().zip(&b.force).map(slope).collect();
-            runs.iter().zip(&other).map(of_run).collect()
+            let other = Mounted { inclination: strip.inclination + TURN, law: strip.law.clone() };
+            let other = simulated(records, &other, settings)?;
+            let slopes = runs.iter().zip(&other);
+            slopes.map(|(a, b)| a.force.iter().zip(&b.force).map(|(a, b)| (b - a) / TURN).collect()).collect()
         } else {
             runs.iter().map(|r| vec![0.0; r.force.len()]).collect()
         };
@@ -109,6 +106,14 @@ impl<'a> Shapes<'a> {
     }
 }
 
+fn simulated(
+    records: &[&Record<'_>],
+    strip: &Mounted,
+    settings: &LoopSettings,
+) -> Result<Vec<Run>, LoopError> {
+    records.iter().map(|r| r.simulate(strip, settings)).collect()
+}
+
 impl Equations {
     /// The best law with the clamps turned by `turn` (rad) more than the shapes have them.
     pub fn fit(&self, turn: f64) -> Fit {
@@ -138,11 +143,15 @@ impl Equations {
     }
 }
 
+/// The two points that divide what lies between two ends by the golden section.
+fn inner(low: f64, high: f64) -> [f64; 2] {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    [high - GOLDEN * (high - low), low + GOLDEN * (high - low)]
+}
+
 /// The argument and the value of the least of a function with one valley between two ends, by golden sections.
 pub(super) fn least(ends: [f64; 2], sections: usize, mut f: impl FnMut(f64) -> f64) -> (f64, f64) {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let [mut low, mut high] = ends;
-    let inner = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
     let [mut a, mut b] = inner(low, high);
     let (mut of_a, mut of_b) = (f(a), f(b));
     for _ in 0..sections {

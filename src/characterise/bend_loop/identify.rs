@@ -17,7 +17,7 @@
 
 use super::fit::{Equations, Fit, Shapes, least};
 use super::record::{Mounted, Record};
-use super::{LoopError, LoopSettings};
+use super::settings::{LoopError, LoopSettings};
 use crate::law::{Backbone, Channel, Family, LawError, Slider, Widening};
 
 /// Slip levels that may have a part, evenly spaced by ratio (1/m), from the lowest to a part of the largest curvature of
@@ -127,8 +127,8 @@ pub(super) fn identify<'a>(
     first: f64,
     settings: &LoopSettings,
 ) -> Result<Found<'a>, (usize, LoopError)> {
-    let has = |way: f64| strips.iter().flatten().any(|r| r.way() == way);
-    let turns = has(1.0) && has(-1.0);
+    let ways: Vec<f64> = strips.iter().flatten().map(|r| r.way()).collect();
+    let turns = ways.iter().any(|way| *way != ways[0]);
     let tests = strips.iter().map(Vec::len).sum::<usize>() as f64;
     let start =
         Guess { rigidity: START, sliders: Vec::new(), is_law: false, growth: 0.0, largest_curvature: 0.0 };
@@ -195,11 +195,13 @@ fn bent<'a>(
     turns: bool,
     settings: &LoopSettings,
 ) -> Result<Vec<Shapes<'a>>, (usize, LoopError)> {
-    let of = |(i, (records, guess)): (usize, (&Vec<&'a Record<'a>>, &Guess))| {
+    let mut shapes = Vec::with_capacity(strips.len());
+    for (i, (records, guess)) in strips.iter().zip(guesses).enumerate() {
         let law = guess.law().map_err(|e| (i, e.into()))?;
-        Shapes::of(records, &Mounted { law, inclination }, turns, settings).map_err(|e| (i, e))
-    };
-    strips.iter().zip(guesses).enumerate().map(of).collect()
+        let strip = Mounted { law, inclination };
+        shapes.push(Shapes::of(records, &strip, turns, settings).map_err(|e| (i, e))?);
+    }
+    Ok(shapes)
 }
 
 /// The equations of a direction with levels that grow by so much.
@@ -213,18 +215,18 @@ pub(super) fn of_growth(shapes: &Shapes<'_>, guess: &Guess, growth: f64, kind: K
 
 /// The change of the inclination that all directions together agree with best.
 fn best_turn(equations: &[Equations], inclination: f64, scatter: f64) -> f64 {
-    let whole = |turn: f64| {
+    let (turn, _) = least([-LARGEST_TURN, LARGEST_TURN], TURN_SECTIONS, |turn| {
         let misfit: f64 = equations.iter().map(|e| e.fit(turn).misfit).sum();
         misfit + scatter * penalty(inclination + turn, 0.0)
-    };
-    least([-LARGEST_TURN, LARGEST_TURN], TURN_SECTIONS, whole).0
+    });
+    turn
 }
 
 /// The best fit over all growths, which is kept in the guess.
 fn best_growth(shapes: &Shapes<'_>, guess: &mut Guess, turn: f64, scatter: f64) -> Fit {
     let fit = |growth: f64| of_growth(shapes, guess, growth, Kind::Friction).fit(turn);
-    let whole = |growth: f64| fit(growth).misfit + scatter * penalty(0.0, growth);
-    let growth = least([0.0, WIDEST], GROWTH_SECTIONS, whole).0;
+    let (growth, _) =
+        least([0.0, WIDEST], GROWTH_SECTIONS, |growth| fit(growth).misfit + scatter * penalty(0.0, growth));
     let best = fit(growth);
     guess.growth = growth;
     best

@@ -11,90 +11,25 @@
 //! inclined. That angle belongs to the instrument: one number is identified for all of its strips, where some were bent up and some down, and is
 //! drawn towards level clamps; nobody has measured it.
 
+mod agreement;
 mod band;
 mod fit;
 mod identify;
 mod record;
 mod rod;
+mod settings;
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
+pub use self::agreement::{Agreement, Simulated};
 use self::identify::{Found, Kind, identify};
 use self::record::{Mounted, Record};
+pub use self::settings::{LoopError, LoopSettings};
 use super::Settings;
 use super::friction::FrictionLaw;
-use crate::finding::errors;
 use crate::instrument::Direction;
 use crate::instrument::fab::{FabKind, FabTest};
 use crate::kes::Parameter;
-use crate::law::{Channel, LawError};
+use crate::law::Channel;
 use crate::quantity::Curve;
-
-errors! {
-    /// Why a strip cannot be bent as its record says.
-    #[derive(Clone, Debug, PartialEq)]
-    pub enum LoopError {
-        from {
-            /// M020: numbers that make no law.
-            Law(LawError),
-        }
-        /// S005: no equilibrium between the clamps.
-        "S005" Stuck {
-            /// The test.
-            test: FabKind,
-            /// The clamp distance that was not reached (m).
-            distance: f64,
-        } = "test {} cannot be followed: no shape of a strip of its length was found at a clamp distance of {} cm: look at \
-             `length` and at the distances of this test", test.name(), crate::quantity::significant(1e2 * distance);
-    }
-}
-
-/// How far a simulated curve is from a measured one.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Agreement {
-    /// Root mean square difference (N).
-    pub rmse: f64,
-    /// That over the span of the measured forces.
-    pub nrmse: f64,
-    /// 1 - SS_residual / SS_total.
-    pub r2: f64,
-    /// Samples compared.
-    pub n: usize,
-}
-
-impl Agreement {
-    fn of(measured: &[f64], simulated: &[f64]) -> Option<Self> {
-        let n = measured.len();
-        let mean = measured.iter().sum::<f64>() / n as f64;
-        let low = measured.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = measured.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let residual: f64 = measured.iter().zip(simulated).map(|(m, s)| (s - m).powi(2)).sum();
-        let total: f64 = measured.iter().map(|m| (m - mean).powi(2)).sum();
-        let rmse = (residual / n as f64).sqrt();
-        (n > 1 && high > low).then(|| Self {
-            rmse,
-            nrmse: rmse / (high - low),
-            r2: 1.0 - residual / total,
-            n,
-        })
-    }
-}
-
-/// A simulated test and its distance from the measured one.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Simulated {
-    /// Force (N) at the measured distances (m), the zero of the load added.
-    pub force: Curve,
-    /// Zero of the load (N): mean measured minus simulated force of the outermost cycle.
-    pub zero: f64,
-    /// Over the outermost cycle.
-    pub outer: Option<Agreement>,
-    /// Over the cycles before it, predicted; none if there is one cycle only.
-    pub inner: Option<Agreement>,
-    /// The same with a zero of their own, as the load drifts in the course of a test.
-    pub inner_with_own_zero: Option<Agreement>,
-}
 
 /// A bend test, simulated over all of its samples.
 #[derive(Clone, Debug, PartialEq)]
@@ -172,26 +107,6 @@ pub struct BendLoops {
     pub cells: usize,
 }
 
-/// How the tests are simulated.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LoopSettings {
-    /// Elements on half of the strip.
-    pub cells: usize,
-    /// Steps from one sample to the next.
-    pub steps: usize,
-    /// The tests that serve to identify; all where none is named.
-    pub from: Vec<FabKind>,
-    /// Whether every test is predicted by laws of the others as well.
-    pub held_out: bool,
-}
-
-impl Default for LoopSettings {
-    /// 32 elements on half of the strip, one step from sample to sample; all tests serve, and none is held out.
-    fn default() -> Self {
-        Self { cells: 32, steps: 1, from: Vec::new(), held_out: false }
-    }
-}
-
 /// What all directions of a file give, and the directions that cannot be followed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BendRecords {
@@ -247,8 +162,8 @@ pub fn simulate_loop(
     settings: &LoopSettings,
 ) -> Result<Option<Vec<f64>>, LoopError> {
     let strip = Mounted { law: law.clone(), inclination };
-    let run = |record: Record<'_>| Ok(record.simulate(&strip, settings)?.force);
-    Record::of(test, areal_density).map(run).transpose()
+    let Some(record) = Record::of(test, areal_density) else { return Ok(None) };
+    Ok(Some(record.simulate(&strip, settings)?.force))
 }
 
 /// What strips give together.
@@ -263,9 +178,8 @@ fn of_strips(
 
 impl<'a> Strips<'a> {
     fn of(tests: &'a [FabTest], direction: Direction, density: f64, settings: &LoopSettings) -> Option<Self> {
-        let has_cycle = |t: &&FabTest| !t.kind.is_stretch() && t.branches.len() >= 2;
-        let mut mine: Vec<&FabTest> =
-            tests.iter().filter(|t| t.direction == direction).filter(has_cycle).collect();
+        let mut mine: Vec<&FabTest> = tests.iter().filter(|t| t.direction == direction).collect();
+        mine.retain(|t| !t.kind.is_stretch() && t.branches.len() >= 2);
         mine.sort_by_key(|t| [FabKind::U1, FabKind::D1, FabKind::D2].iter().position(|k| *k == t.kind));
         let records = mine.into_iter().filter_map(|t| Record::of(t, density)).collect();
         let strips = Self { direction, records };
@@ -274,10 +188,8 @@ impl<'a> Strips<'a> {
 
     /// The tests that serve to identify, but the one that is held out.
     fn serving(&self, settings: &LoopSettings, held_out: Option<usize>) -> Vec<&Record<'a>> {
-        let serves = |(i, r): &(usize, &Record<'_>)| {
-            Some(*i) != held_out && (settings.from.is_empty() || settings.from.contains(&r.test.kind))
-        };
-        self.records.iter().enumerate().filter(serves).map(|(_, r)| r).collect()
+        let others = self.records.iter().enumerate().filter(|(i, _)| Some(*i) != held_out);
+        others.map(|(_, r)| r).filter(|r| settings.serves(r.test.kind)).collect()
     }
 }
 
@@ -292,9 +204,11 @@ fn laws<'a>(
     held_out: Option<(usize, usize)>,
     settings: &LoopSettings,
 ) -> Result<Option<Laws<'a>>, (usize, LoopError)> {
-    let without = |i: usize| held_out.filter(|(of, _)| *of == i).map(|(_, test)| test);
-    let records: Vec<Vec<&Record<'_>>> =
-        strips.iter().enumerate().map(|(i, s)| s.serving(settings, without(i))).collect();
+    let mut records = Vec::with_capacity(strips.len());
+    for (i, of_direction) in strips.iter().enumerate() {
+        let without = held_out.filter(|(direction, _)| *direction == i).map(|(_, test)| test);
+        records.push(of_direction.serving(settings, without));
+    }
     if !records.iter().all(|r| is_enough(r)) {
         return Ok(None);
     }
@@ -311,8 +225,10 @@ impl Laws<'_> {
     /// `None` where the tests show no friction, or nothing else.
     fn friction(&self, direction: usize) -> Result<Option<Mounted>, LoopError> {
         let guess = &self.friction.guesses[direction];
-        let mounted = |law| Mounted { law, inclination: self.friction.inclination };
-        Ok(guess.is_law.then(|| guess.law()).transpose()?.map(mounted))
+        if !guess.is_law {
+            return Ok(None);
+        }
+        Ok(Some(Mounted { law: guess.law()?, inclination: self.friction.inclination }))
     }
 }
 
@@ -330,7 +246,7 @@ fn result(
     let mut loops = Vec::new();
     for (k, record) in strips[i].records.iter().enumerate() {
         let against = |strip: &Mounted| Ok(record.compared(&record.simulate(strip, settings)?.force));
-        let fitted = settings.from.is_empty() || settings.from.contains(&record.test.kind);
+        let fitted = settings.serves(record.test.kind);
         let mut held_out = [None, None];
         if settings.held_out
             && fitted

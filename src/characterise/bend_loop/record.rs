@@ -1,7 +1,8 @@
 //! A recorded bend test and its simulation.
 
+use super::agreement::{Agreement, Simulated};
 use super::rod::{Held, Rod};
-use super::{Agreement, LoopError, LoopSettings, Simulated};
+use super::settings::{LoopError, LoopSettings};
 use crate::instrument::fab::{FabKind, FabTest};
 use crate::law::{Channel, Widening};
 use crate::quantity::{Curve, STANDARD_GRAVITY};
@@ -102,6 +103,10 @@ impl<'a> Record<'a> {
         }
     }
 
+    fn stuck(&self, distance: f64) -> LoopError {
+        LoopError::Stuck { test: self.test.kind, distance }
+    }
+
     /// Drives the clamps through all samples, from the straight strip of new cloth.
     ///
     /// The strip hangs in the frame of the simulation: one that stands up hangs in reversed gravity.
@@ -109,20 +114,22 @@ impl<'a> Record<'a> {
         let (length, first) = (self.test.length, self.samples.x[0]);
         let (way, steps) = (self.way(), settings.steps.max(1));
         let (turn, weight) = (way * strip.inclination, way * self.weight);
-        let stuck = |distance: f64| LoopError::Stuck { test: self.test.kind, distance };
         // Clamps in line, and the weight gives the straight strip its bow; then both as they are in the test.
-        let between = |i: usize| length + (first - length) * i as f64 / MOUNTING as f64;
-        let mounted = |i: usize| Held { distance: between(i), turn: 0.0, weight: self.weight };
-        let mut rod = Rod::pushed(&strip.law, length, settings.cells.max(4), mounted(1))
-            .ok_or_else(|| stuck(between(1)))?;
+        let mut mounting = (1..=MOUNTING).map(|i| {
+            let distance = length + (first - length) * i as f64 / MOUNTING as f64;
+            Held { distance, turn: 0.0, weight: self.weight }
+        });
+        let begun = mounting.next().unwrap_or(Held { distance: first, turn: 0.0, weight: self.weight });
+        let mut rod = Rod::pushed(&strip.law, length, settings.cells.max(4), begun)
+            .ok_or_else(|| self.stuck(begun.distance))?;
         let mut curvatures = vec![rod.curvatures()];
         let mut go = |rod: &mut Rod<'_>, to: Held| {
-            rod.settle(to).ok_or_else(|| stuck(to.distance))?;
+            rod.settle(to).ok_or_else(|| self.stuck(to.distance))?;
             curvatures.push(rod.curvatures());
             Ok::<usize, LoopError>(curvatures.len() - 1)
         };
-        for i in 2..=MOUNTING {
-            go(&mut rod, mounted(i))?;
+        for held in mounting {
+            go(&mut rod, held)?;
         }
         for i in 1..=TURNING {
             let part = i as f64 / TURNING as f64;
@@ -148,14 +155,15 @@ impl Sample {
     fn of(rod: &Rod<'_>, step: usize) -> Self {
         let (theta, side, curvatures) = (&rod.rotation, rod.side, rod.curvatures());
         let cells = curvatures.len();
-        let middle = |e: usize| 0.5 * (theta[e] + theta[e + 1]);
+        let middle: Vec<f64> = theta.windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect();
         // The virtual rotation: nothing at the ends.
         let rate = theta[cells] / cells as f64;
-        let turn = |e: usize| middle(e) - rate * (e as f64 + 0.5);
-        let approach: f64 = (0..cells).map(|e| middle(e).sin() * turn(e)).sum();
+        let turns: Vec<f64> =
+            middle.iter().enumerate().map(|(e, turn)| turn - rate * (e as f64 + 0.5)).collect();
+        let approach: f64 = middle.iter().zip(&turns).map(|(middle, turn)| middle.sin() * turn).sum();
         let (mut rise, mut weights) = (0.0, 0.0);
         for e in (0..cells).rev() {
-            let of_element = middle(e).cos() * turn(e) * side;
+            let of_element = middle[e].cos() * turns[e] * side;
             weights += rise + 0.5 * of_element;
             rise += of_element;
         }
@@ -171,8 +179,7 @@ impl Sample {
 impl Run {
     /// At the samples of the test (1/m).
     pub fn largest_curvature(&self) -> f64 {
-        let of_sample = |s: &Sample| self.curvatures[s.step].iter().fold(0.0f64, |m, k| m.max(k.abs()));
-        self.samples.iter().map(of_sample).fold(0.0, f64::max)
+        self.samples.iter().flat_map(|s| &self.curvatures[s.step]).fold(0.0, |m, k| m.max(k.abs()))
     }
 
     /// The force per width (N/m) at every sample that the weight gives, and that a line of rigidity 1 gives.

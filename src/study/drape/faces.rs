@@ -2,7 +2,7 @@
 
 use super::search::{Cloth, Hanging};
 use super::{Drape, DrapeState, Ring};
-use crate::case::{DrapeProblem, Problem};
+use crate::case::Problem;
 use crate::finding::{Finding, Place, StudyFact};
 use crate::section::SheetLaw;
 use crate::solve::Options;
@@ -32,16 +32,15 @@ pub fn hang_by_face(
     watch: Watch<'_>,
 ) -> Result<(), StudyError> {
     let Problem::Drape(problem) = &case.problem else { return Ok(()) };
-    let DrapeProblem { refinements, .. } = &**problem;
-    let ring = (0..*refinements).fold(Ring::of(problem), |ring, _| ring.refined());
-    let hang = |law: &SheetLaw, ring: Ring| {
+    let ring = (0..problem.refinements).fold(Ring::of(problem), |ring, _| ring.refined());
+    let mut states = Vec::with_capacity(2);
+    for law in laws {
         let cloth = Cloth { case, problem, section: &drape.model.section, law: Some(law), watch };
-        let sheet = Hanging::new(&cloth, ring, &case.options(options)?)?;
+        let sheet = Hanging::new(&cloth, Ring { ..ring }, &case.options(options)?)?;
         let solution = sheet.relax(drape.solution.state.clone(), options)?;
-        Ok::<_, StudyError>(sheet.state(&solution, drape.finest.start))
-    };
-    let up = hang(&laws[0], Ring { ..ring })?;
-    let down = hang(&laws[1], ring)?;
+        states.push(sheet.state(&solution, drape.finest.start));
+    }
+    let (down, up) = (states.remove(1), states.remove(0));
     let fact = StudyFact::DrapeByFace { up: up.coefficient, down: down.coefficient };
     drape.findings.push(Finding::new(fact).at(Place::file(&case.path)));
     drape.faces = Some(Faces { up, down });
