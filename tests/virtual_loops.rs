@@ -10,13 +10,13 @@ use std::path::{Path, PathBuf};
 
 use kesf::case::{Case, Drive, ShellTest, VirtualTest};
 use kesf::characterise::{FabricSheet, FrictionLaw, Settings, characterise};
-use kesf::constitutive::{Assumptions, section, tension};
+use kesf::constitutive::{Assumptions, TensileLaw, section, tension};
 use kesf::element::Formulation;
 use kesf::instrument::{Direction, Parameter, ReadSettings, Test, read_fabrics};
-use kesf::law::Mode;
+use kesf::law::{Mode, State};
 use kesf::section::SheetLaw;
 use kesf::solve::Options;
-use kesf::study::{PreparedCase, VirtualLoop, simulate_loop};
+use kesf::study::{PreparedCase, VirtualLoop, Watch, simulate_loop};
 
 fn sheet(name: &str) -> FabricSheet {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("kesf_data").join(name);
@@ -122,6 +122,72 @@ fn the_three_tests_of_a_fabric_with_loops() {
         }
         assert!(apart < within, "{test:?}: {apart}");
     }
+}
+
+/// A strip in a structure, pulled by the greatest force of the instrument and let go: the strain at both ends of the way is that of the law
+/// at a point (reference: the law in small steps), and the stretch that of the test. Elastic, the strip goes along the reversible part.
+#[test]
+fn a_strip_of_a_structure_stretches_along_the_measured_curve() {
+    const FORCE: f64 = 490.3325;
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/large_rotations/stretched.toml");
+    let sheet = sheet("twill");
+    for law in ["friction", "elastic"] {
+        let text = std::fs::read_to_string(&file).unwrap().replace("\"friction\"", &format!("\"{law}\""));
+        let case = Case::parse(&file, &text).unwrap();
+        let made = section(&sheet, case.assumptions().unwrap()).unwrap();
+        assert_eq!(made.section.d_m[(0, 1)], 0.0);
+        assert!(made.used.iter().any(|u| u.name == "tension" && u.source.starts_with("measured")));
+        let prepared = PreparedCase::new(&case, &Options::default()).unwrap();
+        let result = prepared.solve_watched(&made, Watch::default()).unwrap();
+        let path = result.path.as_ref().unwrap();
+        assert!(path.converged && path.load_steps.len() == 2, "{:?}", result.findings);
+        let ends = path.load_steps.iter().map(|step| path.probes[0][step.steps.end - 1][0] / 0.05);
+        let ends: Vec<f64> = ends.collect();
+        let (of_law, mode) = (made.law.as_ref().unwrap(), case.law());
+        let channel = of_law.channels[0].as_ref().unwrap();
+        // Forces in two hundred steps up and down, each strain by bisection.
+        let (mut state, mut expected) = (State::default(), Vec::new());
+        for i in (0..=200).chain((0..200).rev()) {
+            let force = FORCE * f64::from(i) / 200.0;
+            let (mut low, mut high) = (-0.5, 0.5);
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if channel.respond(mode, &state, middle).stress < force {
+                    low = middle
+                } else {
+                    high = middle
+                }
+            }
+            state = channel.respond(mode, &state, 0.5 * (low + high)).state;
+            if i == 200 || expected.len() == 1 && i == 0 {
+                expected.push(state.strain);
+            }
+        }
+        println!("{law}: {ends:?}, of the law {expected:?}");
+        for (end, expected) in ends.iter().zip(&expected) {
+            assert!((end - expected).abs() < 0.01 * expected.abs().max(1e-3), "{law}: {end} {expected}");
+        }
+        let emt = sheet.get(Parameter::Emt, Some(Direction::Warp)).unwrap().mean;
+        println!("EMT {emt}");
+        if law == "friction" {
+            assert!((ends[0] / emt - 1.0).abs() < 0.05, "{} {emt}", ends[0]);
+            assert!(ends[1] > 0.05 * ends[0], "what friction keeps: {ends:?}");
+        }
+    }
+}
+
+/// Curves are for sheets in large rotations, and need records of both directions.
+#[test]
+fn curves_of_tension_are_a_choice_that_needs_records() {
+    let curve = Assumptions { tensile_law: TensileLaw::Curve, ..Assumptions::default() };
+    let error = section(&sheet("matsudaira_b_wool_tropical"), &curve).unwrap_err();
+    assert_eq!(error.code(), "C004");
+    assert!(error.to_string().contains("law of tension"), "{error}");
+    let text = "title = \"t\"\nfabric = \"*\"\n[assumptions]\ntensile_law = \"curve\"\n[sheet]\nshape = \"strip\"\nwidth = \"5 cm\"\n\
+                height = \"1 cm\"\ncells = [4, 1]\n[[supports]]\nset = \"left\"\nkind = \"clamped\"\n[[loads]]\nkind = \"gravity\"\n\
+                [analysis]\nkind = \"linear\"\n";
+    let error = Case::parse(Path::new("t.toml"), text).unwrap_err();
+    assert!(error.to_string().contains("tensile_law") && error.place().line == 4, "{error}");
 }
 
 /// Elastic cloth has no law beside its section; cloth without 2HB cannot have friction.

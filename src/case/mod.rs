@@ -230,7 +230,8 @@ impl Case {
     /// Makes an elastic drape a quick one, for the fabrics of which curves were measured; false for another case, and for one
     /// that is solved at many points of its inputs.
     pub fn make_quick(&mut self) -> bool {
-        let is_once = self.law() == Mode::Elastic && self.sampling().is_none();
+        let has_laws = self.assumptions().is_some_and(Assumptions::has_laws);
+        let is_once = !has_laws && self.sampling().is_none();
         match &mut self.problem {
             Problem::Drape(problem) if is_once => {
                 problem.make_quick();

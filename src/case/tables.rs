@@ -15,6 +15,7 @@ use super::problem::{DrapeProblem, InstrumentTest, Mounting, Problem, SheetProbl
 use super::sheet::{Sheet, SheetTable};
 use super::virtual_test::VirtualTestTable;
 use super::{CaseError, CaseTable};
+use crate::constitutive::TensileLaw;
 use crate::element::Formulation;
 use crate::finding::{Located, Node};
 use crate::law::Mode;
@@ -23,6 +24,8 @@ use crate::law::Mode;
 struct Abilities {
     /// Whether a law with friction has a meaning.
     friction: bool,
+    /// Whether a sheet may follow curves of tension.
+    curves: bool,
     /// Why bands by sampling have none, if so.
     against_sampling: Option<&'static str>,
 }
@@ -62,6 +65,7 @@ impl CaseTable {
         }
         let abilities = Abilities {
             friction: analysis.can_have_friction(),
+            curves: analysis.can_have_friction(),
             against_sampling: (!analysis.can_be_sampled()).then_some(LINEAR_BANDS),
         };
         let material = self.material(case, &abilities)?;
@@ -125,9 +129,18 @@ impl CaseTable {
         };
         let assumptions = self.assumptions.clone().unwrap_or_default();
         check_assumptions(&assumptions, case)?;
+        let at = case.get("assumptions").unwrap_or(*case);
+        if assumptions.tensile_law == TensileLaw::Curve && !abilities.curves {
+            return refused(
+                at.value_place("tensile_law"),
+                "tensile_law = \"curve\" is for a [sheet] in large rotations and a drape (a test of tension follows its curve with [assumptions] \
+                 law = \"friction\"): write [analysis] kind = \"nonlinear\", \"drape\" or \"newmark\" with large_rotations = true, or remove \
+                 `tensile_law`",
+            );
+        }
         if assumptions.law != Mode::Elastic && !abilities.friction {
             return refused(
-                case.get("assumptions").unwrap_or(*case).value_place("law"),
+                at.value_place("law"),
                 "friction needs large rotations: write [analysis] kind = \"nonlinear\", \"drape\" or \"newmark\" with large_rotations = true (or \
                  [virtual_test] formulation = \"nonlinear\"), or [assumptions] law = \"elastic\"",
             );
@@ -196,8 +209,11 @@ impl CaseTable {
             );
         }
         let records = "FAB records are of one specimen and have no spread: remove [uncertainty]";
-        let abilities =
-            Abilities { friction: false, against_sampling: table.uses_records().then_some(records) };
+        let abilities = Abilities {
+            friction: false,
+            curves: false,
+            against_sampling: table.uses_records().then_some(records),
+        };
         let material = self.material(case, &abilities)?;
         table.checked(at, material, case)
     }
@@ -219,7 +235,8 @@ impl CaseTable {
         let test = table.checked(at)?;
         let large = test.is_some_and(|test| test.is_large());
         let against_sampling = (!large).then_some(LINEAR_BANDS);
-        let material = self.material(case, &Abilities { friction: large, against_sampling })?;
+        let material =
+            self.material(case, &Abilities { friction: large, curves: false, against_sampling })?;
         if material.law() != Mode::Elastic && table.pretension.is_some() {
             return refused(
                 at.key_place("pretension"),

@@ -41,6 +41,10 @@ pub struct Assumptions {
     /// remembers) or `virgin` (the curve of first loading, without memory); `elastic`. For large
     /// rotations and whole cycles of virtual tests.
     pub law: Mode,
+    /// How the sheet resists tension along its yarns: by its `modulus`, or along the measured `curve`; `modulus`. Each curve acts
+    /// alone, so that Poisson's ratio is 0 beside them; what friction does in them is said by `law`. For sheets and drapes in
+    /// large rotations, of fabrics with KES-FB1 records of both directions.
+    pub tensile_law: TensileLaw,
     /// Stands in for the hysteresis of bending that the sheet lacks, where `law` asks for friction: the
     /// curvature `2HB/(2B)` that bent cloth keeps without a moment; none. Four published wovens have 0.18 to
     /// 0.53 1/cm.
@@ -65,6 +69,13 @@ pub struct Assumptions {
     pub areal_density: Option<ArealDensity>,
 }
 
+impl Assumptions {
+    /// Whether the sheet is more than the matrices of its section: it has laws, which need large rotations.
+    pub fn has_laws(&self) -> bool {
+        self.law != Mode::Elastic || self.tensile_law == TensileLaw::Curve
+    }
+}
+
 impl Default for Assumptions {
     fn default() -> Self {
         Self {
@@ -75,6 +86,7 @@ impl Default for Assumptions {
             bending_coupling: BendingCoupling::default(),
             transverse_shear: TransverseShear::default(),
             law: Mode::Elastic,
+            tensile_law: TensileLaw::Modulus,
             residual_curvature: None,
             tensile: LineForce(5000.0),
             shear: LineForce(56.187_965_62),
@@ -107,6 +119,17 @@ pub enum PoissonRule {
     Major,
     /// No coupling.
     Zero,
+}
+
+/// How a sheet resists tension along its yarns.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TensileLaw {
+    /// By one modulus.
+    #[default]
+    Modulus,
+    /// Along the measured curve.
+    Curve,
 }
 
 /// Where the torsional rigidity D66 = H comes from: M_xy = D66 · 2 w,xy.

@@ -5,7 +5,7 @@
 //! | κ_x, κ_y | of KES-FB2 along warp and weft: from a loop, or from B and 2HB |
 //! | κ_xy | D66 of the section, and friction in proportion to it: M0_H = √(M01 M02) H / √(B1 B2) |
 //! | γ_xy | of KES-FB1 shear along the warp, else along the weft; linear without |
-//! | ε_x, ε_y | linear: the slope of the section; their laws are for the simulated tension test only |
+//! | ε_x, ε_y | linear: the slope of the section; with `tensile_law = "curve"` those of KES-FB1 tension ([`tension`]) |
 //!
 //! The law of a specimen is brought to what the section and the sheet have: B and G of the section, 2HB and the mean
 //! of 2HG of the sheet ([`FrictionLaw::with_values`]), so that elastic and friction are of one fabric.
@@ -14,7 +14,7 @@
 //! hold to both sides. Bending has both faces in its law, as the loop of FB2 has.
 
 use super::notes::{Because, Notes};
-use super::{Assumptions, ConstitutiveError, Provenance};
+use super::{Assumptions, ConstitutiveError, Provenance, tension};
 use crate::characterise::{Basis, FabricSheet, FrictionLaw, bending_law};
 use crate::finding::SectionFact;
 use crate::instrument::{Direction, Parameter, Test};
@@ -22,15 +22,16 @@ use crate::law::{Backbone, Channel, Family, LawError, Mode, Slider};
 use crate::quantity::significant;
 use crate::section::{SheetLaw, ShellSection};
 
-/// The laws of a sheet beside its section; `None` if it is to be elastic.
+/// The laws of a sheet beside its section; `None` if it is to be linear.
 pub(super) fn law(
     section: &ShellSection,
     assumptions: &Assumptions,
     notes: &mut Notes,
 ) -> Result<Option<SheetLaw>, ConstitutiveError> {
+    let [ex, ey] = tension::curves(assumptions, notes)?;
     let mode = assumptions.law;
     if mode == Mode::Elastic {
-        return Ok(None);
+        return Ok(ex.is_some().then(|| SheetLaw::new(mode, [ex, ey, None, None, None, None])));
     }
     let sheet: &FabricSheet = notes.sheet;
     let [warp, weft] = [Direction::Warp, Direction::Weft];
@@ -80,7 +81,7 @@ pub(super) fn law(
         notes.origin_value(parameter, direction, &[]);
     }
     let [x, y] = bending;
-    let channels = [None, None, shear.map(|(law, _)| law), Some(x), Some(y), twist];
+    let channels = [ex, ey, shear.map(|(law, _)| law), Some(x), Some(y), twist];
     let fabric = notes.sheet.name.clone();
     let law = SheetLaw::new(mode, channels).checked(section);
     law.map(Some).map_err(|source| ConstitutiveError::Section { fabric, source })
@@ -111,23 +112,6 @@ fn stand_in(
         [Ok(warp), Ok(weft)] => Ok([warp, weft]),
         [Err(source), _] | [_, Err(source)] => Err(ConstitutiveError::Law { fabric, source }),
     }
-}
-
-/// The laws of `ε_x, ε_y` from the tests of tension, with the mean WT, to both sides, and nowhere softer than 1e-4 of
-/// their greatest tangent: cloth that is not stretched yet hardly resists, and a shell cannot do
-/// without. The stress at strain 0 stays: it is the slack of the specimen. `None` where there is no law.
-pub fn tension(sheet: &FabricSheet) -> [Option<Channel>; 2] {
-    let firm = |direction| {
-        let law = sheet.mean_law(Test::Tensile, Some(direction))?;
-        let backbone = law.backbone();
-        let knots: Vec<f64> = backbone.knots().collect();
-        let least = 1e-4 * backbone.tangents().fold(0.0, f64::max);
-        let tangents: Vec<f64> = backbone.tangents().map(|t| t.max(least)).collect();
-        // Greater tangents at the same knots, and the same sliders: a law if the first one was.
-        let backbone = Backbone::new(backbone.offset(), &knots, &tangents).ok()?;
-        Channel::new(backbone, law.families().to_vec(), false).ok()
-    };
-    [firm(Direction::Warp), firm(Direction::Weft)]
 }
 
 /// The law of twist with the rigidity `h`; `None` if it has none. The sliders are those of both

@@ -10,7 +10,7 @@
 use nalgebra::Matrix3;
 
 use super::notes::{Because, Notes};
-use super::{Assumptions, Constant, ConstitutiveError, InputSource, PoissonRule, Provenance};
+use super::{Assumptions, Constant, ConstitutiveError, InputSource, PoissonRule, Provenance, TensileLaw};
 use crate::characterise::Modulus;
 use crate::finding::{EvaluationFact, Fact, Finding, SectionFact};
 use crate::instrument::Direction;
@@ -29,24 +29,25 @@ pub(super) fn matrix(
     }
     let nu = assumptions.poisson;
     // nu_g = sqrt(nu12 nu21) in every rule; positive definite for |nu_g| < 1.
-    let (nu_g, limit) = match assumptions.poisson_rule {
+    let alone = assumptions.tensile_law == TensileLaw::Curve;
+    let rule = if alone { PoissonRule::Zero } else { assumptions.poisson_rule };
+    let (nu_g, limit) = match rule {
         PoissonRule::Geometric => (nu, 1.0),
         PoissonRule::Major => (nu * (e2 / e1).sqrt(), (e1 / e2).sqrt()),
         PoissonRule::Zero => (0.0, f64::INFINITY),
     };
     if !(nu.is_finite() && nu_g.abs() < 1.0) {
-        let (fabric, rule) = (notes.sheet.name.clone(), assumptions.poisson_rule);
+        let fabric = notes.sheet.name.clone();
         return Err(ConstitutiveError::Poisson { fabric, poisson: nu, rule, limit });
     }
     let (nu12, nu21) = (nu_g * (e1 / e2).sqrt(), nu_g * (e2 / e1).sqrt());
-    notes.used(
-        "Poisson's ratio",
-        format!("nu12 {}, nu21 {}", significant(nu12), significant(nu21)),
-        (
-            Provenance::Assumed,
-            format!("{nu}, {} rule; no KES test measures it", assumptions.poisson_rule).into(),
-        ),
-    );
+    let why = if alone {
+        "tensile_law = \"curve\": the curves of warp and weft act each alone".into()
+    } else {
+        format!("{nu}, {rule} rule; no KES test measures it").into()
+    };
+    let value = format!("nu12 {}, nu21 {}", significant(nu12), significant(nu21));
+    notes.used("Poisson's ratio", value, (Provenance::Assumed, why));
     let d = 1.0 / (1.0 - nu_g * nu_g);
     let d12 = nu_g * (e1 * e2).sqrt() * d;
     // Eq. (4), corrected: one off-diagonal term.

@@ -21,6 +21,7 @@ mod notes;
 mod perturbed;
 mod sensitivity;
 mod shear;
+mod tension;
 
 use std::borrow::Cow;
 
@@ -30,15 +31,17 @@ use crate::instrument::{Direction, Parameter};
 use crate::quantity::{Estimate, significant};
 use crate::section::{SheetLaw, ShellSection};
 
-pub use assumptions::{Assumptions, BendingCoupling, ChoiceError, PoissonRule, Torsion, TransverseShear};
+pub use assumptions::{
+    Assumptions, BendingCoupling, ChoiceError, PoissonRule, TensileLaw, Torsion, TransverseShear,
+};
 pub use error::ConstitutiveError;
 pub use faces::face_laws;
-pub use friction::tension;
 use notes::{Because, Notes, value};
 pub use notes::{Provenance, Used};
 pub use perturbed::{InputSource, law_inputs, perturbed};
 use sensitivity::Constant;
 pub use sensitivity::{Entry, Input, SectionDerivative, bands, entries};
+pub use tension::tension;
 
 /// A section with everything that went into it.
 #[derive(Clone, Debug, PartialEq)]

@@ -39,6 +39,7 @@ use crate::case::{Annulus, DrapeProblem, Outline, Problem, Sheet};
 use crate::characterise::FabricSheet;
 use crate::fields::{Resultants, element_means_moved};
 use crate::finding::{Finding, Located, Place, StudyFact};
+use crate::law::Mode;
 use crate::model::Model;
 use crate::quantity::Ratio;
 use crate::section::{SheetLaw, ShellSection};
@@ -204,7 +205,8 @@ pub fn drape(
         coefficient: state.coefficient,
         elements: state.elements,
     });
-    let of_law = if law.is_none() { Some(StudyFact::ElasticDrape {}) } else { shaken };
+    let slips = law.is_some_and(|law| law.mode != Mode::Elastic);
+    let of_law = if !slips { Some(StudyFact::ElasticDrape {}) } else { shaken };
     let mut findings = findings(case, problem, &meshes, &failed, of_law);
     findings.extend(interference::of(case, &model, &solution.state, ring.inner));
     Ok(Drape {
