@@ -86,7 +86,7 @@ mod tests {
     use super::*;
     use crate::characterise::Key;
     use crate::constitutive::{Assumptions, section};
-    use crate::quantity::Estimate;
+    use crate::quantity::{Curvature, Estimate};
 
     fn sheet(sides: &[(Parameter, f64)]) -> FabricSheet {
         let mut sheet = FabricSheet { name: "one-sided".into(), ..FabricSheet::default() };
@@ -126,8 +126,9 @@ mod tests {
 
     #[test]
     fn friction_stays_beside_the_slopes_of_either_side() {
-        let given = [(Parameter::Bf, 1.2e-5), (Parameter::Bb, 0.8e-5), (Parameter::Hb, 4e-4)];
-        let friction = Assumptions { law: Mode::Friction, ..Assumptions::default() };
+        let given = [(Parameter::Bf, 1.2e-5), (Parameter::Bb, 0.8e-5)];
+        let residual_curvature = Some(Curvature(25.0));
+        let friction = Assumptions { law: Mode::Friction, residual_curvature, ..Assumptions::default() };
         let sheet = sheet(&given);
         let made = section(&sheet, &friction).unwrap();
         let [up, _] = face_laws(&sheet, &made).unwrap().unwrap();

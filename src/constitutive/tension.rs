@@ -11,17 +11,18 @@ use crate::quantity::significant;
 /// their greatest tangent: cloth that is not stretched yet hardly resists, and a shell cannot do
 /// without. The stress at strain 0 stays: it is the slack of the specimen. `None` where there is no law.
 pub fn tension(sheet: &FabricSheet) -> [Option<Channel>; 2] {
-    let firm = |direction| {
-        let law = sheet.mean_law(Test::Tensile, Some(direction))?;
-        let backbone = law.backbone();
-        let knots: Vec<f64> = backbone.knots().collect();
-        let least = 1e-4 * backbone.tangents().fold(0.0, f64::max);
-        let tangents: Vec<f64> = backbone.tangents().map(|t| t.max(least)).collect();
-        // Greater tangents at the same knots, and the same sliders: a law if the first one was.
-        let backbone = Backbone::new(backbone.offset(), &knots, &tangents).ok()?;
-        Channel::new(backbone, law.families().to_vec(), false).ok()
-    };
-    [firm(Direction::Warp), firm(Direction::Weft)]
+    [Direction::Warp, Direction::Weft].map(|direction| firm(sheet, direction))
+}
+
+fn firm(sheet: &FabricSheet, direction: Direction) -> Option<Channel> {
+    let law = sheet.mean_law(Test::Tensile, Some(direction))?;
+    let backbone = law.backbone();
+    let knots: Vec<f64> = backbone.knots().collect();
+    let least = 1e-4 * backbone.tangents().fold(0.0, f64::max);
+    let tangents: Vec<f64> = backbone.tangents().map(|t| t.max(least)).collect();
+    // Greater tangents at the same knots, and the same sliders: a law if the first one was.
+    let backbone = Backbone::new(backbone.offset(), &knots, &tangents).ok()?;
+    Channel::new(backbone, law.families().to_vec(), false).ok()
 }
 
 /// The laws of `ε_x, ε_y` of a structure, if the curves are asked for: those of the tests of tension, through the origin, for a
@@ -39,16 +40,18 @@ pub(super) fn curves(
             "add KES-FB1 records of tension, loaded and released, along both, or choose tensile_law = \"modulus\"",
         ));
     };
-    let range = |law: &Channel| {
-        let tangents = law.backbone().tangents();
-        let (least, greatest) = tangents.fold((f64::INFINITY, 0.0f64), |(a, b), t| (a.min(t), b.max(t)));
-        format!("{} to {} N/m", significant(least), significant(greatest))
-    };
-    let value = format!("warp {}, weft {}", range(&warp), range(&weft));
+    let value = format!("warp {}, weft {}", tangents(&warp), tangents(&weft));
     let why = "tangents of the reversible part of the curves of KES-FB1, each alone, through the origin";
     notes.used("tension", value, (Provenance::Measured, why.into()));
     for direction in [Direction::Warp, Direction::Weft] {
         notes.origin_value(Parameter::Wt, Some(direction), &[]);
     }
     Ok([Some(warp.centred()), Some(weft.centred())])
+}
+
+/// The least and the greatest tangent of the reversible part, as text.
+fn tangents(law: &Channel) -> String {
+    let (least, greatest) =
+        (law.backbone().tangents()).fold((f64::INFINITY, 0.0f64), |(a, b), t| (a.min(t), b.max(t)));
+    format!("{} to {} N/m", significant(least), significant(greatest))
 }
