@@ -14,8 +14,11 @@ pub use exports::{archive, fab, ods, text, xls, xlsx};
 pub use tables::{bounds, library, parts};
 pub use toml_files::{case, dialect, fabric, settings};
 
+/// Makes a target.
+type Make = fn() -> Target;
+
 /// Every target by its name.
-pub const TARGETS: [(&str, fn() -> Target); 17] = [
+pub const TARGETS: [(&str, Make); 17] = [
     ("archive", archive),
     ("bounds", bounds),
     ("cards", cards),
