@@ -298,11 +298,6 @@ pub(crate) fn bracket(points: &[DrapePoint]) -> Option<Columns> {
     let of = |law: Mode| points.iter().filter(move |p| p.law == law).map(|p| &p.point);
     for elastic in of(Mode::Elastic) {
         let Some(friction) = of(Mode::Friction).find(|p| p.label == elastic.label) else { continue };
-        let band = |p: &ParityPoint| p.simulated_band.unwrap_or([p.simulated; 2]);
-        let cell = |p: &ParityPoint| {
-            let [low, high] = band(p);
-            format!("{:.1} ({low:.1} to {high:.1})", p.simulated)
-        };
         let ([low, high], [low_friction, high_friction]) = (band(elastic), band(friction));
         let place = match elastic.measured {
             m if m < low.min(low_friction) => "below",
@@ -310,9 +305,24 @@ pub(crate) fn bracket(points: &[DrapePoint]) -> Option<Columns> {
             _ => "within",
         };
         let measured = format!("{:.1}", elastic.measured);
-        table.row([elastic.label.clone(), cell(elastic), cell(friction), measured, place.into()]);
+        table.row([
+            elastic.label.clone(),
+            bracket_cell(elastic),
+            bracket_cell(friction),
+            measured,
+            place.into(),
+        ]);
     }
     table.filled()
+}
+
+fn band(p: &ParityPoint) -> [f64; 2] {
+    p.simulated_band.unwrap_or([p.simulated; 2])
+}
+
+fn bracket_cell(p: &ParityPoint) -> String {
+    let [low, high] = band(p);
+    format!("{:.1} ({low:.1} to {high:.1})", p.simulated)
 }
 
 /// Writes the chart `drape_parity`, if there is anything to compare; its name if so.

@@ -127,10 +127,9 @@ impl Drape {
 
     /// The mean coefficient of the states near the one of lowest energy, each as often as searches ended in it, moved as the band.
     pub fn mean(&self) -> f64 {
-        let weight = |s: &DrapeState| s.searches as f64;
         let near = self.near();
-        let sum: f64 = near.iter().map(|s| weight(s) * s.coefficient).sum();
-        sum / near.iter().map(weight).sum::<f64>() + self.moved()
+        let sum: f64 = near.iter().map(|s| s.searches as f64 * s.coefficient).sum();
+        sum / near.iter().map(|s| s.searches as f64).sum::<f64>() + self.moved()
     }
 
     /// How many searches ended in a state with a number of folds near the lowest energy, by that number.
@@ -178,9 +177,8 @@ pub fn drape(
     let cloth = Cloth { case, problem, section, law, watch };
     let sheet = Hanging::new(&cloth, Ring::of(problem), &single)?;
     build::weighed(&sheet.model)?;
-    let go_on = || if (watch.stopped)() { Err(StudyError::Stopped) } else { Ok(()) };
     let Searches { found, mut failed } = sheet.searches(folds, &single)?;
-    go_on()?;
+    watch.not_stopped()?;
     let Some(lowest) = found.first() else {
         // `folds` is not empty, so there is a failure.
         return Err(failed.swap_remove(0).1.into());
@@ -190,7 +188,7 @@ pub fn drape(
     for _ in 0..*refinements {
         let finer = Hanging::new(&cloth, sheet.ring.refined(), options)?;
         solution = finer.relax(finer.carried(&sheet, &solution.state), options)?;
-        go_on()?;
+        watch.not_stopped()?;
         finest = finer.state(&solution, start);
         meshes.push(finest.clone());
         (watch.stage)();

@@ -50,9 +50,12 @@ impl Folds {
             return Self { harmonic, ..Self::default() };
         }
         let (peaks, valleys) = turns(&smooth, PROMINENCE * (high - low));
-        let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
-        Self { count: peaks.len(), harmonic, amplitude: 0.5 * (mean(&peaks) - mean(&valleys)) }
+        Self { count: peaks.len(), harmonic, amplitude: 0.5 * (average(&peaks) - average(&valleys)) }
     }
+}
+
+fn average(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
 /// Peaks and valleys of a closed curve that differ from their neighbours by more than `least`.
