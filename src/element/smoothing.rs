@@ -70,8 +70,9 @@ impl Cells {
     /// The 2 x 2 Gauss points of the `k`-th cell, in the natural coordinates of the element, and the natural area of each.
     pub fn gauss(self, k: usize) -> ([[f64; 2]; 4], f64) {
         let [x0, x1, y0, y1] = self.bounds(k);
-        let inside = |[x, y]: [f64; 2]| [0.5 * (x0 + x1 + x * (x1 - x0)), 0.5 * (y0 + y1 + y * (y1 - y0))];
-        (GAUSS_2X2.map(inside), 0.25 * (x1 - x0) * (y1 - y0))
+        let points =
+            GAUSS_2X2.map(|[x, y]| [0.5 * (x0 + x1 + x * (x1 - x0)), 0.5 * (y0 + y1 + y * (y1 - y0))]);
+        (points, 0.25 * (x1 - x0) * (y1 - y0))
     }
 
     /// Every cell of the plane quad `xy`.

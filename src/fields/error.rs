@@ -143,14 +143,14 @@ impl Own {
         let [of_strain, of_curvature] = [section.d_m, section.d_b].map(|d| d * element.to_material());
         let Formulation { membrane, bending, .. } = model.formulation;
         let whole = strain_matrices(&Cell::whole(&element.frame.xy));
-        let of_cell = |cell: Cell| {
+        let above_linear = section.d_m * moved.above_linear(model, quad)?;
+        let cells = element.cells().map(|cell| {
             let (strain, curvature) = strain_matrices(&cell);
             let strain = if membrane == Membrane::Cells { strain } else { whole.0 };
             let curvature = if bending == Bending::Cells { curvature } else { whole.1 };
             [of_strain * strain * in_plane, of_curvature * curvature * plate]
-        };
-        let above_linear = section.d_m * moved.above_linear(model, quad)?;
-        let cells = element.cells().map(of_cell).collect();
+        });
+        let cells = cells.collect();
         Ok(Self { cells, above_linear, local: [in_plane, plate], d_m: section.d_m })
     }
 
