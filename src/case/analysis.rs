@@ -176,6 +176,8 @@ pub struct Nonlinear {
     pub settings: Settings,
     /// The way to the equilibrium.
     pub method: Method,
+    /// Coarser meshes, coarsest first, that show what the mesh leaves open.
+    pub coarser: Option<Located<Vec<Sheet>>>,
     /// Position of the perturbation, or else of the table, in the case file.
     pub perturbation: Located<()>,
 }
@@ -231,7 +233,8 @@ impl Analysis {
             Self::Linear(Linear { coarser, .. })
             | Self::Modal(Modal { coarser, .. })
             | Self::Buckling(Buckling { coarser, .. }) => coarser.as_ref(),
-            Self::Newmark(_) | Self::Nonlinear(_) | Self::Steps(_) => None,
+            Self::Nonlinear(nonlinear) => nonlinear.coarser.as_ref(),
+            Self::Newmark(_) | Self::Steps(_) => None,
         }
     }
 

@@ -128,7 +128,7 @@ impl NonlinearTable {
             ..default
         };
         let perturbation = at.located_at("perturbation", ());
-        Ok(Nonlinear { loads, settings, method: self.solver_method(), perturbation })
+        Ok(Nonlinear { loads, settings, method: self.solver_method(), coarser: None, perturbation })
     }
 
     fn solver_method(&self) -> Method {

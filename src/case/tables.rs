@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::analysis::{Analysis, AnalysisTable, Buckling, DrapeSizes, DrapeTable, Linear, Modal};
+use super::analysis::{Analysis, AnalysisTable, Buckling, DrapeSizes, DrapeTable, Linear, Modal, Nonlinear};
 use super::bending_test::{BendingTest, BendingTestTable};
 use super::check::{checks, probes};
 use super::element::Purpose;
@@ -100,13 +100,20 @@ impl CaseTable {
                 (table.sheet(of_sheet)?, Analysis::Newmark(newmark.checked(&at, loads(case)?)?))
             }
             AnalysisTable::Nonlinear(nonlinear) => {
-                foreign(case, &["convergence"], NO_CONVERGENCE)?;
+                let sheet = table.sheet(of_sheet)?;
                 let nonlinear = nonlinear.with_obstacles(case, &at)?;
                 let analysis = match steps(&self.steps, case, &nonlinear)? {
-                    Some(steps) => Analysis::Steps(steps),
-                    None => Analysis::Nonlinear(Box::new(nonlinear.checked(&at, loads(case)?)?)),
+                    Some(steps) => {
+                        foreign(case, &["convergence"], NO_CONVERGENCE)?;
+                        Analysis::Steps(steps)
+                    }
+                    None => {
+                        let coarser = self.coarser(case, &sheet)?;
+                        let nonlinear = nonlinear.checked(&at, loads(case)?)?;
+                        Analysis::Nonlinear(Box::new(Nonlinear { coarser, ..nonlinear }))
+                    }
                 };
-                (table.sheet(of_sheet)?, analysis)
+                (sheet, analysis)
             }
         };
         let problem = self.sheet_problem(case, material, sheet, analysis)?;
@@ -352,8 +359,7 @@ impl CaseTable {
     }
 }
 
-const NO_CONVERGENCE: &str =
-    "[convergence] is for linear, modal and buckling analyses: remove it (a drape has `refinements`)";
+const NO_CONVERGENCE: &str = "[convergence] is for linear, modal, buckling and nonlinear analyses without [[steps]]: remove it (a drape has `refinements`)";
 
 const NO_OBSTACLES: &str = "[[obstacles]] are for statics in large rotations: write [analysis] kind = \"nonlinear\", or remove them (a drape is \
                             clamped between its discs)";

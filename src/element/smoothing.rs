@@ -1,6 +1,6 @@
 //! Smoothing cells and the mean gradients of the shape functions over them.
 
-use super::quad4::shape;
+use super::quad4::{GAUSS_2X2, shape};
 
 /// How an element is divided into smoothing cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,6 +65,14 @@ impl Cells {
             }
             Self::HalfAndQuarters => [[-1.0, 0.0, -1.0, 1.0], [0.0, 1.0, -1.0, 0.0], [0.0, 1.0, 0.0, 1.0]][k],
         }
+    }
+
+    /// The 2 x 2 Gauss points of the `k`-th cell, in the natural coordinates of the element, and the natural area of each.
+    pub fn gauss(self, k: usize) -> ([[f64; 2]; 4], f64) {
+        let [x0, x1, y0, y1] = self.bounds(k);
+        let points =
+            GAUSS_2X2.map(|[x, y]| [0.5 * (x0 + x1 + x * (x1 - x0)), 0.5 * (y0 + y1 + y * (y1 - y0))]);
+        (points, 0.25 * (x1 - x0) * (y1 - y0))
     }
 
     /// Every cell of the plane quad `xy`.

@@ -115,9 +115,7 @@ impl Operator {
 
     /// The membrane forces that the linear strain of a motion in its frame lacks (N/m).
     fn above_linear(&self, local: &Vector24) -> Vector3<f64> {
-        let yarns = YarnStrain::of(&self.yarns.gradient(local)).excess;
-        let arcs = self.arcs.as_ref().map_or_else(Vector3::zeros, |arcs| arcs.bent(local).strain);
-        self.d_m * (yarns + arcs)
+        self.d_m * above_linear(&self.yarns, self.arcs.as_ref(), local)
     }
 
     fn apply(&self, moved: &Displacement) -> [Resultants; PLACES] {
@@ -136,9 +134,26 @@ impl Operator {
 /// Displacements of the nodes of an element.
 pub struct Displacement {
     /// In global axes; of large ones the part that strains the element, turned back to where it rests.
-    global: Vector24,
+    pub global: Vector24,
     /// The same in the axes of the frame, of large ones.
     in_frame: Option<Vector24>,
+}
+
+impl Displacement {
+    /// What the mean membrane strain of the element has above the linear one, material axes; nothing for small motions.
+    pub fn above_linear(&self, model: &Model, quad: usize) -> Result<Vector3<f64>, ModelError> {
+        let Some(local) = &self.in_frame else { return Ok(Vector3::zeros()) };
+        // In the frame that the element is moved in, whatever the axes elsewhere.
+        let element = model.element(quad, false)?;
+        Ok(above_linear(&element.yarns(), element.arcs().as_ref(), local))
+    }
+}
+
+/// What the mean membrane strain of a large motion in its frame has above the linear one: stretches of the yarns and their
+/// angle, and the arcs of a bent element.
+fn above_linear(yarns: &Yarns, arcs: Option<&Arcs>, local: &Vector24) -> Vector3<f64> {
+    let arcs = arcs.map_or_else(Vector3::zeros, |arcs| arcs.bent(local).strain);
+    YarnStrain::of(&yarns.gradient(local)).excess + arcs
 }
 
 /// Displacements of the nodes of an element, taken for small.

@@ -112,8 +112,9 @@ mod tests {
     use std::path::Path;
 
     use super::*;
+    use crate::analytical::von_karman::VonKarmanPlate;
     use crate::solve::Options;
-    use crate::study::{build, solve_case};
+    use crate::study::{PreparedCase, Status, build, solve_case};
 
     /// A clamped square of side 1 m, D = 1 N·m, nu = 0.3, t = 1 mm, under 1 mPa.
     const SQUARE: &str = r#"
@@ -187,6 +188,57 @@ at = ["0 m", "0.5 m"]
         assert!(found.quantities.iter().all(|q| told(q) == (q.left() > COARSE)), "{:?}", result.findings);
     }
 
+    /// Large rotations: a clamped square that stretches, deflected by 1.4 thicknesses, against polynomials in von Karman's
+    /// equations; its rotations of 0.01 rad add 1e-4 to them.
+    #[test]
+    fn a_nonlinear_case_tells_what_its_mesh_leaves_open() {
+        let heavy = PRESSED.replace("0.001 Pa", "2 Pa");
+        let nonlinear = format!("{heavy}[analysis]\nkind = \"nonlinear\"\n");
+        let result = solved(&case(16, &format!("{nonlinear}[convergence]\n")));
+        let found = result.convergence.as_ref().unwrap();
+        assert_eq!(found.cells, [[4, 4], [8, 8], [16, 16]]);
+        let w = found.get("centre.w").unwrap();
+        assert_eq!(w.values[0], solved(&case(4, &nonlinear)).probes[0].value.u[2]);
+        let plate = VonKarmanPlate::of_section(1.0, 1.0, &result.model.section);
+        let exact = plate.clamped(2.0, 6).unwrap().deflection(0.5, 0.5);
+        let [finest, limit] = [w.finest(), w.extrapolation.value].map(|value| (value - exact).abs() / exact);
+        assert!((1.0..2.0).contains(&(exact / 1e-3)), "{exact}");
+        assert!(finest < w.left(), "{w:?}, exact {exact}");
+        assert!(2.0 * limit < finest, "{w:?}, exact {exact}");
+        assert!(found.get("centre.membrane_x").is_some() && found.get("strain_energy").is_some());
+    }
+
+    /// A search that came to no equilibrium on a coarser mesh leaves the result as it is, and says so.
+    #[test]
+    fn a_coarser_mesh_without_equilibrium_is_told() {
+        let case = case(16, &format!("{PRESSED}[analysis]\nkind = \"nonlinear\"\n[convergence]\n"));
+        let prepared = PreparedCase::new(&case, &Options::default()).unwrap();
+        let section = build::section(case.section().unwrap()).unwrap();
+        let result = prepared.solve(section).unwrap();
+        let mut coarser = [result.clone(), result.clone()];
+        coarser[1].status = Status::NotConverged;
+        let mut told = CaseResult { convergence: None, findings: Vec::new(), ..result };
+        prepared.tell_meshes(&mut told, &coarser).unwrap();
+        assert!(told.convergence.is_none());
+        let [finding] = &told.findings[..] else { panic!("{:?}", told.findings) };
+        assert!(
+            finding.code() == "S150" && finding.message().contains("cells = [8, 8]"),
+            "{}",
+            finding.message()
+        );
+    }
+
+    /// Of small displacements the estimate in large rotations is the linear one.
+    #[test]
+    fn the_error_of_a_search_under_little_load_is_that_of_a_linear_solve() {
+        let [linear, search] = ["", "[analysis]\nkind = \"nonlinear\"\n"]
+            .map(|more| solved(&case(8, &format!("{PRESSED}{more}"))).error_estimate().unwrap().unwrap());
+        assert!((linear.relative() / search.relative() - 1.0).abs() < 1e-5);
+        for (a, b) in linear.elements.iter().zip(&search.elements) {
+            assert!((a - b).abs() < 1e-5 * linear.energy(), "{a} {b}");
+        }
+    }
+
     #[test]
     fn frequencies_of_which_a_coarse_mesh_has_none_are_left_out_and_coarse_ones_told() {
         let result =
@@ -225,7 +277,14 @@ at = ["0 m", "0.5 m"]
         let with = |more: &str| format!("{PRESSED}{more}");
         refused(18, &with("[convergence]\n"), "multiples of 4");
         refused(16, &with("[convergence]\nmeshes = 4\n"), "take 2 or 3");
-        refused(16, &with("[convergence]\n[analysis]\nkind = \"nonlinear\"\n"), "linear, modal");
+        let motion = "[convergence]\n[analysis]\nkind = \"newmark\"\nduration = \"0.1 s\"\nstep = \"1 ms\"\n";
+        refused(16, &with(motion), "linear, modal");
+        let steps = "[convergence]\n[analysis]\nkind = \"nonlinear\"\n[[steps]]\nname = \"pressed\"\n";
+        refused(
+            16,
+            &format!("{steps}{}", PRESSED.replace("[[loads]]", "[[steps.loads]]")),
+            "without [[steps]]",
+        );
         let file = SQUARE.replace("cells = [CELLS, CELLS]", "cells = [16, 16]\ndistortion = 0.2");
         let e = Case::parse(Path::new("c.toml"), &format!("{file}{PRESSED}[convergence]\n")).unwrap_err();
         assert!(e.to_string().contains("distorted"), "{e}");

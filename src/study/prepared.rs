@@ -63,6 +63,11 @@ impl<'a> PreparedCase<'a> {
         Ok(Self { coarser: coarser.collect::<Result<_, _>>()?, ..own })
     }
 
+    /// The same without the coarser meshes.
+    pub(super) fn on_own_mesh(self) -> Self {
+        Self { coarser: Vec::new(), ..self }
+    }
+
     /// The case on the mesh of a sheet.
     fn on(
         case: &'a Case,

@@ -16,8 +16,8 @@ use super::uncertainty::Uncertainty;
 use crate::case::Reference;
 use crate::element::Mass;
 use crate::fields::{
-    ProbeValue, Recovery, Resultants, curvatures, curvatures_moved, element_means, element_means_moved,
-    reaction_resultants,
+    ErrorEstimate, ProbeValue, Recovery, Resultants, curvatures, curvatures_moved, element_means,
+    element_means_moved, reaction_resultants,
 };
 use crate::finding::{Finding, Place, StudyFact};
 use crate::model::{Model, ModelError};
@@ -203,6 +203,23 @@ impl CaseResult {
             None => recovery.nodal(&self.model, &self.solution.displacement)?,
         };
         Ok(self.nodal.get_or_init(|| nodal))
+    }
+
+    /// How far the resultants of the elements are from those of the sheet, estimated. `None` of modes and shapes of
+    /// buckling, which have no size, and of a sheet that follows a law with friction, whose resultants are not those of its strains.
+    ///
+    /// # Errors
+    /// M008 if the warp direction is normal to an element.
+    pub fn error_estimate(&self) -> Result<Option<ErrorEstimate>, ModelError> {
+        if self.is_modal() || self.law.is_some() {
+            return Ok(None);
+        }
+        let nodal = self.nodal()?;
+        match &self.state {
+            Some(state) => ErrorEstimate::moved(&self.model, state, nodal),
+            None => ErrorEstimate::new(&self.model, &self.solution.displacement, nodal),
+        }
+        .map(Some)
     }
 }
 

@@ -98,14 +98,8 @@ impl PreparedCase<'_> {
                 result.findings.push(buckles(case, lost));
             }
         }
-        if !self.coarser.is_empty() {
-            let section = &result.model.section;
-            let coarser = self.coarser.iter().map(|mesh| mesh.results(section.clone(), fabric, &[], watch));
-            let coarser = coarser.collect::<Result<Vec<_>, _>>()?;
-            let meshes: Vec<&CaseResult> = coarser.iter().chain([&result]).collect();
-            let convergence = Convergence::of(self.problem, &meshes)?;
-            result.findings.extend(convergence.finding(case));
-            result.convergence = Some(convergence);
+        if !self.coarser.is_empty() && result.status != Status::NotConverged {
+            self.compare_meshes(&mut result, fabric, watch)?;
         }
         finite(&result)?;
         let checks = &self.problem.checks;
@@ -117,6 +111,39 @@ impl PreparedCase<'_> {
             result.status = Status::CheckFailed;
         }
         Ok(result)
+    }
+
+    /// Solves the case on its coarser meshes, and adds what they tell. One on which no equilibrium is found tells nothing.
+    fn compare_meshes(
+        &self,
+        result: &mut CaseResult,
+        fabric: OfFabric<'_>,
+        watch: Watch<'_>,
+    ) -> Result<(), StudyError> {
+        let section = &result.model.section;
+        let coarser = self.coarser.iter().map(|mesh| mesh.results(section.clone(), fabric, &[], watch));
+        let coarser = coarser.collect::<Result<Vec<_>, _>>()?;
+        self.tell_meshes(result, &coarser)
+    }
+
+    /// Adds what the results on coarser meshes tell, coarsest first.
+    pub(super) fn tell_meshes(
+        &self,
+        result: &mut CaseResult,
+        coarser: &[CaseResult],
+    ) -> Result<(), StudyError> {
+        if let Some(lost) = coarser.iter().position(|r| r.status == Status::NotConverged) {
+            let sheets = self.problem.analysis.coarser().map_or(&[][..], |meshes| &meshes.value);
+            let cells = sheets.get(lost).and_then(|sheet| sheet.outline.cells()).unwrap_or_default();
+            let fact = StudyFact::CoarserNotConverged { cells };
+            result.findings.push(Finding::new(fact).at(Place::file(&self.case.path)));
+            return Ok(());
+        }
+        let meshes: Vec<&CaseResult> = coarser.iter().chain([&*result]).collect();
+        let convergence = Convergence::of(self.problem, &meshes)?;
+        result.findings.extend(convergence.finding(self.case));
+        result.convergence = Some(convergence);
+        Ok(())
     }
 
     /// What the mesh of this case gives, not yet checked.

@@ -148,7 +148,8 @@ pub fn sample(
             sampler(inputs, &hang).map(Some)
         }
         Problem::Sheet(_) => {
-            let prepared = PreparedCase::new(case, options)?;
+            // What the mesh leaves open is asked of the means alone.
+            let prepared = PreparedCase::new(case, options)?.on_own_mesh();
             let solve = |_: &FabricSheet, made: &Constitutive| of_sheet(&prepared, made);
             sampler(inputs, &solve).map(Some)
         }

@@ -109,6 +109,11 @@ super::facts! {
             /// Which results; none if the coarser meshes have none of them.
             quantities: Vec<CoarseQuantity>,
         } = "{}: take more `cells`", coarse(quantities);
+        /// A coarser mesh without an equilibrium.
+        "S150" CoarserNotConverged {
+            /// Its `cells`.
+            cells: [usize; 2],
+        } = "[convergence] tells nothing: on cells = {cells:?} the search came to no equilibrium; take more `cells`, or meshes = 2";
         /// A membrane with motions that cost nothing.
         "S107" OneMembraneCell {} =
             "one smoothing cell of the membrane leaves it motions in the plane of the sheet that cost next to \

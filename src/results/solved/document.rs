@@ -68,6 +68,9 @@ struct ResultsEntry {
     reactions: Option<[f64; 3]>,
     reaction_moments: Option<[f64; 3]>,
     strain_energy: Option<f64>,
+    /// What the mesh leaves open in the resultants; none of modes and of laws with friction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    error_estimate: Option<ErrorEntry>,
     /// What the obstacles of the case bear.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     contacts: Vec<ContactResult>,
@@ -77,6 +80,16 @@ struct ResultsEntry {
     load_factors: Vec<f64>,
     convergence: Option<Convergence>,
     uncertainty: Option<UncertaintyEntry>,
+}
+
+/// The estimate of Zienkiewicz and Zhu for the whole sheet.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
+struct ErrorEntry {
+    /// Energy of the difference between recovered resultants and those of the elements (J): the sum of `error_estimate` in the VTU
+    /// file.
+    energy: f64,
+    /// Error in the energy norm over that of the recovered resultants: the root of `energy` over strain energy and `energy` together.
+    relative: f64,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -140,6 +153,8 @@ fn results(task: &Task, result: &CaseResult) -> ResultsEntry {
         Some(sampling) => Some(UncertaintyEntry::Sampled(SamplingEntry::ending_with(sampling, ""))),
         None => result.uncertainty.as_ref().map(|u| UncertaintyEntry::FirstOrder(FirstOrderEntry::new(u))),
     };
+    // A warp direction that an element does not have was an error before.
+    let error = result.error_estimate().ok().flatten();
     ResultsEntry {
         w_max: QuantityEntry { value: result.w_max, unit: "m".into() },
         w_over_bending_thickness: result.w_over_thickness,
@@ -147,6 +162,7 @@ fn results(task: &Task, result: &CaseResult) -> ResultsEntry {
         reactions: reactions.map(|[force, _]| force.into()),
         reaction_moments: reactions.map(|[_, moment]| moment.into()),
         strain_energy: (!result.is_modal()).then_some(result.solution.strain_energy),
+        error_estimate: error.map(|e| ErrorEntry { energy: e.energy(), relative: e.relative() }),
         contacts: result.contacts.clone(),
         frequencies: result.frequencies.clone(),
         load_factors: result.load_factors.clone(),

@@ -83,6 +83,8 @@ impl Mesh {
         let warp = warp_directions(&result.model).iter().flat_map(|d| [d.x, d.y, d.z]).collect();
         let mut cells = vec![("warp_direction", 3, warp)];
         cells.extend(resultants(&result.element_means().map_err(StudyError::from)?));
+        let estimate = result.error_estimate().map_err(StudyError::from)?;
+        cells.extend(estimate.map(|estimate| ("error_estimate", 1, estimate.elements)));
         Ok(vtu(&self.nodes, &self.quads, &mesh_fields(&fields), &mesh_fields(&cells))?)
     }
 

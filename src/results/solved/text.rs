@@ -11,8 +11,9 @@ use crate::study::{CaseResult, Status};
 /// Deflections, then frequencies, probes, what the mesh leaves open, histories, searches and checks; with `verbose`
 /// every step of a search; then why a deflection has no band; with `verbose` what each solution took.
 pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -> String {
-    let mut table =
-        Columns::new(["case", "fabric", "w_max (mm)", "± 95 % (mm)", "w/t_b", "elements", "status"]);
+    let headings =
+        ["case", "fabric", "w_max (mm)", "± 95 % (mm)", "w/t_b", "elements", "energy error (%)", "status"];
+    let mut table = Columns::new(headings);
     let mut probes = Columns::new(["probe", "case", "fabric", "u (mm)", "v (mm)", "w (mm)", "± 95 % (mm)"]);
     let mut modes = Columns::new(["mode", "case", "fabric", "frequency (Hz)", "± 95 % (Hz)", "elements"]);
     let mut factors = Columns::new(["buckle", "case", "fabric", "load factor", "elements"]);
@@ -42,6 +43,7 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
             half_width(r, "w_max", 1e3),
             ratio,
             elements,
+            error(r),
             if beyond > 1 && r.status == Status::BeyondLinear { "*" } else { status(r.status) }.into(),
         ]);
         for p in &r.probes {
@@ -113,6 +115,12 @@ fn without_band(solved: &[(&Task, &CaseResult)]) -> Option<String> {
 fn half_width(result: &CaseResult, quantity: &str, unit: f64) -> String {
     let bands = result.uncertainty.as_ref().and_then(|u| u.of(quantity)?.bands);
     bands.map_or("-".into(), |b| significant(unit * b.mean_fabric.half_width))
+}
+
+/// The estimated error of a result in the energy norm (%); `-` where there is no estimate.
+fn error(result: &CaseResult) -> String {
+    let estimate = result.error_estimate().ok().flatten();
+    estimate.map_or("-".into(), |estimate| format!("{:.1}", 100.0 * estimate.relative()))
 }
 
 /// The checks of cases, if there are any.
