@@ -523,8 +523,9 @@ fn a_nonlinear_case_tells_how_it_came_there() {
     let vtu = fs::read_to_string(folder.path().join("out/cases/cloth.vtu")).unwrap();
     assert!(vtu.contains("\"reaction_force\"") && vtu.contains("\"reaction_moment\""));
     let cells = &vtu[vtu.find("<CellData").unwrap()..vtu.find("</CellData>").unwrap()];
-    let fields = ["warp_direction", "membrane_force", "moment", "shear_force"];
+    let fields = ["warp_direction", "membrane_force", "moment", "shear_force", "error_estimate"];
     assert!(fields.iter().all(|name| cells.contains(&format!("\"{name}\""))));
+    assert!((0.05..0.5).contains(&solution["results"]["error_estimate"]["relative"].as_f64().unwrap()));
     assert!(solution["search"]["linear_w_max"].as_f64().unwrap() < -0.5);
     let output = run(&["solve", &path("hard.toml"), "-o", &path("lost"), "--no-charts"]);
     assert_eq!(code(&output), 3, "{}", stderr(&output));

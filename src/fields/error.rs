@@ -1,12 +1,14 @@
 //! How far the resultants of the elements are from those of the sheet: an estimate without a reference.
 
-use nalgebra::{DMatrix, Matrix2, Matrix3, Vector2, Vector3};
+use nalgebra::{DMatrix, Matrix2, Matrix3, Point3, SMatrix, Vector2, Vector3};
 
 use super::Resultants;
 use super::element::{Displacement, small, straining};
 use crate::element::{
-    Bending, Cell, Formulation, Membrane, Prepared, gauss_point, membrane_and_plate, strain_matrices,
+    Bending, Cell, Formulation, Matrix24, Membrane, Prepared, gauss_point, membrane_and_plate,
+    strain_matrices,
 };
+use crate::mesh::is_translated;
 use crate::model::{Model, ModelError};
 use crate::solve::nonlinear::State;
 
@@ -63,24 +65,23 @@ impl ErrorEstimate {
         let compliance = Compliance::of(model);
         let flat = model.mesh.is_flat();
         let mut estimate = Self::default();
+        let mut last: Option<Own> = None;
         for (quad, nodes) in model.mesh.quads.iter().enumerate() {
-            let element = model.element(quad, flat)?;
-            let own = Own::new(model, quad, &element, &displacement(quad))?;
+            let corners = model.mesh.corners(quad);
+            if !last.as_ref().is_some_and(|own| is_translated(&own.corners, &corners)) {
+                last = Some(Own::new(model, corners, &model.element(quad, flat)?));
+            }
+            let Some(own) = &last else { continue };
+            let moved = displacement(quad);
+            let above_linear = model.section.d_m * moved.above_linear(model, quad)?;
             let recovered = nodes.map(|n| nodal[n as usize]);
             let mut error = 0.0;
-            let cells = model.formulation.cells;
-            for k in 0..cells.count() {
-                let (points, natural_area) = cells.gauss(k);
-                for point in points {
-                    let at = gauss_point(&element.frame.xy, point);
-                    let own = own.at(k, point, &element);
-                    let mut difference = Resultants::default();
-                    difference.add(&own, -1.0);
-                    recovered.iter().zip(at.n).for_each(|(r, share)| difference.add(r, share));
-                    let area = natural_area * at.det;
-                    error += area * compliance.energy(&difference);
-                    estimate.strain_energy += area * compliance.energy(&own);
-                }
+            for (point, own) in own.points.iter().zip(own.at(&moved, above_linear)) {
+                let mut difference = Resultants::default();
+                difference.add(&own, -1.0);
+                recovered.iter().zip(point.shape).for_each(|(r, share)| difference.add(r, share));
+                error += point.area * compliance.energy(&difference);
+                estimate.strain_energy += point.area * compliance.energy(&own);
             }
             estimate.elements.push(error);
         }
@@ -125,48 +126,73 @@ fn inverse(matrix: &[f64], size: usize) -> Vec<f64> {
     matrix.pseudo_inverse(least).map_or_else(|_| vec![0.0; size * size], |found| found.as_slice().to_vec())
 }
 
-/// The resultants of an element as its energy has them, material axes.
+/// The resultants of an element as its energy has them, material axes, for local displacements: N for `(u, v, θz)`, M and Q for
+/// `(w, θx, θy)`, node by node. Found once for all elements that are equal up to a translation.
 struct Own {
+    corners: [Point3<f64>; 4],
+    to_local: Matrix24,
     /// N and M of each smoothing cell.
-    cells: Vec<[Vector3<f64>; 2]>,
-    /// N of large motions above that of the linear strain.
-    above_linear: Vector3<f64>,
-    /// Displacements in the plane and of the plate, element axes.
-    local: [nalgebra::SVector<f64, 12>; 2],
-    d_m: Matrix3<f64>,
+    cells: Vec<[SMatrix<f64, 3, 12>; 2]>,
+    /// Where they are compared.
+    points: Vec<Point>,
+}
+
+/// A point of an element.
+struct Point {
+    /// Its cell.
+    cell: usize,
+    /// Shape functions of the nodes.
+    shape: [f64; 4],
+    /// The area that it stands for (m²).
+    area: f64,
+    /// N, where it varies in a cell.
+    membrane: Option<SMatrix<f64, 3, 12>>,
+    /// Q.
+    shear: SMatrix<f64, 2, 12>,
 }
 
 impl Own {
-    fn new(model: &Model, quad: usize, element: &Prepared, moved: &Displacement) -> Result<Self, ModelError> {
+    fn new(model: &Model, corners: [Point3<f64>; 4], element: &Prepared) -> Self {
         let section = &model.section;
-        let (in_plane, plate) = membrane_and_plate(&(element.to_local() * moved.global));
         let [of_strain, of_curvature] = [section.d_m, section.d_b].map(|d| d * element.to_material());
-        let Formulation { membrane, bending, .. } = model.formulation;
+        let Formulation { cells: layout, membrane, bending, .. } = model.formulation;
         let whole = strain_matrices(&Cell::whole(&element.frame.xy));
-        let above_linear = section.d_m * moved.above_linear(model, quad)?;
         let cells = element.cells().map(|cell| {
             let (strain, curvature) = strain_matrices(&cell);
             let strain = if membrane == Membrane::Cells { strain } else { whole.0 };
             let curvature = if bending == Bending::Cells { curvature } else { whole.1 };
-            [of_strain * strain * in_plane, of_curvature * curvature * plate]
+            [of_strain * strain, of_curvature * curvature]
         });
-        let cells = cells.collect();
-        Ok(Self { cells, above_linear, local: [in_plane, plate], d_m: section.d_m })
+        let shear = element.vector_to_material() * element.d_s;
+        let points = (0..layout.count()).flat_map(|cell| {
+            let (points, natural_area) = layout.gauss(cell);
+            points.map(|point| {
+                let at = gauss_point(&element.frame.xy, point);
+                let assumed = element.assumed_membrane(point);
+                Point {
+                    cell,
+                    shape: at.n,
+                    area: natural_area * at.det,
+                    membrane: assumed.map(|(mean, varying)| of_strain * mean + varying),
+                    shear: shear * element.shear_strain_matrix(point),
+                }
+            })
+        });
+        Self { corners, to_local: element.to_local(), cells: cells.collect(), points: points.collect() }
     }
 
-    /// In the `k`-th cell, at a natural point of it.
-    fn at(&self, k: usize, point: [f64; 2], element: &Prepared) -> Resultants {
-        let [in_plane, plate] = &self.local;
-        let [membrane, moment] = self.cells[k];
-        let membrane = match element.assumed_membrane(point) {
-            Some((mean, varying)) => (self.d_m * element.to_material() * mean + varying) * in_plane,
-            None => membrane,
-        };
-        let shear = element.vector_to_material() * element.d_s * element.shear_strain_matrix(point) * plate;
-        Resultants {
-            membrane: (membrane + self.above_linear).into(),
-            moment: moment.into(),
-            shear: shear.into(),
-        }
+    /// At each of the points; `above_linear` is N of large motions above that of the linear strain.
+    fn at(&self, moved: &Displacement, above_linear: Vector3<f64>) -> impl Iterator<Item = Resultants> {
+        let (in_plane, plate) = membrane_and_plate(&(self.to_local * moved.global));
+        let cells: Vec<_> = self.cells.iter().map(|[n, m]| [n * in_plane, m * plate]).collect();
+        self.points.iter().map(move |point| {
+            let [of_cell, moment] = cells[point.cell];
+            let membrane = point.membrane.map_or(of_cell, |n| n * in_plane);
+            Resultants {
+                membrane: (membrane + above_linear).into(),
+                moment: moment.into(),
+                shear: (point.shear * plate).into(),
+            }
+        })
     }
 }

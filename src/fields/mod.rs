@@ -197,11 +197,12 @@ impl Recovery {
         let mut boundary: Vec<u32> = mesh.boundary_edges().into_iter().flatten().collect();
         boundary.sort_unstable();
         boundary.dedup();
-        let patch = |node: u32| match boundary.binary_search(&node) {
+        let nodes = 0..mesh.nodes.len() as u32;
+        let patches = nodes.filter_map(|node| match boundary.binary_search(&node) {
             Ok(_) => patches.at_edge(node),
             Err(_) => patches.inside(node),
-        };
-        let patches = (0..mesh.nodes.len() as u32).filter_map(patch).collect();
+        });
+        let patches = patches.collect();
         Self { flat: mesh.is_flat(), patches, boundary }
     }
 

@@ -77,11 +77,12 @@ impl<'a> Patches<'a> {
         for (quad, nodes) in mesh.quads.iter().enumerate() {
             nodes.iter().for_each(|n| around[*n as usize].push(quad as u32));
         }
-        let centre = |quad| {
+        let centres = (0..mesh.quads.len()).map(|quad| {
             let corners = mesh.corners(quad);
             Point3::from(corners.iter().map(|c| c.coords).sum::<Vector3<f64>>() / 4.0)
-        };
-        Self { mesh, around, centres: (0..mesh.quads.len()).map(centre).collect() }
+        });
+        let centres = centres.collect();
+        Self { mesh, around, centres }
     }
 
     /// The patch of a node on the boundary: the smallest that holds a parabola; `None` if there is none.
@@ -177,9 +178,12 @@ mod tests {
     use crate::mesh::{disc, distorted, rectangle};
     use approx::assert_relative_eq;
 
+    fn field(p: &Point3<f64>) -> f64 {
+        1.0 + p.x - 2.0 * p.y + 3.0 * p.x * p.x - p.x * p.y + 0.5 * p.y * p.y
+    }
+
     #[test]
     fn parabolas_are_recovered_up_to_corners_and_rims() {
-        let field = |p: &Point3<f64>| 1.0 + p.x - 2.0 * p.y + 3.0 * p.x * p.x - p.x * p.y + 0.5 * p.y * p.y;
         for mesh in [
             rectangle(1.0, 2.0, 4, 7).unwrap(),
             distorted(rectangle(1.0, 1.0, 6, 6).unwrap(), 0.4, 3).unwrap(),

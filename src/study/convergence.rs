@@ -231,8 +231,9 @@ at = ["0 m", "0.5 m"]
     /// Of small displacements the estimate in large rotations is the linear one.
     #[test]
     fn the_error_of_a_search_under_little_load_is_that_of_a_linear_solve() {
-        let [linear, search] = ["", "[analysis]\nkind = \"nonlinear\"\n"]
-            .map(|more| solved(&case(8, &format!("{PRESSED}{more}"))).error_estimate().unwrap().unwrap());
+        let [linear, search] = ["", "[analysis]\nkind = \"nonlinear\"\n"].map(|more| {
+            solved(&case(8, &format!("{PRESSED}{more}"))).error_estimate().unwrap().unwrap().clone()
+        });
         assert!((linear.relative() / search.relative() - 1.0).abs() < 1e-5);
         for (a, b) in linear.elements.iter().zip(&search.elements) {
             assert!((a - b).abs() < 1e-5 * linear.energy(), "{a} {b}");

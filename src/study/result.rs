@@ -136,6 +136,7 @@ pub struct CaseResult {
     pub(super) modal: bool,
     pub(super) recovery: Arc<OnceLock<Recovery>>,
     pub(super) nodal: OnceLock<Vec<Resultants>>,
+    pub(super) error: OnceLock<ErrorEstimate>,
 }
 
 impl CaseResult {
@@ -143,7 +144,8 @@ impl CaseResult {
     pub fn at_end_of(&self, step: &LoadStepEnd) -> Self {
         let (state, modes) = (Some(step.state.clone()), step.shapes.clone());
         let history = step.history.clone();
-        let mut then = Self { state, modes, history, nodal: OnceLock::new(), ..self.clone() };
+        let (nodal, error) = (OnceLock::new(), OnceLock::new());
+        let mut then = Self { state, modes, history, nodal, error, ..self.clone() };
         then.solution.displacement = step.state.displacement(&self.model.mesh);
         then.solution.reaction.clone_from(&step.reaction);
         then.contacts.clone_from(&step.contacts);
@@ -210,16 +212,19 @@ impl CaseResult {
     ///
     /// # Errors
     /// M008 if the warp direction is normal to an element.
-    pub fn error_estimate(&self) -> Result<Option<ErrorEstimate>, ModelError> {
+    pub fn error_estimate(&self) -> Result<Option<&ErrorEstimate>, ModelError> {
         if self.is_modal() || self.law.is_some() {
             return Ok(None);
         }
-        let nodal = self.nodal()?;
-        match &self.state {
-            Some(state) => ErrorEstimate::moved(&self.model, state, nodal),
-            None => ErrorEstimate::new(&self.model, &self.solution.displacement, nodal),
+        if let Some(error) = self.error.get() {
+            return Ok(Some(error));
         }
-        .map(Some)
+        let nodal = self.nodal()?;
+        let error = match &self.state {
+            Some(state) => ErrorEstimate::moved(&self.model, state, nodal)?,
+            None => ErrorEstimate::new(&self.model, &self.solution.displacement, nodal)?,
+        };
+        Ok(Some(self.error.get_or_init(|| error)))
     }
 }
 

@@ -229,6 +229,7 @@ impl PreparedCase<'_> {
             modal: matches!(self.problem.analysis, Analysis::Modal(_) | Analysis::Buckling(_)),
             recovery: Arc::clone(&self.recovery),
             nodal: OnceLock::new(),
+            error: OnceLock::new(),
         };
         result.probes = probes(&self.problem.probes, &self.probes, &result)?;
         Ok(result)

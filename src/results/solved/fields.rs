@@ -84,7 +84,7 @@ impl Mesh {
         let mut cells = vec![("warp_direction", 3, warp)];
         cells.extend(resultants(&result.element_means().map_err(StudyError::from)?));
         let estimate = result.error_estimate().map_err(StudyError::from)?;
-        cells.extend(estimate.map(|estimate| ("error_estimate", 1, estimate.elements)));
+        cells.extend(estimate.map(|estimate| ("error_estimate", 1, estimate.elements.clone())));
         Ok(vtu(&self.nodes, &self.quads, &mesh_fields(&fields), &mesh_fields(&cells))?)
     }
 
