@@ -4,37 +4,14 @@
 //! `cargo bench --bench solver --no-default-features -- [LARGEST_N]`; the default largest
 //! `n` is 160. Times depend on the machine and on what else it does: compare the ratios.
 
-use std::hint::black_box;
+mod machine;
+
 use std::sync::Arc;
 use std::time::Instant;
 
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, Par};
 use kesf::solve::factor::{Path, analyse_ordered, order};
 use kesf::solve::sparse::{BlockGraph, BlockMatrix};
-
-/// Seconds of the fastest of some runs: at least three, and half a second in all.
-fn best<T>(mut run: impl FnMut() -> T) -> f64 {
-    let (mut best, mut total, mut runs) = (f64::INFINITY, 0.0, 0);
-    while runs < 3 || (total < 0.5 && runs < 200) {
-        let start = Instant::now();
-        black_box(run());
-        let seconds = start.elapsed().as_secs_f64();
-        best = best.min(seconds);
-        total += seconds;
-        runs += 1;
-    }
-    best
-}
-
-/// GFLOP/s of a dense 512 x 512 product on one thread.
-fn calibration() -> f64 {
-    const N: usize = 512;
-    let a = Mat::from_fn(N, N, |i, j| (i + 2 * j) as f64 / N as f64);
-    let mut c = Mat::zeros(N, N);
-    let seconds = best(|| matmul(&mut c, Accum::Replace, &a, &a, 1.0, Par::Seq));
-    2.0 * (N as f64).powi(3) / seconds * 1e-9
-}
+use machine::{best, dense_product};
 
 fn grid(n: u32) -> (Arc<BlockGraph>, Vec<[f64; 3]>) {
     let quads: Vec<[u32; 4]> = (0..n * n)
@@ -121,7 +98,7 @@ fn row(n: u32, block: usize, path: Path, c: f64) {
 
 fn main() {
     let largest = std::env::args().filter_map(|arg| arg.parse().ok()).next_back().unwrap_or(160);
-    let c = calibration();
+    let c = dense_product();
     println!("C = {c:.1} GFLOP/s: dense 512 x 512 product, one thread");
     println!(
         "   n block         path     rows nnz(L)/M stored  GFLOP  MB(L) |   order symbol    first  numeric  2 thr.   solve | GF/s   of C 2 thr. others residual   (times in ms)"

@@ -27,6 +27,17 @@ struct Index {
     table: HashMap<&'static str, TableColumn>,
     statistics: HashMap<&'static str, Statistic>,
     symbols: HashMap<&'static str, Parameter>,
+    /// The built-in dialects that know a word, one bit each.
+    known: HashMap<&'static str, u32>,
+}
+
+/// Which built-in dialects know a word: bit `i` is that of the `i`-th.
+fn known() -> HashMap<&'static str, u32> {
+    let mut known = HashMap::new();
+    for (i, dialect) in dialects().iter().enumerate() {
+        dialect.vocabulary().for_each(|word| *known.entry(word).or_insert(0) |= 1 << i);
+    }
+    known
 }
 
 fn collect<K: 'static, V>(
@@ -56,6 +67,7 @@ fn index() -> &'static Index {
         table: collect(|d| &d.table, |k| Some(*k)),
         statistics: collect(|d| &d.statistics, |k| Some(*k)),
         symbols: collect(|d| &d.symbols, |k| Parameter::from_symbol(k)),
+        known: known(),
     })
 }
 
@@ -312,13 +324,19 @@ impl<'a> Vocabulary<'a> {
     /// Every dialect with those of the words that it does not know, the closest first.
     pub fn closest(self, words: &[String]) -> Vec<(String, Vec<String>)> {
         let words: Vec<(&String, String)> = words.iter().map(|w| (w, normalised(&split_unit(w).0))).collect();
-        let unknown = |d: &Dialect| -> Vec<String> {
-            let knows = |word: &str| d.vocabulary().any(|v| v == word);
-            words.iter().filter(|(_, word)| !knows(word)).map(|(w, _)| (*w).clone()).collect()
-        };
-        let mut found: Vec<_> = self.dialects().map(|d| (d.name.clone(), unknown(d))).collect();
+        let built_in: Vec<u32> =
+            words.iter().map(|(_, word)| index().known.get(word.as_str()).copied().unwrap_or(0)).collect();
+        let mut found = Vec::new();
+        for dialect in self.user {
+            let unknown = words.iter().filter(|(_, word)| !dialect.vocabulary().any(|known| known == word));
+            found.push((dialect.name.clone(), unknown.map(|(written, _)| (*written).clone()).collect()));
+        }
+        for (i, dialect) in dialects().iter().enumerate() {
+            let unknown = words.iter().zip(&built_in).filter(|(_, known)| *known >> i & 1 == 0);
+            found.push((dialect.name.clone(), unknown.map(|((written, _), _)| (*written).clone()).collect()));
+        }
         // A stable sort: among equals the user's, then the first built-in one.
-        found.sort_by_key(|(_, unknown)| unknown.len());
+        found.sort_by_key(|(_, unknown): &(String, Vec<String>)| unknown.len());
         found
     }
 }
