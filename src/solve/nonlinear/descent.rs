@@ -12,6 +12,7 @@ use super::newton::{Converged, Failure, LARGEST_FOLD, limit};
 use super::sheet::Forces;
 use super::system::{Balance, System};
 use super::{NonlinearError, Obstacle, Progress, Settings, Solution, State, Step, stability};
+use crate::law::Mode;
 use crate::model::Model;
 use crate::solve::SolveError;
 use crate::solve::linear::Options;
@@ -56,7 +57,8 @@ pub fn descend_from(
     mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
     let system = System::new(model, plan, settings, options)?;
-    if settings.law.is_none()
+    // Laws that remember are not followed by a descent: it takes steps that it does not keep.
+    if settings.law.as_ref().is_none_or(|law| law.mode == Mode::Elastic)
         && settings.surfaces.is_empty()
         && let Some(found) = descend(&system, start.clone(), settings, &mut observe)?
     {
