@@ -1,4 +1,5 @@
-//! Cost of statics in large rotations on one thread: a square sheet that sags from an edge, and a whole search for a drape.
+//! Cost of statics in large rotations: on one thread a square sheet that sags from an edge, and a whole search for a drape, whose
+//! starts use all cores.
 //!
 //! `cargo bench --bench nonlinear` prints iterations, milliseconds an iteration, elements a second, and how many times
 //! the time of an iteration is that in which this machine does as many operations as its factorisation has in a dense product.
