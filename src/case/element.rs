@@ -21,7 +21,8 @@ pub(super) struct ElementTable {
     /// Smoothing cells: a number (1, 2, 3, 4, 9, 16 ...) or `[along_xi, along_eta]`.
     #[schemars(extend("default" = 4))]
     subcells: Option<Subcells>,
-    /// The membrane: `cells` (smoothed as bending), `one_cell`, or `assumed_stress`, which is the default of a drape.
+    /// The membrane: `cells` (smoothed as bending), `one_cell`, or `assumed_stress`, which is the default of a drape, and
+    /// in large rotations of a mesh that has triangles.
     #[schemars(extend("default" = "cells"))]
     membrane: Option<Membrane>,
     /// The transverse shear: `mitc4`, or for comparison only `displacement` (locks in thin sheets) and `reduced` (leaves
@@ -160,6 +161,11 @@ impl ElementTable {
             formulation.shear_stabilisation = alpha;
         }
         Ok(formulation)
+    }
+
+    /// Whether nothing is said of the membrane.
+    pub fn leaves_the_membrane(&self) -> bool {
+        self.membrane.is_none() && self.profile.is_none()
     }
 
     fn fits_fourth_order(&self, case: &Node<'_>, at: &Node<'_>, purpose: Purpose) -> Result<(), CaseError> {

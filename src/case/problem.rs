@@ -54,6 +54,9 @@ pub struct SheetProblem {
 pub struct Mounting {
     /// The formulation of the elements.
     pub formulation: Formulation,
+    /// Whether a mesh with triangles has the membrane along arcs ([`Membrane::AssumedStress`](crate::element::Membrane)): in
+    /// large rotations, where the case says nothing of the membrane.
+    pub arcs_of_triangles: bool,
     /// Where the sheet is held, one at least.
     pub supports: Vec<SheetSupport>,
     /// What moves as one rigid body.

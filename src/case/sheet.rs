@@ -17,7 +17,7 @@ use crate::quantity::Length;
 pub(super) struct SheetTable {
     /// Which outline; left out when the mesh comes from a file.
     shape: Option<Shape>,
-    /// A Gmsh mesh (MSH 4.1, ASCII, quads), relative to the case file.
+    /// A Gmsh mesh (MSH 4.1, ASCII) of quads, triangles or both, relative to the case file.
     #[schemars(example = &"part.msh")]
     file: Option<PathBuf>,
     /// Unit of the coordinates in the file.

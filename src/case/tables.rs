@@ -280,6 +280,7 @@ impl CaseTable {
         let bodies = self.rigid.iter().zip(bodies.iter().flat_map(Node::items));
         Ok(Mounting {
             formulation,
+            arcs_of_triangles: false,
             supports: supports.map(|(t, at)| t.clone().support(&at)).collect::<Result<_, _>>()?,
             bodies: bodies.map(|(table, at)| table.clone().body(&at)).collect(),
         })
@@ -296,7 +297,8 @@ impl CaseTable {
             Purpose { large_rotations: analysis.has_large_rotations(), drape: false, mass: analysis.mass() };
         let formulation = self.element.formulation(case, purpose)?;
         let solver = self.solver.checked(case, matches!(analysis, Analysis::Linear(_)))?;
-        let mounting = self.mounting(case, formulation)?;
+        let arcs_of_triangles = purpose.large_rotations && self.element.leaves_the_membrane();
+        let mounting = Mounting { arcs_of_triangles, ..self.mounting(case, formulation)? };
         let probes = probes(&self.probes, case)?;
         let checks = checks(&self.checks, case, &analysis, &probes)?;
         let obstacles = SheetObstacle::read(case)?;

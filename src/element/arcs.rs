@@ -14,12 +14,15 @@
 //! (covariant, in natural coordinates; the first is the strain of shallow arches, as in corotational beams: Pacoste and
 //! Eriksson, *Comput. Methods Appl. Mech. Eng.* 144 (1997) 163). An element that folds along a diagonal keeps the
 //! length of its sides and of that diagonal.
+//!
+//! A triangle has no `T`, for its corners lie in its plane, and no stresses that vary. Its strain is the one that gives each of its three sides the length of its arc.
 
 use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3};
 
 use super::assumed::Assumed;
 use super::quad4::{Frame, gauss_point};
 use super::transposed::add_with_transpose;
+use super::triangle;
 
 /// Shapes of an element: T, then K of the sides 1-2, 4-3 (along ξ), 1-4, 2-3 (along η) (m).
 const SHAPES: usize = 5;
@@ -64,23 +67,23 @@ pub struct Bent {
 }
 
 impl Arcs {
+    /// `assumed` are the stresses that vary; `None` in a triangle.
     pub(super) fn new(
         frame: &Frame,
         to_material: &Matrix3<f64>,
-        assumed: &Assumed,
+        assumed: Option<&Assumed>,
         links: Option<&Matrix24>,
     ) -> Self {
-        let mut varying = Matrix2x24::zeros();
-        for k in 0..12 {
-            varying.set_column(6 * (k / 3) + [0, 1, 5][k % 3], &assumed.strain.column(k));
-        }
-        let varying = links.map_or(varying, |links| varying * links);
+        let varying = assumed.map_or_else(Matrix2x24::zeros, varying_rows);
         Self {
             area: frame.area(),
             shapes: shapes(frame),
-            quadratics: quadratics(frame, to_material, assumed),
-            varying,
-            stiffness: assumed.stiffness,
+            quadratics: match assumed {
+                Some(assumed) => quadratics(frame, to_material, assumed),
+                None => of_three_sides(frame, to_material),
+            },
+            varying: links.map_or(varying, |links| varying * links),
+            stiffness: assumed.map_or_else(Matrix2::zeros, |assumed| assumed.stiffness),
         }
     }
 
@@ -188,6 +191,15 @@ fn shaping_dof(column: usize) -> usize {
     6 * (column / 3) + 2 + column % 3
 }
 
+/// The strains of the assumed stresses on all dofs.
+fn varying_rows(assumed: &Assumed) -> Matrix2x24 {
+    let mut rows = Matrix2x24::zeros();
+    for k in 0..12 {
+        rows.set_column(6 * (k / 3) + [0, 1, 5][k % 3], &assumed.strain.column(k));
+    }
+    rows
+}
+
 /// T and the four K for the displacements that shape an element.
 fn shapes(frame: &Frame) -> Rows {
     let mut rows = Rows::zeros();
@@ -203,6 +215,18 @@ fn shapes(frame: &Frame) -> Rows {
         }
     }
     rows
+}
+
+/// Of a triangle: `K²/6` on each of its sides 1-2, 1-4 and 2-3, of which T is no part.
+fn of_three_sides(frame: &Frame, to_material: &Matrix3<f64>) -> [Quadratic; STRAINS] {
+    let strains = to_material * triangle::strains_of_sides(&frame.xy);
+    let mut all = [Quadratic::zeros(); STRAINS];
+    for (i, q) in all.iter_mut().enumerate().take(3) {
+        for (side, shape) in [1, 3, 4].into_iter().enumerate() {
+            q[(shape, shape)] = strains[(i, side)] / 3.0;
+        }
+    }
+    all
 }
 
 fn quadratics(frame: &Frame, to_material: &Matrix3<f64>, assumed: &Assumed) -> [Quadratic; STRAINS] {

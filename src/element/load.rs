@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Point3, SMatrix, Vector3};
 
 use super::prepared::Matrix12;
 use super::quad4::{Frame, GAUSS_2X2, gauss_point};
+use super::triangle;
 
 /// `∫ N_i dA` over the plane quad (m²).
 fn nodal_areas(frame: &Frame) -> [f64; 4] {
@@ -33,18 +34,11 @@ pub fn gravity_load(frame: &Frame, areal_density: f64, acceleration: &Vector3<f6
 /// them: `± q h² / 12` per length, which cancel between equal elements and stay at edges that are free to turn.
 pub fn pressure_moments(frame: &Frame, pressure: f64) -> [Vector3<f64>; 4] {
     let mut moments = [Vector3::zeros(); 4];
-    for (side, [i, j]) in [[0, 1], [1, 2], [2, 3], [3, 0]].into_iter().enumerate() {
+    let quad = [[0, 1], [1, 2], [2, 3], [3, 0]];
+    let sides: &[[usize; 2]] = if frame.is_triangle() { &triangle::SIDES } else { &quad };
+    for (side, &[i, j]) in sides.iter().enumerate() {
         let along = [0, 1].map(|axis| frame.xy[j][axis] - frame.xy[i][axis]);
-        // Over the side's own coordinate 1 - s², fading linearly to the opposite side. The product is of third degree
-        // with the linear Jacobian: 2 x 2 points are exact.
-        let volume: f64 = GAUSS_2X2
-            .into_iter()
-            .map(|point| {
-                let [xi, eta] = point;
-                let (s, fade) = [(xi, -eta), (eta, xi), (xi, eta), (eta, -xi)][side];
-                (1.0 - s * s) * 0.5 * (1.0 + fade) * gauss_point(&frame.xy, point).det
-            })
-            .sum();
+        let volume = volume_over_side(frame, side);
         // w = (1 - s²) (β_j - β_i)·along / 8 with β = (θy, -θx).
         let moment =
             frame.rotation.tr_mul(&Vector3::new(-along[1], along[0], 0.0)) * (pressure * volume / 8.0);
@@ -52,6 +46,21 @@ pub fn pressure_moments(frame: &Frame, pressure: f64) -> [Vector3<f64>; 4] {
         moments[i] -= moment;
     }
     moments
+}
+
+/// Over the own coordinate of a side `1 - s²`, fading to nothing at all others (m²).
+fn volume_over_side(frame: &Frame, side: usize) -> f64 {
+    if frame.is_triangle() {
+        // ∫ 4 λ_i λ_j dA.
+        return frame.area() / 3.0;
+    }
+    // Fading linearly to the opposite side. The product is of third degree with the linear Jacobian: 2 x 2 points are exact.
+    let at = |point: [f64; 2]| {
+        let [xi, eta] = point;
+        let (s, fade) = [(xi, -eta), (eta, xi), (xi, eta), (eta, -xi)][side];
+        (1.0 - s * s) * 0.5 * (1.0 + fade) * gauss_point(&frame.xy, point).det
+    };
+    GAUSS_2X2.into_iter().map(at).sum()
 }
 
 /// Weights and tangents of the bilinear surface through the corners at a Gauss point: N, ∂N/∂ξ, ∂N/∂η,

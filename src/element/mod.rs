@@ -1,5 +1,6 @@
 //! The four-node flat shell element: cell-based strain smoothing (CS-FEM) for membrane and
-//! bending, MITC4 transverse shear, drilling rotation, rigid-link warp correction.
+//! bending, MITC4 transverse shear, drilling rotation, rigid-link warp correction; with two corners on one node a triangle
+//! of constant strains and MITC3 shear.
 //!
 //! Pure functions of corner coordinates, [`ShellSection`](crate::section::ShellSection) and
 //! [`Formulation`]: no state, no loads. Nodal dofs are `(u, v, w, θx, θy, θz)`, rotations by the
@@ -19,6 +20,7 @@ mod quad4;
 mod shear;
 mod smoothing;
 mod transposed;
+mod triangle;
 mod yarns;
 
 #[cfg(test)]
@@ -50,13 +52,15 @@ pub struct Formulation {
     /// Interpolation of the transverse shear strain.
     pub shear: ShearInterpolation,
     /// Stabilisation α of the transverse shear, `1/S_i + α h_i² / (3.5 B_i)` with `h_i` the side along `i`: 0 in
-    /// Nguyen-Trong et al., 0.05 by default. It removes the loss of digits of very thin sheets.
+    /// Nguyen-Trong et al., 0.05 by default. It removes the loss of digits of very thin sheets. Triangles, which would lock
+    /// without it, have seven times as much, and 0.35 at most, with half of `Σ s sᵀ` of their sides in the place of `h_i²`.
     pub shear_stabilisation: f64,
     /// What resists the rotation θz about the normal.
     pub drilling: Drilling,
 }
 
-/// How the membrane strain of an element is smoothed.
+/// How the membrane strain of an element is smoothed; that of a triangle is constant, whichever is chosen, and differs in
+/// large rotations alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Membrane {
@@ -77,7 +81,9 @@ pub enum Membrane {
     ///
     /// In large rotations the strains are those along the bent sheet, not those of its chords: a chord is shorter than
     /// its arc, and where the curvature varies the difference would lock folds that are oblique to the mesh. Sides and
-    /// diagonals of the element count with the arcs that the rotations of their ends make.
+    /// diagonals of the element count with the arcs that the rotations of their ends make. Triangles need it most: three
+    /// chords each are as many constraints as a mesh of them has displacements, and hold back every fold but those along its lines.
+    /// Elements that measure arcs do not go with such that measure chords: they would hold the length of a common side in two ways.
     ///
     /// The penalty on θz holds it to the rotation that goes with in-plane bending, not to that of the bilinear
     /// displacements, which is half of it on rectangles.
@@ -110,7 +116,7 @@ pub enum Bending {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ShearInterpolation {
-    /// Tied at the middles of the sides (MITC4): thin sheets do not lock.
+    /// Tied at the middles of the sides (MITC4, MITC3 in triangles): thin sheets do not lock.
     #[default]
     Mitc4,
     /// For comparison only: the derivatives of the bilinear displacements themselves, at 2 x 2 points. Thin sheets lock.

@@ -10,7 +10,7 @@ use super::assumed::Assumed;
 use super::cellwise::Cellwise;
 use super::quad4::{Frame, gauss_point};
 use super::yarns::Yarns;
-use super::{Bending, Cell, Cells, Drilling, Formulation, Membrane, drilling, hourglass, shear};
+use super::{Bending, Cell, Cells, Drilling, Formulation, Membrane, drilling, hourglass, shear, triangle};
 use crate::finding::{Coded, Fields};
 use crate::section::{ShellSection, strain_rotation};
 
@@ -98,8 +98,14 @@ impl Prepared {
         // In material axes the rigidities are those of warp and weft.
         let turn = vector_rotation(angle);
         let sides = shear::sides(&frame.xy);
-        let metric = turn * shear::metric(&sides) * turn.transpose();
-        let added = shear::added_compliance(section, formulation.shear_stabilisation, &metric);
+        let is_triangle = frame.is_triangle();
+        let of_quads = formulation.shear_stabilisation;
+        let (metric, alpha) = if is_triangle {
+            (triangle::metric(&frame.xy), triangle::stabilisation(of_quads))
+        } else {
+            (shear::metric(&sides), of_quads)
+        };
+        let added = shear::added_compliance(section, alpha, &(turn * metric * turn.transpose()));
         let stabilised = ShellSection { d_s: shear::stabilised(section, &added), ..section.clone() };
         let ShellSection { d_m, d_b, d_s, .. } = stabilised.rotated(angle);
         let gamma = drilling::penalty(formulation.drilling, section, frame.area());
@@ -107,6 +113,8 @@ impl Prepared {
         let thickness_squared = section.bending_thickness_squared();
         let stabilisation = thickness_squared / (thickness_squared + frame.area());
         let hourglass = match formulation.bending {
+            // The rotations of a triangle have no other curvature than that which one cell sees.
+            Bending::OneCell if is_triangle => Matrix2::zeros(),
             Bending::Cells => Matrix2::zeros(),
             Bending::OneCell => hourglass::stiffness(&sides, &d_b, &(turn.transpose() * added * turn)),
         };
@@ -124,7 +132,7 @@ impl Prepared {
             formulation,
         };
         if let Drilling::Seed(factor) = formulation.drilling {
-            let largest = |k: Matrix12| k.diagonal().max();
+            let largest = |k| if is_triangle { triangle::merged(k) } else { k }.diagonal().max();
             let (membrane, plate) = (element.membrane_stiffness(), element.plate_stiffness());
             element.spring = factor * largest(membrane).max(largest(plate));
         }
@@ -155,7 +163,7 @@ impl Prepared {
             Bending::Cells => self.bending_stiffness(self.formulation.cells),
             Bending::OneCell => self.bending_stiffness(Cells::grid(1, 1)) + self.hourglass_stiffness(),
         };
-        let (points, weight) = self.formulation.shear.points();
+        let (points, weight) = self.formulation.shear.points(&self.frame);
         for point in points {
             let at = gauss_point(&self.frame.xy, *point);
             let b = self.shear_strain_matrix(*point);
@@ -195,13 +203,16 @@ impl Prepared {
         let all = smoothed(self.formulation.cells);
         k += match self.formulation.membrane {
             Membrane::Cells => all,
-            Membrane::AssumedStress => smoothed(Cells::grid(1, 1)) + self.assumed().stiffness(),
+            Membrane::AssumedStress if self.assumes_stress() => {
+                smoothed(Cells::grid(1, 1)) + self.assumed().stiffness()
+            }
+            Membrane::AssumedStress => all,
             Membrane::OneCell => {
                 let one = smoothed(Cells::grid(1, 1));
                 one + (all - one) * self.stabilisation
             }
         };
-        for i in 0..4 {
+        for i in 0..if self.frame.is_triangle() { 3 } else { 4 } {
             k[(3 * i + 2, 3 * i + 2)] += self.spring;
         }
         k
@@ -262,12 +273,14 @@ impl Prepared {
     /// chords.
     pub fn arcs(&self) -> Option<Arcs> {
         let links = self.warp_links();
-        self.assumes_stress()
-            .then(|| Arcs::new(&self.frame, &self.to_material, &self.assumed(), links.as_ref()))
+        let assumed = self.assumes_stress().then(|| self.assumed());
+        (self.formulation.membrane == Membrane::AssumedStress)
+            .then(|| Arcs::new(&self.frame, &self.to_material, assumed.as_ref(), links.as_ref()))
     }
 
+    /// Whether stresses vary in the element: the strain of a triangle is constant.
     fn assumes_stress(&self) -> bool {
-        self.formulation.membrane == Membrane::AssumedStress
+        self.formulation.membrane == Membrane::AssumedStress && !self.frame.is_triangle()
     }
 
     fn assumed(&self) -> Assumed {
@@ -331,7 +344,7 @@ impl Prepared {
 
     /// Transverse shear strains at a natural point for local displacements `(w, θx, θy)` node by node.
     pub fn shear_strain_matrix(&self, natural: [f64; 2]) -> SMatrix<f64, 2, 12> {
-        self.formulation.shear.matrix(&self.frame.xy, natural)
+        self.formulation.shear.matrix(&self.frame, natural)
     }
 }
 

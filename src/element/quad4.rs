@@ -17,6 +17,9 @@ const G: f64 = 0.577_350_269_189_625_8;
 /// The 2 x 2 Gauss points (weights 1).
 pub const GAUSS_2X2: [[f64; 2]; 4] = [[-G, -G], [G, -G], [G, G], [-G, G]];
 
+/// Natural coordinates of the middle of a quad whose last two corners are one.
+pub(super) const MIDDLE_OF_TRIANGLE: [f64; 2] = [0.0, -1.0 / 3.0];
+
 /// Shape functions and geometry at a point of a plane quad.
 #[derive(Clone, Copy, Debug)]
 pub struct GaussPoint {
@@ -82,6 +85,16 @@ impl Frame {
         let centre: Vector3<f64> = corners.iter().map(|c| c.coords).sum::<Vector3<f64>>() / 4.0;
         let local = corners.map(|c| rotation * (c.coords - centre));
         Self { rotation, xy: local.map(|p| [p.x, p.y]), z: local.map(|p| p.z) }
+    }
+
+    /// Whether the third corner is the fourth too.
+    pub fn is_triangle(&self) -> bool {
+        self.xy[2] == self.xy[3] && self.z[2] == self.z[3]
+    }
+
+    /// Natural coordinates of the middle of the element.
+    pub fn middle(&self) -> [f64; 2] {
+        if self.is_triangle() { MIDDLE_OF_TRIANGLE } else { [0.0, 0.0] }
     }
 
     /// Area of the plane quad (m²).

@@ -1,9 +1,10 @@
-//! Transverse shear: strains tied at the mid-sides (MITC4), and those of the displacements themselves for comparison.
+//! Transverse shear: strains tied at the mid-sides (MITC4; MITC3 in triangles), and those of the displacements themselves for comparison.
 
 use nalgebra::{Matrix2, SMatrix};
 
 use super::ShearInterpolation;
-use super::quad4::{GAUSS_2X2, GaussPoint, gauss_point};
+use super::quad4::{Frame, GAUSS_2X2, GaussPoint, MIDDLE_OF_TRIANGLE, gauss_point};
+use super::triangle;
 use crate::section::ShellSection;
 
 /// `D_s` with the thickness-free stabilisation, axes of `section`: `D_s⁻¹ + α/3.5 H^½ B⁻¹ H^½`, B = diag(B1, B2),
@@ -58,20 +59,26 @@ fn inverse(m: &Matrix2<f64>) -> Matrix2<f64> {
 }
 
 impl ShearInterpolation {
-    /// The points at which the energy of the shear is taken, in natural coordinates, and the weight of each.
-    pub(super) fn points(self) -> (&'static [[f64; 2]], f64) {
+    /// The points of an element at which the energy of the shear is taken, in natural coordinates, and the weight of each.
+    pub(super) fn points(self, frame: &Frame) -> (&'static [[f64; 2]], f64) {
         match self {
             Self::Mitc4 | Self::Displacement => (&GAUSS_2X2, 1.0),
+            // `det J` falls to zero towards the apex of a triangle: at its middle it is a third of the area.
+            Self::Reduced if frame.is_triangle() => (&[MIDDLE_OF_TRIANGLE], 3.0),
             Self::Reduced => (&[[0.0, 0.0]], 4.0),
         }
     }
 
     /// The shear strains (2 x 12) at a point in natural coordinates, dofs `(w, θx, θy)` node by node; those of a reduced
     /// integration are known in the middle alone.
-    pub(super) fn matrix(self, xy: &[[f64; 2]; 4], natural: [f64; 2]) -> SMatrix<f64, 2, 12> {
+    pub(super) fn matrix(self, frame: &Frame, natural: [f64; 2]) -> SMatrix<f64, 2, 12> {
+        let (xy, is_triangle) = (&frame.xy, frame.is_triangle());
         match self {
+            Self::Mitc4 if is_triangle => triangle::tied_shear(xy, natural),
             Self::Mitc4 => shear_matrix(xy, &gauss_point(xy, natural)),
+            Self::Displacement if is_triangle => triangle::compatible_shear(xy, natural),
             Self::Displacement => compatible_matrix(&gauss_point(xy, natural)),
+            Self::Reduced if is_triangle => triangle::compatible_shear(xy, MIDDLE_OF_TRIANGLE),
             Self::Reduced => compatible_matrix(&gauss_point(xy, [0.0, 0.0])),
         }
     }

@@ -85,7 +85,7 @@ impl Operator {
             }
         }
         let mut shear: SMatrix<f64, { 2 * PLACES }, 12> = SMatrix::zeros();
-        for (place, at) in CORNERS.into_iter().chain([[0.0, 0.0]]).enumerate() {
+        for (place, at) in CORNERS.into_iter().chain([element.frame.middle()]).enumerate() {
             if let Some((mean, varying)) = element.assumed_membrane(at) {
                 // The mean of the element is that of its constant stresses.
                 let varying = if place < 4 { varying } else { SMatrix::zeros() };
@@ -184,7 +184,7 @@ pub fn straining<'a>(model: &'a Model, state: &'a State) -> impl Fn(usize) -> Di
 }
 
 /// Calls `visit` with each of some elements and its resultants: at the corners, N and M extrapolated from the
-/// cells (N of assumed stresses as they are there) and Q as MITC4 has it; then the mean over the cells, with Q at the
+/// cells (N of assumed stresses as they are there) and Q as MITC4 or MITC3 has it; then the mean over the cells, with Q at the
 /// centre.
 pub fn for_each_element(
     model: &Model,

@@ -22,7 +22,7 @@ use std::collections::BTreeSet;
 use nalgebra::Vector3;
 
 use crate::element::{Cell, membrane_and_plate};
-use crate::mesh::{QuadMesh, normal};
+use crate::mesh::{QuadMesh, nodes_of, normal};
 use crate::model::{Load, Model, ModelError};
 use crate::section::SheetLaw;
 use crate::solve::nonlinear::State;
@@ -286,8 +286,8 @@ impl Recovery {
         let quads = 0..model.mesh.quads.len();
         for_each_element(model, self.flat, remembered, quads, displacement, |quad, [corners @ .., mean]| {
             means.push(mean);
-            for (corner, node) in corners.iter().zip(model.mesh.quads[quad]) {
-                let (sum, count) = &mut sums[node as usize];
+            for (corner, node) in corners.iter().zip(nodes_of(&model.mesh.quads[quad])) {
+                let (sum, count) = &mut sums[*node as usize];
                 sum.add(corner, 1.0);
                 *count += 1.0;
             }

@@ -4,7 +4,7 @@ use nalgebra::{Point3, Vector2};
 
 use super::Resultants;
 use crate::element::{Frame, shape};
-use crate::mesh::QuadMesh;
+use crate::mesh::{QuadMesh, sides_of};
 use crate::quantity::Curve;
 
 /// Where a point lies in a mesh.
@@ -100,10 +100,9 @@ impl Locator {
         let frame = Frame::of(&corners);
         let centre = corners.iter().fold(nalgebra::Vector3::zeros(), |s, c| s + c.coords) / 4.0;
         let local = frame.rotation * (point.coords - centre);
-        let [xi, eta] = natural(&frame.xy, [local.x, local.y])?;
-        let inside = xi.abs() <= OUTSIDE && eta.abs() <= OUTSIDE;
+        let weights = weights(&frame, [local.x, local.y], OUTSIDE)?;
         // A point well off the plane belongs to another part of a folded sheet.
-        (inside && local.z.abs() <= 0.1 * reach).then(|| Self { quad, weights: shape(xi, eta) })
+        (local.z.abs() <= 0.1 * reach).then_some(Self { quad, weights })
     }
 
     /// A nodal quantity at the point.
@@ -126,8 +125,9 @@ impl Locator {
 pub fn nearest(mesh: &QuadMesh, point: &Point3<f64>) -> Point3<f64> {
     let of_quad = |quad: usize| {
         let corners = mesh.corners(quad);
-        let edges = (0..4).map(move |i| {
-            let (a, side) = (corners[i], corners[(i + 1) % 4] - corners[i]);
+        let edges = sides_of(&mesh.quads[quad]).map(|ends| {
+            let [a, b] = ends.map(|n| mesh.nodes[n as usize]);
+            let side = b - a;
             a + side * ((point - a).dot(&side) / side.norm_squared()).clamp(0.0, 1.0)
         });
         edges.chain(foot(&corners, point))
@@ -142,11 +142,27 @@ fn foot(corners: &[Point3<f64>; 4], point: &Point3<f64>) -> Option<Point3<f64>> 
     let frame = Frame::of(corners);
     let centre = corners.iter().fold(nalgebra::Vector3::zeros(), |s, c| s + c.coords) / 4.0;
     let local = frame.rotation * (point.coords - centre);
-    let [xi, eta] = natural(&frame.xy, [local.x, local.y])?;
-    let inside = xi.abs() <= 1.0 && eta.abs() <= 1.0;
-    let weights = shape(xi, eta);
-    let place = corners.iter().zip(weights).map(|(c, w)| c.coords * w).sum::<nalgebra::Vector3<f64>>();
-    inside.then(|| place.into())
+    let weights = weights(&frame, [local.x, local.y], 1.0)?;
+    Some(corners.iter().zip(weights).map(|(c, w)| c.coords * w).sum::<nalgebra::Vector3<f64>>().into())
+}
+
+/// What the corners count at a plane point; `None` if it lies beyond the edges, at 1 in natural coordinates, by more than to
+/// `edge`.
+fn weights(frame: &Frame, point: [f64; 2], edge: f64) -> Option<[f64; 4]> {
+    if frame.is_triangle() {
+        let [a, b, c] = in_triangle(&frame.xy, point);
+        return (a.min(b).min(c) >= 0.5 * (1.0 - edge)).then_some([a, b, c, 0.0]);
+    }
+    let [xi, eta] = natural(&frame.xy, point)?;
+    (xi.abs() <= edge && eta.abs() <= edge).then(|| shape(xi, eta))
+}
+
+/// The area coordinates of a plane point.
+fn in_triangle(xy: &[[f64; 2]; 4], point: [f64; 2]) -> [f64; 3] {
+    let [a, b, c, _] = xy.map(Vector2::from);
+    let (p, whole) = (Vector2::from(point), (b - a).perp(&(c - a)));
+    let [first, second] = [(b, c), (c, a)].map(|(from, to)| (from - p).perp(&(to - p)) / whole);
+    [first, second, 1.0 - first - second]
 }
 
 /// Natural coordinates of a plane point: the inverse of the bilinear map `a + b ξ + c η + d ξ η`, of which the root
@@ -262,5 +278,34 @@ mod tests {
         let line = line.profile(&mesh, field);
         assert_eq!(line.len(), 11);
         assert_relative_eq!(line.y[10], 3.5, epsilon = 1e-12);
+    }
+
+    /// Every node of a mesh of triangles, and points between: whichever corner is the one that a quad has twice.
+    #[test]
+    fn points_are_found_in_triangles_and_at_their_corners() {
+        let quads = distorted(rectangle(2.0, 1.0, 6, 4).unwrap(), 0.5, 3).unwrap();
+        let halves = |&[a, b, c, d]: &[u32; 4]| [[a, b, c, c], [c, d, a, a]];
+        let mesh = QuadMesh { quads: quads.quads.iter().flat_map(halves).collect(), ..quads.clone() };
+        let field = |n: usize| 1.0 + 2.0 * mesh.nodes[n].x - 3.0 * mesh.nodes[n].y;
+        let between = [[0.3, 0.6, 0.1], [0.5, 0.5, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+        for (quad, weights) in (0..mesh.quads.len()).flat_map(|q| between.map(|w| (q, w))) {
+            let corners = mesh.corners(quad);
+            let point: Point3<f64> =
+                (0..3).map(|i| weights[i] * corners[i].coords).sum::<nalgebra::Vector3<f64>>().into();
+            let found = Locator::find(&mesh, &point).unwrap();
+            assert_eq!(Finder::new(&mesh).find(&point), Some(found));
+            assert_relative_eq!(
+                found.interpolate(&mesh, field),
+                1.0 + 2.0 * point.x - 3.0 * point.y,
+                epsilon = 1e-12
+            );
+            assert_eq!(nearest(&mesh, &(point + nalgebra::Vector3::z())).z, 0.0);
+        }
+        assert_eq!(Locator::find(&mesh, &Point3::new(2.1, 0.5, 0.0)), None);
+        assert_relative_eq!(
+            nearest(&mesh, &Point3::new(2.1, 0.513, 0.0)),
+            Point3::new(2.0, 0.513, 0.0),
+            epsilon = 1e-12
+        );
     }
 }

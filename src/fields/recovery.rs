@@ -18,7 +18,7 @@ use nalgebra::{DMatrix, Point3, Vector3};
 
 use super::Resultants;
 use crate::element::Frame;
-use crate::mesh::{QuadMesh, normal};
+use crate::mesh::{QuadMesh, nodes_of, normal};
 
 /// Rings of elements about a node that a patch may have.
 const RINGS: usize = 4;
@@ -75,11 +75,12 @@ impl<'a> Patches<'a> {
     pub fn new(mesh: &'a QuadMesh) -> Self {
         let mut around = vec![Vec::new(); mesh.nodes.len()];
         for (quad, nodes) in mesh.quads.iter().enumerate() {
-            nodes.iter().for_each(|n| around[*n as usize].push(quad as u32));
+            nodes_of(nodes).iter().for_each(|n| around[*n as usize].push(quad as u32));
         }
-        let centres = (0..mesh.quads.len()).map(|quad| {
-            let corners = mesh.corners(quad);
-            Point3::from(corners.iter().map(|c| c.coords).sum::<Vector3<f64>>() / 4.0)
+        let centres = mesh.quads.iter().map(|quad| {
+            let nodes = nodes_of(quad);
+            let sum: Vector3<f64> = nodes.iter().map(|n| mesh.nodes[*n as usize].coords).sum();
+            Point3::from(sum / nodes.len() as f64)
         });
         let centres = centres.collect();
         Self { mesh, around, centres }

@@ -7,7 +7,7 @@ use nalgebra::Point3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use super::{MeshError, QuadMesh};
+use super::{MeshError, QuadMesh, sides_of};
 
 fn sorted(mut nodes: Vec<u32>) -> Vec<u32> {
     nodes.sort_unstable();
@@ -201,8 +201,8 @@ pub fn distorted(mut mesh: QuadMesh, amount: f64, seed: u64) -> Result<QuadMesh,
     }
     let mut shortest = vec![f64::INFINITY; mesh.nodes.len()];
     for quad in &mesh.quads {
-        for i in 0..4 {
-            let (a, b) = (quad[i] as usize, quad[(i + 1) % 4] as usize);
+        for [a, b] in sides_of(quad) {
+            let (a, b) = (a as usize, b as usize);
             let length = (mesh.nodes[a] - mesh.nodes[b]).norm();
             shortest[a] = shortest[a].min(length);
             shortest[b] = shortest[b].min(length);

@@ -1,10 +1,11 @@
-//! Gmsh meshes: the ASCII form of MSH 4.1, quadrilaterals with named physical groups.
+//! Gmsh meshes: the ASCII form of MSH 4.1, quadrilaterals and triangles with named physical groups.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 
 use nalgebra::Point3;
 
+use super::triangle::{FLAT, collapsed, height, turned_over};
 use super::{MeshError, QuadMesh};
 use crate::finding::Place;
 
@@ -12,11 +13,13 @@ use crate::finding::Place;
 ///
 /// Each physical group with a name becomes a node set, whatever its dimension; `boundary` and `all`
 /// are added unless the file has groups of these names. Lines and points only name sets; the lines of a group are
-/// its edges. Nodes of geometry points that belong to no element (centres of arcs) are left out. Quads are turned over
-/// until neighbours agree: a sheet in a plane z = const has the normal +z, any other that of most of its quads.
+/// its edges. Nodes of geometry points that belong to no element (centres of arcs) are left out. A quad that has one
+/// node twice in a row is a triangle. Elements are turned over until neighbours agree: a sheet in a plane z = const has the
+/// normal +z, any other that of most of its elements.
 ///
 /// # Errors
-/// M011 with file and line: not this format, a damaged section, elements other than quads.
+/// M011 with file and line: not this format, a damaged section, elements other than quads and triangles, elements of fewer
+/// than three different nodes.
 pub fn parse_gmsh(path: &Path, text: &str, scale: f64) -> Result<QuadMesh, MeshError> {
     let mut reader = Reader { path, lines: text.lines().enumerate(), line: 0 };
     let mut file = File::default();
@@ -38,8 +41,9 @@ pub fn parse_gmsh(path: &Path, text: &str, scale: f64) -> Result<QuadMesh, MeshE
         }
     }
     if file.quads.is_empty() {
-        return Err(reader
-            .error("there is no quadrilateral: mesh with recombination (Mesh 2; RecombineMesh;)".into()));
+        return Err(reader.error(
+            "there is no quadrilateral and no triangle: mesh the surfaces (Mesh 2;) before saving".into(),
+        ));
     }
     file.mesh(&reader)
 }
@@ -177,15 +181,11 @@ impl<'a> Reader<'a> {
             let corners = match kind {
                 15 => 1,
                 1 => 2,
+                2 => 3,
                 3 => 4,
-                2 => {
-                    return Err(
-                        self.error("triangles: recombine them into quads (Mesh 2; RecombineMesh;)".into())
-                    );
-                }
                 _ => {
                     return Err(self.error(format!(
-                        "elements of Gmsh type {kind}: only 4-node quads (type 3) make a sheet"
+                        "elements of Gmsh type {kind}: 3-node triangles (type 2) and 4-node quads (type 3) make a sheet"
                     )));
                 }
             };
@@ -204,8 +204,10 @@ impl<'a> Reader<'a> {
                         self.error(format!("element {} names node {missing}, which is not there", row[0]))
                     );
                 }
-                if let [a, b, c, d] = *nodes {
-                    file.quads.push([a, b, c, d]);
+                match *nodes {
+                    [a, b, c] => file.quads.push(self.element(file, row[0], [a, b, c, c])?),
+                    [a, b, c, d] => file.quads.push(self.element(file, row[0], [a, b, c, d])?),
+                    _ => {}
                 }
                 for group in &groups {
                     file.sets.entry(group.clone()).or_default().extend(nodes);
@@ -216,6 +218,22 @@ impl<'a> Reader<'a> {
             }
         }
         Ok(())
+    }
+
+    /// The corners of an element that has three different ones at least, and an area if there are no more.
+    fn element(&self, file: &File, tag: u64, corners: [u64; 4]) -> Result<[u64; 4], MeshError> {
+        let Some(found @ [a, b, c, d]) = collapsed(corners) else {
+            return Err(self.error(format!(
+                "element {tag} has the nodes {corners:?}: an element needs three different ones, and has none twice but in \
+                 a row; remove it"
+            )));
+        };
+        if c == d && height([a, b, c].map(|n| file.nodes[&n])) < FLAT {
+            return Err(self.error(format!(
+                "element {tag} has its nodes {a}, {b} and {c} in a line, and so no area: move one of them or remove it"
+            )));
+        }
+        Ok(found)
     }
 }
 
@@ -244,7 +262,7 @@ impl File {
             mesh.nodes.iter_mut().for_each(|n| n.z = low.z);
             for quad in 0..mesh.quads.len() {
                 if super::normal(&mesh.corners(quad)).z < 0.0 {
-                    mesh.quads[quad].reverse();
+                    mesh.quads[quad] = turned_over(&mesh.quads[quad]);
                 }
             }
         }
@@ -358,12 +376,43 @@ $EndElements
         assert_eq!(mesh.set_edges("clamp line").unwrap(), [[0, 1], [2, 3]]);
     }
 
+    /// A triangle beside a quad, and the same as quads with a node twice, whichever it is; clockwise all.
+    #[test]
+    fn triangles_are_read_as_such_and_as_quads_with_a_node_twice() {
+        let mixed = TWO.replace(
+            "2 3 1 3\n1 1 1 1\n1 1 4\n2 1 3 2\n2 1 4 5 2\n3 2 5 6 3",
+            "3 4 1 4\n1 1 1 1\n1 1 4\n2 1 3 1\n2 1 4 5 2\n2 1 2 2\n3 2 5 6\n4 2 6 3",
+        );
+        let mesh = parse(&mixed).unwrap();
+        mesh.check().unwrap();
+        assert!(mesh.is_flat(), "clockwise triangles are turned over");
+        assert_eq!((mesh.quads.len(), mesh.triangles()), (3, 2));
+        assert_eq!(mesh.quads[1..], [[4, 1, 5, 5], [5, 1, 2, 2]]);
+        assert_eq!(mesh.set_edges("boundary").unwrap().len(), 6);
+        assert_eq!(mesh.set_edges("clamp line").unwrap(), [[3, 0]]);
+        for rows in ["3 2 5 6 6\n4 2 6 3 3", "3 2 2 5 6\n4 3 2 6 3", "3 2 5 5 6\n4 2 6 6 3"] {
+            let quads = mixed.replace("2 1 2 2\n3 2 5 6\n4 2 6 3", &format!("2 1 3 2\n{rows}"));
+            let quads = parse(&quads).unwrap();
+            assert_eq!((quads.quads.len(), quads.triangles()), (3, 2), "{rows}");
+            assert!(quads.is_flat() && quads.check().is_ok());
+            assert_eq!(quads.boundary_edges().len(), 6);
+        }
+    }
+
     #[test]
     fn what_is_wrong_is_named_with_its_line() {
         let message = |from: &str, to: &str| parse(&TWO.replace(from, to)).unwrap_err().to_string();
         assert!(message("4.1 0 8", "2.2 0 8").starts_with("part.msh:2: M011"));
         assert!(message("4.1 0 8", "4.1 1 8").contains("binary"));
-        assert!(message("2 1 3 2\n", "2 1 2 2\n").contains("triangles"));
+        assert!(
+            message("2 1 3 2\n", "2 1 9 2\n").contains("3-node triangles (type 2) and 4-node quads (type 3)")
+        );
+        for corners in ["5 6 5 3", "5 5 6 6", "5 5 5 6"] {
+            let two = message("3 2 5 6 3", &format!("3 {corners}"));
+            assert!(two.starts_with("part.msh:40: M011") && two.contains("three different ones"), "{two}");
+        }
+        let line = message("3 2 5 6 3", "3 2 1 3 3");
+        assert!(line.starts_with("part.msh:40: M011") && line.contains("in a line"), "{line}");
         assert!(message("1 4 5 2", "1 4 5 8").contains("node 8"));
         assert!(message("1 1 0\n2 1 0", "1 x 0\n2 1 0").contains("`1 x 0`"));
         let cut = &TWO[..TWO.find("3 2 5 6 3").unwrap()];

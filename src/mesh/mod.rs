@@ -1,10 +1,11 @@
-//! Quadrilateral meshes with named node sets, and the checks that a mesh must pass.
+//! Meshes of quads and triangles with named node sets, and the checks that a mesh must pass.
 
 mod crossings;
 mod generate;
 mod gmsh;
 mod joined;
 mod orient;
+mod triangle;
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -14,10 +15,11 @@ pub use crossings::{Crossings, crossings};
 pub use generate::{annulus, disc, distorted, graded_annulus, rectangle};
 pub use gmsh::parse_gmsh;
 pub use joined::Unjoined;
+pub use triangle::{is_triangle, nodes_of, sides_of};
 
 use crate::finding::{Place, errors};
 
-/// A mesh of four-node quadrilaterals.
+/// A mesh of four-node quadrilaterals, of which those that have their third node as the fourth too are triangles.
 ///
 /// ```text
 ///   4 --- C' --- 3      node order of a quad: counter-clockwise seen from +e3;
@@ -28,7 +30,7 @@ use crate::finding::{Place, errors};
 pub struct QuadMesh {
     /// Node coordinates (m).
     pub nodes: Vec<Point3<f64>>,
-    /// Node indices of each quad, counter-clockwise.
+    /// Node indices of each quad, counter-clockwise; `[a, b, c, c]` of a triangle.
     pub quads: Vec<[u32; 4]>,
     /// Named sets of nodes, each sorted.
     pub node_sets: BTreeMap<String, Vec<u32>>,
@@ -42,7 +44,7 @@ errors! {
     #[derive(Clone, Debug, PartialEq)]
     pub enum MeshError {
         /// M001: no element.
-        "M001" Empty = "the mesh has no quadrilateral";
+        "M001" Empty = "the mesh has no quadrilateral and no triangle";
         /// M002: a quad names a node that does not exist.
         "M002" NoSuchNode {
             /// Index of the quad, from 0.
@@ -60,10 +62,9 @@ errors! {
             nodes: [u32; 4],
             /// `inverted`, `non-convex` or `degenerate`.
             what: &'static str,
-            /// Smallest corner Jacobian over the mean of the four.
+            /// Smallest corner Jacobian over the mean of the four; of a triangle its height over its longest side.
             ratio: f64,
-        } = "quad {quad} (nodes {nodes:?}) is {what}: the smallest corner Jacobian is {ratio:.3} of the mean; \
-             every corner must turn counter-clockwise by less than 180 degrees";
+        } = "{}", shape_message(*quad, nodes, what, *ratio);
         /// M004: a node that no quad uses.
         "M004" UnconnectedNode {
             /// Index of the node, from 0.
@@ -146,9 +147,19 @@ impl QuadMesh {
         })
     }
 
-    /// The four edges of every quad in turn, each counter-clockwise along it.
+    /// How many of the quads are triangles.
+    pub fn triangles(&self) -> usize {
+        self.quads.iter().filter(|quad| is_triangle(quad)).count()
+    }
+
+    /// The edges of every quad in turn, each counter-clockwise along it, with its quad.
+    fn edges_of_quads(&self) -> impl Iterator<Item = (usize, [u32; 2])> {
+        self.quads.iter().enumerate().flat_map(|(k, quad)| sides_of(quad).map(move |edge| (k, edge)))
+    }
+
+    /// The edges of every quad in turn, each counter-clockwise along it.
     fn edges(&self) -> impl Iterator<Item = [u32; 2]> {
-        self.quads.iter().flat_map(|q| (0..4).map(move |i| [q[i], q[(i + 1) % 4]]))
+        self.quads.iter().flat_map(sides_of)
     }
 
     /// Edges that belong to one quad only, in quad order, each counter-clockwise along its quad.
@@ -178,9 +189,9 @@ impl QuadMesh {
         let key = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
         let mut normals: HashMap<[u32; 2], Vector3<f64>> =
             edges.iter().map(|e| (key(*e), Vector3::zeros())).collect();
-        for (k, edge) in self.edges().enumerate() {
+        for (quad, edge) in self.edges_of_quads() {
             if let Some(of_edge) = normals.get_mut(&key(edge)) {
-                *of_edge = normal(&self.corners(k / 4));
+                *of_edge = normal(&self.corners(quad));
             }
         }
         edges.iter().map(|e| normals[&key(*e)]).collect()
@@ -232,6 +243,10 @@ impl QuadMesh {
         }
         let sorted = |(quad, nodes): (usize, &[u32; 4])| {
             let mut nodes = *nodes;
+            if is_triangle(&nodes) {
+                // Whichever of its nodes is the one that it has twice.
+                nodes[3] = u32::MAX;
+            }
             nodes.sort_unstable();
             (nodes, quad)
         };
@@ -251,6 +266,9 @@ impl QuadMesh {
     }
 
     fn check_shape(&self, quad: usize) -> Result<(), MeshError> {
+        if is_triangle(&self.quads[quad]) {
+            return self.check_triangle(quad);
+        }
         let c = self.corners(quad);
         let n = normal(&c);
         let jacobians = [0, 1, 2, 3].map(|i| {
@@ -275,9 +293,34 @@ impl QuadMesh {
         let ratio = if mean > 0.0 { smallest / mean } else { 0.0 };
         Err(MeshError::Shape { quad, nodes: self.quads[quad], what, ratio })
     }
+
+    /// A triangle has no side on which it could be folded or not convex: all that it must have is an area.
+    fn check_triangle(&self, quad: usize) -> Result<(), MeshError> {
+        let nodes = self.quads[quad];
+        let [a, b, c, _] = self.corners(quad);
+        let ratio = triangle::height([a, b, c]);
+        if ratio >= triangle::FLAT {
+            return Ok(());
+        }
+        Err(MeshError::Shape { quad, nodes, what: "degenerate", ratio })
+    }
 }
 
-/// Unit normal of a quad: the cross product of its diagonals.
+fn shape_message(quad: usize, nodes: &[u32; 4], what: &str, ratio: f64) -> String {
+    if is_triangle(nodes) {
+        return format!(
+            "triangle {quad} (nodes {:?}) is {what}: its height is {ratio:.1e} of its longest side; \
+             its corners must not lie in a line",
+            nodes_of(nodes)
+        );
+    }
+    format!(
+        "quad {quad} (nodes {nodes:?}) is {what}: the smallest corner Jacobian is {ratio:.3} of the mean; \
+         every corner must turn counter-clockwise by less than 180 degrees"
+    )
+}
+
+/// Unit normal of a quad: the cross product of its diagonals; of a triangle, that of two sides.
 pub fn normal(c: &[Point3<f64>; 4]) -> Vector3<f64> {
     (c[2] - c[0]).cross(&(c[3] - c[1])).normalize()
 }
@@ -310,6 +353,25 @@ mod tests {
         m.nodes[0].x = f64::NAN;
         assert!(matches!(m.check(), Err(MeshError::NotFinite { node: 0 })));
         assert!(two_quads().set("rim").unwrap_err().to_string().contains("left"));
+    }
+
+    #[test]
+    fn a_triangle_needs_an_area_and_nothing_else() {
+        let mut m = two_quads();
+        m.quads = vec![[0, 1, 4, 3], [1, 2, 5, 5], [1, 5, 4, 4]];
+        assert_eq!(m.check(), Ok(()));
+        assert_eq!((m.triangles(), m.boundary_edges().len()), (2, 6));
+        assert_eq!(m.edge_normals(&[[1, 5]]), [Vector3::z()]);
+        assert_eq!(m.unjoined(), None);
+        // The same triangle, beginning with another node.
+        m.quads.push([5, 1, 2, 2]);
+        assert_eq!(m.check(), Err(MeshError::Twice { quads: [1, 3] }));
+        for flat in [[0, 1, 2, 2], [0, 0, 1, 1], [0, 1, 0, 0]] {
+            m.quads = vec![[0, 1, 4, 3], [1, 2, 5, 4], flat];
+            let error = m.check().unwrap_err();
+            assert!(matches!(error, MeshError::Shape { quad: 2, what: "degenerate", .. }), "{error}");
+            assert!(error.to_string().contains("must not lie in a line"), "{error}");
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Which side of a quad is up: the same for neighbours.
 
 use super::QuadMesh;
+use super::triangle::turned_over;
 
 /// An edge, lower node first, with a quad that has it and whether that runs along it from the lower node.
 type Side = ([u32; 2], usize, bool);
@@ -8,8 +9,8 @@ type Side = ([u32; 2], usize, bool);
 impl QuadMesh {
     /// The sides of all quads; those of an edge follow each other.
     fn sides(&self) -> Vec<Side> {
-        let side = |(k, [a, b]): (usize, [u32; 2])| ([a.min(b), a.max(b)], k / 4, a < b);
-        let mut sides: Vec<Side> = self.edges().enumerate().map(side).collect();
+        let side = |(quad, [a, b]): (usize, [u32; 2])| ([a.min(b), a.max(b)], quad, a < b);
+        let mut sides: Vec<Side> = self.edges_of_quads().map(side).collect();
         sides.sort_unstable();
         sides
     }
@@ -55,7 +56,7 @@ impl QuadMesh {
             let count = part.iter().filter(|q| turned[**q] == Some(true)).count();
             let fewer = 2 * count <= part.len();
             for quad in part.into_iter().filter(|q| (turned[*q] == Some(true)) == fewer) {
-                self.quads[quad].reverse();
+                self.quads[quad] = turned_over(&self.quads[quad]);
             }
         }
     }

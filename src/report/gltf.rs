@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 
 use super::chart::value_color;
 use crate::finding::errors;
+use crate::mesh::{is_triangle, nodes_of};
 
 errors! {
     /// Why there is no file.
@@ -168,13 +169,12 @@ pub fn glb(sheet: &DeflectedSheet) -> Result<Vec<u8>, GltfError> {
     sheet.checked()?;
     let (shown, moved, by) = (sheet.shown(), sheet.moved(), sheet.scale_factor());
     let largest = moved.iter().copied().fold(0.0, f64::max);
-    let corners = |q: &[u32; 4]| [q[0], q[1], q[2], q[0], q[2], q[3]];
     let mut buffer = Buffer::default();
     let position = buffer.vectors(&single(&shown));
     let normal = buffer.vectors(&single(&normals(&shown, sheet.quads)));
     let colors: Vec<[u16; 4]> = moved.iter().map(|m| linear(value_color(share(*m, largest)))).collect();
     let color = buffer.colors(&colors);
-    let faces = buffer.indices(&sheet.quads.iter().flat_map(corners).collect::<Vec<_>>());
+    let faces = buffer.indices(&sheet.quads.iter().flat_map(faces).flatten().collect::<Vec<_>>());
     let before = buffer.vectors(&single(sheet.rest));
     let edges = buffer.indices(sheet.outline.as_flattened());
     let attributes = json!({ "POSITION": position, "NORMAL": normal, "COLOR_0": color });
@@ -232,13 +232,20 @@ fn single(vectors: &[[f64; 3]]) -> Vec<[f32; 3]> {
     vectors.iter().map(|v| v.map(|x| x as f32)).collect()
 }
 
+/// The triangles of a quad: two, or the one that it is.
+fn faces(quad: &[u32; 4]) -> impl Iterator<Item = [u32; 3]> {
+    let [a, b, c, d] = *quad;
+    let count = if is_triangle(quad) { 1 } else { 2 };
+    [[a, b, c], [a, c, d]].into_iter().take(count)
+}
+
 /// Unit normals of nodes, means over the quads around them.
 fn normals(nodes: &[[f64; 3]], quads: &[[u32; 4]]) -> Vec<[f64; 3]> {
     let mut sums = vec![Vector3::zeros(); nodes.len()];
     for quad in quads {
         let [a, b, c, d] = quad.map(|n| Vector3::from(nodes[n as usize]));
         let normal = (c - a).cross(&(d - b));
-        quad.iter().for_each(|n| sums[*n as usize] += normal);
+        nodes_of(quad).iter().for_each(|n| sums[*n as usize] += normal);
     }
     sums.iter().map(|n| n.try_normalize(0.0).unwrap_or_else(Vector3::z).into()).collect()
 }
@@ -312,6 +319,17 @@ mod tests {
         let text: Value = serde_json::from_slice(&Glb::from_slice(&bytes).unwrap().json).unwrap();
         assert_eq!(text["nodes"][0]["extras"]["scale_factor"], 10.0);
         assert_eq!(text["nodes"][0]["extras"]["largest"], 2e-3);
+    }
+
+    #[test]
+    fn a_triangle_is_one_face_and_has_the_normal_of_its_plane() {
+        let quads = [[0, 1, 4, 3], [1, 2, 5, 5]];
+        let bytes = glb(&DeflectedSheet { quads: &quads, ..sheet(&[[0.0; 3]; 6]) }).unwrap();
+        let file = gltf::Gltf::from_slice(&bytes).unwrap();
+        let faces = file.meshes().next().unwrap().primitives().next().unwrap().indices().unwrap();
+        assert_eq!(faces.count(), 9);
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+        assert_eq!(normals(&corners, &[[0, 1, 2, 2]]), [[0.0, -1.0, 0.0]; 3]);
     }
 
     #[test]

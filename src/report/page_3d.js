@@ -21,6 +21,11 @@
     return Array.from({ length: view.byteLength / 2 }, (_, i) => view.getUint16(2 * i, true));
   }
 
+  /** Of the values at the corners of a quad. */
+  function mean(quad, values) {
+    return quad.reduce((sum, n) => sum + values[n], 0) / quad.length;
+  }
+
   /** Edges before, nodes, parts of the largest displacement, and quads of a sheet; centred, its largest extent 1. */
   function unpacked(sheet) {
     const [low, high] = sheet.bounds;
@@ -30,7 +35,8 @@
       points.push([0, 1, 2].map((k) => ((numbers[i + k] / 65535 - 0.5) * (high[k] - low[k])) / size));
     }
     const corners = shorts(data.shapes.quads[Number(sheet.quads)]);
-    for (let i = 0; i < corners.length; i += 4) quads.push(corners.slice(i, i + 4));
+    // A triangle has one corner twice.
+    for (let i = 0; i < corners.length; i += 4) quads.push([...new Set(corners.slice(i, i + 4))]);
     return { before: points.slice(0, sheet.outline), nodes: points.slice(sheet.outline), quads };
   }
 
@@ -95,7 +101,7 @@
       const sheet = this.sheets[Number(this.select.value)], field = (sheet.fields || [])[this.field];
       const largest = field ? inWords(field.largest, field.unit) : inWords(sheet.largest, "m");
       const values = bytes((field || sheet).values);
-      this.mesh.parts = field ? values : this.mesh.quads.map((quad) => quad.reduce((sum, n) => sum + values[n], 0) / 4);
+      this.mesh.parts = field ? values : this.mesh.quads.map((quad) => mean(quad, values));
       const shown = sheet.scale === 1 ? "shown as it is" : `displacements shown ${significant(sheet.scale, 1)} times as large`;
       const what = field ? `${field.name} of each element` : "length of the displacement";
       this.ends[1].textContent = largest;
@@ -145,10 +151,10 @@
       paint.clearRect(0, 0, width, height);
       const ink = getComputedStyle(document.documentElement).getPropertyValue("--ink");
       const seen = nodes.map(at), depth = nodes.map((p) => along(towards, p));
-      const faces = quads.map((quad, i) => [quad, quad.reduce((sum, n) => sum + depth[n], 0), i]).sort((a, b) => a[1] - b[1]);
+      const faces = quads.map((quad, i) => [quad, mean(quad, depth), i]).sort((a, b) => a[1] - b[1]);
       if (this.before) this.outline(paint, before.map(at), ink, 0.55);
       for (const [quad, , face] of faces) {
-        const [a, b, d, e] = quad.map((n) => nodes[n]);
+        const [a, b, d, e = d] = quad.map((n) => nodes[n]);
         const [u, v] = [d.map((x, k) => x - a[k]), e.map((x, k) => x - b[k])];
         const normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
         const light = 0.62 + 0.38 * Math.abs(along(LAMP, normal)) / (Math.hypot(...normal) || 1);

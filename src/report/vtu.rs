@@ -1,6 +1,7 @@
 //! Meshes and fields as VTU files (VTK XML unstructured grid) for ParaView and PyVista.
 
 use crate::finding::errors;
+use crate::mesh::{is_triangle, nodes_of};
 use std::io;
 
 use base64::Engine as _;
@@ -51,7 +52,7 @@ errors! {
     }
 }
 
-/// The bytes of a VTU file: nodes n x 3 (m), quads of four node indices, fields at nodes and in cells.
+/// The bytes of a VTU file: nodes n x 3 (m), quads of four node indices (triangles `[a, b, c, c]`), fields at nodes and in cells.
 ///
 /// # Errors
 /// [`VtuError`] if lists do not fit together.
@@ -81,7 +82,23 @@ impl MeshField<'_> {
 }
 
 /// Number of a quad among the cell types of VTK.
+const VTK_TRIANGLE: u8 = 5;
 const VTK_QUAD: u8 = 9;
+
+fn cell_type(quad: &[u32; 4]) -> u8 {
+    if is_triangle(quad) { VTK_TRIANGLE } else { VTK_QUAD }
+}
+
+/// Where the nodes of each cell end in the list of all.
+fn ends(quads: &[[u32; 4]]) -> Vec<u32> {
+    let mut end = 0;
+    let mut ends = Vec::with_capacity(quads.len());
+    for quad in quads {
+        end += nodes_of(quad).len() as u32;
+        ends.push(end);
+    }
+    ends
+}
 
 fn document(
     nodes: &[[f64; 3]],
@@ -110,10 +127,11 @@ fn document(
                 fields(writer, "CellData", cell_data)?;
                 inside(writer, "Points", |writer| array(writer, "Points", 3, nodes.as_flattened()))?;
                 inside(writer, "Cells", |writer| {
-                    array(writer, "connectivity", 1, quads.as_flattened())?;
-                    let offsets: Vec<u32> = (1..=quads.len() as u32).map(|i| 4 * i).collect();
-                    array(writer, "offsets", 1, &offsets)?;
-                    array(writer, "types", 1, &vec![VTK_QUAD; quads.len()])
+                    let nodes: Vec<u32> = quads.iter().flat_map(nodes_of).copied().collect();
+                    array(writer, "connectivity", 1, &nodes)?;
+                    array(writer, "offsets", 1, &ends(quads))?;
+                    let types: Vec<u8> = quads.iter().map(cell_type).collect();
+                    array(writer, "types", 1, &types)
                 })
             })?;
             Ok(())
@@ -240,6 +258,20 @@ mod tests {
         assert_eq!(numbers(&piece.data.point[0]), ("displacement".into(), u.to_vec()));
         assert_eq!(numbers(&piece.data.point[1]), ("w".into(), t.to_vec()));
         assert_eq!(numbers(&piece.data.cell[0]), ("moment".into(), m.to_vec()));
+    }
+
+    #[test]
+    fn triangles_are_cells_of_three_nodes() {
+        let cells = [[0, 1, 4, 3], [1, 2, 5, 5], [5, 4, 1, 1]];
+        let bytes = vtu(&NODES, &cells, &[], &[]).unwrap();
+        let DataSet::UnstructuredGrid { pieces, .. } = Vtk::parse_xml(bytes.as_slice()).unwrap().data else {
+            panic!("not an unstructured grid")
+        };
+        let Piece::Inline(piece) = &pieces[0] else { panic!("not inline") };
+        assert_eq!(piece.cells.types, [CellType::Quad, CellType::Triangle, CellType::Triangle]);
+        let (connectivity, offsets) = piece.cells.cell_verts.clone().into_xml();
+        assert_eq!(connectivity, [0, 1, 4, 3, 1, 2, 5, 5, 4, 1]);
+        assert_eq!(offsets, [4, 7, 10]);
     }
 
     #[test]

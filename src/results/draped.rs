@@ -183,7 +183,6 @@ impl StateEntry {
 
 /// The entry of a drape.
 pub(super) fn entry(task: &Task, d: &Drape) -> DrapeEntry {
-    let mesh = &d.model.mesh;
     let drape = DrapeValues {
         law: law(task).into(),
         coefficient: d.finest.coefficient,
@@ -215,7 +214,7 @@ pub(super) fn entry(task: &Task, d: &Drape) -> DrapeEntry {
         case: d.case.clone(),
         fabric: task.fabric_name().map(str::to_string),
         status: "ok".into(),
-        model: ModelEntry { nodes: mesh.nodes.len(), elements: mesh.quads.len(), dofs: 6 * mesh.nodes.len() },
+        model: ModelEntry::new(&d.model, 6 * d.model.mesh.nodes.len()),
         results: DrapeResults { drape },
         findings: d.findings.clone(),
     }

@@ -10,6 +10,7 @@ use crate::case::{
     Analysis, GuidedSet, Held, Layout, Mounting, Outline, PointOfAction, Prescribed, RigidSet, SectionTable,
     Sheet, SheetLoad, SheetMotion, SheetPoint, SheetProblem, SheetSupport, StepAnalysis, SupportKind, Warp,
 };
+use crate::element::Membrane;
 use crate::fields::{Finder, Locator, nearest};
 use crate::finding::{Located, Place};
 use crate::mesh::{self, MeshError, QuadMesh};
@@ -56,7 +57,10 @@ pub(super) fn model(
     let supports: Vec<&SheetSupport> = mounting.supports.iter().collect();
     let Actions { mut supports, moved, loads, .. } = actions(case, &mesh, &supports, (loads, prescribed))?;
     supports.extend(moved);
-    let formulation = mounting.formulation;
+    let mut formulation = mounting.formulation;
+    if mounting.arcs_of_triangles && mesh.triangles() > 0 {
+        formulation.membrane = Membrane::AssumedStress;
+    }
     let warp = sheet.layout.warp.direction();
     Ok(Model { mesh, section, warp, formulation, supports, loads, bodies })
 }

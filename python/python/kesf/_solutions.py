@@ -23,7 +23,8 @@ class Mesh(Result):
 
     Attributes:
         nodes: Places of the nodes at rest (m), shape (nodes, 3).
-        elements: The four nodes of each element, counted from 0, shape (elements, 4).
+        elements: The four nodes of each element, counted from 0, shape (elements, 4); the last two of a triangle are
+            the same.
     """
 
     nodes: Floats

@@ -8,6 +8,7 @@ use super::axes::{Frame, Range};
 use super::canvas::{Align, Canvas, Point, Stroke, Tones, Type};
 use super::error::ChartError;
 use super::palette::{INK, diverging, lighter, sequential};
+use crate::mesh::sides_of;
 
 /// Contour levels at round values, with the colour of each band between them.
 #[derive(Clone)]
@@ -59,7 +60,7 @@ impl Levels {
 }
 
 /// A quad as the four triangles around its middle; value and place there are the means of the corners,
-/// which keeps a symmetric field symmetric.
+/// which keeps a symmetric field symmetric. A quad that is a triangle has one part of no size.
 fn triangles(points: [Point; 4], values: [f64; 4]) -> [([Point; 3], [f64; 3]); 4] {
     let centre =
         (points.iter().map(|p| p.0).sum::<f64>() / 4.0, points.iter().map(|p| p.1).sum::<f64>() / 4.0);
@@ -117,10 +118,8 @@ fn iso_line(corners: [Point; 3], values: [f64; 3], level: f64) -> Option<[Point;
 
 /// The edges of the mesh that belong to one quad only, as page segments.
 pub(super) fn outline(points: &[Point], quads: &[[u32; 4]]) -> Vec<[Point; 2]> {
-    let mut edges: Vec<(u32, u32)> = quads
-        .iter()
-        .flat_map(|q| [0, 1, 2, 3].map(|i| (q[i].min(q[(i + 1) % 4]), q[i].max(q[(i + 1) % 4]))))
-        .collect();
+    let mut edges: Vec<(u32, u32)> =
+        quads.iter().flat_map(|quad| sides_of(quad).map(|[a, b]| (a.min(b), a.max(b)))).collect();
     edges.sort_unstable();
     edges
         .chunk_by(|a, b| a == b)
@@ -185,5 +184,10 @@ mod tests {
     fn the_outline_of_two_quads_has_six_edges() {
         let points: Vec<Point> = (0..6).map(|i| (f64::from(i % 3), f64::from(i / 3))).collect();
         assert_eq!(outline(&points, &[[0, 1, 4, 3], [1, 2, 5, 4]]).len(), 6);
+        assert_eq!(
+            outline(&points, &[[0, 1, 4, 3], [1, 2, 4, 4], [2, 5, 4, 4]]).len(),
+            6,
+            "two are triangles"
+        );
     }
 }

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::effort::{SolverEntry, TimingsEntry};
 use super::search::{SearchEntry, StepEntry, step_entries};
 use crate::finding::Finding;
+use crate::model::Model;
 use crate::quantity::Band;
 use crate::results::sampled::{InputEntry, SamplingEntry};
 use crate::results::task::Task;
@@ -46,8 +47,20 @@ pub struct ModelEntry {
     pub nodes: usize,
     /// Elements of the mesh.
     pub elements: usize,
+    /// How many of them are triangles, if any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub triangles: Option<usize>,
     /// Dofs of the systems that were solved.
     pub dofs: usize,
+}
+
+impl ModelEntry {
+    /// Of a model with that many dofs.
+    pub(in crate::results) fn new(model: &Model, dofs: usize) -> Self {
+        let mesh = &model.mesh;
+        let triangles = Some(mesh.triangles()).filter(|count| *count > 0);
+        Self { nodes: mesh.nodes.len(), elements: mesh.quads.len(), triangles, dofs }
+    }
 }
 
 /// A value with its unit.
@@ -130,12 +143,11 @@ struct PredictionEntry {
 
 /// The entry of a solved case. Seconds differ from run to run: they are left out of files.
 pub(in crate::results) fn entry(task: &Task, result: &CaseResult, timings: bool) -> SolutionEntry {
-    let mesh = &result.model.mesh;
     SolutionEntry {
         case: result.case.clone(),
         fabric: task.fabric_name().map(str::to_string),
         status: result.status,
-        model: ModelEntry { nodes: mesh.nodes.len(), elements: mesh.quads.len(), dofs: result.solution.dofs },
+        model: ModelEntry::new(&result.model, result.solution.dofs),
         solver: SolverEntry::new(&result.solution),
         results: results(task, result),
         checks: result.checks.clone(),

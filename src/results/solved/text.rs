@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{convergence, effort, search};
+use crate::model::Model;
 use crate::quantity::significant;
 use crate::results::columns::Columns;
 use crate::results::task::Task;
@@ -22,12 +23,12 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
     for (task, r) in solved {
         let fabric = task.fabric_name().unwrap_or_default().to_string();
         for (k, f) in r.frequencies.iter().enumerate() {
-            let elements = r.model.mesh.quads.len().to_string();
+            let elements = elements(&r.model);
             let half = half_width(r, &format!("frequency_{}", k + 1), 1.0);
             modes.row([(k + 1).to_string(), r.case.clone(), fabric.clone(), significant(*f), half, elements]);
         }
         for (k, f) in r.load_factors.iter().enumerate() {
-            let elements = r.model.mesh.quads.len().to_string();
+            let elements = elements(&r.model);
             factors.row([(k + 1).to_string(), r.case.clone(), fabric.clone(), significant(*f), elements]);
         }
         if r.is_modal() {
@@ -35,7 +36,7 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
             continue;
         }
         let [w, ratio] = [significant(1e3 * r.w_max), significant(r.w_over_thickness)];
-        let elements = r.model.mesh.quads.len().to_string();
+        let elements = elements(&r.model);
         table.row([
             r.case.clone(),
             fabric.clone(),
@@ -82,6 +83,16 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
 
 /// How dynamic analyses went, if there are any: instants kept, and what the balance of kinetic, strain and
 /// potential energy, damping and work misses at most, over the largest work.
+/// How many elements, and how many of them are triangles.
+fn elements(model: &Model) -> String {
+    let (all, triangles) = (model.mesh.quads.len(), model.mesh.triangles());
+    match triangles {
+        0 => all.to_string(),
+        1 => format!("{all}, 1 triangle"),
+        _ => format!("{all}, {triangles} triangles"),
+    }
+}
+
 fn histories(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
     let mut table =
         Columns::new(["dynamics", "fabric", "instants", "end (s)", "energy imbalance (% of work)"]);
