@@ -7,7 +7,9 @@
 
 use std::cmp::Ordering;
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::Point3;
+
+use super::sweep::{Bounds, overlapping};
 
 /// The parts of a sheet that pass through each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,23 +29,18 @@ const TOUCH: f64 = 1e-9;
 
 /// Where quads without a common node pass through each other, if any do; `points` are the places of the nodes.
 pub fn crossings(points: &[Point3<f64>], quads: &[[u32; 4]]) -> Option<Crossings> {
-    let mut boxes: Vec<Box> =
-        quads.iter().enumerate().map(|(quad, _)| Box::of(points, quads, quad)).collect();
-    let whole = boxes.iter().copied().reduce(Box::with)?;
-    let extent = whole.high - whole.low;
-    let (axis, touch) = (extent.imax(), TOUCH * extent.amax());
-    boxes.sort_by(|a, b| a.low[axis].total_cmp(&b.low[axis]).then(a.quad.cmp(&b.quad)));
+    let boxes: Vec<Bounds> =
+        quads.iter().map(|quad| Bounds::of(quad.map(|n| &points[n as usize]), 0.0)).collect();
+    let whole = boxes.iter().copied().reduce(|a, b| a.with(&b))?;
+    let touch = TOUCH * (whole.high - whole.low).amax();
     let mut all: Option<Crossings> = None;
-    for (k, one) in boxes.iter().enumerate() {
-        for other in boxes[k + 1..].iter().take_while(|other| other.low[axis] <= one.high[axis]) {
-            let pair = [one.quad.min(other.quad), one.quad.max(other.quad)];
-            let apart = !one.overlaps(other) || quads[pair[0]].iter().any(|n| quads[pair[1]].contains(n));
-            let Some((at, depth)) = (if apart { None } else { crossing(points, quads, pair, touch) }) else {
-                continue;
-            };
-            let found = Crossings { pairs: 1, quads: pair, at: at.coords.into(), depth };
-            all = Some(all.map_or(found, |before| before.and(found)));
+    for pair in overlapping(&boxes) {
+        if quads[pair[0]].iter().any(|n| quads[pair[1]].contains(n)) {
+            continue;
         }
+        let Some((at, depth)) = crossing(points, quads, pair, touch) else { continue };
+        let found = Crossings { pairs: 1, quads: pair, at: at.coords.into(), depth };
+        all = Some(all.map_or(found, |before| before.and(found)));
     }
     all
 }
@@ -54,31 +51,6 @@ impl Crossings {
         let order = self.depth.total_cmp(&other.depth).then_with(|| other.quads.cmp(&self.quads));
         let deeper = if order == Ordering::Less { other } else { self };
         Self { pairs: self.pairs + other.pairs, ..deeper }
-    }
-}
-
-/// A quad and the box about it.
-#[derive(Clone, Copy)]
-struct Box {
-    quad: usize,
-    low: Vector3<f64>,
-    high: Vector3<f64>,
-}
-
-impl Box {
-    fn of(points: &[Point3<f64>], quads: &[[u32; 4]], quad: usize) -> Self {
-        let corners = quads[quad].map(|n| points[n as usize].coords);
-        let (low, high) =
-            corners.iter().fold((corners[0], corners[0]), |(low, high), p| (low.inf(p), high.sup(p)));
-        Self { quad, low, high }
-    }
-
-    fn with(self, other: Self) -> Self {
-        Self { low: self.low.inf(&other.low), high: self.high.sup(&other.high), ..self }
-    }
-
-    fn overlaps(&self, other: &Self) -> bool {
-        (0..3).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
     }
 }
 
@@ -126,6 +98,7 @@ mod tests {
     use super::*;
     use crate::mesh::rectangle;
     use approx::assert_relative_eq;
+    use nalgebra::Vector3;
     use std::f64::consts::TAU;
 
     /// A strip of unit length, rolled up along x with a radius that grows by `pitch` a turn.

@@ -5,6 +5,7 @@ mod generate;
 mod gmsh;
 mod joined;
 mod orient;
+mod sweep;
 mod triangle;
 
 use std::collections::{BTreeMap, HashMap};
@@ -15,6 +16,7 @@ pub use crossings::{Crossings, crossings};
 pub use generate::{annulus, disc, distorted, graded_annulus, rectangle};
 pub use gmsh::parse_gmsh;
 pub use joined::Unjoined;
+pub use sweep::{Bounds, overlapping};
 pub use triangle::{is_triangle, nodes_of, sides_of};
 
 use crate::finding::{Place, errors};

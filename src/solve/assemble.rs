@@ -30,9 +30,16 @@ const PAIRS: [(usize, usize); 10] =
 impl Pattern {
     /// The pattern of a mesh with these links.
     pub fn new(mesh: &QuadMesh, links: Arc<Links>) -> Self {
+        Self::tied(mesh, links, &[])
+    }
+
+    /// The same with places for the forces between nodes that no element joins: the two quads of each of these eights.
+    pub fn tied(mesh: &QuadMesh, links: Arc<Links>, tied: &[[u32; 8]]) -> Self {
         let quads: Vec<[u32; 4]> =
             mesh.quads.iter().map(|quad| quad.map(|n| links.leads[n as usize])).collect();
-        let graph = BlockGraph::from_elements(mesh.nodes.len(), &quads);
+        let tied: Vec<[u32; 8]> = tied.iter().map(|all| all.map(|n| links.leads[n as usize])).collect();
+        let elements = quads.iter().map(|quad| &quad[..]).chain(tied.iter().map(|all| &all[..]));
+        let graph = BlockGraph::from_elements(mesh.nodes.len(), elements);
         let blocks = quads
             .iter()
             .map(|quad| {

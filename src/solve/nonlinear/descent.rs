@@ -166,6 +166,7 @@ impl<'s> Descent<'s> {
         tangent.solve(&mut step, 1);
         let turn = step.chunks_exact(6).map(|n| n[3].hypot(n[4]).hypot(n[5])).fold(0.0, f64::max);
         limit(&mut step);
+        system.keep_apart(state, &mut step);
         let mut next = state.clone();
         system.advance(&mut next, &step);
         let reached = system.balance(&next, None);

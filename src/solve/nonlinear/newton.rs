@@ -166,7 +166,7 @@ pub(super) fn newton_with(
         for d in (0..step.len()).filter(|d| system.held[*d]) {
             step[d] = remaining * system.values[d];
         }
-        let part = limit(&mut step);
+        let part = limit(&mut step) * system.keep_apart(&state, &mut step);
         remaining -= part * remaining;
         forces = system.predict(&state, &balance, &step);
         system.advance(&mut state, &step);

@@ -22,6 +22,8 @@ pub struct Settings {
     pub law: Option<SheetLaw>,
     /// What the sheet cannot pass.
     pub surfaces: Vec<RigidSurface>,
+    /// Whether layers of the sheet that come to touch keep apart, by its thickness; without, they pass through each other.
+    pub self_contact: bool,
 }
 
 impl Default for Settings {
@@ -36,6 +38,7 @@ impl Default for Settings {
             path: vec![1.0],
             law: None,
             surfaces: Vec::new(),
+            self_contact: false,
         }
     }
 }

@@ -11,6 +11,7 @@ use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector3};
 pub(super) use stress::Stressing;
 
 use super::contact::{Press, Surfaces};
+use super::layers::{Contact, Layers};
 use super::sheet::{Answer, Forces, Sheet};
 use super::{NonlinearError, Settings, State};
 use crate::element::corotational::Motion;
@@ -44,6 +45,8 @@ pub(super) struct System<'a> {
     threads: usize,
     sheet: Sheet<'a>,
     contact: Surfaces<'a>,
+    /// The layers of a sheet that keep apart.
+    layers: Option<Layers<'a>>,
     links: Arc<Links>,
     /// Dead loads at factor 1.
     load: Vec<f64>,
@@ -79,6 +82,8 @@ pub(super) struct Balance {
     answers: Vec<Answer>,
     /// Nodes at rigid surfaces.
     presses: Vec<Press>,
+    /// Layers that press each other.
+    contacts: Vec<Contact>,
     /// Internal minus external forces at each node, followers not yet added to their leads.
     nodal: Vec<f64>,
     /// Internal minus external forces by dof: the reactions where held, what must vanish elsewhere.
@@ -112,6 +117,7 @@ impl<'a> System<'a> {
             threads: options.threads,
             sheet: Sheet::new(model, settings.law.as_ref()),
             contact: Surfaces::new(&[], &model.mesh, &[], [0.0; 2]),
+            layers: None,
             links,
             load: model.dead_load_vector(),
             pressure: model.follower_pressure(),
@@ -122,15 +128,19 @@ impl<'a> System<'a> {
             side: 0.0,
             size: (high - low).norm(),
         };
-        system.prepare_elements()?;
+        let areas = system.prepare_elements()?;
         let of_sheet = [system.stiffest(), system.size];
         system.contact = Surfaces::new(&settings.surfaces, &model.mesh, &system.metric, of_sheet);
+        if settings.self_contact {
+            let of_sheet = [model.section.thickness, system.load_per_area()];
+            system.layers = Some(Layers::new(&model.mesh, &areas, of_sheet, options.path));
+        }
         Ok(system)
     }
 
-    /// Elements at rest; equal ones in a row share their matrices.
-    fn prepare_elements(&mut self) -> Result<(), SolveError> {
-        let (mesh, mut area) = (&self.model.mesh, 0.0);
+    /// Elements at rest; equal ones in a row share their matrices. Their areas (m²).
+    fn prepare_elements(&mut self) -> Result<Vec<f64>, SolveError> {
+        let (mesh, mut areas) = (&self.model.mesh, Vec::with_capacity(self.model.mesh.quads.len()));
         let unit = crate::section::ShellSection { areal_density: 1.0, ..self.model.section.clone() };
         for quad in 0..mesh.quads.len() {
             if quad % BATCH == 0 {
@@ -150,10 +160,10 @@ impl<'a> System<'a> {
                     self.metric[6 * *node as usize + d] += if d < 3 { share } else { share * rotary };
                 }
             }
-            area += element.frame.area();
+            areas.push(element.frame.area());
         }
-        self.side = (area / mesh.quads.len().max(1) as f64).sqrt();
-        Ok(())
+        self.side = (areas.iter().sum::<f64>() / mesh.quads.len().max(1) as f64).sqrt();
+        Ok(areas)
     }
 
     /// Applies `f` to every index, in parallel if asked for; the results are in order.
@@ -192,12 +202,20 @@ impl<'a> System<'a> {
             let force = press.force();
             (0..3).for_each(|d| nodal[6 * press.node + d] -= force[d]);
         }
+        let contacts = self.layers.as_ref().map_or_else(Vec::new, |layers| layers.contacts(&state.position));
+        for contact in &contacts {
+            energy += contact.energy;
+            for (i, node) in contact.nodes.iter().enumerate() {
+                let force = contact.force(i);
+                (0..3).for_each(|d| nodal[6 * *node as usize + d] -= force[d]);
+            }
+        }
         let unbalanced = self.to_leads(state, &nodal);
         let residual = self.norm(&unbalanced, false);
         let loads = self.to_leads(state, &external);
         let scale = self.norm(&unbalanced, true).max(self.norm(&loads, false));
         let scale = self.before.as_ref().map_or(scale, |before| scale.max(before.scale));
-        Balance { answers, presses, nodal, unbalanced, energy, residual, scale }
+        Balance { answers, presses, contacts, nodal, unbalanced, energy, residual, scale }
     }
 
     /// Norm of the forces on the held or the free dofs (N), moments over the side of an element.
@@ -287,6 +305,13 @@ impl<'a> System<'a> {
         self.model.load_vector().chunks_exact(6).map(|n| n[0].hypot(n[1]).hypot(n[2])).sum()
     }
 
+    /// Loads per area at factor 1 (Pa), or what bends a sheet of this size as a whole if that is more.
+    fn load_per_area(&self) -> f64 {
+        let area: f64 = self.metric.iter().step_by(6).sum();
+        let bending = self.model.section.d_b[(0, 0)].max(self.model.section.d_b[(1, 1)]);
+        (self.total_load() / area).max(bending / self.size.powi(3))
+    }
+
     /// The order of the largest eigenvalue per area: the membrane of an element (N/m³).
     pub fn stiffest(&self) -> f64 {
         self.model.section.d_m.diagonal().max() / (self.side * self.side)
@@ -315,7 +340,9 @@ impl<'a> System<'a> {
         shift: f64,
         stiffening: f64,
     ) -> (BlockMatrix, Vec<f64>) {
-        let pattern = &self.plan.pattern;
+        let coupling =
+            self.layers.as_ref().and_then(|l| l.coupling(&self.links, &state.position, &balance.contacts));
+        let pattern = coupling.as_ref().map_or(&self.plan.pattern, |coupling| &coupling.pattern);
         let mut matrix = BlockMatrix::zeros(Arc::clone(&pattern.graph), 6);
         let mut push = vec![0.0; self.held.len()];
         let pushes = self.values.iter().any(|v| *v != 0.0);
@@ -350,6 +377,7 @@ impl<'a> System<'a> {
         }
         self.add_body_terms(state, &balance.nodal, &mut matrix);
         self.add_presses(state, &balance.presses, &mut matrix, &mut push);
+        self.add_contacts(state, &balance.contacts, &mut matrix, &mut push);
         let graph = &pattern.graph;
         for dof in (0..self.held.len()).filter(|d| !self.held[*d]) {
             matrix.values[graph.col_ptr[dof / 6] * 36 + (dof % 6) * 7] += shift * self.metric[dof];
@@ -386,7 +414,7 @@ impl<'a> System<'a> {
     /// Forces on followers (`nodal`, six a node) turn with the body: `n (r · dω) - ...` on the rotation of
     /// the lead.
     pub fn add_body_terms(&self, state: &State, nodal: &[f64], matrix: &mut BlockMatrix) {
-        let graph = &self.plan.pattern.graph;
+        let graph = Arc::clone(&matrix.graph);
         for node in self.links.followers() {
             let lead = self.links.leads[node] as usize;
             let lever = lever(&state.position, &self.links.leads, node).cross_matrix();
@@ -402,8 +430,24 @@ impl<'a> System<'a> {
     }
 
     pub fn factorise(&self, matrix: &BlockMatrix) -> Result<Factor, FactorError> {
-        let analysis = &self.plan.groups[0].1;
+        let coupling = self.layers.as_ref().and_then(|layers| layers.coupling_of(matrix));
+        let analysis = match &coupling {
+            Some(coupling) => coupling.analysis()?,
+            None => &self.plan.groups[0].1,
+        };
         analysis.factorise_indefinite(matrix, analysis.worth(self.threads))
+    }
+
+    /// Shortens a step that would bring layers of the sheet through each other; the part that is left of it.
+    pub fn keep_apart(&self, state: &State, step: &mut [f64]) -> f64 {
+        let Some(layers) = &self.layers else { return 1.0 };
+        let mut moved = state.clone();
+        self.advance(&mut moved, step);
+        let ways: Vec<Vector3<f64>> =
+            moved.position.iter().zip(&state.position).map(|(to, from)| to - from).collect();
+        let part = layers.free_part(&state.position, &ways);
+        step.iter_mut().for_each(|s| *s *= part);
+        part
     }
 
     /// Moves the nodes by a step of the dofs: rotations compose, bodies stay rigid.

@@ -8,7 +8,9 @@ use crate::law::Mode;
 use crate::model::Model;
 use crate::platform;
 use crate::section::{SheetLaw, ShellSection};
-use crate::solve::nonlinear::{NonlinearError, Settings, Solution, State, Step, descend_from, plan, shake};
+use crate::solve::nonlinear::{
+    NonlinearError, Settings, Solution, State, descend_from, layers_touch, plan, shake,
+};
 use crate::solve::{Options, Plan};
 use crate::study::{Case, StudyError, Watch};
 
@@ -162,9 +164,22 @@ impl<'a> Hanging<'a> {
         Settings { tolerance: TOLERANCE, law: self.cloth.law.cloned(), ..Settings::default() }
     }
 
+    /// The equilibrium that a sheet comes to. Where its layers have come to touch or to pass through each other, it is let down again,
+    /// and they keep apart.
     pub fn relax(&self, from: State, options: &Options) -> Result<Solution, NonlinearError> {
-        let observe = |_: &Step<'_>| self.cloth.watch.go_on();
-        descend_from(&self.model, &self.plan, from, &self.settings(), STEPS, options, observe)
+        let relax = |from: State, settings: &Settings| {
+            descend_from(&self.model, &self.plan, from, settings, STEPS, options, |_| {
+                self.cloth.watch.go_on()
+            })
+        };
+        let found = relax(from.clone(), &self.settings())?;
+        if !layers_touch(&self.model, &found.state) {
+            return Ok(found);
+        }
+        if std::env::var("LAB").is_ok() {
+            eprintln!("layers touch");
+        }
+        relax(from, &Settings { self_contact: true, ..self.settings() })
     }
 
     pub fn state(&self, solution: &Solution, start: usize) -> DrapeState {
