@@ -60,7 +60,7 @@ pub use descent::descend_from;
 pub use drive::{Leg, drive};
 pub use error::{NonlinearError, Obstacle};
 pub use flow::{Flow, relax, relax_from};
-pub use layers::layers_touch;
+pub use layers::{LayersInTouch, layers_in_touch};
 pub use load_steps::{Carried, LoadStep, continue_from};
 use progress::Progress;
 pub use progress::{Solution, Step};

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::build::Actions;
-use super::contact::{contacts, surfaces, touching};
+use super::contact::{contacts, kept_apart, surfaces, touching};
 use super::dynamics;
 use super::eigen_steps::State;
 use super::history::History;
@@ -19,7 +19,7 @@ use crate::quantity::significant;
 use crate::solve::Solution;
 use crate::solve::newmark::Rayleigh;
 use crate::solve::nonlinear::dynamics::{Dynamics, Launch, integrate_with};
-use crate::solve::nonlinear::{Carried, LoadStep, Settings, continue_from, vibrations};
+use crate::solve::nonlinear::{Carried, LoadStep, Method, Settings, continue_from, vibrations};
 
 /// A sheet on its way through the steps of its case.
 struct Way<'a> {
@@ -101,15 +101,14 @@ impl Way<'_> {
         let (moved, plan, options) = (&actions.moved, &prepared.plan, &prepared.options);
         let (record, carried) = (&mut self.record, &self.carried);
         let from = record.path.steps.len();
-        let found = helped(
-            record,
-            &analysis.method,
-            |(solution, _)| solution,
-            |method, record| {
+        let (found, not_kept) = kept_apart(record, &model, &analysis.method, |record, self_contact| {
+            let settings = Settings { self_contact, ..settings.clone() };
+            let search = |method: &Method, record: &mut Record<'_>| {
                 let way = LoadStep { model: &model, moved, settings: &settings, method };
                 continue_from(carried, &way, plan, options, |at| record.see(at))
-            },
-        );
+            };
+            helped(record, &analysis.method, |(solution, _)| solution, search)
+        });
         self.watch.not_stopped()?;
         let (found, next) = match found {
             Ok((solution, next)) => (Ok(solution), Some(next)),
@@ -138,7 +137,7 @@ impl Way<'_> {
         let turned = turned_about_more(&self.held, &record.state);
         let touching = touching(obstacles, &model, friction, &record.state);
         record.done += usize::from(record.path.converged);
-        Ok(own.into_iter().chain(turned).chain(touching).collect())
+        Ok(own.into_iter().chain(not_kept).chain(turned).chain(touching).collect())
     }
 
     /// At the state as it is.

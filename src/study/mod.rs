@@ -55,7 +55,7 @@ pub use virtual_loop::{VirtualLoop, simulate_cycle, simulate_loop};
 pub use virtual_test::{EdgeEffect, PreparedTest, Tension, VirtualCurve, compression, simulate};
 pub use watch::Watch;
 
-use self::contact::through_itself;
+use self::contact::{through_itself, through_or_on_itself};
 use crate::case::{Problem, SheetProblem};
 use crate::characterise::bend_loop::LoopError;
 use crate::finding::{Coded, Fields, Located, Place, errors};

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::contact::{surfaces, touching};
+use super::contact::{kept_apart, surfaces, touching};
 use super::load_path::{LoadPath, PathStep};
 use super::of_fabric::OfFabric;
 use super::result::Outcome;
@@ -105,16 +105,16 @@ pub(super) fn equilibrium(
     let linear = solve::solve(model, options).ok();
     let mut record = Record::new(prepared, model, MethodChoice::of(method), watch);
     record.path.linear_w_max = linear.map(|l| largest_w(&model.mesh, &l.displacement));
-    let found = helped(
-        &mut record,
-        method,
-        |end| end,
-        |method, record| {
+    let (found, not_kept) = kept_apart(&mut record, model, method, |record, self_contact| {
+        let settings = Settings { self_contact, ..settings.clone() };
+        let search = |method: &Method, record: &mut Record<'_>| {
             nonlinear::search(model, &prepared.plan, &settings, method, options, |step| record.see(step))
-        },
-    );
+        };
+        helped(record, method, |end| end, search)
+    });
     watch.not_stopped()?;
     let mut findings = conclude(found, &mut record)?;
+    findings.extend(not_kept);
     let given: Vec<Option<f64>> = model.constraints();
     let factor = record.state.factor;
     let given = given.into_iter().map(|held| held.map(|value| factor * value));

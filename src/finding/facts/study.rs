@@ -201,9 +201,29 @@ super::facts! {
             at: [f64; 3],
             /// How far at least (m).
             depth: f64,
-        } = "the sheet passes through itself: {pairs} pair(s) of elements cross, the deepest by {} mm at least, at ({}, {}, {}) m; nothing \
-             keeps folds apart here, and from where they meet the shape is not that of cloth",
+        } = "the sheet passes through itself: {pairs} pair(s) of elements cross, the deepest by {} mm at least, at ({}, {}, {}) m; from \
+             where layers meet the shape is not that of cloth",
             significant(1e3 * depth), significant(at[0]), significant(at[1]), significant(at[2]);
+        /// A sheet whose layers touch.
+        "S151" LayersTouch {
+            /// Nodes, middles of sides and of elements that are nearer to another layer than the sheet is thick.
+            points: usize,
+            /// The distance of the nearest (m).
+            distance: f64,
+            /// The thickness of the sheet (m).
+            thickness: f64,
+            /// Where the nearest is (m).
+            at: [f64; 3],
+        } = "layers of the sheet touch: {points} points are nearer to another layer than its {} mm of thickness, the nearest {} mm, at ({}, {}, {}) m; \
+             layers that are kept apart slide on each other without friction (assumed)",
+            significant(1e3 * thickness), significant(1e3 * distance),
+            significant(at[0]), significant(at[1]), significant(at[2]);
+        /// A sheet whose layers could not be kept apart.
+        "S152" LayersNotKept {
+            /// Why the search that does so ended.
+            cause: String,
+        } = "layers of the sheet come to touch, and a search that keeps them apart came to no equilibrium: {cause}; the shape is that of a \
+             sheet that may pass through itself";
         /// A drape that takes the place of its disc.
         "S145" ThroughDisc {
             /// How far inside the edge of the disc the sheet reaches (m).

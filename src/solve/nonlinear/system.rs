@@ -132,7 +132,7 @@ impl<'a> System<'a> {
         let of_sheet = [system.stiffest(), system.size];
         system.contact = Surfaces::new(&settings.surfaces, &model.mesh, &system.metric, of_sheet);
         if settings.self_contact {
-            let of_sheet = [model.section.thickness, system.load_per_area()];
+            let of_sheet = [model.section.thickness, system.pressure_of_layers()];
             system.layers = Some(Layers::new(&model.mesh, &areas, of_sheet, options.path));
         }
         Ok(system)
@@ -305,11 +305,12 @@ impl<'a> System<'a> {
         self.model.load_vector().chunks_exact(6).map(|n| n[0].hypot(n[1]).hypot(n[2])).sum()
     }
 
-    /// Loads per area at factor 1 (Pa), or what bends a sheet of this size as a whole if that is more.
-    fn load_per_area(&self) -> f64 {
+    /// What presses layers on each other (Pa): the loads per area at factor 1, or if that is more the bending of the
+    /// sharpest fold that the mesh can show, with a radius of two elements.
+    fn pressure_of_layers(&self) -> f64 {
         let area: f64 = self.metric.iter().step_by(6).sum();
         let bending = self.model.section.d_b[(0, 0)].max(self.model.section.d_b[(1, 1)]);
-        (self.total_load() / area).max(bending / self.size.powi(3))
+        (self.total_load() / area).max(bending / (2.0 * self.side).powi(3))
     }
 
     /// The order of the largest eigenvalue per area: the membrane of an element (N/m³).

@@ -3,12 +3,12 @@
 use crate::finding::{Finding, Place, StudyFact};
 use crate::model::Model;
 use crate::solve::nonlinear::State;
-use crate::study::{Case, through_itself};
+use crate::study::{Case, through_or_on_itself};
 
-/// S144 and S145 of a sheet that hangs from a disc.
+/// S144, S151 and S145 of a sheet that hangs from a disc.
 pub(super) fn of(case: &Case, model: &Model, state: &State, disc_radius: f64) -> Vec<Finding> {
     let inside = inside(state, disc_radius, model.section.thickness);
-    let facts = through_itself(&model.mesh, state).into_iter().chain(inside);
+    let facts = through_or_on_itself(model, state).into_iter().chain(inside);
     facts.map(|fact| Finding::new(fact).at(Place::file(&case.path))).collect()
 }
 

@@ -5,11 +5,12 @@ use nalgebra::Vector3;
 use super::{DrapeState, Folds, Ring, projected, refine, shadow};
 use crate::case::DrapeProblem;
 use crate::law::Mode;
+use crate::mesh::crossings;
 use crate::model::Model;
 use crate::platform;
 use crate::section::{SheetLaw, ShellSection};
 use crate::solve::nonlinear::{
-    NonlinearError, Settings, Solution, State, descend_from, layers_touch, plan, shake,
+    NonlinearError, Settings, Solution, State, Step, descend_from, layers_in_touch, plan, shake,
 };
 use crate::solve::{Options, Plan};
 use crate::study::{Case, StudyError, Watch};
@@ -147,7 +148,7 @@ impl<'a> Hanging<'a> {
             hung = Some(self.state(&solution, start));
             let factors: Vec<f64> =
                 (0..SWINGS).map(|k| 1.0 + shaking * (-0.5f64).powi(k)).chain([1.0]).collect();
-            let settings = self.settings();
+            let settings = self.settings(layers_in_touch(&self.model, &solution.state).is_some());
             solution = shake(&self.model, &self.plan, solution.state, &factors, &settings, options, |_| {
                 self.cloth.watch.go_on()
             })?;
@@ -160,26 +161,32 @@ impl<'a> Hanging<'a> {
         refine::refined(state, &wide.model.mesh, &self.model.mesh, wide.ring.cells)
     }
 
-    fn settings(&self) -> Settings {
-        Settings { tolerance: TOLERANCE, law: self.cloth.law.cloned(), ..Settings::default() }
+    fn settings(&self, self_contact: bool) -> Settings {
+        Settings { tolerance: TOLERANCE, law: self.cloth.law.cloned(), self_contact, ..Settings::default() }
     }
 
-    /// The equilibrium that a sheet comes to. Where its layers have come to touch or to pass through each other, it is let down again,
-    /// and they keep apart.
+    /// The equilibrium that a sheet comes to. Where its layers have come to touch they press each other from there on, and where they have passed
+    /// through each other it is let down again, and they are kept apart.
     pub fn relax(&self, from: State, options: &Options) -> Result<Solution, NonlinearError> {
-        let relax = |from: State, settings: &Settings| {
-            descend_from(&self.model, &self.plan, from, settings, STEPS, options, |_| {
-                self.cloth.watch.go_on()
-            })
-        };
-        let found = relax(from.clone(), &self.settings())?;
-        if !layers_touch(&self.model, &found.state) {
-            return Ok(found);
+        let found = self.descend(from.clone(), false, options)?;
+        if crossings(&found.state.position, &self.model.mesh.quads).is_some() {
+            // If that ends nowhere, S144 tells of the state that there is.
+            return self.descend(from, true, options).or(Ok(found));
         }
-        if std::env::var("LAB").is_ok() {
-            eprintln!("layers touch");
+        match layers_in_touch(&self.model, &found.state) {
+            Some(_) => self.descend(found.state, true, options),
+            None => Ok(found),
         }
-        relax(from, &Settings { self_contact: true, ..self.settings() })
+    }
+
+    fn descend(
+        &self,
+        from: State,
+        self_contact: bool,
+        options: &Options,
+    ) -> Result<Solution, NonlinearError> {
+        let (settings, observe) = (self.settings(self_contact), |_: &Step<'_>| self.cloth.watch.go_on());
+        descend_from(&self.model, &self.plan, from, &settings, STEPS, options, observe)
     }
 
     pub fn state(&self, solution: &Solution, start: usize) -> DrapeState {

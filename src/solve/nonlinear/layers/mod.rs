@@ -24,7 +24,7 @@ use nalgebra::{Matrix3, Point3, Vector3};
 use self::closest::{Distance, NODES, closest, safe_part};
 use self::samples::{Sample, samples};
 use super::State;
-use crate::mesh::{Bounds, QuadMesh, crossings, overlapping};
+use crate::mesh::{Bounds, QuadMesh, overlapping};
 use crate::model::{DofGroup, Links, Model};
 use crate::solve::assemble::Pattern;
 use crate::solve::factor::{self, Analysis, FactorError, Path};
@@ -98,7 +98,7 @@ struct Near {
 }
 
 impl<'a> Layers<'a> {
-    /// Of a mesh whose quads have these areas (m²); `load` is that of the sheet per area (Pa).
+    /// Of a mesh whose quads have these areas (m²); `load` is what presses them on each other (Pa).
     pub fn new(mesh: &'a QuadMesh, areas: &[f64], [thickness, load]: [f64; 2], path: Path) -> Self {
         let (samples, of_quads) = samples(mesh, areas);
         // b'(t (1 - ε)) = -3 κ t ε² for a small ε.
@@ -274,12 +274,27 @@ impl Coupling {
     }
 }
 
-/// Whether layers of a sheet in a state are nearer to each other than it is thick, or pass through each other.
-pub fn layers_touch(model: &Model, state: &State) -> bool {
+/// Layers of a sheet that are nearer to each other than it is thick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LayersInTouch {
+    /// How many points (nodes, middles of sides and of elements) are.
+    pub points: usize,
+    /// The distance of the nearest (m).
+    pub distance: f64,
+    /// Where it is (m).
+    pub at: [f64; 3],
+}
+
+/// The layers of a sheet that touch in a state. Those that have passed through each other are found by [`crossings`](crate::mesh::crossings).
+pub fn layers_in_touch(model: &Model, state: &State) -> Option<LayersInTouch> {
     let (mesh, thickness) = (&model.mesh, model.section.thickness);
-    let areas = vec![0.0; mesh.quads.len()];
-    let layers = Layers::new(mesh, &areas, [thickness, 0.0], Path::Auto);
-    !layers.contacts(&state.position).is_empty() || crossings(&state.position, &mesh.quads).is_some()
+    let layers = Layers::new(mesh, &vec![0.0; mesh.quads.len()], [thickness, 0.0], Path::Auto);
+    let contacts = layers.contacts(&state.position);
+    let nearest = contacts.iter().min_by(|a, b| a.distance.value.total_cmp(&b.distance.value))?;
+    let [a, b, c, d, ..] = nearest.nodes;
+    let [e, f, g, h, ..] = nearest.distance.weights;
+    let at = middle(&state.position, &[a, b, c, d], &[e, f, g, h]);
+    Some(LayersInTouch { points: contacts.len(), distance: nearest.distance.value, at: at.coords.into() })
 }
 
 /// The two triangles that a quad is parted into; one is there twice if it is one already.
