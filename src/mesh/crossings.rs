@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 
 use nalgebra::Point3;
 
-use super::sweep::{Bounds, overlapping};
+use super::sweep::{BoundingBox, overlapping};
 
 /// The parts of a sheet that pass through each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,8 +29,8 @@ const TOUCH: f64 = 1e-9;
 
 /// Where quads without a common node pass through each other, if any do; `points` are the places of the nodes.
 pub fn crossings(points: &[Point3<f64>], quads: &[[u32; 4]]) -> Option<Crossings> {
-    let boxes: Vec<Bounds> =
-        quads.iter().map(|quad| Bounds::of(quad.map(|n| &points[n as usize]), 0.0)).collect();
+    let boxes: Vec<BoundingBox> =
+        quads.iter().map(|quad| BoundingBox::of(quad.map(|n| &points[n as usize]), 0.0)).collect();
     let whole = boxes.iter().copied().reduce(|a, b| a.with(&b))?;
     let touch = TOUCH * (whole.high - whole.low).amax();
     let mut all: Option<Crossings> = None;

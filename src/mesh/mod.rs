@@ -16,7 +16,7 @@ pub use crossings::{Crossings, crossings};
 pub use generate::{annulus, disc, distorted, graded_annulus, rectangle};
 pub use gmsh::parse_gmsh;
 pub use joined::Unjoined;
-pub use sweep::{Bounds, overlapping};
+pub use sweep::{BoundingBox, overlapping};
 pub use triangle::{is_triangle, nodes_of, sides_of};
 
 use crate::finding::{Place, errors};

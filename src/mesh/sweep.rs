@@ -4,14 +4,14 @@ use nalgebra::{Point3, Vector3};
 
 /// A box along the axes about some points (m).
 #[derive(Clone, Copy, Debug)]
-pub struct Bounds {
+pub struct BoundingBox {
     /// Its corner of the least coordinates.
     pub low: Vector3<f64>,
     /// Its corner of the greatest.
     pub high: Vector3<f64>,
 }
 
-impl Bounds {
+impl BoundingBox {
     /// About these points, and `margin` farther on every side.
     pub fn of<'a>(points: impl IntoIterator<Item = &'a Point3<f64>>, margin: f64) -> Self {
         let none = Self { low: Vector3::repeat(f64::INFINITY), high: Vector3::repeat(f64::NEG_INFINITY) };
@@ -32,7 +32,7 @@ impl Bounds {
 }
 
 /// The pairs of boxes that overlap, the lower index first, by a sweep along the longest extent of all.
-pub fn overlapping(boxes: &[Bounds]) -> Vec<[usize; 2]> {
+pub fn overlapping(boxes: &[BoundingBox]) -> Vec<[usize; 2]> {
     let Some(whole) = boxes.iter().copied().reduce(|a, b| a.with(&b)) else { return Vec::new() };
     let axis = (whole.high - whole.low).imax();
     let mut order: Vec<usize> = (0..boxes.len()).collect();

@@ -8,11 +8,7 @@ use crate::case::SheetObstacle;
 use crate::finding::{Finding, StudyFact};
 use crate::mesh::{Crossings, QuadMesh, crossings};
 use crate::model::{Model, RigidSurface};
-use crate::solve::nonlinear::{
-    ACCEPTED, LayersInTouch, Method, NonlinearError, State, Touch, layers_in_touch,
-};
-
-use super::nonlinear::Record;
+use crate::solve::nonlinear::{ACCEPTED, LayersInTouch, State, Touch, layers_in_touch};
 
 /// What an obstacle bears (SI).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -118,34 +114,6 @@ pub(super) fn touching(
         }
     }
     facts.into_iter().map(Finding::new).collect()
-}
-
-/// A search without contact of the sheet with itself, and where its layers came to touch, a second one with it: its end is taken
-/// if there is one. What a reader must know, if there is none.
-pub(super) fn kept_apart<'a, T>(
-    record: &mut Record<'a>,
-    model: &Model,
-    method: &Method,
-    mut search: impl FnMut(&mut Record<'a>, bool) -> Result<T, NonlinearError>,
-) -> (Result<T, NonlinearError>, Option<Finding>) {
-    let mut second = record.clone();
-    let found = search(record, false);
-    let given_up = matches!(&found, Err(error) if !matches!(error, NonlinearError::NotConverged { .. }));
-    if given_up || through_or_on_itself(model, &record.state).is_none() {
-        return (found, None);
-    }
-    // A step back along a path by arc length is no step towards its equilibria.
-    let cause = match method {
-        Method::ArcLength(_) => "a path by arc length does not keep them apart".to_string(),
-        _ => match search(&mut second, true) {
-            Ok(end) => {
-                *record = second;
-                return (Ok(end), None);
-            }
-            Err(cause) => cause.to_string(),
-        },
-    };
-    (found, Some(Finding::new(StudyFact::LayersNotKept { cause })))
 }
 
 /// S144 of a sheet that passes through itself, or S151 of one whose layers touch.

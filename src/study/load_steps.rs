@@ -3,12 +3,12 @@
 use std::f64::consts::TAU;
 
 use super::build::Actions;
-use super::contact::{contacts, kept_apart, surfaces, touching};
+use super::contact::{contacts, surfaces, touching};
 use super::dynamics;
 use super::eigen_steps::State;
 use super::history::History;
 use super::load_path::LoadStepEnd;
-use super::nonlinear::{Record, check_perturbation, conclude, helped, turned_about_more};
+use super::nonlinear::{Record, check_perturbation, conclude, helped, kept_apart, turned_about_more};
 use super::of_fabric::OfFabric;
 use super::result::Outcome;
 use super::{PreparedCase, StudyError, Watch, refused};

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::contact::{kept_apart, surfaces, touching};
+use super::contact::{surfaces, through_or_on_itself, touching};
 use super::load_path::{LoadPath, PathStep};
 use super::of_fabric::OfFabric;
 use super::result::Outcome;
@@ -169,6 +169,34 @@ pub(super) fn helped<'a, T>(
         }
         _ => found,
     }
+}
+
+/// A search without contact of the sheet with itself, and where its layers came to touch, a second one with it: its end is taken
+/// if there is one. What a reader must know, if there is none.
+pub(super) fn kept_apart<'a, T>(
+    record: &mut Record<'a>,
+    model: &Model,
+    method: &Method,
+    mut search: impl FnMut(&mut Record<'a>, bool) -> Result<T, NonlinearError>,
+) -> (Result<T, NonlinearError>, Option<Finding>) {
+    let mut second = record.clone();
+    let found = search(record, false);
+    let given_up = matches!(&found, Err(error) if !matches!(error, NonlinearError::NotConverged { .. }));
+    if given_up || through_or_on_itself(model, &record.state).is_none() {
+        return (found, None);
+    }
+    // A step back along a path by arc length is no step towards its equilibria.
+    let cause = match method {
+        Method::ArcLength(_) => "a path by arc length does not keep them apart".to_string(),
+        _ => match search(&mut second, true) {
+            Ok(end) => {
+                *record = second;
+                return (Ok(end), None);
+            }
+            Err(cause) => cause.to_string(),
+        },
+    };
+    (found, Some(Finding::new(StudyFact::LayersNotKept { cause })))
 }
 
 /// Part of the loads that may be unbalanced without a word. A search ends at 1e-8, or where a step moves nothing beyond

@@ -24,7 +24,7 @@ use nalgebra::{Matrix3, Point3, Vector3};
 use self::closest::{Distance, NODES, closest, safe_part};
 use self::samples::{Sample, samples};
 use super::State;
-use crate::mesh::{Bounds, QuadMesh, overlapping};
+use crate::mesh::{BoundingBox, QuadMesh, overlapping};
 use crate::model::{DofGroup, Links, Model};
 use crate::solve::assemble::Pattern;
 use crate::solve::factor::{self, Analysis, FactorError, Path};
@@ -127,12 +127,12 @@ impl<'a> Layers<'a> {
     fn pairs(&self, places: &[Point3<f64>], ways: Option<&[Vector3<f64>]>, margin: f64) -> Vec<[usize; 2]> {
         let quads = &self.mesh.quads;
         let about = |quad: &[u32; 4]| {
-            let now = Bounds::of(quad.map(|n| &places[n as usize]), margin);
+            let now = BoundingBox::of(quad.map(|n| &places[n as usize]), margin);
             let Some(ways) = ways else { return now };
             let then = quad.map(|n| places[n as usize] + ways[n as usize]);
-            now.with(&Bounds::of(&then, margin))
+            now.with(&BoundingBox::of(&then, margin))
         };
-        let boxes: Vec<Bounds> = quads.iter().map(about).collect();
+        let boxes: Vec<BoundingBox> = quads.iter().map(about).collect();
         let mut pairs = overlapping(&boxes);
         pairs.retain(|[a, b]| !quads[*a].iter().any(|n| quads[*b].contains(n)));
         pairs
