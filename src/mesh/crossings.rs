@@ -1,6 +1,6 @@
 //! Where a sheet passes through itself.
 //!
-//! Nothing keeps two parts of a computed sheet from taking the same place. Here is found whether they do: quads without a
+//! Not every search keeps two parts of a sheet from taking the same place. Here is found whether they do: quads without a
 //! common node are parted into two triangles each, and the sides and the diagonal of one are held against the triangles of
 //! the other (Möller and Trumbore, *J. Graphics Tools* 2 (1997) 21). Which quads are near each other is found by a sweep
 //! along the longest extent of the sheet.

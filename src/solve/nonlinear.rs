@@ -119,7 +119,10 @@ pub fn search(
     options: &Options,
     observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    let (system, rest) = (System::new(model, plan, settings, options)?, State::rest(&model.mesh));
+    let (mut system, rest) = (System::new(model, plan, settings, options)?, State::rest(&model.mesh));
+    if !matches!(method, Method::ArcLength(_)) {
+        system = system.with_layers(settings, options);
+    }
     match method {
         Method::Newton(perturbation) => grow(&system, rest, settings, *perturbation, observe),
         Method::ArcLength(arc) => arc::follow_path(&system, rest, settings, arc, observe),

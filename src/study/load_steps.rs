@@ -13,13 +13,15 @@ use super::of_fabric::OfFabric;
 use super::result::Outcome;
 use super::{PreparedCase, StudyError, Watch, refused};
 use crate::case::{MethodChoice, Nonlinear, SheetMotion, SheetStep, StepAnalysis};
-use crate::finding::Finding;
+use crate::finding::{Finding, StudyFact};
 use crate::model::Model;
 use crate::quantity::significant;
 use crate::solve::Solution;
 use crate::solve::newmark::Rayleigh;
 use crate::solve::nonlinear::dynamics::{Dynamics, Launch, integrate_with};
-use crate::solve::nonlinear::{Carried, LoadStep, Method, Settings, continue_from, vibrations};
+use crate::solve::nonlinear::{
+    Carried, LoadStep, Method, Settings, continue_from, layers_in_touch, vibrations,
+};
 
 /// A sheet on its way through the steps of its case.
 struct Way<'a> {
@@ -151,12 +153,20 @@ impl Way<'_> {
             StepAnalysis::Static(_) | StepAnalysis::Motion(_) => return Ok(Vec::new()),
         };
         self.watch.not_stopped()?;
-        let findings = std::mem::take(&mut looked.findings);
+        let mut findings = std::mem::take(&mut looked.findings);
+        findings.extend(self.without_layers());
         let path = &mut self.record.path;
         let reaction = &self.record.solution.reaction;
         path.load_steps.push(looked.end(&step.name.value, path.steps.len(), &self.carried, reaction));
         self.record.done += 1;
         Ok(findings)
+    }
+
+    /// S152 of a step that leaves out what layers of the sheet press each other by.
+    fn without_layers(&self) -> Option<Finding> {
+        layers_in_touch(self.model, &self.record.state)?;
+        let cause = "a step of this kind leaves out what they press each other by".to_string();
+        Some(Finding::new(StudyFact::LayersNotKept { cause }))
     }
 
     /// In time, from the state as it is.
@@ -176,6 +186,7 @@ impl Way<'_> {
             load: motion.history,
             mass: motion.mass,
         };
+        let without_layers = self.without_layers();
         let launch = Launch { carried: Some(&self.carried), guided: &actions.guided, law: self.fabric.law };
         let mut record =
             dynamics::Record::new(prepared, &model, self.watch).keeping(motion.frames, dynamics.duration);
@@ -202,7 +213,7 @@ impl Way<'_> {
         });
         self.record.state = state;
         self.moved = Some((history, solution));
-        Ok(findings)
+        Ok(findings.into_iter().chain(without_layers).collect())
     }
 
     /// Rayleigh factors for damping ratios at the first and the third frequency about the state in which a motion begins.

@@ -187,13 +187,13 @@ pub(super) fn kept_apart<'a, T>(
     }
     // A step back along a path by arc length is no step towards its equilibria.
     let cause = match method {
-        Method::ArcLength(_) => "a path by arc length does not keep them apart".to_string(),
+        Method::ArcLength(_) => "a path by arc length does not know how".to_string(),
         _ => match search(&mut second, true) {
             Ok(end) => {
                 *record = second;
                 return (Ok(end), None);
             }
-            Err(cause) => cause.to_string(),
+            Err(cause) => format!("the search that does so came to no equilibrium, {cause}"),
         },
     };
     (found, Some(Finding::new(StudyFact::LayersNotKept { cause })))

@@ -220,10 +220,9 @@ super::facts! {
             significant(at[0]), significant(at[1]), significant(at[2]);
         /// A sheet whose layers could not be kept apart.
         "S152" LayersNotKept {
-            /// Why the search that does so ended.
+            /// Why.
             cause: String,
-        } = "layers of the sheet come to touch, and a search that keeps them apart came to no equilibrium: {cause}; the shape is that of a \
-             sheet that may pass through itself";
+        } = "layers of the sheet touch and are not kept apart: {cause}; its shape is that of a sheet that may pass through itself";
         /// A drape that takes the place of its disc.
         "S145" ThroughDisc {
             /// How far inside the edge of the disc the sheet reaches (m).

@@ -81,8 +81,6 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
     [text].into_iter().chain(costs).collect::<Vec<_>>().join("\n")
 }
 
-/// How dynamic analyses went, if there are any: instants kept, and what the balance of kinetic, strain and
-/// potential energy, damping and work misses at most, over the largest work.
 /// How many elements, and how many of them are triangles.
 fn elements(model: &Model) -> String {
     let (all, triangles) = (model.mesh.quads.len(), model.mesh.triangles());
@@ -93,6 +91,8 @@ fn elements(model: &Model) -> String {
     }
 }
 
+/// How dynamic analyses went, if there are any: instants kept, and what the balance of kinetic, strain and
+/// potential energy, damping and work misses at most, over the largest work.
 fn histories(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
     let mut table =
         Columns::new(["dynamics", "fabric", "instants", "end (s)", "energy imbalance (% of work)"]);

@@ -56,7 +56,7 @@ pub fn descend_from(
     options: &Options,
     mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    let system = System::new(model, plan, settings, options)?;
+    let system = System::new(model, plan, settings, options)?.with_layers(settings, options);
     // Laws that remember are not followed by a descent: it takes steps that it does not keep.
     if settings.law.as_ref().is_none_or(|law| law.mode == Mode::Elastic)
         && settings.surfaces.is_empty()
@@ -202,7 +202,9 @@ impl<'s> Descent<'s> {
     /// Leaves an unstable equilibrium along its lowest eigenvector.
     fn leave(&mut self, shape: &[f64], lowest_eigenvalue: f64) {
         let mut state = self.now.state.clone();
-        self.system.advance(&mut state, &kick(self.system.size, shape));
+        let mut kick = kick(self.system.size, shape);
+        self.system.keep_apart(&state, &mut kick);
+        self.system.advance(&mut state, &kick);
         let balance = self.system.balance(&state, None);
         self.forces = balance.forces();
         self.rate = (2.0 * lowest_eigenvalue.abs()).max(self.first_rate / LARGEST_RISE);

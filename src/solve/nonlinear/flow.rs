@@ -105,7 +105,8 @@ pub fn relax_from(
     options: &Options,
     observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    relax_system(&System::new(model, plan, settings, options)?, start, settings, flow, observe)
+    let system = System::new(model, plan, settings, options)?.with_layers(settings, options);
+    relax_system(&system, start, settings, flow, observe)
 }
 
 pub(super) fn relax_system(
@@ -163,7 +164,9 @@ pub(super) fn relax_system(
                 return Err(unstable.ends(progress.steps, settings, state));
             }
             kicks += 1;
-            system.advance(&mut state, &kick(system.size, &shape));
+            let mut kick = kick(system.size, &shape);
+            system.keep_apart(&state, &mut kick);
+            system.advance(&mut state, &kick);
             pace = Pace::new(-2.0 * stability.lowest_eigenvalue);
         }
     }
@@ -356,7 +359,9 @@ fn stable_step(
         let (_, shape) =
             stability::check(system, &found.state, &found.balance).map_err(|_| failed(Obstacle::Unstable))?;
         let mut beside = found.state.clone();
-        system.advance(&mut beside, &kick_by_thickness(system, &shape));
+        let mut kick = kick_by_thickness(system, &shape);
+        system.keep_apart(&beside, &mut kick);
+        system.advance(&mut beside, &kick);
         let settled = settle_within(system, &beside, [factor, 0.0], settings, FLOWING_STEPS);
         found = settled.map_err(|f| Failure { iterations: iterations + f.iterations, ..f })?;
         iterations += found.iterations;

@@ -80,6 +80,9 @@ pub fn continue_from(
     let mut model = step.model.clone();
     model.supports.extend(step.moved.iter().cloned());
     let mut system = System::new(&model, plan, step.settings, options)?;
+    if !matches!(step.method, Method::ArcLength(_)) {
+        system = system.with_layers(step.settings, options);
+    }
     let (values, turned) = motion(carried, step, &system.held);
     system.values = values;
     let let_go = |d: usize| if carried.held[d] && !system.held[d] { carried.reaction[d] } else { 0.0 };

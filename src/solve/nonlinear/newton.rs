@@ -166,7 +166,10 @@ pub(super) fn newton_with(
         for d in (0..step.len()).filter(|d| system.held[*d]) {
             step[d] = remaining * system.values[d];
         }
-        let part = limit(&mut step) * system.keep_apart(&state, &mut step);
+        let mut part = limit(&mut step);
+        // Before layers of the sheet shorten it: that is no rest.
+        let at_rest = is_rounding(&step, system.size);
+        part *= system.keep_apart(&state, &mut step);
         remaining -= part * remaining;
         forces = system.predict(&state, &balance, &step);
         system.advance(&mut state, &step);
@@ -176,7 +179,6 @@ pub(super) fn newton_with(
         if !residual.is_finite() {
             return Err(failure(residual, Obstacle::Diverged));
         }
-        let at_rest = is_rounding(&step, system.size);
         if remaining == 0.0 && (at_rest || residual <= settings.tolerance * balance.scale) {
             if System::largest_rotation(&balance) > LARGEST_FOLD {
                 return Err(failure(balance.relative_residual(), Obstacle::Folded));

@@ -22,7 +22,8 @@ pub struct Settings {
     pub law: Option<SheetLaw>,
     /// What the sheet cannot pass.
     pub surfaces: Vec<RigidSurface>,
-    /// Whether layers of the sheet that come to touch keep apart, by its thickness; without, they pass through each other.
+    /// Whether layers of the sheet that come to touch keep apart, by its thickness; without, on paths by arc length, for supports that
+    /// are [driven](super::drive) and in [`dynamics`](super::dynamics) they pass through each other.
     pub self_contact: bool,
 }
 

@@ -26,7 +26,7 @@ pub fn shake(
     options: &Options,
     mut observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<Solution, NonlinearError> {
-    let system = System::new(model, plan, settings, options)?;
+    let system = System::new(model, plan, settings, options)?.with_layers(settings, options);
     let mut progress = Progress::default();
     let (mut state, mut balance) = (start.clone(), system.balance(&start, None));
     for factor in factors {

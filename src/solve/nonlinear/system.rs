@@ -13,7 +13,7 @@ pub(super) use stress::Stressing;
 use super::contact::{Press, Surfaces};
 use super::layers::{Contact, Layers};
 use super::sheet::{Answer, Forces, Sheet};
-use super::{NonlinearError, Settings, State};
+use super::{Memory, NonlinearError, Settings, State};
 use crate::element::corotational::Motion;
 use crate::element::{Matrix24, Vector24, follower_pressure, lumped_mass};
 use crate::model::rigid::lever;
@@ -36,6 +36,13 @@ pub fn plan(model: &Model, options: &Options) -> Result<Plan, NonlinearError> {
 
 /// Elements whose tangents are held at a time before they are added up in order.
 const BATCH: usize = 512;
+
+/// A step of a sheet whose layers keep apart moves no node farther than so many elements are long: what passes between is looked for
+/// in all of its way.
+const LONGEST_WAY: f64 = 8.0;
+
+/// How often a step of a sheet with rigid bodies is shortened, at most.
+const SHORTENINGS: usize = 4;
 
 /// What does not change while a model deforms. Vectors hold six numbers a node; followers of a
 /// rigid body have theirs added to the lead's and count as held.
@@ -61,6 +68,8 @@ pub(super) struct System<'a> {
     /// Area of each node (m²), and that times h²/12 for its rotations: the metric of the flow and
     /// of the eigenvalues.
     pub metric: Vec<f64>,
+    /// Areas of the elements (m²).
+    areas: Vec<f64>,
     /// Length that makes moments comparable with forces: the mean side of an element (m).
     side: f64,
     /// Diagonal of the sheet at rest (m).
@@ -88,7 +97,7 @@ pub(super) struct Balance {
     nodal: Vec<f64>,
     /// Internal minus external forces by dof: the reactions where held, what must vanish elsewhere.
     pub unbalanced: Vec<f64>,
-    /// Energy stored (J).
+    /// Energy stored, that of layers that press each other with it (J).
     pub energy: f64,
     /// Norm of what must vanish (N).
     pub residual: f64,
@@ -125,22 +134,28 @@ impl<'a> System<'a> {
             held: held.iter().map(Option::is_some).collect(),
             values: held.iter().map(|c| c.unwrap_or(0.0)).collect(),
             metric: vec![0.0; 6 * nodes],
+            areas: Vec::with_capacity(model.mesh.quads.len()),
             side: 0.0,
             size: (high - low).norm(),
         };
-        let areas = system.prepare_elements()?;
+        system.prepare_elements()?;
         let of_sheet = [system.stiffest(), system.size];
         system.contact = Surfaces::new(&settings.surfaces, &model.mesh, &system.metric, of_sheet);
-        if settings.self_contact {
-            let of_sheet = [model.section.thickness, system.pressure_of_layers()];
-            system.layers = Some(Layers::new(&model.mesh, &areas, of_sheet, options.path));
-        }
         Ok(system)
     }
 
-    /// Elements at rest; equal ones in a row share their matrices. Their areas (m²).
-    fn prepare_elements(&mut self) -> Result<Vec<f64>, SolveError> {
-        let (mesh, mut areas) = (&self.model.mesh, Vec::with_capacity(self.model.mesh.quads.len()));
+    /// The same with layers that keep apart, if the settings say so.
+    pub fn with_layers(mut self, settings: &Settings, options: &Options) -> Self {
+        if settings.self_contact {
+            let of_sheet = [self.model.section.thickness, self.pressure_of_layers()];
+            self.layers = Some(Layers::new(&self.model.mesh, &self.areas, of_sheet, options.path));
+        }
+        self
+    }
+
+    /// Elements at rest; equal ones in a row share their matrices.
+    fn prepare_elements(&mut self) -> Result<(), SolveError> {
+        let mesh = &self.model.mesh;
         let unit = crate::section::ShellSection { areal_density: 1.0, ..self.model.section.clone() };
         for quad in 0..mesh.quads.len() {
             if quad % BATCH == 0 {
@@ -160,10 +175,10 @@ impl<'a> System<'a> {
                     self.metric[6 * *node as usize + d] += if d < 3 { share } else { share * rotary };
                 }
             }
-            areas.push(element.frame.area());
+            self.areas.push(element.frame.area());
         }
-        self.side = (areas.iter().sum::<f64>() / mesh.quads.len().max(1) as f64).sqrt();
-        Ok(areas)
+        self.side = (self.areas.iter().sum::<f64>() / mesh.quads.len().max(1) as f64).sqrt();
+        Ok(())
     }
 
     /// Applies `f` to every index, in parallel if asked for; the results are in order.
@@ -439,16 +454,28 @@ impl<'a> System<'a> {
         analysis.factorise_indefinite(matrix, analysis.worth(self.threads))
     }
 
-    /// Shortens a step that would bring layers of the sheet through each other; the part that is left of it.
+    /// Shortens a step that would bring layers of the sheet through each other, or that moves it far; the part that is left of it.
     pub fn keep_apart(&self, state: &State, step: &mut [f64]) -> f64 {
         let Some(layers) = &self.layers else { return 1.0 };
-        let mut moved = state.clone();
-        self.advance(&mut moved, step);
-        let ways: Vec<Vector3<f64>> =
-            moved.position.iter().zip(&state.position).map(|(to, from)| to - from).collect();
-        let part = layers.free_part(&state.position, &ways);
-        step.iter_mut().for_each(|s| *s *= part);
-        part
+        let mut left = 1.0;
+        for _ in 0..SHORTENINGS {
+            let mut moved = State { memory: Memory::default(), ..state.clone() };
+            self.advance(&mut moved, step);
+            let ways: Vec<Vector3<f64>> =
+                moved.position.iter().zip(&state.position).map(|(to, from)| to - from).collect();
+            let longest = ways.iter().map(Vector3::norm).fold(0.0, f64::max);
+            let part = (LONGEST_WAY * self.side / longest).min(layers.free_part(&state.position, &ways));
+            if part >= 1.0 {
+                break;
+            }
+            step.iter_mut().for_each(|s| *s *= part);
+            left *= part;
+            // The nodes of a rigid body turn on arcs: a shorter step has other chords.
+            if self.links.followers().next().is_none() {
+                break;
+            }
+        }
+        left
     }
 
     /// Moves the nodes by a step of the dofs: rotations compose, bodies stay rigid.

@@ -195,6 +195,7 @@ pub fn drape(
         sheet = finer;
     }
     let states: Vec<DrapeState> = found.into_iter().map(|found| found.state).collect();
+    let not_kept = sheet.not_kept_apart(&solution.state, options);
     let Hanging { ring, model, .. } = sheet;
     let resultants = element_means_moved(&model, &solution.state, law)?;
     let outline = shadow::outline(&projected(&solution.state), &model.mesh.quads, ring.inner, 360);
@@ -205,7 +206,7 @@ pub fn drape(
     });
     let slips = law.is_some_and(|law| law.mode != Mode::Elastic);
     let of_law = if !slips { Some(StudyFact::ElasticDrape {}) } else { shaken };
-    let mut findings = findings(case, problem, &meshes, &failed, of_law);
+    let mut findings = findings(case, problem, &meshes, &failed, [of_law, not_kept]);
     findings.extend(interference::of(case, &model, &solution.state, ring.inner));
     Ok(Drape {
         case: case.name.clone(),
@@ -309,9 +310,9 @@ fn findings(
     problem: &DrapeProblem,
     meshes: &[DrapeState],
     failed: &[(usize, NonlinearError)],
-    of_law: Option<StudyFact>,
+    of_sheet: [Option<StudyFact>; 2],
 ) -> Vec<Finding> {
-    let mut facts: Vec<StudyFact> = of_law.into_iter().collect();
+    let mut facts: Vec<StudyFact> = of_sheet.into_iter().flatten().collect();
     if !failed.is_empty() {
         let starts = failed.iter().map(|(start, _)| *start).collect();
         facts.push(StudyFact::FailedSearches { starts, searches: problem.folds.len() });

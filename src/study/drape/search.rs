@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::{DrapeState, Folds, Ring, projected, refine, shadow};
 use crate::case::DrapeProblem;
+use crate::finding::StudyFact;
 use crate::law::Mode;
 use crate::mesh::crossings;
 use crate::model::Model;
@@ -148,10 +149,14 @@ impl<'a> Hanging<'a> {
             hung = Some(self.state(&solution, start));
             let factors: Vec<f64> =
                 (0..SWINGS).map(|k| 1.0 + shaking * (-0.5f64).powi(k)).chain([1.0]).collect();
-            let settings = self.settings(layers_in_touch(&self.model, &solution.state).is_some());
+            let touches = layers_in_touch(&self.model, &solution.state).is_some();
+            let settings = self.settings(touches && !self.is_tangled(&solution.state));
             solution = shake(&self.model, &self.plan, solution.state, &factors, &settings, options, |_| {
                 self.cloth.watch.go_on()
             })?;
+            if !touches && layers_in_touch(&self.model, &solution.state).is_some() {
+                solution = self.relax(solution.state, options)?;
+            }
         }
         Ok(Found { state: self.state(&solution, start), solution, hung })
     }
@@ -166,17 +171,32 @@ impl<'a> Hanging<'a> {
     }
 
     /// The equilibrium that a sheet comes to. Where its layers have come to touch they press each other from there on, and where they have passed
-    /// through each other it is let down again, and they are kept apart.
+    /// through each other it is let down again, and they are kept apart. If that ends nowhere, it is the one that there is.
     pub fn relax(&self, from: State, options: &Options) -> Result<Solution, NonlinearError> {
         let found = self.descend(from.clone(), false, options)?;
-        if crossings(&found.state.position, &self.model.mesh.quads).is_some() {
-            // If that ends nowhere, S144 tells of the state that there is.
-            return self.descend(from, true, options).or(Ok(found));
+        let again = if !self.is_tangled(&found.state) {
+            layers_in_touch(&self.model, &found.state).map(|_| found.state.clone())
+        } else {
+            // From where layers are in each other they do not come apart.
+            (!self.is_tangled(&from)).then_some(from)
+        };
+        let Some(again) = again else { return Ok(found) };
+        match self.descend(again, true, options) {
+            Err(NonlinearError::NotConverged { .. }) => Ok(found),
+            end => end,
         }
-        match layers_in_touch(&self.model, &found.state) {
-            Some(_) => self.descend(found.state, true, options),
-            None => Ok(found),
-        }
+    }
+
+    /// S152 of a sheet whose layers touch, if it is in no equilibrium with what they press each other by.
+    pub fn not_kept_apart(&self, state: &State, options: &Options) -> Option<StudyFact> {
+        let touches = layers_in_touch(&self.model, state).is_some() && !self.is_tangled(state);
+        let cause = touches.then(|| self.descend(state.clone(), true, options).err()).flatten()?;
+        let cause = format!("the search that does so came to no equilibrium, {cause}");
+        Some(StudyFact::LayersNotKept { cause })
+    }
+
+    fn is_tangled(&self, state: &State) -> bool {
+        crossings(&state.position, &self.model.mesh.quads).is_some()
     }
 
     fn descend(

@@ -190,6 +190,9 @@ impl<'a> Layers<'a> {
     pub fn free_part(&self, places: &[Point3<f64>], ways: &[Vector3<f64>]) -> f64 {
         let mut part: f64 = 1.0;
         for pair in self.pairs(places, Some(ways), 0.0) {
+            if self.keep_their_distance(places, ways, pair) {
+                continue;
+            }
             for [of, quad] in [pair, [pair[1], pair[0]]] {
                 for sample in self.of_quads[of] {
                     part = part.min(self.free_part_of(places, ways, sample, quad));
@@ -197,6 +200,17 @@ impl<'a> Layers<'a> {
             }
         }
         part
+    }
+
+    /// Whether two quads move less towards each other than their boxes are apart.
+    fn keep_their_distance(&self, places: &[Point3<f64>], ways: &[Vector3<f64>], pair: [usize; 2]) -> bool {
+        let nodes = self.tied(&pair).map(|n| n as usize);
+        let mean = nodes.iter().map(|n| ways[*n]).sum::<Vector3<f64>>() / nodes.len() as f64;
+        let longest = nodes.iter().map(|n| (ways[*n] - mean).norm()).fold(0.0, f64::max);
+        let [one, other] =
+            pair.map(|quad| BoundingBox::of(self.mesh.quads[quad].map(|n| &places[n as usize]), 0.0));
+        let apart = (one.low - other.high).sup(&(other.low - one.high)).sup(&Vector3::zeros());
+        (1.0 - LEFT) * apart.norm() > 2.0 * longest
     }
 
     fn free_part_of(&self, places: &[Point3<f64>], ways: &[Vector3<f64>], sample: usize, quad: usize) -> f64 {
@@ -207,10 +221,12 @@ impl<'a> Layers<'a> {
         }
         let point = middle(places, nodes, weights);
         let way = (0..4).fold(Vector3::zeros(), |sum, k| sum + ways[nodes[k] as usize] * weights[k]);
-        let parts = triangles(&self.mesh.quads[quad]).map(|[a, b, c]| {
-            let [a, b, c] = [a, b, c].map(|n| n as usize);
+        let parts = triangles(&self.mesh.quads[quad]).map(|triangle| {
+            let [a, b, c] = triangle.map(|n| n as usize);
             let corners = [point, places[a], places[b], places[c]];
-            safe_part(&corners, &[way, ways[a], ways[b], ways[c]], LEFT)
+            let part = safe_part(&corners, &[way, ways[a], ways[b], ways[c]], LEFT);
+            // What belongs together at rest, as the lips of a slit, is pressed by no barrier.
+            if part < 1.0 && self.were_near(sample, &triangle) { 1.0 } else { part }
         });
         parts[0].min(parts[1])
     }
@@ -229,7 +245,12 @@ impl<'a> Layers<'a> {
         if let Some(coupling) = last.as_ref().filter(|coupling| contacts.iter().all(|c| coupling.holds(c))) {
             return Some(Arc::clone(coupling));
         }
-        let mut pairs = self.pairs(places, None, 0.5 * REACH * self.thickness);
+        let margin = 0.5 * REACH * self.thickness;
+        let at_rest = |quad: usize| {
+            BoundingBox::of(self.mesh.quads[quad].map(|n| &self.mesh.nodes[n as usize]), margin)
+        };
+        let mut pairs = self.pairs(places, None, margin);
+        pairs.retain(|[one, other]| !at_rest(*one).overlaps(&at_rest(*other)));
         pairs.extend(contacts.iter().map(|contact| contact.quads));
         let tied: Vec<[u32; 8]> = pairs.iter().map(|pair| self.tied(pair)).collect();
         let pattern = Pattern::tied(self.mesh, Arc::clone(links), &tied);

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::mesh::QuadMesh;
+use crate::mesh::{QuadMesh, is_triangle};
 
 /// A point of a sheet: a node, the middle of a side, or of a quad.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +27,19 @@ const POINTS: [([f64; 4], f64); 9] = [
     ([0.25, 0.25, 0.25, 0.25], 16.0 / 36.0),
 ];
 
+/// The seven points of a triangle that is a quad with its last node twice, at the same places of the list.
+const OF_TRIANGLE: [([f64; 4], f64); 9] = [
+    ([1.0, 0.0, 0.0, 0.0], 1.0 / 20.0),
+    ([0.0, 1.0, 0.0, 0.0], 1.0 / 20.0),
+    ([0.0, 0.0, 1.0, 0.0], 1.0 / 20.0),
+    ([0.0, 0.0, 1.0, 0.0], 0.0),
+    ([0.5, 0.5, 0.0, 0.0], 2.0 / 15.0),
+    ([0.0, 0.5, 0.5, 0.0], 2.0 / 15.0),
+    ([0.0, 0.0, 1.0, 0.0], 0.0),
+    ([0.5, 0.0, 0.5, 0.0], 2.0 / 15.0),
+    ([1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0, 0.0], 9.0 / 20.0),
+];
+
 /// The points of a mesh whose quads have these areas, each once, and which of them are on each quad.
 pub fn samples(mesh: &QuadMesh, areas: &[f64]) -> (Vec<Sample>, Vec<[usize; 9]>) {
     let (mut samples, mut of_quads) = (Vec::new(), Vec::with_capacity(mesh.quads.len()));
@@ -34,7 +47,8 @@ pub fn samples(mesh: &QuadMesh, areas: &[f64]) -> (Vec<Sample>, Vec<[usize; 9]>)
     let mut known: HashMap<[u32; 2], usize> = HashMap::new();
     for (quad, nodes) in mesh.quads.iter().enumerate() {
         let mut of_quad = [0; 9];
-        for (k, (weights, part)) in POINTS.into_iter().enumerate() {
+        let points = if is_triangle(nodes) { OF_TRIANGLE } else { POINTS };
+        for (k, (weights, part)) in points.into_iter().enumerate() {
             let mut own = || {
                 samples.push(Sample { quad, weights, area: 0.0 });
                 samples.len() - 1
