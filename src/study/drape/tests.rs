@@ -179,7 +179,7 @@ fn a_coarse_mesh_is_a_finding() {
     let told = |case: &Case, coefficients: &[f64]| {
         let meshes: Vec<DrapeState> = coefficients.iter().map(|c| state(*c)).collect();
         let Problem::Drape(problem) = &case.problem else { panic!("a drape") };
-        findings(case, problem, &meshes, &[], None).first().map(|f| (f.code(), f.message()))
+        findings(case, problem, &meshes, &[], [None, None]).first().map(|f| (f.code(), f.message()))
     };
     let (code, message) = told(&case, &[0.6, 0.503, 0.475]).unwrap();
     assert!(code == "S119" && message.contains("5040 elements") && message.contains("by -2.8"), "{message}");
