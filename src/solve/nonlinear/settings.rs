@@ -23,7 +23,7 @@ pub struct Settings {
     /// What the sheet cannot pass.
     pub surfaces: Vec<RigidSurface>,
     /// Whether layers of the sheet that come to touch keep apart, by its thickness; without, on paths by arc length, for supports that
-    /// are [driven](super::drive) and in [`dynamics`](super::dynamics) they pass through each other.
+    /// are [driven](super::drive()) and in [`dynamics`](super::dynamics) they pass through each other.
     pub self_contact: bool,
 }
 
