@@ -108,6 +108,9 @@ fn a_loop_closes_as_its_half_does_at_the_plane_of_symmetry() {
     assert!(falls(0) && falls(1), "in proportion to the thickness: {distances:?}");
 }
 
+const LOADS: &str = "[[loads]]\nkind = \"gravity\"\n\
+    [[loads]]\nkind = \"prescribed\"\nset = \"jaw\"\ndof = \"u\"\nvalue = \"-18 cm\"\n";
+
 fn solved(analysis: &str) -> CaseResult {
     let text = format!(
         "title = \"a loop\"\n[section]\ntensile_warp = \"1000 N/m\"\ntensile_weft = \"1000 N/m\"\npoisson = 0\n\
@@ -116,9 +119,7 @@ fn solved(analysis: &str) -> CaseResult {
          [sheet]\nshape = \"rectangle\"\nwidth = \"20 cm\"\nheight = \"1 cm\"\ncells = [40, 2]\n\
          [[rigid]]\nname = \"jaw\"\nset = \"right\"\n\
          [[supports]]\nset = \"left\"\nkind = \"clamped\"\n\
-         [[supports]]\nset = \"jaw\"\nfix = [\"v\", \"w\", \"theta_x\", \"theta_y\", \"theta_z\"]\n\
-         [[loads]]\nkind = \"gravity\"\n\
-         [[loads]]\nkind = \"prescribed\"\nset = \"jaw\"\ndof = \"u\"\nvalue = \"-18 cm\"\n{analysis}"
+         [[supports]]\nset = \"jaw\"\nfix = [\"v\", \"w\", \"theta_x\", \"theta_y\", \"theta_z\"]\n{analysis}"
     );
     let case = Case::parse(Path::new("loop.toml"), &text).unwrap_or_else(|e| panic!("{e}"));
     let section = section_of(case.section().expect("a section")).expect("stiffnesses");
@@ -128,9 +129,24 @@ fn solved(analysis: &str) -> CaseResult {
 /// What a case does without being told to, and that it says so.
 #[test]
 fn a_case_keeps_its_layers_apart_and_tells() {
-    let result = solved("[analysis]\nkind = \"nonlinear\"\nmethod = \"stable\"\nlargest_step = 0.05\n");
+    let analysis = "[analysis]\nkind = \"nonlinear\"\nmethod = \"stable\"\nlargest_step = 0.05\n";
+    let result = solved(&format!("{LOADS}{analysis}"));
     let codes: Vec<&str> = result.findings.iter().map(|f| f.code()).collect();
     assert!(codes.contains(&"S151") && !codes.contains(&"S144") && !codes.contains(&"S152"), "{codes:?}");
     let path = result.path.unwrap();
     assert!(path.converged && path.stability.unwrap().is_stable());
+}
+
+/// A step that leaves out what layers press each other by.
+#[test]
+fn a_step_that_knows_no_layers_says_so() {
+    let result = solved(
+        "[analysis]\nkind = \"nonlinear\"\nmethod = \"stable\"\nlargest_step = 0.05\n\
+         [[steps]]\nname = \"close\"\n\
+         [[steps.loads]]\nkind = \"gravity\"\n\
+         [[steps.loads]]\nkind = \"prescribed\"\nset = \"jaw\"\ndof = \"u\"\nvalue = \"-18 cm\"\n\
+         [[steps]]\nname = \"modes\"\n[steps.analysis]\nkind = \"modal\"\nmodes = 1\n",
+    );
+    let codes: Vec<&str> = result.findings.iter().map(|f| f.code()).collect();
+    assert!(codes.contains(&"S151") && codes.contains(&"S152") && !codes.contains(&"S144"), "{codes:?}");
 }

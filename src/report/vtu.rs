@@ -81,7 +81,7 @@ impl MeshField<'_> {
     }
 }
 
-/// Number of a quad among the cell types of VTK.
+/// Numbers of a triangle and of a quad among the cell types of VTK.
 const VTK_TRIANGLE: u8 = 5;
 const VTK_QUAD: u8 = 9;
 

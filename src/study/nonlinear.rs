@@ -185,7 +185,7 @@ pub(super) fn kept_apart<'a, T>(
     if given_up || through_or_on_itself(model, &record.state).is_none() {
         return (found, None);
     }
-    // A step back along a path by arc length is no step towards its equilibria.
+    // A step along an arc has its length: it cannot be shortened where layers meet.
     let cause = match method {
         Method::ArcLength(_) => "a path by arc length does not know how".to_string(),
         _ => match search(&mut second, true) {

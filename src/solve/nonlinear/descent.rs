@@ -202,9 +202,7 @@ impl<'s> Descent<'s> {
     /// Leaves an unstable equilibrium along its lowest eigenvector.
     fn leave(&mut self, shape: &[f64], lowest_eigenvalue: f64) {
         let mut state = self.now.state.clone();
-        let mut kick = kick(self.system.size, shape);
-        self.system.keep_apart(&state, &mut kick);
-        self.system.advance(&mut state, &kick);
+        self.system.advance_apart(&mut state, kick(self.system.size, shape));
         let balance = self.system.balance(&state, None);
         self.forces = balance.forces();
         self.rate = (2.0 * lowest_eigenvalue.abs()).max(self.first_rate / LARGEST_RISE);

@@ -164,9 +164,7 @@ pub(super) fn relax_system(
                 return Err(unstable.ends(progress.steps, settings, state));
             }
             kicks += 1;
-            let mut kick = kick(system.size, &shape);
-            system.keep_apart(&state, &mut kick);
-            system.advance(&mut state, &kick);
+            system.advance_apart(&mut state, kick(system.size, &shape));
             pace = Pace::new(-2.0 * stability.lowest_eigenvalue);
         }
     }
@@ -359,9 +357,7 @@ fn stable_step(
         let (_, shape) =
             stability::check(system, &found.state, &found.balance).map_err(|_| failed(Obstacle::Unstable))?;
         let mut beside = found.state.clone();
-        let mut kick = kick_by_thickness(system, &shape);
-        system.keep_apart(&beside, &mut kick);
-        system.advance(&mut beside, &kick);
+        system.advance_apart(&mut beside, kick_by_thickness(system, &shape));
         let settled = settle_within(system, &beside, [factor, 0.0], settings, FLOWING_STEPS);
         found = settled.map_err(|f| Failure { iterations: iterations + f.iterations, ..f })?;
         iterations += found.iterations;

@@ -1,5 +1,6 @@
 //! The equations of a model in large rotations: forces, tangent, and the motion of the nodes.
 
+mod apart;
 mod presses;
 mod rates;
 mod stress;
@@ -13,7 +14,7 @@ pub(super) use stress::Stressing;
 use super::contact::{Press, Surfaces};
 use super::layers::{Contact, Layers};
 use super::sheet::{Answer, Forces, Sheet};
-use super::{Memory, NonlinearError, Settings, State};
+use super::{NonlinearError, Settings, State};
 use crate::element::corotational::Motion;
 use crate::element::{Matrix24, Vector24, follower_pressure, lumped_mass};
 use crate::model::rigid::lever;
@@ -36,13 +37,6 @@ pub fn plan(model: &Model, options: &Options) -> Result<Plan, NonlinearError> {
 
 /// Elements whose tangents are held at a time before they are added up in order.
 const BATCH: usize = 512;
-
-/// A step of a sheet whose layers keep apart moves no node farther than so many elements are long: what passes between is looked for
-/// in all of its way.
-const LONGEST_WAY: f64 = 8.0;
-
-/// How often a step of a sheet with rigid bodies is shortened, at most.
-const SHORTENINGS: usize = 4;
 
 /// What does not change while a model deforms. Vectors hold six numbers a node; followers of a
 /// rigid body have theirs added to the lead's and count as held.
@@ -142,15 +136,6 @@ impl<'a> System<'a> {
         let of_sheet = [system.stiffest(), system.size];
         system.contact = Surfaces::new(&settings.surfaces, &model.mesh, &system.metric, of_sheet);
         Ok(system)
-    }
-
-    /// The same with layers that keep apart, if the settings say so.
-    pub fn with_layers(mut self, settings: &Settings, options: &Options) -> Self {
-        if settings.self_contact {
-            let of_sheet = [self.model.section.thickness, self.pressure_of_layers()];
-            self.layers = Some(Layers::new(&self.model.mesh, &self.areas, of_sheet, options.path));
-        }
-        self
     }
 
     /// Elements at rest; equal ones in a row share their matrices.
@@ -320,14 +305,6 @@ impl<'a> System<'a> {
         self.model.load_vector().chunks_exact(6).map(|n| n[0].hypot(n[1]).hypot(n[2])).sum()
     }
 
-    /// What presses layers on each other (Pa): the loads per area at factor 1, or if that is more the bending of the
-    /// sharpest fold that the mesh can show, with a radius of two elements.
-    fn pressure_of_layers(&self) -> f64 {
-        let area: f64 = self.metric.iter().step_by(6).sum();
-        let bending = self.model.section.d_b[(0, 0)].max(self.model.section.d_b[(1, 1)]);
-        (self.total_load() / area).max(bending / (2.0 * self.side).powi(3))
-    }
-
     /// The order of the largest eigenvalue per area: the membrane of an element (N/m³).
     pub fn stiffest(&self) -> f64 {
         self.model.section.d_m.diagonal().max() / (self.side * self.side)
@@ -452,30 +429,6 @@ impl<'a> System<'a> {
             None => &self.plan.groups[0].1,
         };
         analysis.factorise_indefinite(matrix, analysis.worth(self.threads))
-    }
-
-    /// Shortens a step that would bring layers of the sheet through each other, or that moves it far; the part that is left of it.
-    pub fn keep_apart(&self, state: &State, step: &mut [f64]) -> f64 {
-        let Some(layers) = &self.layers else { return 1.0 };
-        let mut left = 1.0;
-        for _ in 0..SHORTENINGS {
-            let mut moved = State { memory: Memory::default(), ..state.clone() };
-            self.advance(&mut moved, step);
-            let ways: Vec<Vector3<f64>> =
-                moved.position.iter().zip(&state.position).map(|(to, from)| to - from).collect();
-            let longest = ways.iter().map(Vector3::norm).fold(0.0, f64::max);
-            let part = (LONGEST_WAY * self.side / longest).min(layers.free_part(&state.position, &ways));
-            if part >= 1.0 {
-                break;
-            }
-            step.iter_mut().for_each(|s| *s *= part);
-            left *= part;
-            // The nodes of a rigid body turn on arcs: a shorter step has other chords.
-            if self.links.followers().next().is_none() {
-                break;
-            }
-        }
-        left
     }
 
     /// Moves the nodes by a step of the dofs: rotations compose, bodies stay rigid.

@@ -73,6 +73,22 @@ fn a_way_ends_before_the_triangle() {
     }
 }
 
+/// Whichever node a triangle has twice, its points are the same and a pressure is shared alike by its nodes.
+#[test]
+fn points_of_triangles_do_not_depend_on_the_first_node() {
+    let nodes: Vec<Point3<f64>> = triangle().into();
+    for quad in [[0, 1, 2, 2], [1, 2, 0, 0], [2, 0, 1, 1]] {
+        let mesh = QuadMesh { nodes: nodes.clone(), quads: vec![quad], ..QuadMesh::default() };
+        let (points, of_quads) = samples(&mesh, &[0.6]);
+        let mut share = [0.0; 3];
+        for point in &points {
+            quad.iter().zip(point.weights).for_each(|(n, w)| share[*n as usize] += w * point.area);
+        }
+        assert_eq!((points.len(), of_quads[0][2]), (7, of_quads[0][3]));
+        share.iter().for_each(|s| assert_relative_eq!(*s, 0.2, max_relative = 1e-12));
+    }
+}
+
 /// Two flat layers on each other: the pressure of the barrier over their common area, whatever the mesh.
 #[test]
 fn flat_layers_press_each_other_by_the_barrier() {
