@@ -60,7 +60,7 @@ impl Backbone {
     ///
     /// # Errors
     /// M020 unless there is a knot and a tangent for each, knots increase, tangents are not
-    /// negative and all numbers are finite.
+    /// negative and all numbers are finite, those of the curve at its knots too.
     pub fn new(offset: f64, knots: &[f64], tangents: &[f64]) -> Result<Self, LawError> {
         if knots.is_empty() || knots.len() != tangents.len() {
             return Err(LawError::Count { knots: knots.len(), tangents: tangents.len() });
@@ -97,7 +97,12 @@ impl Backbone {
         }
         let drop = backbone.at(0.0).energy;
         backbone.pieces.iter_mut().for_each(|p| p.at.energy -= drop);
-        Ok(backbone)
+        // Numbers that are each finite may have sums that are not.
+        let derived = backbone.pieces.iter().flat_map(|p| [p.bend, p.at.stress, p.at.energy]);
+        match derived.into_iter().find(|v| !v.is_finite()) {
+            Some(value) => Err(LawError::Value { what: "a stress or energy of the backbone", value }),
+            None => Ok(backbone),
+        }
     }
 
     /// A straight line of slope `tangent` through the origin.

@@ -220,6 +220,8 @@ fn what_is_no_law_is_refused() {
     assert!(matches!(Backbone::new(0.0, &[], &[]), Err(LawError::Count { .. })));
     assert!(matches!(Backbone::new(0.0, &[1.0, 1.0], &[1.0, 1.0]), Err(LawError::Order { .. })));
     assert!(matches!(Backbone::line(f64::NAN), Err(LawError::Value { .. })));
+    let too_large = Backbone::new(0.0, &[-1e200, 1e200], &[1.0, 1.0]);
+    assert!(matches!(too_large, Err(LawError::Value { .. })), "{too_large:?}");
     let line = || Backbone::line(1.0).unwrap();
     let with = |widening, slider, count| {
         Channel::new(line(), vec![Family { widening, sliders: vec![slider; count] }], false)
