@@ -3,6 +3,9 @@
 //! `cargo bench --bench robustness --no-default-features -- [FIRST [COUNT]]`: the cases FIRST, FIRST + 1 ...; 1 to 100 without.
 //! A case is the same whenever it is asked for. One line each: what it is, how it ended (status and findings), its steps,
 //! iterations and attempts that failed, and its largest deflection; then the share that ended in a stable equilibrium.
+//!
+//! With `refined` after the numbers, each is solved again with twice as many cells along each side, and the line says how far
+//! its largest deflection and displacement move; then those that move by more than 5 % although nothing that was found says so.
 
 use std::path::Path;
 
@@ -67,11 +70,12 @@ fn jaw(held: &str) -> String {
         + &table("supports", &format!("set = \"jaw\"\nfix = [{held}]"))
 }
 
-/// What it is, and the tables of the sheet, its supports and its loads.
-fn situation(dice: &mut Dice) -> (String, String) {
+/// What it is, and the tables of the sheet with `times` as many cells along each side, its supports and its loads.
+fn situation(dice: &mut Dice, times: usize) -> (String, String) {
     let length = dice.between(0.05, 0.25);
     let wide = length * dice.between(0.1, 0.3);
     let strip = |width: f64, cells: [usize; 2]| {
+        let cells = cells.map(|n| times * n);
         format!(
             "[sheet]\nshape = \"rectangle\"\nwidth = \"{length} m\"\nheight = \"{width} m\"\ncells = {cells:?}\n"
         )
@@ -127,38 +131,82 @@ fn situation(dice: &mut Dice) -> (String, String) {
     }
 }
 
-fn case(number: u64) -> (String, Case) {
+fn case(number: u64, times: usize) -> (String, Case) {
     let mut dice = Dice(Pcg64Mcg::seed_from_u64(number));
     let fabric = fabric(&mut dice);
-    let (what, tables) = situation(&mut dice);
+    let (what, tables) = situation(&mut dice, times);
     let text = format!("title = \"{what}\"\n{fabric}{tables}[analysis]\nkind = \"nonlinear\"\n");
     let case = Case::parse(Path::new("random.toml"), &text).unwrap_or_else(|e| panic!("{e}\n{text}"));
     (what, case)
 }
 
-/// Whether the last equilibrium is stable, and how the case ended.
-fn end(result: &CaseResult) -> (bool, String) {
+fn solved(case: &Case) -> Result<CaseResult, String> {
+    let own = section(case.section().expect("a section")).expect("stiffnesses");
+    solve_case(case, own, &Options::default()).map_err(|e| e.to_string())
+}
+
+/// Whether the last equilibrium is stable.
+fn is_stable(result: &CaseResult) -> bool {
     let path = result.path.as_ref().expect("a nonlinear case has a path");
-    let stable = path.converged && path.stability.is_some_and(|s| s.is_stable());
-    let codes: Vec<&str> = result.findings.iter().map(|f| f.code()).collect();
+    path.converged && path.stability.is_some_and(|s| s.is_stable())
+}
+
+fn codes(result: &CaseResult) -> Vec<&str> {
+    result.findings.iter().map(|f| f.code()).collect()
+}
+
+/// How a case ended.
+fn end(result: &CaseResult) -> String {
+    let path = result.path.as_ref().expect("a nonlinear case has a path");
     let counts = [path.steps.len(), path.iterations(), path.cut_backs()];
-    let ends = if stable { "stable" } else { "not stable" };
-    (stable, format!("{ends} {codes:?} {counts:?} w_max {:.3} mm", 1e3 * result.w_max))
+    let ends = if is_stable(result) { "stable" } else { "not stable" };
+    format!("{ends} {:?} {counts:?} w_max {:.3} mm", codes(result), 1e3 * result.w_max)
+}
+
+/// The largest displacement of a node (m).
+fn displacement(result: &CaseResult) -> f64 {
+    let nodes = result.solution.u.chunks(6);
+    nodes.map(|u| u[0].hypot(u[1]).hypot(u[2])).fold(0.0, f64::max)
+}
+
+/// How far largest deflection and displacement move from a mesh to a finer one, in parts of the displacement there.
+fn moved(coarse: &CaseResult, fine: &CaseResult) -> [f64; 2] {
+    let size = displacement(fine);
+    [coarse.w_max.abs() - fine.w_max.abs(), displacement(coarse) - size].map(|d| d / size)
 }
 
 fn main() {
-    let numbers: Vec<u64> = std::env::args().skip(1).filter_map(|a| a.parse().ok()).collect();
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let numbers: Vec<u64> = arguments.iter().filter_map(|a| a.parse().ok()).collect();
     let (first, count) = (numbers.first().copied().unwrap_or(1), numbers.get(1).copied().unwrap_or(100));
-    let mut stable = 0;
+    let refined = arguments.iter().any(|a| a == "refined");
+    let (mut stable, mut compared, mut unsaid) = (0, 0, Vec::new());
     for number in first..first + count {
-        let (what, case) = case(number);
-        let own = section(case.section().expect("a section")).expect("stiffnesses");
-        let (well, how) = match solve_case(&case, own, &Options::default()) {
-            Ok(result) => end(&result),
-            Err(error) => (false, error.to_string()),
-        };
-        stable += u64::from(well);
-        println!("{number:>3} {what}: {how}");
+        let (what, coarse) = case(number, 1);
+        let result = solved(&coarse);
+        println!("{number:>3} {what}: {}", result.as_ref().map_or_else(Clone::clone, end));
+        let Ok(result) = result else { continue };
+        stable += u64::from(is_stable(&result));
+        if !(refined && is_stable(&result)) {
+            continue;
+        }
+        match solved(&case(number, 2).1) {
+            Ok(fine) if is_stable(&fine) => {
+                let moved = moved(&result, &fine);
+                println!("    twice the cells: {}, moved by {:.2?} %", end(&fine), moved.map(|d| 100.0 * d));
+                compared += 1;
+                if moved.iter().any(|d| d.abs() > 0.05) && codes(&result).is_empty() {
+                    unsaid.push(number);
+                }
+            }
+            Ok(fine) => println!("    twice the cells: {}", end(&fine)),
+            Err(error) => println!("    twice the cells: {error}"),
+        }
     }
     println!("{stable} of {count} end in a stable equilibrium");
+    if refined {
+        println!(
+            "{compared} of them with twice the cells as well; moved by more than 5 %, with no finding: {unsaid:?}"
+        );
+    }
 }
