@@ -165,7 +165,7 @@ fn end(result: &CaseResult) -> String {
 
 /// The largest displacement of a node (m).
 fn displacement(result: &CaseResult) -> f64 {
-    let nodes = result.solution.u.chunks(6);
+    let nodes = result.solution.displacement.chunks(6);
     nodes.map(|u| u[0].hypot(u[1]).hypot(u[2])).fold(0.0, f64::max)
 }
 

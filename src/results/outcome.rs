@@ -157,7 +157,7 @@ impl Outcome {
             sheet.write(folder)?;
         }
         let drawn = match self {
-            Self::Solved(result) => solved::write(task, result, folder)?.into_iter().collect(),
+            Self::Solved(result) => solved::write(task, result, folder)?,
             Self::Draped(drape) => draped::write(task, drape, folder)?,
             Self::Tested(tested) => tested::write_chart(task, tested, folder)?.into_iter().collect(),
             Self::Bent(result, _) => bent::write_charts(task, result, folder)?,
@@ -193,6 +193,8 @@ impl Outcome {
             Self::Draped(_) if picture.contains("_view.") => "the draped sheet from the side",
             Self::Draped(_) => "the shadow of the draped sheet from above",
             Self::Bent(..) => "the shape of a strip under its own weight",
+            Self::Solved(_) if picture.contains("-history.") => "displacements and energies along the way",
+            Self::Solved(result) if solved::lies_in_its_plane(result) => "the displacements of a sheet",
             Self::Solved(_) => "the deflection of a sheet",
             Self::Tested(_) => "the simulated test beside the measured curves",
         };

@@ -109,7 +109,7 @@ impl Way<'_> {
                 let way = LoadStep { model: &model, moved, settings: &settings, method };
                 continue_from(carried, &way, plan, options, |at| record.see(at))
             };
-            helped(record, &analysis.method, |(solution, _)| solution, search)
+            helped(record, &analysis.method, &settings, |(solution, _)| solution, search)
         });
         self.watch.not_stopped()?;
         let (found, next) = match found {

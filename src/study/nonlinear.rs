@@ -12,7 +12,7 @@ use crate::fields::Locator;
 use crate::finding::{Finding, Place, StudyFact};
 use crate::mesh::QuadMesh;
 use crate::model::Model;
-use crate::solve::nonlinear::{self, Method, NonlinearError, Obstacle, Settings, State, Step};
+use crate::solve::nonlinear::{self, Flow, Method, NonlinearError, Obstacle, Settings, State, Step};
 use crate::solve::{self, Solution};
 
 /// What an observer keeps.
@@ -27,6 +27,8 @@ pub(super) struct Record<'a> {
     pub done: usize,
     /// The largest |w| of an unstable equilibrium that was found first (m).
     unstable_w_max: Option<f64>,
+    /// Whether the search that the case asks for led nowhere, and another one did not.
+    is_other: bool,
     watch: Watch<'a>,
 }
 
@@ -54,6 +56,7 @@ impl<'a> Record<'a> {
             solution: Solution::at_rest(model),
             done: 0,
             unstable_w_max: None,
+            is_other: false,
             watch,
         }
     }
@@ -110,7 +113,7 @@ pub(super) fn equilibrium(
         let search = |method: &Method, record: &mut Record<'_>| {
             nonlinear::search(model, &prepared.plan, &settings, method, options, |step| record.see(step))
         };
-        helped(record, method, |end| end, search)
+        helped(record, method, &settings, |end| end, search)
     });
     watch.not_stopped()?;
     let mut findings = conclude(found, &mut record)?;
@@ -142,15 +145,18 @@ pub(super) fn check_perturbation(case: &Case, model: &Model, analysis: &Nonlinea
 }
 
 /// A search by a method. Where the path of Newton's method ends in an unstable equilibrium or nowhere, the search is
-/// repeated along stable equilibria only, and its end is taken if it is stable.
+/// repeated along stable equilibria only, and where that ends nowhere either, as a flow under the whole load, if the end does not
+/// depend on the way; an end that is stable is taken.
 pub(super) fn helped<'a, T>(
     record: &mut Record<'a>,
     method: &Method,
+    settings: &Settings,
     solution: impl Fn(&T) -> &nonlinear::Solution,
     mut search: impl FnMut(&Method, &mut Record<'a>) -> Result<T, NonlinearError>,
 ) -> Result<T, NonlinearError> {
-    (record.path.method, record.unstable_w_max) = (MethodChoice::of(method), None);
-    let mut second = record.clone();
+    record.path.method = MethodChoice::of(method);
+    (record.unstable_w_max, record.is_other) = (None, false);
+    let start = record.clone();
     let found = search(method, record);
     let ends_well = match &found {
         Ok(end) => solution(end).stability.is_stable(),
@@ -160,15 +166,21 @@ pub(super) fn helped<'a, T>(
     if ends_well || *method != Method::Newton(None) {
         return found;
     }
-    second.path.method = MethodChoice::Stable;
-    match search(&Method::Stable, &mut second) {
-        Ok(end) if solution(&end).stability.is_stable() => {
-            second.unstable_w_max = found.ok().and(record.path.steps.last()).map(|step| step.w_max);
+    let unstable_w_max = found.as_ref().ok().and(record.path.steps.last()).map(|step| step.w_max);
+    let is_free = !settings.remembers() && settings.path == [1.0];
+    let flow = is_free.then(|| Method::Flow(Flow::default()));
+    for other in [Method::Stable].into_iter().chain(flow) {
+        let mut second = start.clone();
+        second.path.method = MethodChoice::of(&other);
+        if let Ok(end) = search(&other, &mut second)
+            && solution(&end).stability.is_stable()
+        {
+            (second.unstable_w_max, second.is_other) = (unstable_w_max, true);
             *record = second;
-            Ok(end)
+            return Ok(end);
         }
-        _ => found,
     }
+    found
 }
 
 /// A search without contact of the sheet with itself, and where its layers came to touch, a second one with it: its end is taken
@@ -210,12 +222,12 @@ pub(super) fn conclude(
 ) -> Result<Vec<Finding>, StudyError> {
     let mut findings = Vec::new();
     let (path, unstable_w_max) = (&mut record.path, record.unstable_w_max);
-    let method = path.method;
+    let (method, is_other) = (path.method, record.is_other);
     match found {
         Ok(solution) => {
             path.stability = Some(solution.stability);
-            if method == MethodChoice::Stable {
-                findings.extend(buckled(&solution, unstable_w_max));
+            if method == MethodChoice::Stable || is_other {
+                findings.extend(buckled(&solution, unstable_w_max, method));
             }
             if solution.residual > UNBALANCED {
                 findings.push(Finding::new(StudyFact::ForcesBelowRounding { residual: solution.residual }));
@@ -247,10 +259,15 @@ pub(super) fn conclude(
     Ok(findings)
 }
 
-/// S124 about a search along stable equilibria that left one, or that was the second after one that found less.
-fn buckled(solution: &nonlinear::Solution, unstable_w_max: Option<f64>) -> Option<Finding> {
+/// S124 about a search that left a stable equilibrium, or that was another one after one that found less.
+fn buckled(
+    solution: &nonlinear::Solution,
+    unstable_w_max: Option<f64>,
+    method: MethodChoice,
+) -> Option<Finding> {
     let fact = StudyFact::Buckled { factors: solution.left.clone(), unstable_w_max };
-    (!solution.left.is_empty() || unstable_w_max.is_some()).then(|| Finding::new(fact))
+    let has_left = !solution.left.is_empty() || unstable_w_max.is_some() || method == MethodChoice::Flow;
+    has_left.then(|| Finding::new(fact))
 }
 
 /// Rotation (rad) about an axis that is held above which the free ones have brought it about.

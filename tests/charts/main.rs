@@ -14,8 +14,8 @@ use kesf::characterise::{FabricSheet, characterise};
 use kesf::instrument::{Direction, ReadSettings, Test, read_fabrics};
 use kesf::quantity::Curve;
 use kesf::report::chart::{
-    DrapePlot, FieldPlot, ParityPoint, ProfileLine, ProfilePlot, SimulatedCurve, bending, drape_shadow,
-    field, friction, of_test, parity, profile,
+    DrapePlot, FieldPlot, HistoryPanel, HistoryPlot, ParityPoint, ProfileLine, ProfilePlot, SimulatedCurve,
+    bending, drape_shadow, field, friction, history, of_test, parity, profile,
 };
 use picture::{Color, HEIGHT, Picture, Point, Region, Scale, along};
 
@@ -180,6 +180,34 @@ fn a_friction_law_runs_along_its_loop() {
     assert_line(&picture, &along(&page(&fitted.law)), darker(BLUE, 0.45), 0.9);
     let covered = picture.covered(&page(&fitted.measured), 6.0, lighter(BLUE, 0.35));
     assert!(covered > 0.85, "{covered} of the samples are seen");
+}
+
+#[test]
+fn histories_are_where_the_data_are() {
+    let moved = Curve::from_points([(0.0, 0.0), (1.0, 0.042), (2.0, 0.01)]);
+    let stored = Curve::from_points([(0.0, 0.0), (1.0, 2e-6), (2.0, 6e-6)]);
+    let panel = |quantity: &str, unit: &str, curve: &Curve| HistoryPanel {
+        quantity: quantity.into(),
+        unit: unit.into(),
+        lines: vec![("one".into(), curve.clone())],
+    };
+    let plot = HistoryPlot {
+        along: ["Steps done".into(), String::new()],
+        panels: vec![panel("Displacement", "m", &moved), panel("Energy", "J", &stored)],
+        ..HistoryPlot::default()
+    };
+    let picture = Picture::decode(&history(&plot).unwrap().png().unwrap());
+    let x = picture.x_scale(["0.0", "2.0"], [120, 645, 1400, 690]);
+    let mut places = Vec::new();
+    for (curve, numbers, beside, unit) in
+        [(&moved, ["0", "40"], [60, 190, 160, 650], 1e-3), (&stored, ["0", "6"], [60, 770, 160, 1230], 1e-6)]
+    {
+        let scales = [x, picture.y_scale(numbers, beside)];
+        let line = along(&on_page(curve.points().map(|(x, y)| (x, y / unit)), scales));
+        assert_line(&picture, &line, BLUE, 0.95);
+        places.extend(line);
+    }
+    assert!(picture.stray(&places, 7.0, BLUE, [0, 130, 1360, HEIGHT]) < 0.01);
 }
 
 #[test]

@@ -278,6 +278,49 @@ fn fields_of_a_square_a_strip_and_a_constant() {
 }
 
 #[test]
+fn histories_of_steps_and_in_time() {
+    let curve = |points: &[(f64, f64)]| Curve::from_points(points.iter().copied());
+    let moved = |name: &str, points: &[(f64, f64)]| (name.to_string(), curve(points));
+    let plot = HistoryPlot {
+        title: "A folded strip, let go of".into(),
+        subtitle: "poplin; 400 elements".into(),
+        origin: "synthetic data".into(),
+        along: ["Steps done".into(), String::new()],
+        ends: vec![(1.0, "fold".into()), (1.02, "hold".into()), (2.0, "release".into())],
+        panels: vec![
+            HistoryPanel {
+                quantity: "Displacement".into(),
+                unit: "m".into(),
+                lines: vec![
+                    moved("w_max", &[(0.0, 0.0), (1.0, 0.042), (2.0, 0.071)]),
+                    moved("end u", &[(0.0, 0.0), (1.0, -0.05), (2.0, -0.02)]),
+                ],
+            },
+            HistoryPanel {
+                quantity: "Energy".into(),
+                unit: "J".into(),
+                lines: vec![moved("strain", &[(0.0, 0.0), (1.0, 1.1e-5), (2.0, 3.6e-6)])],
+            },
+        ],
+        remarks: vec!["2 more probes are in the table beside.".into()],
+    };
+    drawn("history-steps.png", || history(&plot));
+    let swing = |t: f64| (t, 1e-3 * (7.0 * t).cos());
+    let line = Curve::from_points((0..400).map(|k| swing(0.01 * f64::from(k))));
+    let lines = (0..7).map(|k| (format!("probe {k} w"), line.clone())).collect();
+    let time = ["Time".to_string(), "s".to_string()];
+    let panel = HistoryPanel { quantity: "Displacement".into(), unit: "m".into(), lines };
+    let in_time = HistoryPlot {
+        title: "A strip that swings".into(),
+        along: time,
+        panels: vec![panel],
+        ..HistoryPlot::default()
+    };
+    drawn("history-time.png", || history(&in_time));
+    assert!(matches!(history(&HistoryPlot::default()), Err(ChartError::NothingToDraw { .. })));
+}
+
+#[test]
 fn parity_of_one_and_of_four_quantities() {
     let names = ["A", "B", "C", "D", "serge", "denim", "voile", "poplin", "satin", "twill"];
     let point = |i: usize, quantity: &str, unit: &str, scale: f64| ParityPoint {

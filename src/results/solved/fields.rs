@@ -1,6 +1,7 @@
 //! Fields of a solved case: the VTU file, and the chart of its deflection.
 
 use crate::fields::{Resultants, warp_directions};
+use crate::quantity::Curve;
 use crate::report::chart::FieldPlot;
 use crate::report::vtu::{MeshField, vtu};
 use crate::results::failure::Failure;
@@ -41,11 +42,20 @@ pub fn mesh_fields<'a>(fields: &'a [Field<'a>]) -> Vec<MeshField<'a>> {
         .collect()
 }
 
+/// Whether a sheet only stretches and shears: no point of it moves out of its plane by more than a millionth of what it moves within.
+pub(in crate::results) fn lies_in_its_plane(result: &CaseResult) -> bool {
+    let moved = || result.solution.displacement.chunks_exact(6);
+    let within = moved().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
+    within > 0.0 && moved().all(|u| u[2].abs() <= 1e-6 * within)
+}
+
 /// The mesh and the deflection of a result, as the files want them.
 pub(super) struct Mesh {
     nodes: Vec<[f64; 3]>,
     quads: Vec<[u32; 4]>,
     w: Vec<f64>,
+    /// Lengths of the displacements within the plane (m).
+    within: Vec<f64>,
 }
 
 impl Mesh {
@@ -55,6 +65,7 @@ impl Mesh {
             nodes: mesh.nodes.iter().map(|p| [p.x, p.y, p.z]).collect(),
             quads: mesh.quads.clone(),
             w: result.solution.displacement.iter().skip(2).step_by(6).copied().collect(),
+            within: result.solution.displacement.chunks_exact(6).map(|u| u[0].hypot(u[1])).collect(),
         }
     }
 
@@ -103,17 +114,22 @@ impl Mesh {
             1 => "one bending cell".into(),
             many => format!("{many} smoothing cells"),
         };
+        let (quantity, values, profile) = if lies_in_its_plane(result) {
+            ("Displacement", &self.within, Curve::default())
+        } else {
+            ("Deflection w", &self.w, result.profile.clone())
+        };
         FieldPlot {
             title: task.case.title.clone(),
             subtitle: format!("{fabric}; {} elements, {cells} each", self.quads.len()),
             origin: task.simulated_from(),
-            quantity: "Deflection w".into(),
+            quantity: quantity.into(),
             unit: "m".into(),
             nodes: &self.nodes,
             quads: &self.quads,
-            values: &self.w,
+            values,
             profile_along: "x, middle line of the mesh".into(),
-            profile: result.profile.clone(),
+            profile,
             notes: (sampled::values(task, "w_max", "mm", 1e-3).into_iter())
                 .map(|(band, value)| format!("{band}: largest |w| {value}"))
                 .chain(result.findings.iter().map(|f| f.message()))

@@ -4,13 +4,14 @@ mod convergence;
 mod document;
 mod effort;
 mod fields;
+mod history;
 mod search;
 mod text;
 
 pub(super) use document::entry;
 pub use document::{ModelEntry, QuantityEntry, SolutionEntry};
 pub use effort::{SolverEntry, TimingsEntry};
-pub(super) use fields::{mesh_fields, resultants};
+pub(super) use fields::{lies_in_its_plane, mesh_fields, resultants};
 pub(crate) use text::checks;
 pub(super) use text::{status, text};
 
@@ -90,10 +91,10 @@ pub(super) fn deflected(task: &Task, result: &CaseResult) -> Option<Deflected> {
     is_shape.then(|| Deflected::new(task, &result.model, moved.collect()))
 }
 
-/// Writes `<stem>.vtu`, the chart `<stem>`, `<stem>.csv` of what there is of a history, and `<stem>-step-<k>.vtu` of each of its
-/// `[[steps]]`, with
-/// `<stem>-step-<k>-frame-<j>.vtu` of the shapes that a motion has kept; the chart, if there is one.
-pub(super) fn write(task: &Task, result: &CaseResult, folder: &Folder) -> Result<Option<String>, Failure> {
+/// Writes `<stem>.vtu` and the chart `<stem>`; of a history `<stem>.csv` and the chart `<stem>-history`; and of each of its
+/// `[[steps]]` `<stem>-step-<k>.vtu`, with the chart `<stem>-step-<k>-history` of a motion and `<stem>-step-<k>-frame-<j>.vtu` of the
+/// shapes that it has kept. The charts that there are.
+pub(super) fn write(task: &Task, result: &CaseResult, folder: &Folder) -> Result<Vec<String>, Failure> {
     let stem = task.stem();
     let history = history_rows(result);
     if !history.is_empty() {
@@ -113,5 +114,11 @@ pub(super) fn write(task: &Task, result: &CaseResult, folder: &Folder) -> Result
             }
         }
     }
-    folder.chart(&stem, || chart::field(&mesh.plot(task, result)))
+    let mut drawn = Vec::from_iter(folder.chart(&stem, || chart::field(&mesh.plot(task, result)))?);
+    if folder.charts() {
+        for (stem, plot) in history::plots(task, result) {
+            drawn.extend(folder.chart(&stem, || chart::history(&plot))?);
+        }
+    }
+    Ok(drawn)
 }

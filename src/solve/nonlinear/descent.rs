@@ -7,12 +7,11 @@
 
 use std::ops::ControlFlow;
 
-use super::flow::{Flow, KICKS, LARGEST_RISE, SETTLING, first_rate, kick, relax_system};
+use super::flow::{Flow, KICKS, LARGEST_RISE, SETTLING, first_rate, kick, relax_system, strongest};
 use super::newton::{Converged, Failure, LARGEST_FOLD, limit};
 use super::sheet::Forces;
 use super::system::{Balance, System};
 use super::{NonlinearError, Obstacle, Progress, Settings, Solution, State, Step, stability};
-use crate::law::Mode;
 use crate::model::Model;
 use crate::solve::SolveError;
 use crate::solve::linear::Options;
@@ -58,8 +57,7 @@ pub fn descend_from(
 ) -> Result<Solution, NonlinearError> {
     let system = System::new(model, plan, settings, options)?.with_layers(settings, options);
     // Laws that remember are not followed by a descent: it takes steps that it does not keep.
-    if settings.law.as_ref().is_none_or(|law| law.mode == Mode::Elastic)
-        && settings.surfaces.is_empty()
+    if !settings.remembers()
         && let Some(found) = descend(&system, start.clone(), settings, &mut observe)?
     {
         return Ok(found);
@@ -91,7 +89,7 @@ fn descend(
                 if failure.is_final() {
                     return Err(failure.ends(progress.steps + 1, settings, descent.now.state));
                 }
-                if descent.rate > LARGEST_RISE * descent.first_rate {
+                if descent.rate > strongest(system, descent.first_rate) {
                     return Ok(None);
                 }
                 // A sheet that comes to a saddle on its ridge would go on towards it for ever.

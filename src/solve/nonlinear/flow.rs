@@ -50,7 +50,7 @@ const INNER_ITERATIONS: usize = 8;
 /// Unbalanced forces that a step of the flow leaves, relative to those that drive it.
 const INNER_TOLERANCE: f64 = 0.01;
 
-/// Drag over the first one at which the search is given up.
+/// Drag over the first one at which the search is given up, unless the membrane resists more strongly still.
 pub(super) const LARGEST_RISE: f64 = 1e8;
 
 /// Steps after which [`settle`] gives up.
@@ -130,7 +130,7 @@ pub(super) fn relax_system(
             Err(failure) => {
                 let failure = progress.cut_back(failure);
                 pace.slow();
-                if pace.rate > LARGEST_RISE * first || failure.is_final() {
+                if pace.rate > strongest(system, first) || failure.is_final() {
                     return Err(failure.ends(progress.steps + 1, settings, state));
                 }
                 continue;
@@ -180,19 +180,20 @@ pub(super) fn settle(
     to: [f64; 2],
     settings: &Settings,
 ) -> Result<Converged, Failure> {
-    settle_within(system, start, to, settings, SETTLING_STEPS)
+    settle_within(system, start, to, settings, SETTLING_STEPS, 0.0)
 }
 
-/// The same in a number of steps.
-pub(super) fn settle_within(
+/// The same in a number of steps, dragged at first by `rate` at least.
+fn settle_within(
     system: &System<'_>,
     start: &State,
     [factor, travel]: [f64; 2],
     settings: &Settings,
     steps: usize,
+    rate: f64,
 ) -> Result<Converged, Failure> {
     let first = first_rate(system, system.model, &State::rest(&system.model.mesh));
-    let (mut pace, mut state, mut travel) = (Pace::new(first), start.clone(), travel);
+    let (mut pace, mut state, mut travel) = (Pace::new(first.max(rate)), start.clone(), travel);
     let mut iterations = 0;
     let mut inner = Settings { iterations: INNER_ITERATIONS, ..settings.clone() };
     for _ in 0..steps {
@@ -204,6 +205,14 @@ pub(super) fn settle_within(
                 if residual <= settings.tolerance {
                     return Ok(Converged { iterations, ..step });
                 }
+                // What is left may be the rounding of stiff forces, which no drag makes smaller: then the sheet rests without one.
+                if step.at_rest
+                    && step.iterations == 1
+                    && let Ok(free) =
+                        newton_with(system, &step.state, [factor, 0.0], settings, &Drag::default())
+                {
+                    return Ok(Converged { iterations: iterations + free.iterations, ..free });
+                }
                 inner.tolerance = (INNER_TOLERANCE * residual).clamp(settings.tolerance, INNER_TOLERANCE);
                 pace.quicken(step.iterations);
                 (state, travel) = (step.state, 0.0);
@@ -211,7 +220,7 @@ pub(super) fn settle_within(
             Err(failure) => {
                 iterations += failure.iterations;
                 pace.slow();
-                if pace.rate > LARGEST_RISE * first || failure.is_final() {
+                if pace.rate > strongest(system, first) || failure.is_final() {
                     return Err(Failure { iterations, ..failure });
                 }
             }
@@ -255,6 +264,12 @@ pub(super) fn first_rate(system: &System<'_>, model: &Model, rest: &State) -> f6
     let force: f64 = balance.unbalanced.chunks_exact(6).map(|n| n[0].hypot(n[1]).hypot(n[2])).sum();
     let bending = model.section.d_b[(0, 0)].max(model.section.d_b[(1, 1)]) / system.size.powi(4);
     (force / area / (0.01 * system.size)).max(bending)
+}
+
+/// The drag beyond which more would not help. Where no load drives the sheet, only held values, the first drag is small, and so is
+/// whatever it may rise to; but no state needs more than what the membrane resists with.
+pub(super) fn strongest(system: &System<'_>, first: f64) -> f64 {
+    (LARGEST_RISE * first).max(system.stiffest())
 }
 
 /// A step along a shape that moves the sheet by a thousandth of its size and turns it by 0.1 rad, at most.
@@ -341,7 +356,7 @@ fn stable_step(
         Ok(found) => found,
         Err(_) if short => {
             kicked = true;
-            settle_within(system, state, [factor, factor - state.factor], settings, FLOWING_STEPS)?
+            settle_within(system, state, [factor, factor - state.factor], settings, FLOWING_STEPS, 0.0)?
         }
         Err(failure) => return Err(failure),
     };
@@ -354,11 +369,13 @@ fn stable_step(
             Ok(false) => return Err(failed(Obstacle::Unstable)),
             Err(cause) => return Err(failed(Obstacle::Factor(cause))),
         }
-        let (_, shape) =
+        let (stability, shape) =
             stability::check(system, &found.state, &found.balance).map_err(|_| failed(Obstacle::Unstable))?;
         let mut beside = found.state.clone();
         system.advance_apart(&mut beside, kick_by_thickness(system, &shape));
-        let settled = settle_within(system, &beside, [factor, 0.0], settings, FLOWING_STEPS);
+        // With less drag than this the first step would go uphill.
+        let rate = -2.0 * stability.lowest_eigenvalue;
+        let settled = settle_within(system, &beside, [factor, 0.0], settings, FLOWING_STEPS, rate);
         found = settled.map_err(|f| Failure { iterations: iterations + f.iterations, ..f })?;
         iterations += found.iterations;
         if iterations > LARGEST_EFFORT {

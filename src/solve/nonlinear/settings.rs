@@ -1,5 +1,6 @@
 //! How a search goes.
 
+use crate::law::Mode;
 use crate::model::RigidSurface;
 use crate::section::SheetLaw;
 
@@ -41,6 +42,13 @@ impl Default for Settings {
             surfaces: Vec::new(),
             self_contact: false,
         }
+    }
+}
+
+impl Settings {
+    /// Whether the end depends on the way there: laws that remember, and surfaces that rub.
+    pub fn remembers(&self) -> bool {
+        self.law.as_ref().is_some_and(|law| law.mode != Mode::Elastic) || !self.surfaces.is_empty()
     }
 }
 
