@@ -263,6 +263,32 @@ fn a_column_buckles_and_the_straight_one_is_unstable() {
     }
 }
 
+/// A strip between clamps that are brought together by Δ: with k of Δ/L = 2 (1 - E/K) the middle goes k L/K to the side (four
+/// columns as above, end to end). Nothing but the held value drives it, and beside the tension that its membrane could bear the force
+/// of the clamps is so small that rounding keeps it from the tolerance.
+#[test]
+fn a_strip_between_clamps_buckles_on_a_fine_mesh() {
+    let k: f64 = 0.13;
+    let (first, second) = elliptic(k);
+    let mut model = cantilever(96, 5e-4, |_| Vec::new());
+    let mut clamp = Support::clamped(model.mesh.set("right").unwrap());
+    for (dof, value) in &mut clamp.held {
+        if *dof == Dof::U {
+            *value = -2.0 * (1.0 - second / first);
+        }
+    }
+    model.supports.push(clamp);
+    let (settings, options) = (Settings::default(), Options::default());
+    let shared = plan(&model, &options).unwrap();
+    for method in [Method::Stable, Method::Flow(Flow::default())] {
+        let found = search(&model, &shared, &settings, &method, &options, go_on).unwrap();
+        assert!(found.stability.is_stable());
+        let side = found.state.position.iter().map(|p| p.z.abs()).fold(0.0, f64::max);
+        println!("{method:?}: {side:.5}, exact {:.5}, residual {:.1e}", k / first, found.residual);
+        assert!((side / (k / first) - 1.0).abs() < 1e-3, "{method:?}: {side}");
+    }
+}
+
 /// The outer half of a strip is rigid: it stays so, turns with the inner half, and the load on it has
 /// its lever. Reference: balance of moments, and the elastica of the inner half by its own root.
 #[test]
