@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
+use super::adaptive::Adaptive;
 use super::error::refused;
 use super::loads::{Prescribed, SheetLoad, SheetLoads};
 use super::motion::{Newmark, NewmarkTable, Rotations, mass};
@@ -141,6 +142,8 @@ pub enum Analysis {
 pub struct Linear {
     /// What acts.
     pub loads: SheetLoads,
+    /// How far the mesh is refined; not at all without it.
+    pub adaptive: Option<Located<Adaptive>>,
     /// Coarser meshes, coarsest first, that show what the mesh leaves open.
     pub coarser: Option<Located<Vec<Sheet>>>,
 }
@@ -172,6 +175,8 @@ pub struct Buckling {
 pub struct Nonlinear {
     /// What acts.
     pub loads: SheetLoads,
+    /// How far the mesh is refined; not at all without it.
+    pub adaptive: Option<Located<Adaptive>>,
     /// Tolerances and steps.
     pub settings: Settings,
     /// The way to the equilibrium.
@@ -235,6 +240,15 @@ impl Analysis {
             | Self::Buckling(Buckling { coarser, .. }) => coarser.as_ref(),
             Self::Nonlinear(nonlinear) => nonlinear.coarser.as_ref(),
             Self::Newmark(_) | Self::Steps(_) => None,
+        }
+    }
+
+    /// How far the mesh is refined; `None` where it stays as it is.
+    pub fn adaptive(&self) -> Option<&Located<Adaptive>> {
+        match self {
+            Self::Linear(linear) => linear.adaptive.as_ref(),
+            Self::Nonlinear(nonlinear) => nonlinear.adaptive.as_ref(),
+            Self::Modal(_) | Self::Buckling(_) | Self::Newmark(_) | Self::Steps(_) => None,
         }
     }
 

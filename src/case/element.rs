@@ -168,6 +168,30 @@ impl ElementTable {
         self.membrane.is_none() && self.profile.is_none()
     }
 
+    /// Refuses what triangles cannot do: a refined mesh has some.
+    pub fn fits_triangles(&self, case: &Node<'_>) -> Result<(), CaseError> {
+        let at = case.get("element").unwrap_or(*case);
+        if self.profile == Some(Profile::FourthOrder) {
+            let message = "the [element] profile `fourth_order` is for equal rectangles, and [adaptive] makes others: remove one of them";
+            return refused(at.value_place("profile"), message);
+        }
+        if self.shear.is_some_and(|shear| shear != ShearInterpolation::Mitc4) {
+            let message = "[adaptive] closes its meshes with triangles, which need shear = \"mitc4\": remove `shear`, or [adaptive]";
+            return refused(at.value_place("shear"), message);
+        }
+        let default = if self.profile == Some(Profile::Seed) {
+            0.0
+        } else {
+            Formulation::default().shear_stabilisation
+        };
+        if self.shear_stabilisation.unwrap_or(default) == 0.0 {
+            let key = if self.shear_stabilisation.is_some() { "shear_stabilisation" } else { "profile" };
+            let message = "[adaptive] closes its meshes with triangles, which lock in thin sheets without stabilisation: give a                            shear_stabilisation above 0, such as 0.05, or remove [adaptive]";
+            return refused(at.value_place(key), message);
+        }
+        Ok(())
+    }
+
     fn fits_fourth_order(&self, case: &Node<'_>, at: &Node<'_>, purpose: Purpose) -> Result<(), CaseError> {
         if purpose.large_rotations {
             let message = "the [element] profile `fourth_order` is derived for small rotations: remove it";

@@ -5,6 +5,7 @@
 //! Every refusal stands at the key or value that it speaks of, and what can only fail later keeps its place
 //! ([`Located`]).
 
+mod adaptive;
 mod analysis;
 mod bending_test;
 mod check;
@@ -45,6 +46,7 @@ use crate::law::Mode;
 use crate::platform::files;
 use crate::solve::{Method, Options};
 
+pub use adaptive::Adaptive;
 pub use analysis::{Analysis, Buckling, Linear, Modal, Nonlinear};
 pub use bending_test::{BendingTest, Strip};
 pub use check::{Check, ProbePoint, Reference, ReferenceKind};
@@ -130,6 +132,8 @@ pub(crate) struct CaseTable {
     uncertainty: Option<uncertainty::UncertaintyTable>,
     /// What the mesh leaves open, by coarser meshes; not asked when left out.
     convergence: Option<convergence::ConvergenceTable>,
+    /// A mesh that is refined until the estimate of its error is small enough; not refined when left out.
+    adaptive: Option<adaptive::AdaptiveTable>,
     /// How the equations are solved.
     #[serde(default)]
     solver: solver::SolverTable,

@@ -128,7 +128,8 @@ impl NonlinearTable {
             ..default
         };
         let perturbation = at.located_at("perturbation", ());
-        Ok(Nonlinear { loads, settings, method: self.solver_method(), coarser: None, perturbation })
+        let method = self.solver_method();
+        Ok(Nonlinear { loads, adaptive: None, settings, method, coarser: None, perturbation })
     }
 
     fn solver_method(&self) -> Method {

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::adaptive::Adaptive;
 use super::analysis::{Analysis, AnalysisTable, Buckling, DrapeSizes, DrapeTable, Linear, Modal, Nonlinear};
 use super::bending_test::{BendingTest, BendingTestTable};
 use super::check::{checks, probes};
@@ -16,7 +17,7 @@ use super::sheet::{Sheet, SheetTable};
 use super::virtual_test::VirtualTestTable;
 use super::{CaseError, CaseTable};
 use crate::constitutive::TensileLaw;
-use crate::element::Formulation;
+use crate::element::{Formulation, Membrane};
 use crate::finding::{Located, Node};
 use crate::law::Mode;
 
@@ -63,6 +64,10 @@ impl CaseTable {
             foreign(case, &["steps"], NO_STEPS)?;
             foreign(case, &["obstacles"], NO_OBSTACLES)?;
         }
+        let is_one_state = matches!(analysis, AnalysisTable::Linear(_) | AnalysisTable::Nonlinear(_));
+        if !is_one_state || case.has("steps") {
+            foreign(case, &["adaptive"], NO_ADAPTIVE)?;
+        }
         let abilities = Abilities {
             friction: analysis.can_have_friction(),
             curves: analysis.can_have_friction(),
@@ -80,7 +85,8 @@ impl CaseTable {
             }
             AnalysisTable::Linear(_) => {
                 let sheet = table.sheet(of_sheet)?;
-                let linear = Linear { loads: loads(case)?, coarser: self.coarser(case, &sheet)? };
+                let adaptive = self.adaptive(case, &sheet)?;
+                let linear = Linear { loads: loads(case)?, adaptive, coarser: self.coarser(case, &sheet)? };
                 (sheet, Analysis::Linear(linear))
             }
             AnalysisTable::Modal(modal) => {
@@ -108,9 +114,9 @@ impl CaseTable {
                         Analysis::Steps(steps)
                     }
                     None => {
-                        let coarser = self.coarser(case, &sheet)?;
+                        let (adaptive, coarser) = (self.adaptive(case, &sheet)?, self.coarser(case, &sheet)?);
                         let nonlinear = nonlinear.checked(&at, loads(case)?)?;
-                        Analysis::Nonlinear(Box::new(Nonlinear { coarser, ..nonlinear }))
+                        Analysis::Nonlinear(Box::new(Nonlinear { adaptive, coarser, ..nonlinear }))
                     }
                 };
                 (sheet, analysis)
@@ -295,14 +301,26 @@ impl CaseTable {
     ) -> Result<SheetProblem, CaseError> {
         let purpose =
             Purpose { large_rotations: analysis.has_large_rotations(), drape: false, mass: analysis.mass() };
-        let formulation = self.element.formulation(case, purpose)?;
+        let mut formulation = self.element.formulation(case, purpose)?;
         let solver = self.solver.checked(case, matches!(analysis, Analysis::Linear(_)))?;
         let arcs_of_triangles = purpose.large_rotations && self.element.leaves_the_membrane();
+        if arcs_of_triangles && analysis.adaptive().is_some() {
+            // The first mesh has no triangles yet, and all are to be of the same elements.
+            formulation.membrane = Membrane::AssumedStress;
+        }
         let mounting = Mounting { arcs_of_triangles, ..self.mounting(case, formulation)? };
         let probes = probes(&self.probes, case)?;
         let checks = checks(&self.checks, case, &analysis, &probes)?;
         let obstacles = SheetObstacle::read(case)?;
         Ok(SheetProblem { material, sheet, mounting, obstacles, analysis, solver, probes, checks })
+    }
+
+    /// How far `[adaptive]` refines the mesh.
+    fn adaptive(&self, case: &Node<'_>, sheet: &Sheet) -> Result<Option<Located<Adaptive>>, CaseError> {
+        let (Some(table), Some(at)) = (self.adaptive, case.get("adaptive")) else { return Ok(None) };
+        let adaptive = table.checked(&at, case, sheet, self.assumptions.as_ref())?;
+        self.element.fits_triangles(case)?;
+        Ok(Some(adaptive))
     }
 
     /// The coarser meshes of `[convergence]`.
@@ -363,6 +381,8 @@ impl CaseTable {
 
 const NO_CONVERGENCE: &str = "[convergence] is for linear, modal, buckling and nonlinear analyses without [[steps]]: remove it (a drape has `refinements`)";
 
+const NO_ADAPTIVE: &str = "[adaptive] is for linear and nonlinear analyses of a [sheet] without [[steps]]: remove it (a drape has `refinements`)";
+
 const NO_OBSTACLES: &str = "[[obstacles]] are for statics in large rotations: write [analysis] kind = \"nonlinear\", or remove them (a drape is \
                             clamped between its discs)";
 
@@ -385,6 +405,7 @@ fn without_analysis(case: &Node<'_>) -> Result<(), CaseError> {
         "a [virtual_test] or [bending_test] brings its own analysis and is compared with what was measured: \
          remove [analysis], [[steps]] and [[checks]]",
     )?;
+    foreign(case, &["adaptive"], NO_ADAPTIVE)?;
     foreign(case, &["convergence"], "[convergence] is for cases with a [sheet]: remove it")
 }
 

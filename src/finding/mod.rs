@@ -26,7 +26,8 @@ pub use error::{Coded, FailureKind};
 pub(crate) use error::{as_text, errors, fields_of};
 pub use facts::{
     CoarseQuantity, Divisor, DrapeFact, EvaluationFact, Excess, ExchangeFact, Fact, Fields, LeftOutLine,
-    Missed, ReadFact, RecordAxis, Renaming, Samples, SectionFact, StripLength, StudyFact, Subject, UsageFact,
+    Missed, ReadFact, RecordAxis, RefinementEnd, Renaming, Samples, SectionFact, StripLength, StudyFact,
+    Subject, UsageFact,
 };
 pub use toml_file::Located;
 pub(crate) use toml_file::{Node, ReadLater, TomlError, TomlFile, position};

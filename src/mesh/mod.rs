@@ -5,6 +5,7 @@ mod generate;
 mod gmsh;
 mod joined;
 mod orient;
+mod refine;
 mod sweep;
 mod triangle;
 
@@ -16,6 +17,7 @@ pub use crossings::{Crossings, crossings};
 pub use generate::{annulus, disc, distorted, graded_annulus, rectangle};
 pub use gmsh::parse_gmsh;
 pub use joined::Unjoined;
+pub use refine::{Lines, Refined, Refinement};
 pub use sweep::{BoundingBox, overlapping};
 pub use triangle::{is_triangle, nodes_of, sides_of};
 
@@ -268,44 +270,43 @@ impl QuadMesh {
     }
 
     fn check_shape(&self, quad: usize) -> Result<(), MeshError> {
-        if is_triangle(&self.quads[quad]) {
-            return self.check_triangle(quad);
-        }
-        let c = self.corners(quad);
-        let n = normal(&c);
-        let jacobians = [0, 1, 2, 3].map(|i| {
-            let (before, at, after) = (c[(i + 3) % 4], c[i], c[(i + 1) % 4]);
-            (after - at).cross(&(before - at)).dot(&n)
-        });
-        let size = (0..4).map(|i| (c[(i + 1) % 4] - c[i]).norm()).fold(0.0, f64::max);
-        let mean = jacobians.iter().sum::<f64>() / 4.0;
-        let smallest = jacobians.iter().copied().fold(f64::INFINITY, f64::min);
-        // A corner whose Jacobian is below a thousandth of the mean makes the map singular in practice.
-        let what = if mean.is_nan() || mean <= 1e-9 * size * size {
-            "degenerate"
-        } else if jacobians.iter().filter(|j| **j < 0.0).count() > 1 {
-            "inverted"
-        } else if smallest < 0.0 {
-            "non-convex"
-        } else if smallest < 1e-3 * mean {
-            "degenerate"
-        } else {
-            return Ok(());
-        };
-        let ratio = if mean > 0.0 { smallest / mean } else { 0.0 };
-        Err(MeshError::Shape { quad, nodes: self.quads[quad], what, ratio })
-    }
-
-    /// A triangle has no side on which it could be folded or not convex: all that it must have is an area.
-    fn check_triangle(&self, quad: usize) -> Result<(), MeshError> {
         let nodes = self.quads[quad];
-        let [a, b, c, _] = self.corners(quad);
-        let ratio = triangle::height([a, b, c]);
-        if ratio >= triangle::FLAT {
-            return Ok(());
+        match defect(&nodes, &self.corners(quad)) {
+            None => Ok(()),
+            Some((what, ratio)) => Err(MeshError::Shape { quad, nodes, what, ratio }),
         }
-        Err(MeshError::Shape { quad, nodes, what: "degenerate", ratio })
     }
+}
+
+/// What is wrong with the shape of a quad, and its smallest corner Jacobian over the mean of the four, or of a triangle its height
+/// over its longest side.
+fn defect(quad: &[u32; 4], c: &[Point3<f64>; 4]) -> Option<(&'static str, f64)> {
+    if is_triangle(quad) {
+        // A triangle has no side on which it could be folded or not convex: all that it must have is an area.
+        let ratio = triangle::height([c[0], c[1], c[2]]);
+        return (ratio < triangle::FLAT).then_some(("degenerate", ratio));
+    }
+    let n = normal(c);
+    let jacobians = [0, 1, 2, 3].map(|i| {
+        let (before, at, after) = (c[(i + 3) % 4], c[i], c[(i + 1) % 4]);
+        (after - at).cross(&(before - at)).dot(&n)
+    });
+    let size = (0..4).map(|i| (c[(i + 1) % 4] - c[i]).norm()).fold(0.0, f64::max);
+    let mean = jacobians.iter().sum::<f64>() / 4.0;
+    let smallest = jacobians.iter().copied().fold(f64::INFINITY, f64::min);
+    // A corner whose Jacobian is below a thousandth of the mean makes the map singular in practice.
+    let what = if mean.is_nan() || mean <= 1e-9 * size * size {
+        "degenerate"
+    } else if jacobians.iter().filter(|j| **j < 0.0).count() > 1 {
+        "inverted"
+    } else if smallest < 0.0 {
+        "non-convex"
+    } else if smallest < 1e-3 * mean {
+        "degenerate"
+    } else {
+        return None;
+    };
+    Some((what, if mean > 0.0 { smallest / mean } else { 0.0 }))
 }
 
 fn shape_message(quad: usize, nodes: &[u32; 4], what: &str, ratio: f64) -> String {

@@ -52,7 +52,19 @@ pub(super) fn model(
     (loads, prescribed): (&[SheetLoad], &[Prescribed]),
     section: ShellSection,
 ) -> Result<Model, StudyError> {
-    let mut mesh = placed(case, &sheet.table, sheet_mesh(case, sheet))?;
+    let mesh = placed(case, &sheet.table, plain_mesh(case, sheet))?;
+    model_of_mesh(case, (sheet, mesh), mounting, (loads, prescribed), section)
+}
+
+/// The model of a sheet of a case with a mesh of its outline.
+fn model_of_mesh(
+    case: &Case,
+    (sheet, mesh): (&Sheet, QuadMesh),
+    mounting: &Mounting,
+    (loads, prescribed): (&[SheetLoad], &[Prescribed]),
+    section: ShellSection,
+) -> Result<Model, StudyError> {
+    let mut mesh = placed(case, &sheet.table, with_the_middle(case, sheet, mesh))?;
     let bodies = bodies(case, &mut mesh, &mounting.bodies)?;
     let supports: Vec<&SheetSupport> = mounting.supports.iter().collect();
     let Actions { mut supports, moved, loads, .. } = actions(case, &mesh, &supports, (loads, prescribed))?;
@@ -116,10 +128,24 @@ pub(super) fn model_on(
     sheet: &Sheet,
     section: ShellSection,
 ) -> Result<Model, StudyError> {
+    let mesh = placed(case, &sheet.table, plain_mesh(case, sheet))?;
+    model_on_mesh(case, problem, (sheet, mesh), section)
+}
+
+/// The model of a sheet of a case that is solved, with a mesh of its outline.
+///
+/// # Errors
+/// S003, and the errors of mesh and model.
+pub(super) fn model_on_mesh(
+    case: &Case,
+    problem: &SheetProblem,
+    (sheet, mesh): (&Sheet, QuadMesh),
+    section: ShellSection,
+) -> Result<Model, StudyError> {
     let loads = (problem.analysis.loads(), problem.analysis.prescribed());
     let mut mounting = problem.mounting.clone();
     mounting.supports.extend(problem.analysis.supports().iter().cloned());
-    model(case, sheet, &mounting, loads, section)
+    model_of_mesh(case, (sheet, mesh), &mounting, loads, section)
 }
 
 /// What each step of a case does to the sheet of its model; nothing without steps.
@@ -220,8 +246,12 @@ pub(super) fn weighed(model: &Model) -> Result<(), SolveError> {
     Ok(())
 }
 
-fn sheet_mesh(case: &Case, sheet: &Sheet) -> Result<QuadMesh, StudyError> {
-    let Layout { warp, inside_radius, distortion, seed } = &sheet.layout;
+/// The mesh of a sheet with the sets of its outline alone.
+///
+/// # Errors
+/// S003, and the errors of the mesh.
+pub(super) fn plain_mesh(case: &Case, sheet: &Sheet) -> Result<QuadMesh, StudyError> {
+    let Layout { warp, distortion, seed, .. } = &sheet.layout;
     let mesh = outline(case, &sheet.outline)?;
     if let Warp::Angle(angle) = warp
         && angle.value != 0.0
@@ -234,9 +264,13 @@ fn sheet_mesh(case: &Case, sheet: &Sheet) -> Result<QuadMesh, StudyError> {
         );
         return Err(refused(case, angle, message));
     }
-    let mut mesh = mesh::distorted(mesh, *distortion, *seed)?;
+    Ok(mesh::distorted(mesh, *distortion, *seed)?)
+}
+
+/// The mesh, if it is one, with the set of the nodes about its middle.
+fn with_the_middle(case: &Case, sheet: &Sheet, mut mesh: QuadMesh) -> Result<QuadMesh, StudyError> {
     mesh.check()?;
-    if let Some(radius) = inside_radius {
+    if let Some(radius) = &sheet.layout.inside_radius {
         let nodes = mesh.nodes_about_the_middle(radius.value.si());
         if nodes.is_empty() {
             let message = format!(

@@ -10,7 +10,7 @@ use crate::finding::{CoarseQuantity, Finding, Place, StudyFact};
 use crate::model::Dof;
 
 /// A value is 0 below this part of the largest of its kind in the sheet.
-const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = 1e-9;
 /// A value below this part of the largest of its kind in the sheet is not warned of.
 const SMALL: f64 = 0.01;
 /// Part of a value that the mesh may leave open without a warning.
@@ -51,7 +51,7 @@ impl Convergence {
 
 /// The largest values in a sheet.
 #[derive(Default)]
-struct Sizes {
+pub(super) struct Sizes {
     /// Displacement (m) and rotation (rad).
     motion: [f64; 2],
     /// Membrane force (N/m), moment (N), shear force (N/m).
@@ -59,7 +59,8 @@ struct Sizes {
 }
 
 impl Sizes {
-    fn of(result: &CaseResult) -> Result<Self, StudyError> {
+    /// Those of a result; none of modes, which have no size.
+    pub fn of(result: &CaseResult) -> Result<Self, StudyError> {
         let largest = |values: &[f64], size: f64| values.iter().fold(size, |m, v| m.max(v.abs()));
         let mut sizes = Self::default();
         if result.is_modal() {
@@ -77,7 +78,7 @@ impl Sizes {
     }
 
     /// The largest of the kind of a probe's value; `None` for other results.
-    fn like(&self, quantity: &str) -> Option<f64> {
+    pub fn like(&self, quantity: &str) -> Option<f64> {
         let (_, component) = quantity.split_once('.')?;
         let kind = component.split('_').next()?;
         Some(match kind {
@@ -91,7 +92,7 @@ impl Sizes {
 }
 
 /// The results of a case by name.
-fn names(problem: &SheetProblem) -> Vec<String> {
+pub(super) fn names(problem: &SheetProblem) -> Vec<String> {
     if let Analysis::Modal(Modal { modes, .. }) = &problem.analysis {
         return (1..=*modes).map(|k| format!("frequency_{k}")).collect();
     }

@@ -76,6 +76,23 @@ impl<'a> PreparedCase<'a> {
         options: &Options,
     ) -> Result<Self, StudyError> {
         let model = build::model_on(case, problem, sheet, stand_in())?;
+        Self::of_model(case, problem, sheet, options, model)
+    }
+
+    /// The case on a finer mesh of its sheet.
+    pub(super) fn on_finer(&self, mesh: QuadMesh) -> Result<Self, StudyError> {
+        let sheet = &self.problem.sheet;
+        let model = build::model_on_mesh(self.case, self.problem, (sheet, mesh), stand_in())?;
+        Self::of_model(self.case, self.problem, sheet, &self.options, model)
+    }
+
+    fn of_model(
+        case: &'a Case,
+        problem: &'a SheetProblem,
+        sheet: &Sheet,
+        options: &Options,
+        model: Model,
+    ) -> Result<Self, StudyError> {
         let steps = build::steps(case, problem, &model)?;
         let all = Plan::all_groups(&model, options);
         let groups = match &problem.analysis {

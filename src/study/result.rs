@@ -8,6 +8,7 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use super::adaptive::AdaptedMeshes;
 use super::contact::ContactResult;
 use super::history::History;
 use super::load_path::{LoadPath, LoadStepEnd};
@@ -131,6 +132,8 @@ pub struct CaseResult {
     pub uncertainty: Option<Uncertainty>,
     /// What the mesh leaves open in the results; of a case with `[convergence]` only.
     pub convergence: Option<Convergence>,
+    /// The meshes on which it was solved, of which this is the result on the last; of a case with `[adaptive]` only.
+    pub adapted: Option<AdaptedMeshes>,
     /// What a reader of the result must know.
     pub findings: Vec<Finding>,
     pub(super) modal: bool,

@@ -88,16 +88,11 @@ impl PreparedCase<'_> {
         watch: Watch<'_>,
     ) -> Result<CaseResult, StudyError> {
         let case = self.case;
-        let mut result = self.results(section, fabric, inputs, watch)?;
-        // A mesh that is too large to factorise is not examined, and the result stands where that cannot be done.
-        let examined = matches!(self.problem.analysis, Analysis::Linear(_)) && !self.plan.iterates();
-        if result.status == Status::Ok && examined && is_compressed(&result, &self.extent)? {
-            let lost = lost_directions(&result.model, &result.solution.displacement, &self.options);
-            if let Some(lost) = lost.ok().filter(|n| *n > 0) {
-                result.status = Status::BeyondLinear;
-                result.findings.push(buckles(case, lost));
-            }
-        }
+        let (mut result, finer) = match self.problem.analysis.adaptive() {
+            Some(to) => self.adapted(to, &section, (fabric, inputs), watch)?,
+            None => (self.results(section, fabric, inputs, watch)?, None),
+        };
+        finer.as_ref().unwrap_or(self).examine(&mut result)?;
         if !self.coarser.is_empty() && result.status != Status::NotConverged {
             self.compare_meshes(&mut result, fabric, watch)?;
         }
@@ -111,6 +106,20 @@ impl PreparedCase<'_> {
             result.status = Status::CheckFailed;
         }
         Ok(result)
+    }
+
+    /// Tells of a linear result whether the sheet would have buckled before.
+    fn examine(&self, result: &mut CaseResult) -> Result<(), StudyError> {
+        // A mesh that is too large to factorise is not examined, and the result stands where that cannot be done.
+        let examined = matches!(self.problem.analysis, Analysis::Linear(_)) && !self.plan.iterates();
+        if result.status == Status::Ok && examined && is_compressed(result, &self.extent)? {
+            let lost = lost_directions(&result.model, &result.solution.displacement, &self.options);
+            if let Some(lost) = lost.ok().filter(|n| *n > 0) {
+                result.status = Status::BeyondLinear;
+                result.findings.push(buckles(self.case, lost));
+            }
+        }
+        Ok(())
     }
 
     /// Solves the case on its coarser meshes, and adds what they tell. One on which no equilibrium is found tells nothing.
@@ -147,7 +156,7 @@ impl PreparedCase<'_> {
     }
 
     /// What the mesh of this case gives, not yet checked.
-    fn results(
+    pub(super) fn results(
         &self,
         section: ShellSection,
         fabric: OfFabric<'_>,
@@ -224,6 +233,7 @@ impl PreparedCase<'_> {
             law: fabric.law.cloned(),
             uncertainty,
             convergence: None,
+            adapted: None,
             contacts,
             findings,
             modal: matches!(self.problem.analysis, Analysis::Modal(_) | Analysis::Buckling(_)),

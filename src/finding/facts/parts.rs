@@ -134,6 +134,18 @@ pub struct CoarseQuantity {
     pub left: f64,
 }
 
+/// Why a mesh is not refined any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RefinementEnd {
+    /// As many meshes as the case allows.
+    Meshes,
+    /// The next mesh would have more elements than the case allows.
+    Elements,
+    /// On the next mesh the search came to no equilibrium.
+    Search,
+}
+
 /// Why something has another name than it was given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -1,6 +1,6 @@
 //! Facts of cases and their results.
 
-use super::parts::{CoarseQuantity, Excess};
+use super::parts::{CoarseQuantity, Excess, RefinementEnd};
 use crate::quantity::significant;
 
 super::facts! {
@@ -114,6 +114,16 @@ super::facts! {
             /// Its `cells`.
             cells: [usize; 2],
         } = "[convergence] tells nothing: on cells = {cells:?} the search came to no equilibrium; take more `cells`, or meshes = 2";
+        /// A refined mesh that leaves more open than it was to.
+        "S153" NotRefined {
+            /// The estimated relative error in the energy norm that was asked for.
+            goal: f64,
+            /// That of the last mesh.
+            error: f64,
+            /// Why there is no finer one.
+            end: RefinementEnd,
+        } = "[adaptive] ended at an estimated error of {} % instead of {} %: {}", significant(100.0 * error), significant(100.0 * goal),
+            end_of_refinement(*end);
         /// A membrane with motions that cost nothing.
         "S107" OneMembraneCell {} =
             "one smoothing cell of the membrane leaves it motions in the plane of the sheet that cost next to \
@@ -390,6 +400,20 @@ fn coarse(quantities: &[CoarseQuantity]) -> String {
     }
     let text = |q: &CoarseQuantity| format!("{} (± {:.1} %)", q.quantity, 100.0 * q.left);
     format!("the mesh is coarse for {}", quantities.iter().map(text).collect::<Vec<_>>().join(", "))
+}
+
+fn end_of_refinement(end: RefinementEnd) -> &'static str {
+    match end {
+        RefinementEnd::Meshes => {
+            "there are as many meshes as `meshes` allows; give more, or take more `cells` in [sheet]"
+        }
+        RefinementEnd::Elements => {
+            "the next mesh would have more elements than `elements` allows; give more, or a larger `error`"
+        }
+        RefinementEnd::Search => {
+            "on the next mesh the search came to no equilibrium; the result is that of the last one that did"
+        }
+    }
 }
 
 fn energies(imbalance: f64, given: f64) -> String {

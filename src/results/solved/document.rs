@@ -14,7 +14,8 @@ use crate::quantity::Band;
 use crate::results::sampled::{InputEntry, SamplingEntry};
 use crate::results::task::Task;
 use crate::study::{
-    CaseResult, CheckResult, ContactResult, Convergence, History, Prediction, Probe, Status, Uncertainty,
+    AdaptedMeshes, CaseResult, CheckResult, ContactResult, Convergence, History, Prediction, Probe, Status,
+    Uncertainty,
 };
 
 /// An entry of `kesf.solution/1`: a solved case (SI).
@@ -92,6 +93,9 @@ struct ResultsEntry {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     load_factors: Vec<f64>,
     convergence: Option<Convergence>,
+    /// The meshes of a case with `[adaptive]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    adaptive: Option<AdaptedMeshes>,
     uncertainty: Option<UncertaintyEntry>,
 }
 
@@ -179,6 +183,7 @@ fn results(task: &Task, result: &CaseResult) -> ResultsEntry {
         frequencies: result.frequencies.clone(),
         load_factors: result.load_factors.clone(),
         convergence: result.convergence.clone(),
+        adaptive: result.adapted.clone(),
         uncertainty,
     }
 }

@@ -1,5 +1,6 @@
 //! A solved case with a `[sheet]`: rows, document, fields, charts and text.
 
+mod adapted;
 mod convergence;
 mod document;
 mod effort;

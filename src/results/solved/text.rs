@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{convergence, effort, search};
+use super::{adapted, convergence, effort, search};
 use crate::model::Model;
 use crate::quantity::significant;
 use crate::results::columns::Columns;
@@ -68,6 +68,8 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
         factors.filled(),
         probes.filled(),
         convergence::table(solved),
+        adapted::meshes(solved),
+        adapted::quantities(solved),
         histories(solved),
         search::searches(solved),
         search::load_steps(solved),
