@@ -17,7 +17,7 @@ pub use crossings::{Crossings, crossings};
 pub use generate::{annulus, disc, distorted, graded_annulus, rectangle};
 pub use gmsh::parse_gmsh;
 pub use joined::Unjoined;
-pub use refine::{Lines, Refined, Refinement};
+pub use refine::{GridLines, Refined, Refinement};
 pub use sweep::{BoundingBox, overlapping};
 pub use triangle::{is_triangle, nodes_of, sides_of};
 

@@ -22,7 +22,7 @@ use super::{MeshError, QuadMesh, defect, nodes_of, normal};
 
 /// Where the lines of a mesh run between its nodes, and with that where a new node lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lines {
+pub enum GridLines {
     /// Straight.
     Straight,
     /// The boundary is circles about the z axis; straight inside.
@@ -40,7 +40,7 @@ const EQUAL: f64 = 1e-6;
 /// A mesh of quads whose cells can be divided, again and again.
 #[derive(Clone, Debug)]
 pub struct Refinement {
-    lines: Lines,
+    lines: GridLines,
     nodes: Vec<Point3<f64>>,
     /// Those that are not divided.
     cells: Vec<[u32; 4]>,
@@ -96,7 +96,7 @@ impl Refinement {
     ///
     /// # Errors
     /// M006 for a mesh that has triangles.
-    pub fn new(mesh: &QuadMesh, lines: Lines) -> Result<Self, MeshError> {
+    pub fn new(mesh: &QuadMesh, lines: GridLines) -> Result<Self, MeshError> {
         if mesh.triangles() > 0 {
             let what = "triangles cannot be divided in four quads: give a mesh of quads alone";
             return Err(MeshError::Parameters { what: what.into() });
@@ -202,9 +202,9 @@ impl Refinement {
         let ends = side.map(|n| self.nodes[n as usize]);
         let is_edge = self.boundary.contains(&key(side));
         let is_round = match self.lines {
-            Lines::Straight => false,
-            Lines::RoundEdge => is_edge,
-            Lines::Rings => true,
+            GridLines::Straight => false,
+            GridLines::RoundEdge => is_edge,
+            GridLines::Rings => true,
         };
         let node = self.nodes.len() as u32;
         self.nodes.push(if is_round { on_circle(&ends) } else { nalgebra::center(&ends[0], &ends[1]) });
@@ -219,7 +219,7 @@ impl Refinement {
     /// pairs share (Coons).
     fn centre(&self, quad: [u32; 4], middles: [Point3<f64>; 4]) -> Point3<f64> {
         let corners = quad.map(|n| self.nodes[n as usize]);
-        if self.lines == Lines::Rings {
+        if self.lines == GridLines::Rings {
             return on_circle(&corners);
         }
         let of_middles: Vector3<f64> = middles.iter().map(|p| p.coords).sum();
@@ -384,7 +384,7 @@ mod tests {
         for (size, cells) in [([1.0, 1.0], [4, 4]), ([2.0, 1.0], [2, 1]), ([1.0, 1.0], [1, 1])] {
             let [w, h] = size;
             let coarse = rectangle(w, h, cells[0], cells[1]).unwrap();
-            let mut refinement = Refinement::new(&coarse, Lines::Straight).unwrap();
+            let mut refinement = Refinement::new(&coarse, GridLines::Straight).unwrap();
             for level in 1..=6 {
                 refinement.divide(about(&refinement, Point3::origin(), 1e-9));
                 let refined = refinement.mesh();
@@ -425,8 +425,8 @@ mod tests {
     #[test]
     fn dividing_every_cell_is_the_finer_mesh() {
         for (coarse, fine, lines) in [
-            (rectangle(1.0, 2.0, 3, 2), rectangle(1.0, 2.0, 12, 8), Lines::Straight),
-            (annulus(1.0, 2.0, 2, 7), annulus(1.0, 2.0, 8, 28), Lines::Rings),
+            (rectangle(1.0, 2.0, 3, 2), rectangle(1.0, 2.0, 12, 8), GridLines::Straight),
+            (annulus(1.0, 2.0, 2, 7), annulus(1.0, 2.0, 8, 28), GridLines::Rings),
         ] {
             let mut refinement = Refinement::new(&coarse.unwrap(), lines).unwrap();
             (0..2).for_each(|_| refinement.divide((0..refinement.cells.len()).collect()));
@@ -437,8 +437,9 @@ mod tests {
             for (name, set) in &fine.node_sets {
                 for node in set {
                     let at = fine.nodes[*node as usize];
-                    let near = |n: &u32| (found.mesh.nodes[*n as usize] - at).norm() < 1e-12;
-                    assert!(found.mesh.set(name).unwrap().iter().any(near), "{name}: {at}");
+                    let mut places =
+                        found.mesh.set(name).unwrap().iter().map(|n| found.mesh.nodes[*n as usize]);
+                    assert!(places.any(|place| (place - at).norm() < 1e-12), "{name}: {at}");
                 }
                 assert_eq!(set.len(), found.mesh.set(name).unwrap().len());
             }
@@ -448,13 +449,13 @@ mod tests {
     #[test]
     fn round_outlines_stay_round() {
         for (coarse, lines, centre) in [
-            (disc(1.0, 1), Lines::RoundEdge, false),
-            (disc(1.0, 2), Lines::RoundEdge, true),
-            (disc(1.0, 5), Lines::RoundEdge, false),
-            (annulus(0.5, 1.0, 2, 3), Lines::Rings, false),
-            (annulus(0.5, 1.0, 12, 8), Lines::Rings, false),
-            (graded_annulus(0.6, 1.0, [3, 24], 5.0), Lines::Rings, false),
-            (distorted(annulus(0.5, 1.0, 4, 24).unwrap(), 0.4, 3), Lines::Rings, false),
+            (disc(1.0, 1), GridLines::RoundEdge, false),
+            (disc(1.0, 2), GridLines::RoundEdge, true),
+            (disc(1.0, 5), GridLines::RoundEdge, false),
+            (annulus(0.5, 1.0, 2, 3), GridLines::Rings, false),
+            (annulus(0.5, 1.0, 12, 8), GridLines::Rings, false),
+            (graded_annulus(0.6, 1.0, [3, 24], 5.0), GridLines::Rings, false),
+            (distorted(annulus(0.5, 1.0, 4, 24).unwrap(), 0.4, 3), GridLines::Rings, false),
         ] {
             let coarse = coarse.unwrap();
             let mut least = f64::INFINITY;
@@ -479,31 +480,34 @@ mod tests {
         }
     }
 
-    /// By hand: a cell with one, two and three finer neighbours, of which the last is divided itself.
+    /// Cells, elements and triangles of nine squares of which some are divided.
+    fn elements(cells: &[usize]) -> [usize; 3] {
+        let mut refinement =
+            Refinement::new(&rectangle(3.0, 3.0, 3, 3).unwrap(), GridLines::Straight).unwrap();
+        refinement.divide(cells.iter().copied().collect());
+        let refined = refinement.mesh();
+        assert_sound(&refined);
+        assert_relative_eq!(area(&refined.mesh), 9.0, max_relative = 1e-12);
+        [refinement.cells.len(), refined.mesh.quads.len(), refined.mesh.triangles()]
+    }
+
+    /// By hand: a cell with one, two and three finer neighbours; the last is divided itself.
     #[test]
     fn cells_beside_finer_ones_are_closed() {
-        let elements = |cells: &[usize]| {
-            let mut refinement =
-                Refinement::new(&rectangle(3.0, 3.0, 3, 3).unwrap(), Lines::Straight).unwrap();
-            refinement.divide(cells.iter().copied().collect());
-            let refined = refinement.mesh();
-            assert_sound(&refined);
-            assert_relative_eq!(area(&refined.mesh), 9.0, max_relative = 1e-12);
-            (refinement.cells.len(), refined.mesh.quads.len(), refined.mesh.triangles())
-        };
         // In a corner: two neighbours have a triangle each.
-        assert_eq!(elements(&[0]), (12, 14, 2));
+        assert_eq!(elements(&[0]), [12, 14, 2]);
         // The cell in the middle has two sides in a row, the two neighbours at the boundary one each.
-        assert_eq!(elements(&[1, 3]), (15, 4 + 4 + 3 + 3 + 4 + 3, 2));
+        assert_eq!(elements(&[1, 3]), [15, 4 + 4 + 3 + 3 + 4 + 3, 2]);
         // Opposite ones.
-        assert_eq!(elements(&[3, 5]), (15, 8 + 2 + 4 * 2 + 2, 4));
-        // Three: the one between is divided too, and the last side of the middle row with it.
-        assert_eq!(elements(&[1, 3, 5]).0, 9 + 3 * 4 + 3 - 3);
+        assert_eq!(elements(&[3, 5]), [15, 8 + 2 + 4 * 2 + 2, 4]);
+        // Three: the one between is divided too.
+        assert_eq!(elements(&[1, 3, 5])[0], 5 + 4 * 4);
     }
 
     #[test]
     fn the_largest_parts_are_divided_and_their_equals() {
-        let mut refinement = Refinement::new(&rectangle(4.0, 1.0, 4, 1).unwrap(), Lines::Straight).unwrap();
+        let mut refinement =
+            Refinement::new(&rectangle(4.0, 1.0, 4, 1).unwrap(), GridLines::Straight).unwrap();
         let refined = refinement.mesh();
         refinement.divide_largest(&refined, &[4.0, 1.0, 1.0, 4.0 + 1e-9], 0.3);
         assert_eq!(refinement.cells.len(), 2 * 4 + 2);
@@ -522,7 +526,7 @@ mod tests {
         let mut mesh = rectangle(2.0, 2.0, 2, 2).unwrap();
         mesh.node_sets.insert("seam".into(), vec![1, 4, 7]);
         mesh.edge_sets.insert("seam".into(), vec![[1, 4], [4, 7]]);
-        let mut refinement = Refinement::new(&mesh, Lines::Straight).unwrap();
+        let mut refinement = Refinement::new(&mesh, GridLines::Straight).unwrap();
         refinement.divide(BTreeSet::from([0]));
         let refined = refinement.mesh();
         assert_sound(&refined);
@@ -530,6 +534,6 @@ mod tests {
         assert_eq!((edges.len(), edges[0][0], edges[0][1], edges[2]), (3, 1, edges[1][0], [4, 7]));
         assert_eq!(refined.mesh.set("seam").unwrap().len(), 4);
         mesh.quads = vec![[0, 1, 4, 4]];
-        assert!(Refinement::new(&mesh, Lines::Straight).unwrap_err().to_string().contains("triangles"));
+        assert!(Refinement::new(&mesh, GridLines::Straight).unwrap_err().to_string().contains("triangles"));
     }
 }

@@ -1,10 +1,6 @@
 //! A case on meshes that the estimate of their error refines.
 
-use std::borrow::Cow;
-
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
+use super::adapted::{AdaptedMesh, AdaptedMeshes, AdaptedQuantity};
 use super::checked::lookup;
 use super::convergence::{ROUNDING, Sizes, names};
 use super::of_fabric::OfFabric;
@@ -13,60 +9,13 @@ use super::{PreparedCase, StudyError, Watch, build};
 use crate::case::{Adaptive, Outline, SheetProblem, unit_of};
 use crate::constitutive::Input;
 use crate::finding::{Finding, Located, RefinementEnd, StudyFact};
-use crate::mesh::{Lines, Refinement};
+use crate::mesh::{GridLines, Refinement};
 use crate::section::ShellSection;
 use crate::solve::SolveError;
 
 /// Part of the energy of the error whose cells are divided: the half that is usual. Less makes more meshes; much more divides cells
 /// that did not need it where the error is in few (Dörfler).
 const SHARE: f64 = 0.5;
-
-/// A case on meshes that grow finer where the estimated error is large.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct AdaptedMeshes {
-    /// The estimated relative error in the energy norm that was asked for.
-    pub goal: f64,
-    /// Whether the last mesh has it.
-    pub reached: bool,
-    /// The meshes, coarsest first; the results are those of the last.
-    pub meshes: Vec<AdaptedMesh>,
-    /// The results, as in the checks of a case, less those that are 0 by symmetry.
-    pub quantities: Vec<AdaptedQuantity>,
-}
-
-/// One of the meshes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct AdaptedMesh {
-    /// Its elements.
-    pub elements: usize,
-    /// How many of them are triangles.
-    pub triangles: usize,
-    /// Unknowns of the systems that were solved.
-    pub dofs: usize,
-    /// The estimated error in the energy norm over that of the recovered resultants.
-    pub error: f64,
-}
-
-/// One result on each of the meshes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct AdaptedQuantity {
-    /// `w_max`, `PROBE.w`, `strain_energy` ...
-    pub quantity: String,
-    /// SI unit of the values.
-    pub unit: Cow<'static, str>,
-    /// Its values, coarsest mesh first.
-    pub values: Vec<f64>,
-}
-
-impl AdaptedQuantity {
-    /// What the last refinement has changed, as a part of the last value; 0 of a single mesh.
-    pub fn change(&self) -> f64 {
-        match self.values[..] {
-            [.., before, last] => ((last - before) / last).abs(),
-            _ => 0.0,
-        }
-    }
-}
 
 /// What is kept of the meshes while they are refined.
 struct Record {
@@ -170,10 +119,10 @@ impl<'a> PreparedCase<'a> {
 }
 
 /// Where the lines of the mesh of an outline run.
-fn lines(outline: &Outline) -> Lines {
+fn lines(outline: &Outline) -> GridLines {
     match outline {
-        Outline::Rectangle { .. } | Outline::File { .. } => Lines::Straight,
-        Outline::Disc { .. } => Lines::RoundEdge,
-        Outline::Annulus(_) => Lines::Rings,
+        Outline::Rectangle { .. } | Outline::File { .. } => GridLines::Straight,
+        Outline::Disc { .. } => GridLines::RoundEdge,
+        Outline::Annulus(_) => GridLines::Rings,
     }
 }

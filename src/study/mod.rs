@@ -1,6 +1,7 @@
 //! Cases: problems described in TOML, virtual instrument tests, and the comparison of what they
 //! give with what was measured.
 
+mod adapted;
 mod adaptive;
 pub mod bending;
 mod build;
@@ -36,7 +37,7 @@ use std::fmt;
 use serde::Serialize;
 
 pub use crate::case::{Case, CaseError};
-pub use adaptive::{AdaptedMesh, AdaptedMeshes, AdaptedQuantity};
+pub use adapted::{AdaptedMesh, AdaptedMeshes, AdaptedQuantity};
 pub use build::section;
 pub use compare::{Comparison, compare_curves, measured_curve};
 pub use contact::ContactResult;

@@ -8,7 +8,7 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::adaptive::AdaptedMeshes;
+use super::adapted::AdaptedMeshes;
 use super::contact::ContactResult;
 use super::history::History;
 use super::load_path::{LoadPath, LoadStepEnd};
