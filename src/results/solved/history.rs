@@ -11,20 +11,21 @@ const MOST_POINTS: usize = 2000;
 /// Probes that a chart shows: as many as there are colours, and w_max.
 const MOST_PROBES: usize = 6;
 
-/// Stems of the files of a result with what each shows: its path, its motion, and the motions of its `[[steps]]`.
+/// Stems of the files of a result with what each shows: its path or its motion, and the motions of its `[[steps]]`.
 pub(super) fn plots(task: &Task, result: &CaseResult) -> Vec<(String, HistoryPlot)> {
     let stem = task.stem();
+    let Some(path) = &result.path else {
+        let whole = result.history.as_ref().map(|history| in_time(task, result, history, ""));
+        return Vec::from_iter(whole.map(|plot| (format!("{stem}-history"), plot)));
+    };
     let mut plots = Vec::new();
-    if let Some(path) = result.path.as_ref().filter(|path| path.steps.len() > 1) {
+    if path.steps.len() > 1 {
         plots.push((format!("{stem}-history"), of_path(task, result, path)));
     }
-    if let Some(history) = &result.history {
-        plots.push((format!("{stem}-history"), in_time(task, result, history, &task.case.title)));
-    }
-    for (k, step) in result.path.iter().flat_map(|path| path.load_steps.iter().enumerate()) {
+    for (k, step) in path.load_steps.iter().enumerate() {
         if let Some(history) = &step.history {
-            let title = format!("{}: {}", task.case.title, step.name);
-            plots.push((format!("{stem}-step-{}-history", k + 1), in_time(task, result, history, &title)));
+            plots
+                .push((format!("{stem}-step-{}-history", k + 1), in_time(task, result, history, &step.name)));
         }
     }
     plots
@@ -33,9 +34,8 @@ pub(super) fn plots(task: &Task, result: &CaseResult) -> Vec<(String, HistoryPlo
 fn of_path(task: &Task, result: &CaseResult, path: &LoadPath) -> HistoryPlot {
     let factors: Vec<f64> = path.steps.iter().map(|step| step.factor).collect();
     let mut moved = vec![("w_max".to_string(), from_rest(&factors, path.steps.iter().map(|s| s.w_max)))];
-    for (k, probe) in result.probes.iter().enumerate().take(MOST_PROBES) {
-        let all = components(path.probes.iter().filter_map(|of_step| of_step.get(k)));
-        let (component, values) = widest(all);
+    for (probe, displacements) in result.probes.iter().zip(&path.probes).take(MOST_PROBES) {
+        let (component, values) = widest(components(displacements));
         moved.push((format!("{} {component}", probe.name), from_rest(&factors, values)));
     }
     let mut energies =
@@ -48,7 +48,7 @@ fn of_path(task: &Task, result: &CaseResult, path: &LoadPath) -> HistoryPlot {
     HistoryPlot {
         along: [along.into(), String::new()],
         ends: path.load_steps.iter().enumerate().filter_map(|(k, step)| end(path, k, step)).collect(),
-        ..plot(task, result, &task.case.title, moved, energies)
+        ..plot(task, result, "", moved, energies)
     }
 }
 
@@ -58,7 +58,8 @@ fn end(path: &LoadPath, number: usize, step: &LoadStepEnd) -> Option<(f64, Strin
     Some((reached.unwrap_or(number as f64 + 1.0), step.name.clone()))
 }
 
-fn in_time(task: &Task, result: &CaseResult, history: &History, title: &str) -> HistoryPlot {
+/// Of a motion, and the name of the step that it is, if it is one.
+fn in_time(task: &Task, result: &CaseResult, history: &History, step: &str) -> HistoryPlot {
     let mut moved = Vec::new();
     for (probe, displacements) in result.probes.iter().zip(&history.probe_displacements).take(MOST_PROBES) {
         let (component, values) = widest(components(displacements));
@@ -71,14 +72,14 @@ fn in_time(task: &Task, result: &CaseResult, history: &History, title: &str) -> 
         ("work of the loads", history.energy.iter().map(|e| e.work).collect()),
     ];
     let energies = energy.map(|(name, values)| (name.to_string(), in_order(&history.time, values)));
-    HistoryPlot { along: ["Time".into(), "s".into()], ..plot(task, result, title, moved, energies.to_vec()) }
+    HistoryPlot { along: ["Time".into(), "s".into()], ..plot(task, result, step, moved, energies.to_vec()) }
 }
 
 /// What both kinds have.
 fn plot(
     task: &Task,
     result: &CaseResult,
-    title: &str,
+    step: &str,
     moved: Vec<(String, Curve)>,
     energies: Vec<(String, Curve)>,
 ) -> HistoryPlot {
@@ -86,9 +87,10 @@ fn plot(
     let left_out = result.probes.len().saturating_sub(MOST_PROBES);
     let left_out = (left_out > 0).then(|| format!("{left_out} more probes are in the table beside."));
     HistoryPlot {
-        title: title.into(),
+        title: task.case.title.clone(),
         subtitle: format!(
-            "{}; {} elements",
+            "{step}{}{}; {} elements",
+            if step.is_empty() { "" } else { "; " },
             task.fabric_name().unwrap_or("section of the case"),
             result.model.mesh.quads.len()
         ),
@@ -133,4 +135,81 @@ fn from_rest(factors: &[f64], values: impl IntoIterator<Item = f64>) -> Curve {
 
 fn in_order(time: &[f64], values: Vec<f64>) -> Curve {
     Curve::from_points(time.iter().copied().zip(values)).thinned(MOST_POINTS)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::case::Case;
+    use crate::solve::Options;
+    use crate::study::{section, solve_case};
+
+    const STRIP: &str = r#"
+title = "strip"
+[section]
+tensile_warp = "600 N/m"
+tensile_weft = "600 N/m"
+poisson = 0.0
+shear = "300 N/m"
+bending_warp = "8e-6 N·m"
+bending_weft = "8e-6 N·m"
+bending_coupling = "0 N·m"
+torsion = "4e-6 N·m"
+transverse_shear = "50 N/m"
+areal_density = "0.15 kg/m²"
+thickness = "0.4 mm"
+[sheet]
+shape = "strip"
+width = "4 cm"
+height = "1 cm"
+cells = [4, 1]
+[[supports]]
+set = "left"
+kind = "clamped"
+[[probes]]
+name = "middle"
+at = ["2 cm", "5 mm"]
+[[probes]]
+name = "end"
+at = ["4 cm", "5 mm"]
+[analysis]
+kind = "nonlinear"
+largest_step = 0.25
+first_step = 0.25
+[[steps]]
+name = "hang"
+[[steps.loads]]
+kind = "gravity"
+[[steps]]
+name = "swing"
+[steps.analysis]
+kind = "newmark"
+duration = "10 ms"
+step = "1 ms"
+load = "off"
+"#;
+
+    #[test]
+    fn lines_are_those_of_their_probes_and_motions_have_charts_of_their_own() {
+        let case = Case::parse(Path::new("strip.toml"), STRIP).unwrap_or_else(|e| panic!("{e}"));
+        let own = section(case.section().unwrap()).unwrap();
+        let result = solve_case(&case, own, &Options::default()).unwrap();
+        let drawn = plots(&Task::alone(&case, None, 1), &result);
+        let names: Vec<&str> = drawn.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["cases/strip-history", "cases/strip-step-2-history"]);
+        let path = result.path.as_ref().unwrap();
+        let [loads, motion] = [&drawn[0].1, &drawn[1].1];
+        assert_eq!(loads.ends[0], (1.0, "hang".to_string()));
+        let lines = &loads.panels[0].lines;
+        assert_eq!(lines.iter().map(|l| l.0.as_str()).collect::<Vec<_>>(), ["w_max", "middle w", "end w"]);
+        for (line, probe) in lines[1..].iter().zip(&path.probes) {
+            assert_eq!((line.1.y[0], *line.1.y.last().unwrap()), (0.0, probe.last().unwrap()[2]));
+        }
+        let history = path.load_steps[1].history.as_ref().unwrap();
+        assert_eq!(motion.panels[0].lines[1].1.y[0], history.probe_displacements[1][0][2]);
+        assert!(motion.subtitle.starts_with("swing; "), "{}", motion.subtitle);
+        assert_eq!(motion.panels[1].lines.len(), 4);
+    }
 }
