@@ -152,7 +152,7 @@ pub fn integrate_with(
             continue;
         };
         let mut balance = energy;
-        motion.account(&now, &next, &mut balance);
+        motion.account((&now, &next), dt, &mut balance);
         if guard.refuses(&energy, &balance, motion.conserves()) {
             step = guard.halve(dt, time, StepLimit::Energy)?;
             continue;
@@ -182,7 +182,7 @@ struct Now {
     balance: Balance,
     /// `α M v`, by dof.
     drag: Vec<f64>,
-    /// Forces of the elements' viscosity in their frames, that of a correction left out.
+    /// Forces of the elements' viscosity in their frames.
     viscous: Vec<Vector24>,
     /// Loads at this instant.
     load: Vec<f64>,
@@ -321,7 +321,7 @@ impl<'a> Motion<'a> {
                     mean_acceleration: rates.mean_acceleration.clone(),
                     balance,
                     drag: drag.clone(),
-                    viscous: self.without_correction(&viscous, rates.correction),
+                    viscous: viscous.iter().map(|force| force.local).collect(),
                     travelled: travelled.clone(),
                     supported: if self.guided.is_empty() { 0.0 } else { supported() },
                     factor: factor.filter(|_| self.dynamics.tolerance.is_some()),
@@ -400,9 +400,9 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Adds what a step does to the energies; forces count with their means over the step. Viscous ones do so in the
-    /// frames of the elements: in space they turn on the way, and their mean could seem to give work.
-    fn account(&self, now: &Now, next: &Now, energy: &mut Energy) {
+    /// Adds what a step of a length does to the energies; forces count with their means over the step. Viscous ones of its ends do so
+    /// in the frames of the elements: in space they turn on the way, and their mean could seem to give work.
+    fn account(&self, (now, next): (&Now, &Now), dt: f64, energy: &mut Energy) {
         let mean = |a: &[f64], b: &[f64]| -> f64 {
             next.travelled.iter().zip(a.iter().zip(b)).map(|(u, (a, b))| 0.5 * (a + b) * u).sum()
         };
@@ -410,9 +410,17 @@ impl<'a> Motion<'a> {
         let before = if self.conserves() { next } else { now };
         energy.work += mean(&now.load, &next.load) + next.supported;
         energy.dissipated += mean(&before.drag, &next.drag);
-        let strained = now.balance.deformations().zip(next.balance.deformations()).map(|(a, b)| b - a);
-        let viscous = before.viscous.iter().zip(&next.viscous).map(|(a, b)| 0.5 * (a + b));
-        energy.dissipated += viscous.zip(strained).map(|(force, strained)| force.dot(&strained)).sum::<f64>();
+        if self.conserves() {
+            // The work of the very forces that the step was taken with. Over the deformations themselves these would do another one:
+            // a turn makes of the way a shortening in the frame at its end.
+            let beta = self.dynamics.damping.beta;
+            energy.dissipated += if beta == 0.0 { 0.0 } else { beta * self.work_of_stiffness(next, dt) };
+        } else {
+            let strained = now.balance.deformations().zip(next.balance.deformations()).map(|(a, b)| b - a);
+            let viscous = now.viscous.iter().zip(&next.viscous).map(|(a, b)| 0.5 * (a + b));
+            energy.dissipated +=
+                viscous.zip(strained).map(|(force, strained)| force.dot(&strained)).sum::<f64>();
+        }
         energy.dissipated += next.state.memory.dissipated - now.state.memory.dissipated;
         energy.strain = next.balance.energy - self.began;
         energy.kinetic = self.kinetic(next);

@@ -14,8 +14,7 @@
 //! keeps the energy by one such number is that of a discrete gradient (Gonzalez, *J. Nonlinear Sci.* 6 (1996) 449), with the
 //! stiffness as its metric.
 
-use super::{Balance, Forces, Guess, Motion, Now, Rates, State};
-use crate::element::Vector24;
+use super::{Balance, Guess, Motion, Now, Rates, State};
 use crate::solve::newmark::Energy;
 
 /// Energies that miss each other by this part of the largest balance.
@@ -43,7 +42,7 @@ impl Motion<'_> {
                 self.newton(now, guess, (time, dt), |travelled| mean_rates(now, travelled, dt, correction));
             let Some(next) = next else { break };
             let mut balance = *energy;
-            self.account(now, &next, &mut balance);
+            self.account((now, &next), dt, &mut balance);
             let missed = balance.imbalance();
             let scale = balance.work.abs().max(balance.kinetic + balance.strain.abs());
             let work = self.work_of_stiffness(&next, dt);
@@ -69,20 +68,8 @@ impl Motion<'_> {
         ends.zip(crossed).map(|((a, b), crossed)| a + b - 0.5 * crossed).collect()
     }
 
-    /// Viscous forces in the frames of the elements, without the part that only balances the energies.
-    pub fn without_correction(&self, viscous: &[Forces], correction: f64) -> Vec<Vector24> {
-        let beta = self.dynamics.damping.beta;
-        let part = if correction == 0.0 { 1.0 } else { beta / (beta + correction) };
-        let own = |force: &Forces| if part == 1.0 { force.local } else { force.local * part };
-        if part.is_finite() {
-            viscous.iter().map(own).collect()
-        } else {
-            vec![Vector24::zeros(); viscous.len()]
-        }
-    }
-
     /// What the forces of stiffness at the mean velocity of a step give in it, for a correction of 1 (J/s).
-    fn work_of_stiffness(&self, next: &Now, dt: f64) -> f64 {
+    pub fn work_of_stiffness(&self, next: &Now, dt: f64) -> f64 {
         let velocity: Vec<f64> = next.travelled.iter().map(|u| u / dt).collect();
         let velocities = self.system.node_velocities(&next.state, &velocity);
         let (nodal, _) = self.system.viscous(&next.balance, &velocities, 1.0);
