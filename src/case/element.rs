@@ -186,7 +186,8 @@ impl ElementTable {
         };
         if self.shear_stabilisation.unwrap_or(default) == 0.0 {
             let key = if self.shear_stabilisation.is_some() { "shear_stabilisation" } else { "profile" };
-            let message = "[adaptive] closes its meshes with triangles, which lock in thin sheets without stabilisation: give a                            shear_stabilisation above 0, such as 0.05, or remove [adaptive]";
+            let message = "[adaptive] closes its meshes with triangles, which lock in thin sheets without stabilisation: give a \
+                           shear_stabilisation above 0, such as 0.05, or remove [adaptive]";
             return refused(at.value_place(key), message);
         }
         Ok(())
