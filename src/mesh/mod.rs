@@ -1,6 +1,8 @@
 //! Meshes of quads and triangles with named node sets, and the checks that a mesh must pass.
 
 mod crossings;
+#[cfg(feature = "outlines")]
+mod drawing;
 mod generate;
 mod gmsh;
 mod joined;
@@ -14,6 +16,8 @@ use std::collections::{BTreeMap, HashMap};
 use nalgebra::{Point3, Vector3};
 
 pub use crossings::{Crossings, crossings};
+#[cfg(feature = "outlines")]
+pub use drawing::{Drawing, DrawingOptions, LeftOutOfDrawing};
 pub use generate::{annulus, disc, distorted, graded_annulus, rectangle};
 pub use gmsh::parse_gmsh;
 pub use joined::Unjoined;
@@ -108,6 +112,14 @@ quads[0], quads[1];
             /// The two quads.
             quads: [usize; 2],
         } = "quads {} and {} (counted from 0) have the same nodes: remove one of them", quads[0], quads[1];
+        /// M021: a drawing that makes no mesh.
+        "M021" Drawing {
+            /// File and line.
+            #[serde(skip)]
+            place: Place,
+            /// What was found, where in the drawing, what is expected, what to do.
+            message: String,
+        } at place.clone(), = "{message}";
         /// M011: a mesh file that cannot be used.
         "M011" File {
             /// File and line.

@@ -30,7 +30,7 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
     ("characterise", &["platform", "quantity", "kes", "finding", "law", "instrument"], &["faer"]),
     ("section", &["finding", "quantity", "law"], &[]),
     ("analytical", &["section"], &[]),
-    ("mesh", &["finding", "quantity"], &[]),
+    ("mesh", &["finding", "quantity"], &["dxf", "encoding_rs", "kurbo", "quick_xml", "spade", "svgtypes"]),
     ("element", &["finding", "section", "mesh", "law"], &[]),
     ("model", &["finding", "quantity", "section", "mesh", "law", "element"], &[]),
     ("solve", &["platform", "finding", "quantity", "section", "mesh", "law", "element", "model"], &["faer"]),
