@@ -70,7 +70,7 @@ impl AdaptiveTable {
             return refused(at.value_place("elements"), message);
         }
         if sheet.outline.cells().is_none() {
-            let message = "[adaptive] divides the cells of an outline, and a mesh file has none: remove it, or give `shape`";
+            let message = "[adaptive] divides the cells of a shape, and a mesh file or a drawing has none: remove it, or give `shape`";
             return refused(at.place(), message);
         }
         for (other, message) in [

@@ -30,8 +30,7 @@ impl ConvergenceTable {
             return refused(at.value_place("meshes"), message);
         }
         let Some(cells) = sheet.outline.cells() else {
-            let message =
-                "[convergence] halves `cells`, and a mesh file has none: remove it, or give `shape`";
+            let message = "[convergence] halves `cells`, and a mesh file or a drawing has none: remove it, or give `shape`";
             return refused(at.place(), message);
         };
         if sheet.layout.distortion != 0.0 {

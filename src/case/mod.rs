@@ -59,7 +59,7 @@ pub use nonlinear::MethodChoice;
 pub use obstacles::SheetObstacle;
 pub use point::SheetPoint;
 pub use problem::{DrapeProblem, InstrumentTest, Mounting, Problem, SheetProblem, ShellSpecimen};
-pub use sheet::{Annulus, Layout, Outline, Sheet, Warp};
+pub use sheet::{Annulus, DrawnOutline, Layout, Outline, Sheet, Warp};
 pub use solver::{Bytes, Solver, SolverChoice};
 pub use step_analysis::{GuidedSet, SheetMotion, SheetStep, StepAnalysis};
 pub use supports::{Held, RigidSet, SheetSupport, SupportKind};

@@ -11,16 +11,25 @@ use super::error::refused;
 use crate::finding::{Located, Node};
 use crate::quantity::Length;
 
-/// `[sheet]`: an outline that is divided into cells, or a mesh from a file.
+/// `[sheet]`: a shape that is divided into cells, a mesh from a file, or the outline of a drawing.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SheetTable {
-    /// Which outline; left out when the mesh comes from a file.
+    /// Which shape; left out when the mesh comes from a file or a drawing.
     shape: Option<Shape>,
     /// A Gmsh mesh (MSH 4.1, ASCII) of quads, triangles or both, relative to the case file.
     #[schemars(example = &"part.msh")]
     file: Option<PathBuf>,
-    /// Unit of the coordinates in the file.
+    /// A drawing whose closed contours are the piece and its holes, `.dxf` or `.svg`, relative to the case file.
+    #[schemars(example = &"front.svg")]
+    outline: Option<PathBuf>,
+    /// Length of the sides of the triangles that an `outline` is divided into.
+    #[schemars(example = &"5 mm")]
+    cell: Option<Length>,
+    /// The layer (DXF), or the id or label (SVG), of the contours that are taken from an `outline`; all of them without it.
+    #[schemars(example = &"cut")]
+    layer: Option<String>,
+    /// Unit of the coordinates in the file; of an `outline` where it does not say its own.
     #[schemars(example = &"mm")]
     unit: Option<String>,
     /// Along x (`rectangle`), or the length of a `strip` along x.
@@ -155,6 +164,21 @@ pub enum Outline {
         /// Unit of its coordinates (m).
         unit: Length,
     },
+    /// From a drawing.
+    Drawn(DrawnOutline),
+}
+
+/// The contours of a drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnOutline {
+    /// The file.
+    pub path: PathBuf,
+    /// Unit of its coordinates (m), where it does not say its own.
+    pub unit: Option<Length>,
+    /// The layer, id or label of the contours.
+    pub layer: Option<String>,
+    /// Length of the sides of the triangles.
+    pub cell: Length,
 }
 
 /// A ring about the origin.
@@ -171,17 +195,17 @@ pub struct Annulus {
 }
 
 impl Outline {
-    /// The cells; none of a mesh from a file.
+    /// The cells; none of a mesh from a file or a drawing.
     pub fn cells(&self) -> Option<[usize; 2]> {
         match self {
             Self::Rectangle { cells, .. } => Some(*cells),
             Self::Disc { cells, .. } => Some([*cells; 2]),
             Self::Annulus(ring) => Some(ring.cells),
-            Self::File { .. } => None,
+            Self::File { .. } | Self::Drawn(_) => None,
         }
     }
 
-    /// The same outline with cells that are 2^`times` as wide; a mesh from a file stays as it is.
+    /// The same outline with cells that are 2^`times` as wide; a mesh from a file or a drawing stays as it is.
     pub(super) fn coarser(&self, times: u32) -> Self {
         let mut coarse = self.clone();
         match &mut coarse {
@@ -189,7 +213,7 @@ impl Outline {
                 *cells = cells.map(|n| n >> times);
             }
             Self::Disc { cells, .. } => *cells >>= times,
-            Self::File { .. } => {}
+            Self::File { .. } | Self::Drawn(_) => {}
         }
         coarse
     }
@@ -209,14 +233,17 @@ impl SheetTable {
 
     /// The sheet of the table at a node.
     pub fn sheet(&self, at: &Node<'_>) -> Result<Sheet, CaseError> {
-        let outline = match (self.shape, &self.file) {
-            (Some(shape), None) => self.outline(shape, at)?,
-            (None, Some(file)) => self.mesh_file(file, at)?,
-            (Some(_), Some(_)) => {
-                return refused(at.key_place("file"), "[sheet] needs either `shape` or `file`, and not both");
-            }
-            (None, None) => {
-                return refused(at.place(), "[sheet] needs either `shape` or `file`, and not both");
+        let outline = match (self.shape, &self.file, &self.outline) {
+            (Some(shape), None, None) => self.shaped(shape, at)?,
+            (None, Some(file), None) => self.mesh_file(file, at)?,
+            (None, None, Some(drawing)) => self.drawing(drawing, at)?,
+            (shape, file, _) => {
+                let place = match (shape, file) {
+                    (None, None) => at.place(),
+                    (_, Some(_)) => at.key_place("file"),
+                    (_, None) => at.key_place("outline"),
+                };
+                return refused(place, "[sheet] needs one of `shape`, `file` and `outline`, and not two");
             }
         };
         Ok(Sheet { outline, layout: self.layout(at)?, table: at.located(()) })
@@ -255,25 +282,58 @@ impl SheetTable {
     }
 
     fn mesh_file(&self, file: &Path, at: &Node<'_>) -> Result<Outline, CaseError> {
-        let sizes = ["width", "height", "diameter", "inner_diameter", "cells", "grading"];
-        if let Some(key) = sizes.into_iter().find(|key| at.has(key)) {
-            return refused(
-                at.key_place(key),
-                "[sheet] file brings its own sizes: remove width, height, diameters, cells and grading",
-            );
-        }
-        let Some(unit) = &self.unit else {
+        self.own_sizes("file", &["cell", "layer"], at)?;
+        let Some(unit) = self.unit(at)? else {
             return refused(
                 at.value_place("file"),
                 "[sheet] file needs `unit`, the unit of its coordinates, such as unit = \"mm\"",
             );
         };
-        let unit = format!("1 {unit}").parse::<Length>();
-        let unit = unit.or_else(|e| refused(at.value_place("unit"), format!("[sheet] unit: {e}")))?;
         Ok(Outline::File { path: file.to_path_buf(), unit })
     }
 
-    fn outline(&self, shape: Shape, at: &Node<'_>) -> Result<Outline, CaseError> {
+    fn drawing(&self, file: &Path, at: &Node<'_>) -> Result<Outline, CaseError> {
+        if cfg!(not(feature = "outlines")) {
+            let message = "[sheet] outline: this program was built without the reading of drawings (its feature `outlines`): use the \
+                           command kesf, or mesh the piece by another program and give the mesh as `file`";
+            return refused(at.key_place("outline"), message);
+        }
+        self.own_sizes("outline", &["distortion"], at)?;
+        let Some(cell) = self.cell else {
+            let message = "[sheet] outline needs `cell`, the length of the sides of its triangles, such as cell = \"5 mm\"";
+            return refused(at.value_place("outline"), message);
+        };
+        if !(cell.si() > 0.0 && cell.si().is_finite()) {
+            return refused(at.value_place("cell"), "[sheet] cell must be a length above 0");
+        }
+        let (path, unit, layer) = (file.to_path_buf(), self.unit(at)?, self.layer.clone());
+        Ok(Outline::Drawn(DrawnOutline { path, unit, layer, cell }))
+    }
+
+    /// Refuses keys that a sheet from a file has no use for.
+    fn own_sizes(&self, from: &str, unused: &[&str], at: &Node<'_>) -> Result<(), CaseError> {
+        let sizes = ["width", "height", "diameter", "inner_diameter", "cells", "grading"];
+        if let Some(key) = sizes.into_iter().find(|key| at.has(key)) {
+            let message = format!(
+                "[sheet] {from} brings its own sizes: remove width, height, diameters, cells and grading"
+            );
+            return refused(at.key_place(key), message);
+        }
+        match unused.iter().find(|key| at.has(key)) {
+            Some(key) => {
+                refused(at.key_place(key), format!("[sheet] {from} does not use `{key}`: remove it"))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn unit(&self, at: &Node<'_>) -> Result<Option<Length>, CaseError> {
+        let Some(unit) = &self.unit else { return Ok(None) };
+        let unit = format!("1 {unit}").parse::<Length>();
+        unit.map(Some).or_else(|e| refused(at.value_place("unit"), format!("[sheet] unit: {e}")))
+    }
+
+    fn shaped(&self, shape: Shape, at: &Node<'_>) -> Result<Outline, CaseError> {
         let need = |value, key| needed(value, key, shape, at);
         match shape {
             Shape::Rectangle | Shape::Strip => {
@@ -307,7 +367,7 @@ impl SheetTable {
     /// The cells of an outline, which has no use for some keys.
     fn cells(&self, shape: Shape, unused: &[&str], at: &Node<'_>) -> Result<[usize; 2], CaseError> {
         let word = shape.word();
-        if let Some(key) = unused.iter().find(|key| at.has(key)) {
+        if let Some(key) = unused.iter().chain(&["cell", "layer"]).find(|key| at.has(key)) {
             let message = format!("[sheet] shape = \"{word}\" does not use `{key}`: remove it");
             return refused(at.key_place(key), message);
         }

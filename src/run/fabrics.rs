@@ -291,6 +291,7 @@ impl<'c> Workshop<'c> {
 pub(crate) fn key_of_case(case: &Case) -> Result<String, Failure> {
     let mesh = case.sheet().and_then(|problem| match &problem.sheet.outline {
         Outline::File { path, .. } => Some(FileEntry::of(&case.path.with_file_name("").join(path))),
+        Outline::Drawn(drawn) => Some(FileEntry::of(&case.path.with_file_name("").join(&drawn.path))),
         Outline::Rectangle { .. } | Outline::Disc { .. } | Outline::Annulus(_) => None,
     });
     hash_of(&json!({ "case": format!("{case:?}"), "mesh": mesh }))

@@ -121,7 +121,7 @@ impl<'a> PreparedCase<'a> {
 /// Where the lines of the mesh of an outline run.
 fn lines(outline: &Outline) -> GridLines {
     match outline {
-        Outline::Rectangle { .. } | Outline::File { .. } => GridLines::Straight,
+        Outline::Rectangle { .. } | Outline::File { .. } | Outline::Drawn(_) => GridLines::Straight,
         Outline::Disc { .. } => GridLines::RoundEdge,
         Outline::Annulus(_) => GridLines::Rings,
     }

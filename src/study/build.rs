@@ -5,7 +5,7 @@ use std::path::Path;
 
 use nalgebra::{Matrix2, Matrix3, Point3, Vector3};
 
-use super::{Case, StudyError, placed, refused};
+use super::{Case, StudyError, drawing, placed, refused};
 use crate::case::{
     Analysis, GuidedSet, Held, Layout, Mounting, Outline, PointOfAction, Prescribed, RigidSet, SectionTable,
     Sheet, SheetLoad, SheetMotion, SheetPoint, SheetProblem, SheetSupport, StepAnalysis, SupportKind, Warp,
@@ -304,6 +304,7 @@ fn outline(case: &Case, outline: &Outline) -> Result<QuadMesh, StudyError> {
             })?;
             mesh::parse_gmsh(&path, &text, unit.si())?
         }
+        Outline::Drawn(drawn) => drawing::mesh(case, drawn)?,
     })
 }
 

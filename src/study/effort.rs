@@ -71,14 +71,14 @@ pub fn within_limits(case: &Case, options: &Options) -> Result<(), StudyError> {
     }
 }
 
-/// About how many quads an outline has; none of a mesh file, which is as large as it is.
+/// About how many quads an outline has; none of a mesh file or a drawing, which are as large as they are.
 fn quads(outline: &Outline) -> f64 {
     match outline {
         Outline::Rectangle { cells: [a, b], .. } | Outline::Annulus(Annulus { cells: [a, b], .. }) => {
             *a as f64 * *b as f64
         }
         Outline::Disc { cells, .. } => OF_DISC * (*cells as f64).powi(2),
-        Outline::File { .. } => 0.0,
+        Outline::File { .. } | Outline::Drawn(_) => 0.0,
     }
 }
 

@@ -5,8 +5,8 @@ use std::collections::HashSet;
 use nalgebra::Vector3;
 
 use super::result::CaseResult;
-use super::{Case, StudyError};
-use crate::case::{Analysis, Prescribed, SheetProblem};
+use super::{Case, StudyError, drawing};
+use crate::case::{Analysis, Outline, Prescribed, SheetProblem};
 use crate::element::{Bending, Cells, Drilling, Membrane, ShearInterpolation};
 use crate::finding::{Excess, Finding, Place, StudyFact};
 use crate::mesh::{QuadMesh, Unjoined, normal};
@@ -133,7 +133,12 @@ pub(super) fn findings(
     if let Some(set) = extent.flat.then(|| turned_in_plane(problem)).flatten() {
         facts.push(StudyFact::TurnedInPlane { set: set.to_string() });
     }
-    facts.into_iter().map(|fact| Finding::new(fact).at(Place::file(&case.path))).collect()
+    let mut findings: Vec<Finding> =
+        facts.into_iter().map(|fact| Finding::new(fact).at(Place::file(&case.path))).collect();
+    if let Outline::Drawn(drawn) = &problem.sheet.outline {
+        findings.extend(drawing::left_out(case, drawn));
+    }
+    findings
 }
 
 impl Beyond {

@@ -10,6 +10,7 @@ mod compare;
 mod contact;
 mod convergence;
 mod drape;
+mod drawing;
 mod dynamics;
 mod effort;
 mod eigen_steps;

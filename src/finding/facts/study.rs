@@ -367,6 +367,13 @@ super::facts! {
         } = "`{quantity}` is {} {unit}, and {} {unit} was expected: {} % off, {} % allowed",
             significant(*value), significant(*expected),
             significant(100.0 * relative_error), significant(100.0 * relative_tolerance);
+        /// What stands in a drawing and makes no contour.
+        "S154" LeftOutOfDrawing {
+            /// What it is.
+            what: String,
+            /// How many there are.
+            count: usize,
+        } = "{count} of {what} in the drawing make no contour and were left out: nothing is cut there";
         /// Bending of fourth order where it is not for.
         "S123" NotFourthOrder {
             /// What speaks against it.
