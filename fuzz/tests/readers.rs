@@ -24,5 +24,5 @@ macro_rules! targets {
 }
 
 targets! {
-    archive bounds cards case dialect documents fab fabric gmsh library ods parts picture settings text xls xlsx
+    archive bounds cards case dialect documents drawing fab fabric gmsh library ods parts picture settings text xls xlsx
 }

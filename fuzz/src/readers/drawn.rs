@@ -1,10 +1,10 @@
-//! Meshes and pictures.
+//! Meshes, drawings and pictures.
 
 use std::fmt::Write;
 use std::path::Path;
 
 use kesf::instrument::picture::silhouette;
-use kesf::mesh::{QuadMesh, parse_gmsh};
+use kesf::mesh::{Drawing, DrawingOptions, QuadMesh, parse_gmsh};
 
 use crate::{Damage, Target, corpus};
 
@@ -50,6 +50,44 @@ fn written(mesh: &QuadMesh) -> String {
         let _ = writeln!(text, "{} {a} {b} {c} {d}", i + 1);
     }
     text + "$EndElements\n"
+}
+
+/// Drawings of pieces.
+pub fn drawing() -> Target {
+    Target { seeds: corpus::folder("drawing"), damaged: Damage::of, size: <[u8]>::len, holds: drawing_holds }
+}
+
+fn drawing_holds(bytes: &[u8]) -> bool {
+    let is_svg = bytes.trim_ascii_start().starts_with(b"<");
+    let path = Path::new(if is_svg { "part.svg" } else { "part.dxf" });
+    // The unit of the case counts where the file does not say its own.
+    let options = [None, Some(1e-2)].map(|unit| DrawingOptions { unit, layer: None });
+    let read = options.iter().map(|o| Drawing::parse(path, bytes, o)).find_map(Result::ok);
+    let drawing = match read.map_or_else(|| Drawing::parse(path, bytes, &options[0]), Ok) {
+        Ok(drawing) => drawing,
+        Err(error) => {
+            assert!(error.to_string().contains("part."), "{error}");
+            return false;
+        }
+    };
+    let [width, height] = drawing.size();
+    match drawing.mesh(width.max(height) / 12.0) {
+        Ok(mesh) => {
+            mesh.check().unwrap_or_else(|e| panic!("{e}"));
+            assert!(mesh.is_flat() && mesh.set("boundary").is_ok_and(|set| !set.is_empty()));
+            // No node lies beyond what was drawn.
+            for (axis, drawn) in [width, height].into_iter().enumerate() {
+                let places = mesh.nodes.iter().map(|p| p[axis]);
+                let (low, high) = places.fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
+                assert!(high - low <= drawn * (1.0 + 1e-6), "{low} to {high} of {drawn}");
+            }
+            true
+        }
+        Err(error) => {
+            assert!(error.to_string().contains("part."), "{error}");
+            false
+        }
+    }
 }
 
 /// Photos of drape tests: the file is damaged, or its pixels are.

@@ -9,7 +9,7 @@ mod toml_files;
 use crate::Target;
 
 pub use documents::{cards, documents};
-pub use drawn::{gmsh, picture};
+pub use drawn::{drawing, gmsh, picture};
 pub use exports::{archive, fab, ods, text, xls, xlsx};
 pub use tables::{bounds, library, parts};
 pub use toml_files::{case, dialect, fabric, settings};
@@ -18,13 +18,14 @@ pub use toml_files::{case, dialect, fabric, settings};
 type Make = fn() -> Target;
 
 /// Every target by its name.
-pub const TARGETS: [(&str, Make); 17] = [
+pub const TARGETS: [(&str, Make); 18] = [
     ("archive", archive),
     ("bounds", bounds),
     ("cards", cards),
     ("case", case),
     ("dialect", dialect),
     ("documents", documents),
+    ("drawing", drawing),
     ("fab", fab),
     ("fabric", fabric),
     ("gmsh", gmsh),

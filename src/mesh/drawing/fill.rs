@@ -5,9 +5,7 @@ use std::path::Path;
 
 use kurbo::{Affine, Point};
 use nalgebra::Point3;
-use spade::{
-    AngleLimit, ConstrainedDelaunayTriangulation, InsertionError, Point2, RefinementParameters, Triangulation,
-};
+use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
 
 use super::checks::{Piece, distance};
 use super::division::Polygon;
@@ -53,8 +51,7 @@ pub(super) fn filled(
     }
     points.extend(inside(&contours, cell));
     let points: Vec<Point2<f64>> = points.iter().map(|p| Point2::new(p.x, p.y)).collect();
-    let filled =
-        refined(&points, &edges, cell, about).map_err(|e| refused(Place::file(path), e.to_string()))?;
+    let filled = refined(&points, &edges, cell, about).map_err(|why| refused(Place::file(path), why))?;
     Ok(named(&contours, filled))
 }
 
@@ -133,18 +130,13 @@ fn is_apart(chords: &HashMap<[i64; 2], Vec<[Point; 2]>>, p: Point, cell: f64) ->
 }
 
 /// Nodes, the given points first, and triangles, counter-clockwise.
-fn refined(
-    points: &[Point2<f64>],
-    edges: &[[usize; 2]],
-    cell: f64,
-    about: f64,
-) -> Result<Filled, InsertionError> {
+fn refined(points: &[Point2<f64>], edges: &[[usize; 2]], cell: f64, about: f64) -> Result<Filled, String> {
     // Equal triangles have 0.433 of the square of their sides; those at an edge may be half as large again.
     let largest = 0.65 * cell * cell;
     let most = 20 * (about as usize + points.len()) + 1000;
-    let mut found = (Vec::new(), Vec::new());
     for angle in ANGLES {
-        let mut cdt = Constrained::bulk_load_cdt(points.to_vec(), edges.to_vec())?;
+        let mut cdt =
+            Constrained::bulk_load_cdt(points.to_vec(), edges.to_vec()).map_err(|e| e.to_string())?;
         let parameters = RefinementParameters::new()
             .exclude_outer_faces(true)
             .with_angle_limit(AngleLimit::from_deg(angle))
@@ -157,12 +149,11 @@ fn refined(
             .filter(|f| !outside.contains(&f.fix()))
             .map(|f| f.vertices().map(|v| v.fix().index()))
             .collect();
-        found = (nodes, triangles);
         if result.refinement_complete {
-            break;
+            return Ok((nodes, triangles));
         }
     }
-    Ok(found)
+    Err("no triangles of this `cell` come to an end between its contours: give a smaller `cell`, or draw its narrow places wider".into())
 }
 
 /// The mesh with its sets.

@@ -67,6 +67,13 @@ impl Drawing {
         &self.read.left_out
     }
 
+    /// Width and height of all that was drawn (m), along x and y of the sheet.
+    pub fn size(&self) -> [f64; 2] {
+        let curves = self.read.strokes.iter().flat_map(|stroke| &stroke.curves);
+        let boxes = curves.map(|curve| curve.transformed(self.read.to_metres).bounds());
+        boxes.reduce(|a, b| a.union(b)).map_or([0.0; 2], |all| [all.width(), all.height()])
+    }
+
     /// The piece of the drawing in triangles whose sides are about `cell` (m) long, in the plane z = 0.
     ///
     /// Its sets are `outer` and `inner` (the holes), `corners` (where the drawing itself turns by more than 30 degrees),

@@ -1,6 +1,9 @@
 //! What a drawing is made of: strokes of lines and curves.
 
-use kurbo::{Affine, Arc, CubicBez, Line, ParamCurve, ParamCurveArclen, PathEl, PathSeg, Point, Vec2};
+use kurbo::{
+    Affine, Arc, CubicBez, Line, ParamCurve, ParamCurveArclen, ParamCurveExtrema, PathEl, PathSeg, Point,
+    Rect, Vec2,
+};
 
 use crate::finding::Place;
 
@@ -81,6 +84,12 @@ impl SmoothCurve {
     /// Its length, to a part of a length.
     pub fn length(&self, accuracy: f64) -> f64 {
         self.0.iter().map(|s| s.arclen(accuracy)).sum()
+    }
+
+    /// The smallest box about it.
+    pub fn bounds(&self) -> Rect {
+        let boxes = self.0.iter().map(PathSeg::bounding_box);
+        boxes.reduce(|a, b| a.union(b)).unwrap_or_default()
     }
 
     /// The direction in which it begins.
