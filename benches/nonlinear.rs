@@ -20,7 +20,7 @@ use kesf::mesh::{QuadMesh, rectangle};
 use kesf::model::{Load, Model, Support};
 use kesf::section::ShellSection;
 use kesf::solve::Options;
-use kesf::solve::factor::{Path as Way, analyse_ordered, order};
+use kesf::solve::factor::{Path as FactorPath, analyse_ordered, order};
 use kesf::solve::nonlinear::{Settings, Solution, solve};
 use kesf::solve::sparse::BlockGraph;
 use kesf::study::{Case, Watch, drape};
@@ -32,7 +32,7 @@ fn operations(mesh: &QuadMesh) -> f64 {
     let points: Vec<[f64; 3]> = mesh.nodes.iter().map(|p| [p.x, p.y, p.z]).collect();
     let graph = Arc::new(BlockGraph::from_elements(mesh.nodes.len(), &mesh.quads));
     let ordering = order(&graph, Some(&points)).expect("memory");
-    analyse_ordered(&graph, 6, &ordering, Way::Auto).expect("memory").counts().flops
+    analyse_ordered(&graph, 6, &ordering, FactorPath::Auto).expect("memory").counts().flops
 }
 
 fn line(name: &str, mesh: &QuadMesh, seconds: f64, iterations: usize, rate: f64) {

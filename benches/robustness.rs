@@ -118,9 +118,9 @@ fn situation(dice: &mut Dice, times: usize) -> (String, String) {
         }
         6 => {
             let angle = dice.between(1.0, 12.0);
-            let moved = prescribed("jaw", "v", &format!("{} m", angle.to_radians().tan() * length));
+            let prescribed = prescribed("jaw", "v", &format!("{} m", angle.to_radians().tan() * length));
             let ends = clamped("left") + &jaw("\"u\", \"w\", \"theta_x\", \"theta_y\", \"theta_z\"");
-            (format!("square sheared by {angle:.1} degrees"), square + &ends + &moved)
+            (format!("square sheared by {angle:.1} degrees"), square + &ends + &prescribed)
         }
         _ => {
             let turn = dice.between(20.0, 120.0);
@@ -170,7 +170,7 @@ fn displacement(result: &CaseResult) -> f64 {
 }
 
 /// How far largest deflection and displacement move from a mesh to a finer one, in parts of the displacement there.
-fn moved(coarse: &CaseResult, fine: &CaseResult) -> [f64; 2] {
+fn change(coarse: &CaseResult, fine: &CaseResult) -> [f64; 2] {
     let size = displacement(fine);
     [coarse.w_max.abs() - fine.w_max.abs(), displacement(coarse) - size].map(|d| d / size)
 }
@@ -192,10 +192,10 @@ fn main() {
         }
         match solved(&case(number, 2).1) {
             Ok(fine) if is_stable(&fine) => {
-                let moved = moved(&result, &fine);
-                println!("    twice the cells: {}, moved by {:.2?} %", end(&fine), moved.map(|d| 100.0 * d));
+                let change = change(&result, &fine);
+                println!("    twice the cells: {}, moved by {:.2?} %", end(&fine), change.map(|d| 100.0 * d));
                 compared += 1;
-                if moved.iter().any(|d| d.abs() > 0.05) && codes(&result).is_empty() {
+                if change.iter().any(|d| d.abs() > 0.05) && codes(&result).is_empty() {
                     unsaid.push(number);
                 }
             }

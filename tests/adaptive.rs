@@ -116,7 +116,7 @@ fn model(mesh: QuadMesh, section: ShellSection, supports: Vec<Support>, loads: V
     Model { mesh, section, warp: Vector3::x(), formulation, supports, loads, bodies: Vec::new() }
 }
 
-fn moved(mesh: QuadMesh) -> Model {
+fn pulled(mesh: QuadMesh) -> Model {
     let mut supports: Vec<Support> = Vec::new();
     for node in mesh.set("outer").unwrap() {
         let p = mesh.nodes[*node as usize];
@@ -194,12 +194,12 @@ fn slope(points: &[Point]) -> f64 {
 #[test]
 fn a_singular_corner_needs_few_unknowns() {
     let uniform: Vec<Point> =
-        [4, 8, 16, 32, 64].map(|n| against(&moved(l_shape(n)), corner_forces).0).to_vec();
+        [4, 8, 16, 32, 64].map(|n| against(&pulled(l_shape(n)), corner_forces).0).to_vec();
     let mut refinement = Refinement::new(&l_shape(4), GridLines::Straight).unwrap();
     let mut adaptive = Vec::new();
     for _ in 0..16 {
         let refined = refinement.mesh();
-        let (point, estimate) = against(&moved(refined.mesh.clone()), corner_forces);
+        let (point, estimate) = against(&pulled(refined.mesh.clone()), corner_forces);
         adaptive.push(point);
         refinement.divide_largest(&refined, &estimate.elements, SHARE);
     }
@@ -480,9 +480,9 @@ fn limits_end_it_and_are_told() {
         assert!(!found.reached && found.meshes.len() == meshes && found.goal == 0.01);
         assert_eq!(found.meshes.last().unwrap().elements, result.model.mesh.quads.len());
         assert!(found.meshes.iter().all(|m| m.elements <= 200 || limit.starts_with("meshes")));
-        let told = result.findings.iter().find(|f| f.code() == "S153").unwrap();
-        assert!(told.message().contains(why), "{}", told.message());
-        assert_eq!(told.place.as_ref().unwrap().line, line);
+        let finding = result.findings.iter().find(|f| f.code() == "S153").unwrap();
+        assert!(finding.message().contains(why), "{}", finding.message());
+        assert_eq!(finding.place.as_ref().unwrap().line, line);
     }
     // Nothing to do: the mesh of the case has it.
     let coarse = solved(&format!("{text}{}", adaptive("90 %")));

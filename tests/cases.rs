@@ -255,10 +255,10 @@ fn what_is_found_late_stands_where_it_is_written() {
     assert_eq!(place(&pushed), ("M007", line_of(&pushed, "set = \"rim\""), 7));
     let inside =
         "[[loads]]\nkind = \"edge_force\"\nset = \"all\"\nvalue = \"1 N/m\"\ndirection = [0, 0, 1]\n";
-    let moved =
+    let prescribed =
         inside.replace("edge_force", "prescribed").replace("direction = [0, 0, 1]\n", "dof = \"w\"\n");
-    let moved = format!("{text}{}", moved.replace("\"all\"", "\"rim\"").replace("1 N/m", "1 mm"));
-    assert_eq!(place(&moved), ("M007", line_of(&moved, "set = \"rim\""), 7));
+    let prescribed = format!("{text}{}", prescribed.replace("\"all\"", "\"rim\"").replace("1 N/m", "1 mm"));
+    assert_eq!(place(&prescribed), ("M007", line_of(&prescribed, "set = \"rim\""), 7));
     let probe = format!("{text}[[probes]]\nname = \"rim\"\nat = [\"2 m\", \"0 m\"]\n");
     assert_eq!(place(&probe), ("S003", line_of(&probe, "at = [\"2 m\""), 6));
     let body = format!("{text}[[rigid]]\nname = \"left\"\nset = \"right\"\n");

@@ -9,7 +9,7 @@ use kesf::instrument::{Direction, FileContent, Parameter, ReadError, ReadSetting
 
 #[path = "common/content.rs"]
 mod content;
-use content::{told, value};
+use content::{findings_of, value};
 
 fn read(text: &[u8]) -> Result<FileContent, ReadError> {
     parse(Path::new("lab.csv"), text, &ReadSettings::default())
@@ -96,7 +96,7 @@ fn letters_are_directions_beside_their_partner_or_under_a_heading_of_directions(
         let content = read(text.as_bytes()).unwrap_or_else(|e| panic!("{text}: {e}"));
         assert_relative_eq!(value(&content, Parameter::B, WARP), TENTH, max_relative = 1e-12);
         assert_relative_eq!(value(&content, Parameter::B, WEFT), 2.0 * TENTH, max_relative = 1e-12);
-        assert_eq!(!told(&content, "R133").is_empty(), is_told, "{text}");
+        assert_eq!(!findings_of(&content, "R133").is_empty(), is_told, "{text}");
     }
     // A course, or `chaîne`.
     let knit = read("Sample,Direction,B (gf·cm²/cm)\nF,C,0.1\n".as_bytes());
@@ -125,14 +125,14 @@ fn numbers_under_unknown_heads_are_no_values() {
         let content = read(text.as_bytes()).unwrap_or_else(|e| panic!("{text}: {e}"));
         assert_relative_eq!(value(&content, Parameter::B, WARP), TENTH, max_relative = 1e-12);
         assert_relative_eq!(value(&content, Parameter::B, WEFT), 2.0 * TENTH, max_relative = 1e-12);
-        assert!(!told(&content, "R104").is_empty(), "{text}");
+        assert!(!findings_of(&content, "R104").is_empty(), "{text}");
     }
     // Rows that such numbers tell apart are averaged, and that is told.
     let settings = read("Setting,B (gf·cm²/cm),2HB (gf·cm/cm)\n1,0.1,0.1\n2,0.3,0.1\n".as_bytes()).unwrap();
-    assert!(told(&settings, "R132").contains("\"Setting\""));
+    assert!(findings_of(&settings, "R132").contains("\"Setting\""));
     let loops =
         read("Sample,Direction,Loops,B (gf·cm²/cm)\nF,warp,3,0.1\nF,warp,4,0.3\n".as_bytes()).unwrap();
-    assert!(told(&loops, "R112").contains("B warp") && told(&loops, "R104").contains("Loops"));
+    assert!(findings_of(&loops, "R112").contains("B warp") && findings_of(&loops, "R104").contains("Loops"));
 }
 
 /// A value that a header line states beside a table is told where it is not read.
@@ -141,7 +141,7 @@ fn a_value_apart_from_its_table_is_told() {
     let text = "2HG5 = 2.1 gf/cm\nOperator,Sato\n\nSample,Direction,B (gf·cm²/cm)\nF,warp,0.1\nF,weft,0.2\n";
     let content = read(text.as_bytes()).unwrap();
     let read_or_told = content.results.iter().any(|(_, r)| r.parameter == Parameter::Hg5)
-        || told(&content, "R104").contains("2HG5");
+        || findings_of(&content, "R104").contains("2HG5");
     assert!(read_or_told, "{:?}", content.findings);
 }
 
@@ -152,7 +152,7 @@ fn deviations_below_a_mean_are_no_samples() {
     let content = read(text.as_bytes()).unwrap();
     let names: Vec<Option<&str>> = content.results.iter().map(|(name, _)| name.as_deref()).collect();
     assert_eq!(names, [Some("F1"), Some("F2")]);
-    assert!(told(&content, "R110").contains("\"V%\""));
+    assert!(findings_of(&content, "R110").contains("\"V%\""));
 }
 
 /// A blend is a name, and `s` above a mean is a sample.
@@ -190,15 +190,15 @@ fn rows_and_columns_that_lost_their_name_are_told() {
         ),
     ] {
         let content = read(text.as_bytes()).unwrap_or_else(|e| panic!("{text}: {e}"));
-        assert!(told(&content, "R104").contains(expected), "{text}: {:?}", content.findings);
+        assert!(findings_of(&content, "R104").contains(expected), "{text}: {:?}", content.findings);
     }
     let lost =
         "Fabric,B (gf.cm2/cm),,2HB (gf.cm/cm),\n,,weft,warp,weft\nP,0.1,0.2,0.3,0.3\nQ,0.3,0.4,0.3,0.3\n";
-    assert!(told(&read(lost.as_bytes()).unwrap(), "R136").starts_with("lab.csv:3:3"));
+    assert!(findings_of(&read(lost.as_bytes()).unwrap(), "R136").starts_with("lab.csv:3:3"));
     let rows: String = (0..9).map(|i| format!("{i}.5,{i}.25,{}.5\n", 2 * i)).collect();
     let curves = format!("Direction,warp\nK (1/cm),M (gf.cm/cm),Mm (gf.cm/cm),N\n{rows}");
     let curves = read(curves.as_bytes());
-    assert!(told(&curves.unwrap(), "R104").contains("Mm (gf.cm/cm)"));
+    assert!(findings_of(&curves.unwrap(), "R104").contains("Mm (gf.cm/cm)"));
     let shifted = "Fabric,B (gf.cm2/cm),RT (%)\nP,0.1,52\n0.2,51,\nR,0.3,50\n";
     let content = read(shifted.as_bytes()).unwrap();
     assert_eq!(content.failures.len(), 1, "{:?}", content.results);

@@ -106,8 +106,9 @@ fn published_tables_pass_through() {
                 "{name} {symbol}: {} {expected}",
                 found.mean
             );
-            let told = sheet.findings.iter().any(|f| f.code() == "K014" && f.message().starts_with(symbol));
-            assert_eq!(told, status == "inferred", "{name} {symbol}");
+            let is_inferred =
+                sheet.findings.iter().any(|f| f.code() == "K014" && f.message().starts_with(symbol));
+            assert_eq!(is_inferred, status == "inferred", "{name} {symbol}");
             cells += 1;
         }
         assert_eq!(sheet.values.len(), cells, "{name}");

@@ -539,7 +539,7 @@ fn a_nonlinear_case_tells_how_it_came_there() {
 /// `check -v` says how each file was understood, and what each dialect knows of one that was not.
 #[test]
 fn check_explains_what_it_inferred() {
-    let told = stdout(&run(&["-v", "check", "kesf_data/twill/twill_bending_warp.txt"]));
+    let shown = stdout(&run(&["-v", "check", "kesf_data/twill/twill_bending_warp.txt"]));
     for expected in [
         "twill_bending_warp.txt\n  encoding Shift_JIS: not UTF-8, and the byte pairs are Japanese\n",
         "delimiter '\\t', decimal mark '.': 1475 numbers so",
@@ -547,19 +547,19 @@ fn check_explains_what_it_inferred() {
         "maximum 2.5 1/cm (standard, not in the file)",
         "bending warp (stated in line 3), specimen 2",
     ] {
-        assert!(told.contains(expected), "{expected} is not in {told}");
+        assert!(shown.contains(expected), "{expected} is not in {shown}");
     }
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), "lab.csv", "direction,warp\nkappa (1/cm),bar\n0,0\n1,1\n2,2\n");
     let file = folder.path().join("lab.csv");
     let output = run(&["-v", "check", file.to_str().unwrap()]);
     assert_eq!(code(&output), 2);
-    let told = stdout(&output);
+    let shown = stdout(&output);
     assert!(
-        told.contains("a dialect file, to be saved as dialect.toml beside the data and completed"),
-        "{told}"
+        shown.contains("a dialect file, to be saved as dialect.toml beside the data and completed"),
+        "{shown}"
     );
-    assert!(told.contains("[columns]\n      curvature = [\"kappa\"]"), "{told}");
+    assert!(shown.contains("[columns]\n      curvature = [\"kappa\"]"), "{shown}");
     let document = json(&run(&["--json", "check", file.to_str().unwrap()]));
     assert!(document["inference"][0]["decisions"].as_array().unwrap().len() > 3);
     let examples = stdout(&run(&["-v", "list", "dialects"]));
@@ -585,12 +585,12 @@ fn a_sheet_shows_moduli_windows_and_statistics() {
 #[test]
 fn a_solution_says_how_it_was_found_and_at_what_cost() {
     let case = "cases/benchmark_clamped_orthotropic.toml";
-    let of = |solver: &str| {
+    let solved_by = |solver: &str| {
         let output = run(&["--json", "solve", "--solver", solver, case]);
         assert_eq!(code(&output), 0, "{}", stderr(&output));
         json(&output)["solutions"][0].clone()
     };
-    let (direct, iterated) = (of("direct"), of("iterative"));
+    let (direct, iterated) = (solved_by("direct"), solved_by("iterative"));
     let system = |s: &Value| s["solver"]["systems"][0].clone();
     assert_eq!(system(&direct)["path"], "multifrontal");
     assert!(system(&direct)["flops"].as_f64().unwrap() > 1e6 && system(&direct)["nnz_l"].is_u64());
@@ -689,14 +689,14 @@ fn a_run_hangs_quick_drapes() {
         let read = |name: &str| fs::read_to_string(out.join(name)).unwrap();
         (read("predictions.csv"), read("problems.csv"), stderr(&output), read("run.json"))
     };
-    let (predictions, problems, told, document) = hung("quick", &[]);
+    let (predictions, problems, notes, document) = hung("quick", &[]);
     assert!(predictions.contains("drape_coefficient") && problems.contains("S130"), "{problems}");
     assert!(!predictions.contains("petrak_m1,drape"), "{predictions}");
-    assert!(told.contains("quick drapes for 1 of 2 fabrics"), "{told}");
+    assert!(notes.contains("quick drapes for 1 of 2 fabrics"), "{notes}");
     assert!(document.contains("\"drape\": false") && document.contains("\"drapes\": \"auto\""), "{document}");
-    let (predictions, problems, told, _) = hung("never", &["--drape=never"]);
+    let (predictions, problems, notes, _) = hung("never", &["--drape=never"]);
     assert!(!predictions.contains("drape") && !problems.contains("S130"), "{predictions}");
-    assert!(!told.contains("drape"), "{told}");
+    assert!(!notes.contains("drape"), "{notes}");
     // A case that is named and finds no fabric at all is an error, quick or not.
     let empty = folder.path().join("empty");
     fs::create_dir(&empty).unwrap();

@@ -129,21 +129,21 @@ fn rod(weight: f64, [force, curvature]: [f64; 2], length: f64) -> Rod {
 /// Force and curvature at the clamp, and the length to where the rod lies flat on ground that is `height` lower.
 fn down_to_the_ground(weight: f64, height: f64) -> [f64; 3] {
     // Flat, and straight, at the height of the ground; the linear beam is the start.
-    let left = |[force, curvature, length]: [f64; 3]| {
+    let mismatch = |[force, curvature, length]: [f64; 3]| {
         let [angle, k, _, drop] = rod(weight, [force, curvature], length);
         Vector3::new(angle, k * length, (drop - height) / length)
     };
     let span = (72.0 * height / weight).powf(0.25);
     let mut x = [2.0 / 3.0 * weight * span, weight * span * span / 6.0, span];
     for _ in 0..60 {
-        let now = left(x);
+        let now = mismatch(x);
         if now.norm() < 1e-11 {
             return x;
         }
         let column = |i: usize| {
             let (mut up, mut down, h) = (x, x, 1e-6 * x[i]);
             (up[i], down[i]) = (x[i] + h, x[i] - h);
-            (left(up) - left(down)) / (2.0 * h)
+            (mismatch(up) - mismatch(down)) / (2.0 * h)
         };
         let step = Matrix3::from_columns(&[column(0), column(1), column(2)]).lu().solve(&now).unwrap();
         let part = (0.3 / (0..3).map(|i| (step[i] / x[i]).abs()).fold(0.0, f64::max)).min(1.0);
@@ -235,7 +235,7 @@ fn a_strip_is_pulled_over_a_drum() {
         let (plan, options, method) =
             (plan(&both, &Options::default()).unwrap(), Options::default(), Method::Newton(None));
         let flow = Method::Flow(Flow { perturbation: 0.0, ..Flow::default() });
-        let step = LoadStep { model: &both, moved: &[], settings: &settings, method: &flow };
+        let step = LoadStep { model: &both, prescribed: &[], settings: &settings, method: &flow };
         let (hung, carried) = continue_from(&Carried::rest(&both), &step, &plan, &options, go_on)
             .unwrap_or_else(|e| panic!("{e}"));
         let ends = model.mesh.set("right").unwrap().to_vec();
@@ -244,8 +244,8 @@ fn a_strip_is_pulled_over_a_drum() {
             "{cells}: hung in {} steps and {} iterations, ends at {sunk:.4}",
             hung.steps, hung.iterations
         );
-        let moved = [Support::at(ends, vec![(Dof::W, sunk - 0.03)])];
-        let step = LoadStep { model: &one, moved: &moved, settings: &settings, method: &method };
+        let prescribed = [Support::at(ends, vec![(Dof::W, sunk - 0.03)])];
+        let step = LoadStep { model: &one, prescribed: &prescribed, settings: &settings, method: &method };
         let (pulled, _) =
             continue_from(&carried, &step, &plan, &options, go_on).unwrap_or_else(|e| panic!("{e}"));
         let width = length / cells as f64;

@@ -38,7 +38,7 @@ fn random(rng: &mut Pcg64, size: f64) -> Vector3<f64> {
 }
 
 /// Corners and rotations moved by displacements and spatial spins.
-fn moved((x, r): &Nodes, step: &Vector24) -> Nodes {
+fn displaced((x, r): &Nodes, step: &Vector24) -> Nodes {
     let part = |i: usize| -> Vector3<f64> { step.fixed_rows::<3>(3 * i).into() };
     (
         [0, 1, 2, 3].map(|i| x[i] + part(2 * i)),
@@ -54,7 +54,7 @@ fn turned((x, r): &Nodes, q: &UnitQuaternion<f64>, shift: &Vector3<f64>) -> Node
 fn state(element: &Prepared, amplitude: f64, rng: &mut Pcg64) -> Nodes {
     let step = Vector24::from_fn(|_, _| rng.random_range(-amplitude..amplitude));
     let q = UnitQuaternion::from_scaled_axis(random(rng, 3.0));
-    turned(&moved(&rest(element), &step), &q, &random(rng, 5.0))
+    turned(&displaced(&rest(element), &step), &q, &random(rng, 5.0))
 }
 
 fn energy(reference: &Reference, k: &Matrix24, (x, r): &Nodes) -> f64 {
@@ -109,8 +109,8 @@ fn the_force_is_the_gradient_of_the_energy() {
             let f = force(&reference, &k, &nodes);
             for i in 0..24 {
                 let step = Vector24::ith(i, 1e-5);
-                let up = energy(&reference, &k, &moved(&nodes, &step));
-                let down = energy(&reference, &k, &moved(&nodes, &-step));
+                let up = energy(&reference, &k, &displaced(&nodes, &step));
+                let down = energy(&reference, &k, &displaced(&nodes, &-step));
                 let difference = (up - down) / 2e-5;
                 assert!((difference - f[i]).abs() < 1e-9 * f.norm(), "{amplitude}: {i}");
             }
@@ -122,7 +122,8 @@ fn difference_of_force(reference: &Reference, k: &Matrix24, nodes: &Nodes) -> Ma
     let mut tangent = Matrix24::zeros();
     for i in 0..24 {
         let step = Vector24::ith(i, 1e-5);
-        let change = force(reference, k, &moved(nodes, &step)) - force(reference, k, &moved(nodes, &-step));
+        let change =
+            force(reference, k, &displaced(nodes, &step)) - force(reference, k, &displaced(nodes, &-step));
         tangent.set_column(i, &(change / 2e-5));
     }
     tangent
@@ -156,7 +157,7 @@ fn the_rate_of_deformation_is_its_derivative() {
     let nodes = state(&element, 0.3, &mut rng);
     let step = Vector24::from_fn(|_, _| rng.random_range(-1e-5..1e-5));
     let at = |(x, r): Nodes| Motion::of(&reference, &x, &r).deformation;
-    let difference = 0.5 * (at(moved(&nodes, &step)) - at(moved(&nodes, &-step)));
+    let difference = 0.5 * (at(displaced(&nodes, &step)) - at(displaced(&nodes, &-step)));
     let rate = Motion::of(&reference, &nodes.0, &nodes.1).deformation_rate(&step);
     // Through the stiffness, which is blind to the translation that the rate keeps.
     assert!((k * (rate - difference)).norm() < 1e-9 * (k * rate).norm());

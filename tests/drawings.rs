@@ -72,9 +72,12 @@ fn squares_of_a_drawing_come_to_their_series() {
         let error = result.probes[0].value.u[2] / exact - 1.0;
         println!("square, {kind}: {} elements, {:.3} %", result.model.mesh.quads.len(), 100.0 * error);
         assert!(error.abs() < 0.01, "{kind}: {error}");
-        let told: Vec<String> = result.findings.iter().map(ToString::to_string).collect();
-        let left = told.iter().find(|f| f.contains("S154"));
-        assert!(left.is_some_and(|f| f.contains("square.dxf:") && f.contains("1 of TEXT")), "{told:?}");
+        let findings: Vec<String> = result.findings.iter().map(ToString::to_string).collect();
+        let left_out = findings.iter().find(|f| f.contains("S154"));
+        assert!(
+            left_out.is_some_and(|f| f.contains("square.dxf:") && f.contains("1 of TEXT")),
+            "{findings:?}"
+        );
     }
 }
 
@@ -100,7 +103,7 @@ fn large_rotations_take_a_drawn_sheet_too() {
 #[test]
 fn a_case_is_refused_where_a_key_has_no_meaning() {
     let good = "outline = \"disc.svg\"\ncell = \"6 mm\"";
-    for (sheet, more, line, told) in [
+    for (sheet, more, line, message) in [
         ("outline = \"disc.svg\"".into(), "", 15, "needs `cell`"),
         ("outline = \"disc.svg\"\ncell = \"0 mm\"".into(), "", 16, "a length above 0"),
         (format!("{good}\ncells = [3, 3]"), "", 17, "brings its own sizes"),
@@ -121,14 +124,15 @@ fn a_case_is_refused_where_a_key_has_no_meaning() {
         let text = pressed(&sheet, "clamped", "\"0 m\", \"0 m\"") + more;
         let error = Case::parse(Path::new("case.toml"), &text).unwrap_err().to_string();
         let at = if line > 0 { format!("case.toml:{line}:") } else { "case.toml:".into() };
-        assert!(error.contains(told) && error.starts_with(&at), "{sheet}: {error}");
+        assert!(error.contains(message) && error.starts_with(&at), "{sheet}: {error}");
     }
     // What only the drawing shows is told at its line, or at the drawing.
     let (_folder, path) = folder(&[("disc.svg", &DISC.replace("r=\"100\"", "r=\"-1\""))]);
-    for (sheet, told) in [(good, "disc.svg:2"), ("outline = \"none.svg\"\ncell = \"1 mm\"", "none.svg: ")] {
+    for (sheet, message) in [(good, "disc.svg:2"), ("outline = \"none.svg\"\ncell = \"1 mm\"", "none.svg: ")]
+    {
         let case = Case::parse(&path, &pressed(sheet, "clamped", "\"0 m\", \"0 m\"")).unwrap();
         let made = section(case.section().unwrap()).unwrap();
         let error = solve_case(&case, made, &Options::default()).map(|_| ()).unwrap_err().to_string();
-        assert!(error.contains("M021") && error.contains(told), "{error}");
+        assert!(error.contains("M021") && error.contains(message), "{error}");
     }
 }

@@ -333,8 +333,8 @@ fn distinct<'p>(programs: impl IntoIterator<Item = &'p &'static Program>) -> BTr
 fn newton_counts_once() {
     let all: Vec<&Program> = PROGRAMS.iter().collect();
     let distinct = distinct(&all);
-    let of = |target: &str| PROGRAMS.iter().find(|p| p.target == target).unwrap().engine();
-    assert_eq!(of("newton"), of("usd"));
+    let engine_of = |target: &str| PROGRAMS.iter().find(|p| p.target == target).unwrap().engine();
+    assert_eq!(engine_of("newton"), engine_of("usd"));
     assert!(distinct.len() < PROGRAMS.len() && distinct.len() >= 6, "{distinct:?}");
 }
 
@@ -402,15 +402,15 @@ fn hold(rows: &[Row]) {
     }
     for row in rows {
         let name = row.program.rsplit_once(' ').map_or(row.program.as_str(), |(name, _)| name);
-        let told = page.lines().find_map(|line| {
+        let stated = page.lines().find_map(|line| {
             let cells: Vec<&str> = line.split('|').map(str::trim).collect();
             let same = cells.len() == 7 && cells[1].starts_with(name) && cells[2] == row.problem;
             same.then(|| cells[5].trim_end_matches('%').trim().parse::<f64>().unwrap())
         });
-        let told = told.unwrap_or_else(|| panic!("{PAGE} has no line of {name}, {}", row.problem));
+        let stated = stated.unwrap_or_else(|| panic!("{PAGE} has no line of {name}, {}", row.problem));
         let found = 100.0 * row.error();
         // Another version or machine may move the last digits.
-        assert!((told - found).abs() <= 0.1 + 0.05 * found.abs(), "{PAGE} says {told} %: {}", row.line());
+        assert!((stated - found).abs() <= 0.1 + 0.05 * found.abs(), "{PAGE} says {stated} %: {}", row.line());
     }
 }
 
@@ -421,9 +421,9 @@ fn the_table_has_every_problem() {
     let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(PAGE)).unwrap();
     let (_, rest) = page.split_once(HEAD).unwrap();
     let lines = rest.lines().take_while(|line| !line.is_empty());
-    let told: Vec<&str> = lines.map(|line| line.split('|').nth(2).unwrap().trim()).collect();
+    let stated: Vec<&str> = lines.map(|line| line.split('|').nth(2).unwrap().trim()).collect();
     let asked: Vec<&str> = PROGRAMS.iter().flat_map(|program| program.problems).map(|p| p.0).collect();
-    assert_eq!(told, asked);
+    assert_eq!(stated, asked);
 }
 
 /// A file, and whether it is to be valid.
@@ -453,14 +453,14 @@ fn judge(schema: &str, files: &[Judged]) {
 fn shipped(target: &str) -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("kesf_data");
     let batch = instrument::read_fabrics(&[folder], &Default::default(), &|_| ());
-    let of = |measured| {
+    let card_of = |measured| {
         let sheet = characterise::characterise(measured, &Default::default());
         let made = constitutive::section(&sheet, &Default::default()).ok()?;
         let material =
             Material { sheet: &sheet, made: &made, stamp: Some("2026-01-02T03:04:05Z"), crimp: None };
         Some(card(named(target).unwrap(), &material).unwrap().text)
     };
-    let cards: Vec<String> = batch.fabrics.iter().filter_map(of).collect();
+    let cards: Vec<String> = batch.fabrics.iter().filter_map(card_of).collect();
     assert!(cards.len() > 3, "{}", cards.len());
     cards
 }

@@ -86,12 +86,12 @@ fn several_programs_are_given_every_shipped_fabric() {
         fs::read_dir("kesf_data").unwrap().filter(|e| e.as_ref().unwrap().path().is_dir()).collect();
     assert_eq!(document["files"].as_array().unwrap().len(), 3 * fabrics.len());
     let open = presets.join("satin.fabric.json");
-    let of = |input: &str| kesf(&["-q", "export", input, "--to", "abaqus"]).stdout;
+    let exported = |input: &str| kesf(&["-q", "export", input, "--to", "abaqus"]).stdout;
     let numbers = |card: Vec<u8>| {
         let card = String::from_utf8(card).unwrap();
         card.lines().filter(|l| !l.starts_with("**")).map(String::from).collect::<Vec<_>>()
     };
-    assert_eq!(numbers(of(text(&open))), numbers(of("kesf_data/satin")));
+    assert_eq!(numbers(exported(text(&open))), numbers(exported("kesf_data/satin")));
     let open: Value = serde_json::from_slice(&fs::read(&open).unwrap()).unwrap();
     let curves = open["curves"].as_array().unwrap();
     let files = open["sheet"]["inputs"].as_array().unwrap();
@@ -159,10 +159,10 @@ fn the_presets_of_a_release_have_an_index_of_stand_ins() {
     for ending in ["usda", "mjcf.xml", "fabric.json", "newton.json"] {
         assert!(presets.join(format!("satin.{ending}")).is_file(), "{ending}");
     }
-    let told = |fabric: &str, value: &str| {
+    let is_listed = |fabric: &str, value: &str| {
         index.lines().any(|l| l.starts_with(&format!("| {fabric} |")) && l.contains(&format!("| {value} |")))
     };
-    assert!(told("poplin", "torsional rigidity D66") && !told("poplin", "thickness"), "{index}");
+    assert!(is_listed("poplin", "torsional rigidity D66") && !is_listed("poplin", "thickness"), "{index}");
     assert!(index.contains("synthetic") && index.contains("published"), "{index}");
 }
 
@@ -189,8 +189,8 @@ fn u3m_files_are_read_back() {
     let read = section(text(&card("browzwear", "json")));
     assert_eq!(read["fabric"], "poplin");
     let strip = |s: &Value, d: &str, i: usize| {
-        let of = |i: usize, j: usize| s[d][i][j].as_f64().unwrap();
-        of(i, i) - of(0, 1) * of(0, 1) / of(1 - i, 1 - i)
+        let entry = |i: usize, j: usize| s[d][i][j].as_f64().unwrap();
+        entry(i, i) - entry(0, 1) * entry(0, 1) / entry(1 - i, 1 - i)
     };
     for i in [0, 1] {
         // B of the file is that of a strip; D11 is B, as there is no coupling in bending.

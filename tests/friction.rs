@@ -112,8 +112,8 @@ impl Element {
         let mut potential = 0.5 * (d.dot(&(linear * d)) + mean);
         let (mut stresses, mut tangents): (Vec<Strains>, Vec<Strains>) = (Vec::new(), Vec::new());
         for ((e, area), from) in self.cells.strains(d, strain.excess).zip(self.cells.areas()).zip(from) {
-            let of = |i: usize| law.channels[i].as_ref().unwrap().respond(law.mode, &from[i], e[i]);
-            let r: [_; 6] = std::array::from_fn(of);
+            let response = |i: usize| law.channels[i].as_ref().unwrap().respond(law.mode, &from[i], e[i]);
+            let r: [_; 6] = std::array::from_fn(response);
             potential += area * r.iter().map(|r| r.energy + r.dissipation).sum::<f64>();
             resultant += Vector3::from_fn(|i, _| r[i].stress) * (area / self.yarns.area());
             stresses.push(r.map(|r| r.stress));
@@ -144,7 +144,7 @@ fn force_and_tangent_are_derivatives_of_the_potential() {
     rest_of_law.fill_diagonal(0.0);
     let cells = element.cellwise(law.beside(&section()));
     let element = Element { cells, yarns: element.yarns(), rest: rest_of_law };
-    let moved = |step: &Vector24| {
+    let displaced = |step: &Vector24| {
         let part = |i: usize| -> Vector3<f64> { step.fixed_rows::<3>(3 * i).into() };
         let turn = |i: usize| UnitQuaternion::from_scaled_axis(part(2 * i + 1));
         ([0, 1, 2, 3].map(|i| rest[i] + 0.01 * part(2 * i)), [0, 1, 2, 3].map(turn))
@@ -156,7 +156,7 @@ fn force_and_tangent_are_derivatives_of_the_potential() {
         let mut u = Vector24::zeros();
         for _ in 0..10 {
             u += Vector24::from_fn(|_, _| rng.random_range(-0.02..0.02));
-            let (x, r) = moved(&u);
+            let (x, r) = displaced(&u);
             let d = Motion::of(&reference, &x, &r).deformation;
             let excess = YarnStrain::of(&element.yarns.gradient(&d)).excess;
             for (e, states) in element.cells.strains(&d, excess).zip(&mut memory) {
@@ -168,7 +168,7 @@ fn force_and_tangent_are_derivatives_of_the_potential() {
         u += Vector24::from_fn(|_, _| rng.random_range(-0.02..0.02));
         // Spins act on the turned nodes, scaled lengths on the places.
         let spun = |v: &Vector24| {
-            let (mut x, mut r) = moved(&u);
+            let (mut x, mut r) = displaced(&u);
             for i in 0..4 {
                 let part = |at: usize| -> Vector3<f64> { v.fixed_rows::<3>(at).into() };
                 x[i] += 0.01 * part(6 * i);

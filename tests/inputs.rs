@@ -21,7 +21,7 @@ fn run_in(folder: &Path, arguments: &[&str], stdin: &str) -> Output {
     child.wait_with_output().unwrap()
 }
 
-fn told(output: &Output) -> (i32, String) {
+fn status_and_errors(output: &Output) -> (i32, String) {
     (output.status.code().unwrap(), String::from_utf8_lossy(&output.stderr).into_owned())
 }
 
@@ -72,7 +72,7 @@ fn several_files_do_not_go_to_standard_output() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("c.toml"), case(&format!("{DATA}/poplin"), "")).unwrap();
     for command in ["solve", "run"] {
-        let (code, text) = told(&run_in(folder.path(), &[command, "c.toml", "-o", "-"], ""));
+        let (code, text) = status_and_errors(&run_in(folder.path(), &[command, "c.toml", "-o", "-"], ""));
         assert!(code == 2 && text.contains("O050"), "{command}: {text}");
     }
     assert!(!folder.path().join("-").exists());
@@ -98,7 +98,7 @@ fn a_check_that_fails_and_a_set_that_is_missing_are_told_with_their_line() {
         ("value = \"1e-6 Pa\"\n", "", "c.toml:11:1: S002 missing field `value`"),
     ] {
         fs::write(here.join("c.toml"), (case(&fabric, "") + check).replace(from, to)).unwrap();
-        let (code, text) = told(&run_in(here, &["solve", "c.toml"], ""));
+        let (code, text) = status_and_errors(&run_in(here, &["solve", "c.toml"], ""));
         assert!(code == 2 && text.contains(expected), "{to}: {text}");
     }
 }
@@ -110,17 +110,18 @@ fn the_fabric_of_a_case_that_is_nowhere_or_twice() {
     fs::create_dir(here.join("cases")).unwrap();
     fs::write(here.join("cases/c.toml"), case("cloth", "")).unwrap();
     for command in ["solve", "check"] {
-        let (code, text) = told(&run_in(here, &[command, "cases/c.toml"], ""));
+        let (code, text) = status_and_errors(&run_in(here, &[command, "cases/c.toml"], ""));
         assert!(
             code > 0 && text.starts_with("cases/c.toml:2:10: O055") && text.lines().count() == 1,
             "{text}"
         );
     }
     copy("petrak_m1", &here.join("cases/cloth"));
-    let (code, text) = told(&run_in(here, &["solve", "cases/c.toml"], ""));
+    let (code, text) = status_and_errors(&run_in(here, &["solve", "cases/c.toml"], ""));
     assert!(code == 0 && !text.contains("O060"), "{text}");
     copy("petrak_m2", &here.join("cloth"));
-    let (code, text) = told(&run_in(here, &["solve", "cases/c.toml", &format!("{DATA}/twill")], ""));
+    let (code, text) =
+        status_and_errors(&run_in(here, &["solve", "cases/c.toml", &format!("{DATA}/twill")], ""));
     assert!(code == 0 && text.contains("cases/c.toml:2:10: O060"), "{text}");
     assert!(
         text.contains("not used, as every case names its own fabric or has a [section]: twill"),
@@ -141,7 +142,8 @@ fn the_nodes_inside_a_radius_are_a_set() {
     let results = &document["solutions"][0]["results"];
     assert_eq!(results["probes"]["centre"]["u"][2].as_f64(), Some(0.0));
     assert!(results["w_max"]["value"].as_f64().unwrap() > 0.0);
-    let (code, text) = told(&run_in(here, &["solve", "-"], &held.replace("\"5 cm\"", "\"-1 cm\"")));
+    let (code, text) =
+        status_and_errors(&run_in(here, &["solve", "-"], &held.replace("\"5 cm\"", "\"-1 cm\"")));
     assert!(code == 2 && text.contains("S003"), "{text}");
 }
 
@@ -179,7 +181,7 @@ fn a_name_that_is_no_utf_8_stops_nothing() {
         &["characterise", "lab", "--json"],
         &["export", "lab", "--to", "u3m", "-o", "cards"],
     ] {
-        let (code, text) = told(&run_in(here, arguments, ""));
+        let (code, text) = status_and_errors(&run_in(here, arguments, ""));
         assert_eq!(code, 0, "{arguments:?}: {text}");
     }
     assert!(here.join("out/index.html").is_file());

@@ -64,8 +64,9 @@ fn check(model: &Model, coupled: bool, what: &str) -> usize {
     assert!(direct.systems.iter().all(|s| s.history.is_empty() && s.counts.flops > 0.0));
     assert!(iterated.residual <= 1e-8, "{what}: residual {:.1e}", iterated.residual);
     for from in [0, 3] {
-        let of = |u: &[f64]| u.chunks_exact(6).flat_map(|n| n[from..from + 3].to_vec()).collect::<Vec<_>>();
-        let (d, i) = (of(&direct.displacement), of(&iterated.displacement));
+        let components =
+            |u: &[f64]| u.chunks_exact(6).flat_map(|n| n[from..from + 3].to_vec()).collect::<Vec<_>>();
+        let (d, i) = (components(&direct.displacement), components(&iterated.displacement));
         let scale = d.iter().fold(0.0f64, |m, v| m.max(v.abs()));
         let error = d.iter().zip(&i).fold(0.0f64, |m, (d, i)| m.max((d - i).abs())) / scale;
         assert!(error <= 1e-8, "{what}: dofs {from} on differ by {error:.1e}");

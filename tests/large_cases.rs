@@ -200,14 +200,14 @@ fn loads_below_rounding_are_told() {
     let text = include_str!("../cases/self_weight_clamped.toml");
     let (text, _) = text.split_once("[[checks]]").unwrap();
     let text = text.replace("10000 N/m", "1e8 N/m").replace("6000 N/m", "6e7 N/m");
-    let of = |pressure: &str| {
+    let solved_under = |pressure: &str| {
         let text = text.replace("\"gravity\"", &format!("\"pressure\"\nvalue = \"{pressure}\""));
         solved(&Case::parse(Path::new("stiff.toml"), &text).unwrap())
     };
-    let tiny = of("1e-8 Pa");
+    let tiny = solved_under("1e-8 Pa");
     assert_eq!(codes(&tiny), ["S127"], "{:?}", tiny.path);
     assert!(tiny.path.unwrap().steps.last().unwrap().residual > 1e-6);
-    assert_eq!(codes(&of("0.147 Pa")), [""; 0]);
+    assert_eq!(codes(&solved_under("0.147 Pa")), [""; 0]);
 }
 
 /// A linear answer is that of a sheet that cannot buckle: beyond Euler's load, π² B / 4 L² of the clamped strip, that is

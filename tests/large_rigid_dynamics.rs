@@ -63,8 +63,8 @@ fn settings(duration: f64, steps: usize) -> Dynamics {
 fn run(model: &Model, node: usize, dynamics: &Dynamics) -> (Point3<f64>, f64, usize) {
     let (mut place, mut off, mut work, mut instants) = (Point3::origin(), 0.0f64, 0.0f64, 0);
     integrate(model, dynamics, &Options::default(), |at| {
-        let moved = Vector3::from_column_slice(&at.displacement[6 * node..][..3]);
-        place = model.mesh.nodes[node] + moved;
+        let displacement = Vector3::from_column_slice(&at.displacement[6 * node..][..3]);
+        place = model.mesh.nodes[node] + displacement;
         off = off.max(at.energy.imbalance().abs());
         work = work.max(at.energy.work.abs());
         instants += 1;
@@ -82,12 +82,12 @@ fn a_rigid_plate_on_a_hinge_is_a_compound_pendulum() {
     let (mut model, lead) = with_body(mesh, 0.0, 8e-6, G, Vec::new());
     model.supports.push(Support::fix(&[lead], &[Dof::U, Dof::V, Dof::W, Dof::ThetaX, Dof::ThetaZ]));
     let duration = 5.0 * 1.854_074_677_301_37 / (1.5 * G / length).sqrt();
-    let of = |steps| {
+    let errors = |steps| {
         let (place, off, instants) = run(&model, end, &settings(duration, steps));
         assert_eq!(instants, steps + 1, "no step was cut");
         (place.x / length, off)
     };
-    let (medium, fine) = (of(200), of(400));
+    let (medium, fine) = (errors(200), errors(400));
     println!("{medium:?} {fine:?}");
     let slope = (medium.0 / fine.0).abs().log2();
     assert!((slope - 2.0).abs() < 0.1, "slope {slope}");
@@ -137,12 +137,12 @@ fn a_plate_on_a_ball_joint_tumbles_as_euler_says() {
     let (mut model, lead) = with_body(mesh, 0.0, 8e-6, G, Vec::new());
     model.supports.push(Support::fix(&[lead], &[Dof::U, Dof::V, Dof::W]));
     let exact = lamina(a, b, duration);
-    let of = |steps| {
+    let errors = |steps| {
         let (place, off, instants) = run(&model, far, &settings(duration, steps));
         assert_eq!(instants, steps + 1, "no step was cut");
         ((place - exact).norm() / a.hypot(b), off)
     };
-    let (medium, fine) = (of(400), of(800));
+    let (medium, fine) = (errors(400), errors(800));
     println!("{medium:?} {fine:?}");
     let slope = (medium.0 / fine.0).log2();
     assert!((slope - 2.0).abs() < 0.1, "slope {slope}");
@@ -206,8 +206,8 @@ fn hanging_plate(g: f64) -> Model {
 fn a_plate_on_a_falling_sheet_keeps_its_energy() {
     let model = hanging_plate(G);
     let end = model.mesh.set("right").unwrap()[0] as usize;
-    let of = |steps| run(&model, end, &settings(0.3, steps));
-    let (coarse, fine) = (of(300), of(600));
+    let swing = |steps| run(&model, end, &settings(0.3, steps));
+    let (coarse, fine) = (swing(300), swing(600));
     println!("{coarse:?} {fine:?}");
     assert!(fine.0.z < -0.1, "{fine:?}");
     assert!(coarse.1 < 0.05 && fine.1 < 0.02, "{coarse:?} {fine:?}");

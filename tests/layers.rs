@@ -28,9 +28,9 @@ const B: f64 = 1e-5;
 /// Part of the length that the clamps are brought nearer by.
 const SHORTENING: f64 = 0.9;
 
-/// A strip along x in cylindrical bending with clamped ends, of which the left one is moved by `way`; a little weight tells it
+/// A strip along x in cylindrical bending with clamped ends, of which the left one is moved by `shift`; a little weight tells it
 /// where to go.
-fn strip(length: f64, cells: usize, way: f64, t: f64) -> Model {
+fn strip(length: f64, cells: usize, shift: f64, t: f64) -> Model {
     let plane = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.5);
     let section = ShellSection {
         d_m: plane * (12.0 * B / (t * t)),
@@ -45,7 +45,7 @@ fn strip(length: f64, cells: usize, way: f64, t: f64) -> Model {
         supports: vec![
             Support::fix(mesh.set("all").unwrap(), &[Dof::V, Dof::ThetaX, Dof::ThetaZ]),
             Support::fix(&left, &[Dof::W, Dof::ThetaY]),
-            Support::at(left, vec![(Dof::U, way)]),
+            Support::at(left, vec![(Dof::U, shift)]),
             Support::fix(&right, &[Dof::U, Dof::ThetaY]),
         ],
         loads: vec![Load::Gravity(Vector3::new(0.0, 0.0, -1.0))],

@@ -198,21 +198,21 @@ fn result_tables_wide_and_long() {
 fn fast_values_give_bending_and_shear_rigidity() {
     let content =
         read("fast.csv", "fabric,W (g/m²),C-1 (mm),C-2 (mm),EB5 (%),E100-1 (%)\nserge,200,18,16,3,4.1\n");
-    let of = |p, d| {
+    let value_of = |p, d| {
         content.results.iter().find(|(_, r)| r.parameter == p && r.direction == d).map(|(_, r)| r).unwrap()
     };
     assert_relative_eq!(
-        of(Parameter::B, Some(Direction::Warp)).mean,
+        value_of(Parameter::B, Some(Direction::Warp)).mean,
         200.0 * 5832.0 * 9.81e-12,
         max_relative = 1e-12
     );
     assert_relative_eq!(
-        of(Parameter::B, Some(Direction::Weft)).mean,
+        value_of(Parameter::B, Some(Direction::Weft)).mean,
         200.0 * 4096.0 * 9.81e-12,
         max_relative = 1e-12
     );
-    assert_relative_eq!(of(Parameter::G, None).mean, 41.0, max_relative = 1e-12);
-    assert!(of(Parameter::G, None).inferred);
+    assert_relative_eq!(value_of(Parameter::G, None).mean, 41.0, max_relative = 1e-12);
+    assert!(value_of(Parameter::G, None).inferred);
     assert!(content.findings.iter().any(|f| f.code() == "R104" && f.message().contains("E100-1")));
 }
 
@@ -274,14 +274,22 @@ fn fast_values_may_stand_in_rows() {
     let columns = "property;unit;warp;weft\nbending length;mm;18;16\nEB5;%;3;-\nW;g/m²;200;\n";
     for text in [rows, columns] {
         let content = read("fast.csv", text);
-        let of = |p, d| {
+        let mean_of = |p, d| {
             let same = |r: &&kesf::instrument::ResultValue| r.parameter == p && r.direction == d;
             content.results.iter().map(|(_, r)| r).find(same).unwrap().mean
         };
         let expected = |c: f64| 200.0 * c.powi(3) * 9.81e-12;
-        assert_relative_eq!(of(Parameter::B, Some(Direction::Warp)), expected(18.0), max_relative = 1e-12);
-        assert_relative_eq!(of(Parameter::B, Some(Direction::Weft)), expected(16.0), max_relative = 1e-12);
-        assert_relative_eq!(of(Parameter::G, None), 41.0, max_relative = 1e-12);
+        assert_relative_eq!(
+            mean_of(Parameter::B, Some(Direction::Warp)),
+            expected(18.0),
+            max_relative = 1e-12
+        );
+        assert_relative_eq!(
+            mean_of(Parameter::B, Some(Direction::Weft)),
+            expected(16.0),
+            max_relative = 1e-12
+        );
+        assert_relative_eq!(mean_of(Parameter::G, None), 41.0, max_relative = 1e-12);
     }
     // Without a unit nothing is guessed.
     assert_eq!(code("parameter,unit,value\nW,g/m²,200\nC-1,,18\n"), "R008");
@@ -291,7 +299,7 @@ fn fast_values_may_stand_in_rows() {
 #[test]
 fn inference_is_told() {
     let text = "direction;warp\nK (1/cm);M (gf·cm/cm);what\n0,0;0,0;a\n1,5;0,1;b\n2,5;0,2;c\n";
-    let told = read("a.csv", text).inference.join("\n");
+    let inference = read("a.csv", text).inference.join("\n");
     for expected in [
         "encoding UTF-8: the bytes are valid UTF-8",
         "delimiter ';', decimal mark ',': 6 numbers so",
@@ -301,7 +309,7 @@ fn inference_is_told() {
         "\"M\" (gf·cm/cm) times 0.00980665 is N",
         "bending warp (stated in line 1), specimen not numbered of sample \"a\": 3 points in lines 3 to 5",
     ] {
-        assert!(told.contains(expected), "{expected} is not in {told}");
+        assert!(inference.contains(expected), "{expected} is not in {inference}");
     }
     let unknown = read_as("a.csv", "sample,x\nfoo (1/cm),moment (gf)\n0,0\n1,1\n", &ReadSettings::default())
         .unwrap_err();
@@ -310,7 +318,7 @@ fn inference_is_told() {
     assert!(unknown.to_string().contains("foo"), "{unknown}");
     assert!(!unknown.hint().is_empty());
     // The error carries what was decided before it, and what a dialect file could say.
-    let told = unknown.about.inference.join("\n");
+    let inference = unknown.about.inference.join("\n");
     for expected in [
         "encoding UTF-8",
         "headings foo (1/cm) | moment (gf)",
@@ -318,7 +326,7 @@ fn inference_is_told() {
         "[columns]",
         "curvature = [\"foo\"]",
     ] {
-        assert!(told.contains(expected), "{expected} is not in {told}");
+        assert!(inference.contains(expected), "{expected} is not in {inference}");
     }
 }
 
@@ -704,7 +712,7 @@ const B: &str = "B (gf·cm²/cm)";
 /// Rows that are averaged although a column tells them apart: states, customers, remarks, but not who measured when.
 #[test]
 fn columns_that_tell_repeats_apart_are_told() {
-    for (heads, rows, told) in [
+    for (heads, rows, is_reported) in [
         ("Fabric,Finish,No.", "A,none,1,0.1\nA,none,2,0.2\nA,soft,3,0.3\nA,soft,4,0.4\n", true),
         ("Fabric,Washes", "A,0,0.1\nA,5,0.2\nA,10,0.3\n", true),
         ("Customer,Article,No.", "X,A,1,0.1\nX,A,2,0.2\nY,A,3,0.3\n", true),
@@ -714,7 +722,12 @@ fn columns_that_tell_repeats_apart_are_told() {
         ("Fabric,Finish", "A,none,0.1\nC,soft,0.2\nD,soft,0.3\n", false),
     ] {
         let content = read("t.csv", &format!("{heads},{B}\n{rows}"));
-        assert_eq!(messages(&content, "R126").len(), usize::from(told), "{rows}: {:?}", content.findings);
+        assert_eq!(
+            messages(&content, "R126").len(),
+            usize::from(is_reported),
+            "{rows}: {:?}",
+            content.findings
+        );
     }
 }
 
@@ -722,13 +735,13 @@ fn columns_that_tell_repeats_apart_are_told() {
 #[test]
 fn what_is_said_beside_a_direction_is_not_lost() {
     let with = |direction: &str| format!("Direction,{B}\n{direction},0.1\nweft,0.2\n");
-    for (text, told) in [("warp yarns", 0), ("along the warp", 0), ("Warp 1", 0), ("warp before washing", 1)]
+    for (text, count) in [("warp yarns", 0), ("along the warp", 0), ("Warp 1", 0), ("warp before washing", 1)]
     {
         let content = read("t.csv", &with(text));
         let mut found = of_b(&content);
         found.sort_by(|a, b| a.2.total_cmp(&b.2));
         assert_eq!(found[0], (None, Some(Direction::Warp), 0.1, 1), "{text}");
-        assert_eq!(messages(&content, "R125").len(), told, "{text}: {:?}", content.findings);
+        assert_eq!(messages(&content, "R125").len(), count, "{text}: {:?}", content.findings);
     }
     for text in ["perpendicular to warp", "not warp", "90° to warp", "senkrecht zur Kette", "垂直于经向"]
     {

@@ -67,8 +67,8 @@ fn take(steps: &[(&Model, Vec<Support>, Method)], settings: &Settings) -> Vec<So
     let plan = plan(steps[0].0, &options).unwrap();
     let mut carried = Carried::rest(steps[0].0);
     let mut ends = Vec::new();
-    for (model, moved, method) in steps {
-        let step = LoadStep { model, moved, settings, method };
+    for (model, prescribed, method) in steps {
+        let step = LoadStep { model, prescribed, settings, method };
         let (end, next) =
             continue_from(&carried, &step, &plan, &options, |_| ControlFlow::Continue(())).unwrap();
         assert_eq!(end.state.factor, 1.0);

@@ -68,8 +68,9 @@ fn run(model: &Model, settings: &Settings) -> Solution {
 /// Displacement of the middle of the free end.
 fn tip(model: &Model, solution: &Solution) -> Vector3<f64> {
     let nodes = model.mesh.set("right").unwrap();
-    let moved = nodes.iter().map(|n| solution.state.position[*n as usize] - model.mesh.nodes[*n as usize]);
-    moved.sum::<Vector3<f64>>() / nodes.len() as f64
+    let displacements =
+        nodes.iter().map(|n| solution.state.position[*n as usize] - model.mesh.nodes[*n as usize]);
+    displacements.sum::<Vector3<f64>>() / nodes.len() as f64
 }
 
 #[test]

@@ -62,12 +62,12 @@ fn off(turn: &Rotation3<f64>, turned: &[f64], along: &[f64]) -> f64 {
     let vectors = |u: &[f64], at: usize| -> Vec<Vector3<f64>> {
         u.chunks_exact(6).map(|n| Vector3::from_column_slice(&n[at..at + 3])).collect()
     };
-    let of = |at: usize| {
+    let deviation = |at: usize| {
         let (a, b) = (vectors(turned, at), vectors(along, at));
         let largest = b.iter().map(Vector3::norm).fold(0.0, f64::max);
         a.iter().zip(&b).map(|(a, b)| (turn.inverse() * a - b).norm()).fold(0.0, f64::max) / largest
     };
-    of(0).max(of(3))
+    deviation(0).max(deviation(3))
 }
 
 #[test]

@@ -92,7 +92,7 @@ fn any_number_of_shards_gives_the_same_bytes_and_they_are_those_of_a_run() {
     done(&[&["run"], &inputs()[..], &["--no-charts", "-o", &run]].concat());
     let merged = done(&["merge", &text(&at("7"))]).stdout;
     let written = |name: &str| fs::read(at("run").join(name)).unwrap();
-    let of = |predicted: bool, columns: &[&str]| -> Vec<Vec<String>> {
+    let rows_of = |predicted: bool, columns: &[&str]| -> Vec<Vec<String>> {
         let rows = cells(&merged, &[&["case"], columns].concat());
         let mut rows: Vec<_> =
             rows.into_iter().filter(|row| row[0].is_empty() != predicted).map(|r| r[1..].to_vec()).collect();
@@ -105,7 +105,7 @@ fn any_number_of_shards_gives_the_same_bytes_and_they_are_those_of_a_run() {
     );
     parameters.sort();
     assert_eq!(
-        of(false, &["fabric", "quantity", "direction", "value", "unit", "sd", "n", "status"]),
+        rows_of(false, &["fabric", "quantity", "direction", "value", "unit", "sd", "n", "status"]),
         parameters
     );
     let columns =
@@ -113,7 +113,7 @@ fn any_number_of_shards_gives_the_same_bytes_and_they_are_those_of_a_run() {
     let mut predictions = cells(&written("predictions.csv"), &columns);
     predictions.sort();
     assert_eq!(
-        of(true, &["fabric", "case", "quantity", "value", "unit", "measured", "low", "high"]),
+        rows_of(true, &["fabric", "case", "quantity", "value", "unit", "measured", "low", "high"]),
         predictions
     );
     let columns = ["fabric", "code", "place", "message"];

@@ -168,16 +168,19 @@ fn the_shear_force_of_every_cell_is_that_on_the_edge() {
 /// A moment about the normal that jumps acts on rotations without mass: the finding says that energies are missing.
 #[test]
 fn energies_that_do_not_add_up_are_told() {
-    let of = |load: &str, direction: &str| {
+    let findings_under = |load: &str, direction: &str| {
         let rest = format!(
             "[[supports]]\nset = \"left\"\nkind = \"clamped\"\n[[loads]]\n{load}\ndirection = {direction}\n\
              [analysis]\nkind = \"newmark\"\nduration = \"2 ms\"\nstep = \"0.02 ms\"\n"
         );
         solved(&case(0.3, [0.4, 0.1], [8, 2], &rest)).unwrap().findings
     };
-    let findings = of("kind = \"edge_moment\"\nset = \"right\"\nvalue = \"1e-5 N\"", "[0, 0, 1]");
+    let findings = findings_under("kind = \"edge_moment\"\nset = \"right\"\nvalue = \"1e-5 N\"", "[0, 0, 1]");
     assert!(findings.iter().any(|f| f.code() == "S110"), "{findings:?}");
-    assert!(of("kind = \"edge_force\"\nset = \"right\"\nvalue = \"1e-9 N/m\"", "[0, 0, 1]").is_empty());
+    assert!(
+        findings_under("kind = \"edge_force\"\nset = \"right\"\nvalue = \"1e-9 N/m\"", "[0, 0, 1]")
+            .is_empty()
+    );
 }
 
 /// A strip that is pulled in its plane moves along x, and its history says so.
@@ -189,9 +192,9 @@ fn the_history_of_a_probe_has_all_its_displacements() {
     let result = solved(&case(0.0, [0.4, 0.1], [8, 2], rest)).unwrap();
     assert!(result.reactions().is_none());
     let history = result.history.unwrap();
-    let moved = &history.probe_displacements[0];
-    assert!(moved.len() == history.time.len() && history.probes[0].iter().all(|w| *w == 0.0));
-    let largest = moved.iter().fold(0.0f64, |m, u| m.max(u[0]));
+    let displacements = &history.probe_displacements[0];
+    assert!(displacements.len() == history.time.len() && history.probes[0].iter().all(|w| *w == 0.0));
+    let largest = displacements.iter().fold(0.0f64, |m, u| m.max(u[0]));
     // A bar swings to twice its static extension, q L / D_m.
     let exact = 2.0 * 0.4 / 12e6;
     assert!((largest / exact - 1.0).abs() < 0.1, "{largest:e} {exact:e}");

@@ -37,11 +37,11 @@ fn stiffness(corners: &[Point3<f64>; 4], warp: &Vector3<f64>, formulation: Formu
 
 /// A convex quad: a rectangle whose corners are moved by up to a fifth of its sides, and out of its plane.
 fn quad() -> impl Strategy<Value = [Point3<f64>; 4]> {
-    (1.0..4.0f64, prop::array::uniform12(-0.2..0.2f64)).prop_map(|(side, moved)| {
+    (1.0..4.0f64, prop::array::uniform12(-0.2..0.2f64)).prop_map(|(side, offsets)| {
         let unit = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         std::array::from_fn(|i| {
             let [x, y] = unit[i];
-            Point3::new(side * (x + moved[3 * i]), y + moved[3 * i + 1], 0.3 * moved[3 * i + 2])
+            Point3::new(side * (x + offsets[3 * i]), y + offsets[3 * i + 1], 0.3 * offsets[3 * i + 2])
         })
     })
 }
@@ -101,9 +101,9 @@ proptest! {
         let cells = [1, 2, 3, 4, 9].map(|nc| formulation(nc, drilling));
         for f in cells.into_iter().chain([fourth_order(drilling)]) {
             let plain = stiffness(&corners, &warp, f);
-            let moved = stiffness(&there, &(turn * warp), f);
+            let turned = stiffness(&there, &(turn * warp), f);
             let t = blocks(*turn.matrix(), *turn.matrix());
-            assert_equal(&moved, &(t * plain * t.transpose()))?;
+            assert_equal(&turned, &(t * plain * t.transpose()))?;
         }
     }
 

@@ -185,15 +185,15 @@ fn a_bad_fabric_file_names_its_fabric() {
             ("b/b_warp_FB2_1.csv", CURVE),
         ],
     );
-    let of = |inputs: &[PathBuf]| -> Vec<_> {
+    let failures_of = |inputs: &[PathBuf]| -> Vec<_> {
         let batch = read_fabrics(inputs, &ReadSettings::default(), &|_: &Path| ());
         assert!(batch.fabrics.is_empty());
         batch.failures.iter().map(|e| (e.code(), e.about.fabric.clone().unwrap_or_default())).collect()
     };
-    assert_eq!(of(&[root.to_path_buf()]), [("R019", "a".to_string()), ("R020", "b".to_string())]);
+    assert_eq!(failures_of(&[root.to_path_buf()]), [("R019", "a".to_string()), ("R020", "b".to_string())]);
     // Named directly, and told once.
     let file = root.join("a/a_warp_FB2_1.csv");
-    assert_eq!(of(&[file.clone(), file]), [("R019", "a".to_string())]);
+    assert_eq!(failures_of(&[file.clone(), file]), [("R019", "a".to_string())]);
 }
 
 /// Files that are named belong to the fabric of their folder, and those of one folder are one fabric.

@@ -11,7 +11,7 @@ use rust_xlsxwriter::{Format, Workbook};
 
 #[path = "common/content.rs"]
 mod content;
-use content::{told, value};
+use content::{findings_of, value};
 
 const WARP: Option<Direction> = Some(Direction::Warp);
 const WEFT: Option<Direction> = Some(Direction::Weft);
@@ -81,8 +81,8 @@ fn units_of_number_formats_are_units_of_their_cells() {
             assert_relative_eq!(value(&content, Parameter::Emt, WARP), 0.042, max_relative = 1e-12);
             assert_relative_eq!(value(&content, Parameter::Emt, WEFT), 0.071, max_relative = 1e-12);
             assert_relative_eq!(value(&content, Parameter::T0, None), 0.31e-3, max_relative = 1e-12);
-            let told = told(&content, "R134");
-            assert!(told.contains("\"mm\" in cell E2 of sheet \"results\""), "{told}");
+            let finding = findings_of(&content, "R134");
+            assert!(finding.contains("\"mm\" in cell E2 of sheet \"results\""), "{finding}");
         }
     }
 }
@@ -142,7 +142,7 @@ fn an_old_workbook_shows_the_same() {
     assert_relative_eq!(value(&content, Parameter::B, WEFT), 0.5 * TENTH, max_relative = 1e-12);
     assert_relative_eq!(value(&content, Parameter::Emt, WARP), 0.042, max_relative = 1e-12);
     assert_relative_eq!(value(&content, Parameter::Emt, WEFT), 0.071, max_relative = 1e-12);
-    let hidden = told(&content, "R113");
+    let hidden = findings_of(&content, "R113");
     for what in ["row 3", "column 6", "cells C5, D5, struck out"] {
         assert!(hidden.contains(what), "{hidden}");
     }
@@ -164,21 +164,21 @@ fn sheets_that_are_named_by_letters_are_of_these_directions() {
         assert_relative_eq!(value(&content, Parameter::B, WARP), TENTH, max_relative = 1e-12);
         assert_relative_eq!(value(&content, Parameter::B, WEFT), 2.0 * TENTH, max_relative = 1e-12);
         assert!(
-            told(&content, "R133").contains(&format!("{warp:?}, {weft:?}")),
+            findings_of(&content, "R133").contains(&format!("{warp:?}, {weft:?}")),
             "{}",
-            told(&content, "R133")
+            findings_of(&content, "R133")
         );
     }
     let curve: Vec<_> = (0..9).map(|i| vec![Number(f64::from(i)), Number(0.1 * f64::from(i))]).collect();
     let record = |name| (name, [vec![vec![Text("K (1/cm)"), Text("M (gf·cm/cm)")]], curve.clone()].concat());
     let content = read("a.xlsx", &book(&[record("K"), record("S")])).unwrap();
     assert_eq!(content.measurements.iter().map(|m| m.direction).collect::<Vec<_>>(), [WARP, WEFT]);
-    assert!(told(&content, "R105").is_empty());
+    assert!(findings_of(&content, "R105").is_empty());
     // Without its partner a letter is a name; so are numbers and letters of two languages.
     for (one, other) in [("L", "M"), ("1", "2"), ("K", "T"), ("L a", "T b")] {
         let content = read("a.xlsx", &book(&[(one, rows(0.1)), (other, rows(0.2))])).unwrap();
         assert!(content.results.iter().all(|(_, r)| r.direction.is_none()), "{one} {other}");
-        assert!(told(&content, "R133").is_empty());
+        assert!(findings_of(&content, "R133").is_empty());
     }
 }
 
@@ -192,8 +192,8 @@ fn a_sheet_against_its_name_is_told() {
         ]
     };
     let content = read("a.xlsx", &book(&[("L", rows(0.1, "warp")), ("T", rows(0.2, "warp"))])).unwrap();
-    let told = told(&content, "R106");
-    assert!(told.contains("a.xlsx[T]") && !told.contains("a.xlsx[L]"), "{told}");
+    let finding = findings_of(&content, "R106");
+    assert!(finding.contains("a.xlsx[T]") && !finding.contains("a.xlsx[L]"), "{finding}");
 }
 
 #[test]
@@ -204,7 +204,7 @@ fn a_unit_decides_the_code_page_that_was_mistaken() {
         let content = read("a.csv", table(unit).as_bytes());
         let Ok(content) = content else { panic!("{unit}: {content:?}") };
         assert_relative_eq!(value(&content, Parameter::G, WARP), factor, max_relative = 1e-12);
-        assert!(told(&content, "R135").contains(unit), "{}", told(&content, "R135"));
+        assert!(findings_of(&content, "R135").contains(unit), "{}", findings_of(&content, "R135"));
     }
     for unit in ["gf/cmé", "gf/cmß"] {
         assert!(read("a.csv", table(unit).as_bytes()).is_err(), "{unit}");

@@ -73,17 +73,17 @@ fn places(x: &[f64]) -> Vec<usize> {
 #[derive(Default)]
 struct Count {
     tried: usize,
-    told: usize,
+    reported: usize,
     wrong: Vec<String>,
 }
 
-/// One sample of a record slips; `told` where a finding names its line.
+/// One sample of a record slips; `reported` where a finding names its line.
 fn slip(m: &Measurement, clean: &BTreeMap<String, f64>, i: usize, factor: f64, count: &mut Count) {
     let mut slipped = m.clone();
     slipped.curve.y[i] *= factor;
     let found = sheet(slipped);
     let line = m.lines[i];
-    let told = found.findings.iter().any(|f| f.code() == "K045");
+    let is_reported = found.findings.iter().any(|f| f.code() == "K045");
     let found = values(&found);
     let mut without = m.clone();
     without.curve.x.remove(i);
@@ -91,14 +91,14 @@ fn slip(m: &Measurement, clean: &BTreeMap<String, f64>, i: usize, factor: f64, c
     without.lines.remove(i);
     // What is left out is as if it had never been recorded.
     let left_out = worst(&values(&sheet(without)), &found);
-    let (difference, name) = if told { left_out } else { worst(clean, &found) };
+    let (difference, name) = if is_reported { left_out } else { worst(clean, &found) };
     count.tried += 1;
-    count.told += usize::from(told);
+    count.reported += usize::from(is_reported);
     let [low, high] =
         m.curve.y.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]);
     let slips_by = (m.curve.y[i] * (factor - 1.0)).abs();
     if difference > SAME && slips_by > SMALL * (high - low) {
-        let how = if told { "told, but not left out" } else { "silent" };
+        let how = if is_reported { "told, but not left out" } else { "silent" };
         let [was, is] = [m.curve.y[i], m.curve.y[i] * factor];
         let record = m.record_name();
         count.wrong.push(format!(
@@ -125,7 +125,7 @@ fn a_sample_that_slips_moves_no_value() {
                 "{:<12} times {factor:<4}: {} samples, {} told, {} move a value by more than {} %",
                 test.name(),
                 count.tried,
-                count.told,
+                count.reported,
                 count.wrong.len(),
                 100.0 * SAME
             );

@@ -310,8 +310,9 @@ fn strip(n: usize, how: Cut, t: f64, membrane: Membrane, loads: impl Fn(&QuadMes
 /// Mean displacement of the free end.
 fn tip(model: &Model, solution: &Solution) -> Vector3<f64> {
     let nodes = model.mesh.set("right").unwrap();
-    let moved = nodes.iter().map(|n| solution.state.position[*n as usize] - model.mesh.nodes[*n as usize]);
-    moved.sum::<Vector3<f64>>() / nodes.len() as f64
+    let displacements =
+        nodes.iter().map(|n| solution.state.position[*n as usize] - model.mesh.nodes[*n as usize]);
+    displacements.sum::<Vector3<f64>>() / nodes.len() as f64
 }
 
 /// Drops of the end of a strip under its weight and under a force, of its length; few iterations a step show that the tangent is that
@@ -501,7 +502,7 @@ fn what_is_no_triangle_is_refused_with_its_line() {
     let (line, row) =
         mesh.lines().enumerate().skip_while(|(_, row)| !row.starts_with("2 1 2 ")).nth(1).unwrap();
     let tag = row.split(' ').next().unwrap();
-    for (nodes, told) in [("1 2 3", "in a line"), ("1 2 1", "three different ones"), ("1 2", "needs 4")] {
+    for (nodes, message) in [("1 2 3", "in a line"), ("1 2 1", "three different ones"), ("1 2", "needs 4")] {
         std::fs::write(folder.path().join("plate.msh"), mesh.replace(row, &format!("{tag} {nodes}")))
             .unwrap();
         let run = Command::new(env!("CARGO_BIN_EXE_kesf"))
@@ -511,7 +512,7 @@ fn what_is_no_triangle_is_refused_with_its_line() {
             .unwrap();
         let error = String::from_utf8_lossy(&run.stderr);
         assert!(!run.status.success());
-        assert!(error.contains(&format!("plate.msh:{}", line + 1)) && error.contains(told), "{error}");
+        assert!(error.contains(&format!("plate.msh:{}", line + 1)) && error.contains(message), "{error}");
     }
 }
 

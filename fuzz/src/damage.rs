@@ -199,9 +199,9 @@ impl Edit {
             }
             Self::MoveLine { from, to } => {
                 let found = line(bytes, place(from, bytes.len()));
-                let moved: Vec<u8> = bytes.drain(found).collect();
+                let taken: Vec<u8> = bytes.drain(found).collect();
                 let to = line(bytes, place(to, bytes.len())).start;
-                bytes.splice(to..to, moved);
+                bytes.splice(to..to, taken);
             }
             Self::RepeatLine { at, times } => {
                 let found = line(bytes, place(at, bytes.len()));

@@ -17,7 +17,7 @@ pub fn raised(py: Python<'_>, failure: &Failure) -> PyErr {
 
 fn instance<'py>(py: Python<'py>, failure: &Failure) -> PyResult<Bound<'py, PyAny>> {
     let entry = failure.entry();
-    let fields = crate::told::json(&entry.fields)?;
+    let fields = crate::messages::json(&entry.fields)?;
     let class = py.import("kesf._errors")?.getattr("KesfError")?;
     class.call_method1(
         "_of",

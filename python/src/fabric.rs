@@ -13,8 +13,8 @@ use pyo3::prelude::*;
 use serde::Serialize;
 
 use crate::error::OrRaise;
+use crate::messages::{self, Messages};
 use crate::table::Table;
-use crate::told::{self, Told};
 use crate::work::{Follower, follow};
 
 /// What was read of one fabric.
@@ -81,7 +81,7 @@ impl Fabric {
     /// All but the points of the curves and the findings, as JSON.
     fn summary(&self) -> PyResult<String> {
         let input = &*self.input;
-        told::json(&Summary {
+        messages::json(&Summary {
             name: &input.name,
             path: input.path.to_string_lossy().into_owned(),
             info: &input.info,
@@ -95,7 +95,7 @@ impl Fabric {
 
     /// Findings as JSON.
     fn findings(&self) -> PyResult<String> {
-        told::findings(self.input.findings.iter().map(|finding| (Some(&*self.input.name), finding)))
+        messages::findings(self.input.findings.iter().map(|finding| (Some(&*self.input.name), finding)))
     }
 
     /// Abscissae and ordinates (SI) of a curve, as bytes of 64-bit numbers.
@@ -117,7 +117,7 @@ impl Fabric {
     /// The fabric of [`packed`](Self::packed) bytes.
     #[staticmethod]
     fn unpacked(version: &str, bytes: &[u8]) -> PyResult<Self> {
-        told::same_version(version)?;
+        messages::same_version(version)?;
         Ok(Self { input: Arc::new(unpack(bytes)?) })
     }
 
@@ -145,12 +145,12 @@ impl Fabric {
 
 /// What was inferred is no part of the documents of a fabric, but it is of its pickle.
 pub fn pack(input: &FabricInput) -> PyResult<Vec<u8>> {
-    told::packed(&(input, &input.inference))
+    messages::packed(&(input, &input.inference))
 }
 
 /// The inverse of [`pack`].
 pub fn unpack(bytes: &[u8]) -> PyResult<FabricInput> {
-    let (input, inference): (FabricInput, Vec<Inference>) = told::unpacked(bytes)?;
+    let (input, inference): (FabricInput, Vec<Inference>) = messages::unpacked(bytes)?;
     Ok(FabricInput { inference, ..input })
 }
 
@@ -207,7 +207,7 @@ pub fn read(
 ) -> PyResult<(Vec<Fabric>, String, String)> {
     let (inputs, reading) = (inputs(paths, memory), options.reading(None));
     let follower = Follower { progress, threads };
-    let (read, told): (_, Told) = follow(py, &follower, move |observer| {
+    let (read, messages): (_, Messages) = follow(py, &follower, move |observer| {
         let read = reading.each(&inputs, "reading", |fabric| fabric, observer)?;
         if read.done.is_empty() && read.failures.is_empty() {
             return Err(Failure::new("O055", "there is no measurement in the inputs")
@@ -215,12 +215,12 @@ pub fn read(
         }
         Ok(read)
     })?;
-    let mut said = told.findings;
+    let mut said = messages.findings;
     let of_fabrics =
         read.done.iter().flat_map(|f| f.findings.iter().map(|x| (Some(f.name.clone()), x.clone())));
     said.extend(of_fabrics);
-    let findings = told::findings(said.iter().map(|(fabric, finding)| (fabric.as_deref(), finding)))?;
-    let failures = told::failures(&read.failures)?;
+    let findings = messages::findings(said.iter().map(|(fabric, finding)| (fabric.as_deref(), finding)))?;
+    let failures = messages::failures(&read.failures)?;
     let fabrics = read.done.into_iter().map(|input| Fabric { input: Arc::new(input) }).collect();
     Ok((fabrics, findings, failures))
 }

@@ -20,13 +20,13 @@
 
 mod error;
 mod fabric;
+mod messages;
 mod parts;
 mod run;
 mod section;
 mod sheet;
 mod simulate;
 mod table;
-mod told;
 mod work;
 
 use kesf::instrument::Parameter;
@@ -74,5 +74,5 @@ fn units_of_parameters() -> Vec<(&'static str, &'static str, f64)> {
 /// The explanation of a code as JSON (`code`, `kind`, `title`, `cause`, `example`, `cure`), or None.
 #[pyfunction]
 fn explain(code: &str) -> PyResult<Option<String>> {
-    kesf::finding::explain(code).map(told::json).transpose()
+    kesf::finding::explain(code).map(messages::json).transpose()
 }

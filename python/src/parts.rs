@@ -14,8 +14,8 @@ use pyo3::types::PyBytes;
 
 use crate::error::OrRaise;
 use crate::fabric::{Options, inputs};
+use crate::messages;
 use crate::table::Table;
-use crate::told;
 use crate::work::{Follower, follow, threads as count};
 
 /// What is evaluated: paths, files in memory, and the columns of a table of curves.
@@ -97,7 +97,7 @@ pub fn evaluate(
     };
     let tables = [batch_of(&done.results), batch_of(&done.findings), batch_of(&done.failures)];
     let [results, findings, failures] = tables.map(table);
-    Ok((results?, findings?, failures?, told::json(&done.tallies)?, done.unfinished))
+    Ok((results?, findings?, failures?, messages::json(&done.tallies)?, done.unfinished))
 }
 
 fn batch_of<R: kesf::report::table::Row>(

@@ -13,8 +13,8 @@ use kesf::verify::{document, run as check_all, suite};
 use pyo3::prelude::*;
 
 use crate::fabric::{Options, inputs};
+use crate::messages;
 use crate::table::Table;
-use crate::told;
 use crate::work::{Follower, follow, threads as count};
 
 /// How results are made and where they go.
@@ -71,7 +71,7 @@ pub fn run(
 ) -> PyResult<Ran> {
     let inputs = inputs(paths, memory);
     let follower = Follower { progress, threads };
-    let ((rows, report, files), told) = follow(py, &follower, move |observer| {
+    let ((rows, report, files), messages) = follow(py, &follower, move |observer| {
         let job = Job {
             inputs,
             solver: making.solver()?,
@@ -107,8 +107,8 @@ pub fn run(
         Ok((rows, report, Files::new()))
     })?;
     let tables = (Table::of(&rows.0)?, Table::of(&rows.1)?, Table::of(&rows.2)?);
-    let (findings, _, notes) = told.json()?;
-    let said = (findings, told::failures(&report.failures)?, notes);
+    let (findings, _, notes) = messages.json()?;
+    let said = (findings, messages::failures(&report.failures)?, notes);
     Ok((tables.0, tables.1, tables.2, files, said, report.fails_a_check))
 }
 

@@ -13,8 +13,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::error::OrRaise;
+use crate::messages;
 use crate::sheet::Sheet;
-use crate::told;
 use crate::work::{Follower, follow, free};
 
 /// What a section was made of.
@@ -54,11 +54,11 @@ impl Section {
             return Err(Failure::new("O042", "the document is no kesf.section/1")
                 .hint("give what Section.to_json() or `kesf section -o section.json` wrote"));
         };
-        let of = |(sheet, made)| {
+        let with_text = |(sheet, made)| {
             let sectioned = Sectioned { path: PathBuf::new(), sheet, made };
             Self { made: Made::Written { text: text.to_string() }, sectioned: Arc::new(sectioned) }
         };
-        Ok(sections.into_iter().map(of).collect())
+        Ok(sections.into_iter().map(with_text).collect())
     }
 }
 
@@ -96,7 +96,7 @@ impl Section {
 
     /// Findings of the section as JSON; those of the sheet are the sheet's.
     fn findings(&self) -> PyResult<String> {
-        told::findings(self.sectioned.made.findings.iter().map(|finding| (None, finding)))
+        messages::findings(self.sectioned.made.findings.iter().map(|finding| (None, finding)))
     }
 
     /// Whether bending and shear have friction.
@@ -113,16 +113,18 @@ impl Section {
     /// What the section was made of, as bytes for a pickle.
     fn packed(&self) -> PyResult<Vec<u8>> {
         match &self.made {
-            Made::Assumed { sheet, assumptions } => told::packed(&(Some(sheet.packed()?), assumptions)),
-            Made::Written { text } => told::packed(&(None::<Vec<u8>>, (text, &self.sectioned.sheet.name))),
+            Made::Assumed { sheet, assumptions } => messages::packed(&(Some(sheet.packed()?), assumptions)),
+            Made::Written { text } => {
+                messages::packed(&(None::<Vec<u8>>, (text, &self.sectioned.sheet.name)))
+            }
         }
     }
 
     /// The section of [`packed`](Self::packed) bytes: it is made again, of the same sheet.
     #[staticmethod]
     fn unpacked(py: Python<'_>, version: &str, bytes: &[u8]) -> PyResult<Self> {
-        told::same_version(version)?;
-        let (sheet, rest): (Option<Vec<u8>>, ciborium::Value) = told::unpacked(bytes)?;
+        messages::same_version(version)?;
+        let (sheet, rest): (Option<Vec<u8>>, ciborium::Value) = messages::unpacked(bytes)?;
         let broken = |e: ciborium::value::Error| PyValueError::new_err(e.to_string());
         if let Some(sheet) = sheet {
             let sheet = Sheet::unpacked(py, version, &sheet)?;
@@ -147,14 +149,14 @@ pub fn export(py: Python<'_>, section: &Section, to: &str) -> PyResult<(String, 
     });
     let (target, sectioned) = (target.or_raise(py)?, Arc::clone(section.sectioned()));
     let follower = Follower { progress: None, threads: Some(1) };
-    let (card, told) = follow(py, &follower, move |observer| {
+    let (card, messages) = follow(py, &follower, move |observer| {
         let (cards, failures) = cards(std::slice::from_ref(&*sectioned), &[target], None, observer);
         match (cards.into_iter().next(), failures.into_iter().next()) {
             (Some(Card { text, .. }), _) => Ok(text),
             (None, failure) => Err(failure.unwrap_or_else(Failure::interrupted)),
         }
     })?;
-    let findings = told::findings(told.findings.iter().map(|(fabric, f)| (fabric.as_deref(), f)))?;
+    let findings = messages::findings(messages.findings.iter().map(|(fabric, f)| (fabric.as_deref(), f)))?;
     Ok((card, findings))
 }
 

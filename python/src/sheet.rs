@@ -18,8 +18,8 @@ use serde_json::json;
 
 use crate::error::OrRaise;
 use crate::fabric::{self, Fabric, units};
+use crate::messages;
 use crate::table::{Column, Table};
-use crate::told;
 use crate::work::{Follower, follow, free};
 
 /// What a sheet was made of: enough to make it again to the last digit.
@@ -83,11 +83,11 @@ impl Sheet {
                 .hint("give what Sheet.to_json() or `kesf characterise -o sheet.json` wrote"));
         };
         let made = Made::Written { text };
-        let of = |sheet| Self {
+        let with_origin = |sheet| Self {
             made: made.clone(),
             evaluated: Arc::new(Evaluated { path: PathBuf::new(), sheet }),
         };
-        Ok(sheets.into_iter().map(of).collect())
+        Ok(sheets.into_iter().map(with_origin).collect())
     }
 
     /// The sheet with its path.
@@ -135,12 +135,12 @@ impl Sheet {
 
     /// What is known of the fabric beside its parameters, as JSON.
     fn info(&self) -> PyResult<String> {
-        told::json(&self.sheet().info)
+        messages::json(&self.sheet().info)
     }
 
     /// Findings as JSON.
     fn findings(&self) -> PyResult<String> {
-        told::findings(self.sheet().findings.iter().map(|finding| (None, finding)))
+        messages::findings(self.sheet().findings.iter().map(|finding| (None, finding)))
     }
 
     /// The folder or file; empty for a sheet of a document.
@@ -165,7 +165,7 @@ impl Sheet {
                 "values": s.values,
             })
         });
-        told::json(&json!({
+        messages::json(&json!({
             "units": curve_units(test, UnitSystem::Kes).map(|(name, _)| name),
             "factors": curve_units(test, UnitSystem::Kes).map(|(_, factor)| factor),
             "specimens": specimens.collect::<Vec<_>>(),
@@ -187,10 +187,11 @@ impl Sheet {
     /// What the sheet was made of, as bytes for a pickle.
     pub fn packed(&self) -> PyResult<Vec<u8>> {
         match &self.made {
-            Made::Measured { input, how, name, renamed } => {
-                told::packed(&(Some((fabric::pack(input)?, &how.settings, &how.moduli, name, renamed)), ""))
-            }
-            Made::Written { text } => told::packed(&(None::<()>, (text, &self.sheet().name))),
+            Made::Measured { input, how, name, renamed } => messages::packed(&(
+                Some((fabric::pack(input)?, &how.settings, &how.moduli, name, renamed)),
+                "",
+            )),
+            Made::Written { text } => messages::packed(&(None::<()>, (text, &self.sheet().name))),
         }
     }
 
@@ -198,8 +199,8 @@ impl Sheet {
     #[staticmethod]
     pub fn unpacked(py: Python<'_>, version: &str, bytes: &[u8]) -> PyResult<Self> {
         type Measured = (Vec<u8>, Option<(PathBuf, String)>, Vec<String>, String, Vec<Finding>);
-        told::same_version(version)?;
-        let (measured, written): (Option<Measured>, ciborium::Value) = told::unpacked(bytes)?;
+        messages::same_version(version)?;
+        let (measured, written): (Option<Measured>, ciborium::Value) = messages::unpacked(bytes)?;
         let Some((input, settings, moduli, name, renamed)) = measured else {
             let (text, name): (String, String) =
                 written.deserialized().map_err(|e| PyValueError::new_err(e.to_string()))?;

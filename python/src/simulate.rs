@@ -15,10 +15,10 @@ use pyo3::prelude::*;
 
 use crate::error::OrRaise;
 use crate::fabric::bytes_of;
+use crate::messages;
 use crate::section::Section;
 use crate::sheet::Sheet;
 use crate::table::Table;
-use crate::told;
 use crate::work::{Follower, follow, threads as count};
 
 /// A field: name, type of its numbers for numpy, shape and bytes.
@@ -84,9 +84,9 @@ pub fn simulate(
 
 fn crossing(simulated: Simulated) -> PyResult<Crossing> {
     let Simulated { document, predictions, history, arrays, findings, failures } = simulated;
-    let found = told::findings(findings.iter().map(|finding| (None, finding)))?;
+    let found = messages::findings(findings.iter().map(|finding| (None, finding)))?;
     let tables = (Table::of(&predictions)?, Table::of(&history)?);
-    Ok((document, tables.0, tables.1, arrays, found, told::failures(&failures)?))
+    Ok((document, tables.0, tables.1, arrays, found, messages::failures(&failures)?))
 }
 
 /// O055: the case belongs to another function.

@@ -99,15 +99,15 @@ fn refused(error: ArrowError) -> PyErr {
 /// Where the unit of a column is told, and the unit itself if all of the column has one.
 fn unit(name: &str, columns: &[(&str, Values)]) -> HashMap<String, String> {
     let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
-    let mut told = unit_of(name, &names);
-    let source = told.get(UNIT_COLUMN).and_then(|source| columns.iter().find(|(name, _)| name == source));
+    let mut metadata = unit_of(name, &names);
+    let source = metadata.get(UNIT_COLUMN).and_then(|source| columns.iter().find(|(name, _)| name == source));
     if let Some((_, Values::Text(units))) = source
         && let Some(Some(first)) = units.first()
         && units.iter().all(|unit| unit.as_ref() == Some(first))
     {
-        told.insert(UNIT.into(), first.clone());
+        metadata.insert(UNIT.into(), first.clone());
     }
-    told
+    metadata
 }
 
 /// Name, kind, metadata and cells of a column from Python.

@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::error::OrRaise;
-use crate::told::Told;
+use crate::messages::Messages;
 
 /// How often signals are looked for.
 const INTERVAL: Duration = Duration::from_millis(50);
@@ -85,7 +85,7 @@ pub fn follow<T: Send + 'static>(
     py: Python<'_>,
     follower: &Follower,
     work: impl FnOnce(&Observer<'_>) -> Result<T, Failure> + Send + 'static,
-) -> PyResult<(T, Told)> {
+) -> PyResult<(T, Messages)> {
     let pool = pool(threads(follower.threads)).or_raise(py)?;
     let cancelled = Arc::new(AtomicBool::new(false));
     let (sender, receiver) = mpsc::channel();
@@ -103,19 +103,20 @@ pub fn follow<T: Send + 'static>(
     loop {
         let message =
             py.detach(|| receiver.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(INTERVAL));
-        let told = match message {
+        let delivered = match message {
             Ok(Message::Done) | Err(RecvTimeoutError::Disconnected) => break,
             Ok(message) => progress.tell(py, message),
             Err(RecvTimeoutError::Timeout) => Ok(()),
         };
-        if let Err(error) = told.and_then(|()| py.check_signals()) {
+        if let Err(error) = delivered.and_then(|()| py.check_signals()) {
             cancelled.store(true, Ordering::Relaxed);
             py.detach(|| wait(&worker));
             return Err(error);
         }
     }
-    let (result, told) = py.detach(|| worker.join()).unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-    Ok((result.or_raise(py)?, told))
+    let (result, messages) =
+        py.detach(|| worker.join()).unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+    Ok((result.or_raise(py)?, messages))
 }
 
 fn wait<T>(worker: &JoinHandle<T>) {
@@ -130,24 +131,24 @@ fn observed<T>(
     sender: &Sender<Message>,
     cancelled: &AtomicBool,
     work: impl FnOnce(&Observer<'_>) -> Result<T, Failure>,
-) -> (Result<T, Failure>, Told) {
-    let told = Mutex::new(Told::default());
+) -> (Result<T, Failure>, Messages) {
+    let messages = Mutex::new(Messages::default());
     let send = |message| drop(sender.send(message));
     let event = |event: Event<'_>| {
-        let mut told = told.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut messages = messages.lock().unwrap_or_else(PoisonError::into_inner);
         match event {
             Event::Started(what, steps) => send(Message::Started(what, steps)),
             Event::Step => send(Message::Step),
             Event::Finished => send(Message::Finished),
-            Event::Failed(failure) => told.failures.push(failure.clone()),
+            Event::Failed(failure) => messages.failures.push(failure.clone()),
             Event::Found(found) => {
-                told.findings.push((found.fabric.map(str::to_string), found.finding.clone()));
+                messages.findings.push((found.fabric.map(str::to_string), found.finding.clone()));
             }
-            Event::Note(text) => told.notes.push(text.to_string()),
+            Event::Note(text) => messages.notes.push(text.to_string()),
         }
     };
     let result = work(&Observer { event: &event, cancelled: &|| cancelled.load(Ordering::Relaxed) });
-    (result, told.into_inner().unwrap_or_else(PoisonError::into_inner))
+    (result, messages.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
 /// What the callback was told last.

@@ -63,8 +63,8 @@ pub(super) fn one_sided(curve: &Curve, sense: f64, part: f64) -> Option<Vec<Bran
 /// Branches of a sweep forth and back: outgoing as the first one goes.
 pub(super) fn swept(curve: &Curve, part: f64) -> Option<Vec<Branch>> {
     let turns = turning_points(&curve.x, threshold(&curve.x, part))?;
-    let way = |ends: &[usize]| curve.x[ends[1]] - curve.x[ends[0]];
-    one_sided(curve, way(turns.get(..2)?).signum(), part)
+    let difference = |ends: &[usize]| curve.x[ends[1]] - curve.x[ends[0]];
+    one_sided(curve, difference(turns.get(..2)?).signum(), part)
 }
 
 /// Branches of a test that is driven to both sides of zero; a run across zero is cut there, and

@@ -118,7 +118,7 @@ fn several_cycles_are_told() {
 /// 1.4 % at 0.295, which is not. Compression alike, with c^5: 0.7 % at 0.37, 3 % at 0.5.
 #[test]
 fn a_way_back_that_was_cut_off_gives_no_recovery() {
-    let of = |test, maximum, points, parameter: P| {
+    let recovery = |test, maximum, points, parameter: P| {
         let sheet = evaluate(measurement(test, maximum, points));
         let direction = parameter.is_directional().then_some(Direction::Warp);
         let found = sheet.get(parameter, direction).map(|e| e.mean);
@@ -126,14 +126,14 @@ fn a_way_back_that_was_cut_off_gives_no_recovery() {
         found
     };
     for (end, kept) in [(0.0, true), (0.24, true), (0.295, false), (0.6, false)] {
-        let rt = of(Test::Tensile, FM, stretched(end), P::Rt);
+        let rt = recovery(Test::Tensile, FM, stretched(end), P::Rt);
         assert_eq!(rt.is_some(), kept, "{end}");
         assert!(rt.is_none_or(|rt| (rt / (2.5 / 3.5) - 1.0).abs() < 0.01));
     }
     // The parameters begin at 0.5 gf/cm², where a part of 0.01^(1/3) of the way is made already.
-    let whole = of(Test::Compression, 4903.325, pressed(0.0), P::Rc).unwrap();
+    let whole = recovery(Test::Compression, 4903.325, pressed(0.0), P::Rc).unwrap();
     for (end, kept) in [(0.37, true), (0.5, false), (0.8, false)] {
-        let rc = of(Test::Compression, 4903.325, pressed(end), P::Rc);
+        let rc = recovery(Test::Compression, 4903.325, pressed(end), P::Rc);
         assert_eq!(rc.is_some(), kept, "{end}");
         assert!(rc.is_none_or(|rc| (rc / whole - 1.0).abs() < 0.01));
     }
@@ -188,10 +188,10 @@ fn dropouts_and_lost_samples_are_told_with_their_lines() {
 fn spikes_beside_a_turn_are_told_and_left_out() {
     let values = |points: Vec<(f64, f64)>, at: usize| {
         let sheet = evaluate(measurement(Test::Tensile, FM, points));
-        let told = messages(&sheet, "K045");
+        let found = messages(&sheet, "K045");
         assert!(
-            at == 0 && told.is_empty() || told.len() == 1 && told[0].contains(&format!("line {}", at + 1)),
-            "{at}: {told:?}"
+            at == 0 && found.is_empty() || found.len() == 1 && found[0].contains(&format!("line {}", at + 1)),
+            "{at}: {found:?}"
         );
         [P::Rt, P::Lt, P::Emt].map(|p| sheet.get(p, Some(Direction::Warp)).unwrap().mean)
     };
@@ -281,12 +281,17 @@ fn a_rest_at_the_start_changes_no_parameter() {
 /// A copy under another number is no repeat, wherever it lies; the same samples in another direction are another matter.
 #[test]
 fn a_copy_is_no_repeat() {
-    let of = |b: f64, direction, specimen| {
+    let bending_record = |b: f64, direction, specimen| {
         let m = measurement(Test::Bending, 250.0, bent(b, 60));
         Measurement { direction: Some(direction), specimen, ..m }
     };
     let (warp, weft) = (Direction::Warp, Direction::Weft);
-    let set = vec![of(8e-6, warp, 1), of(8.2e-6, warp, 2), of(8e-6, warp, 3), of(8e-6, weft, 1)];
+    let set = vec![
+        bending_record(8e-6, warp, 1),
+        bending_record(8.2e-6, warp, 2),
+        bending_record(8e-6, warp, 3),
+        bending_record(8e-6, weft, 1),
+    ];
     let sheet = sheet_of(set, &Settings::default());
     let found = messages(&sheet, "K047");
     let [text] = &found[..] else { panic!("{:?}", sheet.findings) };
@@ -294,6 +299,7 @@ fn a_copy_is_no_repeat() {
     let n = |direction| sheet.get(P::B, Some(direction)).unwrap().n;
     assert_eq!((n(warp), n(weft), sheet.specimens.len()), (2, 1, 3));
     // Nor are they two specimens of one number.
-    let sheet = sheet_of(vec![of(8e-6, warp, 1), of(8e-6, warp, 1)], &Settings::default());
+    let sheet =
+        sheet_of(vec![bending_record(8e-6, warp, 1), bending_record(8e-6, warp, 1)], &Settings::default());
     assert_eq!(codes(&sheet), ["K047"]);
 }

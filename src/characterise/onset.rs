@@ -38,10 +38,10 @@ pub(super) fn usual_step(x: &[f64]) -> f64 {
     let mut steps: Vec<f64> = x.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
     steps.sort_by(f64::total_cmp);
     let third = steps.iter().sum::<f64>() / 3.0;
-    let mut way = 0.0;
+    let mut travelled = 0.0;
     let reaches = |step: &f64| {
-        way += step;
-        way >= third
+        travelled += step;
+        travelled >= third
     };
     steps.into_iter().find(reaches).unwrap_or(0.0)
 }
@@ -49,8 +49,8 @@ pub(super) fn usual_step(x: &[f64]) -> f64 {
 /// The last sample before the drive moves: it stays within half a step of the first until one is a whole step away.
 pub(super) fn rest(x: &[f64]) -> usize {
     let (Some(&start), step) = (x.first(), usual_step(x)) else { return 0 };
-    let moved = x.iter().position(|v| (v - start).abs() > step).unwrap_or(0);
-    x[..moved].iter().rposition(|v| (v - start).abs() <= 0.5 * step).unwrap_or(0)
+    let first = x.iter().position(|v| (v - start).abs() > step).unwrap_or(0);
+    x[..first].iter().rposition(|v| (v - start).abs() <= 0.5 * step).unwrap_or(0)
 }
 
 /// Index of the onset and mean of the ordinates up to it.

@@ -390,11 +390,11 @@ fn cycles(curve: &Curve, kept: &[usize], settings: &Settings, notes: &mut Notes<
         (_, Shape::Sweep) => branch::swept(curve, reversal),
     };
     let branches = branches.unwrap_or_default();
-    let way = |x: &[f64]| (x[x.len() - 1] - x[0]).abs();
-    let far = branches.iter().filter(|b| b.outgoing).map(|b| way(&b.curve.x)).fold(0.0, f64::max);
+    let length = |x: &[f64]| (x[x.len() - 1] - x[0]).abs();
+    let far = branches.iter().filter(|b| b.outgoing).map(|b| length(&b.curve.x)).fold(0.0, f64::max);
     let (mut starts, mut last, mut at) = (Vec::new(), None, 0);
     for branch in &branches {
-        let counts = starts.is_empty() || way(&branch.curve.x) > WHOLE * far;
+        let counts = starts.is_empty() || length(&branch.curve.x) > WHOLE * far;
         if branch.outgoing && last != Some(branch.cycle) && counts {
             starts.push(kept[leaves(&curve.x, at, m.test)]);
             last = Some(branch.cycle);

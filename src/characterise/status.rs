@@ -31,17 +31,18 @@ enum Scope<'a> {
 }
 
 /// What a finding says of a value, and its code.
-type Told = (ValueStatus, &'static str);
+type Remark = (ValueStatus, &'static str);
 
 /// The status that prevails.
-fn prevailing(told: &[Told]) -> ValueStatus {
-    told.iter().map(|(status, _)| *status).max().unwrap_or_default()
+fn prevailing(remarks: &[Remark]) -> ValueStatus {
+    remarks.iter().map(|(status, _)| *status).max().unwrap_or_default()
 }
 
 /// Codes of what gave the status that prevails, each once.
-fn codes(told: &[Told]) -> Vec<&'static str> {
-    let status = prevailing(told);
-    let mut codes: Vec<&str> = told.iter().filter(|(of, _)| *of == status).map(|(_, code)| *code).collect();
+fn codes(remarks: &[Remark]) -> Vec<&'static str> {
+    let status = prevailing(remarks);
+    let mut codes: Vec<&str> =
+        remarks.iter().filter(|(of, _)| *of == status).map(|(_, code)| *code).collect();
     codes.sort_unstable();
     codes.dedup();
     codes
@@ -69,24 +70,24 @@ impl FabricSheet {
 
     /// Codes of the findings that gave the value of a parameter its status.
     pub fn causes(&self, key: Key) -> Vec<&'static str> {
-        codes(&self.told_of_value(key))
+        codes(&self.remarks_on_value(key))
     }
 
     /// Codes of the findings that gave a tensile modulus its status.
     pub fn modulus_causes(&self, name: &str, direction: Direction) -> Vec<&'static str> {
-        codes(&self.told_of_modulus(name, direction))
+        codes(&self.remarks_on_modulus(name, direction))
     }
 
     fn status_of_value(&self, key: Key) -> ValueStatus {
-        prevailing(&self.told_of_value(key))
+        prevailing(&self.remarks_on_value(key))
     }
 
     fn status_of_modulus(&self, name: &str, direction: Direction) -> ValueStatus {
-        prevailing(&self.told_of_modulus(name, direction))
+        prevailing(&self.remarks_on_modulus(name, direction))
     }
 
-    fn told_of_value(&self, key: Key) -> Vec<Told> {
-        self.told_of(|scope| match scope {
+    fn remarks_on_value(&self, key: Key) -> Vec<Remark> {
+        self.remarks_on(|scope| match scope {
             Scope::Value(of) => *of == key,
             Scope::Values(of) => of.contains(&key),
             Scope::Record(record) => is_of_record(key, record),
@@ -99,11 +100,11 @@ impl FabricSheet {
         })
     }
 
-    fn told_of_modulus(&self, name: &str, direction: Direction) -> Vec<Told> {
+    fn remarks_on_modulus(&self, name: &str, direction: Direction) -> Vec<Remark> {
         let is_tensile = |record: &RecordName| {
             record.test == Test::Tensile && record.direction.is_none_or(|of| of == direction)
         };
-        self.told_of(|scope| match scope {
+        self.remarks_on(|scope| match scope {
             // Secant and energy modulus follow from them.
             Scope::Value(of) => self.gives_modulus(*of, direction),
             Scope::Values(of) => of.iter().any(|of| self.gives_modulus(*of, direction)),
@@ -124,12 +125,12 @@ impl FabricSheet {
             && !self.specimens.iter().any(|s| s.measurement.test == Test::Tensile)
     }
 
-    fn told_of(&self, concerns: impl Fn(&Scope<'_>) -> bool) -> Vec<Told> {
-        let told_by = |finding: &Finding| {
-            let (scope, status) = told(finding)?;
+    fn remarks_on(&self, concerns: impl Fn(&Scope<'_>) -> bool) -> Vec<Remark> {
+        let remark = |finding: &Finding| {
+            let (scope, status) = scope_and_status(finding)?;
             concerns(&scope).then(|| (status, finding.code()))
         };
-        self.findings.iter().filter_map(told_by).collect()
+        self.findings.iter().filter_map(remark).collect()
     }
 
     fn is_of_file(&self, test: Option<Test>, direction: Option<Direction>, path: &Path) -> bool {
@@ -156,7 +157,7 @@ fn is_slope(parameter: Parameter, name: &str) -> bool {
 }
 
 /// What a finding says of values; nothing where it concerns none.
-fn told(finding: &Finding) -> Option<(Scope<'_>, ValueStatus)> {
+fn scope_and_status(finding: &Finding) -> Option<(Scope<'_>, ValueStatus)> {
     match &finding.fact {
         Fact::Evaluation(fact) => of_evaluation(fact),
         Fact::Reading(fact) => of_reading(fact, finding.place.as_ref()),

@@ -64,8 +64,8 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         let (sections, mut failures) =
             sections_with(&inputs, &reading, &assumptions, Curves::Kept, observer)?;
         let stamp = options.stamp.then(now);
-        let told = CardOptions { stamp: stamp.as_deref(), crimp };
-        let (cards, refused) = cards_with(&sections, &targets, told, observer);
+        let card_options = CardOptions { stamp: stamp.as_deref(), crimp };
+        let (cards, refused) = cards_with(&sections, &targets, card_options, observer);
         failures.extend(refused);
         Ok::<_, Failure>((cards, failures))
     })?;

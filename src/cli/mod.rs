@@ -96,10 +96,10 @@ fn dispatch(command: &Command, ui: &Ui) -> Result<Exit, Failure> {
 
 /// A panic that becomes the error of a file is told as that, and not as one of this program.
 fn hush_guarded() {
-    let told = std::panic::take_hook();
+    let previous = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
         if !is_guarded() {
-            told(panic);
+            previous(panic);
         }
     }));
 }

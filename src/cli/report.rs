@@ -12,7 +12,7 @@ use crate::documents::ReportDocument;
 use crate::finding::Place;
 use crate::report::OutputFolder;
 use crate::report::html::{LIMIT, OneFile, self_contained};
-use crate::report::write::{left, write_file};
+use crate::report::write::{results_reader, write_file};
 use crate::results::Failure;
 
 /// Name of the page within the folder.
@@ -39,23 +39,23 @@ pub struct Options {
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let folder = &options.folder;
     // What is sent is what was made: no file that somebody else put or changed here.
-    let left = left(folder)?;
-    if left("fabrics-1.html")?.is_some() {
+    let read = results_reader(folder)?;
+    if read("fabrics-1.html")?.is_some() {
         let folder = folder.display();
         ui.note(&format!(
             "so many fabrics have pages of their own: they stay in {folder}, and links to them lead nowhere in this file"
         ));
     }
-    let left = |name: &str| {
-        left(name)?.ok_or_else(|| {
+    let required = |name: &str| {
+        read(name)?.ok_or_else(|| {
             Failure::new("O059", format!("{name} is not there as `kesf run` left it"))
                 .at(Place::file(folder))
                 .hint("name a folder that `kesf run -o` wrote, or run again")
         })
     };
-    let index = String::from_utf8_lossy(&left("index.html")?).into_owned();
+    let index = String::from_utf8_lossy(&required("index.html")?).into_owned();
     let limit = if options.all_pictures { usize::MAX } else { LIMIT };
-    let OneFile { page, left_out } = self_contained(&index, limit, left)?
+    let OneFile { page, left_out } = self_contained(&index, limit, required)?
         .ok_or_else(|| Failure::new("O059", "index.html is none of `kesf run`").at(Place::file(folder)))?;
     if !left_out.is_empty() {
         let (count, folder) = (left_out.len(), folder.display());

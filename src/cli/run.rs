@@ -85,8 +85,8 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let predictions = if ui.json { report.predictions(&folder)? } else { Vec::new() };
     let remaining = folder.finish()?;
     if let Some(first) = remaining.first() {
-        let told = format!("{} files of earlier runs are still there, {first} among them", remaining.len());
-        ui.note(&format!("{shown}: {told}"));
+        let note = format!("{} files of earlier runs are still there, {first} among them", remaining.len());
+        ui.note(&format!("{shown}: {note}"));
     }
     if ui.json {
         let output = options.output.to_string_lossy().into_owned();

@@ -58,23 +58,33 @@ fn differences_agree(sheet: &FabricSheet, assumptions: &Assumptions) {
         // Truncation h²/6 and rounding 1e-16/h are both below 1e-9.
         let h = 1e-5f64;
         let at = |by: f64| {
-            let mut moved = sheet.clone();
-            estimate_mut(&mut moved, &input.name).mean *= by.exp();
-            section(&moved, assumptions).unwrap().section
+            let mut changed = sheet.clone();
+            estimate_mut(&mut changed, &input.name).mean *= by.exp();
+            section(&changed, assumptions).unwrap().section
         };
         let (up, down, d) = (at(h), at(-h), &input.derivative);
         let slope = |a: f64, b: f64| (a - b) / (2.0 * h);
         for (i, j) in (0..9).map(|k| (k / 3, k % 3)) {
-            let of = |m: &Matrix3<f64>, n: &Matrix3<f64>| slope(m[(i, j)], n[(i, j)]);
-            assert_relative_eq!(d.d_m[(i, j)], of(&up.d_m, &down.d_m), max_relative = 1e-8, epsilon = 1e-5);
-            assert_relative_eq!(d.d_b[(i, j)], of(&up.d_b, &down.d_b), max_relative = 1e-8, epsilon = 1e-14);
+            let entry_slope = |m: &Matrix3<f64>, n: &Matrix3<f64>| slope(m[(i, j)], n[(i, j)]);
+            assert_relative_eq!(
+                d.d_m[(i, j)],
+                entry_slope(&up.d_m, &down.d_m),
+                max_relative = 1e-8,
+                epsilon = 1e-5
+            );
+            assert_relative_eq!(
+                d.d_b[(i, j)],
+                entry_slope(&up.d_b, &down.d_b),
+                max_relative = 1e-8,
+                epsilon = 1e-14
+            );
         }
         for (i, j) in [(0, 0), (0, 1), (1, 1)] {
-            let of = slope(up.d_s[(i, j)], down.d_s[(i, j)]);
-            assert_relative_eq!(d.d_s[(i, j)], of, max_relative = 1e-8, epsilon = 1e-6);
+            let expected = slope(up.d_s[(i, j)], down.d_s[(i, j)]);
+            assert_relative_eq!(d.d_s[(i, j)], expected, max_relative = 1e-8, epsilon = 1e-6);
         }
-        let of = slope(up.areal_density, down.areal_density);
-        assert_relative_eq!(d.areal_density, of, max_relative = 1e-8, epsilon = 1e-9);
+        let expected = slope(up.areal_density, down.areal_density);
+        assert_relative_eq!(d.areal_density, expected, max_relative = 1e-8, epsilon = 1e-9);
     }
 }
 
@@ -112,19 +122,19 @@ fn one_value_for_both_directions_is_one_input() {
 fn entries_carry_the_relative_spread_of_what_they_are_made_of() {
     let c = section(&cloth(), &Assumptions::default()).unwrap();
     let all = entries(&c.section, &c.inputs);
-    let of = |matrix: &str, row, column| {
+    let entry = |matrix: &str, row, column| {
         let mut entries = all.iter();
         let found = entries.find(|e| (e.matrix.as_ref(), e.row, e.column) == (matrix, row, column)).unwrap();
         (found.value, found.bands.unwrap().mean_fabric)
     };
     let root5 = 5f64.sqrt();
-    let (b1, band) = of("d_b", 1, 1);
+    let (b1, band) = entry("d_b", 1, 1);
     assert_relative_eq!(band.standard / b1, 0.05 / root5, max_relative = 1e-12);
     // H = √(B1 B2)/2: half of each.
-    let (h, band) = of("d_b", 3, 3);
+    let (h, band) = entry("d_b", 3, 3);
     assert_relative_eq!(band.standard / h, 0.5 * 2f64.sqrt() * 0.05 / root5, max_relative = 1e-12);
     assert_relative_eq!(band.degrees_of_freedom, 8.0, max_relative = 1e-9);
-    let (g, band) = of("d_m", 3, 3);
+    let (g, band) = entry("d_m", 3, 3);
     let expected = 0.05 * 50f64.hypot(54.0) / 104.0 / root5;
     assert_relative_eq!(band.standard / g, expected, max_relative = 1e-12);
 }

@@ -169,9 +169,9 @@ impl Motion {
             levers.fixed_columns_mut::<3>(6 * i).copy_from(&skew(&f.fixed_rows::<3>(6 * i).into()));
         }
         // All products with G on one side: K - (K S + F_nm) G + Gᵀ (F_n' P - Sᵀ K P).
-        let left = levers - s.transpose() * k;
-        let left = left - (left * s) * self.g;
-        k - (k * s + turned) * self.g + self.g.transpose() * left
+        let projected = levers - s.transpose() * k;
+        let projected = projected - (projected * s) * self.g;
+        k - (k * s + turned) * self.g + self.g.transpose() * projected
     }
 
     /// `Hᵀ K H + L`, or with the symmetric part of `L`, in the place of `K`.

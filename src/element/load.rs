@@ -141,12 +141,12 @@ mod tests {
         let (x, h) = (corners(), 1e-3);
         let tangent = follower_pressure_tangent(&x, 2.0);
         for column in 0..12 {
-            let moved = |by: f64| {
+            let pressure_at = |by: f64| {
                 let mut x = x;
                 x[column / 3][column % 3] += by;
                 follower_pressure(&x, 2.0)
             };
-            let (plus, minus) = (moved(h), moved(-h));
+            let (plus, minus) = (pressure_at(h), pressure_at(-h));
             for row in 0..12 {
                 let slope = (plus[row / 3][row % 3] - minus[row / 3][row % 3]) / (2.0 * h);
                 assert!((tangent[(row, column)] - slope).abs() < 1e-11, "{row} {column}");

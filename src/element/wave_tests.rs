@@ -33,8 +33,7 @@ fn error(
     let wave = SMatrix::<Complex<f64>, 12, 3>::from_fn(|row, column| {
         if row % 3 == column { phase[row / 3] } else { Complex::default() }
     });
-    let of = |m: SMatrix<f64, 12, 12>| wave.adjoint() * m.map(Complex::from) * wave;
-    let stiffness = of(element.plate_stiffness());
+    let stiffness = wave.adjoint() * element.plate_stiffness().map(Complex::from) * wave;
     let pairs = mass.pairs(&frame, &section);
     let mass: f64 = (0..4)
         .flat_map(|i| (0..4).map(move |j| (i, j)))

@@ -192,8 +192,8 @@ mod tests {
         let yarns = YarnStrain::of(&at);
         let (step, n) = (1e-6, Vector3::new(2.0, -1.0, 0.7));
         for k in 0..4 {
-            let moved = |by: f64| YarnStrain::of(&(at + Vector4::ith(k, by)));
-            let [up, down] = [moved(step), moved(-step)];
+            let offset_by = |by: f64| YarnStrain::of(&(at + Vector4::ith(k, by)));
+            let [up, down] = [offset_by(step), offset_by(-step)];
             let rate = (up.strain - down.strain) / (2.0 * step);
             assert!((rate - yarns.rate.column(k)).amax() < 1e-9);
             let change = (up.rate.tr_mul(&n) - down.rate.tr_mul(&n)) / (2.0 * step);

@@ -96,8 +96,8 @@ impl Operator {
         }
         let to_local = Some(element.to_local()).filter(|t| *t != Matrix24::identity());
         // In the frame that the element is moved in, whatever the axes here.
-        let moved = model.element(quad, false)?;
-        let (yarns, arcs, corners) = (moved.yarns(), moved.arcs(), model.mesh.corners(quad));
+        let in_motion = model.element(quad, false)?;
+        let (yarns, arcs, corners) = (in_motion.yarns(), in_motion.arcs(), model.mesh.corners(quad));
         Ok(Self { corners, to_local, membrane, moment, shear, yarns, arcs, d_m, weights })
     }
 
@@ -118,9 +118,9 @@ impl Operator {
         self.d_m * above_linear(&self.yarns, self.arcs.as_ref(), local)
     }
 
-    fn apply(&self, moved: &Displacement) -> [Resultants; PLACES] {
-        let added = moved.in_frame.as_ref().map_or_else(Vector3::zeros, |local| self.above_linear(local));
-        let u = &moved.global;
+    fn apply(&self, motion: &Displacement) -> [Resultants; PLACES] {
+        let added = motion.in_frame.as_ref().map_or_else(Vector3::zeros, |local| self.above_linear(local));
+        let u = &motion.global;
         let (membrane, plate) = membrane_and_plate(&self.to_local.map_or(*u, |t| t * u));
         let (n, m, q) = (self.membrane * membrane, self.moment * plate, self.shear * plate);
         std::array::from_fn(|p| Resultants {

@@ -40,7 +40,7 @@ impl ErrorEstimate {
     ///
     /// # Errors
     /// M008 if the warp direction is normal to an element.
-    pub fn moved(model: &Model, state: &State, nodal: &[Resultants]) -> Result<Self, ModelError> {
+    pub fn at_state(model: &Model, state: &State, nodal: &[Resultants]) -> Result<Self, ModelError> {
         Self::of(model, nodal, straining(model, state))
     }
 
@@ -72,11 +72,11 @@ impl ErrorEstimate {
                 last = Some(Own::new(model, corners, &model.element(quad, flat)?));
             }
             let Some(own) = &last else { continue };
-            let moved = displacement(quad);
-            let above_linear = model.section.d_m * moved.above_linear(model, quad)?;
+            let motion = displacement(quad);
+            let above_linear = model.section.d_m * motion.above_linear(model, quad)?;
             let recovered = nodes.map(|n| nodal[n as usize]);
             let mut error = 0.0;
-            for (point, own) in own.points.iter().zip(own.at(&moved, above_linear)) {
+            for (point, own) in own.points.iter().zip(own.at(&motion, above_linear)) {
                 let mut difference = Resultants::default();
                 difference.add(&own, -1.0);
                 recovered.iter().zip(point.shape).for_each(|(r, share)| difference.add(r, share));
@@ -182,8 +182,8 @@ impl Own {
     }
 
     /// At each of the points; `above_linear` is N of large motions above that of the linear strain.
-    fn at(&self, moved: &Displacement, above_linear: Vector3<f64>) -> impl Iterator<Item = Resultants> {
-        let (in_plane, plate) = membrane_and_plate(&(self.to_local * moved.global));
+    fn at(&self, motion: &Displacement, above_linear: Vector3<f64>) -> impl Iterator<Item = Resultants> {
+        let (in_plane, plate) = membrane_and_plate(&(self.to_local * motion.global));
         let cells: Vec<_> = self.cells.iter().map(|[n, m]| [n * in_plane, m * plate]).collect();
         self.points.iter().map(move |point| {
             let [of_cell, moment] = cells[point.cell];

@@ -172,8 +172,8 @@ fn in_triangle(xy: &[[f64; 2]; 4], point: [f64; 2]) -> [f64; 3] {
 /// rectangle only: from points outside of other quads it may come to rest anywhere.
 fn natural(xy: &[[f64; 2]; 4], point: [f64; 2]) -> Option<[f64; 2]> {
     let sum = |signs: [f64; 4]| {
-        let of = |k: usize| 0.25 * (0..4).map(|i| signs[i] * xy[i][k]).sum::<f64>();
-        Vector2::new(of(0), of(1))
+        let component = |k: usize| 0.25 * (0..4).map(|i| signs[i] * xy[i][k]).sum::<f64>();
+        Vector2::new(component(0), component(1))
     };
     let [a, b] = [[1.0, 1.0, 1.0, 1.0], [-1.0, 1.0, 1.0, -1.0]].map(sum);
     let [c, d] = [[-1.0, -1.0, 1.0, 1.0], [1.0, -1.0, 1.0, -1.0]].map(sum);

@@ -29,7 +29,7 @@ pub(super) struct Block {
 
 impl Block {
     /// What was read, for people.
-    pub fn told(&self) -> String {
+    pub fn summary(&self) -> String {
         let symbols: Vec<&str> = self.results.iter().map(|(_, value)| value.parameter.symbol()).collect();
         format!("{} and {} tensile stiffnesses", symbols.join(", "), self.stiffnesses.len())
     }
@@ -102,14 +102,14 @@ mod tests {
     #[test]
     fn values_have_the_units_of_the_help() {
         let block = parse(Path::new("cupro.json"), FILE).unwrap().unwrap();
-        let of = |(name, v): &(Option<String>, ResultValue)| {
+        let rounded = |(name, v): &(Option<String>, ResultValue)| {
             assert!(v.inferred && name.as_deref() == Some("cupro"));
             (v.parameter.symbol(), v.direction, (v.mean * 1e9).round())
         };
         let (warp, weft) = (Some(Direction::Warp), Some(Direction::Weft));
         let expected =
             [("B", warp, 4300.0), ("B", weft, 5300.0), ("W", None, 105_600_000.0), ("T0", None, 120_000.0)];
-        assert_eq!(block.results.iter().map(of).collect::<Vec<_>>(), expected);
+        assert_eq!(block.results.iter().map(rounded).collect::<Vec<_>>(), expected);
         let stiffness: Vec<_> = block.stiffnesses.iter().map(|(_, s)| (s.direction, s.stiffness)).collect();
         assert_eq!(stiffness, [(Direction::Warp, 588.0), (Direction::Weft, 1035.0)]);
     }

@@ -59,14 +59,14 @@ impl Page {
     }
 }
 
-/// The way from a text to what it was.
-struct Way {
+/// A text in the characters of one page as the bytes of another.
+struct Recoding {
     from: Page,
     to: Page,
     bytes: Vec<(char, u8)>,
 }
 
-impl Way {
+impl Recoding {
     fn byte(&self, c: char) -> Option<u8> {
         let ascii = u8::try_from(c).ok().filter(|b| *b < 0x80);
         ascii.or_else(|| self.bytes.iter().find(|(of, _)| *of == c).map(|(_, b)| *b))
@@ -96,17 +96,17 @@ impl Way {
     }
 }
 
-/// All ways between two pages.
-fn ways() -> &'static [Way] {
-    static WAYS: OnceLock<Vec<Way>> = OnceLock::new();
-    WAYS.get_or_init(all_ways)
+/// All recodings between two pages.
+fn recodings() -> &'static [Recoding] {
+    static RECODINGS: OnceLock<Vec<Recoding>> = OnceLock::new();
+    RECODINGS.get_or_init(all_recodings)
 }
 
-fn all_ways() -> Vec<Way> {
+fn all_recodings() -> Vec<Recoding> {
     let single = PAGES.into_iter().filter(|page| page.name() != "UTF-8");
     let pairs = single.flat_map(|from| PAGES.into_iter().map(move |to| (from, to)));
     let other = pairs.filter(|(from, to)| from.name() != to.name());
-    other.map(|(from, to)| Way { from, to, bytes: from.bytes() }).collect()
+    other.map(|(from, to)| Recoding { from, to, bytes: from.bytes() }).collect()
 }
 
 /// Different texts that are looked at.
@@ -135,11 +135,11 @@ pub(super) fn restored<'r>(rows: &'r [Row<'_>]) -> Option<(Vec<Row<'r>>, ReadFac
     if strange.is_empty() {
         return None;
     }
-    let (mut best, mut found): (Option<&Way>, Vec<(&str, String, Unit)>) = (None, Vec::new());
-    for way in ways() {
-        let units: Vec<_> = strange.iter().filter_map(|text| way.unit_of(text)).collect();
+    let (mut best, mut found): (Option<&Recoding>, Vec<(&str, String, Unit)>) = (None, Vec::new());
+    for recoding in recodings() {
+        let units: Vec<_> = strange.iter().filter_map(|text| recoding.unit_of(text)).collect();
         if units.len() > found.len() {
-            (best, found) = (Some(way), units);
+            (best, found) = (Some(recoding), units);
         } else if !units.is_empty() && units.len() == found.len() {
             // Two pages that give other units leave it open.
             let same = units.iter().zip(&found).all(|(a, b)| a.0 == b.0 && a.2 == b.2);
@@ -148,15 +148,15 @@ pub(super) fn restored<'r>(rows: &'r [Row<'_>]) -> Option<(Vec<Row<'r>>, ReadFac
             }
         }
     }
-    let way = best?;
+    let recoding = best?;
     let (was, is, _) = found.into_iter().next()?;
     let fact = ReadFact::OtherCodePage {
         written: is,
         found: was.to_string(),
-        written_in: way.to.name().to_string(),
-        read_in: way.from.name().to_string(),
+        written_in: recoding.to.name().to_string(),
+        read_in: recoding.from.name().to_string(),
     };
-    Some((rows.iter().map(|row| way.row(row)).collect(), fact))
+    Some((rows.iter().map(|row| recoding.row(row)).collect(), fact))
 }
 
 #[cfg(test)]

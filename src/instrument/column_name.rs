@@ -82,18 +82,18 @@ mod tests {
 
     #[test]
     fn names_with_everything_in_them() {
-        let of = |t| ColumnName::of(t, Vocabulary::new(&[]));
+        let parsed = |t| ColumnName::of(t, Vocabulary::new(&[]));
         let warp = Some(Direction::Warp);
         for (text, specimen) in [("Warp-1 K", Some(1)), ("K_warp", None), ("曲率 経 2", Some(2))] {
-            let found = of(text);
+            let found = parsed(text);
             assert_eq!((found.role, found.direction), (Some(Role::Curvature), warp), "{text}");
             assert_eq!((found.specimen, found.branch), (specimen, None), "{text}");
         }
-        assert_eq!(of("moment 2").specimen, Some(2));
-        let unload = of("Tensile force unloading");
+        assert_eq!(parsed("moment 2").specimen, Some(2));
+        let unload = parsed("Tensile force unloading");
         assert_eq!((unload.role, unload.branch), (Some(Role::Force), Some(BranchColumn::Unloading)));
-        assert_eq!(of("load").role, Some(Role::Force));
-        assert_eq!(of("Biegemoment").role, Some(Role::Moment));
-        assert_eq!(of("foo").role, None);
+        assert_eq!(parsed("load").role, Some(Role::Force));
+        assert_eq!(parsed("Biegemoment").role, Some(Role::Moment));
+        assert_eq!(parsed("foo").role, None);
     }
 }

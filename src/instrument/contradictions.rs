@@ -28,8 +28,8 @@ impl Scanner<'_, '_> {
             .any(is_number);
         let differs = match key {
             Key::Direction => {
-                let of = |text: &str| self.context.vocabulary.direction(text);
-                of(&before.text) != of(&entry.text)
+                let direction = |text: &str| self.context.vocabulary.direction(text);
+                direction(&before.text) != direction(&entry.text)
             }
             _ => before.text != entry.text,
         };

@@ -5,11 +5,11 @@ use std::str::FromStr;
 use super::axis::Axes;
 use super::dialect::{Key, Role};
 use super::error::{Problem, ReadError};
+use super::inference;
 use super::label::SPECIMENS;
 use super::layout::{Context, Entry, Header, Pair};
 use super::raw::Row;
 use super::sniff::{Number, number};
-use super::told;
 use super::value::value;
 use super::words::folded;
 use super::{Conditions, Direction, Measurement, Shape, Source, Test};
@@ -35,8 +35,8 @@ pub(super) fn measurement(
     log.push(format!(
         "{}: {}, {}",
         test.name(),
-        told::scaled(&pair.x, x, test.axes()[0]),
-        told::scaled(&pair.y, y, test.axes()[1])
+        inference::scaled(&pair.x, x, test.axes()[0]),
+        inference::scaled(&pair.y, y, test.axes()[1])
     ));
     let mut points = points(pair, rows, ends_file, context)?;
     if let Some((bx, by)) = &pair.back {
@@ -77,7 +77,7 @@ pub(super) fn measurement(
         return Err(context.error(points.rows[i].0, pair.x.column, Problem::NotFinite { found }));
     }
     let specimen = specimen(header, context)?;
-    log.push(told::curve(test, direction, specimen, pair, context, &points.rows));
+    log.push(inference::curve(test, direction, specimen, pair, context, &points.rows));
     let measurement = Measurement {
         test,
         sample: header
@@ -263,7 +263,7 @@ fn conditions(
     {
         c.contact = positive(load.si(), Key::Contact, header, context)?;
     }
-    log.push(told::conditions(test, &c, header));
+    log.push(inference::conditions(test, &c, header));
     let unknown: Vec<&str> =
         header.other.keys().map(String::as_str).filter(|k| context.vocabulary.key(k).is_none()).collect();
     if !unknown.is_empty() {

@@ -108,14 +108,14 @@ pub struct FabFile {
 
 impl FabFile {
     /// What the record holds, for people.
-    pub(super) fn told(&self) -> String {
-        let of = |direction: Direction| {
+    pub(super) fn summary(&self) -> String {
+        let described = |direction: Direction| {
             let tests = self.tests.iter().filter(|t| t.direction == direction);
             let named: Vec<String> =
                 tests.map(|t| format!("{} with {} branches", t.kind.name(), t.branches.len())).collect();
             (!named.is_empty()).then(|| format!("{direction} ({})", named.join(", ")))
         };
-        let tests: Vec<String> = Direction::ALL.into_iter().filter_map(of).collect();
+        let tests: Vec<String> = Direction::ALL.into_iter().filter_map(described).collect();
         let warnings = match self.warnings.len() {
             0 => "no warning of the instrument's program".to_string(),
             n => format!("{n} warnings of the instrument's program"),

@@ -344,8 +344,8 @@ impl Library {
     /// Says which links lead nowhere: they are neither files nor folders.
     fn tell_dangling(&mut self, paths: &[PathBuf]) {
         let dangles = |path: &&PathBuf| !is_hidden(path) && files::is_link(path) && !files::exists(path);
-        let told = |path: &PathBuf| Finding::new(UsageFact::DanglingLink {}).at(Place::file(path));
-        self.findings.extend(paths.iter().filter(dangles).map(told));
+        let dangling = |path: &PathBuf| Finding::new(UsageFact::DanglingLink {}).at(Place::file(path));
+        self.findings.extend(paths.iter().filter(dangles).map(dangling));
     }
 }
 

@@ -35,14 +35,14 @@ pub(super) fn archive(bytes: &[u8]) -> Result<(), Problem> {
         return Ok(());
     }
     let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).map_err(bad)?;
-    let mut left = UNPACKED;
+    let mut remaining = UNPACKED;
     for i in 0..archive.len() {
         let entry = archive.by_index(i).map_err(bad)?;
-        let size = std::io::copy(&mut entry.take(left + 1), &mut std::io::sink()).map_err(bad)?;
-        let Some(rest) = left.checked_sub(size) else {
+        let size = std::io::copy(&mut entry.take(remaining + 1), &mut std::io::sink()).map_err(bad)?;
+        let Some(rest) = remaining.checked_sub(size) else {
             return Err(bad(format!("it unpacks to more than {} MB", UNPACKED >> 20)));
         };
-        left = rest;
+        remaining = rest;
     }
     Ok(())
 }

@@ -121,13 +121,15 @@ fn text(
     if text.trim_start().starts_with('{') {
         if let Some(values) = browzwear::parse(path, &text)? {
             content.source.dialect = "u3m-browzwear".to_string();
-            content.inference.push(format!("JSON without raw data: {} of Browzwear's block", values.told()));
+            content
+                .inference
+                .push(format!("JSON without raw data: {} of Browzwear's block", values.summary()));
             (content.results, content.stiffnesses) = (values.results, values.stiffnesses);
             return Ok(());
         }
         let (mut file, findings) = fab::parse(path, &text)?;
         content.source.dialect = "u3m-fab".to_string();
-        content.inference.push(format!("JSON with raw_data: {}", file.told()));
+        content.inference.push(format!("JSON with raw_data: {}", file.summary()));
         file.source = content.source.clone();
         (content.fab, content.findings) = (Some(file), findings);
         return Ok(());

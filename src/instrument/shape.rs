@@ -178,9 +178,9 @@ pub(super) fn has_symbols(row: &Row<'_>, context: &Context<'_>) -> bool {
         return false;
     }
     // A curve may have one column that is a parameter's namesake: thickness, elongation.
-    let of = |f: &Facets| (f.parameter, f.direction, f.index, f.fast.map(|v| v.symbol()));
+    let quantity = |f: &Facets| (f.parameter, f.direction, f.index, f.fast.map(|v| v.symbol()));
     let named: Vec<Facets> = facets(row, context).into_iter().filter(Facets::names_value).collect();
-    named.iter().map(of).collect::<BTreeSet<_>>().len() > 1 && across(&[row], context)
+    named.iter().map(quantity).collect::<BTreeSet<_>>().len() > 1 && across(&[row], context)
 }
 
 /// Whether a row heads the columns of curves: an abscissa and an ordinate.

@@ -11,11 +11,11 @@ pub(super) fn told_apart(entries: &[String], decimal: char) -> Option<[String; 2
     let other = entries.iter().find(|e| *e != first)?;
     let distinct: BTreeSet<&String> = entries.iter().collect();
     let grouped = distinct.len() < entries.len();
-    let of = |entry: &String| match number(entry, decimal) {
+    let plain_value = |entry: &String| match number(entry, decimal) {
         Number::Value(v) => Some(v),
         _ => None,
     };
-    let numbers: Option<Vec<f64>> = entries.iter().map(of).collect();
+    let numbers: Option<Vec<f64>> = entries.iter().map(plain_value).collect();
     let tells = match numbers {
         // A count 1, 2, 3 is that of the repeats, and what was measured has decimals.
         Some(numbers) => {

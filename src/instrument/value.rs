@@ -131,19 +131,19 @@ mod tests {
 
     #[test]
     fn values_with_what_print_adds() {
-        let of = |t| match value(t, '.') {
+        let parsed = |t| match value(t, '.') {
             (Number::Value(v), sd) => Some((v, sd)),
             _ => None,
         };
-        assert_eq!(of("0.081"), Some((0.081, None)));
-        assert_eq!(of("0.081 ± 0.003"), Some((0.081, Some(0.003))));
-        assert_eq!(of("0.081±0.003"), Some((0.081, Some(0.003))));
-        assert_eq!(of("0.081 (0.003)"), Some((0.081, Some(0.003))));
-        assert_eq!(of("6.2 %"), Some((6.2, None)));
-        assert_eq!(of("1,234.5"), Some((1234.5, None)));
-        assert_eq!(of("12,34.5"), None);
-        assert_eq!(of("1,234"), None);
-        assert_eq!(of("0.081 (warp)"), None);
+        assert_eq!(parsed("0.081"), Some((0.081, None)));
+        assert_eq!(parsed("0.081 ± 0.003"), Some((0.081, Some(0.003))));
+        assert_eq!(parsed("0.081±0.003"), Some((0.081, Some(0.003))));
+        assert_eq!(parsed("0.081 (0.003)"), Some((0.081, Some(0.003))));
+        assert_eq!(parsed("6.2 %"), Some((6.2, None)));
+        assert_eq!(parsed("1,234.5"), Some((1234.5, None)));
+        assert_eq!(parsed("12,34.5"), None);
+        assert_eq!(parsed("1,234"), None);
+        assert_eq!(parsed("0.081 (warp)"), None);
         assert_eq!(value("1.234,5", ','), (Number::Value(1234.5), None));
         assert_eq!(value("1,5 ± 0,1", ','), (Number::Value(1.5), Some(0.1)));
     }

@@ -88,12 +88,12 @@ pub(super) fn is_workbook(bytes: &[u8]) -> bool {
 /// # Errors
 /// `R021`.
 pub(super) fn sheets(bytes: &[u8], decimal: Option<char>) -> Result<Book, Problem> {
-    let mut left = LeftOut::default();
+    let mut left_out = LeftOut::default();
     // Damaged records are more than the crates that read them expect.
     let read = guarded(|| match archive(bytes) {
-        Some(Archive::Ods) => ods(bytes, &mut left),
-        Some(_) => xlsx(bytes, &mut left),
-        None => xls(bytes, &mut left),
+        Some(Archive::Ods) => ods(bytes, &mut left_out),
+        Some(_) => xlsx(bytes, &mut left_out),
+        None => xls(bytes, &mut left_out),
     });
     let cells =
         read.unwrap_or_else(|| Err(bad("it is damaged: a record of it is not as the format has it")))?;
@@ -111,7 +111,13 @@ pub(super) fn sheets(bytes: &[u8], decimal: Option<char>) -> Result<Book, Proble
     let decimal = decimal.unwrap_or(if comma { ',' } else { '.' });
     let sheet = |of: Shown| Sheet { name: of.name, rows: rows(of.cells, &of.left_out, decimal) };
     let sheets = cells.into_iter().filter(|of| !of.cells.is_empty()).map(sheet).collect();
-    Ok(Book { sheets, decimal, hidden: left.hidden, without_value: left.without_value, units: left.units })
+    Ok(Book {
+        sheets,
+        decimal,
+        hidden: left_out.hidden,
+        without_value: left_out.without_value,
+        units: left_out.units,
+    })
 }
 
 /// The decimal mark of rows of texts: `,` if only that makes numbers of them.
@@ -258,7 +264,7 @@ fn cells_text(cells: &[(u32, u32)]) -> String {
 }
 
 /// Leaves out cells that are hidden or struck out, and makes numbers what their formats show.
-fn apply(name: String, mut cells: Cells, marks: &Marks, left: &mut LeftOut) -> Shown {
+fn apply(name: String, mut cells: Cells, marks: &Marks, left_out: &mut LeftOut) -> Shown {
     let all: BTreeSet<u32> = cells.keys().map(|(r, _)| *r).collect();
     let is_hidden = |(r, c): &(u32, u32)| marks.hidden_rows.contains(r) || marks.hidden_columns.contains(c);
     let rows: BTreeSet<u32> =
@@ -269,21 +275,21 @@ fn apply(name: String, mut cells: Cells, marks: &Marks, left: &mut LeftOut) -> S
     for (what, numbers) in [("row", &rows), ("column", &columns)] {
         if !numbers.is_empty() {
             let s = if numbers.len() > 1 { "s" } else { "" };
-            left.hidden.push(format!("{what}{s} {} of sheet {name:?}", list(numbers)));
+            left_out.hidden.push(format!("{what}{s} {} of sheet {name:?}", list(numbers)));
         }
     }
     cells.retain(|at, _| !is_hidden(at));
     let struck_out: Vec<(u32, u32)> =
         cells.keys().filter(|at| marks.struck_out.contains(at)).copied().collect();
     if !struck_out.is_empty() {
-        left.hidden.push(format!("{}, struck out, of sheet {name:?}", cells_text(&struck_out)));
+        left_out.hidden.push(format!("{}, struck out, of sheet {name:?}", cells_text(&struck_out)));
         cells.retain(|at, _| !marks.struck_out.contains(at));
     }
     let shown = |at: &&(u32, u32)| !is_hidden(at) && !marks.struck_out.contains(at);
     let without: Vec<(u32, u32)> =
         marks.formulas.iter().filter(shown).filter(|at| !cells.contains_key(at)).copied().collect();
     if !without.is_empty() {
-        left.without_value.push(format!("{} of sheet {name:?}", cells_text(&without)));
+        left_out.without_value.push(format!("{} of sheet {name:?}", cells_text(&without)));
     }
     let mut units: BTreeMap<&str, Vec<(u32, u32)>> = BTreeMap::new();
     for (at, shown) in &marks.shown {
@@ -301,18 +307,18 @@ fn apply(name: String, mut cells: Cells, marks: &Marks, left: &mut LeftOut) -> S
         }
     }
     for (unit, at) in &units {
-        left.units.push(format!("{unit:?} in {} of sheet {name:?}", cells_text(at)));
+        left_out.units.push(format!("{unit:?} in {} of sheet {name:?}", cells_text(at)));
     }
     let kept: BTreeSet<u32> = cells.keys().map(|(r, _)| *r).collect();
     Shown { left_out: &all - &kept, name, cells }
 }
 
-fn xlsx(bytes: &[u8], left: &mut LeftOut) -> Result<Vec<Shown>, Problem> {
+fn xlsx(bytes: &[u8], left_out: &mut LeftOut) -> Result<Vec<Shown>, Problem> {
     limits::archive(bytes)?;
     let mut book = Xlsx::new(Cursor::new(bytes)).map_err(bad)?;
     let mut marks = marks::xlsx(bytes)?;
     let mut out = Vec::new();
-    for name in visible(book.sheets_metadata(), &mut left.hidden) {
+    for name in visible(book.sheets_metadata(), &mut left_out.hidden) {
         let mut cells = Cells::new();
         // Cell by cell: a range would allocate the whole rectangle up to a stray last cell.
         let mut reader = book.worksheet_cells_reader(&name).map_err(bad)?;
@@ -320,35 +326,35 @@ fn xlsx(bytes: &[u8], left: &mut LeftOut) -> Result<Vec<Shown>, Problem> {
             insert(&mut cells, cell.get_position(), cell.get_value().clone())?;
         }
         let marks = marks.remove(&name).unwrap_or_default();
-        out.push(apply(name, cells, &marks, left));
+        out.push(apply(name, cells, &marks, left_out));
     }
     Ok(out)
 }
 
-fn ods(bytes: &[u8], left: &mut LeftOut) -> Result<Vec<Shown>, Problem> {
+fn ods(bytes: &[u8], left_out: &mut LeftOut) -> Result<Vec<Shown>, Problem> {
     limits::archive(bytes)?;
     // First, as it refuses XML that was cut.
     let mut marks = marks::ods(bytes)?;
     let mut book = Ods::new(Cursor::new(bytes)).map_err(bad)?;
     let mut out = Vec::new();
-    for name in visible(book.sheets_metadata(), &mut left.hidden) {
+    for name in visible(book.sheets_metadata(), &mut left_out.hidden) {
         let range = book.worksheet_range(&name).map_err(bad)?;
         let cells = used(&range)?;
         let marks = marks.remove(&name).unwrap_or_default();
-        out.push(apply(name, cells, &marks, left));
+        out.push(apply(name, cells, &marks, left_out));
     }
     Ok(out)
 }
 
-fn xls(bytes: &[u8], left: &mut LeftOut) -> Result<Vec<Shown>, Problem> {
+fn xls(bytes: &[u8], left_out: &mut LeftOut) -> Result<Vec<Shown>, Problem> {
     let mut marks = marks::xls::marks(&limits::compound(bytes)?);
     let mut book = Xls::new(Cursor::new(bytes)).map_err(bad)?;
     let mut out = Vec::new();
-    for name in visible(book.sheets_metadata(), &mut left.hidden) {
+    for name in visible(book.sheets_metadata(), &mut left_out.hidden) {
         let range = book.worksheet_range(&name).map_err(bad)?;
         let cells = used(&range)?;
         let marks = marks.remove(&name).unwrap_or_default();
-        out.push(apply(name, cells, &marks, left));
+        out.push(apply(name, cells, &marks, left_out));
     }
     Ok(out)
 }

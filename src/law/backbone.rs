@@ -169,12 +169,12 @@ impl Backbone {
     /// The same curve with other stress at strain 0: without the set or zero error of a record, say.
     pub fn with_offset(&self, offset: f64) -> Self {
         let change = offset - self.offset();
-        let mut moved = self.clone();
-        for piece in &mut moved.pieces {
+        let mut shifted = self.clone();
+        for piece in &mut shifted.pieces {
             piece.at.stress += change;
             piece.at.energy += change * piece.strain;
         }
-        moved
+        shifted
     }
 }
 

@@ -146,10 +146,10 @@ impl Shelf {
         for filled in self.columns.values() {
             let value = |at: &usize| filled.values.get(*at).copied().filter(|value| !value.is_nan());
             let array: ArrayRef = Arc::new(order.iter().map(value).collect::<Float64Array>());
-            let told = Metadata::from([(UNIT.to_string(), filled.unit.to_string())]);
+            let metadata = Metadata::from([(UNIT.to_string(), filled.unit.to_string())]);
             let named = NAMES.iter().filter(|(_, symbol)| *symbol == filled.name).map(|(name, _)| *name);
             for name in named.chain([filled.name.as_str()]) {
-                fields.push(Field::new(name, DataType::Float64, true).with_metadata(told.clone()));
+                fields.push(Field::new(name, DataType::Float64, true).with_metadata(metadata.clone()));
                 arrays.push(Arc::clone(&array));
             }
         }
@@ -163,8 +163,8 @@ impl Shelf {
     /// Those of [`table`](Self::table).
     pub fn parquet(&self) -> Result<Vec<u8>, Failure> {
         let table = self.table()?;
-        let told = [("kesf.library", "1"), ("kesf.version", env!("CARGO_PKG_VERSION"))];
-        Ok(write_pieces(&table.schema(), [&table], GROUP, &told)?)
+        let metadata = [("kesf.library", "1"), ("kesf.version", env!("CARGO_PKG_VERSION"))];
+        Ok(write_pieces(&table.schema(), [&table], GROUP, &metadata)?)
     }
 }
 

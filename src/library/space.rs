@@ -41,8 +41,8 @@ pub(super) fn column(parameter: &str, direction: Option<&str>) -> String {
 
 /// Columns that a point is made of: those of the two directions, and that of the fabric as a whole.
 pub(super) fn columns(parameter: Parameter) -> [String; 3] {
-    let of = |direction: Direction| column(parameter.symbol(), Some(direction.name()));
-    [of(Direction::Warp), of(Direction::Weft), column(parameter.symbol(), None)]
+    let in_direction = |direction: Direction| column(parameter.symbol(), Some(direction.name()));
+    [in_direction(Direction::Warp), in_direction(Direction::Weft), column(parameter.symbol(), None)]
 }
 
 /// What stands for the columns that a point is made of, by their names.
@@ -126,12 +126,12 @@ mod tests {
     #[test]
     fn distances_are_in_standard_deviations() {
         let mut usual = Usual::default();
-        let of = |t: f64, b: f64| {
+        let point_of = |t: f64, b: f64| {
             let values = sources(|name| [("T0", t), ("B_warp", b)].iter().find(|c| c.0 == name).map(|c| c.1));
             point(&values, |value| *value)
         };
         // log10 of T0: 0, 1, 2: mean 1, SD 1. B is the same everywhere and says nothing.
-        let points = [of(1.0, 5.0), of(10.0, 5.0), of(100.0, 5.0)];
+        let points = [point_of(1.0, 5.0), point_of(10.0, 5.0), point_of(100.0, 5.0)];
         points.iter().for_each(|point| usual.add(point));
         let axes = usual.axes();
         let t0 = axes.iter().find(|axis| axis.parameter == Parameter::T0).unwrap();

@@ -154,9 +154,9 @@ mod tests {
         }
         let found = crossings(&points, &quads).unwrap();
         let turn = nalgebra::UnitQuaternion::from_scaled_axis(Vector3::new(0.3, 1.2, -0.7));
-        let moved: Vec<_> = points.iter().map(|p| turn * p + Vector3::new(0.2, -3.0, 1.0)).collect();
+        let turned: Vec<_> = points.iter().map(|p| turn * p + Vector3::new(0.2, -3.0, 1.0)).collect();
         quads.reverse();
-        let other = crossings(&moved, &quads).unwrap();
+        let other = crossings(&turned, &quads).unwrap();
         assert!(found.pairs > 10);
         assert_eq!(found.pairs, other.pairs);
         assert_relative_eq!(found.depth, other.depth, max_relative = 1e-6);

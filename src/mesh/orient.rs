@@ -20,7 +20,7 @@ impl QuadMesh {
     pub fn opposed(&self) -> Option<[usize; 2]> {
         let sides = self.sides();
         let found = sides.chunk_by(|a, b| a.0 == b.0).filter_map(|at| match *at {
-            [(_, a, way), (_, b, other)] if way == other => Some([a, b]),
+            [(_, a, direction), (_, b, other)] if direction == other => Some([a, b]),
             _ => None,
         });
         found.min()
@@ -31,9 +31,9 @@ impl QuadMesh {
     pub fn orient(&mut self) {
         let mut neighbours: Vec<Vec<(usize, bool)>> = vec![Vec::new(); self.quads.len()];
         for at in self.sides().chunk_by(|a, b| a.0 == b.0) {
-            if let [(_, a, way), (_, b, other)] = *at {
-                neighbours[a].push((b, way == other));
-                neighbours[b].push((a, way == other));
+            if let [(_, a, direction), (_, b, other)] = *at {
+                neighbours[a].push((b, direction == other));
+                neighbours[b].push((a, direction == other));
             }
         }
         let mut turned: Vec<Option<bool>> = vec![None; self.quads.len()];

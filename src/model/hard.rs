@@ -58,11 +58,12 @@ pub(super) fn rotations(model: &Model, held: &[Option<f64>]) -> (Vec<usize>, Vec
         let axes = (0..3).filter(|k| held[first + k].is_some()).map(|k| Vector3::ith(k, 1.0));
         let axes: Vec<Vector3<f64>> = axes.collect();
         let along_axis = |n: &Vector3<f64>| axes.iter().any(|axis| between(axis, n) < close);
-        let left: Vec<Vector3<f64>> = normals.into_iter().filter(|n| !along_axis(n)).map(snapped).collect();
-        if axes.len() == 3 || left.iter().all(|n| axis_of(n).is_some()) {
-            dofs.extend(left.iter().filter_map(axis_of).map(|axis| first + axis));
+        let remaining: Vec<Vector3<f64>> =
+            normals.into_iter().filter(|n| !along_axis(n)).map(snapped).collect();
+        if axes.len() == 3 || remaining.iter().all(|n| axis_of(n).is_some()) {
+            dofs.extend(remaining.iter().filter_map(axis_of).map(|axis| first + axis));
         } else {
-            own.push(OwnAxes::new(node, &axes, left));
+            own.push(OwnAxes::new(node, &axes, remaining));
         }
     }
     (dofs, own)
@@ -317,11 +318,11 @@ mod tests {
             for (name, [x, y]) in
                 [("a", [1.0, 1.0]), ("b", [-1.0, 1.0]), ("c", [-1.0, -1.0]), ("d", [1.0, -1.0])]
             {
-                let of = |n: &u32| {
+                let in_quadrant = |n: &u32| {
                     let p = mesh.nodes[*n as usize];
                     p.x * x > -1e-6 && p.y * y > -1e-6
                 };
-                let arc: Vec<u32> = rim.iter().copied().filter(of).collect();
+                let arc: Vec<u32> = rim.iter().copied().filter(in_quadrant).collect();
                 mesh.node_sets.insert(name.into(), arc);
             }
             for sets in [&["outer"][..], &["a", "b", "c", "d"]] {

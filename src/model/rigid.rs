@@ -165,9 +165,9 @@ impl Links {
         let b = group.dofs().len();
         for tie in &self.ties {
             let own = &mut f[b * tie.node as usize..][..b];
-            let moved = tie.of_group(group).tr_mul(&DVector::from_column_slice(own));
+            let transferred = tie.of_group(group).tr_mul(&DVector::from_column_slice(own));
             own.fill(0.0);
-            f[b * tie.lead as usize..][..b].iter_mut().zip(&moved).for_each(|(f, m)| *f += m);
+            f[b * tie.lead as usize..][..b].iter_mut().zip(&transferred).for_each(|(f, m)| *f += m);
         }
     }
 
@@ -253,8 +253,8 @@ mod tests {
         let mut f: Vec<f64> = (0..18).map(|k| (k as f64).cos()).collect();
         links.expand(DofGroup::Shell, &mut u);
         let (theta, r) = (Vector3::new(u[9], u[10], u[11]), Vector3::new(2.0, -2.0, 1.5));
-        let moved = Vector3::new(u[6], u[7], u[8]) + theta.cross(&r);
-        assert_relative_eq!(moved, Vector3::new(u[12], u[13], u[14]), max_relative = 1e-14);
+        let expected = Vector3::new(u[6], u[7], u[8]) + theta.cross(&r);
+        assert_relative_eq!(expected, Vector3::new(u[12], u[13], u[14]), max_relative = 1e-14);
         let work = |f: &[f64]| f.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>();
         let before = work(&f);
         links.reduce(DofGroup::Shell, &mut f);

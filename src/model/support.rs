@@ -91,12 +91,13 @@ mod tests {
     #[test]
     fn two_values_of_one_dof_are_refused() {
         let mesh = rectangle(1.0, 1.0, 2, 2).unwrap();
-        let moved = |set: &str, dof, value| Support::at(mesh.set(set).unwrap().to_vec(), vec![(dof, value)]);
-        let agree = |second| Support::agree(&mesh, &[moved("left", Dof::W, 1e-3), second]);
-        assert_eq!(agree(moved("bottom", Dof::W, 1e-3)), Ok(()));
-        assert_eq!(agree(moved("bottom", Dof::U, 2e-3)), Ok(()));
-        assert_eq!(agree(moved("right", Dof::W, 2e-3)), Ok(()));
-        let refused = agree(moved("bottom", Dof::W, 2e-3)).unwrap_err();
+        let prescribed =
+            |set: &str, dof, value| Support::at(mesh.set(set).unwrap().to_vec(), vec![(dof, value)]);
+        let agree = |second| Support::agree(&mesh, &[prescribed("left", Dof::W, 1e-3), second]);
+        assert_eq!(agree(prescribed("bottom", Dof::W, 1e-3)), Ok(()));
+        assert_eq!(agree(prescribed("bottom", Dof::U, 2e-3)), Ok(()));
+        assert_eq!(agree(prescribed("right", Dof::W, 2e-3)), Ok(()));
+        let refused = agree(prescribed("bottom", Dof::W, 2e-3)).unwrap_err();
         assert_eq!(refused.code(), "M014");
         assert_eq!(mesh.nodes[0], Point3::origin());
         assert!(refused.to_string().contains("w of the node at (0, 0, 0) m"), "{refused}");

@@ -130,7 +130,7 @@ fn texts<'t>(table: &'t RecordBatch, column: &str) -> impl Iterator<Item = &'t s
 /// Whether there is a table that this program did not write.
 fn is_foreign(path: &Path) -> bool {
     let Ok(bytes) = files::read(path) else { return false };
-    read(bytes.into()).is_ok_and(|(told, _)| !told.contains_key("kesf.key"))
+    read(bytes.into()).is_ok_and(|(metadata, _)| !metadata.contains_key("kesf.key"))
 }
 
 /// The hash of what all parts of a batch share, and that of everything that the part depends on: bytes of the

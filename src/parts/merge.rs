@@ -114,13 +114,13 @@ pub fn merge(parts: &[Part]) -> Result<Merged, PartError> {
     let (findings, failures) = of_batch(&tallies);
     let findings: Vec<RemarkRow> = findings.iter().map(|finding| remark(problem_row(finding, ""))).collect();
     let failures: Vec<RemarkRow> = failures.iter().map(|failure| remark(failure.row())).collect();
-    let of = |table: Table, rows: Option<RecordBatch>| {
+    let pieces = |table: Table, rows: Option<RecordBatch>| {
         parts.iter().map(|part| part.table(table).clone()).chain(rows).collect()
     };
     Ok(Merged {
-        parts: of(Table::Results, None),
-        findings: of(Table::Findings, batch(&findings).ok()),
-        failures: of(Table::Failures, batch(&failures).ok()),
+        parts: pieces(Table::Results, None),
+        findings: pieces(Table::Findings, batch(&findings).ok()),
+        failures: pieces(Table::Failures, batch(&failures).ok()),
     })
 }
 

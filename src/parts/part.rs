@@ -111,8 +111,8 @@ pub fn encode(
 ) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let number = shard.to_string();
     let version = env!("CARGO_PKG_VERSION");
-    let told = [(VERSION, version), (SHARD, &number), (SET_UP, set_up), (KEY, key), (CASES, cases)];
-    let file = |(table, rows): (Table, &RecordBatch)| Ok((table.file(shard), write(rows, &told)?));
+    let metadata = [(VERSION, version), (SHARD, &number), (SET_UP, set_up), (KEY, key), (CASES, cases)];
+    let file = |(table, rows): (Table, &RecordBatch)| Ok((table.file(shard), write(rows, &metadata)?));
     TABLES.into_iter().zip(tables).map(file).collect()
 }
 
@@ -127,21 +127,22 @@ impl Part {
         for (table, bytes) in TABLES.into_iter().zip(files) {
             let path = folder.join(table.file(shard));
             let failed = |problem: String| PartError::Part { path: path.clone(), problem };
-            let (told, rows) = read(bytes).map_err(|e| failed(e.to_string()))?;
-            let told: Metadata = told.into_iter().filter(|(key, _)| key.starts_with("kesf.")).collect();
+            let (metadata, rows) = read(bytes).map_err(|e| failed(e.to_string()))?;
+            let metadata: Metadata =
+                metadata.into_iter().filter(|(key, _)| key.starts_with("kesf.")).collect();
             if rows.schema().fields() != table.schema().fields() {
                 return Err(failed(format!("it has other columns than a table of {}", table.name())));
             }
-            if told.get(SHARD).is_none_or(|text| *text != shard.to_string()) {
+            if metadata.get(SHARD).is_none_or(|text| *text != shard.to_string()) {
                 return Err(failed(format!("it does not say that it is shard {shard}")));
             }
             match &found {
                 None => {
-                    let cases = told.get(CASES).and_then(|text| serde_json::from_str(text).ok());
+                    let cases = metadata.get(CASES).and_then(|text| serde_json::from_str(text).ok());
                     let cases = cases.ok_or_else(|| failed("it does not say what its cases were".into()))?;
-                    found = Some((told, cases));
+                    found = Some((metadata, cases));
                 }
-                Some((first, _)) if *first != told => {
+                Some((first, _)) if *first != metadata => {
                     return Err(failed("its results and its findings are of different runs".into()));
                 }
                 Some(_) => {}
@@ -149,13 +150,13 @@ impl Part {
             tables.push(rows);
         }
         let path = folder.join(shard.file());
-        let text = |told: &Metadata, key: &str| told.get(key).cloned().unwrap_or_default();
+        let text = |metadata: &Metadata, key: &str| metadata.get(key).cloned().unwrap_or_default();
         let broken = || PartError::Part { path: path.clone(), problem: "a table is missing".into() };
-        let (told, tallies) = found.ok_or_else(broken)?;
+        let (metadata, tallies) = found.ok_or_else(broken)?;
         let tables = tables.try_into().map_err(|_| broken())?;
         // Another version is another set-up.
-        let set_up = format!("{} {}", text(&told, VERSION), text(&told, SET_UP));
-        Ok(Self { shard, key: text(&told, KEY), set_up, tallies, tables, path })
+        let set_up = format!("{} {}", text(&metadata, VERSION), text(&metadata, SET_UP));
+        Ok(Self { shard, key: text(&metadata, KEY), set_up, tallies, tables, path })
     }
 
     /// One of its tables.

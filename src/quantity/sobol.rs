@@ -79,8 +79,9 @@ pub fn sampled(
         y
     };
     let all: Vec<Vec<f64>> = platform::map(points, evaluate);
-    let of = |k: usize| all.iter().filter_map(|y| y.get(k).copied()).filter(|y| y.is_finite()).collect();
-    (0..results).map(|k| summed_up(of(k), points.len())).collect()
+    let finite_values =
+        |k: usize| all.iter().filter_map(|y| y.get(k).copied()).filter(|y| y.is_finite()).collect();
+    (0..results).map(|k| summed_up(finite_values(k), points.len())).collect()
 }
 
 /// Median and central 95 % of the results at some of the points.

@@ -92,12 +92,12 @@ pub fn batch<R: Row>(rows: &[R]) -> Result<RecordBatch, TableError> {
 }
 
 /// How files are written: Snappy is what every reader knows.
-pub(super) fn properties(group: usize, told: &[(&str, &str)]) -> WriterProperties {
-    let told = told.iter().map(|(key, text)| KeyValue::new((*key).to_string(), (*text).to_string()));
+pub(super) fn properties(group: usize, metadata: &[(&str, &str)]) -> WriterProperties {
+    let metadata = metadata.iter().map(|(key, text)| KeyValue::new((*key).to_string(), (*text).to_string()));
     WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
         .set_max_row_group_row_count(Some(group.max(1)))
-        .set_key_value_metadata(Some(told.collect()))
+        .set_key_value_metadata(Some(metadata.collect()))
         .build()
 }
 
@@ -105,8 +105,8 @@ pub(super) fn properties(group: usize, told: &[(&str, &str)]) -> WriterPropertie
 ///
 /// # Errors
 /// [`TableError::Encode`].
-pub fn write(table: &RecordBatch, told: &[(&str, &str)]) -> Result<Vec<u8>, TableError> {
-    write_pieces(&table.schema(), [table], table.num_rows(), told)
+pub fn write(table: &RecordBatch, metadata: &[(&str, &str)]) -> Result<Vec<u8>, TableError> {
+    write_pieces(&table.schema(), [table], table.num_rows(), metadata)
 }
 
 /// A table that comes in pieces as Parquet, in row groups of so many rows.
@@ -117,9 +117,9 @@ pub fn write_pieces<'p>(
     schema: &SchemaRef,
     pieces: impl IntoIterator<Item = &'p RecordBatch>,
     group: usize,
-    told: &[(&str, &str)],
+    metadata: &[(&str, &str)],
 ) -> Result<Vec<u8>, TableError> {
-    let writer = ArrowWriter::try_new(Vec::new(), Arc::clone(schema), Some(properties(group, told)));
+    let writer = ArrowWriter::try_new(Vec::new(), Arc::clone(schema), Some(properties(group, metadata)));
     let mut writer = writer.map_err(|e| refused("Parquet", &e))?;
     for piece in pieces {
         writer.write(piece).map_err(|e| refused("Parquet", &e))?;

@@ -165,10 +165,10 @@ mod tests {
         files.set("y.json", [3; 32]);
         files.set("a/y.json", [4; 32]);
         files.add("a/y.json", [5; 32]);
-        let of = |name: &str| files.of(name).map(|digest| digest[0]).collect::<Vec<_>>();
-        assert_eq!(of("a/y.json"), [4, 5]);
-        assert_eq!(of("b/y.json"), [2]);
-        assert_eq!(of("y.json"), [3]);
+        let digests = |name: &str| files.of(name).map(|digest| digest[0]).collect::<Vec<_>>();
+        assert_eq!(digests("a/y.json"), [4, 5]);
+        assert_eq!(digests("b/y.json"), [2]);
+        assert_eq!(digests("y.json"), [3]);
         assert_eq!(["z.json", "c", "a", "a/x.json", "", "a/c/y.jso"].map(|name| files.has(name)), [false; 6]);
         let names: Vec<String> = files.iter().map(|(name, _)| name).collect();
         assert_eq!(

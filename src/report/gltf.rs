@@ -75,7 +75,7 @@ impl DeflectedSheet<'_> {
     }
 
     /// Length of the displacement of each node.
-    pub fn moved(&self) -> Vec<f64> {
+    pub fn displacement_magnitudes(&self) -> Vec<f64> {
         self.displacement.iter().map(|u| Vector3::from(*u).norm()).collect()
     }
 
@@ -91,7 +91,7 @@ impl DeflectedSheet<'_> {
     /// By what displacements are multiplied to be seen: 1 where they are between 2 % and 100 % of the size of the sheet,
     /// otherwise 1, 2 or 5 times a power of ten, at which the largest is near a tenth of it.
     pub fn scale_factor(&self) -> f64 {
-        let largest = self.moved().into_iter().fold(0.0, f64::max);
+        let largest = self.displacement_magnitudes().into_iter().fold(0.0, f64::max);
         let part = largest / self.size();
         if largest == 0.0 || !part.is_finite() || (SHOWN[0]..=SHOWN[1]).contains(&part) {
             return 1.0;
@@ -167,12 +167,12 @@ impl Buffer {
 /// [`GltfError`] if lists do not fit together.
 pub fn glb(sheet: &DeflectedSheet) -> Result<Vec<u8>, GltfError> {
     sheet.checked()?;
-    let (shown, moved, by) = (sheet.shown(), sheet.moved(), sheet.scale_factor());
-    let largest = moved.iter().copied().fold(0.0, f64::max);
+    let (shown, magnitudes, by) = (sheet.shown(), sheet.displacement_magnitudes(), sheet.scale_factor());
+    let largest = magnitudes.iter().copied().fold(0.0, f64::max);
     let mut buffer = Buffer::default();
     let position = buffer.vectors(&single(&shown));
     let normal = buffer.vectors(&single(&normals(&shown, sheet.quads)));
-    let colors: Vec<[u16; 4]> = moved.iter().map(|m| linear(value_color(share(*m, largest)))).collect();
+    let colors: Vec<[u16; 4]> = magnitudes.iter().map(|m| linear(value_color(share(*m, largest)))).collect();
     let color = buffer.colors(&colors);
     let faces = buffer.indices(&sheet.quads.iter().flat_map(faces).flatten().collect::<Vec<_>>());
     let before = buffer.vectors(&single(sheet.rest));

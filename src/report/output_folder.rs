@@ -188,16 +188,16 @@ impl OutputFolder {
             // Of a run that was killed, the file may be as it was before or after.
             let path = self.root.join(&name);
             let now = || existing(&path).ok().flatten().map(|bytes| digest(&bytes));
-            let left = match &hashes[..] {
+            let remaining = match &hashes[..] {
                 [only] => path.exists().then_some(*only),
                 several => now().filter(|now| several.contains(now)),
             };
-            if let Some(left) = left {
+            if let Some(remaining) = remaining {
                 // What is ours alone is no left-over to anybody.
                 if !is_hidden(&name) {
                     left_over.push(name.clone());
                 }
-                files.set(&name, left);
+                files.set(&name, remaining);
             }
         }
         write_manifest(&self.root, &files)?;

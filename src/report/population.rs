@@ -207,15 +207,17 @@ mod tests {
 
     #[test]
     fn what_cannot_be_used_is_told_with_its_line() {
-        let told =
+        let refusal =
             |lines: &str| of_csv(format!("parameter,mean,sd,unit\n{lines}").as_bytes(), "").unwrap_err();
-        assert_eq!(told("LT,0.6,0.05,1\nZZ,1,1,1\n").line, 3);
-        assert!(told("ZZ,1,1,1\n").message.contains("`ZZ` is none of the 16 parameters"));
-        assert!(told("LT,0.6,0,1\n").message.contains("an SD above 0 is expected"));
-        assert!(told("B,0.6,0.1,mm\n").message.contains("`B` in mm, where a unit such as gf·cm²/cm or N·m"));
-        assert!(told("LT,0.6,0.1,1\nLT,0.6,0.1,1\n").message.contains("`LT` is there twice"));
-        assert_eq!(told("LT,0.6,x,1\n").line, 2);
-        assert!(told("").message.contains("no parameter"));
+        assert_eq!(refusal("LT,0.6,0.05,1\nZZ,1,1,1\n").line, 3);
+        assert!(refusal("ZZ,1,1,1\n").message.contains("`ZZ` is none of the 16 parameters"));
+        assert!(refusal("LT,0.6,0,1\n").message.contains("an SD above 0 is expected"));
+        assert!(
+            refusal("B,0.6,0.1,mm\n").message.contains("`B` in mm, where a unit such as gf·cm²/cm or N·m")
+        );
+        assert!(refusal("LT,0.6,0.1,1\nLT,0.6,0.1,1\n").message.contains("`LT` is there twice"));
+        assert_eq!(refusal("LT,0.6,x,1\n").line, 2);
+        assert!(refusal("").message.contains("no parameter"));
     }
 
     #[test]

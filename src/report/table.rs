@@ -391,8 +391,8 @@ pub fn history_rows(result: &CaseResult) -> Vec<HistoryRow> {
             };
             row("w_max".into(), step.w_max, "m");
             row("strain_energy".into(), step.strain_energy, "J");
-            for (probe, moved) in result.probes.iter().zip(&path.probes) {
-                for (component, value) in ["u", "v", "w"].iter().zip(moved[k]) {
+            for (probe, displacements) in result.probes.iter().zip(&path.probes) {
+                for (component, value) in ["u", "v", "w"].iter().zip(displacements[k]) {
                     row(format!("{}.{component}", probe.name), value, "m");
                 }
             }
@@ -404,8 +404,8 @@ pub fn history_rows(result: &CaseResult) -> Vec<HistoryRow> {
                 let (step, time) = (k as u64, Some(*time));
                 rows.push(HistoryRow { step, time, factor: None, quantity, value, unit: unit.into() });
             };
-            for (probe, moved) in result.probes.iter().zip(&history.probe_displacements) {
-                for (component, value) in ["u", "v", "w"].iter().zip(moved[k]) {
+            for (probe, displacements) in result.probes.iter().zip(&history.probe_displacements) {
+                for (component, value) in ["u", "v", "w"].iter().zip(displacements[k]) {
                     row(format!("{}.{component}", probe.name), value, "m");
                 }
             }

@@ -119,9 +119,9 @@ pub fn write_part(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     file.write_all(bytes).map_err(failed)?;
     place(file, path)?;
     for entry in fs::read_dir(folder).map_err(failed)?.flatten() {
-        let left = entry.file_name();
-        let left = left.to_string_lossy();
-        if left.starts_with(&begins) && left.ends_with(HALF) {
+        let other = entry.file_name();
+        let other = other.to_string_lossy();
+        if other.starts_with(&begins) && other.ends_with(HALF) {
             // One that cannot be removed does no harm.
             let _ = fs::remove_file(entry.path());
         }
@@ -217,7 +217,7 @@ pub type Bytes = Result<Option<Vec<u8>>, OutputError>;
 ///
 /// # Errors
 /// [`OutputError::Manifest`] if the list of our files is none, [`OutputError::Write`] if a file cannot be read.
-pub fn left(root: &Path) -> Result<impl Fn(&str) -> Bytes, OutputError> {
+pub fn results_reader(root: &Path) -> Result<impl Fn(&str) -> Bytes, OutputError> {
     let files = manifest(root)?;
     Ok(move |name: &str| match files.of(name).next().filter(|_| inside(name)) {
         Some(known) => Ok(existing(&root.join(name))?.filter(|bytes| digest(bytes) == *known)),

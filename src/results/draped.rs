@@ -294,9 +294,11 @@ pub(super) fn point(task: &Task, d: &Drape) -> Option<DrapePoint> {
 /// coefficient beside them; none without such a fabric.
 pub(crate) fn bracket(points: &[DrapePoint]) -> Option<Columns> {
     let mut table = Columns::new(["drape (%)", "elastic", "friction", "measured", "measured is"]);
-    let of = |law: Mode| points.iter().filter(move |p| p.law == law).map(|p| &p.point);
-    for elastic in of(Mode::Elastic) {
-        let Some(friction) = of(Mode::Friction).find(|p| p.label == elastic.label) else { continue };
+    let points_under = |law: Mode| points.iter().filter(move |p| p.law == law).map(|p| &p.point);
+    for elastic in points_under(Mode::Elastic) {
+        let Some(friction) = points_under(Mode::Friction).find(|p| p.label == elastic.label) else {
+            continue;
+        };
         let ([low, high], [low_friction, high_friction]) = (band(elastic), band(friction));
         let place = match elastic.measured {
             m if m < low.min(low_friction) => "below",
@@ -339,7 +341,7 @@ pub(super) fn deflected(task: &Task, d: &Drape) -> Deflected {
 }
 
 /// What shape it is, in a line.
-fn told(task: &Task, d: &Drape) -> String {
+fn summary(task: &Task, d: &Drape) -> String {
     let s = &d.finest;
     format!(
         "{}, {}: drape coefficient {} %, {} folds; state of lowest energy of {}, {}",
@@ -373,7 +375,7 @@ pub(super) fn write(task: &Task, d: &Drape, folder: &Folder) -> Result<Vec<Strin
         cells.extend(resultants(&d.resultants));
         let file = vtu(&position, &d.model.mesh.quads, &fields, &mesh_fields(&cells))?;
         folder.write(&format!("{stem}.vtu"), &file)?;
-        draped_stage::write(task, d, told(task, d), folder)?;
+        draped_stage::write(task, d, summary(task, d), folder)?;
     }
     let mut drawn = Vec::new();
     if folder.charts() {

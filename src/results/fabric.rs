@@ -198,8 +198,8 @@ impl FabricReport {
     }
 
     fn add(&mut self, task: &Task, outcome: &Outcome, figures: Vec<Figure>) {
-        let told = (task.case.title.clone(), task.case.law() != Mode::Elastic);
-        self.cases.insert(task.case.name.clone(), told);
+        let title_and_law = (task.case.title.clone(), task.case.law() != Mode::Elastic);
+        self.cases.insert(task.case.name.clone(), title_and_law);
         self.predictions.extend(outcome.rows(task));
         self.findings.extend(outcome.findings(task).into_iter().cloned());
         self.failures.extend(outcome.failures(task));

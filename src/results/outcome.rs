@@ -199,7 +199,7 @@ impl Outcome {
             Self::Tested(_) => "the simulated test beside the measured curves",
         };
         let of = task.fabric_name().map_or(String::new(), |name| format!(", {name}"));
-        let told = |row: &PredictionRow| {
+        let described = |row: &PredictionRow| {
             let unit = if row.unit == "1" { String::new() } else { format!(" {}", row.unit) };
             let number = |v: f64| if v.fract() == 0.0 { v.to_string() } else { significant(v) };
             // Who counts nodes of a drape counts its folds.
@@ -207,7 +207,7 @@ impl Outcome {
                 if row.quantity == "drape_nodes" { "folds".into() } else { row.quantity.replace('_', " ") };
             row.simulated.map(|v| format!("{name} {}{unit}", number(v)))
         };
-        let values: Vec<String> = self.rows(task).iter().filter_map(told).take(VALUES_SEEN).collect();
+        let values: Vec<String> = self.rows(task).iter().filter_map(described).take(VALUES_SEEN).collect();
         let values = if values.is_empty() { String::new() } else { format!("; {}", values.join(", ")) };
         format!("{}{of}: {what}{values}.", task.case.title)
     }

@@ -170,8 +170,8 @@ impl<'c> Overview<'c> {
         let mut caption =
             if self.predictions.is_empty() { CAPTION.into() } else { format!("{CAPTION}; {PREDICTIONS}") };
         if !self.beyond.is_empty() {
-            let of = |(case, fabrics): (&String, &usize)| format!("{case} of {fabrics} fabrics");
-            let named: Vec<String> = self.beyond.iter().map(of).collect();
+            let named: Vec<String> =
+                self.beyond.iter().map(|(case, fabrics)| format!("{case} of {fabrics} fabrics")).collect();
             caption += &format!("\nbeyond linear (S101), a stiffness and no shape: {}", named.join(", "));
         }
         self.table.with_note(&caption)

@@ -116,9 +116,9 @@ fn leading_cell(report: &FabricReport, column: &Column) -> Cell {
     let text = |value: f64| {
         if is_drape(&row.quantity) { format!("{:.1}", 1e2 * value) } else { significant(1e3 * value) }
     };
-    let of = |quantity: &str| found(report, &column.case, quantity);
+    let row_of = |quantity: &str| found(report, &column.case, quantity);
     let folds = |value: Option<f64>| value.map_or(String::new(), |count| format!(", {count} folds"));
-    let counted = of("drape_nodes").filter(|_| is_drape(&row.quantity));
+    let counted = row_of("drape_nodes").filter(|_| is_drape(&row.quantity));
     if column.is_measured {
         return match row.measured {
             Some(value) => format!("{}{}", text(value), folds(counted.and_then(|row| row.measured))).into(),
@@ -127,7 +127,7 @@ fn leading_cell(report: &FabricReport, column: &Column) -> Cell {
     }
     let Some(value) = row.simulated else { return "-".into() };
     let [least, greatest] = ["drape_coefficient_least", "drape_coefficient_greatest"]
-        .map(|quantity| of(quantity).filter(|_| is_drape(&row.quantity)).and_then(|row| row.simulated));
+        .map(|quantity| row_of(quantity).filter(|_| is_drape(&row.quantity)).and_then(|row| row.simulated));
     let band = least.zip(greatest).map_or(String::new(), |(a, b)| format!(" ({}–{})", text(a), text(b)));
     Cell {
         text: format!("{}{band}{}", text(value), folds(counted.and_then(|row| row.simulated))),
@@ -160,7 +160,7 @@ pub(super) fn plates(reports: &[FabricReport]) -> Option<Block> {
         }
     }
     let line = |report: &FabricReport| {
-        let of = |case: &&str| {
+        let cell = |case: &&str| {
             let found = report.relative_deflections.iter().find(|(name, _)| name == case);
             found.map_or("-".into(), |(_, value)| Cell {
                 text: significant(*value),
@@ -168,7 +168,7 @@ pub(super) fn plates(reports: &[FabricReport]) -> Option<Block> {
                 ..Cell::default()
             })
         };
-        std::iter::once(Cell::from(&report.name)).chain(cases.iter().map(of)).collect()
+        std::iter::once(Cell::from(&report.name)).chain(cases.iter().map(cell)).collect()
     };
     (!cases.is_empty()).then(|| Block::Table {
         caption: plates_caption(reports, &cases),

@@ -64,12 +64,12 @@ impl Problems {
             let code = group.code.as_str();
             (code == BEYOND_LINEAR, !is_error(code), code != IMPLAUSIBLE, !speak_against.contains(code))
         });
-        let told: BTreeSet<String> =
+        let named: BTreeSet<String> =
             groups.iter().flat_map(|group| &group.lines).filter_map(|line| line.fabric.clone()).collect();
         let place: BTreeMap<&str, usize> = fabrics
             .iter()
             .enumerate()
-            .filter(|(_, name)| told.contains(**name))
+            .filter(|(_, name)| named.contains(**name))
             .map(|(at, name)| (*name, at))
             .collect();
         for line in groups.iter_mut().flat_map(|group| &mut group.lines) {
@@ -139,10 +139,10 @@ mod tests {
         let groups = problems.groups(&fabrics, |at| format!("fabrics-{at}.html"));
         let pages: Vec<Option<&str>> = groups[1].lines.iter().map(|l| l.page.as_deref()).collect();
         assert_eq!(pages, [Some("fabrics-2.html"); 2]);
-        let told: Vec<(&str, &str, usize)> =
+        let found: Vec<(&str, &str, usize)> =
             groups.iter().map(|g| (g.code.as_str(), g.count.as_str(), g.lines.len())).collect();
         let beyond = ("S101", "2 of 3 fabrics, in cases/plate.toml", 0);
-        assert_eq!(told, [("R002", "once", 1), ("K011", "1 of 3 fabrics", 2), beyond]);
+        assert_eq!(found, [("R002", "once", 1), ("K011", "1 of 3 fabrics", 2), beyond]);
     }
 
     #[test]

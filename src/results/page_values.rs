@@ -79,7 +79,7 @@ fn test_remark(report: &FabricReport, row: &PredictionRow) -> String {
 /// Values that a finding speaks against, then those that rest on an assumption; `page` is that of the problems, empty for
 /// the page itself.
 pub(super) fn doubtful(reports: &[FabricReport], page: &str) -> Option<Block> {
-    let of = |status: &'static str| {
+    let with_status = |status: &'static str| {
         reports.iter().flat_map(move |report| {
             let rows = report.rows.iter().enumerate().filter(move |(_, row)| row.status == status);
             rows.map(move |(at, row)| DoubtfulValue {
@@ -89,7 +89,7 @@ pub(super) fn doubtful(reports: &[FabricReport], page: &str) -> Option<Block> {
             })
         })
     };
-    let values: Vec<DoubtfulValue> = of(DOUBTFUL).chain(of("assumed")).collect();
+    let values: Vec<DoubtfulValue> = with_status(DOUBTFUL).chain(with_status("assumed")).collect();
     (!values.is_empty()).then_some(Block::Doubtful(values))
 }
 

@@ -76,12 +76,12 @@ fn drape(task: &Task, observer: &Observer) -> Result<Drape, Failure> {
     let law = made.as_ref().and_then(|m| m.law.as_ref());
     let stage = || observer.step();
     let watch = observer.watch(&stage);
-    let (case, told) = match task.fabric {
+    let (case, findings) = match task.fabric {
         Some(sheet) => study::as_measured(task.case, sheet),
         None => (std::borrow::Cow::Borrowed(task.case), Vec::new()),
     };
     let mut hung = study::drape(&case, &section, law, &task.options().single(), watch)?;
-    hung.findings.extend(told);
+    hung.findings.extend(findings);
     if let (Some(sheet), Some(made)) = (task.fabric, &made) {
         by_face(task, &case, (sheet, made), &mut hung, watch)?;
     }

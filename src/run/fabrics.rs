@@ -245,20 +245,7 @@ impl<'c> Workshop<'c> {
 
     /// What the fabrics are to each case.
     pub fn tallies(&self) -> Vec<CaseTally> {
-        let of = |job: &CaseWork| {
-            let tally = job.tally();
-            CaseTally {
-                name: job.case.name.clone(),
-                place: Place::file(&job.case.path),
-                is_for_fab_records: job.case.is_for_fab_records(),
-                is_there: job.named.as_ref().is_none_or(|path| files::exists(path)),
-                suits_any: tally.suits_any,
-                lacked_by_any: tally.lacked_by_any,
-                tasks: tally.tasks,
-                without: tally.without.values().cloned().collect(),
-            }
-        };
-        self.jobs.iter().map(of).collect()
+        self.jobs.iter().map(CaseWork::case_tally).collect()
     }
 
     /// The cases that a batch of these fabrics is for: one for FAB records or laws is nothing to fabrics without them,
@@ -330,5 +317,20 @@ impl<'c> CaseWork<'c> {
 
     fn tally(&self) -> MutexGuard<'_, Tally> {
         self.tally.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What the fabrics are to the case.
+    fn case_tally(&self) -> CaseTally {
+        let tally = self.tally();
+        CaseTally {
+            name: self.case.name.clone(),
+            place: Place::file(&self.case.path),
+            is_for_fab_records: self.case.is_for_fab_records(),
+            is_there: self.named.as_ref().is_none_or(|path| files::exists(path)),
+            suits_any: tally.suits_any,
+            lacked_by_any: tally.lacked_by_any,
+            tasks: tally.tasks,
+            without: tally.without.values().cloned().collect(),
+        }
     }
 }

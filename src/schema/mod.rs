@@ -116,15 +116,19 @@ fn without_null(schema: &mut schemars::Schema) {
 
 /// Defaults of quantities are numbers in SI in the types, and texts with a unit in a file.
 fn with_units(schema: &mut schemars::Schema) {
-    let of = |schema: &Value| Some(schema.pointer("/examples/0")?.as_str()?.to_string());
     let value = schema.clone().to_value();
     let items = value.pointer("/items/items").or_else(|| value.pointer("/items")).unwrap_or(&value);
     if items.get("x-unit").is_none() || items["type"] != "string" {
         return;
     }
-    if let (Some(example), Some(default)) = (of(items), schema.get_mut("default")) {
+    if let (Some(example), Some(default)) = (first_example(items), schema.get_mut("default")) {
         in_unit_of(default, &example);
     }
+}
+
+/// The first example of a schema, where that is a text.
+fn first_example(schema: &Value) -> Option<String> {
+    Some(schema.pointer("/examples/0")?.as_str()?.to_string())
 }
 
 /// Writes a number, or each of a list, in the unit of an example.

@@ -93,7 +93,7 @@ fn deformation(
     let b = dofs.len();
     let at = |node: u32, k: usize| (u[node as usize * b + k], low[node as usize * b + k]);
     let first = |dof: usize| dofs.iter().position(|d| *d as usize == dof).map(|k| at(nodes[0], k));
-    let of = |node: u32, k: usize| {
+    let relative_to_first = |node: u32, k: usize| {
         let dof = dofs[k] as usize;
         let mut sum = Sum::default();
         let ((high, low), (high_0, low_0)) = (at(node, k), at(nodes[0], k));
@@ -117,7 +117,7 @@ fn deformation(
         }
         sum.parts()
     };
-    nodes.iter().flat_map(|node| (0..b).map(|k| of(*node, k)).collect::<Vec<_>>()).collect()
+    nodes.iter().flat_map(|node| (0..b).map(|k| relative_to_first(*node, k)).collect::<Vec<_>>()).collect()
 }
 
 #[cfg(test)]

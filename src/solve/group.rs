@@ -31,7 +31,7 @@ const ROUND: f64 = 1e-6;
 
 /// How a group is to be solved.
 #[derive(Clone, Copy)]
-pub enum Way<'a> {
+pub enum Approach<'a> {
     Direct(&'a Analysis),
     Iterative,
 }
@@ -155,19 +155,19 @@ impl<'a> Equations<'a> {
     pub fn prepare(
         &self,
         matrix: BlockMatrix,
-        way: Way<'_>,
+        approach: Approach<'_>,
         options: &Options,
     ) -> Result<(GroupSolver, System), SolveError> {
         let group = self.group;
         let failed = |e| SolveError::of(e, self.model, group);
-        let (solver, path, threads, counts) = match way {
-            Way::Direct(analysis) => {
+        let (solver, path, threads, counts) = match approach {
+            Approach::Direct(analysis) => {
                 let counts = analysis.counts();
                 let threads = analysis.worth(options.threads);
                 let factor = analysis.factorise(&matrix, threads).map_err(failed)?;
                 (Solver::Direct(factor), analysis.path(), threads, counts)
             }
-            Way::Iterative => {
+            Approach::Iterative => {
                 let (rows, nnz_a) = (matrix.rows(), matrix.graph.entries(matrix.block));
                 let iterative = Iterative::new(matrix, &self.rigid_motions()).map_err(|e| match e {
                     SetupError::Factor(e) => failed(e),
@@ -241,8 +241,8 @@ impl<'a> Equations<'a> {
         let u: Vec<f64> = self.held.iter().map(|h| h.unwrap_or(0.0)).collect();
         let low = vec![0.0; u.len()];
         // Prescribed values act on the free dofs as forces.
-        let moved = u.iter().any(|v| *v != 0.0);
-        let internal = if moved { self.internal(compensated, &u, &low)? } else { low.clone() };
+        let is_prescribed = u.iter().any(|v| *v != 0.0);
+        let internal = if is_prescribed { self.internal(compensated, &u, &low)? } else { low.clone() };
         // A support that moves without straining the sheet leaves no other forces than the rounding of these.
         let push = ROUNDING * ROUNDING * internal.iter().map(|f| f * f).sum::<f64>();
         if !(push + self.load.iter().map(|f| f * f).sum::<f64>()).is_finite() {
@@ -253,8 +253,9 @@ impl<'a> Equations<'a> {
         for _ in 0..ROUNDS {
             let mut step: Vec<f64> = self.load.iter().zip(&best.internal).map(|(l, f)| l - f).collect();
             // What is left to reduce of the energy of the error, and of the residual.
-            let left = (solver.settings.tolerance / reduced).min(solver.refined() / best.residual.min(1.0));
-            reduced *= self.round(solver, &mut step, (reduced, left), system)?;
+            let remaining =
+                (solver.settings.tolerance / reduced).min(solver.refined() / best.residual.min(1.0));
+            reduced *= self.round(solver, &mut step, (reduced, remaining), system)?;
             let before = best.u.iter().zip(&best.low);
             let (u, low): (Vec<f64>, Vec<f64>) =
                 before.zip(&step).map(|((u, low), s)| two_sum(*u, low + s)).unzip();
@@ -294,12 +295,12 @@ impl<'a> Equations<'a> {
         &self,
         solver: &GroupSolver,
         step: &mut [f64],
-        (reduced, left): (f64, f64),
+        (reduced, remaining): (f64, f64),
         system: &mut System,
     ) -> Result<f64, SolveError> {
         let Settings { tolerance, max_iterations } = solver.settings;
         let settings = Settings {
-            tolerance: left.clamp(ROUND, 0.5),
+            tolerance: remaining.clamp(ROUND, 0.5),
             max_iterations: max_iterations.saturating_sub(system.iterations()),
         };
         let solved = solver.reduce(step, settings);

@@ -2,7 +2,7 @@
 
 use super::error::SolveError;
 use super::factor::{Counts, Path};
-use super::group::{Equations, GroupSolver, Way};
+use super::group::{Approach, Equations, GroupSolver};
 use super::iterative;
 use super::plan::Plan;
 use crate::model::{DofGroup, Model};
@@ -216,15 +216,15 @@ fn planned(
     let (load, held) = (model.load_vector(), model.held(&plan.pattern.links)?);
     let mut solution = Solution::at_rest(model);
     (solution.timings.order_s, solution.timings.symbolic_s) = plan.seconds;
-    let direct = plan.groups.iter().map(|(group, analysis)| (*group, Way::Direct(analysis)));
-    for (group, way) in direct.chain(plan.iterated.iter().map(|group| (*group, Way::Iterative))) {
+    let direct = plan.groups.iter().map(|(group, analysis)| (*group, Approach::Direct(analysis)));
+    for (group, approach) in direct.chain(plan.iterated.iter().map(|group| (*group, Approach::Iterative))) {
         let equations = Equations::new(model, group, &plan.pattern, &load, &held);
         let watch = Stopwatch::start();
         let matrix = equations.matrix()?;
         solution.timings.assemble_s += watch.seconds();
 
         let watch = Stopwatch::start();
-        let (solver, mut system) = equations.prepare(matrix, way, options)?;
+        let (solver, mut system) = equations.prepare(matrix, approach, options)?;
         solution.timings.factor_s += watch.seconds();
 
         let watch = Stopwatch::start();

@@ -157,9 +157,10 @@ fn grow(
                 None => break,
             }
         }
-        let way = target - state.factor;
+        let remaining = target - state.factor;
         // The last step ends at the target exactly, without a sliver after it.
-        let factor = if way.abs() <= 1.001 * step { target } else { state.factor + step.copysign(way) };
+        let factor =
+            if remaining.abs() <= 1.001 * step { target } else { state.factor + step.copysign(remaining) };
         let found = newton(system, &state, factor, settings, &Drag { rate: 0.0, extra });
         // A long step may land beyond the branch that the perturbation leads to.
         let found = found.and_then(|c| if extra.is_some() { c.stable(system) } else { Ok(c) });

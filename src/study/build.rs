@@ -67,8 +67,9 @@ fn model_of_mesh(
     let mut mesh = placed(case, &sheet.table, with_the_middle(case, sheet, mesh))?;
     let bodies = bodies(case, &mut mesh, &mounting.bodies)?;
     let supports: Vec<&SheetSupport> = mounting.supports.iter().collect();
-    let Actions { mut supports, moved, loads, .. } = actions(case, &mesh, &supports, (loads, prescribed))?;
-    supports.extend(moved);
+    let Actions { mut supports, prescribed, loads, .. } =
+        actions(case, &mesh, &supports, (loads, prescribed))?;
+    supports.extend(prescribed);
     let mut formulation = mounting.formulation;
     if mounting.arcs_of_triangles && mesh.triangles() > 0 {
         formulation.membrane = Membrane::AssumedStress;
@@ -83,7 +84,7 @@ pub(super) struct Actions {
     /// What holds it.
     pub supports: Vec<Support>,
     /// What is held at a value: over a support, that is a support that moves.
-    pub moved: Vec<Support>,
+    pub prescribed: Vec<Support>,
     /// What acts.
     pub loads: Vec<Load>,
     /// What a motion moves; the supports hold it.
@@ -109,13 +110,13 @@ pub(super) fn actions(
         SolveError::in_time()?;
         acting.extend(model_loads(case, (mesh, &finder), load)?);
     }
-    let mut moved = Vec::new();
+    let mut displaced = Vec::new();
     for Prescribed { set, dof, value, .. } in prescribed {
         let nodes = placed(case, set, mesh.set(&set.value))?;
-        moved.push(Support::at(nodes.to_vec(), vec![(*dof, *value)]));
+        displaced.push(Support::at(nodes.to_vec(), vec![(*dof, *value)]));
     }
-    Support::agree(mesh, &moved)?;
-    Ok(Actions { supports, moved, loads: acting, guided: Vec::new() })
+    Support::agree(mesh, &displaced)?;
+    Ok(Actions { supports, prescribed: displaced, loads: acting, guided: Vec::new() })
 }
 
 /// The model of a sheet of a case that is solved, which may be coarser than its own.
@@ -166,13 +167,13 @@ pub(super) fn steps(case: &Case, problem: &SheetProblem, model: &Model) -> Resul
                 Actions { loads: Vec::new(), ..as_in(state.and_then(|k: usize| all.get(k))) }
             }
             StepAnalysis::Buckling { .. } => {
-                let Actions { moved, loads, .. } = on((step.acting(), step.prescribed()))?;
-                Actions { moved, loads, ..as_in(state.and_then(|k: usize| all.get(k))) }
+                let Actions { prescribed, loads, .. } = on((step.acting(), step.prescribed()))?;
+                Actions { prescribed, loads, ..as_in(state.and_then(|k: usize| all.get(k))) }
             }
             StepAnalysis::Motion(motion) => guided(case, &model.mesh, motion, on((&motion.acting, &[]))?)?,
         };
         let held = Model {
-            supports: actions.supports.iter().chain(&actions.moved).cloned().collect(),
+            supports: actions.supports.iter().chain(&actions.prescribed).cloned().collect(),
             loads: actions.loads.clone(),
             ..model.clone()
         };
@@ -187,10 +188,10 @@ pub(super) fn steps(case: &Case, problem: &SheetProblem, model: &Model) -> Resul
 
 /// What a step holds, without what it moves it by and what acts: everything stays where it is.
 fn as_in(step: Option<&Actions>) -> Actions {
-    let held = step.iter().flat_map(|actions| actions.supports.iter().chain(&actions.moved));
+    let held = step.iter().flat_map(|actions| actions.supports.iter().chain(&actions.prescribed));
     let mut supports: Vec<Support> = held.cloned().collect();
     supports.iter_mut().flat_map(|support| &mut support.held).for_each(|(_, value)| *value = 0.0);
-    Actions { supports, moved: Vec::new(), loads: Vec::new(), guided: Vec::new() }
+    Actions { supports, prescribed: Vec::new(), loads: Vec::new(), guided: Vec::new() }
 }
 
 /// The actions of a motion with what it moves.

@@ -42,8 +42,9 @@ fn measured_branches(
     test: Test,
     direction: Option<Direction>,
 ) -> impl Iterator<Item = &Branch> {
-    let of = move |s: &&SpecimenResult| s.measurement.test == test && s.measurement.direction == direction;
-    sheet.specimens.iter().filter(of).flat_map(|s| &s.branches)
+    let is_of_test =
+        move |s: &&SpecimenResult| s.measurement.test == test && s.measurement.direction == direction;
+    sheet.specimens.iter().filter(is_of_test).flat_map(|s| &s.branches)
 }
 
 /// Compares a simulated test with the sheet's samples; `None` when there are fewer than two.

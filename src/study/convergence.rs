@@ -40,9 +40,9 @@ impl Convergence {
 
     /// What the mesh leaves too open.
     pub(super) fn finding(&self, case: &Case) -> Option<Finding> {
-        let open = |q: &&MeshSeries| q.left() > COARSE && q.finest().abs() > SMALL * q.size;
+        let open = |q: &&MeshSeries| q.relative_index() > COARSE && q.finest().abs() > SMALL * q.size;
         let quantities: Vec<CoarseQuantity> = (self.quantities.iter().filter(open))
-            .map(|q| CoarseQuantity { quantity: q.quantity.clone(), left: q.left() })
+            .map(|q| CoarseQuantity { quantity: q.quantity.clone(), left: q.relative_index() })
             .collect();
         (self.quantities.is_empty() || !quantities.is_empty())
             .then(|| Finding::new(StudyFact::CoarseMesh { quantities }).at(Place::file(&case.path)))
@@ -178,15 +178,19 @@ at = ["0 m", "0.5 m"]
         for (quantity, exact) in [("centre.w", 1.26531908748e-6), ("centre.moment_x", 2.29050907842e-5)] {
             let series = found.get(quantity).unwrap();
             let error = |v: f64| (v - exact).abs() / exact;
-            assert!(error(series.finest()) < series.left(), "{quantity}");
+            assert!(error(series.finest()) < series.relative_index(), "{quantity}");
             assert!(5.0 * error(series.extrapolation.value) < error(series.finest()), "{quantity}");
         }
         // By symmetry there is no rotation at the centre, and on the edge nothing moves at all.
         let absent = ["centre.theta_x", "centre.shear_y", "edge.w", "centre.membrane_x", "edge.moment_xy"];
         assert!(absent.iter().all(|q| found.get(q).is_none()));
         assert!(found.get("edge.moment_x").is_some() && found.get("strain_energy").is_some());
-        let told = |q: &MeshSeries| result.findings.iter().any(|f| f.message().contains(&q.quantity));
-        assert!(found.quantities.iter().all(|q| told(q) == (q.left() > COARSE)), "{:?}", result.findings);
+        let is_reported = |q: &MeshSeries| result.findings.iter().any(|f| f.message().contains(&q.quantity));
+        assert!(
+            found.quantities.iter().all(|q| is_reported(q) == (q.relative_index() > COARSE)),
+            "{:?}",
+            result.findings
+        );
     }
 
     /// Large rotations: a clamped square that stretches, deflected by 1.4 thicknesses, against polynomials in von Karman's
@@ -204,7 +208,7 @@ at = ["0 m", "0.5 m"]
         let exact = plate.clamped(2.0, 6).unwrap().deflection(0.5, 0.5);
         let [finest, limit] = [w.finest(), w.extrapolation.value].map(|value| (value - exact).abs() / exact);
         assert!((1.0..2.0).contains(&(exact / 1e-3)), "{exact}");
-        assert!(finest < w.left(), "{w:?}, exact {exact}");
+        assert!(finest < w.relative_index(), "{w:?}, exact {exact}");
         assert!(2.0 * limit < finest, "{w:?}, exact {exact}");
         assert!(found.get("centre.membrane_x").is_some() && found.get("strain_energy").is_some());
     }
@@ -218,10 +222,10 @@ at = ["0 m", "0.5 m"]
         let result = prepared.solve(section).unwrap();
         let mut coarser = [result.clone(), result.clone()];
         coarser[1].status = Status::NotConverged;
-        let mut told = CaseResult { convergence: None, findings: Vec::new(), ..result };
-        prepared.tell_meshes(&mut told, &coarser).unwrap();
-        assert!(told.convergence.is_none());
-        let [finding] = &told.findings[..] else { panic!("{:?}", told.findings) };
+        let mut reported = CaseResult { convergence: None, findings: Vec::new(), ..result };
+        prepared.tell_meshes(&mut reported, &coarser).unwrap();
+        assert!(reported.convergence.is_none());
+        let [finding] = &reported.findings[..] else { panic!("{:?}", reported.findings) };
         assert!(
             finding.code() == "S150" && finding.message().contains("cells = [8, 8]"),
             "{}",

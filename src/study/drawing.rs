@@ -36,11 +36,11 @@ pub(super) fn left_out(case: &Case, drawn: &DrawnOutline) -> Vec<Finding> {
     use crate::finding::StudyFact;
     // A drawing that cannot be read makes no mesh, and no result to which something is to be told.
     let Ok(drawing) = reading::drawing(case, drawn) else { return Vec::new() };
-    let told = drawing.left_out().iter().map(|left| {
-        let fact = StudyFact::LeftOutOfDrawing { what: left.what.clone(), count: left.count };
-        Finding::new(fact).at(left.place.clone())
+    let findings = drawing.left_out().iter().map(|part| {
+        let fact = StudyFact::LeftOutOfDrawing { what: part.what.clone(), count: part.count };
+        Finding::new(fact).at(part.place.clone())
     });
-    told.collect()
+    findings.collect()
 }
 
 /// A case refuses drawings before, where nothing reads them.

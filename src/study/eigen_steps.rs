@@ -35,7 +35,7 @@ pub(super) struct State<'a> {
 impl<'a> State<'a> {
     /// The model of a sheet with the actions of a step.
     pub fn model(model: &Model, actions: &Actions) -> Model {
-        let supports = actions.supports.iter().chain(&actions.moved).cloned().collect();
+        let supports = actions.supports.iter().chain(&actions.prescribed).cloned().collect();
         Model { supports, loads: actions.loads.clone(), ..model.clone() }
     }
 

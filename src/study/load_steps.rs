@@ -24,7 +24,7 @@ use crate::solve::nonlinear::{
 };
 
 /// A sheet on its way through the steps of its case.
-struct Way<'a> {
+struct StepSequence<'a> {
     prepared: &'a PreparedCase<'a>,
     model: &'a Model,
     fabric: OfFabric<'a>,
@@ -34,7 +34,7 @@ struct Way<'a> {
     /// Rotations that were held in every step, and how far.
     held: Vec<Option<f64>>,
     /// Of the last step, where it is a motion.
-    moved: Option<(History, Solution)>,
+    motion: Option<(History, Solution)>,
 }
 
 /// Takes the sheet of a model through the steps of its case. The last one that has an equilibrium is the result; where
@@ -50,7 +50,7 @@ pub(super) fn load_steps(
         StepAnalysis::Static(analysis) => Some(MethodChoice::of(&analysis.method)),
         _ => None,
     });
-    let mut way = Way {
+    let mut sequence = StepSequence {
         prepared,
         model,
         fabric,
@@ -58,30 +58,30 @@ pub(super) fn load_steps(
         record: Record::new(prepared, model, method.unwrap_or_default(), watch),
         carried: Carried::rest(model),
         held: vec![Some(0.0); 6 * model.mesh.nodes.len()],
-        moved: None,
+        motion: None,
     };
     let mut findings = Vec::new();
     for (step, actions) in steps.iter().zip(&prepared.steps) {
         let own = match &step.analysis {
-            StepAnalysis::Static(analysis) => way.search(step, analysis, actions)?,
-            StepAnalysis::Modal { .. } | StepAnalysis::Buckling { .. } => way.look(step, actions)?,
-            StepAnalysis::Motion(motion) => way.move_on(step, motion, actions)?,
+            StepAnalysis::Static(analysis) => sequence.search(step, analysis, actions)?,
+            StepAnalysis::Modal { .. } | StepAnalysis::Buckling { .. } => sequence.look(step, actions)?,
+            StepAnalysis::Motion(motion) => sequence.move_on(step, motion, actions)?,
         };
         findings.extend(own.into_iter().map(|finding| finding.at(prepared.case.place(&step.name))));
-        if !way.record.path.converged {
+        if !sequence.record.path.converged {
             break;
         }
     }
-    let Way { record: Record { mut solution, path, state, .. }, moved, .. } = way;
+    let StepSequence { record: Record { mut solution, path, state, .. }, motion, .. } = sequence;
     solution.dofs = model.constraints().iter().filter(|c| c.is_none()).count();
     let mut history = None;
-    if let Some((of_motion, end)) = moved {
+    if let Some((of_motion, end)) = motion {
         (solution, history) = (Solution { dofs: solution.dofs, ..end }, Some(of_motion));
     }
     Ok(Outcome { path: Some(path), state: Some(state), history, findings, ..Outcome::of(solution) })
 }
 
-impl Way<'_> {
+impl StepSequence<'_> {
     fn settings(&self) -> Settings {
         Settings { law: self.fabric.law.cloned(), ..Settings::default() }
     }
@@ -100,14 +100,14 @@ impl Way<'_> {
         let (obstacles, friction) = (&prepared.problem.obstacles, self.fabric.friction);
         let surfaces = surfaces(obstacles, friction);
         let settings = Settings { law: self.fabric.law.cloned(), surfaces, ..analysis.settings.clone() };
-        let (moved, plan, options) = (&actions.moved, &prepared.plan, &prepared.options);
+        let (prescribed, plan, options) = (&actions.prescribed, &prepared.plan, &prepared.options);
         let (record, carried) = (&mut self.record, &self.carried);
         let from = record.path.steps.len();
         let (found, not_kept) = kept_apart(record, &model, &analysis.method, |record, self_contact| {
             let settings = Settings { self_contact, ..settings.clone() };
             let search = |method: &Method, record: &mut Record<'_>| {
-                let way = LoadStep { model: &model, moved, settings: &settings, method };
-                continue_from(carried, &way, plan, options, |at| record.see(at))
+                let load_step = LoadStep { model: &model, prescribed, settings: &settings, method };
+                continue_from(carried, &load_step, plan, options, |at| record.see(at))
             };
             helped(record, &analysis.method, &settings, |(solution, _)| solution, search)
         });
@@ -133,7 +133,7 @@ impl Way<'_> {
             contacts: contacts(obstacles, friction, &record.state),
         });
         if let Some(next) = next {
-            held_throughout(&model, &actions.moved, next.turned(), &mut self.held);
+            held_throughout(&model, &actions.prescribed, next.turned(), &mut self.held);
             self.carried = next;
         }
         let turned = turned_about_more(&self.held, &record.state);
@@ -212,7 +212,7 @@ impl Way<'_> {
             state: state.clone(),
         });
         self.record.state = state;
-        self.moved = Some((history, solution));
+        self.motion = Some((history, solution));
         Ok(findings.into_iter().chain(without_layers).collect())
     }
 
@@ -263,9 +263,14 @@ const PROPORTIONAL: f64 = 0.01;
 
 /// Keeps of the rotations that were held in every step so far those that were held in this one too, and how far they were
 /// turned.
-fn held_throughout(model: &Model, moved: &[crate::model::Support], turned: &[f64], held: &mut [Option<f64>]) {
+fn held_throughout(
+    model: &Model,
+    prescribed: &[crate::model::Support],
+    turned: &[f64],
+    held: &mut [Option<f64>],
+) {
     let mut now = model.constraints();
-    for support in moved {
+    for support in prescribed {
         for node in &support.nodes {
             support
                 .held

@@ -46,7 +46,7 @@ impl MeshSeries {
     }
 
     /// Part of the value on the finest mesh by which it may be off: the grid convergence index.
-    pub fn left(&self) -> f64 {
+    pub fn relative_index(&self) -> f64 {
         self.extrapolation.index / self.finest().abs()
     }
 }

@@ -265,8 +265,9 @@ fn buckled(
     unstable_w_max: Option<f64>,
     method: MethodChoice,
 ) -> Option<Finding> {
-    let fact = StudyFact::Buckled { factors: solution.left.clone(), unstable_w_max };
-    let has_left = !solution.left.is_empty() || unstable_w_max.is_some() || method == MethodChoice::Flow;
+    let fact = StudyFact::Buckled { factors: solution.stability_lost_at.clone(), unstable_w_max };
+    let has_left =
+        !solution.stability_lost_at.is_empty() || unstable_w_max.is_some() || method == MethodChoice::Flow;
     has_left.then(|| Finding::new(fact))
 }
 

@@ -224,7 +224,7 @@ impl CaseResult {
         }
         let nodal = self.nodal()?;
         let error = match &self.state {
-            Some(state) => ErrorEstimate::moved(&self.model, state, nodal)?,
+            Some(state) => ErrorEstimate::at_state(&self.model, state, nodal)?,
             None => ErrorEstimate::new(&self.model, &self.solution.displacement, nodal)?,
         };
         Ok(Some(self.error.get_or_init(|| error)))

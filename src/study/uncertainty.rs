@@ -97,10 +97,10 @@ pub(super) fn linear_uncertainty(
         .collect::<Result<_, _>>()?;
     // Inputs that change neither load nor stiffness of what was solved move nothing, and no resultant of it.
     let forces: Vec<Vec<f64>> = changes.iter().filter_map(Change::force).collect();
-    let moved = if forces.is_empty() { Vec::new() } else { factors.solve(&forces)? };
-    let mut moved = moved.into_iter();
+    let solutions = if forces.is_empty() { Vec::new() } else { factors.solve(&forces)? };
+    let mut solutions = solutions.into_iter();
     let motions: Vec<Option<Vec<f64>>> =
-        changes.iter().map(|c| if c.is_none() { None } else { moved.next() }).collect();
+        changes.iter().map(|c| if c.is_none() { None } else { solutions.next() }).collect();
     let mut at_probes = AtProbes { model: model.clone(), probes, recovery };
     let values = at_probes.components(model.section.clone(), u)?;
     let slopes: Vec<Vec<[f64; 8]>> = (inputs.iter().zip(&motions))
@@ -117,8 +117,8 @@ pub(super) fn linear_uncertainty(
             };
             let derivative = |i: usize| match &reading {
                 Reading::Displacement(terms) => {
-                    let moved = |du: &Vec<f64>| terms.iter().map(|(k, weight)| weight * du[*k]).sum();
-                    motions[i].as_ref().map_or(0.0, moved)
+                    let change = |du: &Vec<f64>| terms.iter().map(|(k, weight)| weight * du[*k]).sum();
+                    motions[i].as_ref().map_or(0.0, change)
                 }
                 Reading::Resultant(probe, component) => slopes[i][*probe][*component],
                 // U = uᵀ K u / 2, and K u is the load at the dofs that are free to move.

@@ -126,8 +126,8 @@ fn differences_agree(case: &Case) {
         // Truncation h²/6 of the order of 1e-8; rounding of the solution 1e-10 over h.
         let h = 3e-4;
         let at = |by: f64| {
-            let moved = solved(case, &input.derivative.step(&c.section, by), &c.inputs);
-            moved.uncertainty.unwrap().predictions
+            let changed = solved(case, &input.derivative.step(&c.section, by), &c.inputs);
+            changed.uncertainty.unwrap().predictions
         };
         for ((p, up), down) in predictions.iter().zip(at(h)).zip(at(-h)) {
             let slope = (up.value - down.value) / (2.0 * h);
@@ -236,13 +236,13 @@ fn an_input_without_spread_forbids_a_band_only_where_it_matters() {
         *sheet.values.get_mut(&g(direction)).unwrap() = Estimate::single(52.0);
     }
     let c = section(&sheet, &Assumptions::default()).unwrap();
-    let of = |case: &Case, c: &crate::constitutive::Constitutive| {
+    let deflection = |case: &Case, c: &crate::constitutive::Constitutive| {
         solved(case, &c.section, &c.inputs).uncertainty.unwrap().of("w_max").unwrap().clone()
     };
-    let bent = of(&case(6, CLAMPED), &c);
+    let bent = deflection(&case(6, CLAMPED), &c);
     assert!(bent.bands.is_some() && bent.without_spread.is_empty(), "bending hardly depends on G");
     *sheet.values.get_mut(&Key { parameter: Parameter::B, direction: Some(Direction::Weft) }).unwrap() =
         Estimate::single(4e-6);
-    let single = of(&case(6, CLAMPED), &section(&sheet, &Assumptions::default()).unwrap());
+    let single = deflection(&case(6, CLAMPED), &section(&sheet, &Assumptions::default()).unwrap());
     assert_eq!((single.bands, single.without_spread), (None, vec!["B weft".to_string()]));
 }

@@ -160,12 +160,12 @@ pub fn simulate_loop(
     let mut record = vec![(0.0, 0.0)];
     let rest = model.mesh.nodes[lead];
     let solution = solve(&model, &settings, options, |step: &Step<'_>| {
-        let moved = step.state.position[lead] - rest;
+        let displacement = step.state.position[lead] - rest;
         let reaction = |dof: Dof| step.reaction[6 * lead + dof as usize] / width;
         record.push(match spec.kind() {
             ShellTest::Bending => (step.state.factor * maximum, reaction(Dof::ThetaY)),
-            ShellTest::Shear => ((moved.y / gauge).atan(), reaction(Dof::V)),
-            ShellTest::Tensile => (moved.x / gauge, step.state.factor * maximum),
+            ShellTest::Shear => ((displacement.y / gauge).atan(), reaction(Dof::V)),
+            ShellTest::Tensile => (displacement.x / gauge, step.state.factor * maximum),
         });
         ControlFlow::Continue(())
     })?;

@@ -215,7 +215,7 @@ impl PreparedTest {
             ShellTest::Bending => 1.0,
             ShellTest::Tensile | ShellTest::Shear => 1e-3,
         };
-        let (reading, moved) = match test {
+        let (reading, prescribed) = match test {
             ShellTest::Tensile => (Dof::U, vec![(Dof::U, x * gauge), (Dof::V, 0.0), (Dof::ThetaZ, 0.0)]),
             ShellTest::Shear => (Dof::V, vec![(Dof::U, 0.0), (Dof::V, x * gauge), (Dof::ThetaZ, 0.0)]),
             // A circular arc: θy = κ x and w = -κ x² / 2 satisfy w,x = -θy.
@@ -231,7 +231,7 @@ impl PreparedTest {
             section: stand_in(),
             warp: Vector3::x(),
             formulation,
-            supports: vec![Support::clamped(&left), Support::at(right.clone(), moved)],
+            supports: vec![Support::clamped(&left), Support::at(right.clone(), prescribed)],
             loads: Vec::new(),
             bodies: Vec::new(),
         };

@@ -78,7 +78,7 @@ fn bands_agree_with_monte_carlo() {
         [("tensile", Direction::Warp), ("shear", Direction::Weft), ("bending", Direction::Warp)]
     {
         let section = fabric(0.3, 0.25);
-        let of = |d_m: [f64; 4], d_b: [f64; 3]| {
+        let section_derivative = |d_m: [f64; 4], d_b: [f64; 3]| {
             let mut d = SectionDerivative::default();
             let [e1, e2, e12, g] = d_m;
             let m = &section.d_m;
@@ -100,11 +100,11 @@ fn bands_agree_with_monte_carlo() {
             d
         };
         let inputs: Vec<Input> = [
-            ("E warp", five(6000.0, 0.05), of([1.0, 0.0, 0.5, 0.0], [0.0; 3])),
-            ("E weft", five(3000.0, 0.06), of([0.0, 1.0, 0.5, 0.0], [0.0; 3])),
-            ("G", five(60.0, 0.08), of([0.0, 0.0, 0.0, 1.0], [0.0; 3])),
-            ("B warp", five(1e-5, 0.07), of([0.0; 4], [1.0, 0.0, 0.0])),
-            ("B weft", five(6e-6, 0.07), of([0.0; 4], [0.0, 1.0, 0.0])),
+            ("E warp", five(6000.0, 0.05), section_derivative([1.0, 0.0, 0.5, 0.0], [0.0; 3])),
+            ("E weft", five(3000.0, 0.06), section_derivative([0.0, 1.0, 0.5, 0.0], [0.0; 3])),
+            ("G", five(60.0, 0.08), section_derivative([0.0, 0.0, 0.0, 1.0], [0.0; 3])),
+            ("B warp", five(1e-5, 0.07), section_derivative([0.0; 4], [1.0, 0.0, 0.0])),
+            ("B weft", five(6e-6, 0.07), section_derivative([0.0; 4], [0.0, 1.0, 0.0])),
         ]
         .map(|(name, estimate, derivative)| Input {
             name: name.into(),
@@ -122,7 +122,7 @@ fn bands_agree_with_monte_carlo() {
         let prepared = PreparedTest::new(&case, spec, &Options::default()).unwrap();
         let curve = prepared.simulate_measured(direction, &section, &Settings::default(), &inputs).unwrap();
         let prediction = curve.uncertainty.as_ref().unwrap();
-        let moved = |steps: &[f64]| {
+        let apparent = |steps: &[f64]| {
             let mut section = section.clone();
             for (input, step) in inputs.iter().zip(steps) {
                 section = input.derivative.step(&section, *step);
@@ -130,7 +130,7 @@ fn bands_agree_with_monte_carlo() {
             prepared.simulate(direction, &section, &Settings::default()).unwrap().apparent
         };
         for (k, derivative) in prediction.derivatives.iter().enumerate() {
-            let at = |by: f64| moved(&(0..5).map(|i| if i == k { by } else { 0.0 }).collect::<Vec<_>>());
+            let at = |by: f64| apparent(&(0..5).map(|i| if i == k { by } else { 0.0 }).collect::<Vec<_>>());
             let difference = (at(1e-3) - at(-1e-3)) / 2e-3;
             assert!(
                 (derivative - difference).abs() < 1e-5 * curve.apparent,
@@ -147,7 +147,7 @@ fn bands_agree_with_monte_carlo() {
                         z * i.estimate.cv().unwrap() / 5f64.sqrt()
                     })
                     .collect();
-                moved(&steps)
+                apparent(&steps)
             })
             .collect();
         let found = Estimate::of(&draws).unwrap();

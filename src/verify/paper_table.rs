@@ -22,24 +22,24 @@ pub fn paper_text(all: &[CheckedClaim<'_>], seconds: f64) -> String {
     let mut rows = rows.iter();
     for (k, (claim, lines)) in all.iter().enumerate() {
         text += &format!("\n{}. {}\n", k + 1, claim.title);
-        text += &told("paper", &format!("{} ({})", claim.says, claim.place));
-        text += &told("cases", &claim.cases.join(", "));
+        text += &labelled("paper", &format!("{} ({})", claim.says, claim.place));
+        text += &labelled("cases", &claim.cases.join(", "));
         let mut last = None;
         for ((line, _), row) in lines.iter().zip(&mut rows) {
             let heading = (&line.quantity, &line.citation);
             if last != Some(heading) {
-                text += &told("value", &line.quantity);
-                text += &told("against", &line.citation);
+                text += &labelled("value", &line.quantity);
+                text += &labelled("against", &line.citation);
                 last = Some(heading);
             }
             text += &aligned(row, &width);
         }
-        text += &told("found", &claim.found);
+        text += &labelled("found", &claim.found);
     }
     text + &summary(&lines, seconds)
 }
 
-fn told(name: &str, text: &str) -> String {
+fn labelled(name: &str, text: &str) -> String {
     format!("  {name:<8} {text}\n")
 }
 
@@ -48,12 +48,12 @@ fn claimed(checked: &Checked<'_>) -> [String; 7] {
     let [id, value, reference, error, bound, _] = row(checked);
     let (line, outcome): (&Line, &Outcome) = *checked;
     let printed = line.published.map_or_else(|| "none".into(), given);
-    let told = match (outcome.pass, line.expected) {
+    let verdict = match (outcome.pass, line.expected) {
         (true, Expected::Within) => "holds",
         (true, Expected::Beyond) => "does not hold",
         (false, _) => "FAIL",
     };
-    [format!("  {id}"), value, reference, error, bound, printed, told.into()]
+    [format!("  {id}"), value, reference, error, bound, printed, verdict.into()]
 }
 
 /// `kesf.verify/1` with the claims.

@@ -66,10 +66,10 @@ fn assert_line(picture: &Picture, places: &[Point], color: Color, expected: f64)
     let covered = picture.covered(places, 4.0, color);
     assert!(covered > expected, "{covered} of the line has ink of {color:?}");
     // Across one diagonal at least there is none: the line may run along the other.
-    let moved = |dx: f64| {
+    let beside_by = |dx: f64| {
         picture.covered(&places.iter().map(|p| (p.0 + dx, p.1 - 14.0)).collect::<Vec<_>>(), 4.0, color)
     };
-    let beside = moved(-14.0).min(moved(14.0));
+    let beside = beside_by(-14.0).min(beside_by(14.0));
     assert!(beside < 0.5 * covered, "{beside} of the same line beside it has ink too");
 }
 
@@ -184,7 +184,7 @@ fn a_friction_law_runs_along_its_loop() {
 
 #[test]
 fn histories_are_where_the_data_are() {
-    let moved = Curve::from_points([(0.0, 0.0), (1.0, 0.042), (2.0, 0.01)]);
+    let displacement = Curve::from_points([(0.0, 0.0), (1.0, 0.042), (2.0, 0.01)]);
     let stored = Curve::from_points([(0.0, 0.0), (1.0, 2e-6), (2.0, 6e-6)]);
     let panel = |quantity: &str, unit: &str, curve: &Curve| HistoryPanel {
         quantity: quantity.into(),
@@ -193,15 +193,16 @@ fn histories_are_where_the_data_are() {
     };
     let plot = HistoryPlot {
         along: ["Steps done".into(), String::new()],
-        panels: vec![panel("Displacement", "m", &moved), panel("Energy", "J", &stored)],
+        panels: vec![panel("Displacement", "m", &displacement), panel("Energy", "J", &stored)],
         ..HistoryPlot::default()
     };
     let picture = Picture::decode(&history(&plot).unwrap().png().unwrap());
     let x = picture.x_scale(["0.0", "2.0"], [120, 645, 1400, 690]);
     let mut places = Vec::new();
-    for (curve, numbers, beside, unit) in
-        [(&moved, ["0", "40"], [60, 190, 160, 650], 1e-3), (&stored, ["0", "6"], [60, 770, 160, 1230], 1e-6)]
-    {
+    for (curve, numbers, beside, unit) in [
+        (&displacement, ["0", "40"], [60, 190, 160, 650], 1e-3),
+        (&stored, ["0", "6"], [60, 770, 160, 1230], 1e-6),
+    ] {
         let scales = [x, picture.y_scale(numbers, beside)];
         let line = along(&on_page(curve.points().map(|(x, y)| (x, y / unit)), scales));
         assert_line(&picture, &line, BLUE, 0.95);

@@ -3,7 +3,7 @@
 use kesf::instrument::{Direction, FileContent, Parameter};
 
 /// The findings of a code, a line each.
-pub fn told(content: &FileContent, code: &str) -> String {
+pub fn findings_of(content: &FileContent, code: &str) -> String {
     let found: Vec<String> =
         content.findings.iter().filter(|f| f.code() == code).map(ToString::to_string).collect();
     found.join("\n")

@@ -145,10 +145,10 @@ fn the_command_measures_writes_and_feeds_a_fabric() {
     ] {
         std::fs::write(root.join(format!("poplin/{name}.png")), made.png()).unwrap();
     }
-    let (code, text, told) = kesf(&["drape-image", "poplin", "-o", "drape"], root);
-    assert_eq!(code, 0, "{told}");
+    let (code, text, errors) = kesf(&["drape-image", "poplin", "-o", "drape"], root);
+    assert_eq!(code, 0, "{errors}");
     assert!(text.contains("face-2.png") && text.contains("other pictures"), "{text}");
-    assert!(told.contains("K058") && told.contains("back-1.png: K051"), "{told}");
+    assert!(errors.contains("K058") && errors.contains("back-1.png: K051"), "{errors}");
     for name in ["face-1.png.outline.png", "back-1.png.outline.png", "drape.toml"] {
         assert!(root.join("drape/poplin").join(name).is_file(), "{name}");
     }
@@ -177,10 +177,10 @@ fn the_command_measures_writes_and_feeds_a_fabric() {
     // One that fabric.toml states is not overruled.
     let stated = "[[results]]\nquantity = \"drape_coefficient\"\nvalue = \"12 %\"\nmethod = \"y\"\n";
     std::fs::write(root.join("poplin/fabric.toml"), stated).unwrap();
-    let (_, _, told) = kesf(&["check", "poplin", "-v"], root);
+    let (_, _, errors) = kesf(&["check", "poplin", "-v"], root);
     let expected =
         "drape.toml: R104 the measured result `drape_coefficient` is left out: fabric.toml states it too";
-    assert!(told.contains(expected), "{told}");
+    assert!(errors.contains(expected), "{errors}");
 }
 
 /// Every code of pictures, in the picture that gives it.
@@ -212,12 +212,12 @@ fn what_is_wrong_with_a_picture_is_told() {
         ("K057", ["oval.png", "--pixels-per-cm", "14"]),
         ("K058", ["sheet.png", "--pixels-per-cm", "14"]),
     ] {
-        let (exit, _, told) = kesf(&[&["drape-image"], &arguments[..]].concat(), root);
-        assert!(told.contains(&format!("{code} ")), "{code}: {told}");
-        assert_eq!(exit, if code.starts_with('R') { 2 } else { 0 }, "{told}");
+        let (exit, _, errors) = kesf(&[&["drape-image"], &arguments[..]].concat(), root);
+        assert!(errors.contains(&format!("{code} ")), "{code}: {errors}");
+        assert_eq!(exit, if code.starts_with('R') { 2 } else { 0 }, "{errors}");
     }
-    let (exit, _, told) = kesf(&["drape-image", "sheet.png", "--disc", "30", "--sheet", "18"], root);
-    assert!(exit == 2 && told.contains("O050"), "{told}");
+    let (exit, _, errors) = kesf(&["drape-image", "sheet.png", "--disc", "30", "--sheet", "18"], root);
+    assert!(exit == 2 && errors.contains("O050"), "{errors}");
 }
 
 /// Two folders of one name are two tests, a picture that is named twice is one, and a letter in a name states no side.
@@ -232,8 +232,8 @@ fn what_is_named_alike_is_not_mixed() {
     }
     let arguments =
         ["one/photos", "two/photos", "one/photos/sample_b.png", "--pixels-per-cm", "14", "-o", "out"];
-    let (code, _, told) = kesf(&[&["drape-image"], &arguments[..]].concat(), root);
-    assert!(code == 0 && told.contains("O056"), "{told}");
+    let (code, _, errors) = kesf(&[&["drape-image"], &arguments[..]].concat(), root);
+    assert!(code == 0 && errors.contains("O056"), "{errors}");
     let (_, json, _) = kesf(&[&["--json", "drape-image"], &arguments[..5]].concat(), root);
     let document: serde_json::Value = serde_json::from_str(&json).unwrap();
     let summaries = document["summaries"].as_array().unwrap();
@@ -258,6 +258,6 @@ fn a_picture_that_unpacks_to_too_much_is_refused() {
     drop(png::Encoder::new(&mut bytes, 60_000, 60_000).write_header().unwrap());
     std::fs::write(folder.path().join("bomb.png"), bytes).unwrap();
     std::fs::write(folder.path().join("good.png"), plain(1, 0.5, true).png()).unwrap();
-    let (code, text, told) = kesf(&["drape-image", "."], folder.path());
-    assert!(code == 1 && told.contains("bomb.png: R024") && text.contains("good.png"), "{code} {told}");
+    let (code, text, errors) = kesf(&["drape-image", "."], folder.path());
+    assert!(code == 1 && errors.contains("bomb.png: R024") && text.contains("good.png"), "{code} {errors}");
 }

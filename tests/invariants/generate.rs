@@ -200,8 +200,8 @@ fn supports(mesh: &QuadMesh, outline: &str, rng: &mut Pcg64) -> (Vec<Support>, &
         1 => (vec![clamped("boundary")], "clamped all around"),
         2 if outline == "rectangle" => {
             let value = rng.random_range(-1e-3..1e-3);
-            let moved = Dof::ALL.iter().map(|dof| (*dof, if *dof == Dof::W { value } else { 0.0 }));
-            let right = Support::at(mesh.set("right").unwrap().to_vec(), moved.collect());
+            let prescribed = Dof::ALL.iter().map(|dof| (*dof, if *dof == Dof::W { value } else { 0.0 }));
+            let right = Support::at(mesh.set("right").unwrap().to_vec(), prescribed.collect());
             (vec![clamped("left"), right], "clamped at two edges, one of them moved")
         }
         _ => (vec![clamped(edge)], "clamped at one edge"),

@@ -37,7 +37,7 @@ pub fn energy_of_work(model: &Model, found: &Solution, tolerance: f64) {
 /// and moments, apart. What is nothing but rounding beside the other kind counts as that: `lever` makes the second
 /// kind one of the first, a length for rotations and its inverse for moments.
 pub fn off(a: &[f64], b: &[f64], lever: f64) -> f64 {
-    let of = |at: usize| {
+    let difference_and_size = |at: usize| {
         let (mut most, mut largest) = (0.0f64, 0.0f64);
         for (a, b) in a.chunks_exact(6).zip(b.chunks_exact(6)) {
             let [a, b] = [a, b].map(|v| Vector3::from_column_slice(&v[at..at + 3]));
@@ -45,7 +45,7 @@ pub fn off(a: &[f64], b: &[f64], lever: f64) -> f64 {
         }
         (most, largest)
     };
-    let ((first, first_largest), (second, second_largest)) = (of(0), of(3));
+    let ((first, first_largest), (second, second_largest)) = (difference_and_size(0), difference_and_size(3));
     let relative = |most: f64, largest: f64| if most == 0.0 { 0.0 } else { most / largest };
     relative(first, first_largest.max(lever * second_largest))
         .max(relative(second, second_largest.max(first_largest / lever)))

@@ -130,15 +130,15 @@ fn loads_do_each_others_work() {
 #[test]
 fn modes_at_random() {
     each("modal", 4, |case| {
-        let of = |model: &Model, n| -> Vec<f64> {
+        let frequencies = |model: &Model, n| -> Vec<f64> {
             let found = modes(model, 4, Mass::Lumped, &threads(n)).unwrap();
             found.iter().map(|mode| mode.angular_frequency).collect()
         };
-        let found = of(&case.model, 1);
+        let found = frequencies(&case.model, 1);
         assert!(found[0] > 0.0 && found.is_sorted(), "{found:?}");
-        same_bytes(&of(&case.model, 2), &found);
+        same_bytes(&frequencies(&case.model, 2), &found);
         for (what, other, _) in transforms(case) {
-            for (a, b) in of(&other, 1).iter().zip(&found) {
+            for (a, b) in frequencies(&other, 1).iter().zip(&found) {
                 assert!((a / b - 1.0).abs() < MODES, "{what}: {a} where {b} was");
             }
         }

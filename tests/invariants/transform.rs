@@ -42,20 +42,20 @@ impl Transform {
         // Supports hold all displacements of a node, and all of its rotations or none.
         let value = |dof: Dof| support.held.iter().find(|(d, _)| *d == dof).map_or(0.0, |(_, v)| *v);
         let held = |dofs: [Dof; 3], map: &Matrix3<f64>| {
-            let moved = map * Vector3::from(dofs.map(value));
+            let mapped = map * Vector3::from(dofs.map(value));
             let is_held = support.held.iter().any(|(d, _)| *d == dofs[0]);
-            (0..if is_held { 3 } else { 0 }).map(move |i| (dofs[i], moved[i]))
+            (0..if is_held { 3 } else { 0 }).map(move |i| (dofs[i], mapped[i]))
         };
-        let mut moved = support.clone();
-        moved.held = held([Dof::U, Dof::V, Dof::W], &self.polar)
+        let mut transformed = support.clone();
+        transformed.held = held([Dof::U, Dof::V, Dof::W], &self.polar)
             .chain(held([Dof::ThetaX, Dof::ThetaY, Dof::ThetaZ], &self.axial))
             .collect();
-        moved.nodes = self.nodes(&support.nodes);
-        for edge in &mut moved.hard {
+        transformed.nodes = self.nodes(&support.nodes);
+        for edge in &mut transformed.hard {
             edge.nodes = edge.nodes.map(|n| self.number[n as usize] as u32);
             edge.up = self.polar * edge.up;
         }
-        moved
+        transformed
     }
 
     fn load(&self, load: &Load) -> Load {
@@ -122,10 +122,10 @@ pub fn renumbered(model: &Model, seed: u64) -> (Model, Transform) {
     let mut number = in_order(model);
     number.shuffle(&mut rng);
     let transform = Transform::new(Matrix3::identity(), number);
-    let mut moved = transform.model(model, |q| q);
-    moved.mesh.quads.shuffle(&mut rng);
-    for quad in &mut moved.mesh.quads {
+    let mut shuffled = transform.model(model, |q| q);
+    shuffled.mesh.quads.shuffle(&mut rng);
+    for quad in &mut shuffled.mesh.quads {
         quad.rotate_left(rng.random_range(0..4));
     }
-    (moved, transform)
+    (shuffled, transform)
 }

@@ -264,9 +264,9 @@ fn damaged_bytes(rng: &mut Pcg64, kind: &str, paper: &Paper, bytes: &[u8]) -> Op
         }
         "an encoding mistaken" if is_text => {
             let labels = ["windows-1252", "shift_jis", "gb18030", "macintosh", "windows-1250", "utf-8"];
-            let of = |label: &str| encoding_rs::Encoding::for_label(label.as_bytes());
-            let text = of(pick(rng, &labels))?.decode(bytes).0;
-            out = of(pick(rng, &labels))?.encode(&text).0.into_owned();
+            let encoding = |label: &str| encoding_rs::Encoding::for_label(label.as_bytes());
+            let text = encoding(pick(rng, &labels))?.decode(bytes).0;
+            out = encoding(pick(rng, &labels))?.encode(&text).0.into_owned();
         }
         "the end cut off" => out.truncate(rng.random_range(bytes.len() / 2..bytes.len())),
         "bytes" => {
@@ -389,12 +389,12 @@ fn said_by_reader(content: &FileContent) -> BTreeSet<String> {
 /// What is said of the fabrics of a file.
 fn said_of_fabrics(content: &FileContent) -> BTreeSet<String> {
     let names: BTreeSet<&Option<String>> = content.results.iter().map(|(n, _)| n).collect();
-    let of = |name: &Option<String>| FabricInput {
+    let fabric_input = |name: &Option<String>| FabricInput {
         name: name.clone().unwrap_or_default(),
         results: content.results.iter().filter(|(n, _)| n == name).map(|(_, v)| v.clone()).collect(),
         ..FabricInput::default()
     };
-    let mut inputs: Vec<FabricInput> = names.into_iter().map(of).collect();
+    let mut inputs: Vec<FabricInput> = names.into_iter().map(fabric_input).collect();
     if !content.measurements.is_empty() {
         inputs.push(FabricInput { measurements: content.measurements.clone(), ..FabricInput::default() });
     }
@@ -411,7 +411,7 @@ fn is_told(before: &FileContent, after: &FileContent) -> bool {
 #[derive(Default)]
 struct Counts {
     same: usize,
-    told: usize,
+    reported: usize,
     refused: usize,
     silent: BTreeMap<Wrong, usize>,
 }
@@ -468,11 +468,11 @@ fn damage_neither_ends_the_program_nor_slips_in_a_factor() {
         let result = parse(Path::new(&d.drawn.name), &d.bytes, &ReadSettings::default());
         slowest = slowest.max(start.elapsed());
         done += 1;
-        let of = counts.entry((d.untouched, d.kind)).or_default();
+        let tally = counts.entry((d.untouched, d.kind)).or_default();
         match outcome(&d, &result) {
-            Err(true) => of.refused += 1,
-            Err(false) => of.told += 1,
-            Ok(None) => of.same += 1,
+            Err(true) => tally.refused += 1,
+            Err(false) => tally.reported += 1,
+            Ok(None) => tally.same += 1,
             Ok(Some((wrong, what))) => {
                 let described = format!("{wrong:?} | {} | {seed} {} | {what}", d.kind, d.drawn.layout);
                 if show.as_ref().is_some_and(|s| described.contains(s.as_str())) {
@@ -482,7 +482,7 @@ fn damage_neither_ends_the_program_nor_slips_in_a_factor() {
                 if d.untouched && wrong == Wrong::Factor {
                     factors.push(described);
                 }
-                *of.silent.entry(wrong).or_default() += 1;
+                *tally.silent.entry(wrong).or_default() += 1;
             }
         }
     }
@@ -503,13 +503,13 @@ fn print(counts: &BTreeMap<(bool, &str), Counts>) {
     println!("{:<42} files   same   told refused | in silence: factor direction other missing extra", "");
     for ((untouched, kind), c) in counts {
         let silent = |w| c.silent.get(&w).copied().unwrap_or(0);
-        let all = c.same + c.told + c.refused + c.silent.values().sum::<usize>();
+        let all = c.same + c.reported + c.refused + c.silent.values().sum::<usize>();
         let numbers = if *untouched { "" } else { " *" };
         println!(
             "{:<42} {all:5} {:6} {:6} {:7} | {:18} {:9} {:5} {:7} {:5}",
             format!("{kind}{numbers}"),
             c.same,
-            c.told,
+            c.reported,
             c.refused,
             silent(Wrong::Factor),
             silent(Wrong::Direction),

@@ -190,14 +190,14 @@ impl Shares {
     fn print(&self, what: &str) {
         println!("\n{what:<46} files  right refused flagged silent");
         for (name, counts) in &self.0 {
-            let of = |o| counts.get(&o).copied().unwrap_or(0);
+            let count = |o| counts.get(&o).copied().unwrap_or(0);
             let all: usize = counts.values().sum();
             println!(
                 "{name:<46} {all:5} {:5.1}% {:6} {:7} {:6}",
-                100.0 * of(Outcome::Right) as f64 / all as f64,
-                of(Outcome::Refused),
-                of(Outcome::Flagged),
-                of(Outcome::Silent)
+                100.0 * count(Outcome::Right) as f64 / all as f64,
+                count(Outcome::Refused),
+                count(Outcome::Flagged),
+                count(Outcome::Silent)
             );
         }
     }

@@ -765,15 +765,15 @@ fn side_by_side(rng: &mut Pcg64, style: &Style<'_>, fabric: &Fabric) -> Table {
     }
     let directions: Vec<Option<Direction>> =
         if fabric.quantities[0].direction.is_some() { BOTH.map(Some).to_vec() } else { vec![None] };
-    let of = |d: &Option<Direction>| -> Vec<&Quantity> {
+    let quantities_along = |d: &Option<Direction>| -> Vec<&Quantity> {
         fabric.quantities.iter().filter(|q| q.direction == *d).collect()
     };
-    let all: Vec<&Quantity> = directions.iter().flat_map(of).collect();
+    let all: Vec<&Quantity> = directions.iter().flat_map(quantities_along).collect();
     if directions.len() > 1 {
         let at = grid.rows.len();
         let mut top = vec![Cell::Empty];
         for d in &directions {
-            let width = of(d).len();
+            let width = quantities_along(d).len();
             grid.over(at, top.len(), width);
             top.push(Cell::text(d.map(|d| style.direction(d)).unwrap_or_default()));
             top.extend(vec![Cell::Empty; width - 1]);

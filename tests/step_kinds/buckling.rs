@@ -113,11 +113,11 @@ fn compressed_plates_buckle_at_the_closed_form() {
     let long = Plate { width: 1.5, bending: [4.0, 1.0, 0.1, 0.3], cells: [0, 0] };
     for (plate, cells) in [(square, [8, 8]), (long, [12, 8])] {
         let [b1, b2, b12, h] = plate.bending;
-        let of = |m: i32| {
+        let critical_load = |m: i32| {
             let k = f64::from(m) / plate.width;
             PI * PI * (b1 * k * k + 2.0 * (b12 + 2.0 * h) + b2 / (k * k))
         };
-        let mut exact: Vec<f64> = (1..6).map(of).collect();
+        let mut exact: Vec<f64> = (1..6).map(critical_load).collect();
         exact.sort_by(f64::total_cmp);
         let errors = |times: usize| -> Vec<f64> {
             let plate = Plate { cells: cells.map(|n| times * n), ..plate };
@@ -247,8 +247,8 @@ fn steps_before_count() {
     assert!((factor("taut") / (euler + 0.01) - 1.0).abs() < 2e-3);
     assert!((factor("pushed") / (0.5 * euler) - 1.0).abs() < 4e-3);
     assert!((factor("turned round") / factor("pushed") + 1.0).abs() < 1e-6);
-    let told: Vec<&str> = result.findings.iter().map(|f| f.code()).collect();
-    assert_eq!(told, ["S143"]);
+    let codes: Vec<&str> = result.findings.iter().map(|f| f.code()).collect();
+    assert_eq!(codes, ["S143"]);
 }
 
 /// A strip that is held by its tension has its factors close together: π²D n²/L² above it, one after the other.
@@ -278,8 +278,8 @@ fn an_end_that_is_moved_buckles_a_column_too() {
     let (length, bending, membrane) = (0.2, 8e-6, 6e5);
     let euler = PI * PI * bending / (length * length);
     let column = Strip { membrane, bending, length, cells: 40 };
-    let moved = "[[loads]]\nkind = \"prescribed\"\nset = \"right\"\ndof = \"u\"\nvalue = \"-1e-9 m\"\n";
-    let case = [fix("left", &["u", "w"]), fix("right", &["w"]), moved.into(), BUCKLING.into()];
+    let prescribed = "[[loads]]\nkind = \"prescribed\"\nset = \"right\"\ndof = \"u\"\nvalue = \"-1e-9 m\"\n";
+    let case = [fix("left", &["u", "w"]), fix("right", &["w"]), prescribed.into(), BUCKLING.into()];
     let found = 1e-9 * column.solved(&case.concat()).load_factors[0];
     let exact = euler / membrane * length;
     assert!((found / exact - 1.0).abs() < 2e-3, "{found} {exact}");

@@ -99,9 +99,9 @@ fn a_strip_with_friction_swings_as_its_law_says() {
         ..Settings::default()
     };
     let newton = Method::Newton(None);
-    let way = LoadStep { model: &pulled, moved: &[], settings: &settings, method: &newton };
+    let step = LoadStep { model: &pulled, prescribed: &[], settings: &settings, method: &newton };
     let rest = Carried::rest(&bare);
-    let (end, carried) = continue_from(&rest, &way, &plan, &options, |_| ControlFlow::Continue(())).unwrap();
+    let (end, carried) = continue_from(&rest, &step, &plan, &options, |_| ControlFlow::Continue(())).unwrap();
     let tip = *bare.mesh.set("right").unwrap().first().unwrap() as usize;
     let start = end.state.position[tip].x - LENGTH;
 

@@ -13,7 +13,7 @@ fn motion(duration: f64, time_step: f64, more: &str) -> String {
 }
 
 /// A dof of the ends that is moved.
-fn moved(sets: &[&str], dof: &str, how: &str) -> String {
+fn prescribed(sets: &[&str], dof: &str, how: &str) -> String {
     let one = |set: &&str| {
         format!("[[steps.loads]]\nkind = \"prescribed\"\nset = \"{set}\"\ndof = \"{dof}\"\n{how}\n")
     };
@@ -36,8 +36,8 @@ fn apart(
     scale: f64,
     reference: impl Fn(f64) -> f64,
 ) -> f64 {
-    let moved = history.time.iter().zip(&history.probe_displacements[probe]);
-    moved.map(|(t, u)| (u[component] - reference(*t)).abs() / scale).fold(0.0, f64::max)
+    let samples = history.time.iter().zip(&history.probe_displacements[probe]);
+    samples.map(|(t, u)| (u[component] - reference(*t)).abs() / scale).fold(0.0, f64::max)
 }
 
 /// A strip of one cell is an oscillator of its end, ω² = 2 E / (ρ L²), as half of the mass is there: its support goes to and fro,
@@ -55,7 +55,10 @@ fn a_moved_support_drives_an_oscillator() {
             NONLINEAR.into(),
             // A weight along the strip, without which nothing would act before.
             step("rest", "[[steps.loads]]\nkind = \"gravity\"\nvalue = \"1e-12 m/s²\"\n"),
-            step("move", &[motion(3.0 * period, period / steps, ""), moved(&["left"], "u", how)].concat()),
+            step(
+                "move",
+                &[motion(3.0 * period, period / steps, ""), prescribed(&["left"], "u", how)].concat(),
+            ),
         ];
         strip.solved(&case.concat())
     };
@@ -119,19 +122,23 @@ fn moved_supports_swing_a_taut_strip() {
         ),
         step(
             "move",
-            &[motion(2.0 * period, period / 200.0, ""), pull(tension), moved(&["left", "right"], "w", &sine)]
-                .concat(),
+            &[
+                motion(2.0 * period, period / 200.0, ""),
+                pull(tension),
+                prescribed(&["left", "right"], "w", &sine),
+            ]
+            .concat(),
         ),
     ];
     let result = strip.solved(&case.concat());
     let middle = |t: f64| {
-        let of = |n: i32| {
+        let mode = |n: i32| {
             let w = natural(n);
             let q =
                 amplitude * drive / (w * w - drive * drive) * (drive * (drive * t).sin() - w * (w * t).sin());
             4.0 / (f64::from(n) * PI) * (f64::from(n) * PI / 2.0).sin() * q
         };
-        amplitude * (drive * t).sin() + (1..200).step_by(2).map(of).sum::<f64>()
+        amplitude * (drive * t).sin() + (1..200).step_by(2).map(mode).sum::<f64>()
     };
     let error = apart(history(&result), 0, 2, 2.0 * amplitude, middle);
     println!("{error:.3e}");
@@ -167,10 +174,10 @@ fn a_strip_that_hangs_aslant_is_let_go() {
     let period = TAU / (0.5 * ZEROS[0][0] * (9.80665f64 / length).sqrt());
     let weight = |z: f64| format!("[[steps.loads]]\nkind = \"gravity\"\ndirection = [1, 0, {z}]\n");
     let end = |t: f64| {
-        let of = |[j, j1]: &[f64; 2]| {
+        let mode = |[j, j1]: &[f64; 2]| {
             8.0 * angle * length / (j.powi(3) * j1) * (0.5 * j * (9.80665f64 / length).sqrt() * t).cos()
         };
-        ZEROS.iter().chain(&later).map(of).sum::<f64>()
+        ZEROS.iter().chain(&later).map(mode).sum::<f64>()
     };
     let error = |cells: usize, steps: f64| {
         let strip = Strip { membrane: 6e3, bending: 1e-8, length, cells };

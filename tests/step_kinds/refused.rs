@@ -7,28 +7,34 @@ fn steps_that_cannot_be_are_refused_at_their_place() {
     let strip = Strip { membrane: 600.0, bending: 8e-6, length: 0.2, cells: 4 };
     let held = fix("left", &["u", "w", "theta_y"]);
     let pulled = step("pull", &pull(1.0));
-    let of = |name: &str, kind: &str, more: &str| {
+    let analysis_step = |name: &str, kind: &str, more: &str| {
         step(name, &format!("[steps.analysis]\nkind = \"{kind}\"\n{more}"))
     };
     let moving = "duration = \"1 s\"\nstep = \"10 ms\"\n";
-    let motion = of("move", "newmark", moving);
+    let motion = analysis_step("move", "newmark", moving);
     let guided = |how: &str| {
         format!("{motion}[[steps.loads]]\nkind = \"prescribed\"\nset = \"right\"\ndof = \"u\"\n{how}\n")
     };
     let cases = [
-        (of("modes", "modal", ""), "the first of the [[steps]]"),
+        (analysis_step("modes", "modal", ""), "the first of the [[steps]]"),
         (format!("{pulled}{motion}{}", step("after", "")), "a motion is the last"),
-        (format!("{pulled}{}{}", of("modes", "modal", ""), pull(1.0)), "a modal step changes nothing"),
-        (format!("{pulled}{}", of("buckle", "buckling", "")), "nothing grows"),
-        (format!("{pulled}{}", of("a", "linear", "")), "of kind = \"nonlinear\""),
-        (format!("{pulled}{}", of("a", "buckling", "factors = 0\n")), "nothing grows"),
-        (format!("{pulled}{}{}", of("a", "buckling", "factors = 0\n"), pull(1.0)), "factors = 0"),
         (
-            format!("{pulled}{}", of("a", "newmark", &format!("{moving}tolerance = 1e-3\n"))),
+            format!("{pulled}{}{}", analysis_step("modes", "modal", ""), pull(1.0)),
+            "a modal step changes nothing",
+        ),
+        (format!("{pulled}{}", analysis_step("buckle", "buckling", "")), "nothing grows"),
+        (format!("{pulled}{}", analysis_step("a", "linear", "")), "of kind = \"nonlinear\""),
+        (format!("{pulled}{}", analysis_step("a", "buckling", "factors = 0\n")), "nothing grows"),
+        (format!("{pulled}{}{}", analysis_step("a", "buckling", "factors = 0\n"), pull(1.0)), "factors = 0"),
+        (
+            format!("{pulled}{}", analysis_step("a", "newmark", &format!("{moving}tolerance = 1e-3\n"))),
             "`tolerance` is not for",
         ),
         (
-            format!("{pulled}{}", of("a", "newmark", &format!("{moving}large_rotations = false\n"))),
+            format!(
+                "{pulled}{}",
+                analysis_step("a", "newmark", &format!("{moving}large_rotations = false\n"))
+            ),
             "has large rotations",
         ),
         (format!("{pulled}{}", guided("value = \"1 mm\"")), "cannot jump"),

@@ -72,9 +72,9 @@ fn slips_of_a_value_by_a_factor() {
     let false_alarms = fabrics.iter().filter(|values| is_told(values)).count();
     println!("{false_alarms} of {} fabrics without a slip are told", fabrics.len());
     assert_eq!(false_alarms, 0);
-    let mut told = [0usize; FACTORS.len()];
+    let mut reported = [0usize; FACTORS.len()];
     for values in &fabrics {
-        for (count, factor) in told.iter_mut().zip(FACTORS) {
+        for (count, factor) in reported.iter_mut().zip(FACTORS) {
             for slipped in 0..values.len() {
                 let mut values = values.clone();
                 values[slipped].1 *= factor;
@@ -83,7 +83,7 @@ fn slips_of_a_value_by_a_factor() {
         }
     }
     let slips = fabrics.len() * fabrics[0].len();
-    for (count, factor) in told.iter().zip(FACTORS) {
+    for (count, factor) in reported.iter().zip(FACTORS) {
         println!(
             "factor {factor}: {count} of {slips} slips are told ({:.1} %)",
             100.0 * *count as f64 / slips as f64
@@ -91,7 +91,7 @@ fn slips_of_a_value_by_a_factor() {
     }
     // A factor of two lies within the differences between fabrics, where nothing else follows from the value.
     let least = [0.9, 0.7, 0.7, 0.3, 0.3, 0.7, 0.7, 0.9];
-    for ((count, factor), least) in told.iter().zip(FACTORS).zip(least) {
+    for ((count, factor), least) in reported.iter().zip(FACTORS).zip(least) {
         assert!(*count as f64 > least * slips as f64, "factor {factor}: {count} of {slips}");
     }
 }

@@ -23,14 +23,14 @@ fn results_among_the_inputs_are_no_measurements() {
             (tables, stderr(&done))
         };
         let (first, _) = tables("first");
-        let (second, told) = tables("second");
+        let (second, errors) = tables("second");
         assert_eq!(first, second, "{input:?} into {output:?}");
         assert_eq!(first_cells(&output.join("fabrics.csv")), ["A", "B"]);
-        let said = told.contains("O061") && told.contains("results of this program");
+        let said = errors.contains("O061") && errors.contains("results of this program");
         assert_eq!(
             said,
             input == output,
-            "results beside measurements are told, a folder of results is passed by: {told}"
+            "results beside measurements are told, a folder of results is passed by: {errors}"
         );
     }
 }
@@ -78,8 +78,8 @@ fn names_are_no_formulas() {
             }
         }
     }
-    let told = first_cells(&out.join("fabrics.csv"));
-    assert!(names.iter().all(|name| told.contains(&format!("'{name}"))), "{told:?}");
+    let fabrics = first_cells(&out.join("fabrics.csv"));
+    assert!(names.iter().all(|name| fabrics.contains(&format!("'{name}"))), "{fabrics:?}");
 }
 
 /// What a link no longer leads to is missing, and is told.

@@ -52,12 +52,12 @@ fn solve(text: &str, options: &[&str]) -> (i32, String) {
 #[test]
 fn a_result_that_is_no_number_is_an_error() {
     for value in ["1e308", "1e200", "1e160"] {
-        let (exit, told) = solve(&case("[8, 8]", &pressure(value)), &[]);
-        assert_eq!(exit, 3, "{value} Pa: {told}");
-        assert!(told.contains("N012"), "{value} Pa: {told}");
+        let (exit, errors) = solve(&case("[8, 8]", &pressure(value)), &[]);
+        assert_eq!(exit, 3, "{value} Pa: {errors}");
+        assert!(errors.contains("N012"), "{value} Pa: {errors}");
     }
-    let (exit, told) = solve(&case("[8, 8]", &pressure("1e100")), &[]);
-    assert!([0, 1].contains(&exit), "large, and a number: {told}");
+    let (exit, errors) = solve(&case("[8, 8]", &pressure("1e100")), &[]);
+    assert!([0, 1].contains(&exit), "large, and a number: {errors}");
 }
 
 /// What needs more memory than it may have is refused at its table before anything is made, by `check` as well.
@@ -84,9 +84,9 @@ fn more_memory_than_there_is_is_refused_before_it_is_taken() {
         let checked = run(&["check", path.to_str().unwrap()]);
         assert_eq!(code(&checked), 2, "{what}: {}", stderr(&checked));
         assert!(stderr(&checked).contains("N011"), "{what}: {}", stderr(&checked));
-        let (exit, told) = solve(text, &[]);
-        assert_eq!(exit, 2, "{what}: {told}");
-        assert!(told.contains("N011") && told.contains("--memory-limit"), "{what}: {told}");
+        let (exit, errors) = solve(text, &[]);
+        assert_eq!(exit, 2, "{what}: {errors}");
+        assert!(errors.contains("N011") && errors.contains("--memory-limit"), "{what}: {errors}");
     }
     // The same case within and beyond a limit that is set.
     let plate = case("[60, 60]", &linear);
@@ -142,21 +142,21 @@ fn every_computation_ends_in_the_time_that_it_may_take() {
     ];
     for (what, text) in &cases {
         let start = Instant::now();
-        let (exit, told) = solve(text, &["--time-limit", "1 s"]);
+        let (exit, errors) = solve(text, &["--time-limit", "1 s"]);
         let seconds = start.elapsed().as_secs_f64();
-        assert_eq!(exit, 3, "{what}: {told}");
-        assert!(told.contains("N010") || told.contains("longer than the 1 s"), "{what}: {told}");
+        assert_eq!(exit, 3, "{what}: {errors}");
+        assert!(errors.contains("N010") || errors.contains("longer than the 1 s"), "{what}: {errors}");
         // A step of the largest of them takes its time on a machine that is shared.
         assert!(seconds < 60.0, "{what}: {seconds} s");
     }
     // Assembly and factorisation of a linear case are asked, too.
-    let (exit, told) = solve(&case("[300, 300]", &push), &["--time-limit", "50 ms"]);
-    assert_eq!(exit, 3, "{told}");
-    assert!(told.contains("N010"), "{told}");
+    let (exit, errors) = solve(&case("[300, 300]", &push), &["--time-limit", "50 ms"]);
+    assert_eq!(exit, 3, "{errors}");
+    assert!(errors.contains("N010"), "{errors}");
     let kept = tempfile::tempdir().unwrap();
     let folder = kept.path().to_str().unwrap();
-    let (_, told) = solve(&motion(""), &["--time-limit", "1 s", "-o", folder]);
-    assert!(told.contains("of 1000 s"), "{told}");
+    let (_, errors) = solve(&motion(""), &["--time-limit", "1 s", "-o", folder]);
+    assert!(errors.contains("of 1000 s"), "{errors}");
     assert!(kept.path().join("cases/hostile.json").is_file(), "the motion up to then is kept");
 }
 

@@ -72,8 +72,8 @@ impl Library {
 
 /// How many fabrics a run found done.
 fn resumed(done: &Output) -> usize {
-    let told = stderr(done);
-    let line = told.lines().find(|line| line.contains("as an earlier run left them"));
+    let errors = stderr(done);
+    let line = errors.lines().find(|line| line.contains("as an earlier run left them"));
     line.map_or(0, |line| line.split(' ').next().unwrap().parse().unwrap())
 }
 
@@ -205,12 +205,12 @@ fn killed(library: &Library, kills: u32) {
             let done = library.run("out", &["-j", "1"]);
             most = most.max(resumed(&done));
             assert_eq!(library.shown("out"), library.shown("undisturbed"), "after kill {kill}");
-            let left: Vec<String> = tree(&library.out("out"))
+            let remaining: Vec<String> = tree(&library.out("out"))
                 .into_keys()
                 .filter(|n| n.contains("/.kesf-") || n.starts_with(".kesf-"))
                 .collect();
             let known = |name: &String| name.ends_with(".kesf-record.json") || name == ".kesf-manifest.json";
-            assert!(left.iter().all(known), "temporary files are left: {left:?}");
+            assert!(remaining.iter().all(known), "temporary files are left: {remaining:?}");
         }
     }
     println!(
@@ -303,8 +303,8 @@ fn a_full_disk_costs_no_whole_file() {
     let mut failed = 0;
     for size in &sizes {
         let first = lines.next().unwrap_or_else(|| panic!("{said} {}", stderr(&done)));
-        let (exit, told) = first.split_once(' ').unwrap();
-        assert!(exit == "0" || (["1", "2"].contains(&exit) && told != "0"), "{size} kB: {first}");
+        let (exit, count) = first.split_once(' ').unwrap();
+        assert!(exit == "0" || (["1", "2"].contains(&exit) && count != "0"), "{size} kB: {first}");
         failed += usize::from(exit != "0");
         assert_eq!(lines.next(), Some("again 0"), "{size} kB");
         assert_whole(&library.out(&format!("kept.{size}")), &format!("{size} kB"));

@@ -11,8 +11,8 @@ use shapes::SHAPES;
 
 /// Processor time that this thread has had (s); `None` where the system does not say.
 fn processor_seconds() -> Option<f64> {
-    let told = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    Some(1e-9 * told.split_whitespace().next()?.parse::<f64>().ok()?)
+    let statistics = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    Some(1e-9 * statistics.split_whitespace().next()?.parse::<f64>().ok()?)
 }
 
 /// The system counts the time of a thread that is running in steps of some milliseconds: what is timed takes many of them.

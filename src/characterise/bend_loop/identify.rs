@@ -127,8 +127,8 @@ pub(super) fn identify<'a>(
     first: f64,
     settings: &LoopSettings,
 ) -> Result<Found<'a>, (usize, LoopError)> {
-    let ways: Vec<f64> = strips.iter().flatten().map(|r| r.way()).collect();
-    let turns = ways.iter().any(|way| *way != ways[0]);
+    let signs: Vec<f64> = strips.iter().flatten().map(|r| r.gravity_sign()).collect();
+    let turns = signs.iter().any(|sign| *sign != signs[0]);
     let tests = strips.iter().map(Vec::len).sum::<usize>() as f64;
     let start =
         Guess { rigidity: START, sliders: Vec::new(), is_law: false, growth: 0.0, largest_curvature: 0.0 };

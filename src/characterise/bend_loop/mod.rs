@@ -240,9 +240,9 @@ fn result(
     settings: &LoopSettings,
     evaluation: &Settings,
 ) -> Result<BendLoops, (usize, LoopError)> {
-    let of = |e| (i, e);
+    let with_index = |e| (i, e);
     let direction = strips[i].direction;
-    let (elastic, friction) = (whole.elastic(i).map_err(of)?, whole.friction(i).map_err(of)?);
+    let (elastic, friction) = (whole.elastic(i).map_err(with_index)?, whole.friction(i).map_err(with_index)?);
     let mut loops = Vec::new();
     for (k, record) in strips[i].records.iter().enumerate() {
         let against = |strip: &Mounted| Ok(record.compared(&record.simulate(strip, settings)?.force));
@@ -252,10 +252,11 @@ fn result(
             && fitted
             && let Some(laws) = laws(strips, Some((i, k)), settings)?
         {
-            let [line, law] = [Some(laws.elastic(i).map_err(of)?), laws.friction(i).map_err(of)?];
+            let [line, law] =
+                [Some(laws.elastic(i).map_err(with_index)?), laws.friction(i).map_err(with_index)?];
             held_out = [
-                line.as_ref().map(against).transpose().map_err(of)?,
-                law.as_ref().map(against).transpose().map_err(of)?,
+                line.as_ref().map(against).transpose().map_err(with_index)?,
+                law.as_ref().map(against).transpose().map_err(with_index)?,
             ];
         }
         loops.push(BendLoop {
@@ -263,19 +264,19 @@ fn result(
             fitted,
             measured: record.samples.clone(),
             branches: record.branches.clone(),
-            elastic: against(&elastic).map_err(of)?,
-            friction: friction.as_ref().map(against).transpose().map_err(of)?,
+            elastic: against(&elastic).map_err(with_index)?,
+            friction: friction.as_ref().map(against).transpose().map_err(with_index)?,
             held_out,
         });
     }
-    let friction = friction.map(|f| told(strips, i, whole, f, evaluation));
+    let friction = friction.map(|f| friction_of(strips, i, whole, f, evaluation));
     let elastic =
         Elastic { rigidity: whole.elastic.guesses[i].rigidity, inclination: whole.elastic.inclination };
     Ok(BendLoops { direction, elastic, friction, loops, cells: settings.cells })
 }
 
-/// What is told of a law that was found.
-fn told(
+/// The results of a law with friction that was found.
+fn friction_of(
     strips: &[Strips<'_>],
     i: usize,
     whole: &Laws<'_>,

@@ -74,8 +74,8 @@ impl<'a> Record<'a> {
         self.branches.len().checked_sub(2).map_or(0, |i| self.branches[i])
     }
 
-    /// 1 hanging, -1 standing.
-    pub fn way(&self) -> f64 {
+    /// Sign of gravity along the strip: 1 hanging, -1 standing.
+    pub fn gravity_sign(&self) -> f64 {
         if self.test.kind == FabKind::U1 { -1.0 } else { 1.0 }
     }
 
@@ -112,8 +112,8 @@ impl<'a> Record<'a> {
     /// The strip hangs in the frame of the simulation: one that stands up hangs in reversed gravity.
     pub fn simulate(&self, strip: &Mounted, settings: &LoopSettings) -> Result<Run, LoopError> {
         let (length, first) = (self.test.length, self.samples.x[0]);
-        let (way, steps) = (self.way(), settings.steps.max(1));
-        let (turn, weight) = (way * strip.inclination, way * self.weight);
+        let (sign, steps) = (self.gravity_sign(), settings.steps.max(1));
+        let (turn, weight) = (sign * strip.inclination, sign * self.weight);
         // Clamps in line, and the weight gives the straight strip its bow; then both as they are in the test.
         let mut mounting = (1..=MOUNTING).map(|i| {
             let distance = length + (first - length) * i as f64 / MOUNTING as f64;

@@ -62,11 +62,11 @@ fn smoothed(distances: &[f64]) -> (Vec<f64>, f64) {
     let weight = |k: usize| (-0.5 * (k as f64 * SMOOTH).powi(2)).exp();
     let smooth = (0..n)
         .map(|i| {
-            let of = |(k, [c, s]): (usize, &[f64; 2])| {
+            let term = |(k, [c, s]): (usize, &[f64; 2])| {
                 let (sin, cos) = (TAU * (k * i % n) as f64 / n as f64).sin_cos();
                 weight(k) * (c * cos + s * sin)
             };
-            parts.iter().enumerate().map(of).sum()
+            parts.iter().enumerate().map(term).sum()
         })
         .collect();
     // Folds have no part in orders this high: what is there is noise, as strong in the lower ones.
@@ -74,8 +74,8 @@ fn smoothed(distances: &[f64]) -> (Vec<f64>, f64) {
     let mut sorted = high;
     sorted.sort_by(f64::total_cmp);
     let power = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0) / std::f64::consts::LN_2;
-    let left: f64 = (1..=orders).map(|k| weight(k).powi(2)).sum();
-    (smooth, (power * left).sqrt())
+    let remaining: f64 = (1..=orders).map(|k| weight(k).powi(2)).sum();
+    (smooth, (power * remaining).sqrt())
 }
 
 /// The maxima of a closed curve, and how far one has to go down from each to reach a higher one; for the highest, the

@@ -193,9 +193,11 @@ impl DrapeSetup {
 
     /// The scale of a picture, with the one of other pictures of its size if it has none itself.
     fn scale(&self, seen: &SeenSheet, others: Option<f64>) -> Option<Scale> {
-        let of = |source| move |pixels_per_metre| Scale { pixels_per_metre, source };
-        let given = self.pixels_per_metre.map(of(ScaleSource::Given));
-        given.or(self.by_disc(seen).map(of(ScaleSource::Disc))).or(others.map(of(ScaleSource::OtherPictures)))
+        let scale_from = |source| move |pixels_per_metre| Scale { pixels_per_metre, source };
+        let given = self.pixels_per_metre.map(scale_from(ScaleSource::Given));
+        given
+            .or(self.by_disc(seen).map(scale_from(ScaleSource::Disc)))
+            .or(others.map(scale_from(ScaleSource::OtherPictures)))
     }
 }
 

@@ -224,16 +224,16 @@ fn lump(sliders: &[Slider]) -> Vec<f64> {
     let share = total / KEPT as f64;
     let (mut levels, mut force, mut stiffness) = (Vec::with_capacity(KEPT), 0.0, 0.0);
     for slider in felt {
-        let mut left = slider.stiffness * slider.slip;
+        let mut remaining = slider.stiffness * slider.slip;
         // A slider may fill several shares.
-        while levels.len() + 1 < KEPT && force + left >= share {
+        while levels.len() + 1 < KEPT && force + remaining >= share {
             let taken = share - force;
             levels.push(share / (stiffness + taken / slider.slip));
             (force, stiffness) = (0.0, 0.0);
-            left -= taken;
+            remaining -= taken;
         }
-        force += left;
-        stiffness += left / slider.slip;
+        force += remaining;
+        stiffness += remaining / slider.slip;
     }
     if stiffness > 0.0 {
         levels.push(force / stiffness);

@@ -32,12 +32,12 @@ pub(super) fn law(index: usize, strip: &Strip) -> Result<FrictionLaw, &'static s
 
 /// Whether the clamps come back in the last cycle.
 fn returns(strip: &Strip) -> bool {
-    let way = |outgoing: bool| {
+    let travel = |outgoing: bool| {
         let last = strip.cycles.last().into_iter().flat_map(|c| &c.branches);
         let length = |b: &Branch| b.curve.x.first().zip(b.curve.x.last()).map_or(0.0, |(a, z)| (z - a).abs());
         last.filter(|b| b.outgoing == outgoing).map(length).fold(0.0, f64::max)
     };
-    way(false) > BACK * way(true)
+    travel(false) > BACK * travel(true)
 }
 
 fn fitted(index: usize, strip: &Strip) -> Option<FrictionLaw> {

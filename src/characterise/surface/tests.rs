@@ -103,9 +103,9 @@ fn a_short_sweep_and_a_missing_one_are_told() {
 #[test]
 fn a_tilted_record_is_told() {
     let sheet = evaluate(record(Test::Roughness, &swept(0.03, true), |_, x| 3e-3 * x + 5e-6 * sine(x)));
-    let told =
+    let finding =
         sheet.findings.iter().find(|f| f.code() == "K060").unwrap_or_else(|| panic!("{:?}", sheet.findings));
-    assert!(told.to_string().contains("runs by 59.5"), "{told}");
+    assert!(finding.to_string().contains("runs by 59.5"), "{finding}");
     assert!(value(&sheet, Parameter::Smd) > 1.4e-5);
 }
 

@@ -73,9 +73,9 @@ pub fn silhouette(bytes: &[u8]) -> Result<Silhouette, Problem> {
     let noise = noise(&raster.colours);
     let found = found(&raster.colours, noise);
     let nothing = || Problem::NoSheet { reason: "nothing stands out from the background".into() };
-    let Found { colours, edge, others, left } = found.ok_or_else(nothing)?;
+    let Found { colours, edge, others, remaining_noise } = found.ok_or_else(nothing)?;
     let radius = (polygon_area(&edge.outline).abs() / PI).sqrt();
-    let disc = disc::disc(&colours, &edge.depth, (polygon_centre(&edge.outline), radius), left);
+    let disc = disc::disc(&colours, &edge.depth, (polygon_centre(&edge.outline), radius), remaining_noise);
     let mut outline: Vec<[f64; 2]> = edge.outline.iter().map(|p| raster.place(*p)).collect();
     outline.dedup();
     if outline.len() > 1 && outline.first() == outline.last() {
@@ -102,7 +102,7 @@ struct Found {
     edge: edge::Edge,
     others: Vec<f64>,
     /// Noise that is left in the colours.
-    left: f64,
+    remaining_noise: f64,
 }
 
 fn found(colours: &Colours, noise: f64) -> Option<Found> {
@@ -113,8 +113,8 @@ fn found(colours: &Colours, noise: f64) -> Option<Found> {
     let sigma = (0.4 + 8.0 * noise / rough.contrast.max(1e-3)).clamp(0.6, 3.0) as f32;
     let colours = gaussian_blur_f32(colours, sigma);
     let edge = edge::refined(&colours, rough.mask, 2)?;
-    let left = noise / f64::from(sigma).max(1.0);
-    Some(Found { colours, edge, others: blob.others, left })
+    let remaining_noise = noise / f64::from(sigma).max(1.0);
+    Some(Found { colours, edge, others: blob.others, remaining_noise })
 }
 
 /// Standard deviation of what changes from pixel to pixel, from the median of second differences across both ways,

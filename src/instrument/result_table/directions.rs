@@ -99,10 +99,7 @@ impl Table<'_, '_> {
             }
         }
         let numbered = self.layout.numbers_of_symbols();
-        let of = |d: Option<Direction>, p: Option<Parameter>| {
-            d.is_some() && p.is_none_or(Parameter::is_directional)
-        };
-        let stated = self.data.iter().any(|d| of(d.direction, Some(d.parameter)));
+        let stated = self.data.iter().any(|d| d.direction.is_some() && d.parameter.is_directional());
         if stated || numbered.is_empty() {
             return;
         }

@@ -61,7 +61,7 @@ pub(super) struct Layout {
     /// Heads and names whose letters are directions.
     pub letters: Vec<String>,
     /// What each column holds, for people.
-    told: Vec<String>,
+    descriptions: Vec<String>,
 }
 
 impl Layout {
@@ -82,7 +82,7 @@ impl Layout {
             strangers: Vec::new(),
             counted_by: None,
             letters: heads.letters.clone(),
-            told: Vec::new(),
+            descriptions: Vec::new(),
         };
         let labels: Vec<(&Row<'_>, usize)> = region
             .rows
@@ -116,10 +116,11 @@ impl Layout {
         let column = |facets: Facets, fabric| Column { index, facets, fabric, name: name.clone(), place };
         if !self.down {
             if facets.names_value() {
-                self.told.push(described(&name, &facets));
+                self.descriptions.push(described(&name, &facets));
                 self.values.push(column(facets, None));
             } else if meta.is_some() || has_values || region.rows.iter().any(|r| r.get(index).is_some()) {
-                self.told.extend(meta.map(|m| format!("{name:?} is {}", format!("{m:?}").to_lowercase())));
+                self.descriptions
+                    .extend(meta.map(|m| format!("{name:?} is {}", format!("{m:?}").to_lowercase())));
                 self.labels.push(LabelColumn { index, meta, name });
             }
             return;
@@ -161,9 +162,9 @@ impl Layout {
             _ => self.labels.push(LabelColumn { index, meta, name: name.clone() }),
         }
         if let Some(m) = meta {
-            self.told.push(format!("{name:?} is {}", format!("{m:?}").to_lowercase()));
+            self.descriptions.push(format!("{name:?} is {}", format!("{m:?}").to_lowercase()));
         } else if let Some(c) = self.values.last().filter(|c| c.index == index) {
-            self.told.push(described(&name, &c.facets));
+            self.descriptions.push(described(&name, &c.facets));
         }
     }
 
@@ -287,7 +288,11 @@ impl Layout {
     /// The form of the table and what its columns hold, for people.
     pub fn described(&self) -> String {
         let form = if self.down { "one row a parameter" } else { "one column a parameter" };
-        format!("result table with its headings in line {}, {form}: {}", self.line, self.told.join(", "))
+        format!(
+            "result table with its headings in line {}, {form}: {}",
+            self.line,
+            self.descriptions.join(", ")
+        )
     }
 }
 

@@ -69,7 +69,7 @@ impl RowsAbove {
         if self.rows < FEWEST || cells.len() < 2 || cells.len() < row.iter().flatten().count() {
             return false;
         }
-        let of = |statistic: fn(&Column) -> f64| {
+        let yields_row = |statistic: fn(&Column) -> f64| {
             cells.iter().all(|((value, half), column)| {
                 column.moments.n == self.rows as u64 && (statistic(column) - value).abs() <= *half
             })
@@ -79,7 +79,7 @@ impl RowsAbove {
         let spreads: [fn(&Column) -> f64; 2] = [Column::deviation, Column::variation];
         let places: [fn(&Column) -> f64; 4] =
             [|c| c.moments.mean, |c| c.largest, |c| c.smallest, Column::middle];
-        spreads.into_iter().any(of) || (differ && places.into_iter().any(of))
+        spreads.into_iter().any(yields_row) || (differ && places.into_iter().any(yields_row))
     }
 }
 

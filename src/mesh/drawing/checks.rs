@@ -5,7 +5,7 @@ use std::path::Path;
 use kurbo::{Line, ParamCurveNearest, Point};
 
 use super::division::{Polygon, chord};
-use super::told::refused;
+use super::reading::refused;
 use crate::finding::Place;
 use crate::mesh::MeshError;
 

@@ -2,8 +2,8 @@
 
 use kurbo::Point;
 
+use super::reading::refused;
 use super::strokes::{SmoothCurve, Stroke};
-use super::told::refused;
 use crate::finding::Place;
 use crate::mesh::MeshError;
 

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use kurbo::{ParamCurve, ParamCurveArclen, PathSeg, Point};
 
 use super::contours::Contour;
+use super::reading::refused;
 use super::strokes::{SmoothCurve, Stroke, turn};
-use super::told::refused;
 use crate::finding::Place;
 use crate::mesh::MeshError;
 

@@ -8,9 +8,9 @@ use dxf::enums::Units;
 use kurbo::{Affine, Arc, Point, Vec2};
 
 use super::dxf_text::{self, Written};
+use super::reading::{DrawingOptions, LeftOutOfDrawing, ReadDrawing, leave_out, refused, unit_of};
 use super::spline::Spline;
 use super::strokes::{SmoothCurve, Stroke};
-use super::told::{DrawingOptions, LeftOutOfDrawing, ReadDrawing, leave_out, refused, unit_of};
 use crate::finding::Place;
 use crate::mesh::MeshError;
 

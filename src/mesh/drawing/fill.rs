@@ -9,7 +9,7 @@ use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementPara
 
 use super::checks::{Piece, distance};
 use super::division::Polygon;
-use super::told::refused;
+use super::reading::refused;
 use crate::finding::Place;
 use crate::mesh::{MeshError, QuadMesh};
 

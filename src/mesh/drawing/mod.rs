@@ -11,17 +11,17 @@ mod division;
 mod dxf;
 mod dxf_text;
 mod fill;
+mod reading;
 mod spline;
 mod strokes;
 mod svg;
 mod svg_path;
 mod svg_root;
-mod told;
 
 use std::path::{Path, PathBuf};
 
-pub use told::{DrawingOptions, LeftOutOfDrawing};
-use told::{ReadDrawing, refused};
+pub use reading::{DrawingOptions, LeftOutOfDrawing};
+use reading::{ReadDrawing, refused};
 
 use super::{MeshError, QuadMesh};
 use crate::finding::Place;

@@ -7,10 +7,10 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use svgtypes::{Length, PointsParser, Transform};
 
+use super::reading::{DrawingOptions, LeftOutOfDrawing, ReadDrawing, leave_out, refused, unit_of};
 use super::strokes::{SmoothCurve, Stroke};
 use super::svg_path::{self, Drawn};
 use super::svg_root::{Page, attribute, pixels};
-use super::told::{DrawingOptions, LeftOutOfDrawing, ReadDrawing, leave_out, refused, unit_of};
 use crate::finding::Place;
 use crate::mesh::MeshError;
 

@@ -56,18 +56,18 @@ fn block<'a>(text: &'a str, head: &str) -> Vec<&'a str> {
 fn read(text: &str) -> Law58 {
     let card = block(text, "/MAT/LAW58/1/1");
     assert_eq!(card.len(), 9, "{text}");
-    let of = |line: usize, widths: &[(usize, bool)]| columns(card[line], widths);
-    let moduli = of(1, &[REAL; 5]);
-    let crimp = of(4, &[WHOLE, WHOLE, REAL, REAL, REAL, REAL]);
+    let fields = |line: usize, widths: &[(usize, bool)]| columns(card[line], widths);
+    let moduli = fields(1, &[REAL; 5]);
+    let crimp = fields(4, &[WHOLE, WHOLE, REAL, REAL, REAL, REAL]);
     assert_eq!((crimp[0], crimp[1], moduli[1], moduli[3]), (1.0, 1.0, 0.0, 0.0));
-    let shear = of(2, &[REAL, REAL, REAL, REAL, GAP, WHOLE]);
+    let shear = fields(2, &[REAL, REAL, REAL, REAL, GAP, WHOLE]);
     let mut id = [0; 6];
     for (k, id) in id.iter_mut().take(3).enumerate() {
-        let line = of(5 + k, &[WHOLE, GAP, REAL]);
+        let line = fields(5 + k, &[WHOLE, GAP, REAL]);
         assert_eq!(line[1], 1.0);
         *id = line[0] as usize;
     }
-    let back = of(8, &[WHOLE, WHOLE, REAL, REAL, WHOLE, REAL]);
+    let back = fields(8, &[WHOLE, WHOLE, REAL, REAL, WHOLE, REAL]);
     assert_eq!([back[2], back[3], back[5]], [1.0; 3]);
     [id[3], id[4], id[5]] = [0, 1, 4].map(|k| back[k] as usize);
     let heads = text.lines().filter_map(|l| l.strip_prefix("/FUNCT/"));
@@ -76,10 +76,10 @@ fn read(text: &str) -> Law58 {
         (number.parse().unwrap(), points.map(|p| [p[0], p[1]]).collect())
     });
     Law58 {
-        rho: of(0, &[REAL])[0],
+        rho: fields(0, &[REAL])[0],
         e: [moduli[0], moduli[2]],
         g: [shear[0], shear[1], shear[2], shear[3]],
-        d: of(3, &[REAL, REAL, REAL, GAP, GAP, REAL]).try_into().unwrap(),
+        d: fields(3, &[REAL, REAL, REAL, GAP, GAP, REAL]).try_into().unwrap(),
         s: [crimp[2], crimp[3]],
         flex: [crimp[4], crimp[5]],
         id,
@@ -243,11 +243,11 @@ fn strips_of_the_law_have_the_measured_curves_whatever_the_crimp() {
         }
         let assumed: Vec<_> = findings.iter().filter(|f| f.code() == "O047").collect();
         assert_eq!(assumed.len(), usize::from(crimp.is_none()), "{findings:?}");
-        for told in assumed {
+        for finding in assumed {
             // What the finding says is what the law does.
             let ends = [0, 1].map(|i| *fabric.out[i].last().unwrap());
             let narrower = [0, 1].map(|i| 100.0 * law.strip(i, law.id[i], ends[i].0)[1]);
-            let text = told.message().to_string();
+            let text = finding.message().to_string();
             let [warp, weft] = narrower.map(crate::quantity::significant);
             assert!(text.contains(&format!("are {warp} % and {weft} % narrower")), "{text}: {narrower:?}");
         }
@@ -303,14 +303,14 @@ fn a_section_without_contraction_is_written() {
     let law = read(&written("radioss-fabric-a", s.clone()).unwrap());
     let apart = constitutive(s);
     let material = Material { sheet: &sheet(), made: &apart, stamp: None, crimp: None };
-    let told = card(named("radioss-fabric-a").unwrap(), &material).unwrap().findings;
-    assert!(!told.iter().any(|f| f.message().to_string().contains("Poisson")), "{told:?}");
+    let findings = card(named("radioss-fabric-a").unwrap(), &material).unwrap().findings;
+    assert!(!findings.iter().any(|f| f.message().to_string().contains("Poisson")), "{findings:?}");
     assert!(law.strip(0, 1, 1e-3)[1].abs() < 1e-9 && law.flex.iter().all(|f| f.is_finite()), "{law:?}");
     let made = constitutive(section());
     let material = Material { sheet: &sheet(), made: &made, stamp: None, crimp: None };
-    let told = card(named("radioss-fabric-a").unwrap(), &material).unwrap().findings;
+    let findings = card(named("radioss-fabric-a").unwrap(), &material).unwrap().findings;
     assert!(
-        !told.iter().any(|f| f.code() == "O043" && f.message().to_string().contains("Poisson")),
-        "{told:?}"
+        !findings.iter().any(|f| f.code() == "O043" && f.message().to_string().contains("Poisson")),
+        "{findings:?}"
     );
 }

@@ -78,13 +78,13 @@ fn abaqus_has_the_half_of_the_stiffness_by_columns() {
 #[test]
 fn ansys_has_the_lower_parts_by_columns() {
     let text = written("ansys", section()).unwrap();
-    let of = |command: &str| {
+    let numbers_after = |command: &str| {
         let line = text.lines().find(|l| l.starts_with(command)).unwrap();
         numbers(line.split_once(',').unwrap().1)
     };
-    assert_eq!(of("SSPA"), [6000.0, 900.0, 0.0, 4000.0, 0.0, 60.0]);
-    assert_eq!(of("SSPD"), [8e-6, 5e-7, 0.0, 4e-6, 0.0, 2.5e-6]);
-    assert_eq!((of("SSPE"), of("SSPM")), (vec![50.0, 0.0, 45.0], vec![0.118]));
+    assert_eq!(numbers_after("SSPA"), [6000.0, 900.0, 0.0, 4000.0, 0.0, 60.0]);
+    assert_eq!(numbers_after("SSPD"), [8e-6, 5e-7, 0.0, 4e-6, 0.0, 2.5e-6]);
+    assert_eq!((numbers_after("SSPE"), numbers_after("SSPM")), (vec![50.0, 0.0, 45.0], vec![0.118]));
 }
 
 /// The layers summed give the matrices back, and each is a material.
@@ -338,11 +338,11 @@ fn a_planted_mistake_is_another_card() {
             let mut other = section();
             plant(&mut other);
             // MuJoCo has no shear stiffness, and Browzwear none whose definition is published.
-            let told = !["mujoco", "browzwear"].contains(&target.name)
+            let shows = !["mujoco", "browzwear"].contains(&target.name)
                 || other.d_m[(2, 2)] / other.d_m[(0, 0)] == 0.01;
             // A mesh has no constants.
             assert!(
-                !told || target.name == "kratos-mesh" || written(target.name, other).unwrap() != own,
+                !shows || target.name == "kratos-mesh" || written(target.name, other).unwrap() != own,
                 "{}",
                 target.name
             );
@@ -356,16 +356,16 @@ fn browzwear_has_documented_units() {
     let card = json("browzwear");
     assert_eq!((&card["schema"], &card["raw_data"]), (&Value::from("1.1"), &Value::Null));
     let block = &card["custom"]["browzwear"];
-    let of = |v: &Value| v.as_str().unwrap().parse::<f64>().unwrap();
+    let number = |v: &Value| v.as_str().unwrap().parse::<f64>().unwrap();
     let strip = |d: &Matrix3<f64>, i: usize| d[(i, i)] - d[(0, 1)] * d[(0, 1)] / d[(1 - i, 1 - i)];
     let s = section();
     for (i, key) in ["length", "width"].iter().enumerate() {
         // 1 dyn = 1e-5 N.
-        assert_relative_eq!(of(&block["bend"][key]) * 1e-5 * 1e-2, strip(&s.d_b, i), max_relative = 1e-8);
-        assert_relative_eq!(of(&block["stretch"][key]), strip(&s.d_m, i), max_relative = 1e-8);
+        assert_relative_eq!(number(&block["bend"][key]) * 1e-5 * 1e-2, strip(&s.d_b, i), max_relative = 1e-8);
+        assert_relative_eq!(number(&block["stretch"][key]), strip(&s.d_m, i), max_relative = 1e-8);
     }
-    assert_relative_eq!(of(&block["mass"]), 118.0, max_relative = 1e-8);
-    assert_relative_eq!(of(&block["thickness"]), 0.4, max_relative = 1e-8);
+    assert_relative_eq!(number(&block["mass"]), 118.0, max_relative = 1e-8);
+    assert_relative_eq!(number(&block["thickness"]), 0.4, max_relative = 1e-8);
     for none in ["shear", "friction", "stretch_linearity"] {
         assert!(block.get(none).is_none(), "{none}");
     }
@@ -375,7 +375,7 @@ fn browzwear_has_documented_units() {
 #[test]
 fn clo_is_what_unreal_reads() {
     let text = written("clo", section()).unwrap();
-    let of = |key: &str| -> f64 {
+    let primvar = |key: &str| -> f64 {
         let head = format!("float[] primvars:clo:{key} = [");
         let line = text.lines().find_map(|l| l.trim().strip_prefix(&head)).unwrap();
         line.trim_end_matches(']').parse().unwrap()
@@ -384,18 +384,18 @@ fn clo_is_what_unreal_reads() {
     let strip = |d: &Matrix3<f64>, i: usize| d[(i, i)] - d[(0, 1)] * d[(0, 1)] / d[(1 - i, 1 - i)];
     // 1 kg·cm²/s² = 1e-4 N·m.
     for (key, i) in [("bendingWarp", 0), ("bendingWeft", 1)] {
-        assert_relative_eq!(of(key) * 1e-5 * 1e-4, strip(&s.d_b, i), max_relative = 1e-8);
+        assert_relative_eq!(primvar(key) * 1e-5 * 1e-4, strip(&s.d_b, i), max_relative = 1e-8);
     }
     for (key, i) in [("stretchWarp", 0), ("stretchWeft", 1)] {
-        assert_relative_eq!(of(key) * 1e-3, strip(&s.d_m, i), max_relative = 1e-8);
+        assert_relative_eq!(primvar(key) * 1e-3, strip(&s.d_m, i), max_relative = 1e-8);
     }
     for side in ["Left", "Right"] {
-        assert_relative_eq!(of(&format!("shear{side}")) * 1e-3, 60.0, max_relative = 1e-8);
+        assert_relative_eq!(primvar(&format!("shear{side}")) * 1e-3, 60.0, max_relative = 1e-8);
         let bias = 0.25 * (8e-6 + 4e-6 + 2.0 * 5e-7) + 2.5e-6;
-        assert_relative_eq!(of(&format!("bendingBias{side}")) * 1e-9, bias, max_relative = 1e-8);
+        assert_relative_eq!(primvar(&format!("bendingBias{side}")) * 1e-9, bias, max_relative = 1e-8);
     }
-    assert_relative_eq!(of("density") * 1e3, 0.118, max_relative = 1e-8);
-    assert_relative_eq!(of("thickness") * 0.1, 0.04, max_relative = 1e-8);
+    assert_relative_eq!(primvar("density") * 1e3, 0.118, max_relative = 1e-8);
+    assert_relative_eq!(primvar("thickness") * 0.1, 0.04, max_relative = 1e-8);
     for schema in ["ClothRootAPI", "SimMeshDataAPI", "SimPatternAPI"] {
         assert!(text.contains(&format!("prepend apiSchemas = [\"{schema}\"]")), "{schema}");
     }
@@ -443,17 +443,21 @@ fn what_has_no_place_is_told_with_its_size() {
     }
     for target in EXPORTERS {
         let card = card(target, &Material { sheet: &sheet, made: &made, stamp: None, crimp: None }).unwrap();
-        let told: Vec<String> =
+        let messages: Vec<String> =
             card.findings.iter().filter(|f| f.code() == "O044").map(|f| f.message().to_string()).collect();
-        for told in &told {
-            assert!(told.contains('(') && told.contains(char::is_numeric), "{}: {told}", target.name);
+        for message in &messages {
+            assert!(
+                message.contains('(') && message.contains(char::is_numeric),
+                "{}: {message}",
+                target.name
+            );
         }
-        let says = |what: &str| told.iter().any(|told| told.contains(what));
+        let says = |what: &str| messages.iter().any(|message| message.contains(what));
         // Only the open fabric file holds all.
-        assert_eq!(told.is_empty(), target.name == "fabric", "{}: {told:?}", target.name);
+        assert_eq!(messages.is_empty(), target.name == "fabric", "{}: {messages:?}", target.name);
         let with_friction = ["fabric", "u3m"].contains(&target.name);
         for hysteresis in ["2HB (3.250e-4 and 2.750e-4 N)", "2HG (0.6250 N/m)"] {
-            assert_eq!(says(hysteresis), !with_friction, "{}: {told:?}", target.name);
+            assert_eq!(says(hysteresis), !with_friction, "{}: {messages:?}", target.name);
         }
         let own = match target.name {
             "kratos" => "transverse shear (50.00 and 45.00 N/m)",
@@ -461,7 +465,7 @@ fn what_has_no_place_is_told_with_its_size() {
             "u3m" => "shear stiffness (60.00 N/m)",
             _ => continue,
         };
-        assert!(says(own), "{}: {told:?}", target.name);
+        assert!(says(own), "{}: {messages:?}", target.name);
     }
 }
 

@@ -279,12 +279,12 @@ fn nastran_fields_give_the_section_back() {
 #[test]
 fn radioss_fabric_has_the_columns_of_law158() {
     let text = written("radioss-fabric", section()).unwrap();
-    let of = |head: &str| -> Vec<&str> {
+    let block = |head: &str| -> Vec<&str> {
         let lines = text.lines().skip_while(|l| *l != head).skip(2);
         lines.take_while(|l| !l.starts_with('/')).filter(|l| !l.starts_with('#')).collect()
     };
     let columns = |line: &str, at: Range<usize>| -> f64 { line[at].trim().parse().unwrap() };
-    let card = of("/MAT/LAW158/1/1");
+    let card = block("/MAT/LAW158/1/1");
     assert_eq!(card.iter().map(|l| l.len()).collect::<Vec<_>>(), [20, 100, 40, 40, 40, 40, 20], "{text}");
     let t = section().thickness;
     assert_relative_eq!(columns(card[0], 0..20) * t, 0.118, max_relative = 1e-8);
@@ -298,7 +298,7 @@ fn radioss_fabric_has_the_columns_of_law158() {
             (columns(line, 0..10), line[10..20].trim(), columns(line, 20..40)),
             (function as f64, "", 1.0)
         );
-        let points: Vec<[f64; 2]> = of(&format!("/FUNCT/{function}"))
+        let points: Vec<[f64; 2]> = block(&format!("/FUNCT/{function}"))
             .into_iter()
             .map(|l| {
                 assert_eq!(l.len(), 40, "{l}");

@@ -119,9 +119,9 @@ mod tests {
         assert!(card.text.is_ascii() && card.text.contains("# corner\n"));
         // What the isotropic material loses is told, and stands in the file.
         assert!(!card.findings.is_empty());
-        let told =
+        let remarks =
             card.text.lines().take_while(|l| !l.starts_with("def")).filter(|l| l.contains("USD")).count();
-        assert!(told >= card.findings.len(), "{}", card.text);
+        assert!(remarks >= card.findings.len(), "{}", card.text);
     }
 
     #[test]

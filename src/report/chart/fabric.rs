@@ -221,8 +221,8 @@ fn draw_traces(
 /// How far the simulated curves are from the measured ones.
 fn distance_rows(axes: &TestAxes, simulated: &[SimulatedCurve]) -> Vec<Row> {
     let mut rows = Vec::new();
-    let told = |c: &&SimulatedCurve| c.rmse.or(c.nrmse).or(c.r2).is_some() || !c.bands.is_empty();
-    for curve in simulated.iter().filter(told) {
+    let is_compared = |c: &&SimulatedCurve| c.rmse.or(c.nrmse).or(c.r2).is_some() || !c.bands.is_empty();
+    for curve in simulated.iter().filter(is_compared) {
         rows.push(Row::Gap);
         let direction = curve.direction.map_or(String::new(), |d| format!("{d}, "));
         rows.push(Row::Heading(format!("{direction}{}", curve.label)));

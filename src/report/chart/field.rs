@@ -108,9 +108,9 @@ struct Places {
 impl Places {
     fn of(plot: &FieldPlot) -> Self {
         let bounds = [0, 1, 2].map(|k| {
-            let of = |n: &[f64; 3]| n[k];
-            let low = plot.nodes.iter().map(of).fold(f64::INFINITY, f64::min);
-            (low, plot.nodes.iter().map(of).fold(f64::NEG_INFINITY, f64::max))
+            let coordinate = |n: &[f64; 3]| n[k];
+            let low = plot.nodes.iter().map(coordinate).fold(f64::INFINITY, f64::min);
+            (low, plot.nodes.iter().map(coordinate).fold(f64::NEG_INFINITY, f64::max))
         });
         let extent = bounds.map(|b| b.1 - b.0);
         // Leave out the direction in which the sheet is thinnest (z where two are equal).

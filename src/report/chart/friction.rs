@@ -78,10 +78,10 @@ fn loops(sheet: &FabricSheet, test: Option<Test>) -> Vec<Loop<'_>> {
         None => sheet.laws.iter().filter(|l| l.basis == Basis::Strip && l.specimen == 2).collect(),
     };
     let bands = if test.is_some() { sheet.law_bands() } else { Vec::new() };
-    let of = |law: &FrictionLaw| {
+    let band_of = |law: &FrictionLaw| {
         bands.iter().find(|b| (b.test, b.direction) == (law.test, law.direction)).cloned()
     };
-    let with = |law| Loop { law, traces: FrictionLaw::traces(law, sheet), band: of(law) };
+    let with = |law| Loop { law, traces: FrictionLaw::traces(law, sheet), band: band_of(law) };
     laws.into_iter().map(with).filter(|l| !l.traces.is_empty()).collect()
 }
 

@@ -334,8 +334,8 @@ mod tests {
             ["n = 1    MAPE 10.0 %", "R² –    RMSE 5.00 percentage points"]
         );
         let closed = ParityPoint { is_closed_loop: true, ..point(1.0, 1.0) };
-        let told = summary(&[&closed, &closed], 1.0, "N·m");
-        assert_eq!(told, ["closed loop: the section is made", "of the measured value; n = 2"]);
+        let lines = summary(&[&closed, &closed], 1.0, "N·m");
+        assert_eq!(lines, ["closed loop: the section is made", "of the measured value; n = 2"]);
     }
 
     #[test]

@@ -280,7 +280,7 @@ fn fields_of_a_square_a_strip_and_a_constant() {
 #[test]
 fn histories_of_steps_and_in_time() {
     let curve = |points: &[(f64, f64)]| Curve::from_points(points.iter().copied());
-    let moved = |name: &str, points: &[(f64, f64)]| (name.to_string(), curve(points));
+    let line = |name: &str, points: &[(f64, f64)]| (name.to_string(), curve(points));
     let plot = HistoryPlot {
         title: "A folded strip, let go of".into(),
         subtitle: "poplin; 400 elements".into(),
@@ -292,14 +292,14 @@ fn histories_of_steps_and_in_time() {
                 quantity: "Displacement".into(),
                 unit: "m".into(),
                 lines: vec![
-                    moved("w_max", &[(0.0, 0.0), (1.0, 0.042), (2.0, 0.071)]),
-                    moved("end u", &[(0.0, 0.0), (1.0, -0.05), (2.0, -0.02)]),
+                    line("w_max", &[(0.0, 0.0), (1.0, 0.042), (2.0, 0.071)]),
+                    line("end u", &[(0.0, 0.0), (1.0, -0.05), (2.0, -0.02)]),
                 ],
             },
             HistoryPanel {
                 quantity: "Energy".into(),
                 unit: "J".into(),
-                lines: vec![moved("strain", &[(0.0, 0.0), (1.0, 1.1e-5), (2.0, 3.6e-6)])],
+                lines: vec![line("strain", &[(0.0, 0.0), (1.0, 1.1e-5), (2.0, 3.6e-6)])],
             },
         ],
         remarks: vec!["2 more probes are in the table beside.".into()],

@@ -145,10 +145,10 @@ fn those_that_fit<'a>(links: &'a [Link], encoded: &BTreeMap<&str, String>, room:
     }
     // Those of one worth stay in the order of the page.
     charts.sort_by_key(|(kind, ..)| *kind);
-    let mut left = room;
+    let mut remaining = room;
     let mut fits = |name: &str| {
-        let rest = encoded.get(name).and_then(|bytes| left.checked_sub(bytes.len()));
-        left = rest.unwrap_or(left);
+        let rest = encoded.get(name).and_then(|bytes| remaining.checked_sub(bytes.len()));
+        remaining = rest.unwrap_or(remaining);
         rest.is_some()
     };
     // Of a chart that there is not room for in all fabrics, those of the first fabrics.

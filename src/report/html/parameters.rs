@@ -78,13 +78,13 @@ fn row(out: &mut String, data: &PageData, fabric: &FabricValues) {
 
 fn cell(out: &mut String, value: &Value, factor: f64) {
     let status = escape(&value.status);
-    let (class, told) = match value.status.as_str() {
+    let (class, remark) = match value.status.as_str() {
         "measured" => (String::new(), String::new()),
         _ => (format!(" class=\"{status}\""), format!(" · {status}")),
     };
     let text = mean_and_spread(value.mean / factor, value.sd.map(|sd| sd / factor));
     let n = repeats_text(value.n, value.sd);
-    out.push_str(&format!("<td{class}>{text}<small>n {n}{told}</small></td>"));
+    out.push_str(&format!("<td{class}>{text}<small>n {n}{remark}</small></td>"));
 }
 
 #[cfg(test)]

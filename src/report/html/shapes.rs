@@ -107,8 +107,8 @@ impl Shape {
         if sheet.rest.len() > NODES {
             return Ok(None);
         }
-        let (shown, moved) = (sheet.shown(), sheet.moved());
-        let largest = moved.iter().copied().fold(0.0, f64::max);
+        let (shown, magnitudes) = (sheet.shown(), sheet.displacement_magnitudes());
+        let largest = magnitudes.iter().copied().fold(0.0, f64::max);
         let before = sheet.outline.as_flattened().iter().map(|n| sheet.rest[*n as usize]);
         let places: Vec<[f64; 3]> = before.chain(shown).collect();
         let bound = |pick: fn(f64, f64) -> f64, from: f64| {
@@ -134,7 +134,7 @@ impl Shape {
             bounds: bounds.map(|b| b.map(shortened)),
             places: short(&mut places.iter().flat_map(part)),
             outline: 2 * sheet.outline.len(),
-            values: parts(&moved, largest),
+            values: parts(&magnitudes, largest),
             fields: Vec::new(),
             // No more nodes than 16 bits tell apart.
             quads: short(&mut sheet.quads.as_flattened().iter().map(|n| *n as u16)),
@@ -238,13 +238,13 @@ mod tests {
         assert!(drapes >= 10, "{drapes}");
         assert_eq!(page.count(), 60);
         assert!(page.sheets[..drapes].iter().all(|sheet| sheet.is_drape));
-        let mut told = String::new();
-        left_out(&mut told, &page, 19);
+        let mut remark = String::new();
+        left_out(&mut remark, &page, 19);
         let here = page.sheets.iter().filter(|sheet| sheet.fabric == 19).count();
-        assert!(told.contains(&format!("{} of 3 deflected sheets of this fabric", 3 - here)), "{told}");
-        told.clear();
-        left_out(&mut told, &Shapes::default(), 0);
-        assert!(told.is_empty());
+        assert!(remark.contains(&format!("{} of 3 deflected sheets of this fabric", 3 - here)), "{remark}");
+        remark.clear();
+        left_out(&mut remark, &Shapes::default(), 0);
+        assert!(remark.is_empty());
     }
 
     #[test]

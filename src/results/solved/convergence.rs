@@ -21,7 +21,7 @@ pub(super) fn table(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
                 values.join("  "),
                 significant(q.extrapolation.value),
                 q.extrapolation.order.map_or("-".into(), |p| format!("{p:.2}")),
-                format!("{:.3}", 100.0 * q.left()),
+                format!("{:.3}", 100.0 * q.relative_index()),
             ]);
         }
     }

@@ -44,9 +44,9 @@ pub fn mesh_fields<'a>(fields: &'a [Field<'a>]) -> Vec<MeshField<'a>> {
 
 /// Whether a sheet only stretches and shears: no point of it moves out of its plane by more than a millionth of what it moves within.
 pub(in crate::results) fn lies_in_its_plane(result: &CaseResult) -> bool {
-    let moved = || result.solution.displacement.chunks_exact(6);
-    let within = moved().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
-    within > 0.0 && moved().all(|u| u[2].abs() <= 1e-6 * within)
+    let nodes = || result.solution.displacement.chunks_exact(6);
+    let within = nodes().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
+    within > 0.0 && nodes().all(|u| u[2].abs() <= 1e-6 * within)
 }
 
 /// The mesh and the deflection of a result, as the files want them.
@@ -100,7 +100,7 @@ impl Mesh {
     }
 
     /// The sheet with displacements and rotations alone, six a node.
-    pub fn moved(&self, displacement: &[f64]) -> Result<Vec<u8>, Failure> {
+    pub fn displaced(&self, displacement: &[f64]) -> Result<Vec<u8>, Failure> {
         let fields = [
             ("displacement", 3, three_of_six(displacement, 0)),
             ("rotation", 3, three_of_six(displacement, 3)),

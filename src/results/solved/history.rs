@@ -33,10 +33,10 @@ pub(super) fn plots(task: &Task, result: &CaseResult) -> Vec<(String, HistoryPlo
 
 fn of_path(task: &Task, result: &CaseResult, path: &LoadPath) -> HistoryPlot {
     let factors: Vec<f64> = path.steps.iter().map(|step| step.factor).collect();
-    let mut moved = vec![("w_max".to_string(), from_rest(&factors, path.steps.iter().map(|s| s.w_max)))];
+    let mut lines = vec![("w_max".to_string(), from_rest(&factors, path.steps.iter().map(|s| s.w_max)))];
     for (probe, displacements) in result.probes.iter().zip(&path.probes).take(MOST_PROBES) {
         let (component, values) = widest(components(displacements));
-        moved.push((format!("{} {component}", probe.name), from_rest(&factors, values)));
+        lines.push((format!("{} {component}", probe.name), from_rest(&factors, values)));
     }
     let mut energies =
         vec![("strain".to_string(), from_rest(&factors, path.steps.iter().map(|s| s.strain_energy)))];
@@ -48,7 +48,7 @@ fn of_path(task: &Task, result: &CaseResult, path: &LoadPath) -> HistoryPlot {
     HistoryPlot {
         along: [along.into(), String::new()],
         ends: path.load_steps.iter().enumerate().filter_map(|(k, step)| end(path, k, step)).collect(),
-        ..plot(task, result, "", moved, energies)
+        ..plot(task, result, "", lines, energies)
     }
 }
 
@@ -60,10 +60,10 @@ fn end(path: &LoadPath, number: usize, step: &LoadStepEnd) -> Option<(f64, Strin
 
 /// Of a motion, and the name of the step that it is, if it is one.
 fn in_time(task: &Task, result: &CaseResult, history: &History, step: &str) -> HistoryPlot {
-    let mut moved = Vec::new();
+    let mut lines = Vec::new();
     for (probe, displacements) in result.probes.iter().zip(&history.probe_displacements).take(MOST_PROBES) {
         let (component, values) = widest(components(displacements));
-        moved.push((format!("{} {component}", probe.name), in_order(&history.time, values)));
+        lines.push((format!("{} {component}", probe.name), in_order(&history.time, values)));
     }
     let energy = [
         ("kinetic", history.energy.iter().map(|e| e.kinetic).collect::<Vec<_>>()),
@@ -72,7 +72,7 @@ fn in_time(task: &Task, result: &CaseResult, history: &History, step: &str) -> H
         ("work of the loads", history.energy.iter().map(|e| e.work).collect()),
     ];
     let energies = energy.map(|(name, values)| (name.to_string(), in_order(&history.time, values)));
-    HistoryPlot { along: ["Time".into(), "s".into()], ..plot(task, result, step, moved, energies.to_vec()) }
+    HistoryPlot { along: ["Time".into(), "s".into()], ..plot(task, result, step, lines, energies.to_vec()) }
 }
 
 /// What both kinds have.
@@ -80,10 +80,10 @@ fn plot(
     task: &Task,
     result: &CaseResult,
     step: &str,
-    moved: Vec<(String, Curve)>,
+    lines: Vec<(String, Curve)>,
     energies: Vec<(String, Curve)>,
 ) -> HistoryPlot {
-    let panels = [panel("Displacement", "m", moved), panel("Energy", "J", energies)];
+    let panels = [panel("Displacement", "m", lines), panel("Energy", "J", energies)];
     let left_out = result.probes.len().saturating_sub(MOST_PROBES);
     let left_out = (left_out > 0).then(|| format!("{left_out} more probes are in the table beside."));
     HistoryPlot {
@@ -108,8 +108,8 @@ fn panel(quantity: &str, unit: &str, lines: Vec<(String, Curve)>) -> HistoryPane
 /// The components u, v and w of displacements.
 fn components<'a>(displacements: impl IntoIterator<Item = &'a [f64; 3]>) -> [Vec<f64>; 3] {
     let mut all: [Vec<f64>; 3] = Default::default();
-    for moved in displacements {
-        for (of_component, value) in all.iter_mut().zip(moved) {
+    for displacement in displacements {
+        for (of_component, value) in all.iter_mut().zip(displacement) {
             of_component.push(*value);
         }
     }

@@ -88,8 +88,8 @@ fn row(task: &Task, result: &CaseResult, quantity: String, value: f64, unit: &st
 pub(super) fn deflected(task: &Task, result: &CaseResult) -> Option<Deflected> {
     let all = &result.solution.displacement;
     let is_shape = !result.is_modal() && all.iter().all(|u| u.is_finite());
-    let moved = all.chunks_exact(6).map(|u| [u[0], u[1], u[2]]);
-    is_shape.then(|| Deflected::new(task, &result.model, moved.collect()))
+    let translations = all.chunks_exact(6).map(|u| [u[0], u[1], u[2]]);
+    is_shape.then(|| Deflected::new(task, &result.model, translations.collect()))
 }
 
 /// Writes `<stem>.vtu` and the chart `<stem>`; of a history `<stem>.csv` and the chart `<stem>-history`; and of each of its
@@ -110,7 +110,7 @@ pub(super) fn write(task: &Task, result: &CaseResult, folder: &Folder) -> Result
             for (j, frame) in step.frames.iter().enumerate() {
                 folder.write(
                     &format!("{stem}-step-{}-frame-{}.vtu", k + 1, j + 1),
-                    &mesh.moved(&frame.displacement)?,
+                    &mesh.displaced(&frame.displacement)?,
                 )?;
             }
         }

@@ -66,10 +66,10 @@ impl<const B: usize> Hierarchy<B> {
 
     /// Bytes of all levels.
     pub fn bytes(&self) -> usize {
-        let of = |l: &Level<B>| {
+        let level_bytes = |l: &Level<B>| {
             size_of_val(&l.matrix.values[..]) + size_of_val(&l.p.values[..]) + size_of_val(&l.inverses[..])
         };
-        self.levels.iter().map(of).sum::<usize>() + size_of_val(&self.coarsest.values[..])
+        self.levels.iter().map(level_bytes).sum::<usize>() + size_of_val(&self.coarsest.values[..])
     }
 
     /// One V-cycle for the right-hand side `r`, from zero: `z ≈ A⁻¹ r`.

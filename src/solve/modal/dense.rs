@@ -94,8 +94,8 @@ fn dense(matrix: &BlockMatrix, free: &[usize]) -> DMatrix<f64> {
 fn root(m: &DMatrix<f64>) -> DMatrix<f64> {
     // Translations and rotations differ by t²/12: take the rank of the matrix with a unit diagonal.
     let scale: Vec<f64> = m.diagonal().iter().map(|d| d.max(0.0).sqrt()).collect();
-    let of = |v: f64, by: f64| if by > 0.0 { v / by } else { 0.0 };
-    let scaled = DMatrix::from_fn(m.nrows(), m.ncols(), |i, j| of(m[(i, j)], scale[i] * scale[j]));
+    let quotient = |v: f64, by: f64| if by > 0.0 { v / by } else { 0.0 };
+    let scaled = DMatrix::from_fn(m.nrows(), m.ncols(), |i, j| quotient(m[(i, j)], scale[i] * scale[j]));
     let eigen = SymmetricEigen::new(scaled);
     let with_mass: Vec<usize> =
         (0..eigen.eigenvalues.len()).filter(|k| eigen.eigenvalues[*k] > MASSLESS).collect();

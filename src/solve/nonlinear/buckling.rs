@@ -104,11 +104,11 @@ fn clustered(
     let nearest = nearest_about(factor, softening, &system.held)?;
     for before in BEFORE {
         let shift = (1.0 - before) * nearest;
-        let mut moved = stiffness.clone();
-        moved.values.iter_mut().zip(&softening.values).for_each(|(k, g)| *k -= shift * g);
+        let mut shifted = stiffness.clone();
+        shifted.values.iter_mut().zip(&softening.values).for_each(|(k, g)| *k -= shift * g);
         // Beyond the first factor it is not positive definite.
-        let Ok(factor) = analysis.factorise(&moved, 1) else { continue };
-        let (values, vectors) = of_either_sign((&moved, &factor), softening, &system.held, count)?;
+        let Ok(factor) = analysis.factorise(&shifted, 1) else { continue };
+        let (values, vectors) = of_either_sign((&shifted, &factor), softening, &system.held, count)?;
         return Ok((values.iter().map(|v| v + shift).collect(), vectors));
     }
     Err(SolveError::ModesNotSettled { rounds: 0 })
@@ -130,14 +130,14 @@ const RESIDUAL: f64 = 1e-6;
 fn solved(system: &System<'_>, stiffness: &BlockMatrix, u: &[f64], load: &[f64]) -> Result<(), SolveError> {
     let mut force = vec![0.0; u.len()];
     stiffness.mul(u, &mut force);
-    let left: Vec<f64> = force.iter().zip(load).map(|(f, l)| f - l).collect();
-    let (left, whole) = (system.norm(&left, false), system.norm(load, false));
-    if left <= RESIDUAL * whole {
+    let unbalanced: Vec<f64> = force.iter().zip(load).map(|(f, l)| f - l).collect();
+    let (unbalanced, whole) = (system.norm(&unbalanced, false), system.norm(load, false));
+    if unbalanced <= RESIDUAL * whole {
         return Ok(());
     }
     let most = (0..u.len()).max_by(|a, b| u[*a].abs().total_cmp(&u[*b].abs())).unwrap_or(0);
     let (node, dof) = (most / 6, DofGroup::Shell.dofs()[most % 6].name());
     let p = system.model.mesh.nodes[node];
-    let residual = left / whole;
+    let residual = unbalanced / whole;
     Err(SolveError::Residual { residual, limit: RESIDUAL, node, dof, x: p.x, y: p.y, z: p.z })
 }

@@ -135,7 +135,7 @@ pub fn integrate_with(
         let dt = step.min(dynamics.duration - time);
         let next = motion.advance((&now, &energy), time + dt, dt);
         let reached = match (&next, tolerance) {
-            (Some(next), Some(_)) => motion.moved(next).max(largest),
+            (Some(next), Some(_)) => motion.displacement(next).max(largest),
             _ => largest,
         };
         let error = next.as_ref().zip(tolerance).map(|(next, _)| motion.local_error(&now, next, dt));

@@ -306,17 +306,21 @@ pub(super) fn follow_stable(
     let mut balance = system.balance(&state, None);
     let longest = settings.largest_step.min(longest_travel(system));
     let first = settings.first_step.min(longest).min(FIRST_STEP);
-    let (mut progress, mut left) = (Progress::default(), Vec::new());
+    let (mut progress, mut stability_lost_at) = (Progress::default(), Vec::new());
     'path: for target in &settings.path {
         let mut step = first;
         while state.factor != *target {
-            let way = target - state.factor;
-            let factor = if way.abs() <= 1.001 * step { *target } else { state.factor + step.copysign(way) };
+            let remaining = target - state.factor;
+            let factor = if remaining.abs() <= 1.001 * step {
+                *target
+            } else {
+                state.factor + step.copysign(remaining)
+            };
             let short = step <= SHORT_STEP * first;
             match stable_step(system, &state, factor, settings, short) {
                 Ok((converged, kicked)) => {
                     if kicked {
-                        left.push(state.factor);
+                        stability_lost_at.push(state.factor);
                     }
                     let flow = progress.show(system, &converged, &mut observe);
                     if !kicked && converged.iterations <= settings.iterations / 3 {
@@ -340,7 +344,7 @@ pub(super) fn follow_stable(
             }
         }
     }
-    Ok(Solution { left, ..progress.finish(system, state, &balance)? })
+    Ok(Solution { stability_lost_at, ..progress.finish(system, state, &balance)? })
 }
 
 /// The stable equilibrium at another factor, and whether an unstable one was left for it; only a `short` step may leave one.

@@ -19,7 +19,7 @@ pub struct LoadStep<'a> {
     pub model: &'a Model,
     /// What is held and moved: displacements (m) counted from the sheet at rest, rotations (rad) from where the dof
     /// was last taken hold of, and that is the rest for one that was held from the beginning.
-    pub moved: &'a [Support],
+    pub prescribed: &'a [Support],
     /// Tolerances and steps of the load.
     pub settings: &'a Settings,
     /// The way to the equilibrium.
@@ -78,7 +78,7 @@ pub fn continue_from(
     observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
 ) -> Result<(Solution, Carried), NonlinearError> {
     let mut model = step.model.clone();
-    model.supports.extend(step.moved.iter().cloned());
+    model.supports.extend(step.prescribed.iter().cloned());
     let mut system = System::new(&model, plan, step.settings, options)?;
     if !matches!(step.method, Method::ArcLength(_)) {
         system = system.with_layers(step.settings, options);
@@ -113,7 +113,7 @@ fn motion(carried: &Carried, step: &LoadStep<'_>, held: &[bool]) -> (Vec<f64>, V
     let mut values = vec![0.0; held.len()];
     let kept = |d: usize| if held[d] && carried.held[d] { carried.turned[d] } else { 0.0 };
     let mut turned: Vec<f64> = (0..held.len()).map(kept).collect();
-    for support in step.moved {
+    for support in step.prescribed {
         for (node, (dof, value)) in
             support.nodes.iter().flat_map(|n| support.held.iter().map(move |h| (n, h)))
         {

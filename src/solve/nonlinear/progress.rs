@@ -45,7 +45,7 @@ pub struct Solution {
     /// Whether the equilibrium is stable.
     pub stability: Stability,
     /// Factors of the last stable equilibria before those that were left because they were not; of [`Method::Stable`](super::Method::Stable) only.
-    pub left: Vec<f64>,
+    pub stability_lost_at: Vec<f64>,
 }
 
 /// What a search has done so far.
@@ -107,7 +107,7 @@ impl Progress {
             steps: self.steps,
             iterations: self.iterations,
             stability: stability::check(system, &state, balance)?.0,
-            left: Vec::new(),
+            stability_lost_at: Vec::new(),
             state,
         })
     }

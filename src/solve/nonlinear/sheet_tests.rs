@@ -46,7 +46,7 @@ fn sheet<'a>(model: &Model, law: Option<&'a SheetLaw>) -> Sheet<'a> {
     sheet
 }
 
-fn moved((x, r): &Nodes, step: &Vector24) -> Nodes {
+fn displaced((x, r): &Nodes, step: &Vector24) -> Nodes {
     let part = |i: usize| -> Vector3<f64> { step.fixed_rows::<3>(3 * i).into() };
     (
         [0, 1, 2, 3].map(|i| x[i] + part(2 * i)),
@@ -63,7 +63,7 @@ fn state(model: &Model, size: f64, rng: &mut Pcg64) -> Nodes {
         let third: SVector<f64, 6> = step.fixed_rows::<6>(12).into();
         step.fixed_rows_mut::<6>(18).copy_from(&third);
     }
-    moved(&(corners, [turn; 4]), &step)
+    displaced(&(corners, [turn; 4]), &step)
 }
 
 const QUAD: [u32; 4] = [0, 1, 2, 3];
@@ -109,7 +109,7 @@ fn force_and_tangent_are_derivatives_of_the_energy() {
             let tangent = answer.motion.exact_tangent(&k, &answer.forces.local);
             for i in 0..24 {
                 let case = || format!("{membrane:?} {quad:?} friction {} {size}: {i}", law.is_some());
-                let [up, down] = [1e-5, -1e-5].map(|h| moved(&nodes, &Vector24::ith(i, h)));
+                let [up, down] = [1e-5, -1e-5].map(|h| displaced(&nodes, &Vector24::ith(i, h)));
                 if at(&up).tangents != at(&down).tangents {
                     // A slider comes to its level between the two.
                     continue;

@@ -22,11 +22,11 @@ pub fn as_measured<'c>(case: &'c Case, sheet: &FabricSheet) -> (Cow<'c, Case>, V
     let (Problem::Drape(problem), Some(method)) = (&case.problem, drape_method(sheet)) else {
         return (Cow::Borrowed(case), Vec::new());
     };
-    let told = |fact: StudyFact| Finding::new(fact).at(Place::file(&case.path));
+    let finding = |fact: StudyFact| Finding::new(fact).at(Place::file(&case.path));
     let mut findings = Vec::new();
     if method.assumed {
         findings
-            .push(told(StudyFact::AssumedDrapeSizes { fabric: sheet.name.clone(), sizes: method.text() }));
+            .push(finding(StudyFact::AssumedDrapeSizes { fabric: sheet.name.clone(), sizes: method.text() }));
     }
     let Annulus { inner_diameter, diameter, .. } = problem.ring;
     if !method.differs(inner_diameter.si(), diameter.si()) {
@@ -34,7 +34,7 @@ pub fn as_measured<'c>(case: &'c Case, sheet: &FabricSheet) -> (Cow<'c, Case>, V
     }
     if !problem.sizes_as_measured {
         let hung = DrapeMethod::stated(inner_diameter.si(), diameter.si()).text();
-        findings.push(told(StudyFact::OtherDrapeSizes {
+        findings.push(finding(StudyFact::OtherDrapeSizes {
             fabric: sheet.name.clone(),
             measured: method.text(),
             hung,

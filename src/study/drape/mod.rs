@@ -114,7 +114,7 @@ impl Drape {
     /// The lowest and the highest coefficient of the states [near](Self::near) the one of lowest energy, moved by what
     /// refinement changed in that one.
     pub fn band(&self) -> [f64; 2] {
-        let all = self.near().iter().map(|s| s.coefficient + self.moved());
+        let all = self.near().iter().map(|s| s.coefficient + self.refinement_change());
         all.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], c| [l.min(c), h.max(c)])
     }
 
@@ -129,7 +129,7 @@ impl Drape {
     pub fn mean(&self) -> f64 {
         let near = self.near();
         let sum: f64 = near.iter().map(|s| s.searches as f64 * s.coefficient).sum();
-        sum / near.iter().map(|s| s.searches as f64).sum::<f64>() + self.moved()
+        sum / near.iter().map(|s| s.searches as f64).sum::<f64>() + self.refinement_change()
     }
 
     /// How many searches ended in a state with a number of folds near the lowest energy, by that number.
@@ -140,7 +140,7 @@ impl Drape {
     }
 
     /// What refinement changed in the coefficient of the state of lowest energy.
-    fn moved(&self) -> f64 {
+    fn refinement_change(&self) -> f64 {
         self.states.first().map_or(0.0, |lowest| self.finest.coefficient - lowest.coefficient)
     }
 }

@@ -71,13 +71,13 @@ mod tests {
     fn rigid_motions_and_rolls_are_carried_over() {
         let (coarse, fine) = (annulus(0.09, 0.15, 4, 32).unwrap(), annulus(0.09, 0.15, 8, 64).unwrap());
         let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.4, -1.1, 2.0));
-        let moved = State {
+        let displaced = State {
             position: coarse.nodes.iter().map(|p| turn * p + Vector3::x()).collect(),
             rotation: vec![turn; coarse.nodes.len()],
             factor: 1.0,
             memory: Memory::default(),
         };
-        let new = refined(&moved, &coarse, &fine, [4, 32]);
+        let new = refined(&displaced, &coarse, &fine, [4, 32]);
         for (p, rest) in new.position.iter().zip(&fine.nodes) {
             assert!((p - (turn * rest + Vector3::x())).norm() < 1e-15);
         }

@@ -176,16 +176,16 @@ fn a_coarse_mesh_is_a_finding() {
         iterations: 1,
     };
     let mut case = case(1e-6, "", "");
-    let told = |case: &Case, coefficients: &[f64]| {
+    let first_finding = |case: &Case, coefficients: &[f64]| {
         let meshes: Vec<DrapeState> = coefficients.iter().map(|c| state(*c)).collect();
         let Problem::Drape(problem) = &case.problem else { panic!("a drape") };
         findings(case, problem, &meshes, &[], [None, None]).first().map(|f| (f.code(), f.message()))
     };
-    let (code, message) = told(&case, &[0.6, 0.503, 0.475]).unwrap();
+    let (code, message) = first_finding(&case, &[0.6, 0.503, 0.475]).unwrap();
     assert!(code == "S119" && message.contains("5040 elements") && message.contains("by -2.8"), "{message}");
-    assert_eq!((told(&case, &[0.288, 0.282]), told(&case, &[0.5])), (None, None));
+    assert_eq!((first_finding(&case, &[0.288, 0.282]), first_finding(&case, &[0.5])), (None, None));
     assert!(case.make_quick());
-    let (code, message) = told(&case, &[0.288, 0.282]).unwrap();
+    let (code, message) = first_finding(&case, &[0.288, 0.282]).unwrap();
     assert!(code == "S130" && message.contains("5040 elements") && message.contains("by -0.6"), "{message}");
 }
 

@@ -56,10 +56,12 @@ fn codes(more: &str) -> Vec<&'static str> {
 #[test]
 fn cells_in_one_row_need_a_torsional_rigidity() {
     let limp = STRIP.replace("SHEET", OUTLINE).replace("0.032051", "0");
-    for (cells, told) in [("[3, 1]", true), ("[1, 2]", true), ("2", true), ("3", false), ("[2, 3]", false)] {
+    for (cells, is_reported) in
+        [("[3, 1]", true), ("[1, 2]", true), ("2", true), ("3", false), ("[2, 3]", false)]
+    {
         let element = format!("{PRESSURE}[element]\nsubcells = {cells}\n");
         let result = solved(&format!("{limp}{element}")).unwrap();
-        assert_eq!(result.findings.iter().any(|f| f.code() == "S102"), told, "{cells}");
+        assert_eq!(result.findings.iter().any(|f| f.code() == "S102"), is_reported, "{cells}");
         assert_eq!(codes(&element), [""; 0], "{cells} with a torsional rigidity");
     }
     assert_eq!(codes(&format!("{PRESSURE}[element]\nsubcells = [1, 1]\n")), ["S102"]);
@@ -68,7 +70,7 @@ fn cells_in_one_row_need_a_torsional_rigidity() {
 #[test]
 fn the_profile_of_fourth_order_tells_of_sheets_that_it_is_not_for() {
     let strip = STRIP.replace("\"left\"", "\"boundary\"");
-    let told = |sheet: &str, text: &str| {
+    let findings = |sheet: &str, text: &str| {
         let text = text.replace("SHEET", sheet);
         let element = "[element]\nprofile = \"fourth_order\"\nsubcells = 2\n";
         let mut findings = solved(&format!("{text}{PRESSURE}{element}")).unwrap().findings;
@@ -77,23 +79,23 @@ fn the_profile_of_fourth_order_tells_of_sheets_that_it_is_not_for() {
     };
     let turned = |angle: u8| format!("{OUTLINE}\nwarp_angle_deg = {angle}");
     let limp = strip.replace("0.032051", "0");
-    assert_eq!(told(OUTLINE, &strip), "");
-    assert_eq!(told(&turned(90), &strip), "");
-    assert_eq!(told(&turned(20), &strip), "", "an isotropic sheet has no direction");
+    assert_eq!(findings(OUTLINE, &strip), "");
+    assert_eq!(findings(&turned(90), &strip), "");
+    assert_eq!(findings(&turned(20), &strip), "", "an isotropic sheet has no direction");
     assert_eq!(
-        told(&turned(90), &limp),
+        findings(&turned(90), &limp),
         "",
         "no motion is without energy, though cells in one row would leave one"
     );
-    assert!(told(&turned(20), &limp).contains("16 of 16 elements are no rectangles along warp and weft"));
-    assert!(told(&format!("{OUTLINE}\ndistortion = 0.2"), &strip).contains("no rectangles"));
+    assert!(findings(&turned(20), &limp).contains("16 of 16 elements are no rectangles along warp and weft"));
+    assert!(findings(&format!("{OUTLINE}\ndistortion = 0.2"), &strip).contains("no rectangles"));
     let simple = |kind: &str| strip.replace("kind = \"clamped\"", kind);
-    assert_eq!(told(OUTLINE, &simple("kind = \"simply_supported\"")), "");
-    let soft = told(OUTLINE, &simple("kind = \"simply_supported_soft\""));
+    assert_eq!(findings(OUTLINE, &simple("kind = \"simply_supported\"")), "");
+    let soft = findings(OUTLINE, &simple("kind = \"simply_supported_soft\""));
     assert!(soft.contains("20 of 20 element sides at the boundary are free or softly supported"), "{soft}");
-    assert!(told(OUTLINE, STRIP).contains("18 of 20 element sides"), "{}", told(OUTLINE, STRIP));
+    assert!(findings(OUTLINE, STRIP).contains("18 of 20 element sides"), "{}", findings(OUTLINE, STRIP));
     let limp_free = STRIP.replace("0.032051", "0");
-    assert_eq!(told(OUTLINE, &limp_free), "", "without torsional rigidity an edge has no layer");
+    assert_eq!(findings(OUTLINE, &limp_free), "", "without torsional rigidity an edge has no layer");
 }
 
 #[test]

@@ -128,8 +128,8 @@ impl LargeShell {
         let settings =
             Settings { first_step: self.first_step, largest_step: self.largest_step, ..Settings::default() };
         let solution = solve(&model, &settings, &Options::default(), |_| ControlFlow::Continue(()))?;
-        let moved = solution.state.position[node as usize] - model.mesh.nodes[node as usize];
-        Ok(moved[dof as usize].abs() / self.over)
+        let displacement = solution.state.position[node as usize] - model.mesh.nodes[node as usize];
+        Ok(displacement[dof as usize].abs() / self.over)
     }
 
     /// The limit of the load, or the valley behind it, on a path sampled by short arcs.

@@ -26,7 +26,7 @@ impl Motion<'_> {
     }
 
     /// The displacements of a state.
-    pub fn moved(&self, now: &Now) -> f64 {
+    pub fn displacement(&self, now: &Now) -> f64 {
         self.measure(&now.state.displacement(&self.system.model.mesh))
     }
 

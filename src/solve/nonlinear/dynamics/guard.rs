@@ -21,7 +21,7 @@ const LEAST_ATTEMPTS: f64 = 10_000.0;
 pub struct Guard {
     duration: f64,
     /// Attempts that are left.
-    left: usize,
+    remaining: usize,
     /// Largest energy (J).
     largest: f64,
     /// Why the last attempt was taken back.
@@ -30,8 +30,8 @@ pub struct Guard {
 
 impl Guard {
     pub fn new(duration: f64, step: f64) -> Self {
-        let left = (ATTEMPTS * duration / step).max(LEAST_ATTEMPTS) as usize;
-        Self { duration, left, largest: 0.0, cause: StepLimit::Tolerance }
+        let remaining = (ATTEMPTS * duration / step).max(LEAST_ATTEMPTS) as usize;
+        Self { duration, remaining, largest: 0.0, cause: StepLimit::Tolerance }
     }
 
     /// Counts an attempt at a time.
@@ -39,10 +39,10 @@ impl Guard {
     /// # Errors
     /// N005 when there were too many.
     pub fn attempt(&mut self, time: f64) -> Result<(), SolveError> {
-        if self.left == 0 {
+        if self.remaining == 0 {
             return Err(SolveError::StepVanished { time, limit: self.cause });
         }
-        self.left -= 1;
+        self.remaining -= 1;
         Ok(())
     }
 

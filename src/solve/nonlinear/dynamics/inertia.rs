@@ -19,9 +19,9 @@ pub struct Inertia {
 impl Inertia {
     pub fn new(system: &System<'_>, mass: Mass) -> Self {
         let model = system.model;
-        let of = |quad| mass.pairs(&Frame::of(&model.mesh.corners(quad)), &model.section);
+        let quad_pairs = |quad| mass.pairs(&Frame::of(&model.mesh.corners(quad)), &model.section);
         Self {
-            pairs: (0..model.mesh.quads.len()).map(of).collect(),
+            pairs: (0..model.mesh.quads.len()).map(quad_pairs).collect(),
             rotary: model.section.thickness * model.section.thickness / 12.0,
         }
     }
@@ -48,10 +48,10 @@ impl Inertia {
     pub fn add(&self, system: &System<'_>, state: &State, factor: f64, matrix: &mut BlockMatrix) {
         let pattern = &system.plan.pattern;
         for (q, pairs) in self.pairs.iter().enumerate() {
-            let of = |i: usize, j: usize| {
+            let entry = |i: usize, j: usize| {
                 if i % 6 == j % 6 { factor * self.share(i % 6) * pairs[(i / 6, j / 6)] } else { 0.0 }
             };
-            let mut element = Matrix24::from_fn(of);
+            let mut element = Matrix24::from_fn(entry);
             system.constrain(state, q, &mut element, false);
             scatter(element.as_slice(), 6, &pattern.quads[q], &pattern.blocks[q], matrix);
         }

@@ -113,12 +113,12 @@ pub fn closest(p: &Point3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> ([f64; 3], usiz
     ([va / whole, vb / whole, vc / whole], 2)
 }
 
-/// A part of the way of four points, a point and the corners of a triangle, that brings them no nearer to each other than `left`
+/// A part of the way of four points, a point and the corners of a triangle, that brings them no nearer to each other than `kept`
 /// times their distance; 1 if all of it does.
 ///
 /// Additive continuous collision detection (Li, Kaufman and Jiang, *ACM Trans. Graph.* 40 (2021) 170): nothing comes nearer by more
 /// than it moves, so that many safe parts one after the other are safe.
-pub fn safe_part(places: &[Point3<f64>; 4], ways: &[Vector3<f64>; 4], left: f64) -> f64 {
+pub fn safe_part(places: &[Point3<f64>; 4], ways: &[Vector3<f64>; 4], kept: f64) -> f64 {
     let mean = ways.iter().sum::<Vector3<f64>>() / 4.0;
     let ways = ways.map(|way| way - mean);
     let speed = ways[0].norm() + ways[1..].iter().map(Vector3::norm).fold(0.0, f64::max);
@@ -131,7 +131,7 @@ pub fn safe_part(places: &[Point3<f64>; 4], ways: &[Vector3<f64>; 4], left: f64)
         (p - (a.coords * shares[0] + b.coords * shares[1] + c.coords * shares[2])).coords.norm()
     };
     let (mut part, mut distance) = (0.0, at(0.0));
-    let least = left * distance;
+    let least = kept * distance;
     for _ in 0..PARTS {
         part += (distance - least) / speed;
         if part >= 1.0 {

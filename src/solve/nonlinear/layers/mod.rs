@@ -220,11 +220,11 @@ impl<'a> Layers<'a> {
             return 1.0;
         }
         let point = middle(places, nodes, weights);
-        let way = (0..4).fold(Vector3::zeros(), |sum, k| sum + ways[nodes[k] as usize] * weights[k]);
+        let displacement = (0..4).fold(Vector3::zeros(), |sum, k| sum + ways[nodes[k] as usize] * weights[k]);
         let parts = triangles(&self.mesh.quads[quad]).map(|triangle| {
             let [a, b, c] = triangle.map(|n| n as usize);
             let corners = [point, places[a], places[b], places[c]];
-            let part = safe_part(&corners, &[way, ways[a], ways[b], ways[c]], LEFT);
+            let part = safe_part(&corners, &[displacement, ways[a], ways[b], ways[c]], LEFT);
             // What belongs together at rest, as the lips of a slit, is pressed by no barrier.
             if part < 1.0 && self.were_near(sample, &triangle) { 1.0 } else { part }
         });

@@ -40,12 +40,12 @@ fn distances_and_their_derivatives_agree_with_differences() {
         assert!(here.value <= least && here.value > least - 1e-3, "{} {least}", here.value);
         let h = 1e-6;
         for (j, axis) in (0..NODES).flat_map(|j| (0..3).map(move |axis| (j, axis))) {
-            let moved = [h, -h].map(|h| {
+            let displaced = [h, -h].map(|h| {
                 let mut places = places;
                 places[j][axis] += h;
                 distance(&places, &weights)
             });
-            let [more, less] = &moved;
+            let [more, less] = &displaced;
             let slope = (more.value - less.value) / (2.0 * h);
             assert_relative_eq!(slope, here.normal[axis] * here.weights[j], epsilon = 1e-8);
             for i in 0..NODES {

@@ -35,27 +35,27 @@ impl System<'_> {
     /// Shortens a step that would bring layers of the sheet through each other, or that moves it far; the part that is left of it.
     pub fn keep_apart(&self, state: &State, step: &mut [f64]) -> f64 {
         let Some(layers) = &self.layers else { return 1.0 };
-        let mut left = 1.0;
+        let mut remaining = 1.0;
         for _ in 0..SHORTENINGS {
             // The memory of a law is large, and of no use here.
             let (position, rotation) = (state.position.clone(), state.rotation.clone());
-            let mut moved = State { position, rotation, factor: state.factor, memory: Memory::default() };
-            self.advance(&mut moved, step);
+            let mut reached = State { position, rotation, factor: state.factor, memory: Memory::default() };
+            self.advance(&mut reached, step);
             let ways: Vec<Vector3<f64>> =
-                moved.position.iter().zip(&state.position).map(|(to, from)| to - from).collect();
+                reached.position.iter().zip(&state.position).map(|(to, from)| to - from).collect();
             let longest = ways.iter().map(Vector3::norm).fold(0.0, f64::max);
             let part = (LONGEST_WAY * self.side / longest).min(layers.free_part(&state.position, &ways));
             if part >= 1.0 {
                 break;
             }
             step.iter_mut().for_each(|s| *s *= part);
-            left *= part;
+            remaining *= part;
             // The nodes of a rigid body turn on arcs: a shorter step has other chords.
             if self.links.followers().next().is_none() {
                 break;
             }
         }
-        left
+        remaining
     }
 
     /// Moves the nodes by as much of a step as brings no layers through each other.

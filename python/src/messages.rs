@@ -9,7 +9,7 @@ use serde::Serialize;
 
 /// What was said of the work while it went on.
 #[derive(Default)]
-pub struct Told {
+pub struct Messages {
     /// Findings, each with its fabric where its place does not say so.
     pub findings: Vec<(Option<String>, Finding)>,
     /// What gave no result.
@@ -68,7 +68,7 @@ pub fn failures<'a>(all: impl IntoIterator<Item = &'a Failure>) -> PyResult<Stri
     json(&all.into_iter().map(Entry::of_failure).collect::<Vec<_>>())
 }
 
-impl Told {
+impl Messages {
     /// Findings, failures and notes, as JSON each.
     pub fn json(&self) -> PyResult<(String, String, String)> {
         let found = findings(self.findings.iter().map(|(fabric, finding)| (fabric.as_deref(), finding)))?;

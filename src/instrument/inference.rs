@@ -57,7 +57,7 @@ pub(super) fn conditions(test: Test, c: &Conditions, header: &Header) -> String 
         (Key::Contact, "contact load", c.contact, standard.contact, "gf"),
     ];
     // What a test does not have is zero in the standard set.
-    let told: Vec<String> = all
+    let stated: Vec<String> = all
         .into_iter()
         .filter(|(.., standard, _)| *standard > 0.0)
         .map(|(key, name, value, standard, unit)| {
@@ -70,5 +70,5 @@ pub(super) fn conditions(test: Test, c: &Conditions, header: &Header) -> String 
             format!("{name} {} {unit} ({from})", without_rounding(value / factor))
         })
         .collect();
-    format!("{}: {}", test.name(), told.join(", "))
+    format!("{}: {}", test.name(), stated.join(", "))
 }
