@@ -11,7 +11,7 @@ use kesf::mesh::rectangle;
 use kesf::model::{Load, Model, Support};
 use kesf::section::ShellSection;
 use kesf::solve::newmark::{Beginning, LoadHistory, Rayleigh, Scheme, Settings, newmark};
-use kesf::solve::{Mode, Options, modes};
+use kesf::solve::{Options, VibrationMode, modes};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
 /// Isotropic, D = ρ = 1, ν = 0.3, of thickness t.
@@ -28,7 +28,7 @@ fn section(t: f64) -> ShellSection {
 }
 
 /// A clamped square of unit size, lumped mass, loaded by M φ1 as nodal forces and moments.
-fn model_in_first_mode() -> (Model, Mode) {
+fn model_in_first_mode() -> (Model, VibrationMode) {
     let t = 1e-2;
     let mesh = rectangle(1.0, 1.0, 6, 6).unwrap();
     let supports = vec![Support::clamped(mesh.set("boundary").unwrap())];
@@ -59,7 +59,7 @@ struct Run {
     steps: usize,
 }
 
-fn run(model: &Model, mode: &Mode, settings: Settings, exact: impl Fn(f64) -> f64) -> Run {
+fn run(model: &Model, mode: &VibrationMode, settings: Settings, exact: impl Fn(f64) -> f64) -> Run {
     let centre = 6 * 24 + 2;
     let w = mode.angular_frequency;
     let mut out = Run { worst: 0.0, imbalance: 0.0, steps: 0 };

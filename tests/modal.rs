@@ -8,7 +8,7 @@ use kesf::element::{Formulation, Mass};
 use kesf::mesh::rectangle;
 use kesf::model::{DofGroup, Model, Support};
 use kesf::section::ShellSection;
-use kesf::solve::assemble::{ElementMatrices, Kind, multiply};
+use kesf::solve::assemble::{ElementMatrices, MatrixKind, multiply};
 use kesf::solve::{Options, modes};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
@@ -91,7 +91,7 @@ fn every_mode_can_be_asked_for() {
     let plates: Vec<_> = all.iter().filter(|m| m.group == DofGroup::Plate).collect();
     assert_eq!(plates.len(), 27);
     let image = |q: &[f64]| {
-        let elements = ElementMatrices::new(&model, DofGroup::Plate, Kind::Mass(Mass::Consistent));
+        let elements = ElementMatrices::new(&model, DofGroup::Plate, MatrixKind::Mass(Mass::Consistent));
         multiply(elements, &DofGroup::Plate.gather(q)).unwrap()
     };
     for (i, a) in plates.iter().enumerate() {

@@ -9,7 +9,7 @@ use kesf::element::{Formulation, Mass};
 use kesf::mesh::{QuadMesh, distorted, rectangle};
 use kesf::model::{Dof, DofGroup, Load, Model, RigidBody, Support};
 use kesf::section::ShellSection;
-use kesf::solve::assemble::{ElementMatrices, Kind, multiply};
+use kesf::solve::assemble::{ElementMatrices, MatrixKind, multiply};
 use kesf::solve::newmark::{Beginning, LoadHistory, Rayleigh, Scheme, Settings, newmark};
 use kesf::solve::{self, Options, modes, modes_with};
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Point3, Vector3};
@@ -125,7 +125,9 @@ fn bodies_are_eliminated_exactly() {
         let unit: Vec<f64> = (0..n).map(|i| f64::from(u8::from(i == j))).collect();
         k.set_column(
             j,
-            &multiply(ElementMatrices::new(&bare, DofGroup::Shell, Kind::Stiffness), &unit).unwrap().into(),
+            &multiply(ElementMatrices::new(&bare, DofGroup::Shell, MatrixKind::Stiffness), &unit)
+                .unwrap()
+                .into(),
         );
     }
     let mut t = DMatrix::identity(n, n);

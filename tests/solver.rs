@@ -8,7 +8,7 @@
 
 use std::sync::Arc;
 
-use kesf::solve::factor::{Analysis, FactorError, Path, analyse};
+use kesf::solve::factor::{FactorError, Path, SymbolicAnalysis, analyse};
 use kesf::solve::sparse::{BlockGraph, BlockMatrix};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
@@ -80,7 +80,7 @@ fn assert_close(got: &[f64], want: &[f64], what: &str) {
     }
 }
 
-fn check(a: &BlockMatrix, analysis: &Analysis, rng: &mut Pcg64, what: &str) {
+fn check(a: &BlockMatrix, analysis: &SymbolicAnalysis, rng: &mut Pcg64, what: &str) {
     let columns = 3;
     let b = random_vector(a.rows() * columns, rng);
     let cholesky = dense(a).cholesky().expect("dense Cholesky of a positive definite matrix");

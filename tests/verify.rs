@@ -5,9 +5,9 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use kesf::verify::{Expected, Kind, Line, Outcome, claims, run, suite};
+use kesf::verify::{Expected, Kind, Line, LineOutcome, claims, run, suite};
 
-fn describe((line, outcome): (&Line, &Outcome)) -> String {
+fn describe((line, outcome): (&Line, &LineOutcome)) -> String {
     match &outcome.result {
         Ok(c) => format!(
             "{}: {:e}, reference {:e}, error {:e}, tolerance {:?}, {:.1} s",

@@ -19,7 +19,7 @@ const GROWTH: f64 = 4.0;
 
 /// The end of a deflected cantilever that starts horizontally.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cantilever {
+pub struct CantileverEnd {
     /// Drop of the tip over the length, w/L.
     pub drop: f64,
     /// Approach of the tip to the clamp over the length, u/L.
@@ -30,7 +30,7 @@ pub struct Cantilever {
     pub root_curvature: f64,
 }
 
-impl Cantilever {
+impl CantileverEnd {
     /// Drop over horizontal reach: the tangent of the chord's angle.
     pub fn sag_ratio(&self) -> f64 {
         self.drop / (1.0 - self.shortening)
@@ -44,18 +44,18 @@ impl Cantilever {
 
 /// A cantilever under the vertical tip load `alpha = P L²/B`. To about 1e-11; `None` if `alpha` is not
 /// positive or so large (above about 3e4) that the bent part is not resolved.
-pub fn tip_loaded(alpha: f64) -> Option<Cantilever> {
+pub fn tip_loaded(alpha: f64) -> Option<CantileverEnd> {
     cantilever(alpha, 0.0)
 }
 
 /// A cantilever under its own weight, `gamma = w L³/B`: the exact function behind the bending length.
 /// To about 1e-11; `None` as for [`tip_loaded`].
-pub fn heavy_elastica(gamma: f64) -> Option<Cantilever> {
+pub fn heavy_elastica(gamma: f64) -> Option<CantileverEnd> {
     cantilever(0.0, gamma)
 }
 
 /// A cantilever under both loads. Precision and limits as for [`tip_loaded`].
-pub fn cantilever(alpha: f64, gamma: f64) -> Option<Cantilever> {
+pub fn cantilever(alpha: f64, gamma: f64) -> Option<CantileverEnd> {
     if !(alpha >= 0.0 && gamma >= 0.0 && alpha + gamma > 0.0) {
         return None;
     }
@@ -66,9 +66,9 @@ pub fn cantilever(alpha: f64, gamma: f64) -> Option<Cantilever> {
     })
 }
 
-fn ends(rod: &Rod, shape: &Shape) -> Cantilever {
+fn ends(rod: &Rod, shape: &Shape) -> CantileverEnd {
     let (reach, drop) = rod.end(shape);
-    Cantilever {
+    CantileverEnd {
         drop,
         shortening: 1.0 - reach,
         tip_angle: rod.end_angle(shape),

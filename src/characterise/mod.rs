@@ -49,7 +49,7 @@ pub use settings::Settings;
 pub use sheet::{Branch, FabricSheet, RunTo, SpecimenResult, Window};
 pub use simulated::parameters;
 pub use spread::{MeanBranch, mean_branches};
-pub use strip::{Strip, StripCycle};
+pub use strip::{StripCycle, StripTest};
 pub use value_status::ValueStatus;
 
 use crate::finding::Place;

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::friction::FrictionLaw;
 use super::graph::LineFit;
-use super::strip::Strip;
+use super::strip::StripTest;
 use super::value_status::ValueStatus;
 use super::{CycleChoice, Key, Settings};
 use crate::finding::Finding;
@@ -82,7 +82,7 @@ pub struct FabricSheet {
     /// Specimens in order of test, direction, number; empty for fabrics known from tables only.
     pub specimens: Vec<SpecimenResult>,
     /// Stretch tests of FAB strips, in file order.
-    pub strips: Vec<Strip>,
+    pub strips: Vec<StripTest>,
     /// Friction laws: of specimens in their order, then of strips, then from summary values.
     pub laws: Vec<FrictionLaw>,
     /// Bend tests of FAB strips as recorded, in file order.

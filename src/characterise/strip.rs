@@ -13,7 +13,7 @@ use crate::quantity::{Curve, Estimate};
 
 /// A stretch test of a strip after processing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Strip {
+pub struct StripTest {
     /// Direction of the strip.
     pub direction: Direction,
     /// Which test: short or long clamp distance.
@@ -102,7 +102,7 @@ fn thickness(sheet: &mut FabricSheet, files: &[FabFile]) {
 }
 
 /// The cycles of a stretch test; `None` if the first never carries load.
-fn stretch(test: &FabTest, settings: &Settings) -> Option<Strip> {
+fn stretch(test: &FabTest, settings: &Settings) -> Option<StripTest> {
     let mut cycles: Vec<StripCycle> = Vec::new();
     for (i, pair) in test.branches.chunks(2).enumerate() {
         let first_onset = cycles.first().map(|c| c.onset);
@@ -111,7 +111,7 @@ fn stretch(test: &FabTest, settings: &Settings) -> Option<Strip> {
             None => break,
         }
     }
-    (!cycles.is_empty()).then_some(Strip {
+    (!cycles.is_empty()).then_some(StripTest {
         direction: test.direction,
         kind: test.kind,
         width: test.width,
@@ -159,7 +159,7 @@ fn cycle(
 }
 
 /// The strips of a direction and a kind.
-fn strips_of_kind(strips: &[Strip], direction: Direction, kind: FabKind) -> Vec<&Strip> {
+fn strips_of_kind(strips: &[StripTest], direction: Direction, kind: FabKind) -> Vec<&StripTest> {
     strips.iter().filter(|s| s.direction == direction && s.kind == kind).collect()
 }
 
@@ -208,8 +208,8 @@ fn shear(sheet: &mut FabricSheet, settings: &Settings, place: &Place) {
         let strain = load.first_rise_to(settings.strip_shear.si()).filter(|e| *e > 0.0)?;
         Some((settings.strip_shear.si() - settings.strip_onset.si()) / (4.0 * strain))
     };
-    let bias = |s: &&Strip| s.direction == Direction::Bias && s.kind == FabKind::S2;
-    let strips: Vec<&Strip> = sheet.strips.iter().filter(bias).collect();
+    let bias = |s: &&StripTest| s.direction == Direction::Bias && s.kind == FabKind::S2;
+    let strips: Vec<&StripTest> = sheet.strips.iter().filter(bias).collect();
     let ends: Vec<[f64; 2]> = (strips.iter())
         .filter_map(|s| Some([of_cycle(s.cycles.first()?)?, of_cycle(s.cycles.last()?)?]))
         .collect();

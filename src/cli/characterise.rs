@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::exit::Exit;
-use super::format::Format;
+use super::format::ResultFormat;
 use super::inputs::{EvaluateArgs, Units, inputs};
 use super::output::OutputArgs;
 use super::ui::Ui;
@@ -53,15 +53,15 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         sheets().flat_map(|s| fabric_rows(s, units)).chain(unread(&fabrics, &failures)).collect()
     };
     let bytes = match format {
-        Format::Text => {
+        ResultFormat::Text => {
             let text = if ui.verbose { statistics_text } else { parameters_text };
             let parts = sheets().map(|s| text(s, units)).chain([evaluation_text(&settings)]);
             parts.collect::<Vec<_>>().join("\n").into_bytes()
         }
-        Format::Json => ui.with_failures(sheet_document(sheets(), Some(&settings)))?.into_bytes(),
-        Format::Csv => options.output.marked(csv(&rows())?),
-        Format::Parquet => parquet(&rows())?,
-        Format::Xlsx => {
+        ResultFormat::Json => ui.with_failures(sheet_document(sheets(), Some(&settings)))?.into_bytes(),
+        ResultFormat::Csv => options.output.marked(csv(&rows())?),
+        ResultFormat::Parquet => parquet(&rows())?,
+        ResultFormat::Xlsx => {
             let problems = problems(&fabrics, &failures);
             workbook(&Tables { fabrics: &rows(), problems: &problems, ..Tables::default() })?
         }

@@ -7,7 +7,7 @@ use clap::Args;
 use super::exit::Exit;
 use super::simulate::{SimulateArgs, simulate};
 use super::ui::Ui;
-use crate::results::{Failure, Kind};
+use crate::results::{BatchKind, Failure};
 
 /// Simulate instrument tests and compare them with the measured curves
 #[derive(Debug, Args)]
@@ -21,5 +21,5 @@ pub struct Options {
 }
 
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
-    simulate(Kind::Compare, &options.inputs, &options.simulate, ui)
+    simulate(BatchKind::Compare, &options.inputs, &options.simulate, ui)
 }

@@ -2,7 +2,7 @@
 
 /// Formats of a single result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
+pub enum ResultFormat {
     /// For people.
     Text,
     /// One JSON document.

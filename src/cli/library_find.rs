@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::exit::Exit;
-use super::format::Format;
+use super::format::ResultFormat;
 use super::inputs::EvaluateArgs;
 use super::output::OutputArgs;
 use super::ui::Ui;
@@ -48,16 +48,16 @@ pub fn run(options: &Find, ui: &Ui) -> Result<Exit, Failure> {
     let answer = answer(options, &library, bounds.clone(), ui)?;
     let table = std::slice::from_ref(&answer.table);
     let bytes = match format {
-        Format::Text => answer.text(bounds.as_ref()).into_bytes(),
-        Format::Csv => options.output.marked(csv(table)?),
-        Format::Parquet => write(&answer.table, &[])?,
-        Format::Json => {
+        ResultFormat::Text => answer.text(bounds.as_ref()).into_bytes(),
+        ResultFormat::Csv => options.output.marked(csv(table)?),
+        ResultFormat::Parquet => write(&answer.table, &[])?,
+        ResultFormat::Json => {
             let (like, bounds) = (options.like.as_deref(), options.bounds.as_deref());
             let (space, units, fabrics) = (&answer.axes[..], units(&answer.table), Records(table));
             ui.complete(FoundDocument { schema: "kesf.found/1", like, bounds, space, units, fabrics })?
                 .into_bytes()
         }
-        Format::Xlsx => return Err(options.output.no_such_format(".txt, .csv, .parquet or .json")),
+        ResultFormat::Xlsx => return Err(options.output.no_such_format(".txt, .csv, .parquet or .json")),
     };
     options.output.emit(&bytes)?;
     Ok(Exit::Done)

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::format::{Format, TableFormat};
+use super::format::{ResultFormat, TableFormat};
 use crate::report::OutputFolder;
 use crate::report::table::marked;
 use crate::report::write::write_file;
@@ -27,15 +27,15 @@ pub struct OutputArgs {
 
 impl OutputArgs {
     /// The format by the ending of the file; on standard output JSON or text.
-    pub fn format(&self, json: bool) -> Result<Format, Failure> {
+    pub fn format(&self, json: bool) -> Result<ResultFormat, Failure> {
         let ending = self.output.extension().and_then(|e| e.to_str()).unwrap_or_default();
         match ending.to_ascii_lowercase().as_str() {
-            _ if is_stdin(&self.output) => Ok(if json { Format::Json } else { Format::Text }),
-            "txt" => Ok(Format::Text),
-            "json" => Ok(Format::Json),
-            "csv" => Ok(Format::Csv),
-            "parquet" => Ok(Format::Parquet),
-            "xlsx" => Ok(Format::Xlsx),
+            _ if is_stdin(&self.output) => Ok(if json { ResultFormat::Json } else { ResultFormat::Text }),
+            "txt" => Ok(ResultFormat::Text),
+            "json" => Ok(ResultFormat::Json),
+            "csv" => Ok(ResultFormat::Csv),
+            "parquet" => Ok(ResultFormat::Parquet),
+            "xlsx" => Ok(ResultFormat::Xlsx),
             _ => Err(self.no_such_format(".txt, .json, .csv, .parquet or .xlsx")),
         }
     }
@@ -43,11 +43,11 @@ impl OutputArgs {
     /// The same of a table that has no text for people: on standard output it is CSV.
     pub fn format_of_table(&self, json: bool) -> Result<TableFormat, Failure> {
         match self.format(json)? {
-            Format::Csv => Ok(TableFormat::Csv),
-            Format::Text if is_stdin(&self.output) => Ok(TableFormat::Csv),
-            Format::Parquet => Ok(TableFormat::Parquet),
-            Format::Json => Ok(TableFormat::Json),
-            Format::Text | Format::Xlsx => Err(self.no_such_format(".csv, .parquet or .json")),
+            ResultFormat::Csv => Ok(TableFormat::Csv),
+            ResultFormat::Text if is_stdin(&self.output) => Ok(TableFormat::Csv),
+            ResultFormat::Parquet => Ok(TableFormat::Parquet),
+            ResultFormat::Json => Ok(TableFormat::Json),
+            ResultFormat::Text | ResultFormat::Xlsx => Err(self.no_such_format(".csv, .parquet or .json")),
         }
     }
 

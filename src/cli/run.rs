@@ -7,7 +7,7 @@ use clap::Args;
 use super::exit::Exit;
 use super::output::open_folder;
 use super::program::{now, program};
-use super::shard::{self, Request};
+use super::shard::{self, ShardRequest};
 use super::tasks::TaskArgs;
 use super::ui::Ui;
 use super::when::When;
@@ -72,7 +72,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         strict: options.task.strict,
     };
     if let Some(shard) = options.shard {
-        let request = Request { job, settings, folder: &options.output, force: options.task.force };
+        let request = ShardRequest { job, settings, folder: &options.output, force: options.task.force };
         return shard::run(shard, &request, ui);
     }
     let work = ui.observe(|observer| run::read(&job, &settings, observer))?;

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::assumptions::AssumptionArgs;
 use super::exit::Exit;
-use super::format::Format;
+use super::format::ResultFormat;
 use super::inputs::{EvaluateArgs, inputs};
 use super::output::OutputArgs;
 use super::ui::Ui;
@@ -30,7 +30,7 @@ pub struct Options {
 
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let format = options.output.format(ui.json)?;
-    if matches!(format, Format::Csv | Format::Parquet | Format::Xlsx) {
+    if matches!(format, ResultFormat::Csv | ResultFormat::Parquet | ResultFormat::Xlsx) {
         return Err(options.output.no_such_format(".txt or .json"));
     }
     let (inputs, reading) = (inputs(&options.inputs)?, options.evaluate.reading());
@@ -39,7 +39,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     if done.is_empty() && !ui.json {
         return Ok(Exit::of_batch(0, &failures));
     }
-    let text = if format == Format::Text {
+    let text = if format == ResultFormat::Text {
         done.iter().map(|s| section_text(&s.sheet, &s.made)).collect::<Vec<_>>().join("\n")
     } else {
         ui.complete(section_document(done.iter().map(|s| (&s.sheet, &s.made))))?

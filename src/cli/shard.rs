@@ -10,14 +10,14 @@ use crate::results::{Failure, Job, Shard, Share};
 use crate::run::RunSettings;
 
 /// What is to be done of it.
-pub struct Request<'r> {
+pub struct ShardRequest<'r> {
     pub job: Job,
     pub settings: RunSettings,
     pub folder: &'r Path,
     pub force: bool,
 }
 
-pub fn run(shard: Shard, request: &Request, ui: &Ui) -> Result<Exit, Failure> {
+pub fn run(shard: Shard, request: &ShardRequest, ui: &Ui) -> Result<Exit, Failure> {
     let share = Share { shard, of_whole: true };
     let job = Job { share: Some(share), ..request.job.clone() };
     let (settings, folder, force) = (&request.settings, request.folder, request.force);

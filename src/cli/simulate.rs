@@ -8,7 +8,7 @@ use super::exit::Exit;
 use super::output::open_folder;
 use super::tasks::TaskArgs;
 use super::ui::Ui;
-use crate::results::{Batch, Failure, Folder, Kind};
+use crate::results::{Batch, BatchKind, Failure, Folder};
 
 /// Where the files go.
 #[derive(Debug, Args)]
@@ -21,7 +21,7 @@ pub struct SimulateArgs {
 }
 
 /// Simulates the cases of a kind.
-pub fn simulate(kind: Kind, inputs: &[PathBuf], args: &SimulateArgs, ui: &Ui) -> Result<Exit, Failure> {
+pub fn simulate(kind: BatchKind, inputs: &[PathBuf], args: &SimulateArgs, ui: &Ui) -> Result<Exit, Failure> {
     let job = args.task.job(inputs, ui)?;
     let mut work = ui.observe(|observer| job.read(observer))?;
     let sink = args.output.as_ref().map(|root| open_folder(root, args.task.force)).transpose()?;

@@ -11,7 +11,7 @@ use super::output::open_folder;
 use super::ui::Ui;
 use crate::results::{Event, Failure, Folder, write_claims};
 use crate::verify::{
-    Line, Outcome, claims, document, paper_document, paper_text, run as check_all, suite, text,
+    Line, LineOutcome, claims, document, paper_document, paper_text, run as check_all, suite, text,
 };
 
 /// Solve problems with known answers and compare; exit with 1 if a line does not hold
@@ -74,7 +74,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
 }
 
 /// The outcomes of lines, while the user is told how far they are.
-fn checked(lines: &[Line], ui: &Ui) -> Result<Vec<Outcome>, Failure> {
+fn checked(lines: &[Line], ui: &Ui) -> Result<Vec<LineOutcome>, Failure> {
     let outcomes = ui.observe(|observer| {
         (observer.event)(Event::Started("verify", lines.len()));
         let outcomes = check_all(lines, |_| {

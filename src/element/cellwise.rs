@@ -6,7 +6,7 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
-use super::Cell;
+use super::SmoothingCell;
 use super::prepared::{Matrix24, Vector24};
 
 /// Strains of a cell along the material axes, `(ε_x, ε_y, γ_xy, κ_x, κ_y, κ_xy)` (-, 1/m), or what
@@ -42,13 +42,13 @@ impl Cellwise {
     /// From the cells, the map of strains to the material axes, whether membrane and bending are smoothed over all
     /// cells as one, the stiffness of the part that stays linear, and the rigid links of a warped element.
     pub(super) fn new(
-        cells: impl Iterator<Item = Cell>,
+        cells: impl Iterator<Item = SmoothingCell>,
         to_material: &Matrix3<f64>,
         [one_membrane_cell, one_bending_cell]: [bool; 2],
         linear: Matrix24,
         links: Option<Matrix24>,
     ) -> Self {
-        let gradient = |cell: Cell| {
+        let gradient = |cell: SmoothingCell| {
             let (mut membrane, mut bending) = (Gradient::zeros(), Gradient::zeros());
             for (i, [bx, by]) in cell.gradient.into_iter().enumerate() {
                 // Eqs. (22) and (23), corrected: (u, v) and (θx, θy).

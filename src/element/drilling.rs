@@ -3,7 +3,7 @@
 use nalgebra::SMatrix;
 
 use super::quad4::{GAUSS_2X2, gauss_point};
-use super::{Cell, Drilling};
+use super::{Drilling, SmoothingCell};
 use crate::section::ShellSection;
 
 /// Penalty γ (N/m) on `θz - (v,x - u,y)/2`; 0 for the spring of Nguyen-Trong et al.
@@ -26,7 +26,7 @@ pub(super) fn stiffness(xy: &[[f64; 2]; 4], gamma: f64, shearless: bool) -> SMat
     if gamma == 0.0 {
         return k;
     }
-    let mean = Cell::whole(xy).gradient;
+    let mean = SmoothingCell::whole(xy).gradient;
     for point in GAUSS_2X2 {
         let at = gauss_point(xy, point);
         let mut b = SMatrix::<f64, 1, 12>::zeros();

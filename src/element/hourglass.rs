@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix2, Matrix3, SVector, SymmetricEigen};
 
-use super::Cell;
+use super::SmoothingCell;
 
 /// Stiffness of the two hourglass modes of the rotations, on `(β_x, β_y) = (θy, -θx)` in element axes (N/m): energy
 /// `½ area S (∂²β/∂1∂2)²` in the unit square.
@@ -52,7 +52,7 @@ pub(super) fn stiffness(sides: &Matrix2<f64>, d_b: &Matrix3<f64>, compliance: &M
 
 /// Weights of the nodal values of a field that give its mixed derivative along the sides of the unit square, and 0 for every
 /// linear field; `whole` is the element as one cell (Flanagan and Belytschko, *Int. J. Numer. Methods Eng.* 17 (1981) 679).
-pub(super) fn vector(xy: &[[f64; 2]; 4], whole: &Cell) -> SVector<f64, 4> {
+pub(super) fn vector(xy: &[[f64; 2]; 4], whole: &SmoothingCell) -> SVector<f64, 4> {
     const H: [f64; 4] = [1.0, -1.0, 1.0, -1.0];
     let along = |axis: usize| (0..4).map(|i| H[i] * xy[i][axis]).sum::<f64>();
     let (x, y) = (along(0), along(1));

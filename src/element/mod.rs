@@ -34,7 +34,7 @@ pub use prepared::{
     MaterialAxisError, Matrix12, Matrix24, Prepared, Vector24, membrane_and_plate, strain_matrices,
 };
 pub use quad4::{Frame, GAUSS_2X2, GaussPoint, gauss_point, shape};
-pub use smoothing::{Cell, Cells};
+pub use smoothing::{Cells, SmoothingCell};
 pub use yarns::{YarnStrain, Yarns};
 
 use schemars::JsonSchema;

@@ -10,7 +10,9 @@ use super::assumed::Assumed;
 use super::cellwise::Cellwise;
 use super::quad4::{Frame, gauss_point};
 use super::yarns::Yarns;
-use super::{Bending, Cell, Cells, Drilling, Formulation, Membrane, drilling, hourglass, shear, triangle};
+use super::{
+    Bending, Cells, Drilling, Formulation, Membrane, SmoothingCell, drilling, hourglass, shear, triangle,
+};
 use crate::finding::{Coded, Fields};
 use crate::section::{ShellSection, strain_rotation};
 
@@ -153,7 +155,7 @@ impl Prepared {
     }
 
     /// The smoothing cells.
-    pub fn cells(&self) -> impl Iterator<Item = Cell> {
+    pub fn cells(&self) -> impl Iterator<Item = SmoothingCell> {
         self.formulation.cells.over(&self.frame.xy)
     }
 
@@ -180,7 +182,7 @@ impl Prepared {
     }
 
     fn hourglass_stiffness(&self) -> Matrix12 {
-        let whole = Cell::whole(&self.frame.xy);
+        let whole = SmoothingCell::whole(&self.frame.xy);
         let vector = hourglass::vector(&self.frame.xy, &whole);
         let mut b = SMatrix::<f64, 2, 12>::zeros();
         for (i, g) in vector.iter().enumerate() {
@@ -266,7 +268,7 @@ impl Prepared {
 
     /// The mean displacement gradient along the material axes, for strains in the plane that are not small.
     pub fn yarns(&self) -> Yarns {
-        Yarns::new(&Cell::whole(&self.frame.xy), self.angle, self.warp_links())
+        Yarns::new(&SmoothingCell::whole(&self.frame.xy), self.angle, self.warp_links())
     }
 
     /// The strains of the membrane along the bent sheet, for large rotations; `None` of a formulation that measures
@@ -293,7 +295,7 @@ impl Prepared {
         let varying = self.assumes_stress().then(|| self.assumed().resultants(natural))?;
         // N' = T⁻ᵀ N where ε' = T ε.
         let back = strain_rotation(-self.angle);
-        Some((membrane_matrix(&Cell::whole(&self.frame.xy)), back.transpose() * varying))
+        Some((membrane_matrix(&SmoothingCell::whole(&self.frame.xy)), back.transpose() * varying))
     }
 
     /// Rigid links to the plane in its axes; `None` if the corners lie in it.
@@ -336,7 +338,7 @@ impl Prepared {
     }
 
     /// Membrane strain and curvature in a cell for local displacements.
-    pub fn strains(&self, cell: &Cell, local: &Vector24) -> (Vector3<f64>, Vector3<f64>) {
+    pub fn strains(&self, cell: &SmoothingCell, local: &Vector24) -> (Vector3<f64>, Vector3<f64>) {
         let membrane = membrane_matrix(cell) * pick(local, MEMBRANE_DOFS);
         let curvature = bending_matrix(cell) * pick(local, PLATE_DOFS);
         (membrane, curvature)
@@ -354,7 +356,7 @@ fn vector_rotation(angle: f64) -> Matrix2<f64> {
 }
 
 /// Membrane strain and curvature in a cell for local displacements `(u, v, θz)` and `(w, θx, θy)`.
-pub fn strain_matrices(cell: &Cell) -> (SMatrix<f64, 3, 12>, SMatrix<f64, 3, 12>) {
+pub fn strain_matrices(cell: &SmoothingCell) -> (SMatrix<f64, 3, 12>, SMatrix<f64, 3, 12>) {
     (membrane_matrix(cell), bending_matrix(cell))
 }
 
@@ -371,7 +373,7 @@ fn pick(local: &Vector24, dofs: [usize; 3]) -> SVector<f64, 12> {
 }
 
 /// `B̃_b` (3 x 12), dofs `(w, θx, θy)`: Eq. (23), corrected.
-fn bending_matrix(cell: &Cell) -> SMatrix<f64, 3, 12> {
+fn bending_matrix(cell: &SmoothingCell) -> SMatrix<f64, 3, 12> {
     let mut b = SMatrix::<f64, 3, 12>::zeros();
     for (i, [bx, by]) in cell.gradient.into_iter().enumerate() {
         b[(0, 3 * i + 2)] = bx;
@@ -383,7 +385,7 @@ fn bending_matrix(cell: &Cell) -> SMatrix<f64, 3, 12> {
 }
 
 /// `B̃_m` (3 x 12), dofs `(u, v, θz)`: Eq. (22).
-fn membrane_matrix(cell: &Cell) -> SMatrix<f64, 3, 12> {
+fn membrane_matrix(cell: &SmoothingCell) -> SMatrix<f64, 3, 12> {
     let mut b = SMatrix::<f64, 3, 12>::zeros();
     for (i, [bx, by]) in cell.gradient.into_iter().enumerate() {
         b[(0, 3 * i)] = bx;

@@ -18,7 +18,7 @@ pub enum Cells {
 
 /// One smoothing cell of a plane quad.
 #[derive(Clone, Copy, Debug)]
-pub struct Cell {
+pub struct SmoothingCell {
     /// Area (m²).
     pub area: f64,
     /// Mean of `(N_i,x, N_i,y)` over the cell (1/m).
@@ -76,12 +76,12 @@ impl Cells {
     }
 
     /// Every cell of the plane quad `xy`.
-    pub fn over(self, xy: &[[f64; 2]; 4]) -> impl Iterator<Item = Cell> {
-        (0..self.count()).map(move |k| Cell::of(xy, self.bounds(k)))
+    pub fn over(self, xy: &[[f64; 2]; 4]) -> impl Iterator<Item = SmoothingCell> {
+        (0..self.count()).map(move |k| SmoothingCell::of(xy, self.bounds(k)))
     }
 }
 
-impl Cell {
+impl SmoothingCell {
     /// The whole of the plane quad `xy` as one cell.
     pub fn whole(xy: &[[f64; 2]; 4]) -> Self {
         Self::of(xy, [-1.0, 1.0, -1.0, 1.0])

@@ -18,7 +18,7 @@ use nalgebra::{Matrix2, Matrix3, Matrix3x4, Matrix4, SMatrix, SVector, Vector3, 
 
 use super::cellwise::{Gradient, STRETCHING, pick};
 use super::prepared::{Matrix24, Vector24};
-use super::smoothing::Cell;
+use super::smoothing::SmoothingCell;
 
 /// Linear strains of a displacement gradient `(u,x, u,y, v,x, v,y)`.
 const LINEAR: [[f64; 4]; 3] = [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0], [0.0, 1.0, 1.0, 0.0]];
@@ -91,7 +91,7 @@ pub struct Yarns {
 impl Yarns {
     /// From the element as one smoothing cell, the angle of the warp in it, and the rigid links of a warped
     /// element.
-    pub(super) fn new(whole: &Cell, angle: f64, links: Option<Matrix24>) -> Self {
+    pub(super) fn new(whole: &SmoothingCell, angle: f64, links: Option<Matrix24>) -> Self {
         let (s, c) = angle.sin_cos();
         let axes = Matrix2::new(c, s, -s, c);
         let mut gradient = SMatrix::zeros();

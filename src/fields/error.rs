@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, Matrix2, Matrix3, Point3, SMatrix, Vector2, Vector3};
 use super::Resultants;
 use super::element::{Displacement, small, straining};
 use crate::element::{
-    Bending, Cell, Formulation, Matrix24, Membrane, Prepared, gauss_point, membrane_and_plate,
+    Bending, Formulation, Matrix24, Membrane, Prepared, SmoothingCell, gauss_point, membrane_and_plate,
     strain_matrices,
 };
 use crate::mesh::is_translated;
@@ -156,7 +156,7 @@ impl Own {
         let section = &model.section;
         let [of_strain, of_curvature] = [section.d_m, section.d_b].map(|d| d * element.to_material());
         let Formulation { cells: layout, membrane, bending, .. } = model.formulation;
-        let whole = strain_matrices(&Cell::whole(&element.frame.xy));
+        let whole = strain_matrices(&SmoothingCell::whole(&element.frame.xy));
         let cells = element.cells().map(|cell| {
             let (strain, curvature) = strain_matrices(&cell);
             let strain = if membrane == Membrane::Cells { strain } else { whole.0 };

@@ -14,14 +14,14 @@ mod recovery;
 pub use edge::edge_moments;
 pub use error::ErrorEstimate;
 pub use extrapolation::Extrapolation;
-pub use probe::{Finder, Line, Locator, ProbeValue, nearest};
+pub use probe::{Finder, Locator, ProbeValue, SampledLine, nearest};
 pub use reactions::reaction_resultants;
 
 use std::collections::BTreeSet;
 
 use nalgebra::Vector3;
 
-use crate::element::{Cell, membrane_and_plate};
+use crate::element::{SmoothingCell, membrane_and_plate};
 use crate::mesh::{QuadMesh, nodes_of, normal};
 use crate::model::{Load, Model, ModelError};
 use crate::section::SheetLaw;
@@ -78,7 +78,7 @@ pub fn cells(model: &Model, displacement: &[f64]) -> Result<Vec<Vec<Resultants>>
         let (to_material, vector) = (element.to_material(), element.vector_to_material());
         let local = element.to_local() * of_element(model, displacement, quad);
         let (in_plane, plate) = membrane_and_plate(&local);
-        let of_cell = |cell: Cell| {
+        let of_cell = |cell: SmoothingCell| {
             let (strain, curvature) = element.strains(&cell, &local);
             let membrane = match element.assumed_membrane(cell.middle) {
                 Some((mean, varying)) => (model.section.d_m * to_material * mean + varying) * in_plane,

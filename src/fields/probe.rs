@@ -195,12 +195,12 @@ fn natural(xy: &[[f64; 2]; 4], point: [f64; 2]) -> Option<[f64; 2]> {
 
 /// Points at equal steps on a straight line across a mesh, found once for any number of fields.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Line {
+pub struct SampledLine {
     /// Distance from the start (m) and the place in the mesh.
     points: Vec<(f64, Locator)>,
 }
 
-impl Line {
+impl SampledLine {
     /// The points at `count` equal steps from `from` to `to`; those outside the mesh are left out.
     pub fn new(mesh: &QuadMesh, from: &Point3<f64>, to: &Point3<f64>, count: usize) -> Self {
         let (low, high) = (from.inf(to), from.sup(to));
@@ -274,7 +274,7 @@ mod tests {
             let point = mesh.corners(quad)[corner];
             assert_eq!(Finder::new(&mesh).find(&point), Locator::find(&mesh, &point));
         }
-        let line = Line::new(&mesh, &Point3::new(0.0, 0.5, 0.0), &Point3::new(2.0, 0.5, 0.0), 10);
+        let line = SampledLine::new(&mesh, &Point3::new(0.0, 0.5, 0.0), &Point3::new(2.0, 0.5, 0.0), 10);
         let line = line.profile(&mesh, field);
         assert_eq!(line.len(), 11);
         assert_relative_eq!(line.y[10], 3.5, epsilon = 1e-12);

@@ -15,7 +15,7 @@ use crate::platform::{self, files};
 
 /// The fabrics of a batch, and what could not be read.
 #[derive(Clone, Debug, Default)]
-pub struct Batch {
+pub struct FabricBatch {
     /// In name order of their folders and files.
     pub fabrics: Vec<FabricInput>,
     /// One for each file that was not read; the rest of its fabric is there.
@@ -258,11 +258,15 @@ impl Group {
 
 /// Reads folders and files as fabrics, in parallel, and keeps them all: see [`Library`].
 /// `progress` is called after each file.
-pub fn read_fabrics(inputs: &[PathBuf], settings: &ReadSettings, progress: &(dyn Fn(&Path) + Sync)) -> Batch {
+pub fn read_fabrics(
+    inputs: &[PathBuf],
+    settings: &ReadSettings,
+    progress: &(dyn Fn(&Path) + Sync),
+) -> FabricBatch {
     let mut library = Library::find(inputs, settings);
     let findings = std::mem::take(&mut library.findings);
     let (fabrics, failures) = library.each(progress, |fabric| fabric);
-    Batch { fabrics, failures, findings }
+    FabricBatch { fabrics, failures, findings }
 }
 
 /// The folder in which a file lies, or one above it, that has a fabric.toml; on the path as it is given.

@@ -66,7 +66,7 @@ pub use error::{About, Problem, ReadError};
 pub(crate) use fabric_file::FabricFile;
 pub use fabric_file::{DRAPE_FILE, read_dialect};
 pub use file_name::is_data_name;
-pub use folder::{Batch, Library, read_fabrics};
+pub use folder::{FabricBatch, Library, read_fabrics};
 pub use measurement::{
     Conditions, FabricInfo, FabricInput, Inference, MeasuredResult, Measurement, Origin, ResultValue, Source,
     StatedStiffness,

@@ -246,21 +246,23 @@ struct LeftOut {
 
 /// The first cells of a list, as a spreadsheet program names them.
 fn cells_text(cells: &[(u32, u32)]) -> String {
-    let name = |(row, column): &(u32, u32)| {
-        let mut letters = String::new();
-        let mut rest = column + 1;
-        while rest > 0 {
-            let letter = u8::try_from((rest - 1) % 26).unwrap_or(0);
-            letters.insert(0, char::from(b'A' + letter));
-            rest = (rest - 1) / 26;
-        }
-        format!("{letters}{}", row + 1)
-    };
-    let first: Vec<String> = cells.iter().take(6).map(name).collect();
+    let first: Vec<String> = cells.iter().take(6).map(cell_name).collect();
     let more = cells.len().saturating_sub(6);
     let s = if cells.len() > 1 { "s" } else { "" };
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
     format!("cell{s} {}{more}", first.join(", "))
+}
+
+/// A cell as a spreadsheet program names it.
+fn cell_name((row, column): &(u32, u32)) -> String {
+    let mut letters = String::new();
+    let mut rest = column + 1;
+    while rest > 0 {
+        let letter = u8::try_from((rest - 1) % 26).unwrap_or(0);
+        letters.insert(0, char::from(b'A' + letter));
+        rest = (rest - 1) / 26;
+    }
+    format!("{letters}{}", row + 1)
 }
 
 /// Leaves out cells that are hidden or struck out, and makes numbers what their formats show.

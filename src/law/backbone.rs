@@ -18,7 +18,7 @@ pub struct Backbone {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Piece {
     strain: f64,
-    at: Elastic,
+    at: ElasticResponse,
     /// Derivative of the tangent towards the next knot; 0 at the last.
     bend: f64,
 }
@@ -34,7 +34,7 @@ struct Parts {
 
 /// A stress with its derivative and its integral.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Elastic {
+pub struct ElasticResponse {
     /// Stress.
     pub stress: f64,
     /// Derivative of the stress with respect to the strain.
@@ -45,9 +45,9 @@ pub struct Elastic {
 
 impl Piece {
     /// The curve at `d` beyond the knot.
-    fn ahead(&self, d: f64, bend: f64) -> Elastic {
-        let Elastic { stress, tangent, energy } = self.at;
-        Elastic {
+    fn ahead(&self, d: f64, bend: f64) -> ElasticResponse {
+        let ElasticResponse { stress, tangent, energy } = self.at;
+        ElasticResponse {
             stress: stress + d * (tangent + 0.5 * d * bend),
             tangent: tangent + d * bend,
             energy: energy + d * (stress + d * (0.5 * tangent + d * bend / 6.0)),
@@ -79,7 +79,7 @@ impl Backbone {
             .zip(tangents)
             .map(|(&strain, &tangent)| Piece {
                 strain,
-                at: Elastic { tangent, ..Elastic::default() },
+                at: ElasticResponse { tangent, ..ElasticResponse::default() },
                 bend: 0.0,
             })
             .collect();
@@ -114,7 +114,7 @@ impl Backbone {
     }
 
     /// Stress, tangent and energy at a strain.
-    pub fn at(&self, strain: f64) -> Elastic {
+    pub fn at(&self, strain: f64) -> ElasticResponse {
         // A handful of knots: a scan is faster than a search.
         let mut piece = &self.pieces[0];
         if strain < piece.strain {

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::widening::Growth;
-use super::{Backbone, Elastic, LawError, Widening};
+use super::{Backbone, ElasticResponse, LawError, Widening};
 
 /// Sliders that a [`State`] has room for: two families of six.
 pub const MAX_SLIDERS: usize = 12;
@@ -197,7 +197,7 @@ impl Channel {
     /// The answer of the law in a mode; see [`trial`](Self::trial). Without friction there is no
     /// memory: the state keeps its slips, and nothing is dissipated.
     pub fn respond(&self, mode: Mode, from: &State, strain: f64) -> Response {
-        let Elastic { stress, tangent, energy } = match mode {
+        let ElasticResponse { stress, tangent, energy } = match mode {
             Mode::Friction => return self.trial(from, strain),
             Mode::Elastic => self.backbone.at(strain),
             Mode::Virgin => self.virgin(strain),
@@ -222,7 +222,7 @@ impl Channel {
     /// The answer to a strain reached in one straight step from a state, which is not changed: keep
     /// [`Response::state`] when the step is accepted. `q` is that of the start of the step.
     pub fn trial(&self, from: &State, strain: f64) -> Response {
-        let Elastic { stress, tangent, energy } = self.backbone.at(strain);
+        let ElasticResponse { stress, tangent, energy } = self.backbone.at(strain);
         let state = State { strain, ..*from };
         let mut r = Response { stress, tangent, state, dissipation: 0.0, energy };
         let step = strain - from.strain;
@@ -246,7 +246,7 @@ impl Channel {
 
     /// The curve of first loading from strain 0, in small steps: slider j carries `w_j e` until its
     /// level is reached and `w_j x_j q(e)` from there.
-    pub fn virgin(&self, strain: f64) -> Elastic {
+    pub fn virgin(&self, strain: f64) -> ElasticResponse {
         let mut sum = self.backbone.at(strain);
         for family in &self.families {
             let growth = family.widening.growth(strain);
@@ -282,15 +282,15 @@ impl Channel {
 
 impl Slider {
     /// First loading; the level is overtaken once, as it grows more slowly than the strain.
-    fn virgin(&self, widening: &Widening, growth: &Growth, strain: f64) -> Elastic {
+    fn virgin(&self, widening: &Widening, growth: &Growth, strain: f64) -> ElasticResponse {
         let Self { stiffness: w, slip: x } = *self;
         let size = strain.abs();
         if size <= x * growth.q {
-            return Elastic { stress: w * strain, tangent: w, energy: 0.5 * w * strain * strain };
+            return ElasticResponse { stress: w * strain, tangent: w, energy: 0.5 * w * strain * strain };
         }
         let start = self.overtaken(widening);
         let before = widening.growth(start.copysign(strain)).integral;
-        Elastic {
+        ElasticResponse {
             stress: (w * x * growth.q).copysign(strain),
             tangent: w * x * growth.slope,
             energy: w * (0.5 * start * start + x * (growth.integral - before)),

@@ -9,7 +9,7 @@ mod backbone;
 mod channel;
 mod widening;
 
-pub use backbone::{Backbone, Elastic};
+pub use backbone::{Backbone, ElasticResponse};
 pub use channel::{Channel, Family, MAX_SLIDERS, Mode, Response, Slider, State};
 pub use widening::Widening;
 

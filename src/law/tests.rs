@@ -51,7 +51,7 @@ fn the_backbone_integrates_its_tangent() {
     assert_eq!(b.at(0.0).energy, 0.0);
     for i in -40..=40 {
         let (e, h) = (0.1 * f64::from(i) + 0.013, 1e-5);
-        let difference = |f: fn(Elastic) -> f64| (f(b.at(e + h)) - f(b.at(e - h))) / (2.0 * h);
+        let difference = |f: fn(ElasticResponse) -> f64| (f(b.at(e + h)) - f(b.at(e - h))) / (2.0 * h);
         assert_relative_eq!(difference(|x| x.stress), b.at(e).tangent, epsilon = 1e-8);
         assert_relative_eq!(difference(|x| x.energy), b.at(e).stress, epsilon = 1e-8);
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::error::LibraryError;
-use super::grammar::{self, Expression, Form, Operator};
+use super::grammar::{self, Expression, ExpressionKind, Operator};
 use arrow_array::cast::AsArray;
 use arrow_array::types::Float64Type;
 use arrow_array::{Array, RecordBatch};
@@ -124,16 +124,18 @@ impl Reader<'_> {
 
     fn node(&mut self, part: &Expression) -> Result<(Node, Kind), LibraryError> {
         Ok(match &part.form {
-            Form::Number(number) => (Node::Number(*number), Kind::Number),
-            Form::Text(text) => (Node::Text(text.clone()), Kind::Text),
-            Form::Name(name) => return self.column(name, part.span.start),
-            Form::Not(inner) => (Node::Not(Box::new(self.wanted(inner, Kind::Truth)?)), Kind::Truth),
-            Form::Minus(inner) => {
+            ExpressionKind::Number(number) => (Node::Number(*number), Kind::Number),
+            ExpressionKind::Text(text) => (Node::Text(text.clone()), Kind::Text),
+            ExpressionKind::Name(name) => return self.column(name, part.span.start),
+            ExpressionKind::Not(inner) => {
+                (Node::Not(Box::new(self.wanted(inner, Kind::Truth)?)), Kind::Truth)
+            }
+            ExpressionKind::Minus(inner) => {
                 let pair = Box::new([Node::Number(0.0), self.wanted(inner, Kind::Number)?]);
                 (Node::Reckon(Operator::Minus, pair), Kind::Number)
             }
-            Form::Binary(operator, sides) => return self.binary(*operator, sides),
-            Form::IsNull(inner) => (Node::IsNull(Box::new(self.node(inner)?.0)), Kind::Truth),
+            ExpressionKind::Binary(operator, sides) => return self.binary(*operator, sides),
+            ExpressionKind::IsNull(inner) => (Node::IsNull(Box::new(self.node(inner)?.0)), Kind::Truth),
         })
     }
 

@@ -21,11 +21,11 @@ const RESERVED: [&str; 7] = ["and", "or", "not", "between", "in", "is", "null"];
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
     pub span: Range<usize>,
-    pub form: Form,
+    pub form: ExpressionKind,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub enum Form {
+pub enum ExpressionKind {
     Number(f64),
     Text(String),
     Name(String),
@@ -86,7 +86,7 @@ fn conjunction(input: &mut Input<'_>) -> Parsed<Expression> {
 }
 
 fn negation(input: &mut Input<'_>) -> Parsed<Expression> {
-    prefixed(input, keyword("not"), comparison, Form::Not)
+    prefixed(input, keyword("not"), comparison, ExpressionKind::Not)
 }
 
 fn comparison(input: &mut Input<'_>) -> Parsed<Expression> {
@@ -98,7 +98,7 @@ fn comparison(input: &mut Input<'_>) -> Parsed<Expression> {
     if opt(keyword("is")).parse_next(input)?.is_some() {
         let negated = opt(keyword("not")).parse_next(input)?.is_some();
         keyword("null").parse_next(input)?;
-        return Ok(since(left.span.start, input, Form::IsNull(Box::new(left)), negated));
+        return Ok(since(left.span.start, input, ExpressionKind::IsNull(Box::new(left)), negated));
     }
     // Both are read as what they are short for.
     let start = left.span.start;
@@ -133,7 +133,7 @@ fn product(input: &mut Input<'_>) -> Parsed<Expression> {
 }
 
 fn factor(input: &mut Input<'_>) -> Parsed<Expression> {
-    prefixed(input, sign("-"), atom, Form::Minus)
+    prefixed(input, sign("-"), atom, ExpressionKind::Minus)
 }
 
 fn atom(input: &mut Input<'_>) -> Parsed<Expression> {
@@ -141,11 +141,13 @@ fn atom(input: &mut Input<'_>) -> Parsed<Expression> {
     let start = input.current_token_start();
     let form = match peek(any).parse_next(input)? {
         '(' => return delimited(sign("("), disjunction, sign(")")).parse_next(input),
-        '\'' => quoted('\'').map(Form::Text).parse_next(input)?,
-        quote @ ('"' | '`') => quoted(quote).map(Form::Name).parse_next(input)?,
+        '\'' => quoted('\'').map(ExpressionKind::Text).parse_next(input)?,
+        quote @ ('"' | '`') => quoted(quote).map(ExpressionKind::Name).parse_next(input)?,
         // Names may begin with a figure, such as 2HB_warp.
-        '0'..='9' | '.' => alt((number.map(Form::Number), name.map(Form::Name))).parse_next(input)?,
-        _ => name.map(Form::Name).parse_next(input)?,
+        '0'..='9' | '.' => {
+            alt((number.map(ExpressionKind::Number), name.map(ExpressionKind::Name))).parse_next(input)?
+        }
+        _ => name.map(ExpressionKind::Name).parse_next(input)?,
     };
     Ok(Expression { span: start..input.current_token_start(), form })
 }
@@ -210,7 +212,7 @@ fn prefixed<'t>(
     input: &mut Input<'t>,
     mut prefix: impl Parser<Input<'t>, (), ContextError>,
     part: fn(&mut Input<'t>) -> Parsed<Expression>,
-    form: fn(Box<Expression>) -> Form,
+    form: fn(Box<Expression>) -> ExpressionKind,
 ) -> Parsed<Expression> {
     multispace0.void().parse_next(input)?;
     let mut starts = Vec::new();
@@ -228,12 +230,12 @@ fn prefixed<'t>(
 
 fn joined(operator: Operator, left: Expression, right: Expression) -> Expression {
     let span = left.span.start..right.span.end;
-    Expression { span, form: Form::Binary(operator, Box::new([left, right])) }
+    Expression { span, form: ExpressionKind::Binary(operator, Box::new([left, right])) }
 }
 
 /// What began at a byte and ends here, or its contrary.
-fn since(start: usize, input: &Input<'_>, form: Form, negated: bool) -> Expression {
+fn since(start: usize, input: &Input<'_>, form: ExpressionKind, negated: bool) -> Expression {
     let span = start..input.current_token_start();
     let whole = Expression { span: span.clone(), form };
-    if negated { Expression { span, form: Form::Not(Box::new(whole)) } } else { whole }
+    if negated { Expression { span, form: ExpressionKind::Not(Box::new(whole)) } } else { whole }
 }

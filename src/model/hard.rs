@@ -161,18 +161,15 @@ impl OwnAxes {
     /// couple.
     fn new(node: u32, axes: &[Vector3<f64>], about: Vec<Vector3<f64>>) -> Self {
         let mut basis: Vec<Vector3<f64>> = Vec::with_capacity(3);
-        let beside = |basis: &[Vector3<f64>], d: &Vector3<f64>| {
-            basis.iter().fold(*d, |rest, b| rest - *b * b.dot(&rest))
-        };
         for direction in axes.iter().chain(&about) {
-            let rest = beside(&basis, direction);
+            let rest = normal_part(&basis, direction);
             if rest.norm() > SAME {
                 basis.push(rest.normalize());
             }
         }
         let held = basis.len();
         while basis.len() < 3 {
-            let rests = [0, 1, 2].map(|k| beside(&basis, &Vector3::ith(k, 1.0)));
+            let rests = [0, 1, 2].map(|k| normal_part(&basis, &Vector3::ith(k, 1.0)));
             basis.extend(rests.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())).map(|r| r.normalize()));
         }
         let mut others = (0..3).filter(|k| axis_of(&basis[*k]).is_none());
@@ -183,6 +180,11 @@ impl OwnAxes {
         let axes = Matrix3::from_columns(&columns.map(|k| basis[k]));
         Self { node, axes, held: columns.map(|k| k < held), about }
     }
+}
+
+/// A direction without its parts along those of a basis.
+fn normal_part(basis: &[Vector3<f64>], direction: &Vector3<f64>) -> Vector3<f64> {
+    basis.iter().fold(*direction, |rest, b| rest - *b * b.dot(&rest))
 }
 
 #[cfg(test)]

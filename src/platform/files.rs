@@ -35,12 +35,12 @@ mod system {
 mod system {
     use std::sync::{Mutex, PoisonError};
 
-    use super::{Path, PathBuf, Tree, io};
+    use super::{FileTree, Path, PathBuf, io};
 
-    static TREE: Mutex<Tree> = Mutex::new(Tree::new());
+    static TREE: Mutex<FileTree> = Mutex::new(FileTree::new());
 
     /// Puts files into the memory that stands for a system, or takes them out.
-    pub fn in_memory<T>(work: impl FnOnce(&mut Tree) -> T) -> T {
+    pub fn in_memory<T>(work: impl FnOnce(&mut FileTree) -> T) -> T {
         work(&mut TREE.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
@@ -72,7 +72,7 @@ mod system {
 #[cfg(all(target_family = "wasm", target_os = "unknown"))]
 pub use system::in_memory;
 #[cfg(any(test, all(target_family = "wasm", target_os = "unknown")))]
-pub use tree::Tree;
+pub use tree::FileTree;
 
 /// The bytes of a file.
 ///

@@ -19,7 +19,7 @@ pub use estimate::{Estimate, repeats_text, stated_repeats};
 pub use moments::Moments;
 pub use polygon::{polygon_area, polygon_centre};
 pub use propagation::{Band, Bands, NoSpread};
-pub use sobol::{Population, Sampled, sampled, sobol_points};
+pub use sobol::{Sampled, SampledPopulation, sampled, sobol_points};
 pub use text::{in_unit, significant, without_rounding};
 pub use unit::{Dimension, QuantityError, UNITS, Unit, counts_angles, divides_by_length, parse_quantity};
 

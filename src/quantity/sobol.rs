@@ -10,7 +10,7 @@ use crate::platform;
 /// Which of two questions a sample answers; see [`Bands`](super::Bands).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Population {
+pub enum SampledPopulation {
     /// Where the mean fabric lies: standard error SD/√n.
     MeanFabric,
     /// Where one more specimen lies: SD √(1 + 1/n).
@@ -41,7 +41,7 @@ pub struct Sampled {
 /// With more than 256 inputs.
 pub fn sobol_points(
     inputs: &[&Estimate],
-    population: Population,
+    population: SampledPopulation,
     points: u32,
     seed: u32,
 ) -> Result<Vec<Vec<f64>>, NoSpread> {
@@ -51,8 +51,8 @@ pub fn sobol_points(
         let cv = input.cv().filter(|_| input.n > 1).ok_or(NoSpread { term })?;
         let t = StudentsT::new(0.0, 1.0, n - 1.0).map_err(|_| NoSpread { term })?;
         let factor = match population {
-            Population::MeanFabric => 1.0 / n,
-            Population::NextSpecimen => 1.0 + 1.0 / n,
+            SampledPopulation::MeanFabric => 1.0 / n,
+            SampledPopulation::NextSpecimen => 1.0 + 1.0 / n,
         };
         columns.push((input.mean, cv * factor.sqrt(), t));
     }
@@ -117,7 +117,7 @@ mod tests {
     fn one_input_has_the_band_of_student() {
         let p = input(2.0, 0.02, 3);
         for (population, factor) in
-            [(Population::MeanFabric, 1.0 / 3.0), (Population::NextSpecimen, 4.0 / 3.0)]
+            [(SampledPopulation::MeanFabric, 1.0 / 3.0), (SampledPopulation::NextSpecimen, 4.0 / 3.0)]
         {
             let points = sobol_points(&[&p], population, 1024, 7).unwrap();
             let y = sampled(&points, 1, |p| vec![p[0].powi(3)], || ())[0].unwrap();
@@ -135,7 +135,8 @@ mod tests {
     fn spreads_of_many_inputs_add() {
         let inputs: Vec<Estimate> = (1..=10).map(|i| input(f64::from(i), 0.01 * f64::from(i), 400)).collect();
         let points =
-            sobol_points(&inputs.iter().collect::<Vec<_>>(), Population::NextSpecimen, 256, 1).unwrap();
+            sobol_points(&inputs.iter().collect::<Vec<_>>(), SampledPopulation::NextSpecimen, 256, 1)
+                .unwrap();
         let y = sampled(&points, 1, |p| vec![p.iter().product()], || ())[0].unwrap();
         let half = 0.5 * (y.interval[1] / y.interval[0]).ln();
         // z = 1.960, and the sampling error of a 2.5 % point of 256.
@@ -145,14 +146,14 @@ mod tests {
     #[test]
     fn what_fails_is_counted_and_what_has_no_spread_refused() {
         let p = input(1.0, 0.1, 5);
-        let points = sobol_points(&[&p], Population::NextSpecimen, 64, 3).unwrap();
-        assert_eq!(points, sobol_points(&[&p], Population::NextSpecimen, 64, 3).unwrap());
+        let points = sobol_points(&[&p], SampledPopulation::NextSpecimen, 64, 3).unwrap();
+        assert_eq!(points, sobol_points(&[&p], SampledPopulation::NextSpecimen, 64, 3).unwrap());
         let only = |p: &[f64]| if p[0] > 1.0 { vec![p[0], f64::NAN] } else { Vec::new() };
         let both = sampled(&points, 2, only, || ());
         let y = both[0].unwrap();
         assert_eq!((y.n, y.failed), (32, 32));
         assert_eq!(both[1], None);
-        let refused = sobol_points(&[&p, &Estimate::single(1.0)], Population::MeanFabric, 8, 0);
+        let refused = sobol_points(&[&p, &Estimate::single(1.0)], SampledPopulation::MeanFabric, 8, 0);
         assert_eq!(refused, Err(NoSpread { term: 1 }));
     }
 }

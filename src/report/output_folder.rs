@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 use tempfile::NamedTempFile;
 
 use super::write::{
-    Bytes, Digest32, FileList, MANIFEST, OutputError, digest, existing, from_hexadecimal, hexadecimal,
+    Digest32, FileBytes, FileList, MANIFEST, OutputError, digest, existing, from_hexadecimal, hexadecimal,
     inside, is_temporary, manifest, place, temporary, write_manifest,
 };
 
@@ -108,7 +108,7 @@ impl OutputFolder {
     ///
     /// # Errors
     /// [`OutputError::Write`] if it cannot be read.
-    pub fn read(&self, name: &str) -> Bytes {
+    pub fn read(&self, name: &str) -> FileBytes {
         if !inside(name) {
             return Ok(None);
         }

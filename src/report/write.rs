@@ -211,13 +211,13 @@ struct ManifestOut<'f> {
 }
 
 /// Bytes of a file, if it is there as it should be.
-pub type Bytes = Result<Option<Vec<u8>>, OutputError>;
+pub type FileBytes = Result<Option<Vec<u8>>, OutputError>;
 
 /// A reader of the files of a results folder: the bytes of a name, if they are as this program left them.
 ///
 /// # Errors
 /// [`OutputError::Manifest`] if the list of our files is none, [`OutputError::Write`] if a file cannot be read.
-pub fn results_reader(root: &Path) -> Result<impl Fn(&str) -> Bytes, OutputError> {
+pub fn results_reader(root: &Path) -> Result<impl Fn(&str) -> FileBytes, OutputError> {
     let files = manifest(root)?;
     Ok(move |name: &str| match files.of(name).next().filter(|_| inside(name)) {
         Some(known) => Ok(existing(&root.join(name))?.filter(|bytes| digest(bytes) == *known)),

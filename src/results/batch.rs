@@ -13,14 +13,14 @@ use crate::study::Case;
 
 /// Which cases are done together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum BatchKind {
     /// Those with a `[sheet]`.
     Solve,
     /// Those with a `[virtual_test]` or a `[bending_test]`.
     Compare,
 }
 
-impl Kind {
+impl BatchKind {
     fn includes(self, case: &Case) -> bool {
         match self {
             Self::Solve => case.has_sheet(),
@@ -54,7 +54,7 @@ impl Kind {
 
 /// The outcomes of the cases of one kind.
 pub struct Batch<'w> {
-    kind: Kind,
+    kind: BatchKind,
     /// Every task with what it gave.
     pub tasks: Vec<(Task<'w, 'w>, Result<Outcome, Failure>)>,
     /// What failed, of inputs and of tasks.
@@ -69,7 +69,7 @@ impl<'w> Batch<'w> {
     /// O055 if there is no such case, O054 if the work was cancelled, and those of charts over all fabrics.
     pub fn simulate(
         work: &'w mut Work,
-        kind: Kind,
+        kind: BatchKind,
         folder: Option<&Folder>,
         observer: &Observer,
     ) -> Result<Self, Failure> {
@@ -134,8 +134,8 @@ impl<'w> Batch<'w> {
             }
         }
         match self.kind {
-            Kind::Solve => Document::solutions(solutions),
-            Kind::Compare => Document::comparisons(comparisons),
+            BatchKind::Solve => Document::solutions(solutions),
+            BatchKind::Compare => Document::comparisons(comparisons),
         }
     }
 

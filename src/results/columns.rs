@@ -1,6 +1,6 @@
 //! Aligned columns for people: text to the left, numbers to the right, two blanks between.
 
-use crate::report::html::{Block, Cell};
+use crate::report::html::{Block, TableCell};
 
 /// A table of text.
 #[derive(Clone, Debug)]
@@ -38,7 +38,7 @@ impl Columns {
 
     /// The same table for a page, of fabrics.
     pub fn block(&self, caption: &str) -> Block {
-        let cells = |row: &Vec<String>| row.iter().map(Cell::from).collect();
+        let cells = |row: &Vec<String>| row.iter().map(TableCell::from).collect();
         let (header, rows) = (self.rows[0].clone(), self.rows[1..].iter().map(cells).collect());
         Block::Table { caption: caption.into(), header, rows, of_fabrics: true }
     }

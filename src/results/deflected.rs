@@ -6,7 +6,7 @@ use super::task::Task;
 use crate::fields::{Resultants, largest_principal};
 use crate::model::Model;
 use crate::report::gltf::{DeflectedSheet, glb};
-use crate::report::html::{Shape, ShapeField};
+use crate::report::html::{DeflectedShape, ShapeField};
 
 /// A sheet before and after, of an outcome.
 pub(super) struct Deflected {
@@ -22,7 +22,7 @@ pub(super) struct Deflected {
 /// A sheet as the page has it.
 pub(super) enum PageSheet {
     /// It turns.
-    Shown(Box<Shape>),
+    Shown(Box<DeflectedShape>),
     /// It is in its file alone.
     TooLarge,
 }
@@ -66,7 +66,7 @@ impl Deflected {
         resultants: &[Resultants],
         curvatures: &[[f64; 3]],
     ) -> Result<PageSheet, Failure> {
-        let Some(shape) = Shape::of(&self.sheet(), self.file.clone())? else {
+        let Some(shape) = DeflectedShape::of(&self.sheet(), self.file.clone())? else {
             return Ok(PageSheet::TooLarge);
         };
         let curvatures: Vec<f64> =
@@ -76,6 +76,6 @@ impl Deflected {
             ShapeField::new("largest principal curvature", "1/m", &curvatures),
             ShapeField::new("largest principal moment", "N", &moments),
         ];
-        Ok(PageSheet::Shown(Box::new(Shape { is_drape, fields, ..shape })))
+        Ok(PageSheet::Shown(Box::new(DeflectedShape { is_drape, fields, ..shape })))
     }
 }

@@ -25,7 +25,7 @@ use crate::instrument::FabricInfo;
 use crate::law::Mode;
 use crate::platform::Stopwatch;
 use crate::report::chart::ParityPoint;
-use crate::report::html::{Figure, Shape, TestCurves};
+use crate::report::html::{DeflectedShape, Figure, TestCurves};
 use crate::report::json::{section_document, sheet_document};
 use crate::report::table::{FabricRow, PredictionRow, ProblemRow, UnitSystem, fabric_rows, problem_row};
 use crate::study::{CaseResult, Status};
@@ -59,7 +59,7 @@ pub struct FabricReport {
     /// Curves of its tests, thinned for the page.
     pub curves: Vec<TestCurves>,
     /// Deflected sheets for the page.
-    pub shapes: Vec<Shape>,
+    pub shapes: Vec<DeflectedShape>,
     /// How many are too large for it.
     #[serde(default)]
     pub sheets_too_large: usize,

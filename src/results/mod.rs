@@ -54,7 +54,7 @@ mod tested;
 mod work;
 
 pub use crate::finding::FailureKind;
-pub use batch::{Batch, Kind};
+pub use batch::{Batch, BatchKind};
 pub use bent::BendingEntry;
 pub use cards::{Card, CardOptions, cards, cards_with, stated_crimp, write_cards};
 pub(crate) use catalogue::Catalogue;

@@ -11,7 +11,7 @@ use super::task::Task;
 use crate::quantity::significant;
 use crate::report::chart::Format;
 use crate::report::html::{
-    Block, FabricValues, Figure, Page, PageData, ProblemGroup, Section, Shape, Shapes, Workbooks,
+    Block, DeflectedShape, FabricValues, Figure, Page, PageData, ProblemGroup, Section, Shapes, Workbooks,
     without_folders,
 };
 use crate::report::population::Population;
@@ -202,8 +202,8 @@ fn data(reports: &[FabricReport]) -> PageData {
             curves
         }));
     }
-    let of_fabric = |(fabric, report): (usize, &FabricReport)| -> Vec<Shape> {
-        report.shapes.iter().cloned().map(|shape| Shape { fabric, ..shape }).collect()
+    let of_fabric = |(fabric, report): (usize, &FabricReport)| -> Vec<DeflectedShape> {
+        report.shapes.iter().cloned().map(|shape| DeflectedShape { fabric, ..shape }).collect()
     };
     data.shapes = Shapes::of(reports.iter().enumerate().flat_map(of_fabric));
     let too_large =

@@ -3,7 +3,7 @@
 use super::tested::Tested;
 use crate::characterise::{FabricSheet, SpecimenResult};
 use crate::instrument::Test;
-use crate::report::html::{AxisEntry, Line, SimulatedLine, SpecimenCurves, TestCurves, shortened};
+use crate::report::html::{AxisEntry, Polyline, SimulatedLine, SpecimenCurves, TestCurves, shortened};
 
 /// Tests with curves, in their order; the place of the fabric is for the caller to say.
 pub(super) fn curves(sheet: &FabricSheet, simulated: &[Tested]) -> Vec<TestCurves> {
@@ -25,9 +25,9 @@ pub(super) fn curves(sheet: &FabricSheet, simulated: &[Tested]) -> Vec<TestCurve
 fn specimen(specimen: &SpecimenResult) -> SpecimenCurves {
     let measurement = &specimen.measurement;
     let branches = if specimen.branches.is_empty() {
-        vec![Line::of(&measurement.curve)]
+        vec![Polyline::of(&measurement.curve)]
     } else {
-        specimen.branches.iter().map(|b| Line::of(&b.curve)).collect()
+        specimen.branches.iter().map(|b| Polyline::of(&b.curve)).collect()
     };
     let windows = specimen.windows.iter().map(|w| {
         (w.parameter.symbol().to_string(), [w.from, w.to].map(shortened), w.ordinates.map(shortened))
@@ -47,6 +47,6 @@ fn simulated_line(tested: &Tested) -> SimulatedLine {
         label: format!("simulated{on}, {how}"),
         case: tested.case.clone(),
         direction: tested.simulated.direction.map(|d| d.name().to_string()),
-        line: Line::of(&tested.curve),
+        line: Polyline::of(&tested.curve),
     }
 }

@@ -6,7 +6,7 @@ use super::page_values::rests_on;
 use super::rests_on::OF_PLATE;
 use crate::finding::{Fact, StudyFact};
 use crate::quantity::significant;
-use crate::report::html::{Block, Cell};
+use crate::report::html::{Block, TableCell};
 use crate::report::table::PredictionRow;
 
 /// Deflection over the bending thickness below which a linear solve is meaningful.
@@ -75,7 +75,7 @@ fn leading_table(reports: &[FabricReport], friction: bool) -> Option<Block> {
     };
     let line = |report: &FabricReport| {
         let cells = columns.iter().map(|column| leading_cell(report, column));
-        std::iter::once(Cell::from(&report.name)).chain(cells).collect()
+        std::iter::once(TableCell::from(&report.name)).chain(cells).collect()
     };
     (!columns.is_empty()).then(|| Block::Table {
         caption: leading_caption(&columns, friction),
@@ -111,7 +111,7 @@ fn unit(quantity: &str) -> &'static str {
     if is_drape(quantity) { "%" } else { "mm" }
 }
 
-fn leading_cell(report: &FabricReport, column: &Column) -> Cell {
+fn leading_cell(report: &FabricReport, column: &Column) -> TableCell {
     let Some(row) = found(report, &column.case, &column.quantity) else { return "-".into() };
     let text = |value: f64| {
         if is_drape(&row.quantity) { format!("{:.1}", 1e2 * value) } else { significant(1e3 * value) }
@@ -129,14 +129,14 @@ fn leading_cell(report: &FabricReport, column: &Column) -> Cell {
     let [least, greatest] = ["drape_coefficient_least", "drape_coefficient_greatest"]
         .map(|quantity| row_of(quantity).filter(|_| is_drape(&row.quantity)).and_then(|row| row.simulated));
     let band = least.zip(greatest).map_or(String::new(), |(a, b)| format!(" ({}–{})", text(a), text(b)));
-    Cell {
+    TableCell {
         text: format!("{}{band}{}", text(value), folds(counted.and_then(|row| row.simulated))),
         remark: [quick(report, &row.case), rests_on(report, &row.quantity)]
             .into_iter()
             .filter(|remark| !remark.is_empty())
             .collect::<Vec<_>>()
             .join("; "),
-        ..Cell::default()
+        ..TableCell::default()
     }
 }
 
@@ -162,13 +162,13 @@ pub(super) fn plates(reports: &[FabricReport]) -> Option<Block> {
     let line = |report: &FabricReport| {
         let cell = |case: &&str| {
             let found = report.relative_deflections.iter().find(|(name, _)| name == case);
-            found.map_or("-".into(), |(_, value)| Cell {
+            found.map_or("-".into(), |(_, value)| TableCell {
                 text: significant(*value),
                 remark: rests_on(report, OF_PLATE),
-                ..Cell::default()
+                ..TableCell::default()
             })
         };
-        std::iter::once(Cell::from(&report.name)).chain(cases.iter().map(cell)).collect()
+        std::iter::once(TableCell::from(&report.name)).chain(cases.iter().map(cell)).collect()
     };
     (!cases.is_empty()).then(|| Block::Table {
         caption: plates_caption(reports, &cases),
@@ -222,7 +222,7 @@ mod tests {
         }
     }
 
-    fn table(block: Option<Block>) -> (String, Vec<String>, Vec<Vec<Cell>>) {
+    fn table(block: Option<Block>) -> (String, Vec<String>, Vec<Vec<TableCell>>) {
         let Some(Block::Table { caption, header, rows, .. }) = block else { panic!("a table") };
         (caption, header, rows)
     }
@@ -262,7 +262,7 @@ mod tests {
         ];
         assert_eq!(header, expected);
         let cells = ["poplin", "64.7 (62.2–67.4), 7 folds", "50.0, 6 folds", "21.20"];
-        let mut expected = cells.map(Cell::from);
+        let mut expected = cells.map(TableCell::from);
         expected[1].remark = "quick, 1260 elements".into();
         assert_eq!(rows, [expected]);
         assert!(caption.contains("drape, and the bending length") && caption.contains("folds"), "{caption}");
@@ -270,7 +270,7 @@ mod tests {
         let expected =
             ["fabric", "drape coefficient (%): Drape with friction", "bending length warp (mm): cantilever"];
         assert_eq!(header, expected);
-        assert_eq!(rows, [["poplin", "70.0", "23.40"].map(Cell::from)]);
+        assert_eq!(rows, [["poplin", "70.0", "23.40"].map(TableCell::from)]);
         assert!(caption.contains("friction") && !caption.contains("measured value"), "{caption}");
     }
 

@@ -56,7 +56,7 @@ impl Pattern {
 
 /// Which matrix of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum MatrixKind {
     /// Stiffness.
     Stiffness,
     /// Mass, Eq. (12).
@@ -70,19 +70,24 @@ pub struct ElementMatrices<'a> {
     /// The section whose matrices are taken off.
     less: Option<&'a ShellSection>,
     group: DofGroup,
-    kind: Kind,
+    kind: MatrixKind,
     last: Option<[Point3<f64>; 4]>,
     matrix: Vec<f64>,
 }
 
 impl<'a> ElementMatrices<'a> {
     /// Matrices of one kind of `model` restricted to `group`.
-    pub fn new(model: &'a Model, group: DofGroup, kind: Kind) -> Self {
+    pub fn new(model: &'a Model, group: DofGroup, kind: MatrixKind) -> Self {
         Self { model, section: &model.section, less: None, group, kind, last: None, matrix: Vec::new() }
     }
 
     /// What they change by from one section to another.
-    pub fn change(model: &'a Model, [from, to]: [&'a ShellSection; 2], group: DofGroup, kind: Kind) -> Self {
+    pub fn change(
+        model: &'a Model,
+        [from, to]: [&'a ShellSection; 2],
+        group: DofGroup,
+        kind: MatrixKind,
+    ) -> Self {
         Self { section: to, less: Some(from), ..Self::new(model, group, kind) }
     }
 
@@ -109,14 +114,16 @@ impl<'a> ElementMatrices<'a> {
         let element: Prepared = self.model.element_of(section, quad, self.group != DofGroup::Shell)?;
         let matrix = &mut self.matrix;
         match (self.kind, self.group) {
-            (Kind::Stiffness, DofGroup::Plate) => {
+            (MatrixKind::Stiffness, DofGroup::Plate) => {
                 matrix.extend_from_slice(element.plate_stiffness().as_slice());
             }
-            (Kind::Stiffness, DofGroup::Membrane) => {
+            (MatrixKind::Stiffness, DofGroup::Membrane) => {
                 matrix.extend_from_slice(element.membrane_stiffness().as_slice());
             }
-            (Kind::Stiffness, DofGroup::Shell) => matrix.extend_from_slice(element.stiffness().as_slice()),
-            (Kind::Mass(mass), group) => {
+            (MatrixKind::Stiffness, DofGroup::Shell) => {
+                matrix.extend_from_slice(element.stiffness().as_slice())
+            }
+            (MatrixKind::Mass(mass), group) => {
                 let mass = mass.matrix(&element.frame, section);
                 of_group(mass.as_slice(), group, matrix);
             }
@@ -144,7 +151,7 @@ pub fn assemble(
     model: &Model,
     group: DofGroup,
     pattern: &Pattern,
-    terms: &[(Kind, f64)],
+    terms: &[(MatrixKind, f64)],
     held: &[bool],
 ) -> Result<BlockMatrix, MaterialAxisError> {
     let b = group.dofs().len();
@@ -248,7 +255,7 @@ pub fn internal_forces(
     low: &[f64],
 ) -> Result<Vec<f64>, MaterialAxisError> {
     let turns = rigid_rotations(model, group);
-    let elements = ElementMatrices::new(model, group, Kind::Stiffness);
+    let elements = ElementMatrices::new(model, group, MatrixKind::Stiffness);
     match group.dofs().len() {
         3 => products::<3>(elements, |nodes| deformation(model, group, turns, nodes, u, low)),
         _ => products::<6>(elements, |nodes| deformation(model, group, turns, nodes, u, low)),

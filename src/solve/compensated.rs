@@ -7,7 +7,7 @@
 
 use nalgebra::Vector3;
 
-use super::assemble::{ElementMatrices, Kind, rigid_rotations};
+use super::assemble::{ElementMatrices, MatrixKind, rigid_rotations};
 use crate::element::MaterialAxisError;
 use crate::model::{Dof, DofGroup, Model};
 
@@ -62,7 +62,7 @@ pub fn internal_forces(
 ) -> Result<Vec<f64>, MaterialAxisError> {
     let b = group.dofs().len();
     let turns = rigid_rotations(model, group);
-    let mut elements = ElementMatrices::new(model, group, Kind::Stiffness);
+    let mut elements = ElementMatrices::new(model, group, MatrixKind::Stiffness);
     let mut product = vec![0.0; model.mesh.nodes.len() * b];
     let mut forces = vec![Sum::default(); 4 * b];
     for (quad, nodes) in model.mesh.quads.iter().enumerate() {

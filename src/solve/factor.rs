@@ -19,7 +19,7 @@ use super::sparse::{BlockGraph, BlockMatrix};
 /// Largest number of dofs per node: the shell's six.
 pub const MAX_BLOCK: usize = 6;
 
-/// Which factorisation an [`Analysis`] prepares.
+/// Which factorisation a [`SymbolicAnalysis`] prepares.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Path {
     /// [`Multifrontal`](Self::Multifrontal): on grids of 10 to 320 elements a side it was the
@@ -40,7 +40,7 @@ pub const WORTH_THREADS: f64 = 1e8;
 ///
 /// It keeps the memory of a dropped factor, or of several small ones, for the next.
 #[derive(Debug)]
-pub struct Analysis {
+pub struct SymbolicAnalysis {
     graph: Arc<BlockGraph>,
     block: usize,
     symbolic: Symbolic,
@@ -67,7 +67,7 @@ pub fn analyse(
     block: usize,
     coordinates: Option<&[[f64; 3]]>,
     path: Path,
-) -> Result<Analysis, FactorError> {
+) -> Result<SymbolicAnalysis, FactorError> {
     analyse_ordered(graph, block, &order(graph, coordinates)?, path)
 }
 
@@ -83,7 +83,7 @@ pub fn analyse_ordered(
     block: usize,
     order: &Ordering,
     path: Path,
-) -> Result<Analysis, FactorError> {
+) -> Result<SymbolicAnalysis, FactorError> {
     assert!((1..=MAX_BLOCK).contains(&block), "{block} dofs per node");
     assert_eq!(order.node_at.len(), graph.nodes, "an order of the graph's nodes");
     let symbolic = match path {
@@ -92,7 +92,7 @@ pub fn analyse_ordered(
             Symbolic::Multifrontal(Arc::new(multifrontal::Symbolic::new(graph, block, order)))
         }
     };
-    Ok(Analysis { graph: Arc::clone(graph), block, symbolic })
+    Ok(SymbolicAnalysis { graph: Arc::clone(graph), block, symbolic })
 }
 
 /// Work of a good dissection in two dimensions, per (nodes)^1.5, in blocks: 17 to 19 on square
@@ -119,7 +119,7 @@ pub fn order(graph: &BlockGraph, coordinates: Option<&[[f64; 3]]>) -> Result<Ord
     Ok(if multifrontal::work(graph, &by_degree) < work { by_degree } else { dissected })
 }
 
-impl Analysis {
+impl SymbolicAnalysis {
     /// Factorises a matrix on the analysed graph, with at most `threads` threads.
     ///
     /// # Errors

@@ -5,10 +5,10 @@
 
 use std::sync::Arc;
 
-use super::assemble::{Kind, Pattern, assemble, internal_forces, unit_rows};
+use super::assemble::{MatrixKind, Pattern, assemble, internal_forces, unit_rows};
 use super::compensated::{self, two_sum};
 use super::error::SolveError;
-use super::factor::{Analysis, Counts, Factor};
+use super::factor::{Counts, Factor, SymbolicAnalysis};
 use super::iterative::{Iterative, Settings, SetupError, Stalled};
 use super::linear::{Options, Solution, System};
 use super::sparse::BlockMatrix;
@@ -32,7 +32,7 @@ const ROUND: f64 = 1e-6;
 /// How a group is to be solved.
 #[derive(Clone, Copy)]
 pub enum Approach<'a> {
-    Direct(&'a Analysis),
+    Direct(&'a SymbolicAnalysis),
     Iterative,
 }
 
@@ -143,7 +143,7 @@ impl<'a> Equations<'a> {
 
     /// The stiffness with unit rows at held dofs.
     pub fn matrix(&self) -> Result<BlockMatrix, SolveError> {
-        let terms = [(Kind::Stiffness, 1.0)];
+        let terms = [(MatrixKind::Stiffness, 1.0)];
         let mut matrix = assemble(self.model, self.group, self.pattern, &terms, &self.is_held)
             .map_err(ModelError::from)?;
         unit_rows(&mut matrix, &self.is_held);

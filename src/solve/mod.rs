@@ -19,5 +19,5 @@ pub use error::{SolveError, StepLimit};
 pub use linear::{
     Factors, MEMORY_LIMIT, Method, Options, Solution, System, Timings, solve, solve_keeping, solve_with,
 };
-pub use modal::{Mode, modes, modes_with};
+pub use modal::{VibrationMode, modes, modes_with};
 pub use plan::Plan;

@@ -4,8 +4,8 @@ mod dense;
 mod subspace;
 
 use super::SolveError;
-use super::assemble::{Kind, Pattern, assemble, unit_rows};
-use super::factor::Analysis;
+use super::assemble::{MatrixKind, Pattern, assemble, unit_rows};
+use super::factor::SymbolicAnalysis;
 use super::linear::Options;
 use super::plan::Plan;
 use super::sparse::BlockMatrix;
@@ -16,7 +16,7 @@ pub(super) use subspace::{Wanted, columns, nearest_about, of_either_sign, subspa
 
 /// One mode of vibration.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mode {
+pub struct VibrationMode {
     /// Angular frequency (rad/s); 0 for a rigid motion.
     pub angular_frequency: f64,
     /// Shape, six a node, with unit modal mass and a positive largest displacement.
@@ -25,7 +25,7 @@ pub struct Mode {
     pub group: DofGroup,
 }
 
-impl Mode {
+impl VibrationMode {
     /// Frequency (Hz).
     pub fn frequency(&self) -> f64 {
         self.angular_frequency / std::f64::consts::TAU
@@ -39,7 +39,12 @@ impl Mode {
 /// # Errors
 /// N001, N002 from the factorisation; N004 when the iteration does not settle; N008 for a sheet
 /// without mass.
-pub fn modes(model: &Model, count: usize, mass: Mass, options: &Options) -> Result<Vec<Mode>, SolveError> {
+pub fn modes(
+    model: &Model,
+    count: usize,
+    mass: Mass,
+    options: &Options,
+) -> Result<Vec<VibrationMode>, SolveError> {
     let plan = Plan::new(model, &Plan::all_groups(model, options), options.path)?;
     modes_with(model, &plan, count, mass, options)
 }
@@ -54,7 +59,7 @@ pub fn modes_with(
     count: usize,
     mass: Mass,
     options: &Options,
-) -> Result<Vec<Mode>, SolveError> {
+) -> Result<Vec<VibrationMode>, SolveError> {
     if model.section.areal_density <= 0.0 {
         return Err(SolveError::NoMass);
     }
@@ -69,22 +74,23 @@ pub fn modes_with(
 
 fn group_modes(
     model: &Model,
-    (pattern, group, analysis): (&Pattern, DofGroup, &Analysis),
+    (pattern, group, analysis): (&Pattern, DofGroup, &SymbolicAnalysis),
     count: usize,
     mass: Mass,
     options: &Options,
-) -> Result<Vec<Mode>, SolveError> {
+) -> Result<Vec<VibrationMode>, SolveError> {
     let held: Vec<bool> = model
         .held(&pattern.links)?
         .chunks_exact(6)
         .flat_map(|node| group.dofs().iter().map(|d| node[*d as usize].is_some()))
         .collect();
-    let kind = Kind::Mass(mass);
+    let kind = MatrixKind::Mass(mass);
     let mass = assemble(model, group, pattern, &[(kind, 1.0)], &held).map_err(ModelError::from)?;
     // A small shift makes rigid motions regular; it is taken off the eigenvalues again.
     let shift = shift(model, group);
-    let mut stiffness = assemble(model, group, pattern, &[(Kind::Stiffness, 1.0), (kind, shift)], &held)
-        .map_err(ModelError::from)?;
+    let mut stiffness =
+        assemble(model, group, pattern, &[(MatrixKind::Stiffness, 1.0), (kind, shift)], &held)
+            .map_err(ModelError::from)?;
     unit_rows(&mut stiffness, &held);
     let threads = analysis.worth(options.threads);
     let factor = analysis.factorise(&stiffness, threads).map_err(|e| SolveError::of(e, model, group))?;
@@ -142,14 +148,14 @@ pub(super) fn shift(model: &Model, group: DofGroup) -> f64 {
     stiffness / s.areal_density
 }
 
-fn mode(group: DofGroup, eigenvalue: f64, shift: f64, part: &[f64]) -> Mode {
+fn mode(group: DofGroup, eigenvalue: f64, shift: f64, part: &[f64]) -> VibrationMode {
     let n = part.len() / group.dofs().len();
     let mut shape = vec![0.0; 6 * n];
     group.scatter(part, &mut shape);
     turn_positive(&mut shape);
     // What is left of the shift by rounding is a rigid motion.
     let eigenvalue = if eigenvalue.abs() < 1e-6 * shift { 0.0 } else { eigenvalue.max(0.0) };
-    Mode { angular_frequency: eigenvalue.sqrt(), shape, group }
+    VibrationMode { angular_frequency: eigenvalue.sqrt(), shape, group }
 }
 
 /// Gives a shape, six a node, the sign with which its largest displacement is positive.

@@ -6,8 +6,8 @@ use schemars::JsonSchema;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use super::assemble::{Kind, Pattern, assemble, unit_rows};
-use super::factor::{Analysis, Factor};
+use super::assemble::{MatrixKind, Pattern, assemble, unit_rows};
+use super::factor::{Factor, SymbolicAnalysis};
 use super::linear::Options;
 use super::plan::Plan;
 use super::sparse::BlockMatrix;
@@ -246,7 +246,7 @@ struct System<'a> {
     model: &'a Model,
     group: DofGroup,
     links: Arc<Links>,
-    analysis: &'a Analysis,
+    analysis: &'a SymbolicAnalysis,
     threads: usize,
     stiffness: BlockMatrix,
     mass: BlockMatrix,
@@ -271,7 +271,7 @@ struct Trial {
 impl<'a> System<'a> {
     fn new(
         model: &'a Model,
-        (pattern, group, analysis): (&Pattern, DofGroup, &'a Analysis),
+        (pattern, group, analysis): (&Pattern, DofGroup, &'a SymbolicAnalysis),
         settings: &Settings,
         options: &Options,
     ) -> Result<Self, SolveError> {
@@ -291,8 +291,8 @@ impl<'a> System<'a> {
             links: Arc::clone(&pattern.links),
             analysis,
             threads: options.threads,
-            stiffness: matrix(Kind::Stiffness)?,
-            mass: matrix(Kind::Mass(settings.mass))?,
+            stiffness: matrix(MatrixKind::Stiffness)?,
+            mass: matrix(MatrixKind::Mass(settings.mass))?,
             damping: settings.damping,
             scheme: settings.scheme,
             held,

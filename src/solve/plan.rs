@@ -2,7 +2,7 @@
 
 use super::SolveError;
 use super::assemble::Pattern;
-use super::factor::{self, Analysis, Path};
+use super::factor::{self, Path, SymbolicAnalysis};
 use super::linear::{Method, Options};
 use crate::model::{Dof, DofGroup, Model};
 use crate::platform::Stopwatch;
@@ -11,7 +11,7 @@ use crate::platform::Stopwatch;
 #[derive(Debug)]
 pub struct Plan {
     pub(super) pattern: Pattern,
-    pub(super) groups: Vec<(DofGroup, Analysis)>,
+    pub(super) groups: Vec<(DofGroup, SymbolicAnalysis)>,
     /// Groups that are solved by iteration.
     pub(super) iterated: Vec<DofGroup>,
     /// Spent on pattern and order, and on the symbolic factorisations.

@@ -9,7 +9,7 @@ use super::effort::within_limits;
 use super::limits::Extent;
 use super::{Case, StudyError, build, placed, refused, sheet_problem};
 use crate::case::{Analysis, Newmark, Outline, ProbePoint, Problem, Sheet, SheetProblem};
-use crate::fields::{Finder, Line, Locator, Recovery};
+use crate::fields::{Finder, Locator, Recovery, SampledLine};
 use crate::finding::Located;
 use crate::mesh::QuadMesh;
 use crate::model::{DofGroup, Model};
@@ -36,7 +36,7 @@ pub struct PreparedCase<'a> {
     pub(super) probes: Vec<Locator>,
     pub(super) extent: Extent,
     /// The middle line along x.
-    pub(super) middle: Line,
+    pub(super) middle: SampledLine,
     /// Made when a result first asks for it.
     pub(super) recovery: Arc<OnceLock<Recovery>>,
     /// The case on coarser meshes, coarsest first.
@@ -118,7 +118,7 @@ impl<'a> PreparedCase<'a> {
             (damped && all != groups).then(|| Plan::direct(&model, &all, options)).transpose()?;
         let probes = locators(case, problem, &model.mesh)?;
         let [from, to] = middle_line(&model.mesh);
-        let middle = Line::new(&model.mesh, &from, &to, STEPS);
+        let middle = SampledLine::new(&model.mesh, &from, &to, STEPS);
         let extent = Extent::of(&model.mesh, matches!(sheet.outline, Outline::File { .. }));
         Ok(Self {
             case,

@@ -252,7 +252,7 @@ pub(super) enum Kept {
     /// Of an analysis that is not linear.
     Nothing,
     Factors(Factors),
-    Modes(Vec<solve::Mode>, Mass),
+    Modes(Vec<solve::VibrationMode>, Mass),
 }
 
 impl Outcome {

@@ -265,7 +265,7 @@ fn analyse(
             if let Some(first) = shapes.first() {
                 solution.displacement.clone_from(first);
             }
-            let frequencies = modes.iter().map(solve::Mode::frequency).collect();
+            let frequencies = modes.iter().map(solve::VibrationMode::frequency).collect();
             let findings = (modes.len() < modal.modes).then(|| fewer_modes(case, modes.len(), modal.modes));
             Ok(Outcome {
                 frequencies,

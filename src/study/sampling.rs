@@ -24,7 +24,7 @@ use crate::constitutive::{self, Assumptions, Constitutive, Input, law_inputs, pe
 use crate::finding::{Finding, Place, StudyFact};
 use crate::instrument::{Direction, Parameter, Test};
 use crate::law::Mode;
-use crate::quantity::{Estimate, Population, Sampled, sampled, sobol_points};
+use crate::quantity::{Estimate, Sampled, SampledPopulation, sampled, sobol_points};
 use crate::solve::Options;
 
 /// The results of a case with their bands.
@@ -274,7 +274,7 @@ impl Sampler<'_> {
             }
         }
         if !spread.is_empty() && quantities.iter().any(|q| q.without_spread.is_empty()) {
-            for population in [Population::MeanFabric, Population::NextSpecimen] {
+            for population in [SampledPopulation::MeanFabric, SampledPopulation::NextSpecimen] {
                 self.band(sheet, &spread, population, &mut quantities, watch);
                 if (watch.stopped)() {
                     return Err(StudyError::Stopped);
@@ -291,7 +291,7 @@ impl Sampler<'_> {
         &self,
         sheet: &FabricSheet,
         inputs: &[Input],
-        population: Population,
+        population: SampledPopulation,
         quantities: &mut [SampledQuantity],
         watch: Watch<'_>,
     ) {
@@ -309,8 +309,8 @@ impl Sampler<'_> {
         let bands = sampled(&points, quantities.len(), at, watch.stage);
         for (q, band) in quantities.iter_mut().zip(bands).filter(|(q, _)| q.without_spread.is_empty()) {
             match population {
-                Population::MeanFabric => q.mean_fabric = band,
-                Population::NextSpecimen => q.next_specimen = band,
+                SampledPopulation::MeanFabric => q.mean_fabric = band,
+                SampledPopulation::NextSpecimen => q.next_specimen = band,
             }
         }
     }

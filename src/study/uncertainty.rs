@@ -15,8 +15,8 @@ use crate::fields::{Locator, Recovery, Resultants};
 use crate::model::{Dof, DofGroup, Load, Model, ModelError};
 use crate::quantity::Bands;
 use crate::section::ShellSection;
-use crate::solve::assemble::{ElementMatrices, Kind, multiply};
-use crate::solve::{Factors, Mode, Solution};
+use crate::solve::assemble::{ElementMatrices, MatrixKind, multiply};
+use crate::solve::{Factors, Solution, VibrationMode};
 
 /// The predictions of a linear case and the inputs behind them.
 #[derive(Clone, Debug, PartialEq)]
@@ -173,13 +173,13 @@ const APART: f64 = 1e-4;
 /// The uncertainty of natural frequencies (Hz); of a repeated frequency there is none.
 pub(super) fn modal_uncertainty(
     model: &Model,
-    (modes, mass): (&[Mode], Mass),
+    (modes, mass): (&[VibrationMode], Mass),
     inputs: &[Input],
 ) -> Result<Uncertainty, StudyError> {
     let mut predictions = Vec::new();
     for (i, mode) in modes.iter().enumerate() {
         let value = mode.frequency();
-        let apart = |other: &Mode| (other.frequency() - value).abs() > APART * value;
+        let apart = |other: &VibrationMode| (other.frequency() - value).abs() > APART * value;
         if value == 0.0 || !modes.iter().enumerate().all(|(j, other)| i == j || apart(other)) {
             continue;
         }
@@ -188,7 +188,7 @@ pub(super) fn modal_uncertainty(
             .map(|input| {
                 let work = |kind| quadratic_change(model, &input.derivative, mode, kind);
                 let square = mode.angular_frequency.powi(2);
-                Ok(0.5 * value * (work(Kind::Stiffness)? / square - work(Kind::Mass(mass))?))
+                Ok(0.5 * value * (work(MatrixKind::Stiffness)? / square - work(MatrixKind::Mass(mass))?))
             })
             .collect::<Result<_, ModelError>>()?;
         predictions.push(Prediction::new(format!("frequency_{}", i + 1), "1/s", value, derivatives, inputs));
@@ -200,8 +200,8 @@ pub(super) fn modal_uncertainty(
 fn quadratic_change(
     model: &Model,
     derivative: &SectionDerivative,
-    mode: &Mode,
-    kind: Kind,
+    mode: &VibrationMode,
+    kind: MatrixKind,
 ) -> Result<f64, ModelError> {
     let shape = mode.group.gather(&mode.shape);
     let [down, up] = stepped(model, derivative);
@@ -291,7 +291,7 @@ impl Change {
         });
         let mut internal = vec![0.0; u.len()];
         for group in &groups {
-            let elements = ElementMatrices::change(model, [&down, &up], *group, Kind::Stiffness);
+            let elements = ElementMatrices::change(model, [&down, &up], *group, MatrixKind::Stiffness);
             let change = multiply(elements, &group.gather(u))?;
             group.scatter(&change.into_iter().map(slope).collect::<Vec<f64>>(), &mut internal);
         }

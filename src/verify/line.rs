@@ -91,9 +91,9 @@ pub const RESIDUAL: f64 = 1e-8;
 
 /// How a line came out.
 #[derive(Clone, Debug)]
-pub struct Outcome {
+pub struct LineOutcome {
     /// The value, the reference and their difference; or why there are none.
-    pub result: Result<Comparison, VerifyError>,
+    pub result: Result<ComparedValue, VerifyError>,
     /// Largest `|K u - f| / |f|` of the linear static models that were solved; `None` without any.
     pub residual: Option<f64>,
     /// Whether the difference is within the tolerance.
@@ -106,7 +106,7 @@ pub struct Outcome {
 
 /// A value beside its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Comparison {
+pub struct ComparedValue {
     /// What this program gives.
     pub value: f64,
     /// What it should be.
@@ -117,7 +117,7 @@ pub struct Comparison {
 
 impl Line {
     /// Solves the problem and compares.
-    pub fn check(&self) -> Outcome {
+    pub fn check(&self) -> LineOutcome {
         let watch = Stopwatch::start();
         let mut statics = Statics::default();
         let result = self.compare(&mut statics);
@@ -130,10 +130,10 @@ impl Line {
             Expected::Beyond => beyond,
         };
         let pass = known && residual.is_none_or(|r| r <= RESIDUAL);
-        Outcome { result, residual, within, pass, seconds: watch.seconds() }
+        LineOutcome { result, residual, within, pass, seconds: watch.seconds() }
     }
 
-    fn compare(&self, statics: &mut Statics) -> Result<Comparison, VerifyError> {
+    fn compare(&self, statics: &mut Statics) -> Result<ComparedValue, VerifyError> {
         let (value, at) = self.problem.value(statics)?;
         let reference = match self.reference {
             Reference::Number(number) => number,
@@ -146,7 +146,7 @@ impl Line {
             Tolerance::Relative(_) => difference / reference,
             Tolerance::Absolute(_) => difference,
         };
-        Ok(Comparison { value, reference, error })
+        Ok(ComparedValue { value, reference, error })
     }
 }
 

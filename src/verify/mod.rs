@@ -19,19 +19,22 @@ use std::ops::ControlFlow;
 
 pub use error::VerifyError;
 pub use function::Function;
-pub use line::{Comparison, Expected, Kind, Line, Outcome, RESIDUAL, Reference, Tolerance};
+pub use line::{ComparedValue, Expected, Kind, Line, LineOutcome, RESIDUAL, Reference, Tolerance};
 pub use paper::{Claim, CurveChart, PaperCurve, SheetPicture, claims};
 pub use paper_table::{CheckedClaim, paper_document, paper_text};
 pub use problem::Problem;
 pub use problem::plate::BentPlate;
 pub use suite::suite;
-pub use table::{Checked, Document, LineEntry, document, text};
+pub use table::{CheckedLine, Document, LineEntry, document, text};
 
 use crate::platform;
 
 /// Checks the lines on all threads; the outcomes are in the order of the lines. `observe` sees each
 /// outcome, in any order, and may stop the work: then there is no result.
-pub fn run(lines: &[Line], observe: impl Fn(&Outcome) -> ControlFlow<()> + Sync) -> Option<Vec<Outcome>> {
+pub fn run(
+    lines: &[Line],
+    observe: impl Fn(&LineOutcome) -> ControlFlow<()> + Sync,
+) -> Option<Vec<LineOutcome>> {
     let check = |line: &Line| {
         let outcome = line.check();
         observe(&outcome).is_continue().then_some(outcome)

@@ -1,17 +1,17 @@
 //! The claims of the paper as a table and as a document.
 
-use super::line::{Expected, Line, Outcome};
+use super::line::{Expected, Line, LineOutcome};
 use super::paper::Claim;
-use super::table::{Checked, ClaimEntry, Document, aligned, document, given, row, summary};
+use super::table::{CheckedLine, ClaimEntry, Document, aligned, document, given, row, summary};
 
 /// A claim with what came out of its lines.
-pub type CheckedClaim<'a> = (&'a Claim, Vec<Checked<'a>>);
+pub type CheckedClaim<'a> = (&'a Claim, Vec<CheckedLine<'a>>);
 
 const HEADINGS: [&str; 7] = ["line", " value", " reference", "error", "bound", "printed", ""];
 
 /// Each claim with its place, its lines and what they show.
 pub fn paper_text(all: &[CheckedClaim<'_>], seconds: f64) -> String {
-    let lines: Vec<Checked<'_>> = all.iter().flat_map(|(_, lines)| lines).copied().collect();
+    let lines: Vec<CheckedLine<'_>> = all.iter().flat_map(|(_, lines)| lines).copied().collect();
     let rows: Vec<[String; 7]> = lines.iter().map(claimed).collect();
     let width: Vec<usize> = (0..7)
         .map(|c| {
@@ -44,9 +44,9 @@ fn labelled(name: &str, text: &str) -> String {
 }
 
 /// Id, value, reference, error, bound, what the paper prints, and whether the value is within the bound, as it is known to be.
-fn claimed(checked: &Checked<'_>) -> [String; 7] {
+fn claimed(checked: &CheckedLine<'_>) -> [String; 7] {
     let [id, value, reference, error, bound, _] = row(checked);
-    let (line, outcome): (&Line, &Outcome) = *checked;
+    let (line, outcome): (&Line, &LineOutcome) = *checked;
     let printed = line.published.map_or_else(|| "none".into(), given);
     let verdict = match (outcome.pass, line.expected) {
         (true, Expected::Within) => "holds",
@@ -58,7 +58,7 @@ fn claimed(checked: &Checked<'_>) -> [String; 7] {
 
 /// `kesf.verify/1` with the claims.
 pub fn paper_document(all: &[CheckedClaim<'_>], seconds: f64) -> Document {
-    let lines: Vec<Checked<'_>> = all.iter().flat_map(|(_, lines)| lines).copied().collect();
+    let lines: Vec<CheckedLine<'_>> = all.iter().flat_map(|(_, lines)| lines).copied().collect();
     let claims = all.iter().map(|(claim, _)| ClaimEntry {
         id: claim.id.clone(),
         title: claim.title.clone(),

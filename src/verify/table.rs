@@ -5,19 +5,19 @@ use std::borrow::Cow;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::line::{Expected, Kind, Line, Outcome, RESIDUAL, Tolerance};
+use super::line::{Expected, Kind, Line, LineOutcome, RESIDUAL, Tolerance};
 
 /// A line of the suite with what came out.
-pub type Checked<'a> = (&'a Line, &'a Outcome);
+pub type CheckedLine<'a> = (&'a Line, &'a LineOutcome);
 
 /// The line with the largest residual of a linear solve.
-fn worst<'a>(all: &[Checked<'a>]) -> Option<(&'a Line, f64)> {
+fn worst<'a>(all: &[CheckedLine<'a>]) -> Option<(&'a Line, f64)> {
     let residuals = all.iter().filter_map(|(line, outcome)| Some((*line, outcome.residual?)));
     residuals.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Groups of lines that share quantity, kind and source under one heading; columns run through.
-pub fn text(all: &[Checked<'_>], seconds: f64) -> String {
+pub fn text(all: &[CheckedLine<'_>], seconds: f64) -> String {
     let rows: Vec<[String; 6]> = all.iter().map(row).collect();
     let names = ["line", " value", " reference", "error", "tolerance", ""];
     let width: Vec<usize> = (0..6)
@@ -37,7 +37,7 @@ pub fn text(all: &[Checked<'_>], seconds: f64) -> String {
 }
 
 /// Id, value, reference, error, tolerance, and whether it holds.
-pub(super) fn row((line, outcome): &Checked<'_>) -> [String; 6] {
+pub(super) fn row((line, outcome): &CheckedLine<'_>) -> [String; 6] {
     let relative = matches!(line.tolerance, Tolerance::Relative(_));
     let share = |v: f64| if relative { percent(v) } else { signed(v) };
     let [value, reference, error] = match &outcome.result {
@@ -64,7 +64,7 @@ pub(super) fn aligned<const N: usize>(cells: &[String; N], width: &[usize]) -> S
 }
 
 /// Counts by kind, the worst residual, what fails, and the time.
-pub(super) fn summary(all: &[Checked<'_>], seconds: f64) -> String {
+pub(super) fn summary(all: &[CheckedLine<'_>], seconds: f64) -> String {
     let mut text = String::from("\n");
     for kind in [Kind::Analytical, Kind::Independent, Kind::Published] {
         let of: Vec<_> = all.iter().filter(|(line, _)| line.kind == kind).collect();
@@ -197,7 +197,7 @@ pub struct LineEntry {
 }
 
 /// The document of checked lines.
-pub fn document(all: &[Checked<'_>], seconds: f64) -> Document {
+pub fn document(all: &[CheckedLine<'_>], seconds: f64) -> Document {
     Document {
         schema: "kesf.verify/1".into(),
         lines: all.iter().map(line_entry).collect(),
@@ -209,7 +209,7 @@ pub fn document(all: &[Checked<'_>], seconds: f64) -> Document {
     }
 }
 
-fn line_entry((line, outcome): &Checked<'_>) -> LineEntry {
+fn line_entry((line, outcome): &CheckedLine<'_>) -> LineEntry {
     let (tolerance_of, tolerance) = match line.tolerance {
         Tolerance::Relative(limit) => ("relative", limit),
         Tolerance::Absolute(limit) => ("absolute", limit),

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::identify::{Path, relaxing};
 use super::strip_memory::{LAG, StripMemory};
 use super::{BACK, Basis, CycleFit, FrictionLaw, GIVEN, LoopFit, WORST_FIT, stresses};
-use crate::characterise::{Branch, Strip};
+use crate::characterise::{Branch, StripTest};
 use crate::instrument::Test;
 use crate::instrument::fab::FabKind;
 
@@ -16,7 +16,7 @@ use crate::instrument::fab::FabKind;
 ///
 /// # Errors
 /// Why the strip has none.
-pub(super) fn law(index: usize, strip: &Strip) -> Result<FrictionLaw, &'static str> {
+pub(super) fn law(index: usize, strip: &StripTest) -> Result<FrictionLaw, &'static str> {
     let law = fitted(index, strip).ok_or("its last cycle has too few samples")?;
     let fit = law.fit.as_ref().map_or(CycleFit::default(), |fit| fit.fitted);
     if !returns(strip) {
@@ -31,7 +31,7 @@ pub(super) fn law(index: usize, strip: &Strip) -> Result<FrictionLaw, &'static s
 }
 
 /// Whether the clamps come back in the last cycle.
-fn returns(strip: &Strip) -> bool {
+fn returns(strip: &StripTest) -> bool {
     let travel = |outgoing: bool| {
         let last = strip.cycles.last().into_iter().flat_map(|c| &c.branches);
         let length = |b: &Branch| b.curve.x.first().zip(b.curve.x.last()).map_or(0.0, |(a, z)| (z - a).abs());
@@ -40,7 +40,7 @@ fn returns(strip: &Strip) -> bool {
     travel(false) > BACK * travel(true)
 }
 
-fn fitted(index: usize, strip: &Strip) -> Option<FrictionLaw> {
+fn fitted(index: usize, strip: &StripTest) -> Option<FrictionLaw> {
     let History { path, cycles, time, mut memory } = history(strip)?;
     let along = Path { strain: memory.effective(&path.strain), ..path.clone() };
     let (channel, relaxation) = relaxing(&along, Some(&time))?;
@@ -63,7 +63,7 @@ fn fitted(index: usize, strip: &Strip) -> Option<FrictionLaw> {
 }
 
 /// 1 for the short, 2 for the long clamp distance.
-pub(super) fn number(strip: &Strip) -> usize {
+pub(super) fn number(strip: &StripTest) -> usize {
     if strip.kind == FabKind::S1 { 1 } else { 2 }
 }
 
@@ -80,7 +80,7 @@ pub(super) struct History {
 }
 
 /// The recorded cycles; `None` if the clamps never pass the onset of the last.
-pub(super) fn history(strip: &Strip) -> Option<History> {
+pub(super) fn history(strip: &StripTest) -> Option<History> {
     let mut force = Vec::new();
     let mut distance = Vec::new();
     let mut ends = vec![0];

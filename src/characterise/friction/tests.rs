@@ -287,7 +287,7 @@ fn strips_of_a_real_cupro_weave() {
 /// of the last, and the arm is found where there is one.
 #[test]
 fn a_set_and_a_relaxation_are_found() {
-    use crate::characterise::{Branch, Strip, StripCycle};
+    use crate::characterise::{Branch, StripCycle, StripTest};
     use crate::instrument::{Direction, fab::FabKind};
     use crate::quantity::Curve;
     let (first_length, set, constant) = (0.02, 0.15, 6.0f64);
@@ -340,7 +340,7 @@ fn a_set_and_a_relaxation_are_found() {
                 fits: Vec::new(),
             });
         }
-        Strip { direction: Direction::Warp, kind: FabKind::S1, width: 0.05, cycles }
+        StripTest { direction: Direction::Warp, kind: FabKind::S1, width: 0.05, cycles }
     };
     for share in [0.0, 0.2] {
         let law = super::strip::law(0, &strip(share)).unwrap();

@@ -107,16 +107,11 @@ impl Table<'_, '_> {
             self.numbers_of_specimens();
             return;
         }
-        let direction = |index: Option<usize>| match index {
-            Some(1) => Some(Direction::Warp),
-            Some(2) => Some(Direction::Weft),
-            _ => None,
-        };
         for d in self.data.iter_mut().filter(|d| d.parameter.is_directional()) {
-            (d.direction, d.index) = (direction(d.index), None);
+            (d.direction, d.index) = (numbered_direction(d.index), None);
         }
         for f in &mut self.fast {
-            f.direction = f.direction.or(direction(f.index));
+            f.direction = f.direction.or(numbered_direction(f.index));
         }
         if !is_fast_table {
             let place = Place::at(self.context.path, self.layout.line, 0);
@@ -156,5 +151,14 @@ impl Table<'_, '_> {
             let place = Place::at(self.context.path, self.layout.line, 0);
             self.findings.push(Finding::new(ReadFact::NumbersAsSpecimens { keys }).at(place));
         }
+    }
+}
+
+/// The direction that 1 and 2 behind a symbol stand for.
+const fn numbered_direction(index: Option<usize>) -> Option<Direction> {
+    match index {
+        Some(1) => Some(Direction::Warp),
+        Some(2) => Some(Direction::Weft),
+        _ => None,
     }
 }

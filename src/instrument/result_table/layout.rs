@@ -244,13 +244,10 @@ impl Layout {
         for c in self.values.iter().filter(|c| c.facets.statistic.is_none()) {
             groups.entry(key(c)).or_default().insert(c.facets.index);
         }
-        let count = |indices: &BTreeSet<Option<usize>>| {
-            let numbers: Vec<usize> = indices.iter().flatten().copied().collect();
-            let run = numbers.windows(2).all(|pair| pair[1] == pair[0] + 1);
-            !indices.contains(&None) && run && (numbers.len() > 1 || numbers == [1] || numbers == [2])
-        };
         self.values.retain(|c| {
-            c.facets.index.is_none() || c.facets.statistic.is_some() || groups.get(&key(c)).is_none_or(count)
+            c.facets.index.is_none()
+                || c.facets.statistic.is_some()
+                || groups.get(&key(c)).is_none_or(numbers_count_specimens)
         });
     }
 
@@ -440,4 +437,11 @@ impl Heads {
         let default = region.heads.last().map_or((0, 0), |h| (h.line, h.column(index)));
         (all, names.join(" "), place.unwrap_or(default))
     }
+}
+
+/// Whether the numbers of columns count specimens: they follow each other, and no column is without one.
+fn numbers_count_specimens(indices: &BTreeSet<Option<usize>>) -> bool {
+    let numbers: Vec<usize> = indices.iter().flatten().copied().collect();
+    let run = numbers.windows(2).all(|pair| pair[1] == pair[0] + 1);
+    !indices.contains(&None) && run && (numbers.len() > 1 || numbers == [1] || numbers == [2])
 }

@@ -6,9 +6,9 @@ use std::path::{Component, Path, PathBuf};
 
 /// Files by their absolute paths. There is a folder where there is a file below it; relative paths begin at the root.
 #[derive(Debug, Default)]
-pub struct Tree(BTreeMap<PathBuf, Vec<u8>>);
+pub struct FileTree(BTreeMap<PathBuf, Vec<u8>>);
 
-impl Tree {
+impl FileTree {
     /// Without a file.
     pub const fn new() -> Self {
         Self(BTreeMap::new())
@@ -105,7 +105,7 @@ mod tests {
     fn a_tree_answers_as_a_disk() {
         let folder = tempfile::tempdir().unwrap();
         let root = folder.path().canonicalize().unwrap();
-        let mut tree = Tree::new();
+        let mut tree = FileTree::new();
         for name in ["poplin/fabric.toml", "poplin/raw/fb2.csv", "poplin.csv", "twill/a.csv", "a.toml"] {
             let path = root.join(name);
             std::fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -143,7 +143,7 @@ mod tests {
 
     #[test]
     fn relative_paths_begin_at_the_root_and_files_come_out_again() {
-        let mut tree = Tree::new();
+        let mut tree = FileTree::new();
         tree.put(Path::new("poplin/a.csv"), b"1".to_vec());
         tree.put(Path::new("../poplin/b.csv"), b"2".to_vec());
         assert_eq!(

@@ -124,7 +124,7 @@ pub struct SpecimenCurves {
     /// Its number, from 1.
     pub specimen: usize,
     /// Branches in recorded order, thinned.
-    pub branches: Vec<Line>,
+    pub branches: Vec<Polyline>,
     /// Windows of fits and readings: symbol, abscissae and ordinates of both ends.
     pub windows: Vec<(String, [f64; 2], [f64; 2])>,
 }
@@ -139,19 +139,19 @@ pub struct SimulatedLine {
     /// `warp`, `weft` or `bias`.
     pub direction: Option<String>,
     /// The curve.
-    pub line: Line,
+    pub line: Polyline,
 }
 
 /// Points of a line (SI) to five significant digits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Line {
+pub struct Polyline {
     /// Abscissae.
     pub x: Vec<f64>,
     /// Ordinates.
     pub y: Vec<f64>,
 }
 
-impl Line {
+impl Polyline {
     /// At most [`POINTS`] points of a curve.
     pub fn of(curve: &Curve) -> Self {
         let thin = curve.thinned(POINTS);

@@ -26,13 +26,13 @@ pub use data::POINTS;
 #[cfg(feature = "results")]
 pub(crate) use data::shortened;
 pub use data::{
-    AxisEntry, Column, FabricValues, Line, PageData, SimulatedLine, SpecimenCurves, TestCurves, Value,
+    AxisEntry, Column, FabricValues, PageData, Polyline, SimulatedLine, SpecimenCurves, TestCurves, Value,
 };
 pub use figure::{Figure, FigureKind};
 pub use one_file::{LIMIT, OneFile, self_contained};
 pub use problems::{DoubtfulValue, Problem, ProblemGroup};
-pub use shapes::{Shape, ShapeField, Shapes};
-pub use tables::{Cell, IndexLine};
+pub use shapes::{DeflectedShape, ShapeField, Shapes};
+pub use tables::{IndexLine, TableCell};
 pub use text::{fabric_id, local, without_folders};
 
 use text::{address, breakable, escape, prose};
@@ -93,7 +93,7 @@ pub enum Block {
         /// Column headings.
         header: Vec<String>,
         /// Cells by row; a short row ends in empty cells.
-        rows: Vec<Vec<Cell>>,
+        rows: Vec<Vec<TableCell>>,
         /// Whether each row is of the fabric that its first cell names, which then leads to it: the script filters and sorts them.
         of_fabrics: bool,
     },

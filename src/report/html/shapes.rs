@@ -21,7 +21,7 @@ const BYTES: usize = 1_000_000;
 
 /// A deflected sheet of a fabric.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Shape {
+pub struct DeflectedShape {
     /// Place in [`PageData::fabrics`](super::PageData::fabrics).
     pub fabric: usize,
     /// Whether it is a drape, which comes first where there is not room for all.
@@ -89,7 +89,7 @@ fn parts(values: &[f64], largest: f64) -> String {
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Shapes {
     /// The sheets.
-    pub sheets: Vec<Shape>,
+    pub sheets: Vec<DeflectedShape>,
     /// Quads of meshes.
     pub quads: Vec<String>,
     /// The fabrics of those that are not here, to keep the page small: one place a sheet.
@@ -97,7 +97,7 @@ pub struct Shapes {
 }
 
 #[cfg(feature = "results")]
-impl Shape {
+impl DeflectedShape {
     /// A sheet for the page; `None` if it is too large for it.
     ///
     /// # Errors
@@ -145,8 +145,8 @@ impl Shape {
 impl Shapes {
     /// Those that a page has room for: drapes first, then what is shown as it is, then what is shown larger; each in
     /// their order.
-    pub fn of(sheets: impl Iterator<Item = Shape>) -> Self {
-        let mut sheets: Vec<Shape> = sheets.collect();
+    pub fn of(sheets: impl Iterator<Item = DeflectedShape>) -> Self {
+        let mut sheets: Vec<DeflectedShape> = sheets.collect();
         sheets.sort_by_key(|sheet| (!sheet.is_drape, sheet.scale != 1.0));
         let mut all = Self::default();
         let mut known: BTreeMap<String, usize> = BTreeMap::new();
@@ -198,7 +198,7 @@ pub(super) fn left_out(out: &mut String, shapes: &Shapes, fabric: usize) {
 mod tests {
     use super::*;
 
-    fn shape(nodes: usize) -> Shape {
+    fn shape(nodes: usize) -> DeflectedShape {
         let rest: Vec<[f64; 3]> = (0..nodes).map(|i| [(i / 2) as f64, (i % 2) as f64, 0.0]).collect();
         let quads: Vec<[u32; 4]> =
             (0..nodes as u32 / 2 - 1).map(|i| [2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1]).collect();
@@ -211,7 +211,7 @@ mod tests {
             quads: &quads,
             outline: &[[0, 1]],
         };
-        Shape::of(&sheet, "a/b.glb".into()).unwrap().unwrap()
+        DeflectedShape::of(&sheet, "a/b.glb".into()).unwrap().unwrap()
     }
 
     #[test]
@@ -230,9 +230,9 @@ mod tests {
     /// The shipped drapes have 5220 nodes.
     #[test]
     fn drapes_are_in_the_page_before_anything_else_and_what_is_not_is_told() {
-        let plate = |fabric| Shape { fabric, scale: 200.0, ..shape(3000) };
-        let strip = |fabric| Shape { fabric, ..shape(2000) };
-        let drape = |fabric| Shape { fabric, is_drape: true, ..shape(5220) };
+        let plate = |fabric| DeflectedShape { fabric, scale: 200.0, ..shape(3000) };
+        let strip = |fabric| DeflectedShape { fabric, ..shape(2000) };
+        let drape = |fabric| DeflectedShape { fabric, is_drape: true, ..shape(5220) };
         let page = Shapes::of((0..20).flat_map(|at| [plate(at), strip(at), drape(at)]));
         let drapes = page.sheets.iter().filter(|sheet| sheet.is_drape).count();
         assert!(drapes >= 10, "{drapes}");

@@ -6,7 +6,7 @@ use super::text::{address, breakable, escape, fabric_id, prose};
 
 /// A cell of a table.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Cell {
+pub struct TableCell {
     /// What it says.
     pub text: String,
     /// What speaks against it; empty for nothing.
@@ -15,7 +15,7 @@ pub struct Cell {
     pub leads_to: Option<(String, String)>,
 }
 
-impl<T: Into<String>> From<T> for Cell {
+impl<T: Into<String>> From<T> for TableCell {
     fn from(text: T) -> Self {
         Self { text: text.into(), ..Self::default() }
     }
@@ -45,12 +45,12 @@ impl IndexLine {
     }
 
     /// The cells of its row.
-    pub fn row(&self) -> Vec<Cell> {
-        let first = Cell {
+    pub fn row(&self) -> Vec<TableCell> {
+        let first = TableCell {
             leads_to: Some((self.page.to_string(), self.name.to_string())),
-            ..Cell::from(self.name.as_ref())
+            ..TableCell::from(self.name.as_ref())
         };
-        std::iter::once(first).chain(self.cells.split(Self::BETWEEN).map(Cell::from)).collect()
+        std::iter::once(first).chain(self.cells.split(Self::BETWEEN).map(TableCell::from)).collect()
     }
 }
 
@@ -78,7 +78,7 @@ pub(super) fn end(out: &mut String) {
 /// A table; columns of numbers are set to the right.
 ///
 /// First cells that are to be links to a fabric of the page are told by `is_linked`.
-pub(super) fn table<R: AsRef<[Cell]>>(
+pub(super) fn table<R: AsRef<[TableCell]>>(
     out: &mut String,
     above: [&str; 2],
     header: &[String],
@@ -91,7 +91,7 @@ pub(super) fn table<R: AsRef<[Cell]>>(
     for row in rows {
         out.push_str("<tr>");
         for (column, is_numeric) in numeric.iter().enumerate() {
-            let none = Cell::default();
+            let none = TableCell::default();
             let found = row.as_ref().get(column).unwrap_or(&none);
             cell(out, found, *is_numeric, column == 0 && is_linked(&found.text));
         }
@@ -101,10 +101,10 @@ pub(super) fn table<R: AsRef<[Cell]>>(
 }
 
 /// Which columns hold numbers and nothing else.
-fn numeric<R: AsRef<[Cell]>>(columns: usize, rows: impl Iterator<Item = R>) -> Vec<bool> {
+fn numeric<R: AsRef<[TableCell]>>(columns: usize, rows: impl Iterator<Item = R>) -> Vec<bool> {
     let mut numeric = vec![None; columns];
     for row in rows {
-        for (is_numeric, Cell { text, .. }) in numeric.iter_mut().zip(row.as_ref()) {
+        for (is_numeric, TableCell { text, .. }) in numeric.iter_mut().zip(row.as_ref()) {
             if !text.is_empty() && text != "-" {
                 *is_numeric = Some(is_numeric.unwrap_or(true) && is_number(text));
             }
@@ -113,7 +113,12 @@ fn numeric<R: AsRef<[Cell]>>(columns: usize, rows: impl Iterator<Item = R>) -> V
     numeric.into_iter().map(|is_numeric| is_numeric.unwrap_or(false)).collect()
 }
 
-fn cell(out: &mut String, Cell { text, remark, leads_to }: &Cell, is_numeric: bool, is_linked: bool) {
+fn cell(
+    out: &mut String,
+    TableCell { text, remark, leads_to }: &TableCell,
+    is_numeric: bool,
+    is_linked: bool,
+) {
     let classes = [(is_numeric, "number"), (!remark.is_empty(), "marked")];
     let classes: Vec<&str> = classes.into_iter().filter_map(|(has, class)| has.then_some(class)).collect();
     let class = if classes.is_empty() { String::new() } else { format!(" class=\"{}\"", classes.join(" ")) };

@@ -226,10 +226,10 @@ fn doubtful_values_have_their_causes() {
 /// A table of the fabrics of other pages leads there, one of the page itself to their parts.
 #[test]
 fn fabrics_of_a_table_are_links() {
-    let elsewhere = Cell {
+    let elsewhere = TableCell {
         text: "wool_a".into(),
         leads_to: Some(("fabrics-2.html".into(), "wool_a".into())),
-        ..Cell::default()
+        ..TableCell::default()
     };
     let rows = vec![vec![elsewhere], vec!["a b".into()], vec!["unknown".into()]];
     let table =

@@ -3,26 +3,26 @@
 use nalgebra::SMatrix;
 
 /// A square block.
-pub type Block<const B: usize> = [[f64; B]; B];
+pub type DenseBlock<const B: usize> = [[f64; B]; B];
 
 /// The zero block.
-pub const fn zero<const B: usize>() -> Block<B> {
+pub const fn zero<const B: usize>() -> DenseBlock<B> {
     [[0.0; B]; B]
 }
 
 /// The blocks in the values of a matrix.
-pub fn blocks<const B: usize>(values: &[f64]) -> &[Block<B>] {
+pub fn blocks<const B: usize>(values: &[f64]) -> &[DenseBlock<B>] {
     values.as_chunks::<B>().0.as_chunks::<B>().0
 }
 
 /// The same, to be changed.
-pub fn blocks_mut<const B: usize>(values: &mut [f64]) -> &mut [Block<B>] {
+pub fn blocks_mut<const B: usize>(values: &mut [f64]) -> &mut [DenseBlock<B>] {
     values.as_chunks_mut::<B>().0.as_chunks_mut::<B>().0
 }
 
 /// `y -= a x`.
 #[inline(always)]
-pub fn subtract_times<const B: usize>(y: &mut [f64; B], a: &Block<B>, x: &[f64; B]) {
+pub fn subtract_times<const B: usize>(y: &mut [f64; B], a: &DenseBlock<B>, x: &[f64; B]) {
     for c in 0..B {
         for r in 0..B {
             y[r] -= a[c][r] * x[c];
@@ -32,7 +32,7 @@ pub fn subtract_times<const B: usize>(y: &mut [f64; B], a: &Block<B>, x: &[f64; 
 
 /// `y -= aᵀ x`.
 #[inline(always)]
-pub fn subtract_transposed_times<const B: usize>(y: &mut [f64; B], a: &Block<B>, x: &[f64; B]) {
+pub fn subtract_transposed_times<const B: usize>(y: &mut [f64; B], a: &DenseBlock<B>, x: &[f64; B]) {
     for c in 0..B {
         for r in 0..B {
             y[c] -= a[c][r] * x[r];
@@ -42,7 +42,7 @@ pub fn subtract_transposed_times<const B: usize>(y: &mut [f64; B], a: &Block<B>,
 
 /// `a x`.
 #[inline(always)]
-pub fn times<const B: usize>(a: &Block<B>, x: &[f64; B]) -> [f64; B] {
+pub fn times<const B: usize>(a: &DenseBlock<B>, x: &[f64; B]) -> [f64; B] {
     let mut y = [0.0; B];
     for c in 0..B {
         for r in 0..B {
@@ -54,7 +54,7 @@ pub fn times<const B: usize>(a: &Block<B>, x: &[f64; B]) -> [f64; B] {
 
 /// `c += a b`.
 #[inline(always)]
-pub fn add_product<const B: usize>(c: &mut Block<B>, a: &Block<B>, b: &Block<B>) {
+pub fn add_product<const B: usize>(c: &mut DenseBlock<B>, a: &DenseBlock<B>, b: &DenseBlock<B>) {
     for (c, b) in c.iter_mut().zip(b) {
         for k in 0..B {
             for r in 0..B {
@@ -66,7 +66,7 @@ pub fn add_product<const B: usize>(c: &mut Block<B>, a: &Block<B>, b: &Block<B>)
 
 /// The transpose.
 #[inline(always)]
-pub fn transposed<const B: usize>(a: &Block<B>) -> Block<B> {
+pub fn transposed<const B: usize>(a: &DenseBlock<B>) -> DenseBlock<B> {
     let mut t = zero();
     for c in 0..B {
         for r in 0..B {
@@ -77,7 +77,7 @@ pub fn transposed<const B: usize>(a: &Block<B>) -> Block<B> {
 }
 
 /// The inverse of a positive definite block.
-pub fn inverse<const B: usize>(a: &Block<B>) -> Option<Block<B>> {
+pub fn inverse<const B: usize>(a: &DenseBlock<B>) -> Option<DenseBlock<B>> {
     let inverse = SMatrix::<f64, B, B>::from_fn(|r, c| a[c][r]).cholesky()?.inverse();
     let mut block = zero();
     for c in 0..B {

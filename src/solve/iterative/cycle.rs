@@ -2,7 +2,7 @@
 
 use super::SetupError;
 use super::aggregates::Neighbours;
-use super::blocks::{Block, blocks, subtract_times, subtract_transposed_times, times};
+use super::blocks::{DenseBlock, blocks, subtract_times, subtract_transposed_times, times};
 use super::level::{Coarse, Rows, coarsen, diagonal_inverses};
 use crate::solve::factor::{self, Factor, FactorError, Path};
 use crate::solve::sparse::BlockMatrix;
@@ -22,9 +22,17 @@ pub struct Hierarchy<const B: usize> {
 struct Level<const B: usize> {
     matrix: BlockMatrix,
     /// Inverses of the diagonal blocks.
-    inverses: Vec<Block<B>>,
+    inverses: Vec<DenseBlock<B>>,
     /// Interpolation from the next level.
     p: Rows<B>,
+}
+
+impl<const B: usize> Level<B> {
+    fn bytes(&self) -> usize {
+        size_of_val(&self.matrix.values[..])
+            + size_of_val(&self.p.values[..])
+            + size_of_val(&self.inverses[..])
+    }
 }
 
 impl<const B: usize> Hierarchy<B> {
@@ -66,10 +74,7 @@ impl<const B: usize> Hierarchy<B> {
 
     /// Bytes of all levels.
     pub fn bytes(&self) -> usize {
-        let level_bytes = |l: &Level<B>| {
-            size_of_val(&l.matrix.values[..]) + size_of_val(&l.p.values[..]) + size_of_val(&l.inverses[..])
-        };
-        self.levels.iter().map(level_bytes).sum::<usize>() + size_of_val(&self.coarsest.values[..])
+        self.levels.iter().map(Level::bytes).sum::<usize>() + size_of_val(&self.coarsest.values[..])
     }
 
     /// One V-cycle for the right-hand side `r`, from zero: `z ≈ A⁻¹ r`.

@@ -6,7 +6,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 use super::aggregates::{NONE, Neighbours, aggregate};
-use super::blocks::{Block, add_product, blocks, blocks_mut, inverse, times, transposed, zero};
+use super::blocks::{DenseBlock, add_product, blocks, blocks_mut, inverse, times, transposed, zero};
 use crate::platform::over;
 use crate::solve::factor::FactorError;
 use crate::solve::sparse::{BlockGraph, BlockMatrix};
@@ -16,11 +16,11 @@ use crate::solve::sparse::{BlockGraph, BlockMatrix};
 pub struct Rows<const B: usize> {
     pub ptr: Vec<usize>,
     pub cols: Vec<u32>,
-    pub values: Vec<Block<B>>,
+    pub values: Vec<DenseBlock<B>>,
 }
 
 impl<const B: usize> Rows<B> {
-    pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, &Block<B>)> {
+    pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, &DenseBlock<B>)> {
         let range = self.ptr[i]..self.ptr[i + 1];
         self.cols[range.clone()].iter().map(|&c| c as usize).zip(&self.values[range])
     }
@@ -29,7 +29,7 @@ impl<const B: usize> Rows<B> {
 /// What a level hands to the next coarser one.
 pub struct Coarse<const B: usize> {
     pub matrix: BlockMatrix,
-    pub rigid: Vec<Block<B>>,
+    pub rigid: Vec<DenseBlock<B>>,
     pub neighbours: Neighbours,
 }
 
@@ -37,7 +37,7 @@ pub struct Coarse<const B: usize> {
 ///
 /// # Errors
 /// [`FactorError::NotPositiveDefinite`] with the node, and its dof of least stiffness.
-pub fn diagonal_inverses<const B: usize>(a: &BlockMatrix) -> Result<Vec<Block<B>>, FactorError> {
+pub fn diagonal_inverses<const B: usize>(a: &BlockMatrix) -> Result<Vec<DenseBlock<B>>, FactorError> {
     let values = blocks::<B>(&a.values);
     let invert = |node: usize| {
         let block = &values[a.graph.col_ptr[node]];
@@ -56,8 +56,8 @@ pub fn diagonal_inverses<const B: usize>(a: &BlockMatrix) -> Result<Vec<Block<B>
 /// [`FactorError::OutOfTime`].
 pub fn coarsen<const B: usize>(
     a: &BlockMatrix,
-    inverses: &[Block<B>],
-    rigid: &[Block<B>],
+    inverses: &[DenseBlock<B>],
+    rigid: &[DenseBlock<B>],
     neighbours: &Neighbours,
 ) -> Result<(Rows<B>, Coarse<B>), FactorError> {
     // Held nodes have no rigid motion and move on no coarser level.
@@ -83,22 +83,23 @@ fn in_time() -> Result<(), FactorError> {
     over().map_or(Ok(()), |seconds| Err(FactorError::OutOfTime { seconds }))
 }
 
+fn dot<const B: usize>(x: &[[f64; B]], y: &[[f64; B]]) -> f64 {
+    x.as_flattened().iter().zip(y.as_flattened()).map(|(x, y)| x * y).sum()
+}
+
 /// Orthonormal bases of the rigid motions of each aggregate at its nodes (Gram-Schmidt, twice), and
 /// the motions in them. A motion that the others make up, as where only one dof is free, is left out.
 fn orthonormal<const B: usize>(
-    rigid: &[Block<B>],
+    rigid: &[DenseBlock<B>],
     aggregate_of: &[u32],
     count: usize,
-) -> (Vec<Block<B>>, Vec<Block<B>>) {
+) -> (Vec<DenseBlock<B>>, Vec<DenseBlock<B>>) {
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); count];
     for (node, &aggregate) in aggregate_of.iter().enumerate().filter(|(_, a)| **a != NONE) {
         members[aggregate as usize].push(node);
     }
     let mut q = vec![zero(); rigid.len()];
     let mut coarse = vec![zero(); count];
-    let dot = |x: &[[f64; B]], y: &[[f64; B]]| -> f64 {
-        x.as_flattened().iter().zip(y.as_flattened()).map(|(x, y)| x * y).sum()
-    };
     for (nodes, r) in members.iter().zip(&mut coarse) {
         let mut basis: Vec<Vec<[f64; B]>> = Vec::with_capacity(B);
         for motion in 0..B {
@@ -163,7 +164,11 @@ impl WholeRows {
 
     /// The block at row `i` of an entry.
     #[inline(always)]
-    fn block<const B: usize>(i: usize, (column, block): (u32, u32), values: &[Block<B>]) -> Block<B> {
+    fn block<const B: usize>(
+        i: usize,
+        (column, block): (u32, u32),
+        values: &[DenseBlock<B>],
+    ) -> DenseBlock<B> {
         let block = &values[block as usize];
         if column as usize > i { transposed(block) } else { *block }
     }
@@ -173,15 +178,15 @@ impl WholeRows {
 fn smoothed<const B: usize>(
     a: &BlockMatrix,
     whole: &WholeRows,
-    inverses: &[Block<B>],
+    inverses: &[DenseBlock<B>],
     aggregate_of: &[u32],
-    tentative: &[Block<B>],
+    tentative: &[DenseBlock<B>],
 ) -> Rows<B> {
     let omega = 4.0 / 3.0 / largest_eigenvalue(a, inverses);
     let values = blocks::<B>(&a.values);
     let mut p = Rows { ptr: vec![0], ..Rows::default() };
     let mut columns: Vec<u32> = Vec::new();
-    let mut sums: Vec<Block<B>> = Vec::new();
+    let mut sums: Vec<DenseBlock<B>> = Vec::new();
     for (i, &own) in aggregate_of.iter().enumerate() {
         columns.clear();
         if own != NONE {
@@ -214,7 +219,7 @@ fn smoothed<const B: usize>(
 
 /// The largest eigenvalue of `D⁻¹ A`, a little overestimated: power iteration from noise, which
 /// has parts of every wavelength.
-fn largest_eigenvalue<const B: usize>(a: &BlockMatrix, inverses: &[Block<B>]) -> f64 {
+fn largest_eigenvalue<const B: usize>(a: &BlockMatrix, inverses: &[DenseBlock<B>]) -> f64 {
     let mut noise = Pcg64::seed_from_u64(1);
     let mut v: Vec<f64> = (0..a.rows()).map(|_| noise.random_range(-1.0..1.0)).collect();
     let mut av = vec![0.0; v.len()];
@@ -250,7 +255,7 @@ fn product<const B: usize>(a: &BlockMatrix, whole: &WholeRows, p: &Rows<B>, coun
     let graph = Arc::new(BlockGraph::from_elements(count, rows));
     let mut coarse = BlockMatrix::zeros(Arc::clone(&graph), B);
     let (values, target) = (blocks::<B>(&a.values), blocks_mut::<B>(&mut coarse.values));
-    let mut row: Vec<Block<B>> = Vec::new();
+    let mut row: Vec<DenseBlock<B>> = Vec::new();
     for i in 0..a.graph.nodes {
         let columns = &cols[ptr[i]..ptr[i + 1]];
         if columns.is_empty() {

@@ -2,7 +2,7 @@
 
 use faer::traits::pulp::Arch;
 
-use super::symbolic::{Entry, Run, Supernode, Tree};
+use super::symbolic::{PanelEntry, Run, Supernode, Tree};
 
 /// The update that a front leaves, by the number of the front.
 pub type Update = (usize, Vec<f64>);
@@ -10,7 +10,7 @@ pub type Update = (usize, Vec<f64>);
 /// Columns of a front: the eliminated nodes or the border. A column-major array of them begins
 /// at their first diagonal entry for the border, at the top of the front for the panel.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Columns {
+pub enum FrontColumns {
     Eliminated,
     Border,
 }
@@ -27,11 +27,11 @@ pub fn assemble_panel(tree: &Tree, node: &Supernode, values: &[f64], panel: &mut
         5 => add_entries::<5>(entries, values, panel, height),
         _ => add_entries::<6>(entries, values, panel, height),
     }
-    add_updates(tree, node, children, Columns::Eliminated, panel);
+    add_updates(tree, node, children, FrontColumns::Eliminated, panel);
 }
 
 /// Adds blocks of the matrix to a panel with `height` rows.
-fn add_entries<const B: usize>(entries: &[Entry], values: &[f64], panel: &mut [f64], height: usize) {
+fn add_entries<const B: usize>(entries: &[PanelEntry], values: &[f64], panel: &mut [f64], height: usize) {
     let blocks = values.as_chunks::<B>().0;
     for entry in entries {
         let block = &blocks[entry.block as usize * B..][..B];
@@ -46,7 +46,13 @@ fn add_entries<const B: usize>(entries: &[Entry], values: &[f64], panel: &mut [f
 }
 
 /// Adds the updates of the children to some columns of a front.
-pub fn add_updates(tree: &Tree, node: &Supernode, children: &[Update], columns: Columns, sum: &mut [f64]) {
+pub fn add_updates(
+    tree: &Tree,
+    node: &Supernode,
+    children: &[Update],
+    columns: FrontColumns,
+    sum: &mut [f64],
+) {
     if children.is_empty() {
         return;
     }
@@ -59,10 +65,10 @@ pub fn add_updates(tree: &Tree, node: &Supernode, children: &[Update], columns: 
                 let runs = &tree.runs[child.runs.0..child.runs.1];
                 let inside = runs.partition_point(|run| (run.to as usize) < node.width);
                 let (runs, shift, height) = match columns {
-                    Columns::Eliminated => (runs, 0, node.width + node.border),
-                    Columns::Border => (&runs[inside..], node.width, node.border),
+                    FrontColumns::Eliminated => (runs, 0, node.width + node.border),
+                    FrontColumns::Border => (&runs[inside..], node.width, node.border),
                 };
-                let columns = if columns == Columns::Eliminated { inside } else { runs.len() };
+                let columns = if columns == FrontColumns::Eliminated { inside } else { runs.len() };
                 add_update(update, child.border, runs, columns, tree.block, sum, height, shift);
             }
         },

@@ -13,7 +13,7 @@ use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, Auto, MatMut, MatRef, Par};
 
-use super::assemble::{Columns, Update, add_updates, assemble_panel};
+use super::assemble::{FrontColumns, Update, add_updates, assemble_panel};
 use super::symbolic::{Supernode, Tree};
 use crate::solve::factor::Form;
 
@@ -111,7 +111,7 @@ pub fn eliminate(
         subtract_product(u, l21.as_ref(), bottom.as_ref());
         workspace.give(signed);
     }
-    add_updates(tree, node, children, Columns::Border, &mut update);
+    add_updates(tree, node, children, FrontColumns::Border, &mut update);
     Ok(update)
 }
 

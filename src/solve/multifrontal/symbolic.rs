@@ -49,7 +49,7 @@ pub struct Run {
 
 /// A block of the matrix and its place in the panel of a front.
 #[derive(Clone, Copy, Debug)]
-pub struct Entry {
+pub struct PanelEntry {
     /// Block of the matrix.
     pub block: u32,
     /// Row node in the front.
@@ -74,7 +74,7 @@ pub struct Tree {
     /// See [`Supernode::runs`].
     pub runs: Vec<Run>,
     /// See [`Supernode::entries`].
-    pub entries: Vec<Entry>,
+    pub entries: Vec<PanelEntry>,
     /// Numbers in all panels.
     pub stored: usize,
     /// Entries of L without the padding of merged supernodes.
@@ -235,7 +235,7 @@ impl Tree {
             next[s + 1] += next[s];
             self.supernodes[s].entries = (next[s], next[s + 1]);
         }
-        self.entries = vec![Entry { block: 0, row: 0, col: 0, transposed: false }; graph.row_idx.len()];
+        self.entries = vec![PanelEntry { block: 0, row: 0, col: 0, transposed: false }; graph.row_idx.len()];
         for j in 0..graph.nodes {
             for (k, &i) in graph.column(j).iter().enumerate() {
                 let (row, col) = (order.step_of[i as usize], order.step_of[j]);
@@ -250,7 +250,7 @@ impl Tree {
                         (node.width + border.partition_point(|&row| row < step)) as u32
                     }
                 };
-                self.entries[next[s]] = Entry {
+                self.entries[next[s]] = PanelEntry {
                     block: (graph.col_ptr[j] + k) as u32,
                     row: place(row.max(col)),
                     col: row.min(col) - begin,

@@ -11,14 +11,14 @@ use crate::verify::function::Function;
 /// Slope of the error of a plate in a log-log plot, from `n` to `2 n` elements.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Convergence {
+pub struct ConvergenceRate {
     /// The plate on its coarse mesh.
     plate: PlateProblem,
     /// Its exact solution.
     exact: Function,
 }
 
-impl Convergence {
+impl ConvergenceRate {
     /// `log2(error(n) / error(2n))`.
     pub fn value(&self, statics: &mut Statics) -> Result<f64, VerifyError> {
         let mut error = |plate: &PlateProblem| {

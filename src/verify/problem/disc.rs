@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use serde::Deserialize;
 
-use super::setting::{DrillingChoice, Law, Layout, Statics, default_alpha, formulation};
+use super::setting::{CellLayout, DrillingChoice, Law, Statics, default_alpha, formulation};
 use crate::mesh::disc;
 use crate::model::{Load, Model, Support};
 use crate::verify::error::VerifyError;
@@ -23,7 +23,7 @@ pub struct Disc {
     hard: bool,
     /// Smoothing cells.
     #[serde(default)]
-    cells: Layout,
+    cells: CellLayout,
     /// Shear stabilisation.
     #[serde(default = "default_alpha")]
     alpha: f64,

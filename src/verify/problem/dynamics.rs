@@ -10,7 +10,7 @@ use super::setting::Law;
 use crate::element::{Formulation, Mass};
 use crate::mesh::rectangle;
 use crate::model::{DofGroup, Load, Model, Support};
-use crate::solve::assemble::{Kind, Pattern, assemble};
+use crate::solve::assemble::{MatrixKind, Pattern, assemble};
 use crate::solve::factor::FactorError;
 use crate::solve::newmark::{Beginning, LoadHistory, Rayleigh, Scheme, Settings, newmark};
 use crate::solve::{Options, SolveError};
@@ -236,7 +236,7 @@ impl Superposition {
             }
             Ok(columns)
         };
-        let (k, m) = (dense(Kind::Stiffness)?, dense(Kind::Mass(Mass::Consistent))?);
+        let (k, m) = (dense(MatrixKind::Stiffness)?, dense(MatrixKind::Mass(Mass::Consistent))?);
         let singular =
             || SolveError::Factor(FactorError::NotPositiveDefinite { node: 0, dof: 0, pivot: 0.0 });
         let lower = m.clone().cholesky().ok_or_else(singular)?.l();

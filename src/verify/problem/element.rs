@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, Matrix3, Point3, Rotation3, SMatrix, Vector3};
 use serde::Deserialize;
 
-use super::setting::{DrillingChoice, Layout, default_alpha, formulation, isotropic};
+use super::setting::{CellLayout, DrillingChoice, default_alpha, formulation, isotropic};
 use crate::element::{Bending, Formulation, Membrane, Prepared, ShearInterpolation, Vector24};
 use crate::section::ShellSection;
 use crate::verify::error::VerifyError;
@@ -13,7 +13,7 @@ use crate::verify::error::VerifyError;
 #[serde(deny_unknown_fields)]
 pub struct ZeroModes {
     /// Smoothing cells.
-    cells: Layout,
+    cells: CellLayout,
     /// Smoothing of the curvature.
     #[serde(default)]
     bending: Bending,
@@ -134,7 +134,7 @@ fn zeros(k: &DMatrix<f64>) -> usize {
 pub struct RigidMotion {
     /// Smoothing cells.
     #[serde(default)]
-    cells: Layout,
+    cells: CellLayout,
     /// Shear stabilisation.
     #[serde(default = "default_alpha")]
     alpha: f64,

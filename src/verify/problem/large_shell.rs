@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use nalgebra::{Matrix2, Matrix3, Point3, Vector3};
 use serde::Deserialize;
 
-use super::setting::{DrillingChoice, Layout, default_alpha, formulation, isotropic, unit};
+use super::setting::{CellLayout, DrillingChoice, default_alpha, formulation, isotropic, unit};
 use super::shell::mapped;
 use crate::element::{Formulation, Membrane};
 use crate::mesh::{MeshError, QuadMesh, rectangle};
@@ -38,7 +38,7 @@ pub struct LargeShell {
     largest_step: f64,
     /// Smoothing cells.
     #[serde(default)]
-    cells: Layout,
+    cells: CellLayout,
     /// The membrane of the element.
     #[serde(default)]
     membrane: Membrane,

@@ -27,7 +27,7 @@ pub enum Problem {
     /// A rectangular plate.
     Plate(plate::PlateProblem),
     /// Rate at which the error of a plate falls.
-    Convergence(accuracy::Convergence),
+    Convergence(accuracy::ConvergenceRate),
     /// Error of a plate.
     Deviation(accuracy::Deviation),
     /// What a plate approaches on ever finer meshes.
@@ -59,9 +59,9 @@ pub enum Problem {
     /// A strip whose mesh is oblique to it.
     ObliqueStrip(strip::ObliqueStrip),
     /// Strips in large rotations.
-    Strip(strip::Strip),
+    Strip(strip::CantileverStrip),
     /// KES-FB2.
-    BendingTest(strip::BendingTest),
+    BendingTest(strip::PureBending),
     /// A rigid strip that swings.
     Pendulum(strip::Pendulum),
     /// Strips with a part that moves as one rigid body.

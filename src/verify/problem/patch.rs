@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Matrix2, Matrix3, Point3, Rotation3, Vector2, Vector3};
 use serde::Deserialize;
 
-use super::setting::{DrillingChoice, Layout, Statics, default_alpha, formulation, isotropic};
+use super::setting::{CellLayout, DrillingChoice, Statics, default_alpha, formulation, isotropic};
 use crate::element::{Bending, Formulation, Membrane};
 use crate::fields::{Resultants, element_means};
 use crate::mesh::{QuadMesh, distorted, rectangle};
@@ -24,7 +24,7 @@ pub struct Patch {
     /// The section; its warp at 23 degrees from x.
     law: PatchLaw,
     /// Smoothing cells; the worst counts.
-    cells: Vec<Layout>,
+    cells: Vec<CellLayout>,
     /// Smoothing of the curvature.
     #[serde(default)]
     bending: Bending,
@@ -192,7 +192,7 @@ impl Patch {
         Ok(errors.into_iter().fold(0.0, f64::max))
     }
 
-    fn error(&self, cells: Layout, statics: &mut Statics) -> Result<f64, VerifyError> {
+    fn error(&self, cells: CellLayout, statics: &mut Statics) -> Result<f64, VerifyError> {
         let angle = 23f64.to_radians();
         let turn =
             if self.turned { Rotation3::from_euler_angles(0.4, -1.1, 2.3) } else { Rotation3::identity() };

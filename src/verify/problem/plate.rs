@@ -3,7 +3,7 @@
 use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
-use super::setting::{Law, Layout, Statics, nearest, unit};
+use super::setting::{CellLayout, Law, Statics, nearest, unit};
 use crate::analytical::levy::Edge;
 use crate::analytical::mindlin::MindlinPlate;
 use crate::analytical::{Plate, PlateState};
@@ -33,7 +33,7 @@ pub struct PlateProblem {
     edges: Edges,
     /// Smoothing cells.
     #[serde(default)]
-    cells: Layout,
+    cells: CellLayout,
     /// Smoothing of the curvature.
     #[serde(default)]
     bending: Bending,

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
-use super::setting::{DrillingChoice, Law, Layout, Statics, default_alpha, formulation, nearest};
+use super::setting::{CellLayout, DrillingChoice, Law, Statics, default_alpha, formulation, nearest};
 use crate::element::{Bending, Formulation};
 use crate::fields;
 use crate::mesh::{QuadMesh, rectangle};
@@ -21,7 +21,7 @@ pub struct Distorted {
     /// How far the middle node is moved.
     s: f64,
     /// Smoothing cells.
-    cells: Layout,
+    cells: CellLayout,
     /// Shear stabilisation.
     #[serde(default = "default_alpha")]
     alpha: f64,
@@ -77,7 +77,7 @@ pub struct Skew {
     centre_held: bool,
     /// Smoothing cells.
     #[serde(default)]
-    cells: Layout,
+    cells: CellLayout,
     /// Smoothing of the curvature.
     #[serde(default)]
     bending: Bending,
@@ -156,7 +156,7 @@ impl Triangle {
             mesh,
             section: Law::Isotropic { nu: 0.3, thickness: 1e-3 }.section(),
             warp: Vector3::x(),
-            formulation: formulation(Layout::default(), default_alpha(), DrillingChoice::Scaled),
+            formulation: formulation(CellLayout::default(), default_alpha(), DrillingChoice::Scaled),
             loads: vec![Load::Pressure(1.0)],
             bodies: Vec::new(),
         };
@@ -165,10 +165,6 @@ impl Triangle {
 
     /// Height 1, centre at the origin.
     fn mesh(&self) -> QuadMesh {
-        let corner = |k: usize| {
-            let (sin, cos) = (TAU * k as f64 / 3.0).sin_cos();
-            Vector3::new(cos, sin, 0.0) * (2.0 / 3.0)
-        };
         let (n, mut mesh) = (self.n, QuadMesh::default());
         let mut known: HashMap<[i64; 2], u32> = HashMap::new();
         for k in 0..3 {
@@ -192,4 +188,10 @@ impl Triangle {
         mesh.node_sets.insert("boundary".into(), rim);
         mesh
     }
+}
+
+/// A corner of the triangle of height 1 about the origin.
+fn corner(k: usize) -> Vector3<f64> {
+    let (sin, cos) = (TAU * k as f64 / 3.0).sin_cos();
+    Vector3::new(cos, sin, 0.0) * (2.0 / 3.0)
 }

@@ -124,9 +124,9 @@ pub enum DrillingChoice {
 /// Smoothing cells by their number.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(try_from = "u32")]
-pub struct Layout(pub Cells);
+pub struct CellLayout(pub Cells);
 
-impl TryFrom<u32> for Layout {
+impl TryFrom<u32> for CellLayout {
     type Error = String;
 
     fn try_from(nc: u32) -> Result<Self, String> {
@@ -134,14 +134,14 @@ impl TryFrom<u32> for Layout {
     }
 }
 
-impl Default for Layout {
+impl Default for CellLayout {
     fn default() -> Self {
         Self(Cells::grid(2, 2))
     }
 }
 
 /// The formulation of a line.
-pub fn formulation(cells: Layout, alpha: f64, drilling: DrillingChoice) -> Formulation {
+pub fn formulation(cells: CellLayout, alpha: f64, drilling: DrillingChoice) -> Formulation {
     Formulation {
         cells: cells.0,
         shear_stabilisation: alpha,

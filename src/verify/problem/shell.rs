@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 
-use super::setting::{DrillingChoice, Layout, Statics, default_alpha, formulation, isotropic, unit};
+use super::setting::{CellLayout, DrillingChoice, Statics, default_alpha, formulation, isotropic, unit};
 use crate::element::{Formulation, Membrane};
 use crate::mesh::{QuadMesh, rectangle};
 use crate::model::{Dof, Load, Model, Support};
@@ -27,7 +27,7 @@ pub struct Shell {
     m: Option<usize>,
     /// Smoothing cells.
     #[serde(default)]
-    cells: Layout,
+    cells: CellLayout,
     /// Shear stabilisation.
     #[serde(default = "default_alpha")]
     alpha: f64,

@@ -22,7 +22,7 @@ use crate::verify::function::Function;
 /// A cantilever of unit length and rigidity, ν = 0, square elements.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Strip {
+pub struct CantileverStrip {
     /// Elements along the strip.
     n: usize,
     /// What bends it.
@@ -79,7 +79,7 @@ fn along_x(length: f64, n: usize, section: ShellSection) -> Result<Model, Verify
     })
 }
 
-impl Strip {
+impl CantileverStrip {
     /// The value that the load names.
     pub fn value(&self) -> Result<f64, VerifyError> {
         let mut model = along_x(1.0, self.n, section(1.0, self.thickness))?;
@@ -122,12 +122,12 @@ impl Strip {
 /// H = 0. The largest |M/(D11 κ) - 1| of ten curvatures up to 2.5 1/cm.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct BendingTest {
+pub struct PureBending {
     /// Elements along the gap.
     n: usize,
 }
 
-impl BendingTest {
+impl PureBending {
     /// The largest deviation.
     pub fn value(&self) -> Result<f64, VerifyError> {
         let (gap, width, b, curvature) = (0.01, 0.2, 8e-6, 250.0);

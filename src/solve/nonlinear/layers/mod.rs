@@ -27,7 +27,7 @@ use super::State;
 use crate::mesh::{BoundingBox, QuadMesh, overlapping};
 use crate::model::{DofGroup, Links, Model};
 use crate::solve::assemble::Pattern;
-use crate::solve::factor::{self, Analysis, FactorError, Path};
+use crate::solve::factor::{self, FactorError, Path, SymbolicAnalysis};
 use crate::solve::sparse::BlockMatrix;
 
 /// The part of their distance that a step leaves between a point and a triangle.
@@ -58,7 +58,7 @@ pub(super) struct Coupling {
     /// Where the nodes were when it was made: layers that touch are near each other there.
     places: Vec<[f64; 3]>,
     path: Path,
-    analysis: OnceLock<Analysis>,
+    analysis: OnceLock<SymbolicAnalysis>,
 }
 
 /// A point and a triangle that press each other.
@@ -285,7 +285,7 @@ impl Coupling {
     ///
     /// # Errors
     /// [`FactorError::OutOfMemory`].
-    pub fn analysis(&self) -> Result<&Analysis, FactorError> {
+    pub fn analysis(&self) -> Result<&SymbolicAnalysis, FactorError> {
         if let Some(analysis) = self.analysis.get() {
             return Ok(analysis);
         }
