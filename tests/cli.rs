@@ -659,9 +659,9 @@ fn bands_of_sampled_inputs_and_fabrics_without_friction_are_told() {
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     assert!(stdout(&output).contains("95 % bands"), "{}", stdout(&output));
     let document = json(&run(&[&["--json"], &arguments[..]].concat()));
-    let of = &document["comparisons"][0]["uncertainty"]["quantities"]["bending_length_friction warp"];
-    let (value, interval) = (of["value"].as_f64().unwrap(), &of["next_specimen"]["interval"]);
-    assert!(interval[0].as_f64().unwrap() < value && value < interval[1].as_f64().unwrap(), "{of}");
+    let quantity = &document["comparisons"][0]["uncertainty"]["quantities"]["bending_length_friction warp"];
+    let (value, interval) = (quantity["value"].as_f64().unwrap(), &quantity["next_specimen"]["interval"]);
+    assert!(interval[0].as_f64().unwrap() < value && value < interval[1].as_f64().unwrap(), "{quantity}");
 
     let results = folder.path().join("results");
     let arguments = ["run", "kesf_data/petrak_m1", "cases/virtual_bending_friction.toml", "-o"];

@@ -224,15 +224,15 @@ fn a_sheet_of_fast_is_read_for_what_it_determines() {
                 E20-1 (%),E20-2 (%),E100-1 (%),EB5 (%),G (N/m),RS-1 (%),HE-1 (%)\n\
                 wool,195,0.62,0.48,0.14,18.1,17,11.34,9.4,0.3,0.4,0.9,1.1,2.5,3.1,39.7,1.2,3.5\n";
     let content = read("fast.csv", text);
-    let of =
+    let value_of =
         |p, d| content.results.iter().find(|(_, r)| r.parameter == p && r.direction == d).map(|(_, r)| r);
     for (direction, b) in [(Direction::Warp, 11.34e-6), (Direction::Weft, 9.4e-6)] {
-        let found = of(Parameter::B, Some(direction)).unwrap();
+        let found = value_of(Parameter::B, Some(direction)).unwrap();
         assert_relative_eq!(found.mean, b, max_relative = 1e-12);
         assert!(found.inferred && found.n == 1);
     }
-    assert_relative_eq!(of(Parameter::G, None).unwrap().mean, 39.7, max_relative = 1e-12);
-    assert!(of(Parameter::T0, None).is_none() && of(Parameter::B, None).is_none());
+    assert_relative_eq!(value_of(Parameter::G, None).unwrap().mean, 39.7, max_relative = 1e-12);
+    assert!(value_of(Parameter::T0, None).is_none() && value_of(Parameter::B, None).is_none());
     let stiffness: Vec<(Direction, f64)> =
         content.stiffnesses.iter().map(|(_, s)| (s.direction, s.stiffness)).collect();
     let [(Direction::Warp, warp), (Direction::Weft, weft)] = stiffness[..] else { panic!("{stiffness:?}") };

@@ -30,17 +30,17 @@ fn the_shipped_fabrics_are_read_completely() {
                 _ => &[Some(Direction::Warp), Some(Direction::Weft)],
             };
             for direction in directions {
-                let of: Vec<_> = fabric
+                let measurements: Vec<_> = fabric
                     .measurements
                     .iter()
                     .filter(|m| m.test == test && m.direction == *direction)
                     .collect();
                 assert_eq!(
-                    of.iter().map(|m| m.specimen).collect::<Vec<_>>(),
+                    measurements.iter().map(|m| m.specimen).collect::<Vec<_>>(),
                     [1, 2, 3],
                     "{name} {test:?} {direction:?}"
                 );
-                for m in of {
+                for m in measurements {
                     assert_eq!(m.sample.as_deref(), Some(name));
                     assert_eq!(m.conditions.width, 0.2);
                     let max = |v: &[f64]| v.iter().copied().fold(f64::MIN, f64::max);

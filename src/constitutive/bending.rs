@@ -152,13 +152,13 @@ fn torsion(
             notes.origin_value(Parameter::B, Some(Direction::Bias), &[(Constant::Bias, 1.0)]);
             let b45 = b45.mean;
             let origin = Origin::of(notes, Some(Direction::Bias));
-            let of = match origin {
+            let source = match origin {
                 Origin::Fb2 => "",
                 Origin::Table => "of a table that was not measured on KES-FB2, ",
                 Origin::BendLoops => "friction law of FAB bend loops, ",
                 Origin::Buckled => "slope of buckled strips, ",
             };
-            let why = format!("{of}B at 45° = {} N·m", significant(b45));
+            let why = format!("{source}B at 45° = {} N·m", significant(b45));
             (b45 - (b1 + b2 + 2.0 * d12) / 4.0, (origin.provenance(), why.into()))
         }
         Torsion::Shear => (g * thickness.powi(2) / 12.0, assumed("G t²/12")),

@@ -49,21 +49,21 @@ pub(super) fn fabrics(group: &Group, about: &AboutGroup, contents: Vec<FileConte
     }
     for content in contents {
         // Values without a name, and the values of a folder's only fabric, belong to the folder.
-        let mut of: BTreeMap<String, Vec<ResultValue>> = BTreeMap::new();
+        let mut by_fabric: BTreeMap<String, Vec<ResultValue>> = BTreeMap::new();
         let named = |fabric: Option<String>| fabric.filter(|_| several).unwrap_or_else(|| name.clone());
         for (fabric, value) in content.results {
-            of.entry(named(fabric)).or_default().push(value);
+            by_fabric.entry(named(fabric)).or_default().push(value);
         }
         let stiffnesses: Vec<_> = content.stiffnesses.into_iter().map(|(f, s)| (named(f), s)).collect();
         if !content.measurements.is_empty() || content.fab.is_some() {
-            of.entry(name.clone()).or_default();
+            by_fabric.entry(name.clone()).or_default();
         }
         let decisions = content.inference;
         let mut inference = Some(Inference { path: content.source.path.clone(), decisions });
         // A finding of a table goes to the fabric of its cell, and one of the file to the first.
-        let first = of.keys().next().cloned();
-        let (mut of_cells, findings) = by_cell(content.findings, &of);
-        for (fabric, results) in of {
+        let first = by_fabric.keys().next().cloned();
+        let (mut of_cells, findings) = by_cell(content.findings, &by_fabric);
+        for (fabric, results) in by_fabric {
             let input = out.entry(fabric.clone()).or_insert_with(|| blank(&fabric, group, about));
             input.findings.extend(of_cells.remove(&fabric).unwrap_or_default());
             input.results.extend(results);
@@ -113,12 +113,12 @@ fn by_cell(
 
 /// R127: header lines of unknown meaning that tell apart the records of one test and direction.
 fn states(fabric: &FabricInput, vocabulary: Vocabulary<'_>) -> Vec<Finding> {
-    let mut of: BTreeMap<_, Vec<&Measurement>> = BTreeMap::new();
+    let mut by_test: BTreeMap<_, Vec<&Measurement>> = BTreeMap::new();
     for measurement in &fabric.measurements {
-        of.entry((measurement.test, measurement.direction)).or_default().push(measurement);
+        by_test.entry((measurement.test, measurement.direction)).or_default().push(measurement);
     }
     let mut found = Vec::new();
-    for records in of.into_values() {
+    for records in by_test.into_values() {
         let names: BTreeSet<&String> = records.iter().flat_map(|m| m.metadata.keys()).collect();
         for name in names {
             let entry = |m: &&Measurement| m.metadata.get(name).cloned().unwrap_or_default();
@@ -174,16 +174,16 @@ fn finished(mut fabric: FabricInput) -> FabricInput {
 
 /// R120: a value that several tables, sheets or files give, each something else.
 fn several_tables(fabric: &mut FabricInput) {
-    let mut of: BTreeMap<_, Vec<&ResultValue>> = BTreeMap::new();
+    let mut by_key: BTreeMap<_, Vec<&ResultValue>> = BTreeMap::new();
     // Headers of curves state the areal density, each its specimen's.
     for value in fabric.results.iter().filter(|v| v.parameter != Parameter::W) {
         let key = Key { parameter: value.parameter, direction: value.direction };
-        of.entry(key).or_default().push(value);
+        by_key.entry(key).or_default().push(value);
     }
-    of.retain(|_, values| values.len() > 1);
-    let Some([first, second, ..]) = of.values().next().map(Vec::as_slice) else { return };
+    by_key.retain(|_, values| values.len() > 1);
+    let Some([first, second, ..]) = by_key.values().next().map(Vec::as_slice) else { return };
     let (first, place) = (first.place.to_string(), second.place.clone());
-    let fact = ReadFact::SeveralTables { keys: of.into_keys().collect(), first };
+    let fact = ReadFact::SeveralTables { keys: by_key.into_keys().collect(), first };
     fabric.findings.push(Finding::new(fact).at(place));
 }
 

@@ -105,11 +105,11 @@ impl Scanner<'_, '_> {
     /// R119: ordinates of one kind that are named by different words are other fabrics, or one was made of another; they are
     /// read as specimens, and told.
     pub(super) fn note_words(&mut self, pairs: &[Pair]) {
-        let mut of: BTreeMap<Role, Vec<&Pair>> = BTreeMap::new();
+        let mut by_role: BTreeMap<Role, Vec<&Pair>> = BTreeMap::new();
         for pair in pairs {
-            of.entry(pair.y.role).or_default().push(pair);
+            by_role.entry(pair.y.role).or_default().push(pair);
         }
-        for pairs in of.into_values() {
+        for pairs in by_role.into_values() {
             let words: BTreeSet<&str> = pairs.iter().map(|p| p.y.says.words.as_str()).collect();
             if words.len() > 1 {
                 let names = pairs.iter().map(|p| p.y.name.clone()).collect();

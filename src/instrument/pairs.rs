@@ -42,13 +42,13 @@ fn joined(pairs: Vec<Pair>) -> Vec<Pair> {
     let mut out: Vec<Pair> = Vec::with_capacity(pairs.len());
     let branch = |c: &Column| c.says.branch;
     for pair in pairs {
-        let of = (pair.y.says.direction, pair.y.says.specimen);
+        let specimen = (pair.y.says.direction, pair.y.says.specimen);
         let loading = out.last_mut().filter(|before| {
             before.back.is_none()
                 && branch(&before.y) == Some(BranchColumn::Loading)
                 && branch(&pair.y) == Some(BranchColumn::Unloading)
                 && before.y.role == pair.y.role
-                && (before.y.says.direction, before.y.says.specimen) == of
+                && (before.y.says.direction, before.y.says.specimen) == specimen
         });
         match loading {
             Some(before) => before.back = Some((pair.x, pair.y)),

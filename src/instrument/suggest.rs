@@ -62,9 +62,9 @@ fn dialect_file(unknown: &[String]) -> String {
 
 /// The column that has such a unit, in the spelling of dialect files.
 fn role(text: &str) -> Option<&'static str> {
-    let of = unit(text).ok()?;
+    let stated = unit(text).ok()?;
     let is_angle = is_angular(text);
-    let is = |role: Role| unit(role.kes_unit()).is_ok_and(|u| u.dimension == of.dimension);
+    let is = |role: Role| unit(role.kes_unit()).is_ok_and(|u| u.dimension == stated.dimension);
     const MOMENT: Dimension = Dimension { kg: 1, m: 2, s: -2 };
     match () {
         () if is_angle && is(Role::Angle) => Some("angle"),
@@ -77,7 +77,7 @@ fn role(text: &str) -> Option<&'static str> {
         // gf·cm/cm is a force by its dimension; plain gf is one that was not divided by the width. gf·cm²/cm is
         // a moment by its dimension, and the unit of B.
         () if is(Role::Moment) && divides_by_length(text) => Some("moment"),
-        () if of.dimension == MOMENT && !divides_by_length(text) => Some("moment"),
+        () if stated.dimension == MOMENT && !divides_by_length(text) => Some("moment"),
         () if is(Role::Moment) => Some("force"),
         () => None,
     }

@@ -198,7 +198,7 @@ impl Outcome {
             Self::Solved(_) => "the deflection of a sheet",
             Self::Tested(_) => "the simulated test beside the measured curves",
         };
-        let of = task.fabric_name().map_or(String::new(), |name| format!(", {name}"));
+        let fabric = task.fabric_name().map_or(String::new(), |name| format!(", {name}"));
         let described = |row: &PredictionRow| {
             let unit = if row.unit == "1" { String::new() } else { format!(" {}", row.unit) };
             let number = |v: f64| if v.fract() == 0.0 { v.to_string() } else { significant(v) };
@@ -209,7 +209,7 @@ impl Outcome {
         };
         let values: Vec<String> = self.rows(task).iter().filter_map(described).take(VALUES_SEEN).collect();
         let values = if values.is_empty() { String::new() } else { format!("; {}", values.join(", ")) };
-        format!("{}{of}: {what}{values}.", task.case.title)
+        format!("{}{fabric}: {what}{values}.", task.case.title)
     }
 
     /// The sheet before and after.

@@ -90,12 +90,12 @@ fn leading_caption(columns: &[Column], friction: bool) -> String {
     let has = |drape: bool| columns.iter().any(|c| is_drape(&c.quantity) == drape);
     let parts = [(has(true), "drape"), (has(false), "the bending length of the cantilever")];
     let named: Vec<&str> = parts.into_iter().filter_map(|(has, name)| has.then_some(name)).collect();
-    let of = if friction {
+    let subject = if friction {
         "What a laboratory measures, of cloth with friction"
     } else {
         "What a laboratory measures"
     };
-    let mut caption = format!("{of}: {}.", named.join(", and "));
+    let mut caption = format!("{subject}: {}.", named.join(", and "));
     if has(true) {
         caption += " A drape coefficient is that of the state of lowest energy; the least and the greatest of the \
                     states of nearly that energy stand in brackets, and then how many folds it has.";

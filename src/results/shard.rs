@@ -120,8 +120,8 @@ mod tests {
         }
         // The first 8 bytes of what `printf poplin | sha256sum` gives, modulo 7.
         assert_eq!(shard_of("poplin".as_ref(), 7), 1);
-        let of: Vec<usize> = ["a", "b", "c", "d"].iter().map(|p| shard_of(p.as_ref(), 2)).collect();
-        assert!(of.contains(&1) && of.contains(&2));
+        let shards: Vec<usize> = ["a", "b", "c", "d"].iter().map(|p| shard_of(p.as_ref(), 2)).collect();
+        assert!(shards.contains(&1) && shards.contains(&2));
     }
 
     #[test]

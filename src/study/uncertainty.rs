@@ -285,9 +285,9 @@ impl Change {
         let heavier = has_weight && up.areal_density != down.areal_density;
         let slope = |change: f64| change / (2.0 * STEP);
         let load = heavier.then(|| {
-            let of =
+            let load_with =
                 |section: &ShellSection| Model { section: section.clone(), ..model.clone() }.load_vector();
-            of(&up).iter().zip(of(&down)).map(|(up, down)| slope(up - down)).collect()
+            load_with(&up).iter().zip(load_with(&down)).map(|(up, down)| slope(up - down)).collect()
         });
         let mut internal = vec![0.0; u.len()];
         for group in &groups {

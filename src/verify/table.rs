@@ -67,10 +67,10 @@ pub(super) fn aligned<const N: usize>(cells: &[String; N], width: &[usize]) -> S
 pub(super) fn summary(all: &[CheckedLine<'_>], seconds: f64) -> String {
     let mut text = String::from("\n");
     for kind in [Kind::Analytical, Kind::Independent, Kind::Published] {
-        let of: Vec<_> = all.iter().filter(|(line, _)| line.kind == kind).collect();
-        if !of.is_empty() {
-            let hold = of.iter().filter(|(_, outcome)| outcome.pass).count();
-            text += &format!("{:<11}  {hold} of {} lines hold\n", kind.name(), of.len());
+        let same_kind: Vec<_> = all.iter().filter(|(line, _)| line.kind == kind).collect();
+        if !same_kind.is_empty() {
+            let hold = same_kind.iter().filter(|(_, outcome)| outcome.pass).count();
+            text += &format!("{:<11}  {hold} of {} lines hold\n", kind.name(), same_kind.len());
         }
     }
     if let Some((line, residual)) = worst(all) {

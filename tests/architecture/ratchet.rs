@@ -7,11 +7,11 @@ use crate::source::Crate;
 /// Most lines of code of the command, comments and blank lines left out.
 pub const COMMAND_LINES: usize = 2000;
 /// Local variables that are closures: most of them are functions that have no name of their own.
-pub const CLOSURES: usize = 970;
+pub const CLOSURES: usize = 958;
 /// Of those, the ones called `of`, which says nothing.
-pub const CLOSURES_OF: usize = 30;
+pub const CLOSURES_OF: usize = 0;
 /// Names that more than one public type has.
-pub const SHARED_NAMES: usize = 41;
+pub const SHARED_NAMES: usize = 16;
 
 /// Lines of code below `src/cli`.
 pub fn command_lines(source: &Crate, files: &BTreeMap<String, String>) -> usize {

@@ -311,22 +311,23 @@ fn wrong(content: &FileContent, expected: &[Expected]) -> Option<(Wrong, String)
         match e {
             Expected::Value { fabric, parameter, direction, si } => {
                 values += 1;
-                let of: Vec<_> = content.results.iter().filter(|(_, v)| v.parameter == *parameter).collect();
+                let same_parameter: Vec<_> =
+                    content.results.iter().filter(|(_, v)| v.parameter == *parameter).collect();
                 // A name may have changed: that is no other value.
                 let right = |(_, v): &&&(Option<String>, kesf::instrument::ResultValue)| {
                     v.direction == *direction && close(v.mean, *si)
                 };
-                if of.iter().any(|v| right(&v)) {
+                if same_parameter.iter().any(|v| right(&v)) {
                     continue;
                 }
                 let what = format!("{parameter} {direction:?} of {fabric:?}, {si}");
-                let same = of.iter().find(|(n, v)| n == fabric && v.direction == *direction);
-                let same = same.or_else(|| of.iter().find(|(_, v)| v.direction == *direction));
+                let same = same_parameter.iter().find(|(n, v)| n == fabric && v.direction == *direction);
+                let same = same.or_else(|| same_parameter.iter().find(|(_, v)| v.direction == *direction));
                 found.push(match same {
                     Some((_, v)) if is_factor(v.mean / si) => {
                         (Wrong::Factor, format!("{what}, is {}", v.mean))
                     }
-                    _ if of.iter().any(|(_, v)| close(v.mean, *si)) => (Wrong::Direction, what),
+                    _ if same_parameter.iter().any(|(_, v)| close(v.mean, *si)) => (Wrong::Direction, what),
                     Some((_, v)) => (Wrong::Other, format!("{what}, is {}", v.mean)),
                     None => (Wrong::Missing, what),
                 });
@@ -341,12 +342,12 @@ fn wrong(content: &FileContent, expected: &[Expected]) -> Option<(Wrong, String)
                     .iter()
                     .filter(|m| m.test == *test)
                     .map(|m| {
-                        let of: Vec<(f64, f64)> = m.curve.points().collect();
+                        let read_points: Vec<(f64, f64)> = m.curve.points().collect();
                         (
                             m,
                             [
-                                high(|p| p.0, &of) / high(|p| p.0, points),
-                                high(|p| p.1, &of) / high(|p| p.1, points),
+                                high(|p| p.0, &read_points) / high(|p| p.0, points),
+                                high(|p| p.1, &read_points) / high(|p| p.1, points),
                             ],
                         )
                     })

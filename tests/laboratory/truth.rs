@@ -234,7 +234,7 @@ pub fn fabrics(
     repeats: usize,
     si: bool,
 ) -> Vec<Fabric> {
-    let of: Vec<(Parameter, Printed)> = parameters
+    let printed: Vec<(Parameter, Printed)> = parameters
         .iter()
         .map(|p| {
             let all = units(*p);
@@ -246,7 +246,7 @@ pub fn fabrics(
         .map(|i| {
             let name = NAMES[(first + 7 * i) % NAMES.len()].to_string();
             let mut quantities = Vec::new();
-            for (p, unit) in &of {
+            for (p, unit) in &printed {
                 let directions: &[Option<Direction>] = if p.is_directional() {
                     &[Some(Direction::Warp), Some(Direction::Weft)]
                 } else {

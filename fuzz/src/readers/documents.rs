@@ -18,12 +18,12 @@ fn fabrics() -> Vec<(FabricSheet, Constitutive)> {
         .map(|name| corpus::package().join("../kesf_data").join(name))
         .collect();
     let batch = read_fabrics(&folders, &ReadSettings::default(), &|_| ());
-    let of = |fabric| {
+    let characterised = |fabric| {
         let sheet = characterise(fabric, &kesf::characterise::Settings::default());
         let made = section(&sheet, &Assumptions::default()).expect("a section");
         (sheet, made)
     };
-    batch.fabrics.iter().map(of).collect()
+    batch.fabrics.iter().map(characterised).collect()
 }
 
 /// Documents of sheets and sections, and open fabric files.

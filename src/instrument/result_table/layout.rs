@@ -210,16 +210,16 @@ impl Layout {
 
     /// `Warp yarn` and `Filling direction` over columns: names that are directions, each of another.
     fn directions_over_columns(&mut self, context: &Context<'_>) {
-        let of =
+        let direction_of =
             |c: &Column| c.facets.direction.or_else(|| context.vocabulary.direction(c.fabric.as_deref()?));
         let columns = self.values.iter().filter(|c| c.facets.statistic.is_none());
-        let Some(found) = columns.map(of).collect::<Option<Vec<_>>>() else { return };
+        let Some(found) = columns.map(direction_of).collect::<Option<Vec<_>>>() else { return };
         let distinct: BTreeSet<_> = found.iter().collect();
         if distinct.len() < 2 || distinct.len() < found.len() {
             return;
         }
         for column in self.values.iter_mut().filter(|c| c.fabric.is_some()) {
-            column.facets.direction = of(column);
+            column.facets.direction = direction_of(column);
             self.texts_of_directions.extend(column.fabric.take());
         }
     }

@@ -90,10 +90,10 @@ fn parameters_below(rows: &mut [(&Row<'_>, RowFacts)]) -> Option<(usize, usize)>
     let mut seen = BTreeSet::new();
     for (row, facts) in rows {
         let own = &facts.facets;
-        let of = (own.direction, own.statistic, own.sd, own.index, facts.fabric.clone());
+        let facet = (own.direction, own.statistic, own.sd, own.index, facts.fabric.clone());
         if own.names_value() {
             above = facts.parameter_at.map(|at| (at, own.clone()));
-            seen = BTreeSet::from([of]);
+            seen = BTreeSet::from([facet]);
             continue;
         }
         let Some((at, named)) = above.as_ref().filter(|(at, _)| row.get(*at).is_none() && !own.unknown)
@@ -103,7 +103,7 @@ fn parameters_below(rows: &mut [(&Row<'_>, RowFacts)]) -> Option<(usize, usize)>
         };
         let says_which =
             own.direction.is_some() || own.statistic.is_some() || own.index.is_some() || facts.names_fabric;
-        if says_which && seen.insert(of) {
+        if says_which && seen.insert(facet) {
             first = first.or(Some((row.line, row.column(*at))));
             let unit = own.unit.clone().or_else(|| named.unit.clone());
             facts.facets =

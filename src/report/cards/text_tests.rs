@@ -357,9 +357,9 @@ fn the_mesh_of_kratos_is_whole() {
         ("held_warp", 21, 0),
         ("held_weft", 21, 0),
     ] {
-        let of = text.split(&format!("Begin SubModelPart {part}\n")).nth(1).unwrap();
+        let part_lines = text.split(&format!("Begin SubModelPart {part}\n")).nth(1).unwrap();
         let count = |what: &str| {
-            let lines = of.lines().skip_while(|l| *l != format!("Begin SubModelPart{what}")).skip(1);
+            let lines = part_lines.lines().skip_while(|l| *l != format!("Begin SubModelPart{what}")).skip(1);
             lines.take_while(|l| *l != format!("End SubModelPart{what}")).count()
         };
         assert_eq!((count("Nodes"), count("Elements")), (points, triangles), "{part}");

@@ -28,34 +28,39 @@ impl Neighbours {
 
 /// The aggregate of each node, and how many there are. Nodes that are not `active` have none.
 pub fn aggregate(neighbours: &Neighbours, active: &[bool]) -> (Vec<u32>, usize) {
-    let mut of: Vec<u32> = vec![NONE; active.len()];
+    let mut aggregate_of: Vec<u32> = vec![NONE; active.len()];
     let mut count = 0;
     let mut members: Vec<u32> = Vec::with_capacity(SIZE);
     let mut lonely = Vec::new();
     for seed in 0..active.len() as u32 {
-        if !active[seed as usize] || of[seed as usize] != NONE {
+        if !active[seed as usize] || aggregate_of[seed as usize] != NONE {
             continue;
         }
         members.clear();
         members.push(seed);
-        of[seed as usize] = count;
+        aggregate_of[seed as usize] = count;
         while members.len() < SIZE {
-            let Some(next) = next_member(neighbours, active, &of, &members) else { break };
+            let Some(next) = next_member(neighbours, active, &aggregate_of, &members) else { break };
             members.push(next);
-            of[next as usize] = count;
+            aggregate_of[next as usize] = count;
         }
         if members.len() == 1 {
             lonely.push(seed);
         }
         count += 1;
     }
-    join(neighbours, &lonely, &mut of, count)
+    join(neighbours, &lonely, &mut aggregate_of, count)
 }
 
 /// The free node with most links to the members, and of these the one with the fewest free
 /// neighbours, so that no gaps are left behind. All but the second member need two links.
-fn next_member(neighbours: &Neighbours, active: &[bool], of: &[u32], members: &[u32]) -> Option<u32> {
-    let free = |n: u32| active[n as usize] && of[n as usize] == NONE;
+fn next_member(
+    neighbours: &Neighbours,
+    active: &[bool],
+    aggregate_of: &[u32],
+    members: &[u32],
+) -> Option<u32> {
+    let free = |n: u32| active[n as usize] && aggregate_of[n as usize] == NONE;
     let around = members.iter().flat_map(|&m| neighbours.of(m)).copied().filter(|&n| free(n));
     around
         .map(|n| {
@@ -68,18 +73,18 @@ fn next_member(neighbours: &Neighbours, active: &[bool], of: &[u32], members: &[
 }
 
 /// Adds nodes that stayed alone to the aggregate they touch most, and closes the gaps in the numbers.
-fn join(neighbours: &Neighbours, lonely: &[u32], of: &mut [u32], count: u32) -> (Vec<u32>, usize) {
+fn join(neighbours: &Neighbours, lonely: &[u32], aggregate_of: &mut [u32], count: u32) -> (Vec<u32>, usize) {
     let mut empty = vec![false; count as usize];
     for &node in lonely {
-        let links = |to: u32| neighbours.count(node, |n| of[n as usize] == to);
-        let around = neighbours.of(node).iter().map(|&n| of[n as usize]).filter(|&a| a != NONE);
+        let links = |to: u32| neighbours.count(node, |n| aggregate_of[n as usize] == to);
+        let around = neighbours.of(node).iter().map(|&n| aggregate_of[n as usize]).filter(|&a| a != NONE);
         if let Some((_, to)) = around.map(|a| (links(a), a)).max() {
-            empty[of[node as usize] as usize] = true;
-            of[node as usize] = to;
+            empty[aggregate_of[node as usize] as usize] = true;
+            aggregate_of[node as usize] = to;
         }
     }
     // Another lonely node may have joined an aggregate that was left.
-    of.iter().filter(|&&a| a != NONE).for_each(|&a| empty[a as usize] = false);
+    aggregate_of.iter().filter(|&&a| a != NONE).for_each(|&a| empty[a as usize] = false);
     let mut next = 0;
     let numbers: Vec<u32> = empty
         .iter()
@@ -88,7 +93,10 @@ fn join(neighbours: &Neighbours, lonely: &[u32], of: &mut [u32], count: u32) -> 
             next.wrapping_sub(1)
         })
         .collect();
-    (of.iter().map(|&a| if a == NONE { NONE } else { numbers[a as usize] }).collect(), next as usize)
+    (
+        aggregate_of.iter().map(|&a| if a == NONE { NONE } else { numbers[a as usize] }).collect(),
+        next as usize,
+    )
 }
 
 #[cfg(test)]
@@ -107,9 +115,9 @@ mod tests {
 
     #[test]
     fn a_grid_falls_into_squares() {
-        let (of, count) = aggregate(&grid(8), &[true; 64]);
+        let (aggregate_of, count) = aggregate(&grid(8), &[true; 64]);
         assert_eq!(count, 16);
-        for (node, &a) in of.iter().enumerate() {
+        for (node, &a) in aggregate_of.iter().enumerate() {
             assert_eq!(a as usize, node / 16 * 4 + node % 8 / 2, "node {node}");
         }
     }
@@ -118,11 +126,11 @@ mod tests {
     fn every_active_node_has_company() {
         let mut active = vec![true; 49];
         active[..8].fill(false);
-        let (of, count) = aggregate(&grid(7), &active);
+        let (aggregate_of, count) = aggregate(&grid(7), &active);
         let mut sizes = vec![0; count];
-        of.iter().filter(|a| **a != NONE).for_each(|&a| sizes[a as usize] += 1);
+        aggregate_of.iter().filter(|a| **a != NONE).for_each(|&a| sizes[a as usize] += 1);
         assert_eq!(sizes.iter().sum::<usize>(), 41);
         assert!(sizes.iter().all(|size| (2..=6).contains(size)), "{sizes:?}");
-        assert!(of[..8].iter().all(|a| *a == NONE));
+        assert!(aggregate_of[..8].iter().all(|a| *a == NONE));
     }
 }
