@@ -295,6 +295,15 @@ impl AnalysisTable {
         }
     }
 
+    /// Whether rigid surfaces have a meaning: in large rotations, and in motions that keep their energy.
+    pub fn can_have_obstacles(&self) -> bool {
+        match self {
+            Self::Nonlinear(_) => true,
+            Self::Newmark(newmark) => newmark.can_have_obstacles(),
+            Self::Linear(_) | Self::Modal(_) | Self::Buckling(_) | Self::Drape(_) => false,
+        }
+    }
+
     /// Whether bands by sampling have a meaning: where results are no linear function of the inputs.
     pub fn can_be_sampled(&self) -> bool {
         match self {

@@ -119,6 +119,11 @@ impl NewmarkTable {
         self.large_rotations
     }
 
+    /// Whether rigid surfaces may stop the sheet: where the method keeps the energy.
+    pub fn can_have_obstacles(&self) -> bool {
+        self.large_rotations && self.spectral_radius.is_none()
+    }
+
     /// Shapes on the way that are kept.
     pub fn frames(&self) -> usize {
         self.frames.unwrap_or(0)

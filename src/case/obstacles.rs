@@ -14,7 +14,8 @@ use crate::quantity::Length;
 
 /// `[[obstacles]]`: a rigid surface at which the middle surface of the sheet stops, and how it rubs; of several kinds. Nodes are
 /// held against it, so cells are to be small against its radii. With `[analysis] kind = "nonlinear"`, not by arc length; while
-/// there are obstacles, loads grow by a tenth in a step unless `largest_step` says otherwise.
+/// there are obstacles, loads grow by a tenth in a step unless `largest_step` says otherwise. And with `kind = "newmark"` in large
+/// rotations that keep the energy: there the sheet does not rebound.
 #[derive(Clone, Debug, JsonSchema)]
 #[schemars(tag = "kind", rename_all = "snake_case")]
 pub(super) enum ObstacleTable {

@@ -132,8 +132,8 @@ pub(super) fn step_analysis(
         return Ok(StepAnalysis::Static(Box::new(nonlinear)));
     };
     let analysis = AnalysisTable::read(at)?;
-    if case.has("obstacles") && !matches!(analysis, AnalysisTable::Nonlinear(_)) {
-        let message = "beside [[obstacles]] every step is of kind = \"nonlinear\": what touches is part of no mode and no motion here";
+    if case.has("obstacles") && !matches!(analysis, AnalysisTable::Nonlinear(_) | AnalysisTable::Newmark(_)) {
+        let message = "beside [[obstacles]] a step is of kind = \"nonlinear\" or \"newmark\": what touches is part of no mode here";
         return refused(of_step.value_place("kind"), message);
     }
     match analysis {

@@ -62,6 +62,8 @@ impl CaseTable {
         let analysis = AnalysisTable::read(case)?;
         if !matches!(analysis, AnalysisTable::Nonlinear(_)) {
             foreign(case, &["steps"], NO_STEPS)?;
+        }
+        if !analysis.can_have_obstacles() {
             foreign(case, &["obstacles"], NO_OBSTACLES)?;
         }
         let is_one_state = matches!(analysis, AnalysisTable::Linear(_) | AnalysisTable::Nonlinear(_));
@@ -383,8 +385,8 @@ const NO_CONVERGENCE: &str = "[convergence] is for linear, modal, buckling and n
 
 const NO_ADAPTIVE: &str = "[adaptive] is for linear and nonlinear analyses of a [sheet] without [[steps]]: remove it (a drape has `refinements`)";
 
-const NO_OBSTACLES: &str = "[[obstacles]] are for statics in large rotations: write [analysis] kind = \"nonlinear\", or remove them (a drape is \
-                            clamped between its discs)";
+const NO_OBSTACLES: &str = "[[obstacles]] are for large rotations: write [analysis] kind = \"nonlinear\", or kind = \"newmark\" with \
+                            large_rotations = true and without spectral_radius, or remove them (a drape is clamped between its discs)";
 
 const NO_STEPS: &str =
     "[[steps]] are for large rotations: write [analysis] kind = \"nonlinear\", or remove them";

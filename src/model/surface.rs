@@ -57,6 +57,19 @@ pub struct Gap {
 }
 
 impl SurfaceShape {
+    /// Whether a straight way goes through a bar: from a point outside to another farther inside than a depth (m), or to where it
+    /// would soon be pushed out on the other side. Under a plane and under a table there is none.
+    pub fn is_passed(&self, start: &Point3<f64>, end: &Point3<f64>, depth: f64) -> bool {
+        let Self::Cylinder { at, axis, radius } = self else { return false };
+        let across = |v: Vector3<f64>| v - axis * axis.dot(&v);
+        let (from, way) = (across(start - at), across(end - start));
+        // Where it is nearest to the axis.
+        let part = (-from.dot(&way) / way.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        let (end, nearest) = ((from + way).norm(), (from + way * part).norm());
+        let outside = from.norm().min(end) >= *radius;
+        (outside && nearest < radius - depth) || end < 0.5 * radius
+    }
+
     /// The gap at a point.
     pub fn gap(&self, point: &Point3<f64>) -> Gap {
         match self {
@@ -154,6 +167,23 @@ mod tests {
                     );
                 }
             }
+        }
+    }
+
+    #[test]
+    fn a_bar_is_passed_by_ways_through_it() {
+        let bar = SurfaceShape::Cylinder { at: Point3::origin(), axis: Vector3::y(), radius: 1.0 };
+        for (from, to, passed) in [
+            ([0.1, 3.0], [0.2, -9.0], true),
+            ([0.999, 3.0], [0.999, -9.0], false),
+            ([0.0, 3.0], [0.0, 0.6], false),
+            ([0.0, 3.0], [0.0, -0.4], true),
+            ([2.0, 3.0], [-2.0, 3.0], false),
+            ([0.0, 3.0], [0.0, 1.0], false),
+            ([0.0, 3.0], [0.0, 3.0], false),
+        ] {
+            let [from, to] = [from, to].map(|[x, z]: [f64; 2]| Point3::new(x, 0.3 * z, z));
+            assert_eq!(bar.is_passed(&from, &to, 0.01), passed, "{from} {to}");
         }
     }
 

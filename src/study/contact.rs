@@ -99,7 +99,18 @@ pub(super) fn touching(
 ) -> Vec<Finding> {
     let [low, high] = model.mesh.bounds();
     let accepted = ACCEPTED * (high - low).norm();
-    let mut facts: Vec<StudyFact> = through_or_on_itself(model, state).into_iter().collect();
+    let itself = through_or_on_itself(model, state).map(Finding::new);
+    itself.into_iter().chain(at_obstacles(obstacles, of_fabric, state, accepted)).collect()
+}
+
+/// S146 and S147 of a sheet in a state that may be so far beyond an obstacle (m).
+pub(super) fn at_obstacles(
+    obstacles: &[SheetObstacle],
+    of_fabric: Option<f64>,
+    state: &State,
+    accepted: f64,
+) -> Vec<Finding> {
+    let mut facts = Vec::new();
     for (contact, obstacle) in contacts(obstacles, of_fabric, state).into_iter().zip(obstacles) {
         let ContactResult { obstacle: name, friction, penetration: depth, .. } = contact;
         if depth > 1.01 * accepted {

@@ -3,10 +3,12 @@
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
+use super::contact::{at_obstacles, surfaces};
 use super::history::History;
 use super::limits::largest_displacement;
 use super::load_path::MotionFrame;
 use super::nonlinear::largest_w;
+use super::of_fabric::OfFabric;
 use super::result::Outcome;
 use super::{Case, PreparedCase, StudyError, Watch, refused, through_itself};
 use crate::case::Rotations;
@@ -16,7 +18,6 @@ use crate::finding::{Fact, Finding, Located, Place, StudyFact};
 use crate::mesh::QuadMesh;
 use crate::model::Model;
 use crate::platform;
-use crate::section::SheetLaw;
 use crate::solve::newmark::{self, Instant, Rayleigh};
 use crate::solve::nonlinear::dynamics::{Dynamics, Launch, integrate_with};
 use crate::solve::{self, Solution};
@@ -117,16 +118,18 @@ pub(super) fn is_out_of_time(finding: &Finding) -> bool {
 pub(super) fn dynamics(
     prepared: &PreparedCase<'_>,
     model: &Model,
-    law: Option<&SheetLaw>,
+    fabric: OfFabric<'_>,
     settings: &newmark::Settings,
     rotations: Rotations,
     watch: Watch<'_>,
 ) -> Result<Outcome, StudyError> {
     let mut record = Record::new(prepared, model, watch);
+    let obstacles = &prepared.problem.obstacles;
+    let surfaces = surfaces(obstacles, fabric.friction);
     let state = if let Rotations::Large { spectral_radius } = rotations {
         let newmark::Settings { duration, step, tolerance, damping, load, mass, .. } = *settings;
         let dynamics = Dynamics { duration, step, tolerance, spectral_radius, damping, load, mass };
-        let launch = Launch { law, ..Launch::default() };
+        let launch = Launch { law: fabric.law, surfaces: &surfaces, ..Launch::default() };
         let (plan, options) = (&prepared.plan, &prepared.options);
         Some(integrate_with(model, plan, &launch, &dynamics, options, |at| record.see(at))?)
     } else {
@@ -137,8 +140,12 @@ pub(super) fn dynamics(
     // What a γ above 1/2 takes away is what it is there for; what it gives is not.
     let damps = settings.scheme.gamma > newmark::Scheme::default().gamma;
     let (history, solution, mut findings) = record.finish(prepared.case, settings.duration, damps);
-    let through = state.as_ref().and_then(|state| through_itself(&model.mesh, state));
-    findings.extend(through.map(|fact| Finding::new(fact).at(Place::file(&prepared.case.path))));
+    if let Some(state) = &state {
+        let through = through_itself(&model.mesh, state).map(Finding::new);
+        let at_obstacles = at_obstacles(obstacles, fabric.friction, state, model.section.thickness);
+        let touching = through.into_iter().chain(at_obstacles);
+        findings.extend(touching.map(|finding| finding.at(Place::file(&prepared.case.path))));
+    }
     Ok(Outcome { history: Some(history), state, findings, ..Outcome::of(solution) })
 }
 

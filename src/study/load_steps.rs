@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::build::Actions;
-use super::contact::{contacts, surfaces, touching};
+use super::contact::{at_obstacles, contacts, surfaces, touching};
 use super::dynamics;
 use super::eigen_steps::State;
 use super::history::History;
@@ -187,7 +187,14 @@ impl StepSequence<'_> {
             mass: motion.mass,
         };
         let without_layers = self.without_layers();
-        let launch = Launch { carried: Some(&self.carried), guided: &actions.guided, law: self.fabric.law };
+        let (obstacles, friction) = (&prepared.problem.obstacles, self.fabric.friction);
+        let surfaces = surfaces(obstacles, friction);
+        let launch = Launch {
+            carried: Some(&self.carried),
+            guided: &actions.guided,
+            law: self.fabric.law,
+            surfaces: &surfaces,
+        };
         let mut record =
             dynamics::Record::new(prepared, &model, self.watch).keeping(motion.frames, dynamics.duration);
         let (plan, options) = (&prepared.plan, &prepared.options);
@@ -208,12 +215,13 @@ impl StepSequence<'_> {
             frames,
             stability: None,
             reaction: vec![0.0; solution.displacement.len()],
-            contacts: Vec::new(),
+            contacts: contacts(obstacles, friction, &state),
             state: state.clone(),
         });
+        let at_obstacles = at_obstacles(obstacles, friction, &state, model.section.thickness);
         self.record.state = state;
         self.motion = Some((history, solution));
-        Ok(findings.into_iter().chain(without_layers).collect())
+        Ok(findings.into_iter().chain(without_layers).chain(at_obstacles).collect())
     }
 
     /// Rayleigh factors for damping ratios at the first and the third frequency about the state in which a motion begins.

@@ -287,7 +287,7 @@ fn analyse(
                 scheme: newmark.scheme,
                 beginning: newmark.beginning,
             };
-            dynamics(prepared, model, fabric.law, &settings, newmark.rotations, watch)
+            dynamics(prepared, model, fabric, &settings, newmark.rotations, watch)
         }
         Analysis::Nonlinear(nonlinear) => equilibrium(prepared, model, fabric, nonlinear, watch),
         Analysis::Steps(steps) => load_steps(prepared, model, fabric, steps, watch),

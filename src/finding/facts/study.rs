@@ -254,8 +254,8 @@ super::facts! {
             depth: f64,
             /// What is accepted (m).
             accepted: f64,
-        } = "`{obstacle}` is passed through by {} mm, {} mm are accepted: the contact has not converged there; take more cells, or a \
-             smaller largest_step", significant(1e3 * depth), significant(1e3 * accepted);
+        } = "`{obstacle}` is passed through by {} mm, {} mm are accepted: the contact has not converged there; take more cells, or \
+             shorter steps", significant(1e3 * depth), significant(1e3 * accepted);
         /// A friction that nobody stated.
         "S147" AssumedFriction {
             /// Name of the surface.

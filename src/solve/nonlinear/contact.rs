@@ -184,7 +184,7 @@ impl<'a> Surfaces<'a> {
 }
 
 /// A force across a surface that has turned since: along the new one, of the same size.
-fn turned(traction: &Vector3<f64>, across: &Matrix3<f64>) -> Vector3<f64> {
+pub(super) fn turned(traction: &Vector3<f64>, across: &Matrix3<f64>) -> Vector3<f64> {
     let along = across * traction;
     let (size, left) = (traction.norm(), along.norm());
     if left > 0.0 { along * (size / left) } else { along }

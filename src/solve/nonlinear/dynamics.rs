@@ -11,6 +11,8 @@
 //! motions are not damped by it. The rotary inertia of a node is `t²/12` of its mass about every axis, so
 //! that it does not turn with the sheet.
 //!
+//! Rigid surfaces stop the nodes ([`Launch::surfaces`]): impacts take energy, and so does friction (`impact`).
+//!
 //! A rigid body has the inertia of its nodes: they move with its lead, `a = a_lead + ω̇ × r + ω × (ω × r)`, and
 //! their forces of inertia act on it about its place. Newton's matrix leaves out how `ω × (ω × r)` changes, which is
 //! small of the order of the turn in a step.
@@ -19,13 +21,17 @@ mod adaptive;
 mod alpha;
 mod conserving;
 mod guard;
+mod impact;
 pub(super) mod inertia;
 mod launch;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use nalgebra::Vector3;
+
 use self::guard::Guard;
+use self::impact::{Impact, Impacts};
 use self::inertia::Inertia;
 pub use self::launch::{Course, Guided, Launch};
 use super::newton::{is_rounding, limit};
@@ -111,7 +117,9 @@ pub fn integrate_with(
         system.before.iter_mut().for_each(|before| before.scale = balance.scale);
         began = balance.energy;
     }
-    let motion = Motion::new(&system, dynamics, launch, began);
+    let impacts = Impacts::new(launch.surfaces, &system);
+    began += impacts.stored(start);
+    let motion = Motion::new(&system, dynamics, launch, impacts, began);
     let mut now = motion.start(start)?;
     let tolerance = dynamics.tolerance;
     let longest = tolerance.map_or(dynamics.step, |_| dynamics.load.longest_step());
@@ -134,6 +142,7 @@ pub fn integrate_with(
         guard.attempt(time)?;
         let dt = step.min(dynamics.duration - time);
         let next = motion.advance((&now, &energy), time + dt, dt);
+        let next = next.filter(|next| !motion.impacts.passed_through(&now.state, &next.state));
         let reached = match (&next, tolerance) {
             (Some(next), Some(_)) => motion.displacement(next).max(largest),
             _ => largest,
@@ -190,6 +199,10 @@ struct Now {
     travelled: Vec<f64>,
     /// Work of moved supports since then (J).
     supported: f64,
+    /// Energy in the springs of rigid surfaces (J).
+    pressed: f64,
+    /// Work of their forces on the sheet since the instant before (J).
+    stopped: f64,
     /// Of Newton's last matrix, where a tolerance asks for the local error.
     factor: Option<Factor>,
 }
@@ -205,19 +218,27 @@ struct Motion<'a> {
     gamma: f64,
     /// Dofs that supports move.
     guided: Vec<(usize, &'a Course)>,
+    /// Rigid surfaces.
+    impacts: Impacts<'a>,
     /// Energy stored in the state of the start (J).
     began: f64,
 }
 
 impl<'a> Motion<'a> {
-    fn new(system: &'a System<'a>, dynamics: &'a Dynamics, launch: &Launch<'a>, began: f64) -> Self {
+    fn new(
+        system: &'a System<'a>,
+        dynamics: &'a Dynamics,
+        launch: &Launch<'a>,
+        impacts: Impacts<'a>,
+        began: f64,
+    ) -> Self {
         let guided = launch.guided.iter().map(|g| (6 * g.node as usize + g.dof, &g.course)).collect();
         let rho = dynamics.spectral_radius.unwrap_or(1.0);
         let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
         let gamma = 0.5 + alpha_f - alpha_m;
         let beta = 0.25 * (0.5 + gamma) * (0.5 + gamma);
         let inertia = Inertia::new(system, dynamics.mass);
-        Self { inertia, system, dynamics, alpha_m, alpha_f, beta, gamma, guided, began }
+        Self { inertia, system, dynamics, alpha_m, alpha_f, beta, gamma, guided, impacts, began }
     }
 
     /// Still in a state, under the loads of the first instant.
@@ -243,6 +264,8 @@ impl<'a> Motion<'a> {
             load: self.load(&state),
             travelled: still,
             supported: 0.0,
+            pressed: self.impacts.stored(&state),
+            stopped: 0.0,
             factor: None,
             state,
         })
@@ -292,8 +315,9 @@ impl<'a> Motion<'a> {
         for _ in 0..ITERATIONS {
             let rates = self.steer(rates(&travelled), now, time, dt);
             let balance = self.system.balance(&state, None);
-            let Resistance { inertia, drag, damping, nodal, viscous } =
-                self.resistance(&state, &balance, &rates);
+            let impacts = self.impacts.between(&now.state, &state, dt);
+            let Resistance { inertia, drag, damping, nodal, viscous, stopping } =
+                self.resistance(&state, &balance, &rates, &impacts);
             // Means over the step where energy is conserved, and then what vanishes is twice of them.
             let (acting, times) = if self.conserves() {
                 let twice = self.twice_the_mean(&now.balance, (&state, &balance));
@@ -314,7 +338,8 @@ impl<'a> Motion<'a> {
             };
             let done = |mut state: State, balance: Balance, factor: Option<Factor>| {
                 self.system.remember(&balance, &mut state);
-                Now {
+                self.impacts.remember(&impacts, &mut state.memory);
+                let now = Now {
                     load: self.load(&state),
                     velocity: rates.velocity.clone(),
                     acceleration: rates.acceleration.clone(),
@@ -324,9 +349,12 @@ impl<'a> Motion<'a> {
                     viscous: viscous.iter().map(|force| force.local).collect(),
                     travelled: travelled.clone(),
                     supported: if self.guided.is_empty() { 0.0 } else { supported() },
+                    pressed: self.impacts.stored(&state),
+                    stopped: stopping.iter().zip(&travelled).map(|(force, u)| force * u).sum(),
                     factor: factor.filter(|_| self.dynamics.tolerance.is_some()),
                     state,
-                }
+                };
+                self.without_rebound(now, &impacts)
             };
             if !size.is_finite() {
                 return None;
@@ -338,7 +366,7 @@ impl<'a> Motion<'a> {
             let geometric: Vec<Forces> = elastic.iter().zip(&viscous).map(|(e, v)| e.plus(v)).collect();
             let mut step = force;
             let beta = self.dynamics.damping.beta + rates.correction;
-            let tangent = self.tangent(&state, &balance, &nodal, (&geometric, beta), dt)?;
+            let tangent = self.tangent(&state, &balance, (&nodal, &impacts), (&geometric, beta), dt)?;
             tangent.solve(&mut step, 1);
             factor = Some(tangent);
             if limit(&mut step) == 1.0 && is_rounding(&step, self.system.size) {
@@ -354,13 +382,30 @@ impl<'a> Motion<'a> {
         None
     }
 
+    /// The end of a step in which nodes that are pressed do not leave their surface. What they lose is work of the surface.
+    fn without_rebound(&self, mut now: Now, impacts: &[Impact]) -> Now {
+        if impacts.is_empty() {
+            return now;
+        }
+        let before = self.kinetic(&now);
+        for impact in impacts {
+            let dofs = [0, 1, 2].map(|d| 6 * impact.node + d);
+            let leaving = Vector3::from(dofs.map(|d| now.velocity[d])).dot(&impact.normal);
+            if leaving > 0.0 && dofs.iter().all(|d| !self.system.held[*d] || impact.normal[d % 6] == 0.0) {
+                dofs.iter().for_each(|d| now.velocity[*d] -= leaving * impact.normal[d % 6]);
+            }
+        }
+        now.stopped += self.kinetic(&now) - before;
+        now
+    }
+
     /// Factor of `(1-α_m)/((1-α_f) β Δt²) M + γ/(β Δt) C + K`; `nodal` are the forces of inertia and damping
-    /// on the nodes, `beta` the damping by stiffness.
+    /// on the nodes, with what surfaces do to them, `beta` the damping by stiffness.
     fn tangent(
         &self,
         state: &State,
         balance: &Balance,
-        nodal: &[f64],
+        (nodal, impacts): (&[f64], &[Impact]),
         (forces, beta): (&[Forces], f64),
         dt: f64,
     ) -> Option<Factor> {
@@ -370,6 +415,9 @@ impl<'a> Motion<'a> {
         let factor = self.by_acceleration(dt) + self.dynamics.damping.alpha * by_velocity;
         self.inertia.add(self.system, state, factor, &mut matrix);
         self.system.add_body_terms(state, nodal, &mut matrix);
+        // What vanishes is twice the mean.
+        let stops = impacts.iter().map(|impact| (impact.node, impact.stiffness * 2.0));
+        self.system.add_presses(state, stops, &mut matrix, &mut vec![0.0; self.system.held.len()]);
         self.system.factorise(&matrix).ok()
     }
 
@@ -379,7 +427,7 @@ impl<'a> Motion<'a> {
     }
 
     /// What a motion of the dofs costs besides the forces of the state.
-    fn resistance(&self, state: &State, balance: &Balance, rates: &Rates) -> Resistance {
+    fn resistance(&self, state: &State, balance: &Balance, rates: &Rates, impacts: &[Impact]) -> Resistance {
         let Rayleigh { alpha, beta } = self.dynamics.damping;
         let velocities = self.system.node_velocities(state, &rates.acting);
         let (mut damping, viscous) = self.system.viscous(balance, &velocities, beta + rates.correction);
@@ -389,6 +437,11 @@ impl<'a> Motion<'a> {
             drag.iter_mut().zip(momentum).for_each(|(f, p)| *f = alpha * p);
             damping.iter_mut().zip(&drag).for_each(|(f, p)| *f += p);
         }
+        let mut stopping = vec![0.0; damping.len()];
+        for impact in impacts {
+            (0..3).for_each(|d| stopping[6 * impact.node + d] += impact.force[d]);
+        }
+        damping.iter_mut().zip(&stopping).for_each(|(resisting, force)| *resisting -= force);
         let accelerations = self.system.node_accelerations(state, &rates.acting, &rates.acceleration);
         let inertia = self.inertia.times(self.system, &accelerations);
         Resistance {
@@ -397,6 +450,7 @@ impl<'a> Motion<'a> {
             drag: self.system.to_leads(state, &drag),
             damping: self.system.to_leads(state, &damping),
             viscous,
+            stopping: self.system.to_leads(state, &stopping),
         }
     }
 
@@ -422,7 +476,9 @@ impl<'a> Motion<'a> {
                 viscous.zip(strained).map(|(force, strained)| force.dot(&strained)).sum::<f64>();
         }
         energy.dissipated += next.state.memory.dissipated - now.state.memory.dissipated;
-        energy.strain = next.balance.energy - self.began;
+        // What surfaces take of the motion and do not keep in their springs is lost.
+        energy.dissipated -= next.stopped + next.pressed - now.pressed;
+        energy.strain = next.balance.energy + next.pressed - self.began;
         energy.kinetic = self.kinetic(next);
     }
 
@@ -473,10 +529,12 @@ struct Resistance {
     inertia: Vec<f64>,
     /// `α M v`, by dof.
     drag: Vec<f64>,
-    /// Of all damping, by dof.
+    /// Of all damping and of rigid surfaces, by dof.
     damping: Vec<f64>,
     /// Both, on every node.
     nodal: Vec<f64>,
     /// Of the elements' viscosity, in their frames.
     viscous: Vec<Forces>,
+    /// Of rigid surfaces on the sheet, by dof.
+    stopping: Vec<f64>,
 }

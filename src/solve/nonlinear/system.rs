@@ -305,6 +305,11 @@ impl<'a> System<'a> {
         self.model.load_vector().chunks_exact(6).map(|n| n[0].hypot(n[1]).hypot(n[2])).sum()
     }
 
+    /// Area of each node; 0 off the sheet (m²).
+    pub fn areas_of_nodes(&self) -> Vec<f64> {
+        self.metric.iter().step_by(6).copied().collect()
+    }
+
     /// The order of the largest eigenvalue per area: the membrane of an element (N/m³).
     pub fn stiffest(&self) -> f64 {
         self.model.section.d_m.diagonal().max() / (self.side * self.side)
@@ -369,7 +374,8 @@ impl<'a> System<'a> {
             (0..pattern.quads.len()).for_each(|q| add(q, of_element(q)));
         }
         self.add_body_terms(state, &balance.nodal, &mut matrix);
-        self.add_presses(state, &balance.presses, &mut matrix, &mut push);
+        let presses = balance.presses.iter().map(|press| (press.node, press.stiffness));
+        self.add_presses(state, presses, &mut matrix, &mut push);
         self.add_contacts(state, &balance.contacts, &mut matrix, &mut push);
         let graph = &pattern.graph;
         for dof in (0..self.held.len()).filter(|d| !self.held[*d]) {

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use super::Motion;
 use super::{Now, Rates};
+use crate::model::RigidSurface;
 use crate::section::SheetLaw;
 use crate::solve::nonlinear::Carried;
 
@@ -17,6 +18,8 @@ pub struct Launch<'a> {
     pub guided: &'a [Guided],
     /// Laws with friction in the place of diagonal entries of the section.
     pub law: Option<&'a SheetLaw>,
+    /// Rigid surfaces that the sheet cannot pass; for the method that conserves the energy.
+    pub surfaces: &'a [RigidSurface],
 }
 
 /// A dof of a node that a support moves.

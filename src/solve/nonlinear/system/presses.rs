@@ -1,25 +1,25 @@
 //! The stiffness of rigid surfaces in the tangent.
 
-use nalgebra::{Matrix3x6, Matrix6};
+use nalgebra::{Matrix3, Matrix3x6, Matrix6};
 
-use super::{Press, State, System};
+use super::{State, System};
 use crate::model::rigid::lever;
 use crate::solve::sparse::BlockMatrix;
 
 impl System<'_> {
-    /// Adds what pressed nodes feel of a motion to the blocks of their dofs, and what the held values at factor 1 exert on the
+    /// Adds what pressed nodes feel of a motion (N/m) to the blocks of their dofs, and what the held values at factor 1 exert on the
     /// free ones to `push`.
-    pub(super) fn add_presses(
+    pub(in super::super) fn add_presses(
         &self,
         state: &State,
-        presses: &[Press],
+        presses: impl Iterator<Item = (usize, Matrix3<f64>)>,
         matrix: &mut BlockMatrix,
         push: &mut [f64],
     ) {
-        for press in presses {
-            let lead = self.links.leads[press.node] as usize;
-            let motion = self.motion_of(state, press.node);
-            let stiffness = motion.tr_mul(&(press.stiffness * motion));
+        for (node, stiffness) in presses {
+            let lead = self.links.leads[node] as usize;
+            let motion = self.motion_of(state, node);
+            let stiffness = motion.tr_mul(&(stiffness * motion));
             self.add_block([lead; 2], &stiffness, matrix, push);
         }
     }
