@@ -61,8 +61,7 @@ impl SurfaceShape {
     /// would soon be pushed out on the other side. Under a plane and under a table there is none.
     pub fn is_passed(&self, start: &Point3<f64>, end: &Point3<f64>, depth: f64) -> bool {
         let Self::Cylinder { at, axis, radius } = self else { return false };
-        let across = |v: Vector3<f64>| v - axis * axis.dot(&v);
-        let (from, way) = (across(start - at), across(end - start));
+        let (from, way) = (across(&(start - at), axis), across(&(end - start), axis));
         // Where it is nearest to the axis.
         let part = (-from.dot(&way) / way.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
         let (end, nearest) = ((from + way).norm(), (from + way * part).norm());
@@ -112,9 +111,14 @@ impl Gap {
     }
 }
 
+/// The part of a vector across an axis.
+fn across(vector: &Vector3<f64>, axis: &Vector3<f64>) -> Vector3<f64> {
+    vector - axis * vector.dot(axis)
+}
+
 /// Distance from an axis, and the direction away from it; any across it for a point of the axis.
 fn around(from: &Vector3<f64>, axis: &Vector3<f64>) -> (f64, Vector3<f64>) {
-    let across = from - axis * from.dot(axis);
+    let across = across(from, axis);
     let r = across.norm();
     if r > 0.0 {
         return (r, across / r);
