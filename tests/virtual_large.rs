@@ -115,7 +115,7 @@ fn a_tension_across_adds_itself_to_the_shear() {
 fn the_example_cases_are_read() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/large_rotations");
     let files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
-    assert_eq!(files.len(), 10);
+    assert_eq!(files.len(), 11);
     files.iter().for_each(|file| drop(Case::read(file).unwrap_or_else(|e| panic!("{e}"))));
 }
 
