@@ -4,7 +4,7 @@
 //!      ______  falls h, stops: loses m g h           ____
 //!   ____________  ground                        ____/ slides down: g (sin a - µ cos a)
 //! ```
-//! References (analytical): free fall, Coulomb's block on an inclined plane, a block that was pushed and stops; the equilibrium of the
+//! References (analytical): free fall, Coulomb's block on an inclined plane, a rope over a drum; the equilibrium of the
 //! same strip by the statics of this program, which has references of its own (`tests/contact.rs`).
 
 use std::f64::consts::PI;
@@ -73,7 +73,7 @@ fn a_sheet_that_falls_flat_stops_and_loses_what_it_fell() {
             rest + h,
             history.imbalance
         );
-        assert!((rest + h).abs() < 3e-5 && deepest > -1e-3 && rebound < 1e-4 && (lost - 1.0).abs() < 1e-3);
+        assert!((rest + h).abs() < 1e-6 && deepest > -2e-4 && rebound < 1e-5 && (lost - 1.0).abs() < 1e-4);
         assert!(history.imbalance < 1e-6 && end.kinetic < 1e-6 * mass() * G * h);
         let weight = &result.contacts[0];
         assert!((weight.force[2] / (mass() * G) - 1.0).abs() < 1e-3, "{:?}", weight.force);
@@ -95,7 +95,7 @@ fn a_sheet_slides_down_an_inclined_plane_or_stays() {
             let k = history.time.iter().position(|time| (time - t).abs() < 1e-6).unwrap();
             history.probe_displacements[0][k][0]
         };
-        // The ground gives way by a fortieth of a millimetre until it bears the weight: the acceleration after that.
+        // It lies on the ground without a force at first: the acceleration once the ground bears it.
         let acceleration = (x(0.2) - 2.0 * x(0.125) + x(0.05)) / 0.075f64.powi(2);
         let (exact, travelled) = (G * (sin - mu * cos), x(0.2));
         let lost = history.energy.last().unwrap().dissipated / (mu * mass() * G * cos * travelled).max(1e-12);
@@ -103,14 +103,14 @@ fn a_sheet_slides_down_an_inclined_plane_or_stays() {
             "friction {mu}: slides with {acceleration:.6} m/s², exact {exact:.6}, lost over friction {lost:.4}"
         );
         assert!((acceleration / exact - 1.0).abs() < 1e-4, "{acceleration} {exact}");
-        assert!(mu == 0.0 || (lost - 1.0).abs() < 5e-3, "{lost}");
+        assert!(mu == 0.0 || (lost - 1.0).abs() < 1e-3, "{lost}");
         assert!(history.imbalance < 1e-5, "{}", history.imbalance);
     }
     // Steeper than it slides: sticks.
     let result = free_sheet(direction, "at = [\"0 m\", \"0 m\", \"0 m\"]\nfriction = 0.7", duration, 1e-3);
     let travelled = result.history.as_ref().unwrap().probe_displacements[0].last().unwrap()[0];
     println!("friction 0.7: travelled {travelled:.2e} m");
-    assert!(travelled.abs() < 1e-4, "{travelled}");
+    assert!(travelled.abs() < 1e-5, "{travelled}");
 }
 
 const STRIP: &str = "[sheet]\nshape = \"strip\"\nwidth = \"20 cm\"\nheight = \"1 cm\"\ncells = [40, 1]\n\
@@ -130,7 +130,7 @@ fn a_strip_that_falls_on_the_ground_comes_to_rest_where_statics_lays_it() {
     println!("end by statics {a:?}, by a motion {b:?}, apart {off:.2e} m; balance {:.1e}", history.imbalance);
     let [on_statics, on_motion] = [&statics, &motion].map(|r| r.contacts[0].force[2]);
     println!("the ground bears {on_statics:.6e} N and {on_motion:.6e} N");
-    assert!(off < 1e-3 && (on_motion / on_statics - 1.0).abs() < 5e-3);
+    assert!(off < 2e-5 && (on_motion / on_statics - 1.0).abs() < 1e-3);
     assert!(history.imbalance < 1e-4 && history.energy.last().unwrap().kinetic < 1e-9);
 }
 
@@ -219,7 +219,7 @@ fn a_strip_slides_over_a_drum() {
         let beside = 0.5 * (length - PI * radius);
         let exact = acceleration_over_a_drum(pulls, [beside - gone, beside + gone], rho, radius, mu);
         println!("friction {mu}: {found:.5} m/s², exact {exact:.5}; {} steps, {last:?}", heights.len() - 1);
-        assert!((found / exact - 1.0).abs() < 1e-2, "{found} {exact}");
+        assert!((found / exact - 1.0).abs() < 5e-3, "{found} {exact}");
         assert!(last.imbalance().abs() < 1e-5 * last.work && last.dissipated >= 0.0, "{last:?}");
     }
 }
