@@ -26,8 +26,8 @@ use serde_json::{Value, json};
 
 /// The schema of a document by its name, closed: a key that is not in it is an error.
 fn validator(name: &str) -> Validator {
-    let file = kesf::documents::schemas().into_iter().find(|file| file.name == name);
-    let mut schema = file.unwrap_or_else(|| panic!("no schema {name}")).schema;
+    let file = kesf::schema::SCHEMAS.iter().find(|file| file.name == name);
+    let mut schema = file.unwrap_or_else(|| panic!("no schema {name}")).schema();
     close(&mut schema);
     jsonschema::draft7::new(&schema).unwrap()
 }
@@ -277,7 +277,7 @@ fn every_document_is_as_its_schema_says() {
     assert!(seen.wrong.is_empty(), "{}", seen.wrong.join("\n"));
     let seen_or_read: BTreeSet<String> =
         ["case", "dialect", "drape-image", "fabric", "open-fabric", "settings"].map(String::from).into();
-    let all: BTreeSet<String> = kesf::documents::schemas().iter().map(|file| file.name.to_string()).collect();
+    let all: BTreeSet<String> = kesf::schema::SCHEMAS.iter().map(|file| file.name.to_string()).collect();
     assert_eq!(all, &seen.schemas | &seen_or_read, "each schema has seen a document");
 }
 

@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use kesf::case::SolverChoice;
 use kesf::report::OutputFolder;
+use kesf::report::chart::Format;
 use kesf::report::table::{FabricRow, PredictionRow, ProblemRow};
 use kesf::results::{Event, Failure, Job, MemorySink, Sink};
 use kesf::run::{Drapes, RunReport, RunSettings, read, write};
@@ -24,6 +25,9 @@ pub struct Making {
     /// Whether files are kept where there is no folder.
     keep: bool,
     charts: bool,
+    /// What kinds of files charts become, by their endings.
+    formats: Vec<String>,
+    xlsx: bool,
     drape: Option<bool>,
     stamp: Option<String>,
     force: bool,
@@ -41,6 +45,21 @@ impl Making {
             Some(other) => Err(Failure::new("O050", format!("`{other}` is no solver"))
                 .hint("take auto, direct or iterative")),
         }
+    }
+
+    fn formats(&self) -> Result<Vec<Format>, Failure> {
+        let format = |ending: &String| {
+            Format::from_ending(ending).ok_or_else(|| {
+                Failure::new("O050", format!("`{ending}` is no format of charts"))
+                    .hint("take png, svg or pdf")
+            })
+        };
+        let formats = self.formats.iter().map(format).collect::<Result<Vec<_>, _>>()?;
+        if formats.is_empty() {
+            return Err(Failure::new("O050", "there is no format of charts".to_owned())
+                .hint("take png, svg or pdf, or charts=False"));
+        }
+        Ok(formats)
     }
 }
 
@@ -79,9 +98,11 @@ pub fn run(
             threads: count(threads),
             ..Job::default()
         };
-        let Making { charts, drape, stamp, out, force, keep, .. } = making;
+        let formats = making.formats()?;
+        let Making { charts, xlsx, drape, stamp, out, force, keep, .. } = making;
         let drapes = drape.map_or(Drapes::Auto, Drapes::asked);
-        let settings = RunSettings { charts, drapes, stamp, ..RunSettings::default() };
+        let settings =
+            RunSettings { charts, formats, workbook: xlsx, drapes, stamp, ..RunSettings::default() };
         let work = read(&job, &settings, observer)?;
         if work.is_empty() {
             let sink = MemorySink::default();

@@ -6,12 +6,11 @@ use clap::{Args, ValueEnum};
 
 use super::exit::Exit;
 use super::ui::Ui;
-use crate::documents::schemas;
 use crate::instrument::DIALECT_FILES;
 use crate::report::OutputError;
 use crate::report::write::write_file;
 use crate::results::{Failure, list};
-use crate::schema::case_reference;
+use crate::schema::{CASE_REFERENCE, SCHEMAS};
 
 /// List the formats, dialects, units, analyses, exports, codes, schemas and keys that the program knows
 #[derive(Debug, Args)]
@@ -61,9 +60,9 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         Topic::Codes => list::codes(),
         Topic::Schemas => match &options.output {
             Some(folder) => return write_schemas(folder, options.force),
-            None => list::schemas(&schemas()),
+            None => list::schemas(),
         },
-        Topic::Keys => return ui.print(&case_reference()),
+        Topic::Keys => return ui.print(CASE_REFERENCE),
     };
     if ui.json { ui.document(list.document()) } else { ui.print(&list.text()) }
 }
@@ -71,8 +70,8 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
 fn write_schemas(folder: &Path, force: bool) -> Result<Exit, Failure> {
     std::fs::create_dir_all(folder)
         .map_err(|source| OutputError::Write { path: folder.to_path_buf(), source })?;
-    for file in schemas() {
-        write_file(&folder.join(format!("{}.json", file.name)), file.text().as_bytes(), force)?;
+    for file in SCHEMAS {
+        write_file(&folder.join(format!("{}.json", file.name)), file.text.as_bytes(), force)?;
     }
     Ok(Exit::Done)
 }

@@ -12,6 +12,7 @@ use super::tasks::TaskArgs;
 use super::ui::Ui;
 use super::when::When;
 use crate::documents::ResultsDocument;
+use crate::report::number::counted;
 use crate::results::{Failure, Shard, population};
 use crate::run::{self, RunSettings};
 
@@ -103,7 +104,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         }
         let charts = if settings.charts { ", charts" } else { "" };
         let files = format!("index.html, fabrics.csv, predictions.csv{charts}");
-        ui.note(&format!("{shown}: {files}; {} findings in problems.csv", ui.findings()));
+        ui.note(&format!("{shown}: {files}; {} in problems.csv", counted(ui.findings(), "finding")));
     }
     let strict = options.task.strict && ui.findings() > 0;
     Ok(Exit::of_batch(report.useful, &report.failures).unless(report.fails_a_check || strict))

@@ -67,8 +67,7 @@ pub struct Formats(pub Vec<Format>);
 fn formats(text: &str) -> Result<Formats, String> {
     let names: Vec<&str> = text.split(',').map(str::trim).collect();
     let known = Format::ALL.iter().map(|format| format.ending()).collect::<Vec<_>>().join(", ");
-    if let Some(name) = names.iter().find(|name| !Format::ALL.iter().any(|format| format.ending() == **name))
-    {
+    if let Some(name) = names.iter().find(|name| Format::from_ending(name).is_none()) {
         return Err(format!(
             "\"{name}\" is no format of charts: there are {known}, such as `--format png,svg`"
         ));

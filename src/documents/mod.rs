@@ -1,6 +1,6 @@
 //! The JSON documents that the command prints around what the library computes, and the schemas of all documents.
 //!
-//! Each is a type that serialises, here or beside what it describes; [`schemas`] generates a JSON Schema from every one.
+//! Each is a type that serialises, here or beside what it describes; [`generated`] makes a JSON Schema from every one.
 
 #[cfg(feature = "parquet")]
 mod tables;
@@ -18,7 +18,7 @@ use crate::report::write::Manifest;
 use crate::results::list::ListDocument;
 use crate::results::{Card, CheckDocument, ComparisonDocument, FailureEntry, SolutionDocument};
 use crate::run::RunDocument;
-use crate::schema::{self, SchemaFile};
+use crate::schema::{self, GeneratedSchema};
 use crate::verify;
 
 #[cfg(feature = "parquet")]
@@ -160,10 +160,9 @@ impl ExplanationsDocument {
     }
 }
 
-/// The schemas of all files and documents that the program reads or writes, in name order; the hidden records by which a run
-/// goes on are for the program alone.
-pub fn schemas() -> Vec<SchemaFile> {
-    let mut all = schema::schemas();
+/// The schemas of all files and documents, from their types, in name order: those of [`schema::SCHEMAS`].
+pub fn generated() -> Vec<GeneratedSchema> {
+    let mut all = schema::generated();
     all.extend([
         document::<CheckDocument>("check", "kesf.check/1, of kesf check"),
         document::<ComparisonDocument>(
@@ -171,15 +170,18 @@ pub fn schemas() -> Vec<SchemaFile> {
             "kesf.comparison/1, of kesf compare and of cases of tests",
         ),
         document::<CurvesDocument>("curves", "kesf.curves/1, of kesf read"),
-        SchemaFile::of_document::<ErrorLine>("error", "A line on standard error with --json"),
+        GeneratedSchema::of_document::<ErrorLine>("error", "A line on standard error with --json"),
         document::<ExplanationsDocument>("explanations", "kesf.explanations/1, of kesf explain"),
         document::<ExportDocument>("export", "kesf.export/1, of kesf export"),
         document::<InitDocument>("init", "kesf.init/1, of kesf init"),
         document::<ListDocument>("list", "kesf.list/1, of kesf list"),
-        SchemaFile::of_document::<Manifest>("manifest", "kesf.manifest/1, the files of a folder of results"),
+        GeneratedSchema::of_document::<Manifest>(
+            "manifest",
+            "kesf.manifest/1, the files of a folder of results",
+        ),
         document::<ReportDocument>("report", "kesf.report/1, of kesf report"),
         document::<ResultsDocument>("results", "kesf.results/1, of kesf run"),
-        SchemaFile::of_document::<RunDocument>("run", "kesf.run/1, run.json in a folder of results"),
+        GeneratedSchema::of_document::<RunDocument>("run", "kesf.run/1, run.json in a folder of results"),
         document::<SectionDocument>("section", "kesf.section/1, of kesf section, and section.json"),
         document::<SheetDocument>("sheet", "kesf.sheet/1, of kesf characterise, and sheet.json"),
         document::<SolutionDocument>("solution", "kesf.solution/1, of kesf solve and of cases with a sheet"),
@@ -197,13 +199,13 @@ pub fn schemas() -> Vec<SchemaFile> {
 }
 
 /// A document that a command prints, or that is a file without `findings` and `failures`.
-fn document<D: JsonSchema>(name: &'static str, title: &'static str) -> SchemaFile {
-    let mut file = SchemaFile::of_document::<Complete<D>>(name, title);
+fn document<D: JsonSchema>(name: &'static str, title: &'static str) -> GeneratedSchema {
+    let mut file = GeneratedSchema::of_document::<Complete<D>>(name, title);
     if let Some(required) = file.schema["required"].as_array_mut() {
         required.retain(|key| key != "failures");
     }
     file
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "parquet"))]
 mod tests;

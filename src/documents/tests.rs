@@ -1,20 +1,18 @@
 use super::*;
+use crate::schema::{SCHEMAS, as_committed};
 
-/// The schemas as files: `kesf list schemas -o docs/schemas --force` writes them anew.
+/// The schemas as files and in the program: `KESF_SCHEMAS_WRITE=1 cargo test --release --lib committed` writes them anew.
 #[test]
 fn the_committed_schemas_are_those_of_the_types() {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/schemas");
-    let all = schemas();
+    let all = generated();
     for file in &all {
-        let path = folder.join(format!("{}.json", file.name));
-        let committed = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-        assert_eq!(
-            committed,
-            file.text(),
-            "{} is stale: kesf list schemas -o docs/schemas --force",
-            path.display()
-        );
+        as_committed(&format!("schemas/{}.json", file.name), &file.text());
     }
-    #[cfg(feature = "parquet")]
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/schemas");
     assert_eq!(std::fs::read_dir(folder).unwrap().count(), all.len());
+    assert_eq!(
+        SCHEMAS.iter().map(|f| f.name).collect::<Vec<_>>(),
+        all.iter().map(|f| f.name).collect::<Vec<_>>()
+    );
+    assert!(SCHEMAS.iter().all(|file| !file.title().is_empty()));
 }

@@ -196,12 +196,12 @@ fn natural(xy: &[[f64; 2]; 4], point: [f64; 2]) -> Option<[f64; 2]> {
 /// Points at equal steps on a straight line across a mesh, found once for any number of fields.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SampledLine {
-    /// Distance from the start (m) and the place in the mesh.
-    points: Vec<(f64, Locator)>,
+    /// Distance from the start (m) and the place in the mesh; in holes there is none.
+    points: Vec<(f64, Option<Locator>)>,
 }
 
 impl SampledLine {
-    /// The points at `count` equal steps from `from` to `to`; those outside the mesh are left out.
+    /// The points at `count` equal steps from `from` to `to`; those before and behind the mesh are left out.
     pub fn new(mesh: &QuadMesh, from: &Point3<f64>, to: &Point3<f64>, count: usize) -> Self {
         let (low, high) = (from.inf(to), from.sup(to));
         // A quad holds only points within its reach of its first corner.
@@ -213,17 +213,20 @@ impl SampledLine {
             })
             .collect();
         let length = (to - from).norm();
-        let points = (0..=count).filter_map(|k| {
+        let points = (0..=count).map(|k| {
             let t = k as f64 / count as f64;
             let point = from + (to - from) * t;
-            Some((t * length, near.iter().find_map(|quad| Locator::within(mesh, *quad, &point))?))
+            (t * length, near.iter().find_map(|quad| Locator::within(mesh, *quad, &point)))
         });
-        Self { points: points.collect() }
+        let mut points: Vec<_> = points.skip_while(|(_, at)| at.is_none()).collect();
+        points.truncate(points.iter().rposition(|(_, at)| at.is_some()).map_or(0, |last| last + 1));
+        Self { points }
     }
 
-    /// A nodal quantity along the line: x = distance from its start (m).
+    /// A nodal quantity along the line: x = distance from its start (m), and y no number in holes of the mesh.
     pub fn profile(&self, mesh: &QuadMesh, nodal: impl Fn(usize) -> f64) -> Curve {
-        Curve::from_points(self.points.iter().map(|(x, at)| (*x, at.interpolate(mesh, &nodal))))
+        let value = |at: &Option<Locator>| at.map_or(f64::NAN, |at| at.interpolate(mesh, &nodal));
+        Curve::from_points(self.points.iter().map(|(x, at)| (*x, value(at))))
     }
 }
 
@@ -278,6 +281,17 @@ mod tests {
         let line = line.profile(&mesh, field);
         assert_eq!(line.len(), 11);
         assert_relative_eq!(line.y[10], 3.5, epsilon = 1e-12);
+    }
+
+    #[test]
+    fn a_line_has_no_values_in_a_hole_and_does_not_reach_beyond_the_mesh() {
+        let whole = rectangle(3.0, 1.0, 3, 1).unwrap();
+        let mesh = QuadMesh { quads: vec![whole.quads[0], whole.quads[2]], ..whole };
+        let [from, to] = [-1.0, 4.0].map(|x| Point3::new(x, 0.5, 0.0));
+        let line = SampledLine::new(&mesh, &from, &to, 10).profile(&mesh, |n| mesh.nodes[n].x);
+        assert_eq!(line.x, [1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0]);
+        let place = |(x, y): (f64, f64)| if x == 2.5 { y.is_nan() } else { (y - (x - 1.0)).abs() < 1e-12 };
+        assert!(line.points().all(place), "{line:?}");
     }
 
     /// Every node of a mesh of triangles, and points between: whichever corner is the one that a quad has twice.

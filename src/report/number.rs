@@ -2,6 +2,11 @@
 
 use crate::quantity::Estimate;
 
+/// So many of what is named: "1 finding", "2 findings".
+pub fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
 /// A value with fixed decimals, the sign U+2212, and never "-0".
 pub fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");

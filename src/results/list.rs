@@ -12,7 +12,7 @@ use crate::finding::explanations;
 use crate::instrument::dialects;
 use crate::quantity::UNITS;
 use crate::report::cards::{EXPORTERS, NOT_WRITTEN, NotWritten, Target};
-use crate::schema::SchemaFile;
+use crate::schema::SCHEMAS;
 
 /// Headings and rows of a list.
 pub struct List {
@@ -148,8 +148,8 @@ fn dimension(kg: i8, m: i8, s: i8) -> String {
 }
 
 /// JSON Schemas.
-pub fn schemas(files: &[SchemaFile]) -> List {
-    let rows = files.iter().map(|file| vec![json!(file.name), json!(file.title)]);
+pub fn schemas() -> List {
+    let rows = SCHEMAS.iter().map(|file| vec![json!(file.name), json!(file.title())]);
     List { headings: &["name", "title"], rows: rows.collect() }
 }
 

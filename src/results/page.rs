@@ -14,6 +14,7 @@ use crate::report::html::{
     Block, DeflectedShape, FabricValues, Figure, Page, PageData, ProblemGroup, Section, Shapes, Workbooks,
     without_folders,
 };
+use crate::report::number::counted;
 use crate::report::population::Population;
 #[cfg(feature = "workbook")]
 use crate::report::{
@@ -128,7 +129,6 @@ fn made_of(
 
 /// How many fabrics there are, and what failed.
 fn counts(fabrics: usize, [unread, undone]: [usize; 2]) -> String {
-    let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     let mut parts = vec![counted(fabrics, "fabric")];
     parts.extend((unread > 0).then(|| format!("{} failed", counted(unread, "input"))));
     parts.extend((undone > 0).then(|| format!("{} could not be made", counted(undone, "result"))));

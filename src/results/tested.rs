@@ -19,6 +19,7 @@ use crate::law::Mode;
 use crate::quantity::{Band, Curve, Estimate, significant};
 use crate::report::chart::{self, ParityPoint, SimulatedCurve};
 use crate::report::html::{Figure, FigureKind};
+use crate::report::number::counted;
 use crate::report::table::{PredictionRow, relative_error};
 use crate::study::{
     Case, Comparison, EdgeEffect, Prediction, VirtualCurve, VirtualLoop, compare_curves, measured_curve,
@@ -301,7 +302,6 @@ pub(super) fn write_fabric_charts(
         let stem = format!("{}/{}", sheet.name, test.name());
         if let Some(picture) = folder.chart(&stem, || chart::of_test(sheet, test, &curves))? {
             let specimens = sheet.specimens.iter().filter(|s| s.measurement.test == test).count();
-            let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
             let alt = format!(
                 "Chart of the {} test of {}: {} and {}.",
                 test.name(),

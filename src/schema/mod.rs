@@ -2,7 +2,9 @@
 //!
 //! What the program reads has schemas that are generated from the types that read it: a key that is not in a type is in no
 //! schema, and a key of a type is in its schema and in the reference. The open fabric file, which others read, is stated.
+//! What is generated is committed below `docs`, held by tests, and from there in the program.
 
+mod files;
 mod open_fabric;
 mod reference;
 
@@ -11,6 +13,7 @@ use schemars::generate::SchemaSettings;
 use schemars::transform::{RecursiveTransform, transform_subschemas};
 use serde_json::{Value, json};
 
+pub use files::{CASE_REFERENCE, SCHEMAS, SchemaFile};
 pub use reference::case_reference;
 
 use crate::case::CaseTable;
@@ -19,18 +22,16 @@ use crate::characterise::drape::DrapeDocument;
 use crate::instrument::{Dialect, FabricFile};
 use crate::quantity::Unit;
 
-/// A JSON Schema (draft 7, which editors of TOML know) with the name of its file.
+/// A JSON Schema (draft 7) as the types that read or write its files say: what [`SchemaFile`] is held against.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SchemaFile {
+pub struct GeneratedSchema {
     /// Name without an ending, such as `case`.
     pub name: &'static str,
-    /// What files it is of.
-    pub title: &'static str,
     /// The schema.
     pub schema: Value,
 }
 
-impl SchemaFile {
+impl GeneratedSchema {
     fn of<T: JsonSchema>(name: &'static str, title: &'static str) -> Self {
         let settings = SchemaSettings::draft07()
             .with_transform(RecursiveTransform(on_one_line))
@@ -38,7 +39,7 @@ impl SchemaFile {
             .with_transform(RecursiveTransform(with_units));
         let mut schema = settings.into_generator().into_root_schema_for::<T>().to_value();
         schema["title"] = json!(title);
-        Self { name, title, schema }
+        Self { name, schema }
     }
 
     /// The schema of what is serialised, and of what is read of it.
@@ -48,7 +49,7 @@ impl SchemaFile {
             SchemaSettings::draft07().for_serialize().with_transform(RecursiveTransform(on_one_line));
         let mut schema = settings.into_generator().into_root_schema_for::<T>().to_value();
         schema["title"] = json!(title);
-        Self { name, title, schema }
+        Self { name, schema }
     }
 
     /// The text of the file.
@@ -57,22 +58,18 @@ impl SchemaFile {
     }
 }
 
-/// The schemas of all files that the program reads and describes to others, in name order.
-pub fn schemas() -> Vec<SchemaFile> {
+/// Schemas of all files that the program reads and describes to others, from their types, in name order.
+pub fn generated() -> Vec<GeneratedSchema> {
     vec![
-        SchemaFile::of::<CaseTable>("case", "Case file of kesf"),
-        SchemaFile::of::<Dialect>("dialect", "Dialect file of kesf"),
-        SchemaFile::of::<DrapeDocument>(
+        GeneratedSchema::of::<CaseTable>("case", "Case file of kesf"),
+        GeneratedSchema::of::<Dialect>("dialect", "Dialect file of kesf"),
+        GeneratedSchema::of::<DrapeDocument>(
             "drape-image",
             "kesf.drape-image/1, the document of kesf drape-image",
         ),
-        SchemaFile::of::<FabricFile>("fabric", "fabric.toml of kesf"),
-        SchemaFile {
-            name: "open-fabric",
-            title: "Open fabric file kesf.fabric/1",
-            schema: open_fabric::schema(),
-        },
-        SchemaFile::of::<Settings>("settings", "Settings of the evaluation of kesf"),
+        GeneratedSchema::of::<FabricFile>("fabric", "fabric.toml of kesf"),
+        GeneratedSchema { name: "open-fabric", schema: open_fabric::schema() },
+        GeneratedSchema::of::<Settings>("settings", "Settings of the evaluation of kesf"),
     ]
 }
 
@@ -148,3 +145,5 @@ fn in_unit_of(value: &mut Value, example: &str) {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+pub(crate) use tests::as_committed;

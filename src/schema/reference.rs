@@ -4,12 +4,12 @@ use std::fmt::Write;
 
 use serde_json::Value;
 
-use super::{CaseTable, SchemaFile};
+use super::{CaseTable, GeneratedSchema};
 
 const HEAD: &str = "\
 # Case reference
 
-<!-- Generated from the types that read case files, by `kesf list keys`: do not edit. -->
+<!-- Generated from the types that read case files: do not edit. -->
 
 A case file is TOML. Every number that has a unit is written with it, as text: `\"20 cm\"`, `\"0.5 Pa\"`; the units of the
 tables below are examples of what fits, and `kesf list units` shows all of them. A key that is not listed here is refused
@@ -25,7 +25,7 @@ Editors that know JSON Schema complete keys and show their meaning after a first
 /// The reference of all keys of a case file, as Markdown: for each table its keys with type, unit, default, meaning and
 /// example.
 pub fn case_reference() -> String {
-    let file = SchemaFile::of::<CaseTable>("case", "Case file of kesf");
+    let file = GeneratedSchema::of::<CaseTable>("case", "Case file of kesf");
     let reader = Reader { root: &file.schema };
     let mut text = HEAD.to_string();
     reader.heading(&mut text, "Keys at the top of the file", &file.schema);

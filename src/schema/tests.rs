@@ -2,20 +2,23 @@ use std::path::Path;
 
 use super::*;
 
-fn committed(path: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs").join(path);
-    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+/// `KESF_SCHEMAS_WRITE=1 cargo test --release --lib committed` writes all of them anew.
+#[test]
+fn the_committed_reference_is_that_of_the_types() {
+    as_committed("src/case-reference.md", &case_reference());
 }
 
-/// `kesf list schemas -o docs/schemas` and `kesf list keys -o docs/src` write them anew.
-#[test]
-fn the_committed_schemas_and_the_reference_are_those_of_the_types() {
-    for file in schemas() {
-        let name = format!("schemas/{}.json", file.name);
-        assert_eq!(committed(&name), file.text(), "docs/{name} is stale: kesf list schemas -o docs/schemas");
+/// Whether a file below `docs` is as the types say; with `KESF_SCHEMAS_WRITE` it is written.
+pub(crate) fn as_committed(path: &str, text: &str) {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs").join(path);
+    if std::env::var_os("KESF_SCHEMAS_WRITE").is_some() {
+        std::fs::write(&file, text).unwrap();
     }
-    let reference = committed("src/case-reference.md");
-    assert_eq!(reference, case_reference(), "stale: kesf list keys > docs/src/case-reference.md");
+    let committed = std::fs::read_to_string(&file).unwrap_or_default();
+    assert!(
+        committed == text,
+        "docs/{path} is stale: KESF_SCHEMAS_WRITE=1 cargo test --release --lib committed"
+    );
 }
 
 /// Keys of a schema, with those of the tables below it and of each kind of a table.
@@ -43,7 +46,7 @@ fn keys_of_items(root: &Value, schema: &Value, found: &mut Vec<String>) {
 #[test]
 fn every_key_of_a_case_file_stands_in_the_reference() {
     let reference = case_reference();
-    let case = schemas().into_iter().find(|file| file.name == "case").unwrap().schema;
+    let case = generated().into_iter().find(|file| file.name == "case").unwrap().schema;
     let mut all = Vec::new();
     keys(&case, &case, &mut all);
     assert!(all.len() > 90, "{}", all.len());
@@ -67,13 +70,14 @@ fn every_key_of_a_case_file_stands_in_the_reference() {
 /// Defaults are as a file states them; `tests/documents.rs` holds the files of this repository against the schemas.
 #[test]
 fn defaults_are_written_as_a_file_writes_them() {
-    let files = schemas();
+    let files = generated();
     let schema = |name: &str| &files.iter().find(|file| file.name == name).unwrap().schema;
     let settings = &schema("settings")["properties"];
     assert_eq!(settings["shear_slope"]["default"], json!(["0.5 deg", "2.5 deg"]));
     assert_eq!(settings["reversal"]["default"], json!("5 %"));
     assert_eq!(schema("case")["additionalProperties"], json!(false));
     // The open fabric file is JSON.
-    let text = files.iter().filter(|f| f.name != "open-fabric").map(SchemaFile::text).collect::<String>();
+    let text =
+        files.iter().filter(|f| f.name != "open-fabric").map(GeneratedSchema::text).collect::<String>();
     assert!(!text.contains("null"), "TOML has no null");
 }

@@ -108,7 +108,7 @@ pub struct CaseResult {
     pub probes: Vec<Probe>,
     /// Checks of the case.
     pub checks: Vec<CheckResult>,
-    /// Deflection along the middle line, x = distance (m), y = w (m).
+    /// Deflection along the middle line of the mesh, x as in the mesh (m), y = w (m), which is no number in holes.
     pub profile: Curve,
     /// Natural frequencies (Hz), ascending; of a modal analysis only, whose displacements are the
     /// first mode. It has no loads, reactions and energy.

@@ -20,6 +20,7 @@ use crate::constitutive::{Constitutive, Input};
 use crate::fields::{Locator, Recovery};
 use crate::finding::{Finding, Place, StudyFact};
 use crate::model::Model;
+use crate::quantity::Curve;
 use crate::section::ShellSection;
 use crate::solve::newmark;
 use crate::solve::nonlinear::lost_directions;
@@ -213,7 +214,9 @@ impl PreparedCase<'_> {
         };
         let contacts = state.as_ref().map(|state| contacts(&self.problem.obstacles, fabric.friction, state));
         let contacts = contacts.unwrap_or_default();
-        let profile = self.middle.profile(&model.mesh, w);
+        let along = self.middle.profile(&model.mesh, w);
+        let start = model.mesh.bounds()[0].x;
+        let profile = Curve { x: along.x.iter().map(|x| start + x).collect(), y: along.y };
         let mut result = CaseResult {
             case: case.name.clone(),
             status,

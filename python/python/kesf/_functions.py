@@ -39,6 +39,8 @@ class _Making(NamedTuple):
     out: str | None
     keep: bool
     charts: bool
+    formats: list[str]
+    xlsx: bool
     drape: bool | None
     stamp: str | None
     force: bool
@@ -274,6 +276,8 @@ def run(
     out: Path | None = None,
     *,
     charts: bool = True,
+    formats: Iterable[str] = ("png",),
+    xlsx: bool = False,
     drape: bool | None = None,
     force: bool = False,
     stamp: str | None = None,
@@ -293,6 +297,8 @@ def run(
         cases: Cases, likewise.
         out: The folder; without one the files are in ``files`` of the result.
         charts: Whether charts are drawn.
+        formats: What kinds of files charts become: ``png``, ``svg`` and ``pdf``.
+        xlsx: Whether all tables are written into one workbook too, ``results.xlsx``.
         drape: Whether drape cases are solved, a minute or so for each fabric; when None, in runs of up to 20 fabrics a
             quick one of each fabric with measured curves, without friction.
         force: Whether files in the folder that kesf did not write are overwritten.
@@ -318,6 +324,8 @@ def run(
         out=None if out is None else os.fspath(out),
         keep=True,
         charts=charts,
+        formats=[formats] if isinstance(formats, str) else list(formats),
+        xlsx=xlsx,
         drape=drape,
         stamp=stamp,
         force=force,

@@ -33,7 +33,7 @@ pub struct FieldPlot<'a> {
     pub values: &'a [f64],
     /// What the profile runs along, e.g. `x on the centre line`.
     pub profile_along: String,
-    /// Position (m) and value along the line; empty for no profile.
+    /// Position (m) and value along the line, no number where there is no sheet; empty for no profile.
     pub profile: Curve,
     /// A reference for the profile (the same units), drawn as dots.
     pub profile_reference: Option<Curve>,
@@ -198,19 +198,19 @@ fn draw_profile(
 ) -> Result<(), ChartError> {
     let length = plot.profile.x.iter().fold(0f64, |a, x| a.max(x.abs()));
     let (metre, length_unit) = length_unit(length);
-    let convert = |curve: &Curve| -> Vec<(f64, f64)> {
-        let scaled = curve.points().map(|(x, y)| (x / metre, y / factor));
-        scaled.filter(|(x, y)| x.is_finite() && y.is_finite()).collect()
-    };
+    let convert = |curve: &Curve| curve.points().map(|(x, y)| (x / metre, y / factor)).collect::<Vec<_>>();
     let line = convert(&plot.profile);
+    let is_hole = |point: &(f64, f64)| !point.1.is_finite();
     let dots = plot.profile_reference.as_ref().map(convert).unwrap_or_default();
     frame.x = Range::around(line.iter().chain(&dots).map(|p| p.0));
     frame.y = Range::around(line.iter().chain(&dots).map(|p| p.1));
     let along = if plot.profile_along.is_empty() { "position" } else { &plot.profile_along };
     frame.draw(canvas, &Label::new(along, length_unit), &Label::new(plot.quantity.as_str(), unit), true)?;
     let at = |p: &(f64, f64)| frame.at(p.0, p.1);
-    canvas.line(&line.iter().map(at).collect::<Vec<_>>(), Stroke::solid(BLUE, 5.0))?;
-    for point in &dots {
+    for part in line.split(is_hole).filter(|part| !part.is_empty()) {
+        canvas.line(&part.iter().map(at).collect::<Vec<_>>(), Stroke::solid(BLUE, 5.0))?;
+    }
+    for point in dots.iter().filter(|point| !is_hole(point)) {
         canvas.dot(at(point), 7.5, VERMILLION)?;
     }
     if dots.is_empty() {

@@ -29,16 +29,18 @@ pub(super) enum Run<'a> {
     Unifont(&'static Glyph),
 }
 
+/// The file of DejaVu Sans in one of its weights. Were it inlined, each unit of the library that asks for it would hold its own 1.5 MB.
+#[inline(never)]
+pub(super) fn dejavu_file(bold: bool) -> &'static [u8] {
+    if bold { dejavu::sans::bold() } else { dejavu::sans::regular() }
+}
+
 /// DejaVu Sans in one of its weights.
 pub(super) fn dejavu_sans(bold: bool) -> Result<&'static FontRef<'static>, ChartError> {
     static REGULAR: OnceLock<Option<FontRef<'static>>> = OnceLock::new();
     static BOLD: OnceLock<Option<FontRef<'static>>> = OnceLock::new();
-    let read = |bytes| FontRef::try_from_slice(bytes).ok();
-    let font = if bold {
-        BOLD.get_or_init(|| read(dejavu::sans::bold()))
-    } else {
-        REGULAR.get_or_init(|| read(dejavu::sans::regular()))
-    };
+    let font = if bold { &BOLD } else { &REGULAR };
+    let font = font.get_or_init(|| FontRef::try_from_slice(dejavu_file(bold)).ok());
     font.as_ref().ok_or_else(unreadable)
 }
 

@@ -28,6 +28,11 @@ impl Format {
         Self::Pdf,
     ];
 
+    /// The one whose files end like this, if there is one.
+    pub fn from_ending(ending: &str) -> Option<Self> {
+        Self::ALL.iter().find(|format| format.ending() == ending).copied()
+    }
+
     /// `png`, `svg` or `pdf`: how the name of a file ends.
     pub const fn ending(self) -> &'static str {
         match self {

@@ -16,7 +16,7 @@ use plotters::prelude::RGBColor;
 
 use super::canvas::{Canvas, DPI, HEIGHT, Mark, Point, Stroke, Type, WIDTH, together};
 use super::error::ChartError;
-use super::letters::{Run, dejavu_sans, dots, placed};
+use super::letters::{Run, dejavu_file, dejavu_sans, dots, placed};
 use super::surface;
 
 /// Points of a PDF page in a pixel.
@@ -30,10 +30,11 @@ struct Fonts {
 
 impl Fonts {
     fn new() -> Result<Self, ChartError> {
-        let font = |bytes: &'static [u8]| {
-            Font::new(bytes.into(), 0).ok_or_else(|| ChartError::drawing("the built-in font is not readable"))
+        let font = |bold| {
+            Font::new(dejavu_file(bold).into(), 0)
+                .ok_or_else(|| ChartError::drawing("the built-in font is not readable"))
         };
-        Ok(Self { regular: font(dejavu::sans::regular())?, bold: font(dejavu::sans::bold())? })
+        Ok(Self { regular: font(false)?, bold: font(true)? })
     }
 }
 

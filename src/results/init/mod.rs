@@ -10,7 +10,7 @@ use super::observer::Observer;
 use crate::instrument::{Direction, FabricInput, Test};
 use crate::report::OutputError;
 use crate::report::write::write_file;
-use crate::schema::schemas;
+use crate::schema;
 
 /// A `fabric.toml` in which every key stands as a comment.
 const FABRIC: &str = include_str!("fabric.toml");
@@ -67,8 +67,8 @@ pub fn init(folder: &Path, reading: &Reading, observer: &Observer) -> Result<Beg
             folder.join(FIRST_CASE).display()
         ),
     )?;
-    for schema in schemas().iter().filter(|schema| ["case", "fabric"].contains(&schema.name)) {
-        begun.write(&folder.join(SCHEMAS).join(format!("{}.json", schema.name)), &schema.text())?;
+    for schema in schema::SCHEMAS.iter().filter(|schema| ["case", "fabric"].contains(&schema.name)) {
+        begun.write(&folder.join(SCHEMAS).join(format!("{}.json", schema.name)), schema.text)?;
     }
     Ok(begun)
 }
