@@ -1,13 +1,13 @@
-//! Goal: frames of polars have what the tables have, and polars, which shares no code with our writer, reads the Parquet files.
-//! Data: the shipped fabrics.
+//! Goal: frames of polars have what the tables have. That polars reads our Parquet files, python/tests/test_library.py shows.
+//! Data: the shipped fabrics. Reference: the cells of the CSV file, which share no code with the frames.
 
 use std::path::Path;
 
 use kesf::characterise::{Settings, characterise};
 use kesf::instrument::read_fabrics;
 use kesf::report::frame::frame;
-use kesf::report::table::{FabricRow, ProblemRow, Row, UnitSystem, fabric_rows, parquet};
-use polars::prelude::{ParquetReader, SerReader};
+use kesf::report::table::{FabricRow, ProblemRow, Row, UnitSystem, csv, fabric_rows};
+use polars::prelude::{AnyValue, DataFrame, DataType};
 
 fn rows() -> Vec<FabricRow> {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("kesf_data");
@@ -16,15 +16,38 @@ fn rows() -> Vec<FabricRow> {
     sheets.flat_map(|sheet| fabric_rows(&sheet, UnitSystem::Si)).collect()
 }
 
+/// Whether a value of a frame is what a cell says.
+fn is_cell(value: &AnyValue<'_>, cell: &str) -> bool {
+    match value {
+        AnyValue::Null => cell.is_empty(),
+        AnyValue::String(text) => *text == cell,
+        AnyValue::Float64(number) => cell.parse() == Ok(*number),
+        AnyValue::UInt32(count) => cell.parse() == Ok(*count),
+        AnyValue::UInt64(count) => cell.parse() == Ok(*count),
+        _ => false,
+    }
+}
+
 #[test]
-fn polars_reads_the_parquet_file_as_the_frame() {
+fn a_frame_has_the_cells_of_the_csv_file() {
     let rows = rows();
-    let read = ParquetReader::new(std::io::Cursor::new(parquet(&rows).unwrap())).finish().unwrap();
-    let made = frame(&rows).unwrap();
-    assert!(rows.len() > 100 && read.equals_missing(&made));
-    assert_eq!(read.schema(), made.schema());
+    let made: DataFrame = frame(&rows).unwrap();
+    let file = csv(&rows).unwrap();
+    let mut reader = ::csv::Reader::from_reader(file.as_slice());
     let names: Vec<&str> = made.get_column_names().into_iter().map(|name| name.as_str()).collect();
     assert_eq!(names, FabricRow::HEADER);
+    assert_eq!(names, reader.headers().unwrap().iter().collect::<Vec<_>>());
+    let cells: Vec<::csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    assert!(rows.len() > 100 && cells.len() == rows.len() && made.height() == rows.len());
+    for (name, column) in names.iter().zip(made.columns()) {
+        for (row, record) in cells.iter().enumerate() {
+            let cell = &record[names.iter().position(|n| n == name).unwrap()];
+            let value = column.get(row).unwrap();
+            assert!(is_cell(&value, cell), "{name}, row {row}: {value:?} for {cell:?}");
+        }
+    }
+    let numbers = made.columns().iter().filter(|c| *c.dtype() == DataType::Float64).count();
+    assert!(numbers > 2 && made.columns().iter().any(|c| c.null_count() > 0));
 }
 
 #[test]
