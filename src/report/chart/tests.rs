@@ -269,6 +269,19 @@ fn fields_of_a_square_a_strip_and_a_constant() {
     let values: Vec<f64> = nodes.iter().map(|n| 4e-7 * (3.0 * pi * n[0] / 0.2).sin()).collect();
     let strip = FieldPlot { nodes: &nodes, quads: &quads, values: &values, notes: vec![], ..square.clone() };
     drawn("field-strip.png", || field(&strip));
+    // A hole makes two lines of one, and nothing is drawn where there is no number.
+    let lines = |profile: Curve| {
+        let chart = field(&FieldPlot { profile, profile_reference: None, ..strip.clone() }).unwrap();
+        let lines = chart.0.marks.iter().filter_map(|mark| match mark {
+            canvas::Mark::Line { points, .. } => Some(points),
+            _ => None,
+        });
+        assert!(lines.clone().flatten().all(|point| point.0.is_finite() && point.1.is_finite()));
+        lines.count()
+    };
+    let (whole, mut holed) = (line(40), line(40));
+    holed.y[18..22].fill(f64::NAN);
+    assert_eq!(lines(holed), lines(whole) + 1);
     let zero = vec![0.0; nodes.len()];
     drawn("field-zero.png", || {
         field(&FieldPlot { values: &zero, profile: Curve::default(), ..strip.clone() })
