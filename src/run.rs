@@ -26,6 +26,7 @@ mod tables;
 mod tally;
 mod work;
 
+#[cfg(test)]
 pub(crate) use document::RunDocument;
 
 use crate::platform::in_pool;

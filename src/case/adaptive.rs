@@ -1,6 +1,5 @@
 //! `[adaptive]`: a mesh that is refined where the estimate of its error asks for it.
 
-use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
@@ -12,11 +11,12 @@ use crate::quantity::Ratio;
 
 /// `[adaptive]`: the case is solved on the mesh of `[sheet]`, the cells with the largest part of the estimated error are divided in
 /// four, and it is solved again, until the estimate is small enough.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct AdaptiveTable {
     /// The estimated error in the energy norm, over the whole, at which it ends: the `energy error` of the results.
-    #[schemars(example = &"5 %")]
+    #[cfg_attr(test, schemars(example = &"5 %"))]
     error: Ratio,
     /// Meshes at most, with that of `[sheet]`.
     #[serde(default = "meshes")]

@@ -1,6 +1,5 @@
 //! `[analysis]`: what is computed.
 
-use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
@@ -17,8 +16,9 @@ use crate::finding::{Located, Node, TomlError};
 use crate::solve::nonlinear::{Method, Settings};
 
 /// `[analysis]`: what is computed; of several kinds, `linear` without the table.
-#[derive(Clone, Debug, JsonSchema)]
-#[schemars(tag = "kind", rename_all = "snake_case")]
+#[derive(Clone, Debug)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(test, schemars(tag = "kind", rename_all = "snake_case"))]
 pub(super) enum AnalysisTable {
     /// Small displacements, one solve; the analysis of a case without the table.
     Linear(LinearTable),
@@ -35,18 +35,20 @@ pub(super) enum AnalysisTable {
 }
 
 /// `kind = "linear"`: small displacements, one solve.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct LinearTable {}
 
 /// `kind = "modal"`: natural frequencies and modes, without loads.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct ModalTable {
     /// How many of the lowest.
     modes: usize,
     /// How the mass of an element goes to its nodes.
-    #[schemars(extend("default" = "lumped"))]
+    #[cfg_attr(test, schemars(extend("default" = "lumped")))]
     mass: Option<Mass>,
     /// The older word: `true` is `mass = "lumped"`, `false` is `mass = "consistent"`.
     lumped: Option<bool>,
@@ -60,7 +62,8 @@ impl Default for ModalTable {
 
 /// `kind = "buckling"`: the factors of the loads at which a sheet buckles, those nearest to zero first, and the shapes. One below
 /// zero is a factor of the loads turned round. The stresses are those of a linear answer to the loads.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct BucklingTable {
     /// How many factors.
@@ -87,7 +90,8 @@ impl BucklingTable {
 }
 
 /// `kind = "drape"`: a round sheet hangs from a disc, an `annulus` held at `inner`, in large rotations.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct DrapeTable {
     /// Folds that the sheet is given at the start, one search for each: the equilibria are many.
@@ -104,7 +108,8 @@ pub(super) struct DrapeTable {
 }
 
 /// Whose sizes disc and sheet of a drape have.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub(super) enum DrapeSizes {
     /// Those of the case.

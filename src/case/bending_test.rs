@@ -1,6 +1,5 @@
 //! `[bending_test]`: a bending test of another instrument than KES.
 
-use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
@@ -12,14 +11,15 @@ use crate::quantity::Length;
 
 /// `[bending_test]`: a strip in large rotations, once along the warp and once along the weft (a FAB test
 /// along the bias too).
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct BendingTestTable {
     /// Which test.
     pub test: BendingKind,
     /// Elements along the strip of a cantilever, along half of a loop, 4 at least; along a long heart
     /// loop as many as its bends need when left out.
-    #[schemars(extend("default" = 32))]
+    #[cfg_attr(test, schemars(extend("default" = 32)))]
     cells: Option<usize>,
     /// Width of a cantilever or heart loop with free edges; left out, the strip bends to a cylinder.
     width: Option<Length>,
@@ -31,7 +31,8 @@ pub(super) struct BendingTestTable {
 }
 
 /// The bend tests of a FAB record.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(super) enum BendTestName {
     /// Bent upwards at the short clamp distance.
     U1,
@@ -52,7 +53,8 @@ impl BendTestName {
 }
 
 /// The bending tests of a strip.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub(super) enum BendingKind {
     /// Peirce, Shirley, FAST-2: the overhang at 41.5°.

@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::CaseError;
@@ -16,11 +15,12 @@ use crate::finding::{Located, Node};
 use crate::quantity::{Unit, counts_angles, parse_quantity};
 
 /// `[[probes]]`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct ProbeTable {
     /// Name used in results and checks.
-    #[schemars(example = &"centre")]
+    #[cfg_attr(test, schemars(example = &"centre"))]
     name: String,
     /// Point of the undeformed sheet: `[x, y]` in the plane z = 0, or `[x, y, z]`.
     at: SheetPoint,
@@ -36,22 +36,23 @@ pub struct ProbePoint {
 }
 
 /// `[[checks]]`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct CheckTable {
     /// `w_max`, `strain_energy`, `frequency_1` ..., `load_factor_1` ..., those of a step as `<step>.frequency_1`, or `<probe>.<u|v|w|theta_x|...|moment_x|membrane_x|shear_x ...>`. `w_max` is the
     /// largest displacement along z, whatever the plane of the sheet. Moments, membrane and shear forces are per width and along
     /// the yarns at rest, x the warp and y the weft; displacements and rotations are along the axes of the case.
-    #[schemars(example = &"centre.w")]
+    #[cfg_attr(test, schemars(example = &"centre.w"))]
     quantity: String,
     /// Expected value with unit; a frequency in `rad/s` is an angular one.
-    #[schemars(example = &"3.1 mm")]
+    #[cfg_attr(test, schemars(example = &"3.1 mm"))]
     expected: String,
     /// Accepted |value - expected| / |expected|.
-    #[schemars(example = 0.02)]
+    #[cfg_attr(test, schemars(example = 0.02))]
     relative_tolerance: f64,
     /// Where the expected value comes from.
-    #[schemars(example = serde_json::json!({"kind": "analytical", "source": "Timoshenko & Woinowsky-Krieger, Table 35"}))]
+    #[cfg_attr(test, schemars(example = serde_json::json!({"kind": "analytical", "source": "Timoshenko & Woinowsky-Krieger, Table 35"})))]
     reference: Reference,
 }
 
@@ -71,18 +72,20 @@ pub struct Check {
 }
 
 /// The source of an expected value.
-#[derive(Clone, Debug, Deserialize, Serialize, PartialEq, JsonSchema)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Reference {
     /// What kind of reference.
     pub kind: ReferenceKind,
     /// Citation.
-    #[schemars(example = &"Timoshenko & Woinowsky-Krieger, Table 35")]
+    #[cfg_attr(test, schemars(example = &"Timoshenko & Woinowsky-Krieger, Table 35"))]
     pub source: String,
 }
 
 /// Kinds of references; an accuracy claim never rests on `own`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ReferenceKind {
     /// A closed form or a high-precision series.

@@ -1,6 +1,5 @@
 //! `[convergence]`: what the mesh leaves open in a result.
 
-use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
@@ -9,7 +8,8 @@ use super::sheet::Sheet;
 use crate::finding::{Located, Node};
 
 /// `[convergence]`: the case is solved on coarser meshes too, of which each halves the `cells` of the next.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct ConvergenceTable {
     /// Meshes with that of `[sheet]`, the finest: 2, with the order of the element assumed, or 3, which show it.

@@ -1,9 +1,7 @@
 //! `[element]`: the formulation.
 
-use std::borrow::Cow;
 use std::fmt;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
@@ -13,32 +11,34 @@ use crate::element::{Cells, Drilling, Formulation, Mass, Membrane, ShearInterpol
 use crate::finding::Node;
 
 /// `[element]`; what is left out is as in the profile, and that is the default one when left out.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct ElementTable {
     /// A named formulation to start from.
     profile: Option<Profile>,
     /// Smoothing cells: a number (1, 2, 3, 4, 9, 16 ...) or `[along_xi, along_eta]`.
-    #[schemars(extend("default" = 4))]
+    #[cfg_attr(test, schemars(extend("default" = 4)))]
     subcells: Option<Subcells>,
     /// The membrane: `cells` (smoothed as bending), `one_cell`, or `assumed_stress`, which is the default of a drape, and
     /// in large rotations of a mesh that has triangles.
-    #[schemars(extend("default" = "cells"))]
+    #[cfg_attr(test, schemars(extend("default" = "cells")))]
     membrane: Option<Membrane>,
     /// The transverse shear: `mitc4`, or for comparison only `displacement` (locks in thin sheets) and `reduced` (leaves
     /// motions without energy); nothing else of the element changes.
-    #[schemars(extend("default" = "mitc4"))]
+    #[cfg_attr(test, schemars(extend("default" = "mitc4")))]
     shear: Option<ShearInterpolation>,
     /// α of the transverse shear, 0 to 1; in the profile `seed` 0 when left out, and `fourth_order` has its own.
-    #[schemars(extend("default" = 0.05))]
+    #[cfg_attr(test, schemars(extend("default" = 0.05)))]
     shear_stabilisation: Option<f64>,
     /// What holds the drilling rotation; in the profile `seed` `seed` when left out.
-    #[schemars(extend("default" = "scaled"))]
+    #[cfg_attr(test, schemars(extend("default" = "scaled")))]
     drilling: Option<DrillingChoice>,
 }
 
 /// Named formulations.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 enum Profile {
     /// That of Nguyen-Trong, Ferreira and Gomes: nc = 4, no shear stabilisation, drilling spring 1e-3.
@@ -58,18 +58,19 @@ enum Subcells {
     Grid([u8; 2]),
 }
 
-impl JsonSchema for Subcells {
+#[cfg(test)]
+impl schemars::JsonSchema for Subcells {
     fn inline_schema() -> bool {
         true
     }
 
-    fn schema_name() -> Cow<'static, str> {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
         "Subcells".into()
     }
 
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
         let grid = generator.subschema_for::<[u8; 2]>();
-        json_schema!({"anyOf": [{"type": "integer", "minimum": 1}, grid], "examples": [4, [2, 2]]})
+        schemars::json_schema!({"anyOf": [{"type": "integer", "minimum": 1}, grid], "examples": [4, [2, 2]]})
     }
 }
 
@@ -100,7 +101,8 @@ impl<'de> Deserialize<'de> for Subcells {
 }
 
 /// Drilling stiffness as written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 enum DrillingChoice {
     /// Scaled penalty (default).

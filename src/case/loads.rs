@@ -1,7 +1,6 @@
 //! `[[loads]]`: what acts on the sheet.
 
 use nalgebra::Vector3;
-use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
@@ -19,8 +18,9 @@ use crate::solve::newmark::LoadHistory;
 use crate::solve::nonlinear::dynamics::Course;
 
 /// `[[loads]]`: what acts on the sheet, or what a part of it is given; of several kinds.
-#[derive(Clone, Debug, JsonSchema)]
-#[schemars(tag = "kind", rename_all = "snake_case")]
+#[derive(Clone, Debug)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(test, schemars(tag = "kind", rename_all = "snake_case"))]
 pub(super) enum LoadTable {
     /// Along the normal of the sheet (+z of a flat one).
     Pressure(PressureTable),
@@ -37,7 +37,8 @@ pub(super) enum LoadTable {
 }
 
 /// `kind = "pressure"`: along the normal of the sheet (+z of a flat one).
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct PressureTable {
     /// Pressure.
@@ -49,85 +50,90 @@ pub(super) struct PressureTable {
 }
 
 /// `kind = "gravity"`: own weight.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct GravityTable {
     /// Acceleration.
-    #[schemars(extend("default" = "9.80665 m/s²"))]
+    #[cfg_attr(test, schemars(extend("default" = "9.80665 m/s²")))]
     value: Option<Acceleration>,
     /// Direction, of any length.
-    #[schemars(extend("default" = [0, 0, -1]), extend("examples" = [[0.0, 0.0, -1.0]]))]
+    #[cfg_attr(test, schemars(extend("default" = [0, 0, -1]), extend("examples" = [[0.0, 0.0, -1.0]])))]
     direction: Option<[f64; 3]>,
 }
 
 /// `kind = "point"`: a force (N) or moment (N·m): the total of the nodes of a set, which share it equally, or at one
 /// point, whose element passes it to its corners by the shape functions.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct PointTable {
     /// Node set.
-    #[schemars(example = &"right")]
+    #[cfg_attr(test, schemars(example = &"right"))]
     set: Option<String>,
     /// Point of the undeformed sheet instead: `[x, y]` in the plane z = 0, or `[x, y, z]`.
     at: Option<SheetPoint>,
     /// Force, such as `"0.1 N"`, or moment, such as `"1 N·mm"`.
-    #[schemars(extend("x-unit" = "N or N·m"), example = &"0.1 N")]
+    #[cfg_attr(test, schemars(extend("x-unit" = "N or N·m"), example = &"0.1 N"))]
     value: String,
     /// Direction of the force or axis of the moment, of any length.
-    #[schemars(extend("examples" = [[0.0, 0.0, -1.0]]))]
+    #[cfg_attr(test, schemars(extend("examples" = [[0.0, 0.0, -1.0]])))]
     direction: [f64; 3],
 }
 
 /// `kind = "edge_force"`: a force per length on the boundary edges of a set.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct EdgeForceTable {
     /// Node set.
-    #[schemars(example = &"right")]
+    #[cfg_attr(test, schemars(example = &"right"))]
     set: String,
     /// Force per length.
     value: LineForce,
     /// Direction, of any length.
-    #[schemars(extend("examples" = [[0.0, 0.0, -1.0]]))]
+    #[cfg_attr(test, schemars(extend("examples" = [[0.0, 0.0, -1.0]])))]
     direction: [f64; 3],
 }
 
 /// `kind = "edge_moment"`: a moment per length on the boundary edges of a set.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct EdgeMomentTable {
     /// Node set.
-    #[schemars(example = &"right")]
+    #[cfg_attr(test, schemars(example = &"right"))]
     set: String,
     /// Moment per length.
     value: LineMoment,
     /// Axis, of any length.
-    #[schemars(extend("examples" = [[0.0, 0.0, -1.0]]))]
+    #[cfg_attr(test, schemars(extend("examples" = [[0.0, 0.0, -1.0]])))]
     direction: [f64; 3],
 }
 
 /// `kind = "prescribed"`: a displacement or rotation of a set.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct PrescribedTable {
     /// Node set.
-    #[schemars(example = &"right")]
+    #[cfg_attr(test, schemars(example = &"right"))]
     set: String,
     /// `u v w theta_x theta_y theta_z`.
-    #[schemars(example = &"w")]
+    #[cfg_attr(test, schemars(example = &"w"))]
     dof: String,
     /// Displacement, such as `"1 mm"`, or rotation, such as `"2 deg"`.
-    #[schemars(extend("x-unit" = "m or rad"), example = &"1 mm")]
+    #[cfg_attr(test, schemars(extend("x-unit" = "m or rad"), example = &"1 mm"))]
     value: Option<String>,
     /// How it comes to the value in a motion of `[[steps]]`: `"ramp until 0.1 s"`, or `"sine 5 Hz"`, which goes to and fro between
     /// the value and its opposite. It counts from where the set is when the motion begins.
-    #[schemars(example = &"sine 5 Hz")]
+    #[cfg_attr(test, schemars(example = &"sine 5 Hz"))]
     course: Option<String>,
     /// Times of `values` instead, ascending from 0 s.
-    #[schemars(extend("examples" = [["0 s", "0.1 s", "0.3 s"]]))]
+    #[cfg_attr(test, schemars(extend("examples" = [["0 s", "0.1 s", "0.3 s"]])))]
     times: Option<Vec<Time>>,
     /// Displacements or rotations at these times, from 0; straight from one to the next, and after the last it stays.
-    #[schemars(extend("x-unit" = "m or rad"), extend("examples" = [["0 mm", "1 mm", "0 mm"]]))]
+    #[cfg_attr(test, schemars(extend("x-unit" = "m or rad"), extend("examples" = [["0 mm", "1 mm", "0 mm"]])))]
     values: Option<Vec<String>>,
 }
 

@@ -1,6 +1,5 @@
 //! What a case is about: `fabric` with `[assumptions]`, or the constants of a `[section]`.
 
-use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
@@ -55,7 +54,8 @@ impl Material {
 }
 
 /// `[section]`: constants of a shell, per unit width.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SectionTable {
     /// E1 t: tensile stiffness along the warp.
@@ -63,7 +63,7 @@ pub struct SectionTable {
     /// E2 t: tensile stiffness along the weft.
     pub tensile_weft: LineForce,
     /// √(ν12 ν21), between -1 and 1.
-    #[schemars(example = 0.3)]
+    #[cfg_attr(test, schemars(example = 0.3))]
     pub poisson: f64,
     /// G12 t: shear stiffness.
     pub shear: LineForce,

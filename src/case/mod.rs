@@ -35,7 +35,6 @@ mod virtual_test;
 
 use std::path::{Path, PathBuf};
 
-use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::characterise::FabricSheet;
@@ -82,17 +81,18 @@ pub struct Case {
 }
 
 /// A case file; unknown keys are refused.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CaseTable {
     /// For people.
-    #[schemars(example = &"Clamped square under uniform pressure")]
+    #[cfg_attr(test, schemars(example = &"Clamped square under uniform pressure"))]
     title: String,
     /// Where the problem comes from.
-    #[schemars(example = &"ISO 9073-9")]
+    #[cfg_attr(test, schemars(example = &"ISO 9073-9"))]
     source: Option<String>,
     /// A fabric folder, from the working directory or else beside the case file, or `*` for every fabric at hand.
-    #[schemars(example = &"kesf_data/poplin")]
+    #[cfg_attr(test, schemars(example = &"kesf_data/poplin"))]
     fabric: Option<String>,
     /// Explicit constants instead of a fabric.
     section: Option<SectionTable>,
@@ -111,11 +111,11 @@ pub(crate) struct CaseTable {
     rigid: Vec<supports::RigidTable>,
     /// What acts on the sheet.
     #[serde(default, rename = "loads")]
-    #[schemars(with = "Vec<loads::LoadTable>")]
+    #[cfg_attr(test, schemars(with = "Vec<loads::LoadTable>"))]
     _loads: ReadLater,
     /// What the sheet cannot pass in large rotations.
     #[serde(default, rename = "obstacles")]
-    #[schemars(with = "Vec<obstacles::ObstacleTable>")]
+    #[cfg_attr(test, schemars(with = "Vec<obstacles::ObstacleTable>"))]
     _obstacles: ReadLater,
     /// What the sheet is taken through in large rotations, one step after the other.
     #[serde(default)]
@@ -126,7 +126,7 @@ pub(crate) struct CaseTable {
     bending_test: Option<bending_test::BendingTestTable>,
     /// What is computed.
     #[serde(default, rename = "analysis")]
-    #[schemars(with = "Option<analysis::AnalysisTable>")]
+    #[cfg_attr(test, schemars(with = "Option<analysis::AnalysisTable>"))]
     _analysis: ReadLater,
     /// Bands by scrambled Sobol points of the measured inputs; none when left out.
     uncertainty: Option<uncertainty::UncertaintyTable>,

@@ -1,6 +1,5 @@
 //! `[analysis]` with `kind = "newmark"`: dynamics.
 
-use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
@@ -15,7 +14,8 @@ use crate::solve::newmark::{Beginning, LoadHistory, Scheme};
 /// `kind = "newmark"`: dynamics, from rest unless another beginning is given (Newmark's method, average acceleration
 /// unless β and γ are given). In `[[steps]]` it goes on from the state of the step before in large rotations, and `load` says how the
 /// loads go from those of that step (0) to its own (1).
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct NewmarkTable {
     /// End of the time range.
@@ -24,18 +24,18 @@ pub(super) struct NewmarkTable {
     step: Time,
     /// Relative local error at which the step adapts, above 0 and below 1; constant step when left out. The
     /// errors of the steps add up, over a few periods to about its power 2/3.
-    #[schemars(example = 1e-3)]
+    #[cfg_attr(test, schemars(example = 1e-3))]
     tolerance: Option<f64>,
     /// Damping ratios of the first and the third natural frequency; undamped when left out.
-    #[schemars(extend("examples" = [[0.02, 0.02]]))]
+    #[cfg_attr(test, schemars(extend("examples" = [[0.02, 0.02]])))]
     damping: Option<[f64; 2]>,
     /// `"step"`, `"ramp until 0.1 s"`, `"sine 5 Hz"` (the same as `"sine 31.416 rad/s"`), or `"off"`: nothing acts, and the
     /// sheet goes on from its `start` (in `[[steps]]`: what acted in the step before goes on).
     #[serde(default = "step_load")]
-    #[schemars(example = &"ramp until 0.1 s")]
+    #[cfg_attr(test, schemars(example = &"ramp until 0.1 s"))]
     load: String,
     /// How the mass of an element goes to its nodes.
-    #[schemars(extend("default" = "lumped"))]
+    #[cfg_attr(test, schemars(extend("default" = "lumped")))]
     mass: Option<Mass>,
     /// The older word: `true` is `mass = "lumped"`, `false` is `mass = "consistent"`.
     lumped: Option<bool>,
@@ -45,14 +45,14 @@ pub(super) struct NewmarkTable {
     large_rotations: bool,
     /// How much of the highest frequencies is left after a step, 0 to 1, and the method that damps them (generalised-α)
     /// in the place of the one that keeps the energy. With large rotations only.
-    #[schemars(example = 0.9)]
+    #[cfg_attr(test, schemars(example = 0.9))]
     spectral_radius: Option<f64>,
     /// β of Newmark's method, γ/2 to 1, so that no step is too long. With small displacements only.
-    #[schemars(extend("default" = 0.25))]
+    #[cfg_attr(test, schemars(extend("default" = 0.25)))]
     beta: Option<f64>,
     /// γ of Newmark's method, 1/2 to 1: above 1/2 what is fast is damped, the order is the first, the step is constant,
     /// and the imbalance of the energies in the result is what the method has taken. With small displacements only.
-    #[schemars(extend("default" = 0.5))]
+    #[cfg_attr(test, schemars(extend("default" = 0.5)))]
     gamma: Option<f64>,
     /// The sheet at the first instant; another one than `rest` with small displacements only.
     #[serde(default)]
@@ -60,12 +60,13 @@ pub(super) struct NewmarkTable {
     /// Velocity along z of every node that is not held, at the first instant. With small displacements only.
     start_velocity: Option<Velocity>,
     /// How many shapes on the way `kesf run` writes as a series of fields, evenly in time. In `[[steps]]` only.
-    #[schemars(extend("default" = 0), example = 20)]
+    #[cfg_attr(test, schemars(extend("default" = 0), example = 20))]
     frames: Option<usize>,
 }
 
 /// The sheet at the first instant of a motion.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub(super) enum StartingShape {
     /// Without deformation.

@@ -1,6 +1,5 @@
 //! `[analysis]` with `kind = "nonlinear"`: statics in large rotations.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::CaseError;
@@ -11,39 +10,41 @@ use crate::finding::Node;
 use crate::solve::nonlinear::{ArcLength, Flow, Method, Perturbation, Settings};
 
 /// `kind = "nonlinear"`: statics in large rotations; what is left out is chosen by the method.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct NonlinearTable {
     /// The way to the equilibrium.
     method: MethodChoice,
     /// Unbalanced forces that are accepted, relative to loads or reactions, above 0 and at most 1.
-    #[schemars(extend("default" = 1e-8))]
+    #[cfg_attr(test, schemars(extend("default" = 1e-8)))]
     tolerance: Option<f64>,
     /// Iterations in a step before it counts as failed (`newton`, `arc_length`, `stable`).
-    #[schemars(extend("default" = 25))]
+    #[cfg_attr(test, schemars(extend("default" = 25)))]
     iterations: Option<usize>,
     /// First step of the load factor: `newton` 1, `arc_length` 0.1, `stable` 0.1 at most.
-    #[schemars(example = 0.1)]
+    #[cfg_attr(test, schemars(example = 0.1))]
     first_step: Option<f64>,
     /// Largest step of the load factor (`newton`, `stable`).
-    #[schemars(extend("default" = 1.0))]
+    #[cfg_attr(test, schemars(extend("default" = 1.0)))]
     largest_step: Option<f64>,
     /// A step that has been halved below this one ends the search (`newton`, `stable`).
-    #[schemars(extend("default" = 1e-5))]
+    #[cfg_attr(test, schemars(extend("default" = 1e-5)))]
     smallest_step: Option<f64>,
     /// Steps before the search is given up: `arc_length` 100, `flow` 400.
-    #[schemars(example = 200)]
+    #[cfg_attr(test, schemars(example = 200))]
     steps: Option<usize>,
     /// Size of random loads that break the symmetry, relative to the mean load: `newton` none, `flow` 1e-3.
-    #[schemars(example = 1e-3)]
+    #[cfg_attr(test, schemars(example = 1e-3))]
     perturbation: Option<f64>,
     /// Seed of the random loads (`newton`, `flow`).
-    #[schemars(extend("default" = 1))]
+    #[cfg_attr(test, schemars(extend("default" = 1)))]
     seed: Option<u64>,
 }
 
 /// Ways to an equilibrium.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum MethodChoice {
     /// Newton's method in adaptive steps of the load.

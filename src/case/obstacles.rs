@@ -1,7 +1,6 @@
 //! `[[obstacles]]`: rigid surfaces that a sheet in large rotations cannot pass.
 
 use nalgebra::{Point3, Vector3};
-use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
@@ -16,8 +15,9 @@ use crate::quantity::Length;
 /// held against it, so cells are to be small against its radii. With `[analysis] kind = "nonlinear"`, not by arc length; while
 /// there are obstacles, loads grow by a tenth in a step unless `largest_step` says otherwise. And with `kind = "newmark"` in large
 /// rotations that keep the energy: there the sheet does not rebound.
-#[derive(Clone, Debug, JsonSchema)]
-#[schemars(tag = "kind", rename_all = "snake_case")]
+#[derive(Clone, Debug)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(test, schemars(tag = "kind", rename_all = "snake_case"))]
 pub(super) enum ObstacleTable {
     /// Flat ground, and everything under it.
     Plane(PlaneTable),
@@ -28,60 +28,63 @@ pub(super) enum ObstacleTable {
 }
 
 /// `kind = "plane"`: flat ground, and everything under it.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct PlaneTable {
     /// Name used in results.
-    #[schemars(example = &"ground")]
+    #[cfg_attr(test, schemars(example = &"ground"))]
     name: String,
     /// A point of it.
     at: SheetPoint,
     /// The side on which the sheet is, of any length.
-    #[schemars(extend("default" = [0, 0, 1]), extend("examples" = [[0.0, 0.0, 1.0]]))]
+    #[cfg_attr(test, schemars(extend("default" = [0, 0, 1]), extend("examples" = [[0.0, 0.0, 1.0]])))]
     normal: Option<[f64; 3]>,
     /// Coulomb's coefficient of friction; MIU of the fabric when left out, or else 0.2, and it is told.
-    #[schemars(example = 0.3)]
+    #[cfg_attr(test, schemars(example = 0.3))]
     friction: Option<f64>,
 }
 
 /// `kind = "cylinder"`: a round bar without ends.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct CylinderTable {
     /// Name used in results.
-    #[schemars(example = &"drum")]
+    #[cfg_attr(test, schemars(example = &"drum"))]
     name: String,
     /// A point of its axis.
     at: SheetPoint,
     /// Direction of its axis, of any length.
-    #[schemars(extend("examples" = [[0.0, 1.0, 0.0]]))]
+    #[cfg_attr(test, schemars(extend("examples" = [[0.0, 1.0, 0.0]])))]
     axis: [f64; 3],
     /// Its diameter.
     diameter: Length,
     /// Coulomb's coefficient of friction; MIU of the fabric when left out, or else 0.2, and it is told.
-    #[schemars(example = 0.3)]
+    #[cfg_attr(test, schemars(example = 0.3))]
     friction: Option<f64>,
 }
 
 /// `kind = "disc"`: a round table with a rounded edge, and everything under it.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct DiscTable {
     /// Name used in results.
-    #[schemars(example = &"table")]
+    #[cfg_attr(test, schemars(example = &"table"))]
     name: String,
     /// The middle of its face.
     at: SheetPoint,
     /// The side on which the sheet is, of any length.
-    #[schemars(extend("default" = [0, 0, 1]), extend("examples" = [[0.0, 0.0, 1.0]]))]
+    #[cfg_attr(test, schemars(extend("default" = [0, 0, 1]), extend("examples" = [[0.0, 0.0, 1.0]])))]
     normal: Option<[f64; 3]>,
     /// Its diameter.
     diameter: Length,
     /// The radius of its edge, above 0.
-    #[schemars(extend("default" = "1 mm"))]
+    #[cfg_attr(test, schemars(extend("default" = "1 mm")))]
     edge_radius: Option<Length>,
     /// Coulomb's coefficient of friction; MIU of the fabric when left out, or else 0.2, and it is told.
-    #[schemars(example = 0.3)]
+    #[cfg_attr(test, schemars(example = 0.3))]
     friction: Option<f64>,
 }
 

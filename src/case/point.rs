@@ -1,9 +1,6 @@
 //! Points of the sheet as a case writes them.
 
-use std::borrow::Cow;
-
 use nalgebra::Point3;
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 
 use crate::quantity::Length;
@@ -18,17 +15,18 @@ pub enum SheetPoint {
     Space([Length; 3]),
 }
 
-impl JsonSchema for SheetPoint {
+#[cfg(test)]
+impl schemars::JsonSchema for SheetPoint {
     fn inline_schema() -> bool {
         true
     }
 
-    fn schema_name() -> Cow<'static, str> {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
         "SheetPoint".into()
     }
 
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        json_schema!({
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({
             "type": "array", "items": generator.subschema_for::<Length>(), "minItems": 2, "maxItems": 3,
             "examples": [["10 cm", "10 cm"]],
         })

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
-use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
@@ -12,25 +11,26 @@ use crate::finding::{Located, Node};
 use crate::quantity::Length;
 
 /// `[sheet]`: a shape that is divided into cells, a mesh from a file, or the outline of a drawing.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct SheetTable {
     /// Which shape; left out when the mesh comes from a file or a drawing.
     shape: Option<Shape>,
     /// A Gmsh mesh (MSH 4.1, ASCII) of quads, triangles or both, relative to the case file.
-    #[schemars(example = &"part.msh")]
+    #[cfg_attr(test, schemars(example = &"part.msh"))]
     file: Option<PathBuf>,
     /// A drawing whose closed contours are the piece and its holes, `.dxf` or `.svg`, relative to the case file.
-    #[schemars(example = &"front.svg")]
+    #[cfg_attr(test, schemars(example = &"front.svg"))]
     outline: Option<PathBuf>,
     /// Length of the sides of the triangles that an `outline` is divided into.
-    #[schemars(example = &"5 mm")]
+    #[cfg_attr(test, schemars(example = &"5 mm"))]
     cell: Option<Length>,
     /// The layer (DXF), or the id or label (SVG), of the contours that are taken from an `outline`; all of them without it.
-    #[schemars(example = &"cut")]
+    #[cfg_attr(test, schemars(example = &"cut"))]
     layer: Option<String>,
     /// Unit of the coordinates in the file; of an `outline` where it does not say its own.
-    #[schemars(example = &"mm")]
+    #[cfg_attr(test, schemars(example = &"mm"))]
     unit: Option<String>,
     /// Along x (`rectangle`), or the length of a `strip` along x.
     width: Option<Length>,
@@ -44,23 +44,23 @@ pub(super) struct SheetTable {
     inside_radius: Option<Length>,
     /// Cells along x and y; across the core of a disc (one number twice); along the radius and
     /// around an annulus.
-    #[schemars(extend("examples" = [[40, 40]]))]
+    #[cfg_attr(test, schemars(extend("examples" = [[40, 40]])))]
     cells: Option<[usize; 2]>,
     /// Width of the outermost cells of an `annulus` over that of the innermost. Where a sheet bends
     /// sharply over the edge that holds it, narrow cells belong there.
-    #[schemars(extend("default" = 1.0), example = 5.0)]
+    #[cfg_attr(test, schemars(extend("default" = 1.0), example = 5.0))]
     grading: Option<f64>,
     /// Angle of the warp from x, of a sheet in a plane z = const.
     #[serde(default)]
-    #[schemars(extend("x-unit" = "deg"), example = 45.0)]
+    #[cfg_attr(test, schemars(extend("x-unit" = "deg"), example = 45.0))]
     warp_angle_deg: f64,
     /// Direction of the warp, `[x, y, z]` of any length, projected on each element: for sheets that are not in a plane
     /// z = const.
-    #[schemars(extend("examples" = [[1.0, 0.0, 0.0]]))]
+    #[cfg_attr(test, schemars(extend("examples" = [[1.0, 0.0, 0.0]])))]
     warp: Option<[f64; 3]>,
     /// Seeded displacement of interior nodes along x and y, 0 to 0.5 of half an edge; of a sheet in a plane z = const.
     #[serde(default)]
-    #[schemars(example = 0.2)]
+    #[cfg_attr(test, schemars(example = 0.2))]
     distortion: f64,
     /// Seed of the distortion.
     #[serde(default)]
@@ -68,7 +68,8 @@ pub(super) struct SheetTable {
 }
 
 /// Outline of a sheet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Shape {
     /// `width` x `height`, lower left corner at the origin.

@@ -1,9 +1,7 @@
 //! `[solver]`: how the equations are solved.
 
-use std::borrow::Cow;
 use std::str::FromStr;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
 use super::CaseError;
@@ -12,25 +10,27 @@ use crate::finding::Node;
 use crate::solve::{Method, Options};
 
 /// `[solver]`: how the equations of a linear analysis are solved; what is left out is chosen.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct SolverTable {
     /// Factorise or iterate; `auto`.
-    #[schemars(extend("default" = "auto"))]
+    #[cfg_attr(test, schemars(extend("default" = "auto")))]
     method: Option<SolverChoice>,
     /// Where an iteration ends: the energy norm of its error over that of the solution, 1e-14 to 1e-4.
-    #[schemars(extend("default" = 1e-10))]
+    #[cfg_attr(test, schemars(extend("default" = 1e-10)))]
     tolerance: Option<f64>,
     /// Iterations after which it is given up.
-    #[schemars(extend("default" = 1000))]
+    #[cfg_attr(test, schemars(extend("default" = 1000)))]
     max_iterations: Option<usize>,
     /// Size of a factor above which `auto` iterates.
-    #[schemars(extend("default" = "8 GB"))]
+    #[cfg_attr(test, schemars(extend("default" = "8 GB")))]
     factor_limit: Option<Bytes>,
 }
 
 /// Method as written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum SolverChoice {
     /// Direct, unless the factor would be too large.
@@ -56,17 +56,18 @@ impl From<SolverChoice> for Method {
 #[serde(try_from = "String")]
 pub struct Bytes(pub u64);
 
-impl JsonSchema for Bytes {
+#[cfg(test)]
+impl schemars::JsonSchema for Bytes {
     fn inline_schema() -> bool {
         true
     }
 
-    fn schema_name() -> Cow<'static, str> {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
         "Bytes".into()
     }
 
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({
             "type": "string", "pattern": r"^\s*[0-9.]+\s+(GB|MB)\s*$", "x-unit": "GB", "examples": ["8 GB"],
         })
     }

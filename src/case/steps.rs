@@ -1,6 +1,5 @@
 //! `[[steps]]`: a history of loads and supports.
 
-use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::supports::SupportTable;
@@ -16,11 +15,12 @@ use crate::finding::ReadLater;
 /// A step of kind `modal` or `buckling` looks at the sheet as the step before has left it, loaded and held as there: its small
 /// vibrations, or the factors of its own `[[steps.loads]]`, on top of those that act, at which it buckles. A step of kind
 /// `newmark` is a motion from there, and the last of them; what it holds no longer it lets go of at once.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct StepTable {
     /// Name used in results.
-    #[schemars(example = &"release")]
+    #[cfg_attr(test, schemars(example = &"release"))]
     pub name: String,
     /// Where the sheet is held in this step beside the `[[supports]]` of the case: each node stays where it is.
     #[serde(default)]
@@ -29,14 +29,14 @@ pub(super) struct StepTable {
     /// the sheet at rest, a prescribed rotation from where its set was last taken hold of; in a motion both have a `course` or
     /// `times`, and count from where they are when it begins.
     #[serde(default, rename = "loads")]
-    #[schemars(with = "Vec<super::loads::LoadTable>")]
+    #[cfg_attr(test, schemars(with = "Vec<super::loads::LoadTable>"))]
     _loads: ReadLater,
     /// What is done: how its equilibrium is found (`nonlinear`; the `[analysis]` of the case when left out), or `modal`, `buckling`
     /// or `newmark`.
     #[serde(default, rename = "analysis")]
-    #[schemars(
+    #[cfg_attr(test, schemars(
         with = "Option<super::analysis::AnalysisTable>",
         example = serde_json::json!({"kind": "nonlinear", "method": "stable"})
-    )]
+    ))]
     _analysis: ReadLater,
 }

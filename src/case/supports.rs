@@ -1,6 +1,5 @@
 //! `[[supports]]` and `[[rigid]]`: where the sheet is held, and what moves as one body.
 
-use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
@@ -10,22 +9,24 @@ use crate::finding::{Located, Node};
 use crate::model::Dof;
 
 /// `[[supports]]`: a set with either a kind or a list of dofs.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct SupportTable {
     /// Node set: `boundary`, `left`, `right`, `bottom`, `top`, `corners`, `inner`, `outer`, `all` ..., a named set of the
     /// mesh file, or a rigid body.
-    #[schemars(example = &"boundary")]
+    #[cfg_attr(test, schemars(example = &"boundary"))]
     set: String,
     /// A named kind.
     kind: Option<SupportKind>,
     /// Names of dofs: `u v w theta_x theta_y theta_z`.
-    #[schemars(extend("examples" = [["u", "w"]]))]
+    #[cfg_attr(test, schemars(extend("examples" = [["u", "w"]])))]
     fix: Option<Vec<String>>,
 }
 
 /// Named supports.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum SupportKind {
     /// All dofs held.
@@ -65,14 +66,15 @@ pub enum Held {
 ///
 /// The body's point of reference becomes a node set of its own, `name`: supports, prescribed values and
 /// loads on that set act on the body, and its reactions are those about the point.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct RigidTable {
     /// Name of the set that holds the point of reference alone.
-    #[schemars(example = &"clamp")]
+    #[cfg_attr(test, schemars(example = &"clamp"))]
     name: String,
     /// Node set that moves.
-    #[schemars(example = &"right")]
+    #[cfg_attr(test, schemars(example = &"right"))]
     set: String,
     /// The point of reference: `[x, y]` in the plane z = 0, or `[x, y, z]`; the mean of the set's nodes
     /// when left out.

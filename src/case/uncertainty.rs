@@ -1,6 +1,5 @@
 //! `[uncertainty]`: bands of results that are no linear function of the measured inputs.
 
-use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::CaseError;
@@ -8,7 +7,8 @@ use super::error::refused;
 use crate::finding::{Located, Node};
 
 /// `[uncertainty]`: the case is solved at scrambled Sobol points of the measured inputs.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct UncertaintyTable {
     /// Points of each of the two bands, mean fabric and next specimen: a power of two, 16 to 4096.
@@ -17,7 +17,7 @@ pub(super) struct UncertaintyTable {
     seed: u32,
     /// Inputs without a spread that are to be taken as exact, by their names, such as `areal density`.
     /// Any other input without a spread forbids the bands of what it moves.
-    #[schemars(extend("examples" = [["areal density"]]))]
+    #[cfg_attr(test, schemars(extend("examples" = [["areal density"]])))]
     exact: Vec<String>,
 }
 

@@ -1,6 +1,5 @@
 //! `[virtual_test]`: an instrument's test.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::CaseError;
@@ -10,27 +9,29 @@ use crate::instrument::{Shape, Test};
 use crate::quantity::{Curvature, LineForce};
 
 /// `[virtual_test]`: an instrument's test as a model, once along the warp and once along the weft.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct VirtualTestTable {
     /// Which test; friction and roughness are of the surface, and are not simulated.
     pub test: Test,
     /// Elements along the gauge length and across the specimen; for shear in large rotations 10 and 80 when left out.
-    #[schemars(extend("default" = [10, 20]))]
+    #[cfg_attr(test, schemars(extend("default" = [10, 20])))]
     cells: Option<[usize; 2]>,
     /// Small displacements and one slope, or large rotations and the whole curve.
     #[serde(default)]
     pub formulation: TestFormulation,
     /// Largest curvature of a bending test in large rotations.
-    #[schemars(extend("default" = "2.5 1/cm"))]
+    #[cfg_attr(test, schemars(extend("default" = "2.5 1/cm")))]
     curvature: Option<Curvature>,
     /// Tension across a specimen that is sheared in large rotations.
-    #[schemars(extend("default" = "10 gf/cm"))]
+    #[cfg_attr(test, schemars(extend("default" = "10 gf/cm")))]
     pub pretension: Option<LineForce>,
 }
 
 /// How a virtual test is solved.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum TestFormulation {
     /// One linear solve: milliseconds, and the slope at the origin.

@@ -1,10 +1,8 @@
 //! What a setting of the evaluation chooses from.
 
-use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize, Serializer, de};
 
 use super::LineFit;
@@ -69,17 +67,18 @@ impl FromStr for Modulus {
     }
 }
 
-impl JsonSchema for Modulus {
+#[cfg(test)]
+impl schemars::JsonSchema for Modulus {
     fn inline_schema() -> bool {
         true
     }
 
-    fn schema_name() -> Cow<'static, str> {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
         "Modulus".into()
     }
 
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({
             "type": "string", "pattern": r"^\s*(tangent_low|secant|energy|window\(.+,.+\))\s*$",
             "examples": ["tangent_low", "secant", "energy", "window(5 gf/cm, 20 gf/cm)"],
         })
@@ -99,7 +98,8 @@ impl<'de> Deserialize<'de> for Modulus {
 }
 
 /// Which cycle of a repeated test the parameters are taken from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum CycleChoice {
     /// The first: virgin cloth, as the KES parameters are defined.
@@ -110,7 +110,8 @@ pub enum CycleChoice {
 }
 
 /// Which sides of a loop the mean slopes and widths are taken from. Bf and Bb are always those of their own side.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Sides {
     /// The mean of both.
@@ -134,7 +135,8 @@ impl Sides {
 }
 
 /// Which sweeps over a surface are evaluated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Sweeps {
     /// The mean of both.
@@ -158,7 +160,8 @@ impl Sweeps {
 }
 
 /// How the slope over a window is taken.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum SlopeMethod {
     /// The least-squares line over the samples of the window.

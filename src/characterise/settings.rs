@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -33,7 +32,8 @@ impl From<TomlError> for SettingsError {
 
 /// Everything in the evaluation that a laboratory may do differently. The defaults are the
 /// customary ones (Kawabata's standard conditions); they are printed beside every sheet.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Angles between which G is fitted, on both sides (0.5 to 2.5 deg; the literature also uses 0.5 to 5 deg).

@@ -1,10 +1,10 @@
 //! The words for how far a value can be relied on.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How a value was had. The later a status stands, the more it prevails.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum ValueStatus {
     /// Measured, or published as measured; no finding speaks against it.

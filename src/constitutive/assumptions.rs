@@ -1,10 +1,8 @@
 //! What a KES sheet leaves open, and the choices that close it.
 
-use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, de};
 use thiserror::Error;
 
@@ -16,7 +14,8 @@ use crate::quantity::{ArealDensity, BendingRigidity, Curvature, Length, LineForc
 ///
 /// In a case file this is the table `[assumptions]`; on the command line each field is an option.
 /// The texts are the same in both.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Assumptions {
     /// Which slope of the tensile curve is the modulus; `tangent_low`. A window must be among the
@@ -26,16 +25,16 @@ pub struct Assumptions {
     /// copy at hand; 0.3 is the middle of what is customary for woven cloth.
     pub poisson: f64,
     /// How one ratio becomes two; `geometric`.
-    #[schemars(extend("default" = "geometric"))]
+    #[cfg_attr(test, schemars(extend("default" = "geometric")))]
     pub poisson_rule: PoissonRule,
     /// Where the torsional rigidity D66 comes from; `huber`.
-    #[schemars(extend("default" = "huber"))]
+    #[cfg_attr(test, schemars(extend("default" = "huber")))]
     pub torsion: Torsion,
     /// The coupling D12 of D_b; 0, as in Nguyen-Trong et al.
-    #[schemars(extend("default" = 0), extend("examples" = [0.2, "1e-6 N·m"]))]
+    #[cfg_attr(test, schemars(extend("default" = 0), extend("examples" = [0.2, "1e-6 N·m"])))]
     pub bending_coupling: BendingCoupling,
     /// Where the transverse shear stiffness comes from; `in_plane`.
-    #[schemars(extend("default" = "in_plane"))]
+    #[cfg_attr(test, schemars(extend("default" = "in_plane")))]
     pub transverse_shear: TransverseShear,
     /// Whether bending and shear have friction: `elastic` (the section alone), `friction` (it slips and
     /// remembers) or `virgin` (the curve of first loading, without memory); `elastic`. For large
@@ -52,10 +51,10 @@ pub struct Assumptions {
     /// Stands in for a tensile modulus (N/m) that the sheet lacks; 5000 N/m, the secant of a
     /// fabric that stretches by about 10 % at 500 gf/cm. Linear bending of a flat sheet does not
     /// depend on it.
-    #[schemars(extend("default" = "5000 N/m"))]
+    #[cfg_attr(test, schemars(extend("default" = "5000 N/m")))]
     pub tensile: LineForce,
     /// Stands in for a shear stiffness G (N/m) that the sheet lacks; 56.188 N/m = 1 gf/(cm·deg).
-    #[schemars(extend("default" = "56.18796562 N/m"))]
+    #[cfg_attr(test, schemars(extend("default" = "56.18796562 N/m")))]
     pub shear: LineForce,
     /// The tension W across the specimen of the shear test, whose share W tan φ is in the G of the sheet and is taken
     /// off for D_m; 0, as published G contain it and D_m = G is customary. KES-FB1 has 10 gf/cm. For
@@ -63,7 +62,7 @@ pub struct Assumptions {
     pub shear_tension: LineForce,
     /// Stands in for a thickness that the sheet lacks; 0.4 mm. No stiffness depends on it unless
     /// `torsion = "shear"`.
-    #[schemars(extend("default" = "0.4 mm"))]
+    #[cfg_attr(test, schemars(extend("default" = "0.4 mm")))]
     pub thickness: Length,
     /// Stands in for an areal density that the sheet lacks; none, because own weight depends on it.
     pub areal_density: Option<ArealDensity>,
@@ -122,7 +121,8 @@ pub enum PoissonRule {
 }
 
 /// How a sheet resists tension along its yarns.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum TensileLaw {
     /// By one modulus.
@@ -203,16 +203,17 @@ macro_rules! choice {
             }
         }
 
-        impl JsonSchema for $name {
+        #[cfg(test)]
+        impl schemars::JsonSchema for $name {
             fn inline_schema() -> bool {
                 true
             }
 
-            fn schema_name() -> Cow<'static, str> {
+            fn schema_name() -> std::borrow::Cow<'static, str> {
                 stringify!($name).into()
             }
 
-            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+            fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
                 choice_schema(&[$($word),*], $unit)
             }
         }
@@ -278,14 +279,15 @@ choice!(
 );
 
 /// A choice in a schema: keywords, or a text that begins with a number.
-fn choice_schema(keywords: &[&str], value: Option<&str>) -> Schema {
-    let words = keywords.iter().map(|word| json_schema!({"const": word})).collect::<Vec<_>>();
+#[cfg(test)]
+fn choice_schema(keywords: &[&str], value: Option<&str>) -> schemars::Schema {
+    let words = keywords.iter().map(|word| schemars::json_schema!({"const": word})).collect::<Vec<_>>();
     let value = value.map(|unit| {
-        json_schema!({"type": "string", "pattern": r"^\s*[+-]?[0-9.]", "x-unit": unit, "examples": [format!("3e-6 {unit}")]})
+        schemars::json_schema!({"type": "string", "pattern": r"^\s*[+-]?[0-9.]", "x-unit": unit, "examples": [format!("3e-6 {unit}")]})
     });
     // Without keywords it may be a ratio too.
-    let number = keywords.is_empty().then(|| json_schema!({"type": "number"}));
-    json_schema!({"anyOf": words.into_iter().chain(number).chain(value).collect::<Vec<_>>()})
+    let number = keywords.is_empty().then(|| schemars::json_schema!({"type": "number"}));
+    schemars::json_schema!({"anyOf": words.into_iter().chain(number).chain(value).collect::<Vec<_>>()})
 }
 
 /// The text of a TOML string or number.

@@ -7,7 +7,6 @@
 use std::borrow::Cow;
 
 use nalgebra::{Matrix2, Matrix3};
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Assumptions, BendingCoupling, InputSource, PoissonRule, Torsion, TransverseShear};
@@ -62,7 +61,8 @@ impl SectionDerivative {
 }
 
 /// An entry of a matrix with its bands.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Entry {
     /// `d_m`, `d_b` or `d_s`.
     pub matrix: Cow<'static, str>,

@@ -1,31 +1,26 @@
 //! The JSON documents that the command prints around what the library computes, and the schemas of all documents.
 //!
-//! Each is a type that serialises, here or beside what it describes; [`generated`] makes a JSON Schema from every one.
+//! Each is a type that serialises, here or beside what it describes; tests make a JSON Schema from every one.
 
 #[cfg(feature = "parquet")]
 mod tables;
 
 use std::borrow::Cow;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::finding::Explanation;
 use crate::instrument::FabricInput;
-use crate::report::json::{FindingEntry, SectionDocument, SheetDocument};
+use crate::report::json::FindingEntry;
 use crate::report::table::PredictionRow;
-use crate::report::write::Manifest;
-use crate::results::list::ListDocument;
-use crate::results::{Card, CheckDocument, ComparisonDocument, FailureEntry, SolutionDocument};
-use crate::run::RunDocument;
-use crate::schema::{self, GeneratedSchema};
-use crate::verify;
+use crate::results::{Card, FailureEntry};
 
 #[cfg(feature = "parquet")]
 pub use tables::{FoundDocument, LibraryDocument, MergedDocument, PartDocument, PartRows};
 
 /// A document with what was said of the work beside it.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Complete<D> {
     /// The document.
     #[serde(flatten)]
@@ -38,17 +33,19 @@ pub struct Complete<D> {
 }
 
 /// A line on standard error with `--json`.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ErrorLine {
     /// What gave no result.
     pub error: FailureEntry,
 }
 
 /// `kesf.curves/1`, of `kesf read`: what was read.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct CurvesDocument<'a> {
     /// `kesf.curves/1`.
-    #[schemars(extend("const" = "kesf.curves/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.curves/1")))]
     pub schema: Cow<'static, str>,
     /// In name order.
     pub fabrics: Cow<'a, [FabricInput]>,
@@ -62,10 +59,11 @@ impl<'a> CurvesDocument<'a> {
 }
 
 /// `kesf.export/1`, of `kesf export`: cards, or the files that they were written to.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ExportDocument<'a> {
     /// `kesf.export/1`.
-    #[schemars(extend("const" = "kesf.export/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.export/1")))]
     pub schema: Cow<'static, str>,
     /// The programs, with commas.
     pub target: String,
@@ -85,10 +83,11 @@ impl ExportDocument<'_> {
 }
 
 /// `kesf.report/1`, of `kesf report`: the page, or the file that it was written to.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ReportDocument {
     /// `kesf.report/1`.
-    #[schemars(extend("const" = "kesf.report/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.report/1")))]
     pub schema: Cow<'static, str>,
     /// HTML.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -105,10 +104,11 @@ impl Default for ReportDocument {
 }
 
 /// `kesf.results/1`, of `kesf run`: where the results are, and the predictions.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ResultsDocument<'a> {
     /// `kesf.results/1`.
-    #[schemars(extend("const" = "kesf.results/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.results/1")))]
     pub schema: Cow<'static, str>,
     /// The folder.
     pub output: String,
@@ -124,10 +124,11 @@ impl<'a> ResultsDocument<'a> {
 }
 
 /// `kesf.init/1`, of `kesf init`: the files of a folder.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct InitDocument<'a> {
     /// `kesf.init/1`.
-    #[schemars(extend("const" = "kesf.init/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.init/1")))]
     pub schema: Cow<'static, str>,
     /// Those that were written.
     pub written: Vec<Cow<'a, str>>,
@@ -143,10 +144,11 @@ impl<'a> InitDocument<'a> {
 }
 
 /// `kesf.explanations/1`, of `kesf explain`: the text behind codes.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ExplanationsDocument {
     /// `kesf.explanations/1`.
-    #[schemars(extend("const" = "kesf.explanations/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.explanations/1")))]
     pub schema: Cow<'static, str>,
     /// In the order that was asked for.
     pub codes: Vec<Cow<'static, Explanation>>,
@@ -158,53 +160,6 @@ impl ExplanationsDocument {
         let codes = codes.iter().map(|code| Cow::Borrowed(*code)).collect();
         Self { schema: "kesf.explanations/1".into(), codes }
     }
-}
-
-/// The schemas of all files and documents, from their types, in name order: those of [`schema::SCHEMAS`].
-pub fn generated() -> Vec<GeneratedSchema> {
-    let mut all = schema::generated();
-    all.extend([
-        document::<CheckDocument>("check", "kesf.check/1, of kesf check"),
-        document::<ComparisonDocument>(
-            "comparison",
-            "kesf.comparison/1, of kesf compare and of cases of tests",
-        ),
-        document::<CurvesDocument>("curves", "kesf.curves/1, of kesf read"),
-        GeneratedSchema::of_document::<ErrorLine>("error", "A line on standard error with --json"),
-        document::<ExplanationsDocument>("explanations", "kesf.explanations/1, of kesf explain"),
-        document::<ExportDocument>("export", "kesf.export/1, of kesf export"),
-        document::<InitDocument>("init", "kesf.init/1, of kesf init"),
-        document::<ListDocument>("list", "kesf.list/1, of kesf list"),
-        GeneratedSchema::of_document::<Manifest>(
-            "manifest",
-            "kesf.manifest/1, the files of a folder of results",
-        ),
-        document::<ReportDocument>("report", "kesf.report/1, of kesf report"),
-        document::<ResultsDocument>("results", "kesf.results/1, of kesf run"),
-        GeneratedSchema::of_document::<RunDocument>("run", "kesf.run/1, run.json in a folder of results"),
-        document::<SectionDocument>("section", "kesf.section/1, of kesf section, and section.json"),
-        document::<SheetDocument>("sheet", "kesf.sheet/1, of kesf characterise, and sheet.json"),
-        document::<SolutionDocument>("solution", "kesf.solution/1, of kesf solve and of cases with a sheet"),
-        document::<verify::Document>("verify", "kesf.verify/1, of kesf verify"),
-    ]);
-    #[cfg(feature = "parquet")]
-    all.extend([
-        document::<FoundDocument>("found", "kesf.found/1, of kesf library find"),
-        document::<LibraryDocument>("library", "kesf.library/1, of kesf library build"),
-        document::<MergedDocument>("merged", "kesf.merged/1, of kesf merge"),
-        document::<PartDocument>("part", "kesf.part/1, of kesf run --shard"),
-    ]);
-    all.sort_by_key(|file| file.name);
-    all
-}
-
-/// A document that a command prints, or that is a file without `findings` and `failures`.
-fn document<D: JsonSchema>(name: &'static str, title: &'static str) -> GeneratedSchema {
-    let mut file = GeneratedSchema::of_document::<Complete<D>>(name, title);
-    if let Some(required) = file.schema["required"].as_array_mut() {
-        required.retain(|key| key != "failures");
-    }
-    file
 }
 
 #[cfg(all(test, feature = "parquet"))]

@@ -3,17 +3,17 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::library::Axis;
-use crate::report::arrow_text::{Cell, Records};
+use crate::report::arrow_text::Records;
 
 /// `kesf.found/1`, of `kesf library find`: fabrics of a library.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FoundDocument<'a> {
     /// `kesf.found/1`.
-    #[schemars(extend("const" = "kesf.found/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.found/1")))]
     pub schema: &'static str,
     /// The fabric that they were compared with.
     pub like: Option<&'a str>,
@@ -25,15 +25,16 @@ pub struct FoundDocument<'a> {
     /// Units of the columns that have one throughout.
     pub units: BTreeMap<String, String>,
     /// A row each, the nearest first.
-    #[schemars(with = "Vec<BTreeMap<String, Cell>>")]
+    #[cfg_attr(test, schemars(with = "Vec<BTreeMap<String, crate::report::arrow_text::Cell>>"))]
     pub fabrics: Records<'a>,
 }
 
 /// `kesf.library/1`, of `kesf library build`.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LibraryDocument {
     /// `kesf.library/1`.
-    #[schemars(extend("const" = "kesf.library/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.library/1")))]
     pub schema: Cow<'static, str>,
     /// The file.
     pub output: String,
@@ -49,15 +50,16 @@ impl LibraryDocument {
 }
 
 /// `kesf.merged/1`, of `kesf merge`: the rows of the parts.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct MergedDocument<'a> {
     /// `kesf.merged/1`.
-    #[schemars(extend("const" = "kesf.merged/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.merged/1")))]
     pub schema: &'static str,
     /// `results`, `findings` or `failures`.
     pub table: &'static str,
     /// In the order of the fabrics.
-    #[schemars(with = "Vec<BTreeMap<String, Cell>>")]
+    #[cfg_attr(test, schemars(with = "Vec<BTreeMap<String, crate::report::arrow_text::Cell>>"))]
     pub rows: Records<'a>,
 }
 
@@ -69,10 +71,11 @@ impl<'a> MergedDocument<'a> {
 }
 
 /// `kesf.part/1`, of `kesf run --shard`.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PartDocument {
     /// `kesf.part/1`.
-    #[schemars(extend("const" = "kesf.part/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.part/1")))]
     pub schema: Cow<'static, str>,
     /// The file of its results; those of findings and failures stand beside it.
     pub output: String,
@@ -89,7 +92,8 @@ pub struct PartDocument {
 }
 
 /// Rows of the tables of a part.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PartRows {
     /// Of values.
     pub results: usize,

@@ -1,7 +1,6 @@
 //! Mass matrices, Eq. (12).
 
 use nalgebra::{Matrix3, Matrix4, Matrix6, Vector3};
-use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Matrix24;
@@ -28,7 +27,8 @@ use crate::section::ShellSection;
 ///
 /// In the plane of the sheet straight lines are what the element has: consistent +k²h²/24, row sums -k²h²/24,
 /// and the mean is of fourth order along the mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Mass {
     /// `ρ ∫ N_i N_j dA`.

@@ -37,7 +37,6 @@ pub use quad4::{Frame, GAUSS_2X2, GaussPoint, gauss_point, shape};
 pub use smoothing::{Cells, SmoothingCell};
 pub use yarns::{YarnStrain, Yarns};
 
-use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// How an element is formulated.
@@ -61,7 +60,8 @@ pub struct Formulation {
 
 /// How the membrane strain of an element is smoothed; that of a triangle is constant, whichever is chosen, and differs in
 /// large rotations alone.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Membrane {
     /// Over the cells of the formulation.
@@ -113,7 +113,8 @@ pub enum Bending {
 }
 
 /// How the transverse shear strain of an element follows from its displacements.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ShearInterpolation {
     /// Tied at the middles of the sides (MITC4, MITC3 in triangles): thin sheets do not lock.

@@ -12,12 +12,10 @@ mod error;
 mod facts;
 mod toml_file;
 
-use std::borrow::Cow;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize, Serializer};
 
 #[cfg(feature = "results")]
@@ -34,7 +32,8 @@ pub(crate) use toml_file::{Node, ReadLater, TomlError, TomlFile, position};
 
 /// Where in an input something was found. Lines and columns count from 1; a column counts
 /// characters of the decoded line. 0 means "not applicable".
-#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Place {
     /// The file, as it was named to us.
     #[serde(serialize_with = "path_as_text")]
@@ -137,8 +136,9 @@ impl Serialize for Finding {
 }
 
 /// What is written of a finding.
-#[derive(Serialize, JsonSchema)]
-#[schemars(rename = "Finding")]
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(test, schemars(rename = "Finding"))]
 struct Stated<'f> {
     /// Code for `kesf explain`.
     code: &'static str,
@@ -150,13 +150,14 @@ struct Stated<'f> {
     place: Option<&'f Place>,
 }
 
-impl JsonSchema for Finding {
-    fn schema_name() -> Cow<'static, str> {
-        Stated::schema_name()
+#[cfg(test)]
+impl schemars::JsonSchema for Finding {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        <Stated as schemars::JsonSchema>::schema_name()
     }
 
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        Stated::json_schema(generator)
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        <Stated as schemars::JsonSchema>::json_schema(generator)
     }
 }
 
@@ -177,7 +178,8 @@ impl TryFrom<Written> for Finding {
 }
 
 /// The text behind a code, for `kesf explain`.
-#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Explanation {
     /// The code, e.g. `R004`.

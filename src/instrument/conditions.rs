@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::dialect::Key;
@@ -10,7 +9,8 @@ use super::{Conditions, Direction, Measurement, Source, Test};
 use crate::quantity::{Angle, Curvature, Curve, Force, Length, LineForce, Pressure};
 
 /// Conditions that files leave out; the `[conditions]` of fabric.toml and of dialects.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct StatedConditions {
     /// Specimen width in every test.
@@ -30,7 +30,8 @@ pub struct StatedConditions {
 }
 
 /// Conditions of FB1 tensile.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct TensileConditions {
     /// Specimen width.
@@ -42,7 +43,8 @@ pub struct TensileConditions {
 }
 
 /// Conditions of FB1 shear.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct ShearConditions {
     /// Specimen width.
@@ -56,7 +58,8 @@ pub struct ShearConditions {
 }
 
 /// Conditions of FB2.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct BendingConditions {
     /// Specimen width.
@@ -68,7 +71,8 @@ pub struct BendingConditions {
 }
 
 /// Conditions of FB3.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct CompressionConditions {
     /// Set maximum of the pressure.
@@ -76,7 +80,8 @@ pub struct CompressionConditions {
 }
 
 /// Conditions of FB4.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct SurfaceConditions {
     /// Load on the contactor: a friction force is divided by it.

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, de};
 
 use super::conditions::StatedConditions;
@@ -11,7 +10,8 @@ use super::words::{folded, normalised};
 use super::{Direction, Test};
 
 /// What a column of a curve holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
     /// Tensile strain, or extension between the jaws.
@@ -90,7 +90,8 @@ impl Role {
 }
 
 /// What a header line states.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Key {
     /// Name of the fabric.
@@ -130,7 +131,8 @@ pub enum Key {
 }
 
 /// What a column of a result table holds, apart from parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum TableColumn {
     /// Identifier of the fabric; goes before `Fabric`.
@@ -156,7 +158,8 @@ pub enum TableColumn {
 }
 
 /// How a row or a column sums up others; it is no specimen itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Statistic {
     /// The mean.
@@ -168,7 +171,8 @@ pub enum Statistic {
 }
 
 /// Which way the drive goes in a column that holds one branch of a curve.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum BranchColumn {
     /// Loading.
@@ -178,7 +182,8 @@ pub enum BranchColumn {
 }
 
 /// What stands beside a direction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum DirectionWord {
     /// It turns it: `across the warp`, `not warp`.
@@ -190,7 +195,8 @@ pub enum DirectionWord {
 /// The words and marks of one kind of file. A laboratory with a layout of its own writes one.
 ///
 /// Words are compared after NFKC in lower case, without accents, blanks and punctuation.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Dialect {
     /// Short name, e.g. `kes-japanese`.

@@ -6,7 +6,6 @@
 //! mass (g/m²). Numbers may be strings. Nothing is corrected here: zero, slack and offset are the
 //! characterisation's.
 
-use schemars::JsonSchema;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -18,7 +17,8 @@ use crate::finding::{Finding, Place, ReadFact};
 use crate::quantity::{Curve, STANDARD_GRAVITY};
 
 /// What a FAB test does to the strip.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum FabKind {
     /// Stretch at the short clamp distance (about 2 cm).
@@ -55,7 +55,8 @@ impl FabKind {
 }
 
 /// One strip test: clamp distance against force.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FabTest {
     /// Direction of the strip: length is warp, width is weft.
     pub direction: Direction,
@@ -77,7 +78,8 @@ impl FabTest {
 }
 
 /// A contact of the foot with the cloth in the thickness test.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Contact {
     /// Thickness (m).
     pub thickness: f64,
@@ -86,7 +88,8 @@ pub struct Contact {
 }
 
 /// The raw data of a FAB measurement.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FabFile {
     /// Name of the fabric, where the file has one.
     pub name: Option<String>,

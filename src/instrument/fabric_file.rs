@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::conditions::StatedConditions;
@@ -14,7 +13,8 @@ use crate::platform::files;
 use crate::quantity::{ArealDensity, Length, Ratio};
 
 /// `fabric.toml`: what people know of a fabric and no instrument writes.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct FabricFile {
     #[serde(alias = "title")]

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::fab::FabFile;
@@ -13,7 +12,8 @@ use crate::kes::RecordName;
 use crate::quantity::Curve;
 
 /// Where data come from; stated in every sheet and chart.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Origin {
     /// Instrument files of a laboratory.
@@ -37,7 +37,8 @@ impl Origin {
 }
 
 /// A file that was read: its path as given, its hash, and how its text was understood.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Source {
     /// Path as it was named to us.
     #[serde(serialize_with = "crate::finding::path_as_text")]
@@ -51,7 +52,8 @@ pub struct Source {
 }
 
 /// Test conditions in SI, from the file, else `fabric.toml`, else the standard set.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Conditions {
     /// Specimen width (m); 0.20 by default.
     pub width: f64,
@@ -76,7 +78,8 @@ fn is_zero(value: &f64) -> bool {
 }
 
 /// One specimen in one test: the raw curve in SI, in recorded order, untouched otherwise.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Measurement {
     /// Which test, and so what the axes are.
     pub test: Test,
@@ -111,7 +114,8 @@ impl Measurement {
 }
 
 /// One value of a result table, SI.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ResultValue {
     /// Which parameter.
     pub parameter: Parameter,
@@ -134,7 +138,8 @@ pub struct ResultValue {
 }
 
 /// A measured behaviour kept for comparison with predictions, from `fabric.toml`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MeasuredResult {
     /// What was measured, e.g. `drape_coefficient`, `drape_nodes`, `bending_length`.
@@ -148,7 +153,8 @@ pub struct MeasuredResult {
 }
 
 /// What `fabric.toml` says of a fabric.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FabricInfo {
     /// Name for people; the folder's name identifies the fabric.
     pub title: String,
@@ -173,7 +179,8 @@ pub struct FabricInfo {
 }
 
 /// A tensile stiffness that a table or a program states: between two loads, as E5 and E20 of FAST, or of a linear fabric.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct StatedStiffness {
     /// Direction of the load.
     pub direction: Direction,
@@ -188,7 +195,8 @@ pub struct StatedStiffness {
 }
 
 /// Everything that was read about one fabric.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FabricInput {
     /// Identifier: the folder's name, or the file's stem.
     pub name: String,
@@ -216,7 +224,8 @@ pub struct FabricInput {
 }
 
 /// What was inferred from a file and why, for people (`kesf check -v`).
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Inference {
     /// Path as it was named to us.
     #[serde(serialize_with = "crate::finding::path_as_text")]

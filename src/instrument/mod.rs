@@ -63,6 +63,7 @@ pub use conditions::{
 };
 pub use dialect::{BranchColumn, DIALECT_FILES, Dialect, Key, Role, Statistic, TableColumn, dialects};
 pub use error::{About, Problem, ReadError};
+#[cfg(test)]
 pub(crate) use fabric_file::FabricFile;
 pub use fabric_file::{DRAPE_FILE, read_dialect};
 pub use file_name::is_data_name;

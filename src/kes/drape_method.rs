@@ -1,10 +1,10 @@
 //! The sizes of a drape test, from the words in which a source states its method.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Disc and sheet of a Cusick drape test.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct DrapeMethod {
     /// Diameter of the support disc (m).
     pub disc: f64,

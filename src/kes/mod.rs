@@ -7,7 +7,6 @@ pub mod specimen;
 
 use std::fmt;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use drape_method::{CUSICK, CUSICK_DISC, DrapeMethod, JIS};
@@ -15,7 +14,8 @@ pub use parameter::{Direction, HAND, Key, Parameter};
 pub use relation::Relation;
 
 /// The KES-F test that a curve comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Test {
     /// FB1 tensile: x = strain (1), y = force per width (N/m).

@@ -1,9 +1,7 @@
 //! The KES parameters: symbol, units, which instrument, which directions.
 
-use std::borrow::Cow;
 use std::fmt;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -11,7 +9,8 @@ use super::Test;
 use crate::quantity::Unit;
 
 /// The yarn direction in which a specimen is loaded. Warp is x of the sheet, weft is y.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Direction {
     /// Along the warp yarns (x).
@@ -187,14 +186,15 @@ impl Serialize for Parameter {
 }
 
 /// A symbol.
-impl JsonSchema for Parameter {
-    fn schema_name() -> Cow<'static, str> {
+#[cfg(test)]
+impl schemars::JsonSchema for Parameter {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
         "Parameter".into()
     }
 
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
         let symbols: Vec<_> = Self::ALL.iter().map(|parameter| parameter.symbol()).collect();
-        json_schema!({ "type": "string", "enum": symbols })
+        schemars::json_schema!({ "type": "string", "enum": symbols })
     }
 }
 

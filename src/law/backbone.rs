@@ -1,13 +1,13 @@
 //! The reversible part of a law: a monotone curve with a continuous tangent.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::LawError;
 
 /// `E(e) = offset + Σ a_i I_i(e)`, `a_i >= 0`, with `I_i` the integral from strain 0 of the hat
 /// function of knot `i`: the tangent is `a_i` at the knots, linear between them, constant outside.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(try_from = "Parts", into = "Parts")]
 pub struct Backbone {
     /// At least one, increasing.
@@ -24,7 +24,8 @@ struct Piece {
 }
 
 /// A backbone as it is written to a file.
-#[derive(Serialize, Deserialize, JsonSchema)]
+#[derive(Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 struct Parts {
     offset: f64,

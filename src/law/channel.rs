@@ -1,6 +1,5 @@
 //! The law of one strain component, and its memory at a point.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::widening::Growth;
@@ -10,7 +9,8 @@ use super::{Backbone, ElasticResponse, LawError, Widening};
 pub const MAX_SLIDERS: usize = 12;
 
 /// An elastic-slider element: a spring of which the deformation never exceeds a level.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Slider {
     /// Stiffness w of the spring (stress per strain).
@@ -20,7 +20,8 @@ pub struct Slider {
 }
 
 /// Sliders whose levels widen alike.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Family {
     /// How their slip levels grow with the strain.
@@ -30,7 +31,8 @@ pub struct Family {
 }
 
 /// A law `σ = E(e) + Σ w_j t_j` with its memory `t_j` in [`State`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(try_from = "Parts", into = "Parts")]
 pub struct Channel {
     backbone: Backbone,
@@ -39,7 +41,8 @@ pub struct Channel {
 }
 
 /// A channel as it is written to a file.
-#[derive(Serialize, Deserialize, JsonSchema)]
+#[derive(Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 struct Parts {
     backbone: Backbone,
@@ -48,7 +51,8 @@ struct Parts {
 }
 
 /// What the sliders do.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Mode {
     /// Nothing: the backbone alone.

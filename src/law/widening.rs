@@ -1,13 +1,13 @@
 //! How slip levels grow with the strain.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Backbone, LawError};
 
 /// The factor `q(e) >= 0` on the slip levels of a family of sliders. Beyond the strain that the
 /// law was measured to, `q` stays as it is there.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Widening {
     /// `q = 1`.

@@ -1,6 +1,5 @@
 //! The space that fabrics are compared in.
 
-use schemars::JsonSchema;
 use std::collections::BTreeMap;
 
 use serde::Serialize;
@@ -15,7 +14,8 @@ pub const FEWEST: usize = 3;
 pub(super) type Point = [f64; HAND.len()];
 
 /// What is usual in a library for a parameter.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Axis {
     /// The parameter.
     pub parameter: Parameter,

@@ -1,12 +1,12 @@
 //! A measured or simulated curve.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Points (x, y) in the order in which they were taken; `x` and `y` have equal length.
 ///
 /// What the axes are, and that they are SI, is said by whoever holds the curve.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Curve {
     /// Abscissae.
     pub x: Vec<f64>,

@@ -67,6 +67,7 @@ macro_rules! quantities {
             }
         }
 
+        #[cfg(test)]
         impl schemars::JsonSchema for $name {
             fn inline_schema() -> bool {
                 true

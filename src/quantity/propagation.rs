@@ -1,13 +1,13 @@
 //! First-order (delta) propagation of the spread of measured inputs to what is computed from them.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::Estimate;
 
 /// A standard uncertainty and the 95 % interval that follows from it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Band {
     /// Standard uncertainty, in the unit of the quantity.
     pub standard: f64,
@@ -15,7 +15,7 @@ pub struct Band {
     pub half_width: f64,
     /// Effective degrees of freedom (Welch-Satterthwaite); infinite where nothing is uncertain, which is `null` in JSON.
     #[serde(deserialize_with = "null_is_infinite")]
-    #[schemars(with = "Option<f64>")]
+    #[cfg_attr(test, schemars(with = "Option<f64>"))]
     pub degrees_of_freedom: f64,
 }
 
@@ -24,7 +24,8 @@ fn null_is_infinite<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error>
 }
 
 /// The two questions that a band may answer.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Bands {
     /// Where the value of the mean fabric lies: each input has the standard error SD/√n.
     pub mean_fabric: Band,

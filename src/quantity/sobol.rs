@@ -1,6 +1,5 @@
 //! Spread of measured inputs through a function that is not linear: scrambled Sobol points.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -18,7 +17,8 @@ pub enum SampledPopulation {
 }
 
 /// A result over a sample of the inputs.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Sampled {
     /// Median.
     pub median: f64,

@@ -4,8 +4,6 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::str::FromStr;
 
-use schemars::generate::Contract;
-use schemars::{Schema, json_schema};
 use serde::Deserializer;
 use serde::de::{self, Visitor};
 use thiserror::Error;
@@ -350,11 +348,16 @@ pub fn divides_by_length(text: &str) -> bool {
 }
 
 /// The schema of a quantity: a text such as the example where it is read, a number in SI where it is written.
-pub(super) fn schema(si: &'static str, example: &'static str, contract: &Contract) -> Schema {
+#[cfg(test)]
+pub(super) fn schema(
+    si: &'static str,
+    example: &'static str,
+    contract: &schemars::generate::Contract,
+) -> schemars::Schema {
     if contract.is_serialize() {
-        return json_schema!({"type": "number", "x-unit": si});
+        return schemars::json_schema!({"type": "number", "x-unit": si});
     }
-    json_schema!({
+    schemars::json_schema!({
             "type": "string",
             // A number and its unit, which may begin with a digit after a blank, as `1/cm` does.
             "pattern": r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(\s*[^\s\d.,eE+-].*|\s+\d.*)$",

@@ -6,7 +6,6 @@ use std::borrow::Cow;
 
 use indexmap::IndexMap;
 use nalgebra::{Matrix2, Matrix3};
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::characterise::{FabricSheet, FrictionLaw, LawBand, MeanBranch, Settings, ValueStatus};
@@ -16,10 +15,11 @@ use crate::instrument::{Direction, Origin, Parameter, Test};
 use crate::quantity::{Curve, Estimate};
 
 /// `kesf.sheet/1`: the parameters of fabrics.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SheetDocument {
     /// `kesf.sheet/1`.
-    #[schemars(extend("const" = "kesf.sheet/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.sheet/1")))]
     pub schema: Cow<'static, str>,
     /// Version of the program that wrote it.
     #[serde(default)]
@@ -38,7 +38,8 @@ pub struct SheetDocument {
 }
 
 /// A file and its hash.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct InputEntry {
     /// As it was named to us, with `/`.
     pub path: String,
@@ -47,7 +48,8 @@ pub struct InputEntry {
 }
 
 /// One fabric of a [`SheetDocument`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SheetEntry {
     /// Identifier.
     pub name: String,
@@ -75,7 +77,8 @@ pub struct SheetEntry {
 }
 
 /// What people state of a fabric (SI).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Stated {
     /// Areal density (kg/m²).
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -93,7 +96,8 @@ impl Stated {
 
 /// A parameter of the fabric as a whole; or by `warp`, `weft`, `bias` and `fabric` (a directional parameter that is
 /// known for the fabric as a whole only).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(untagged)]
 pub enum ParameterEntry {
     /// Of the fabric.
@@ -103,7 +107,8 @@ pub enum ParameterEntry {
 }
 
 /// A value of a sheet.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ValueEntry {
     /// The value.
     #[serde(flatten)]
@@ -117,7 +122,8 @@ pub struct ValueEntry {
 }
 
 /// A mean over repeats with its spread.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct EstimateEntry {
     /// Mean, in the unit.
     pub mean: Option<f64>,
@@ -136,7 +142,8 @@ pub struct EstimateEntry {
 }
 
 /// The mean loop of the laws of a test (SI).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LawBandEntry {
     /// The test.
     pub test: Test,
@@ -149,7 +156,8 @@ pub struct LawBandEntry {
 }
 
 /// A run of a cycle: every fifth point.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct RunEntry {
     /// The mean.
     pub mean: Curve,
@@ -160,7 +168,8 @@ pub struct RunEntry {
 }
 
 /// A parameter that was evaluated in the simulated cycles of the laws, beside the measured one.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ReExtractedEntry {
     /// Of the simulated cycles.
     pub simulated: EstimateEntry,
@@ -171,7 +180,8 @@ pub struct ReExtractedEntry {
 }
 
 /// A finding of a document.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FindingEntry {
     /// The fabric it belongs to, where its place does not say so.
     pub fabric: Option<String>,
@@ -188,10 +198,11 @@ pub struct FindingEntry {
 }
 
 /// `kesf.section/1`: shell sections with the assumptions behind them.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SectionDocument {
     /// `kesf.section/1`.
-    #[schemars(extend("const" = "kesf.section/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.section/1")))]
     pub schema: Cow<'static, str>,
     /// Version of the program that wrote it.
     #[serde(default)]
@@ -204,7 +215,8 @@ pub struct SectionDocument {
 }
 
 /// One section of a [`SectionDocument`]; material axes, x = warp.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SectionEntry {
     /// The fabric, or the case that states the section.
     pub fabric: String,
@@ -228,7 +240,8 @@ pub struct SectionEntry {
 }
 
 /// How a constant of a section was found.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct AssumptionEntry {
     /// The value that is used.
     pub value: String,

@@ -1,12 +1,10 @@
 //! Putting files in place: whole or not at all, and never over somebody else's work.
 
 use crate::finding::{Place, as_text, errors, path_as_text};
-use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, BufReader, BufWriter, Write as _};
 use std::path::{Component, Path, PathBuf};
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use tempfile::NamedTempFile;
@@ -172,13 +170,14 @@ pub fn hash(bytes: &[u8]) -> String {
 }
 
 /// `kesf.manifest/1`: what this program wrote into a folder.
-#[derive(Deserialize, JsonSchema)]
+#[derive(Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Manifest {
-    #[schemars(extend("const" = "kesf.manifest/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.manifest/1")))]
     schema: String,
     /// Name in the folder (with `/`) and SHA-256 of what was written.
-    #[schemars(with = "BTreeMap<Box<str>, String>")]
+    #[cfg_attr(test, schemars(with = "std::collections::BTreeMap<Box<str>, String>"))]
     files: FileList,
 }
 

@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use schemars::JsonSchema;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -31,9 +30,10 @@ pub struct Checked {
 }
 
 /// `kesf.check/1`.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct CheckDocument {
-    #[schemars(extend("const" = "kesf.check/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.check/1")))]
     schema: Cow<'static, str>,
     fabrics: Vec<FabricEntry>,
     cases: Vec<CaseEntry>,
@@ -41,7 +41,8 @@ pub struct CheckDocument {
     inference: Vec<Inference>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct FabricEntry {
     name: String,
     path: String,
@@ -51,7 +52,8 @@ struct FabricEntry {
     findings: Vec<Finding>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct CaseEntry {
     name: String,
     path: String,

@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::columns::Columns;
@@ -71,7 +70,8 @@ pub(super) fn table<'a, 'f: 'a, 'c: 'a>(
 }
 
 /// An entry of `kesf.solution/1`: a drape (SI).
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct DrapeEntry {
     case: String,
     fabric: Option<String>,
@@ -81,12 +81,14 @@ pub struct DrapeEntry {
     findings: Vec<Finding>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct DrapeResults {
     drape: DrapeValues,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct DrapeValues {
     law: Cow<'static, str>,
     /// Of the state of lowest energy on the finest mesh, 0 to 1.
@@ -111,25 +113,29 @@ struct DrapeValues {
 }
 
 /// A sheet with its face up, and with its face down.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct FacesEntry {
     up: StateEntry,
     down: StateEntry,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct NodeNumber {
     nodes: usize,
     searches: usize,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct MeasuredDrape {
     value: f64,
     method: String,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct StateEntry {
     start_folds: usize,
     /// How many searches ended in it.
@@ -147,14 +153,16 @@ struct StateEntry {
     iterations: usize,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct FailedStart {
     start_folds: usize,
     code: Cow<'static, str>,
 }
 
 /// Distances of the outline from the axis of the disc, one a degree.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct OutlineEntry {
     unit: Cow<'static, str>,
     step_deg: u32,

@@ -1,6 +1,5 @@
 //! Why an input or a task gave no result: one line, whatever layer it comes from.
 
-use schemars::JsonSchema;
 use std::error::Error;
 use std::fmt;
 
@@ -28,7 +27,8 @@ pub struct Failure {
 }
 
 /// `error` of a JSON line on standard error, and an entry of `failures` of a document.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FailureEntry {
     /// Code for `kesf explain`.
     pub code: String,

@@ -1,6 +1,5 @@
 //! What inputs name: fabrics (folders and files) and cases (`.toml`), on disk or in memory.
 
-use schemars::JsonSchema;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -91,7 +90,8 @@ pub struct Reading {
 }
 
 /// `options.evaluation` of `kesf.run/1`: a [`Reading`] with the hashes of the files that it names.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ReadingEntry {
     settings: Option<FileEntry>,
     dialect: Option<FileEntry>,
@@ -101,7 +101,8 @@ pub struct ReadingEntry {
 }
 
 /// A file with its hash.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FileEntry {
     /// As it was named to us.
     pub path: String,

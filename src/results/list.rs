@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 
 use indexmap::IndexMap;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -23,9 +22,10 @@ pub struct List {
 }
 
 /// `kesf.list/1`.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ListDocument {
-    #[schemars(extend("const" = "kesf.list/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.list/1")))]
     schema: Cow<'static, str>,
     /// Objects with the headings as keys.
     items: Vec<IndexMap<Cow<'static, str>, Value>>,

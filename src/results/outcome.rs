@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::bent::{self, BendingEntry};
@@ -40,7 +39,8 @@ pub enum Outcome {
 }
 
 /// A document with the outcome of a task or of several.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(untagged)]
 pub enum Document {
     /// Of cases with a sheet.
@@ -50,25 +50,28 @@ pub enum Document {
 }
 
 /// `kesf.solution/1`.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SolutionDocument {
-    #[schemars(extend("const" = "kesf.solution/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.solution/1")))]
     schema: Cow<'static, str>,
     /// One a task.
     solutions: Vec<Solution>,
 }
 
 /// `kesf.comparison/1`.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ComparisonDocument {
-    #[schemars(extend("const" = "kesf.comparison/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.comparison/1")))]
     schema: Cow<'static, str>,
     /// One a direction.
     comparisons: Vec<ComparisonEntry>,
 }
 
 /// An entry of `kesf.solution/1`.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(untagged)]
 pub enum Solution {
     /// A solved case.
@@ -78,7 +81,8 @@ pub enum Solution {
 }
 
 /// An entry of `kesf.comparison/1`.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(untagged)]
 pub enum ComparisonEntry {
     /// A simulated KES test.

@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 
 use indexmap::IndexMap;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::columns::Columns;
@@ -55,7 +54,8 @@ pub(super) fn interval(band: Option<Sampled>, factor: f64) -> String {
 }
 
 /// `uncertainty` of an entry of a document, by sampling.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SamplingEntry {
     method: Cow<'static, str>,
     points: u32,
@@ -67,7 +67,8 @@ pub struct SamplingEntry {
 }
 
 /// A measured input (SI).
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct InputEntry {
     name: String,
     mean: f64,
@@ -75,7 +76,8 @@ pub struct InputEntry {
     n: usize,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct QuantityEntry {
     value: f64,
     unit: Cow<'static, str>,

@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use schemars::JsonSchema;
 use std::collections::BTreeMap;
 
 use indexmap::IndexMap;
@@ -120,7 +119,8 @@ fn stiffness(
 }
 
 /// An entry of `kesf.comparison/1`: a simulated KES test.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TestEntry {
     name: String,
     case: String,
@@ -140,7 +140,8 @@ pub struct TestEntry {
     measured: Option<Vec<f64>>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct StiffnessEntry {
     symbol: Cow<'static, str>,
     unit: Cow<'static, str>,
@@ -153,7 +154,8 @@ struct StiffnessEntry {
 }
 
 /// A parameter of a simulated cycle beside the measured one (SI).
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct CycleEntry {
     simulated: f64,
     measured: Option<f64>,

@@ -1,6 +1,5 @@
 //! `run.json`: version, options and the hashes of what was read.
 
-use schemars::JsonSchema;
 use std::cell::RefCell;
 
 use serde::ser::SerializeSeq;
@@ -12,24 +11,26 @@ use crate::instrument::Source;
 use crate::results::{Failure, FileEntry, Job, ReadingEntry, readable};
 
 /// `kesf.run/1`. The lists of files are written as they come: of a large library they are long.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct RunDocument<'d> {
-    #[schemars(extend("const" = "kesf.run/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.run/1")))]
     schema: &'static str,
     version: &'static str,
     options: OptionsEntry,
     /// Files of measurements.
-    #[schemars(with = "Vec<Source>")]
+    #[cfg_attr(test, schemars(with = "Vec<Source>"))]
     inputs: Streamed<'d, Source>,
     /// Files about fabrics.
-    #[schemars(with = "Vec<FileEntry>")]
+    #[cfg_attr(test, schemars(with = "Vec<FileEntry>"))]
     fabrics: Streamed<'d, FileEntry>,
     cases: Vec<CaseEntry>,
     #[serde(skip_serializing_if = "Option::is_none")]
     date: Option<String>,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct OptionsEntry {
     inputs: Vec<String>,
     charts: bool,
@@ -46,7 +47,8 @@ struct OptionsEntry {
     evaluation: ReadingEntry,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct CaseEntry {
     name: String,
     #[serde(flatten)]

@@ -1,6 +1,5 @@
 //! What is made of the results of a run.
 
-use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::case::Case;
@@ -38,7 +37,8 @@ impl FieldFiles {
 const WITH_DRAPES: usize = 20;
 
 /// Which drape cases are solved.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Drapes {
     /// In runs of up to 20 fabrics, of the fabrics with measured curves: on coarse cells, without friction and bands.

@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use serde_json::Value;
 
-use super::{CaseTable, GeneratedSchema};
+use super::generated::GeneratedSchema;
+use crate::case::CaseTable;
 
 const HEAD: &str = "\
 # Case reference

@@ -1,6 +1,9 @@
 use std::path::Path;
 
-use super::*;
+use serde_json::{Value, json};
+
+use super::generated::{GeneratedSchema, generated};
+use super::reference::case_reference;
 
 /// `KESF_SCHEMAS_WRITE=1 cargo test --release --lib committed` writes all of them anew.
 #[test]

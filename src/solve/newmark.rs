@@ -2,7 +2,6 @@
 
 pub(super) mod adaptive;
 
-use schemars::JsonSchema;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -119,7 +118,8 @@ pub struct Settings {
 }
 
 /// Energies of the sheet at one instant (J).
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Energy {
     /// ½ u̇ᵀ M u̇.
     pub kinetic: f64,

@@ -2,11 +2,11 @@
 
 use std::borrow::Cow;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A case on meshes that grow finer where the estimated error is large.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct AdaptedMeshes {
     /// The estimated relative error in the energy norm that was asked for.
     pub goal: f64,
@@ -19,7 +19,8 @@ pub struct AdaptedMeshes {
 }
 
 /// One of the meshes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct AdaptedMesh {
     /// Its elements.
     pub elements: usize,
@@ -32,7 +33,8 @@ pub struct AdaptedMesh {
 }
 
 /// One result on each of the meshes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct AdaptedQuantity {
     /// `w_max`, `PROBE.w`, `strain_energy` ...
     pub quantity: String,

@@ -1,7 +1,6 @@
 //! What a sheet touches: itself, and the obstacles of its case.
 
 use nalgebra::Vector3;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::case::SheetObstacle;
@@ -11,7 +10,8 @@ use crate::model::{Model, RigidSurface};
 use crate::solve::nonlinear::{ACCEPTED, LayersInTouch, State, Touch, layers_in_touch};
 
 /// What an obstacle bears (SI).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ContactResult {
     /// Its name.
     pub obstacle: String,

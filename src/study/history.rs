@@ -1,12 +1,12 @@
 //! What a dynamic analysis leaves behind.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::solve::newmark::Energy;
 
 /// A dynamic analysis in time.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct History {
     /// Instants (s), the start included.
     pub time: Vec<f64>,

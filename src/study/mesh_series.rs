@@ -2,13 +2,13 @@
 
 use std::borrow::Cow;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::fields::Extrapolation;
 
 /// A case on its own mesh and on coarser ones.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Convergence {
     /// `cells` of the meshes, coarsest first.
     pub cells: Vec<[usize; 2]>,
@@ -17,7 +17,8 @@ pub struct Convergence {
 }
 
 /// One result on each mesh.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct MeshSeries {
     /// `w_max`, `PROBE.w`, `strain_energy`, `frequency_1` ...
     pub quantity: String,

@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use schemars::JsonSchema;
 use std::sync::{Arc, OnceLock};
 
 use nalgebra::Vector3;
@@ -28,7 +27,8 @@ use crate::solve::nonlinear::State;
 use crate::solve::{self, Factors, Solution};
 
 /// How a case ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
     /// Solved; every check holds.
@@ -53,7 +53,8 @@ pub struct Probe {
 }
 
 /// A check with its outcome.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct CheckResult {
     /// What was checked.
     pub quantity: String,

@@ -11,7 +11,6 @@
 use std::borrow::Cow;
 
 use nalgebra::Vector3;
-use schemars::JsonSchema;
 
 use super::effort::within_limits;
 use super::prepared::stand_in;
@@ -58,7 +57,8 @@ pub struct VirtualCurve {
 }
 
 /// How far the stiffness of a specimen is from that of the sheet.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct EdgeEffect {
     /// Stiffness of the specimen over the ideal one, without a tension across.
     pub ratio: f64,
@@ -71,7 +71,8 @@ pub struct EdgeEffect {
 }
 
 /// A tension across a sheared specimen.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Tension {
     /// Its size per width (N/m): what it adds to the shear stiffness where the yarns carry it, W tan φ.
     pub value: f64,

@@ -1,6 +1,5 @@
 //! A line of the suite: a problem, its reference, and how it came out.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::error::VerifyError;
@@ -53,7 +52,8 @@ pub enum Tolerance {
 }
 
 /// On which side of its tolerance a value is known to be.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Expected {
     /// Within.
@@ -64,7 +64,8 @@ pub enum Expected {
 }
 
 /// Where a reference comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
     /// A closed form, a convergent series, or a property that follows from theory.

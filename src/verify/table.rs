@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::line::{Expected, Kind, Line, LineOutcome, RESIDUAL, Tolerance};
@@ -143,9 +142,10 @@ fn digits(value: f64) -> String {
 }
 
 /// `kesf.verify/1`.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Document {
-    #[schemars(extend("const" = "kesf.verify/1"))]
+    #[cfg_attr(test, schemars(extend("const" = "kesf.verify/1")))]
     schema: Cow<'static, str>,
     lines: Vec<LineEntry>,
     failed: usize,
@@ -158,7 +158,8 @@ pub struct Document {
 }
 
 /// What a paper says, and how that came out.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ClaimEntry {
     pub(super) id: String,
     pub(super) title: String,
@@ -173,7 +174,8 @@ pub struct ClaimEntry {
 }
 
 /// A line of the suite with its value, reference and outcome.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LineEntry {
     id: String,
     quantity: String,

@@ -1,12 +1,12 @@
 //! A simulated test, and its distance from the measured one.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::quantity::Curve;
 
 /// How far a simulated curve is from a measured one.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Agreement {
     /// Root mean square difference (N).
     pub rmse: f64,

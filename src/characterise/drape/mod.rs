@@ -10,7 +10,6 @@ mod summary;
 
 use std::borrow::Cow;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use crate::kes::DrapeMethod;
@@ -44,7 +43,8 @@ pub struct SeenSheet {
 }
 
 /// Where the scale of a picture comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ScaleSource {
     /// It was given.
@@ -67,7 +67,8 @@ impl ScaleSource {
 }
 
 /// A scale with its source.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Scale {
     /// Pixels in a metre.
     pub pixels_per_metre: f64,
@@ -76,7 +77,8 @@ pub struct Scale {
 }
 
 /// Side of the cloth that is up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum ClothSide {
     /// Face up.
@@ -110,7 +112,8 @@ impl ClothSide {
 }
 
 /// One harmonic of the distance from the centre: `amplitude · cos(order · (direction - phase))`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Harmonic {
     /// Waves around.
     pub order: usize,
@@ -121,7 +124,8 @@ pub struct Harmonic {
 }
 
 /// What one picture shows.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct DrapeCapture {
     /// The picture, as it was named.
     pub picture: String,
@@ -163,8 +167,9 @@ pub struct DrapeCapture {
 }
 
 /// `kesf.drape-image/1`: what pictures of drape tests show.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(extend("additionalProperties" = true))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(test, schemars(extend("additionalProperties" = true)))]
 pub struct DrapeDocument {
     /// `kesf.drape-image/1`.
     pub schema: Cow<'static, str>,

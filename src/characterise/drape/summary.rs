@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{ClothSide, DrapeCapture, DrapeMethod};
@@ -10,7 +9,8 @@ use crate::instrument::MeasuredResult;
 use crate::quantity::Estimate;
 
 /// A mean with its spread.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Spread {
     /// Arithmetic mean.
     pub mean: f64,
@@ -28,7 +28,8 @@ impl Spread {
 }
 
 /// The captures of a test, or of one side of the cloth in it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct DrapeSummary {
     /// The test: the name of the folder of its pictures.
     pub test: String,

@@ -1,6 +1,5 @@
 //! Friction and rigidity of a bending loop without a fit.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::identify::Path;
@@ -12,7 +11,8 @@ use super::loop_fit::line;
 /// By Masing's rule the branch that comes up from the lowest curvature `-k` is `M_down` there and
 /// `2 H` above it: `H(u) = [M_up(-k + 2u) - M_down(-k + 2u)] / 2` levels off at Y. Within 2 to 9 %
 /// of 2HB/2 and 1.5 % of the elastic slope.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ClosedForm {
     /// Y, half of 2HB (N).
     pub moment: f64,

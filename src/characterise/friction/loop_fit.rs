@@ -1,6 +1,5 @@
 //! How well a law follows a measured loop, beside a straight line.
 
-use schemars::JsonSchema;
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
@@ -11,7 +10,8 @@ use super::identify::Path;
 const NO_LOOP: f64 = 1e-4;
 
 /// A law beside the loop that it was identified from.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LoopFit {
     /// The fitted cycle.
     pub fitted: CycleFit,
@@ -24,7 +24,8 @@ pub struct LoopFit {
 }
 
 /// Simulated beside measured stress over one cycle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct CycleFit {
     /// Cycle, from 0.
     pub cycle: usize,

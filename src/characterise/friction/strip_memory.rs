@@ -7,7 +7,6 @@
 //!
 //! Y. C. Fung (1993), Biomechanics: mechanical properties of living tissues, 2nd ed., section 7.6.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::law::Backbone;
@@ -16,7 +15,8 @@ use crate::law::Backbone;
 pub(super) const LAG: f64 = 0.5;
 
 /// What a law of a strip needs beside its channel. Strains count from the onset of load in the last cycle.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct StripMemory {
     /// The strain at which the strip first carried load, not above 0.
     pub first_onset: f64,
@@ -27,7 +27,8 @@ pub struct StripMemory {
 }
 
 /// A Maxwell arm in parallel with a channel.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Relaxation {
     /// The stress (N/m) of the arm at a strain that is reached at once.
     pub curve: Backbone,

@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::measured::{measured, role};
@@ -18,7 +17,8 @@ use crate::study::bending::{
 };
 
 /// An entry of `kesf.comparison/1`: a bending test of a strip (SI).
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct BendingEntry {
     name: String,
     case: String,
@@ -35,7 +35,8 @@ fn stated<'d, T: Deserialize<'d>, D: Deserializer<'d>>(value: D) -> Result<Optio
     T::deserialize(value).map(Some)
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 enum BendingTestEntry {
     Cantilever(CantileverEntry),
@@ -43,7 +44,8 @@ enum BendingTestEntry {
     FabBendLoop(FabEntry),
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct CantileverEntry {
     chord_angle_deg: f64,
     overhang: QuantityEntry,
@@ -58,7 +60,8 @@ struct CantileverEntry {
     stable: bool,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct BendingLengthEntry {
     simulated: f64,
     closed_form: f64,
@@ -67,7 +70,8 @@ struct BendingLengthEntry {
     unit: Cow<'static, str>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct CantileverFrictionEntry {
     couple: QuantityEntry,
     mu: f64,
@@ -76,7 +80,8 @@ struct CantileverFrictionEntry {
     profile: ProfileEntry,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct EstimatedLengthEntry {
     simulated: f64,
     estimate: f64,
@@ -84,14 +89,16 @@ struct EstimatedLengthEntry {
 }
 
 /// The middle line of a strip.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct ProfileEntry {
     x: Vec<f64>,
     z: Vec<f64>,
     unit: Cow<'static, str>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct HeartEntry {
     length: QuantityEntry,
     height: HeightEntry,
@@ -103,21 +110,24 @@ struct HeartEntry {
     stable: bool,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct HeightEntry {
     simulated: f64,
     closed_form: Option<f64>,
     unit: Cow<'static, str>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct HeartRigidityEntry {
     read_from_height: Option<f64>,
     section: f64,
     unit: Cow<'static, str>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct FabEntry {
     rigidity: QuantityEntry,
     clamp_inclination: QuantityEntry,
@@ -126,7 +136,8 @@ struct FabEntry {
     tests: Vec<LoopEntry>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct FabFrictionEntry {
     rigidity: QuantityEntry,
     as_kes: AsKesEntry,
@@ -141,7 +152,8 @@ struct FabFrictionEntry {
 }
 
 /// What KES-FB2 would read of a law.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct AsKesEntry {
     #[serde(rename = "B")]
     b: f64,
@@ -151,7 +163,8 @@ struct AsKesEntry {
 }
 
 /// Lowest and highest value of what KES-FB2 would read.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct KesBandEntry {
     #[serde(rename = "B")]
     b: [f64; 2],
@@ -161,14 +174,16 @@ struct KesBandEntry {
 }
 
 /// The agreement of a test with laws that were identified without it.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct HeldOutEntry {
     load_zero: QuantityEntry,
     outer: Option<Agreement>,
     inner: Option<Agreement>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct LoopEntry {
     test: Cow<'static, str>,
     role: Cow<'static, str>,
@@ -182,7 +197,8 @@ struct LoopEntry {
     held_out_friction: Option<HeldOutEntry>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct SimulatedEntry {
     load_zero: QuantityEntry,
     outer: Option<Agreement>,

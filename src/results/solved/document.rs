@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 
 use indexmap::IndexMap;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::effort::{SolverEntry, TimingsEntry};
@@ -19,7 +18,8 @@ use crate::study::{
 };
 
 /// An entry of `kesf.solution/1`: a solved case (SI).
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SolutionEntry {
     case: String,
     fabric: Option<String>,
@@ -42,7 +42,8 @@ pub struct SolutionEntry {
 }
 
 /// Size of a model.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ModelEntry {
     /// Nodes of the mesh.
     pub nodes: usize,
@@ -65,7 +66,8 @@ impl ModelEntry {
 }
 
 /// A value with its unit.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct QuantityEntry {
     /// SI.
     pub value: f64,
@@ -73,7 +75,8 @@ pub struct QuantityEntry {
     pub unit: Cow<'static, str>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct ResultsEntry {
     w_max: QuantityEntry,
     w_over_bending_thickness: f64,
@@ -100,7 +103,8 @@ struct ResultsEntry {
 }
 
 /// The estimate of Zienkiewicz and Zhu for the whole sheet.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct ErrorEntry {
     /// Energy of the difference between recovered resultants and those of the elements (J): the sum of `error_estimate` in the VTU
     /// file.
@@ -109,7 +113,8 @@ struct ErrorEntry {
     relative: f64,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct ProbeEntry {
     at: Vec<f64>,
     u: [f64; 3],
@@ -120,7 +125,8 @@ struct ProbeEntry {
 }
 
 /// Bands by sampling, or by first-order propagation.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(untagged)]
 enum UncertaintyEntry {
     Sampled(SamplingEntry),
@@ -128,13 +134,15 @@ enum UncertaintyEntry {
 }
 
 /// The inputs, and each quantity with its bands and its sensitivities.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct FirstOrderEntry {
     inputs: Vec<InputEntry>,
     quantities: IndexMap<String, PredictionEntry>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct PredictionEntry {
     value: f64,
     unit: Cow<'static, str>,

@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::quantity::significant;
@@ -11,14 +10,16 @@ use crate::solve::{Solution, System};
 use crate::study::CaseResult;
 
 /// `solver` of an entry of `kesf.solution/1`: what does not depend on the machine.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SolverEntry {
     residual: f64,
     systems: Vec<SystemEntry>,
 }
 
 /// One system of equations.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct SystemEntry {
     dofs: Vec<Cow<'static, str>>,
     path: Cow<'static, str>,
@@ -38,7 +39,8 @@ struct SystemEntry {
 }
 
 /// `timings` of an entry: seconds, rate, threads and the peak memory of the process, which differ from run to run.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TimingsEntry {
     analyse_s: f64,
     order_s: f64,

@@ -1,7 +1,6 @@
 //! How nonlinear analyses went: tables and document.
 
 use indexmap::IndexMap;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::case::MethodChoice;
@@ -123,7 +122,8 @@ pub(super) fn eigenvalues(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
 }
 
 /// `search` of an entry of `kesf.solution/1`.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SearchEntry {
     method: MethodChoice,
     converged: bool,
@@ -137,7 +137,8 @@ pub struct SearchEntry {
 }
 
 /// One of the `[[steps]]` of a case: its place in `steps`, from 0 and without the last, and how it ended.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LoadStepEntry {
     name: String,
     method: MethodChoice,
@@ -153,7 +154,8 @@ pub struct LoadStepEntry {
 }
 
 /// A step of `steps` (SI).
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct StepEntry {
     factor: f64,
     iterations: usize,

@@ -2,7 +2,6 @@
 
 use super::system::{Balance, System};
 use nalgebra::{UnitQuaternion, Vector3};
-use schemars::JsonSchema;
 
 use super::{NonlinearError, Settings, State, plan};
 use crate::model::Model;
@@ -16,7 +15,8 @@ const ROUNDS: usize = 60;
 const SETTLED: f64 = 1e-4;
 
 /// How an equilibrium answers to a small push.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Stability {
     /// Directions in which the energy falls: negative pivots of the tangent. 0 is stable.
     pub negative_pivots: usize,
