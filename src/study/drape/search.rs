@@ -58,6 +58,9 @@ pub(super) struct Found {
     pub hung: Option<DrapeState>,
 }
 
+/// Where a search ended, or the folds at its start and why it ended nowhere.
+type SearchEnd = Result<Found, (usize, NonlinearError)>;
+
 /// Where searches ended.
 pub(super) struct Searches {
     /// Each state once, lowest energy first.
@@ -67,7 +70,7 @@ pub(super) struct Searches {
 }
 
 impl Searches {
-    fn sorted(ends: Vec<Result<Found, (usize, NonlinearError)>>) -> Self {
+    fn sorted(ends: Vec<SearchEnd>) -> Self {
         let (mut all, mut failed) = (Vec::new(), Vec::new());
         for end in ends {
             match end {
@@ -107,37 +110,57 @@ impl<'a> Hanging<'a> {
     ///
     /// Where the mesh allows it the searches begin on cells of twice the width. States of nearly the lowest energy there
     /// are carried to the mesh itself. If no search on wide cells ends anywhere, all are made on the mesh.
+    ///
+    /// # Errors
+    /// O054 if the work is to stop; the errors of mesh and model.
     pub fn searches(&self, folds: &[usize], options: &Options) -> Result<Searches, StudyError> {
         let (stage, silent) = (self.cloth.watch.stage, &|| ());
-        let Some(ring) = self.ring.widened() else { return Ok(self.hang_all(folds, options, stage)) };
+        let Some(ring) = self.ring.widened() else { return self.hang_all(folds, options, stage) };
         let wide = Hanging::new(self.cloth, ring, options)?;
-        let Searches { found, mut failed } = wide.hang_all(folds, options, stage);
-        if found.is_empty() && !(self.cloth.watch.stopped)() {
-            return Ok(self.hang_all(folds, options, silent));
+        let Searches { found, mut failed } = wide.hang_all(folds, options, stage)?;
+        if found.is_empty() {
+            return self.hang_all(folds, options, silent);
         }
         let lowest = found.first().map_or(0.0, |f| f.state.energy);
         let highest = lowest + WORTH_CARRYING * lowest.abs();
         let found: Vec<Found> = found.into_iter().filter(|f| f.state.energy <= highest).collect();
-        let carried = platform::map(&found, |found| {
+        let carried = self.each(&found, |found| {
             let state = &found.state;
             let solution = self.relax(self.carried(&wide, &found.solution.state), options);
             let solution = solution.map_err(|e| (state.start, e))?;
             let state = DrapeState { searches: state.searches, ..self.state(&solution, state.start) };
             Ok(Found { state, solution, hung: found.hung.clone() })
         });
-        let mut searches = Searches::sorted(carried);
+        let mut searches = Searches::sorted(carried?);
         searches.failed.append(&mut failed);
         Ok(searches)
     }
 
     /// The states that sheets with these folds at the start end in, on this mesh; `stage` is called after each.
-    fn hang_all(&self, folds: &[usize], options: &Options, stage: &(dyn Fn() + Sync)) -> Searches {
-        let ends = platform::map(folds, |&start| {
+    fn hang_all(
+        &self,
+        folds: &[usize],
+        options: &Options,
+        stage: &(dyn Fn() + Sync),
+    ) -> Result<Searches, StudyError> {
+        let ends = self.each(folds, |&start| {
             let found = self.hang_and_shake(start, options);
             stage();
             found.map_err(|e| (start, e))
         });
-        Searches::sorted(ends)
+        Ok(Searches::sorted(ends?))
+    }
+
+    /// Searches side by side. Once the work is to stop, none begins, and where those that had begun are is no result.
+    fn each<T: Sync>(
+        &self,
+        from: &[T],
+        search: impl Fn(&T) -> SearchEnd + Sync + Send,
+    ) -> Result<Vec<SearchEnd>, StudyError> {
+        let watch = self.cloth.watch;
+        let ends = platform::map(from, |one| watch.not_stopped().map(|()| search(one)));
+        watch.not_stopped()?;
+        ends.into_iter().collect()
     }
 
     fn hang_and_shake(&self, start: usize, options: &Options) -> Result<Found, NonlinearError> {
@@ -145,7 +168,7 @@ impl<'a> Hanging<'a> {
         let mut hung = None;
         let shaking = self.cloth.problem.shaking;
         let slips = self.cloth.law.is_some_and(|law| law.mode == Mode::Friction);
-        if slips && shaking > 0.0 {
+        if slips && shaking > 0.0 && !self.is_to_stop() {
             hung = Some(self.state(&solution, start));
             let factors: Vec<f64> =
                 (0..SWINGS).map(|k| 1.0 + shaking * (-0.5f64).powi(k)).chain([1.0]).collect();
@@ -174,6 +197,9 @@ impl<'a> Hanging<'a> {
     /// through each other it is let down again, and they are kept apart. If that ends nowhere, it is the one that there is.
     pub fn relax(&self, from: State, options: &Options) -> Result<Solution, NonlinearError> {
         let found = self.descend(from.clone(), false, options)?;
+        if self.is_to_stop() {
+            return Ok(found);
+        }
         let again = if !self.is_tangled(&found.state) {
             layers_in_touch(&self.model, &found.state).map(|_| found.state.clone())
         } else {
@@ -193,6 +219,11 @@ impl<'a> Hanging<'a> {
         let cause = touches.then(|| self.descend(state.clone(), true, options).err()).flatten()?;
         let cause = format!("the search that does so came to no equilibrium, {cause}");
         Some(StudyFact::LayersNotKept { cause })
+    }
+
+    /// Whether the work is to stop: a search is left where it is.
+    fn is_to_stop(&self) -> bool {
+        self.cloth.watch.go_on().is_break()
     }
 
     fn is_tangled(&self, state: &State) -> bool {

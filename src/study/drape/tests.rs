@@ -1,11 +1,14 @@
 //! Own statements (equilibrium, stability, the same always) and limits that need no other program.
 
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use approx::assert_relative_eq;
+
 use super::search::TOLERANCE;
 use super::*;
 use crate::characterise::bending_law;
 use crate::law::{Backbone, Channel, Mode};
-use approx::assert_relative_eq;
-use std::path::Path;
 
 const CASE: &str = r#"
 title = "t"
@@ -228,17 +231,26 @@ fn a_stiff_sheet_stays_flat() {
     assert_eq!(drape.finest.folds.count, 0);
 }
 
-/// Work that is told to stop ends at its next step, with no result.
+/// Work that is told to stop ends at its next step, with no result; no other search begins, and no sheet is shaken.
 #[test]
 fn a_drape_can_be_stopped() {
-    let case = case(2e-5, "", "");
+    let case = case(2e-5, "folds = [3, 5]", "folds = [2, 3, 4, 5, 6, 7, 8, 9]");
     let section = build::section(case.section().unwrap()).unwrap();
-    let asked = std::sync::atomic::AtomicUsize::new(0);
-    let stopped = || asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed) >= 2;
-    let watch = Watch { stopped: &stopped, ..Watch::default() };
-    let error = drape(&case, &section, None, &Options::default(), watch).unwrap_err();
-    assert!(matches!(error, StudyError::Stopped));
-    assert!(asked.into_inner() < 10);
+    let bending = || Some(bending_law(2e-5, 2.0 * 2e-5 * 25.0).unwrap());
+    let law = SheetLaw::new(Mode::Friction, [None, None, None, bending(), bending(), None]);
+    for law in [None, Some(&law)] {
+        let [asked, ended] = [const { AtomicUsize::new(0) }; 2];
+        let stopped = || asked.fetch_add(1, Ordering::Relaxed) >= 3;
+        let stage = || {
+            ended.fetch_add(1, Ordering::Relaxed);
+        };
+        let watch = Watch { stopped: &stopped, stage: &stage };
+        let error = drape(&case, &section, law, &Options::default(), watch).unwrap_err();
+        assert!(matches!(error, StudyError::Stopped));
+        // The three that were asked before it was to stop may all have been before a search.
+        assert!(ended.into_inner() <= 3);
+        assert!(asked.into_inner() < 20);
+    }
 }
 
 #[test]
