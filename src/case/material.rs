@@ -80,6 +80,7 @@ pub struct SectionTable {
     /// Mass per area.
     pub areal_density: ArealDensity,
     /// Thickness.
+    #[cfg_attr(test, schemars(example = &"0.4 mm"))]
     pub thickness: Length,
 }
 

@@ -81,7 +81,7 @@ pub(super) struct DiscTable {
     /// Its diameter.
     diameter: Length,
     /// The radius of its edge, above 0.
-    #[cfg_attr(test, schemars(extend("default" = "1 mm")))]
+    #[cfg_attr(test, schemars(extend("default" = "1 mm"), example = &"2 mm"))]
     edge_radius: Option<Length>,
     /// Coulomb's coefficient of friction; MIU of the fabric when left out, or else 0.2, and it is told.
     #[cfg_attr(test, schemars(example = 0.3))]

@@ -38,7 +38,7 @@ pub struct Options {
     /// Compute every fabric, also those that an earlier run into the folder has computed of the same inputs
     #[arg(long)]
     fresh: bool,
-    /// Write fields of sheets (VTU); auto: in runs of up to 100 fabrics
+    /// Write fields of sheets (VTU, glTF and, of drapes, USD); auto: in runs of up to 100 fabrics
     #[arg(long, value_enum, value_name = "WHEN", default_value = "auto")]
     fields: When,
     /// Compare fabrics on the page with this population: a folder of results, or a file with mean and SD (TOML, CSV)

@@ -13,7 +13,7 @@ use crate::results::{Batch, BatchKind, Failure, Folder};
 /// Where the files go.
 #[derive(Debug, Args)]
 pub struct SimulateArgs {
-    /// Also write JSON, VTU and charts into this folder
+    /// Also write JSON, fields (VTU, glTF) and charts into this folder
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
     #[command(flatten)]

@@ -12,7 +12,7 @@ use crate::quantity::{ArealDensity, BendingRigidity, Curvature, Length, LineForc
 
 /// Every choice between a sheet and a section. The default of each is stated at its field.
 ///
-/// In a case file this is the table `[assumptions]`; on the command line each field is an option.
+/// In a case file this is the table `[assumptions]`; on the command line each field but those of laws is an option.
 /// The texts are the same in both.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -47,22 +47,24 @@ pub struct Assumptions {
     /// Stands in for the hysteresis of bending that the sheet lacks, where `law` asks for friction: the
     /// curvature `2HB/(2B)` that bent cloth keeps without a moment; none. Four published wovens have 0.18 to
     /// 0.53 1/cm.
+    #[cfg_attr(test, schemars(example = &"0.25 1/cm"))]
     pub residual_curvature: Option<Curvature>,
     /// Stands in for a tensile modulus (N/m) that the sheet lacks; 5000 N/m, the secant of a
     /// fabric that stretches by about 10 % at 500 gf/cm. Linear bending of a flat sheet does not
     /// depend on it.
-    #[cfg_attr(test, schemars(extend("default" = "5000 N/m")))]
+    #[cfg_attr(test, schemars(extend("default" = "5000 N/m"), example = &"5000 N/m"))]
     pub tensile: LineForce,
     /// Stands in for a shear stiffness G (N/m) that the sheet lacks; 56.188 N/m = 1 gf/(cm·deg).
-    #[cfg_attr(test, schemars(extend("default" = "56.18796562 N/m")))]
+    #[cfg_attr(test, schemars(extend("default" = "56.18796562 N/m"), example = &"40 N/m"))]
     pub shear: LineForce,
     /// The tension W across the specimen of the shear test, whose share W tan φ is in the G of the sheet and is taken
     /// off for D_m; 0, as published G contain it and D_m = G is customary. KES-FB1 has 10 gf/cm. For
     /// large rotations, where a tension resists shear by itself; not for a G that was evaluated without it.
+    #[cfg_attr(test, schemars(example = &"10 gf/cm"))]
     pub shear_tension: LineForce,
     /// Stands in for a thickness that the sheet lacks; 0.4 mm. No stiffness depends on it unless
     /// `torsion = "shear"`.
-    #[cfg_attr(test, schemars(extend("default" = "0.4 mm")))]
+    #[cfg_attr(test, schemars(extend("default" = "0.4 mm"), example = &"0.4 mm"))]
     pub thickness: Length,
     /// Stands in for an areal density that the sheet lacks; none, because own weight depends on it.
     pub areal_density: Option<ArealDensity>,

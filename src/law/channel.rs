@@ -55,12 +55,12 @@ struct Parts {
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Mode {
-    /// Nothing: the backbone alone.
+    /// No friction: the backbone, the elastic part, acts alone.
     Elastic,
-    /// They slip, and remember.
+    /// The sliders slip, and keep their state.
     #[default]
     Friction,
-    /// They follow the initial loading curve of cloth that was never deformed, on the way back too:
+    /// The sliders follow the initial loading curve of cloth that was never deformed, on the way back too:
     /// a nonlinear elastic law.
     Virgin,
 }

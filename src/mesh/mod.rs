@@ -174,7 +174,7 @@ impl QuadMesh {
     }
 
     /// The edges of every quad in turn, each counter-clockwise along it.
-    fn edges(&self) -> impl Iterator<Item = [u32; 2]> {
+    pub(crate) fn edges(&self) -> impl Iterator<Item = [u32; 2]> + Clone {
         self.quads.iter().flat_map(sides_of)
     }
 

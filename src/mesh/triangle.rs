@@ -31,7 +31,7 @@ pub fn nodes_of(quad: &[u32; 4]) -> &[u32] {
 }
 
 /// The sides of a quad, each along it: three of a triangle.
-pub fn sides_of(quad: &[u32; 4]) -> impl Iterator<Item = [u32; 2]> {
+pub fn sides_of(quad: &[u32; 4]) -> impl Iterator<Item = [u32; 2]> + Clone {
     let nodes = nodes_of(quad);
     (0..nodes.len()).map(move |i| [nodes[i], nodes[(i + 1) % nodes.len()]])
 }

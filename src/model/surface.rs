@@ -61,12 +61,31 @@ impl SurfaceShape {
     /// would soon be pushed out on the other side. Under a plane and under a table there is none.
     pub fn is_passed(&self, start: &Point3<f64>, end: &Point3<f64>, depth: f64) -> bool {
         let Self::Cylinder { at, axis, radius } = self else { return false };
-        let (from, way) = (across(&(start - at), axis), across(&(end - start), axis));
-        // Where it is nearest to the axis.
-        let part = (-from.dot(&way) / way.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        let (end, nearest) = ((from + way).norm(), (from + way * part).norm());
-        let outside = from.norm().min(end) >= *radius;
+        let nearest = nearest_to_axis(at, axis, [start, end]);
+        let [from, end, nearest] = [start, end, &nearest].map(|point| across(&(point - at), axis).norm());
+        let outside = from.min(end) >= *radius;
         (outside && nearest < radius - depth) || end < 0.5 * radius
+    }
+
+    /// How deep (m) a straight line lies in a bar or a table where it comes nearest to the axis, and that point; `None` outside,
+    /// and of a plane, which no line goes through whose ends are not beyond it.
+    pub fn depth_of_line(&self, start: &Point3<f64>, end: &Point3<f64>) -> Option<(f64, Point3<f64>)> {
+        let (at, axis) = match self {
+            Self::Plane { .. } => return None,
+            Self::Cylinder { at, axis, .. } => (at, axis),
+            Self::Disc { at, normal, .. } => (at, normal),
+        };
+        let point = nearest_to_axis(at, axis, [start, end]);
+        let depth = -self.gap(&point).distance;
+        (depth > 0.0).then_some((depth, point))
+    }
+
+    /// The radius (m) of a bar or a table; a plane has none.
+    pub fn radius(&self) -> Option<f64> {
+        match self {
+            Self::Plane { .. } => None,
+            Self::Cylinder { radius, .. } | Self::Disc { radius, .. } => Some(*radius),
+        }
     }
 
     /// The gap at a point.
@@ -114,6 +133,13 @@ impl Gap {
 /// The part of a vector across an axis.
 fn across(vector: &Vector3<f64>, axis: &Vector3<f64>) -> Vector3<f64> {
     vector - axis * vector.dot(axis)
+}
+
+/// The point of a straight line that is nearest to an axis, through `at`.
+fn nearest_to_axis(at: &Point3<f64>, axis: &Vector3<f64>, [start, end]: [&Point3<f64>; 2]) -> Point3<f64> {
+    let (from, way) = (across(&(start - at), axis), across(&(end - start), axis));
+    let part = (-from.dot(&way) / way.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+    start + (end - start) * part
 }
 
 /// Distance from an axis, and the direction away from it; any across it for a point of the axis.
@@ -189,6 +215,38 @@ mod tests {
             let [from, to] = [from, to].map(|[x, z]: [f64; 2]| Point3::new(x, 0.3 * z, z));
             assert_eq!(bar.is_passed(&from, &to, 0.01), passed, "{from} {to}");
         }
+    }
+
+    #[test]
+    fn lines_through_a_bar_and_a_table_are_as_deep_in_them_as_they_come_near_their_axis() {
+        let up = Vector3::new(0.0, 0.6, 0.8);
+        let bar = SurfaceShape::Cylinder { at: Point3::new(0.0, 0.3, 0.4), axis: up, radius: 1.0 };
+        let table = SurfaceShape::Disc { at: Point3::origin(), normal: up, radius: 1.0, edge_radius: 0.1 };
+        let plane = SurfaceShape::Plane { at: Point3::origin(), normal: up };
+        // Across the axis: along x, and along what is left; the third is the height.
+        let point = |x: f64, y: f64, z: f64| Point3::from(Vector3::new(x, 0.8 * y, -0.6 * y) + up * z);
+        let depth = |shape: &SurfaceShape, from: [f64; 3], to: [f64; 3]| {
+            let [from, to] = [from, to].map(|[x, y, z]| point(x, y, z));
+            shape.depth_of_line(&from, &to).map(|(depth, _)| depth)
+        };
+        for (from, to, in_bar, in_table) in [
+            ([-3.0, 0.25, -2.0], [3.0, 0.25, -2.0], Some(0.75), Some(0.75)),
+            ([-3.0, 0.25, -5.0], [9.0, 0.25, 3.0], Some(0.75), Some(0.75)),
+            // Over the table, and near under its face.
+            ([-3.0, 0.0, 0.5], [3.0, 0.0, 0.5], Some(1.0), None),
+            ([-3.0, 0.0, -0.2], [3.0, 0.0, -0.2], Some(1.0), Some(0.2)),
+            // Beside both, and towards them but not so far.
+            ([-3.0, 1.5, -2.0], [3.0, 1.5, -2.0], None, None),
+            ([3.0, 0.0, -2.0], [1.5, 0.0, -2.0], None, None),
+        ] {
+            for (shape, expected) in [(&bar, in_bar), (&table, in_table), (&plane, None)] {
+                let found = depth(shape, from, to);
+                assert_eq!(found.is_some(), expected.is_some(), "{shape:?} {from:?} {to:?}: {found:?}");
+                assert_relative_eq!(found.unwrap_or_default(), expected.unwrap_or_default(), epsilon = 1e-12);
+            }
+        }
+        let (_, at) = bar.depth_of_line(&point(-3.0, 0.25, -2.0), &point(3.0, 0.25, -2.0)).unwrap();
+        assert_relative_eq!(at, point(0.0, 0.25, -2.0), epsilon = 1e-12);
     }
 
     #[test]

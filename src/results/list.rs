@@ -74,12 +74,12 @@ const ANALYSES: &[&[&str]] = &[
     &[
         "newmark",
         "[analysis] kind = \"newmark\"",
-        "motion from rest; large_rotations = true for rotations of any size",
+        "motion in time; large_rotations = true for rotations of any size",
     ],
     &[
         "nonlinear",
         "[analysis] kind = \"nonlinear\"",
-        "statics in large rotations: method = newton, arc_length or flow",
+        "statics in large rotations: method = newton, stable, arc_length or flow",
     ],
     &[
         "drape",

@@ -176,6 +176,14 @@ impl Outcome {
         Ok(drawn.into_iter().map(figure).collect())
     }
 
+    /// Of a case with a `[sheet]`.
+    pub fn solved(&self) -> Option<&CaseResult> {
+        match self {
+            Self::Solved(result) => Some(result),
+            Self::Draped(_) | Self::Tested(_) | Self::Bent(..) => None,
+        }
+    }
+
     /// What its charts are of.
     fn figure_kind(&self, task: &Task) -> FigureKind {
         if task.fabric.is_none() {

@@ -8,7 +8,6 @@ use crate::platform::map_several;
 use crate::report::html::Figure;
 use crate::report::table::PredictionRow;
 use crate::results::{Benchmark, Failure, Folder, Observer, Outcome, Share, Shared, Task, simulate};
-use crate::study::CaseResult;
 
 /// A case with constants of its own, and what it gave.
 pub(super) struct Own<'w> {
@@ -68,15 +67,8 @@ impl<'w> Own<'w> {
         self.outcome().is_some_and(Outcome::fails_a_check)
     }
 
-    fn solved(&self) -> Option<&CaseResult> {
-        match self.outcome()? {
-            Outcome::Solved(result) => Some(result),
-            Outcome::Draped(_) | Outcome::Tested(_) | Outcome::Bent(..) => None,
-        }
-    }
-
     pub fn benchmark(&self) -> Option<Benchmark<'_, 'w>> {
         let (_, figures) = self.outcome.as_ref().ok()?;
-        Some(Benchmark { task: &self.task, result: self.solved()?, figures })
+        Some(Benchmark { task: &self.task, result: self.outcome()?.solved()?, figures })
     }
 }

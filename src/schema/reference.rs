@@ -97,7 +97,11 @@ impl<'a> Reader<'a> {
             if is_table(below) {
                 let heading = format!("`{key}` in {heading}");
                 self.heading(text, &heading, below);
-                self.keys_and_below(text, &heading, below, &[]);
+                if below["oneOf"].is_array() {
+                    let _ = writeln!(text, "\nThe keys are those of `[{key}]` with the same `kind`.");
+                } else {
+                    self.keys_and_below(text, &heading, below, &[]);
+                }
             }
         }
     }

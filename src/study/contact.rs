@@ -1,6 +1,6 @@
 //! What a sheet touches: itself, and the obstacles of its case.
 
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::case::SheetObstacle;
@@ -90,7 +90,7 @@ impl ContactResult {
     }
 }
 
-/// S144, S146, S147 and S151 of a sheet in a state.
+/// S144, S146, S147, S151 and S155 of a sheet in a state.
 pub(super) fn touching(
     obstacles: &[SheetObstacle],
     model: &Model,
@@ -100,17 +100,19 @@ pub(super) fn touching(
     let [low, high] = model.mesh.bounds();
     let accepted = ACCEPTED * (high - low).norm();
     let itself = through_or_on_itself(model, state).map(Finding::new);
-    itself.into_iter().chain(at_obstacles(obstacles, of_fabric, state, accepted)).collect()
+    itself.into_iter().chain(at_obstacles(obstacles, &model.mesh, of_fabric, state, accepted)).collect()
 }
 
-/// S146 and S147 of a sheet in a state that may be so far beyond an obstacle (m).
+/// S146, S147 and S155 of a sheet in a state that may be so far beyond an obstacle (m).
 pub(super) fn at_obstacles(
     obstacles: &[SheetObstacle],
+    mesh: &QuadMesh,
     of_fabric: Option<f64>,
     state: &State,
     accepted: f64,
 ) -> Vec<Finding> {
-    let mut facts = Vec::new();
+    let sides = mesh.edges().map(|side| side.map(|node| &state.position[node as usize]));
+    let mut facts = through_obstacles(obstacles, sides, false);
     for (contact, obstacle) in contacts(obstacles, of_fabric, state).into_iter().zip(obstacles) {
         let ContactResult { obstacle: name, friction, penetration: depth, .. } = contact;
         if depth > 1.01 * accepted {
@@ -125,6 +127,36 @@ pub(super) fn at_obstacles(
         }
     }
     facts.into_iter().map(Finding::new).collect()
+}
+
+/// S155 of every obstacle that the nodes of a sheet have gone straight through from one equilibrium to the next.
+pub(super) fn passed(
+    obstacles: &[SheetObstacle],
+    mesh: &QuadMesh,
+    [from, to]: [&State; 2],
+) -> Vec<StudyFact> {
+    let nodes = mesh.quads.iter().flatten().map(|node| *node as usize);
+    through_obstacles(obstacles, nodes.map(|n| [&from.position[n], &to.position[n]]), true)
+}
+
+/// S155 of every obstacle that lines go through deeper than half its radius, with the deepest of them: where a sheet lies on a
+/// bar, or moves about it, straight lines between its nodes cut off less.
+fn through_obstacles<'p>(
+    obstacles: &[SheetObstacle],
+    lines: impl Iterator<Item = [&'p Point3<f64>; 2]> + Clone,
+    between_steps: bool,
+) -> Vec<StudyFact> {
+    let mut facts = Vec::new();
+    for obstacle in obstacles {
+        let Some(radius) = obstacle.shape.radius() else { continue };
+        let depths = lines.clone().filter_map(|[a, b]| obstacle.shape.depth_of_line(a, b));
+        let Some((depth, at)) = depths.max_by(|(a, _), (b, _)| a.total_cmp(b)) else { continue };
+        if depth > 0.5 * radius {
+            let (obstacle, at) = (obstacle.name.value.clone(), at.coords.into());
+            facts.push(StudyFact::ThroughObstacle { obstacle, depth, radius, at, between_steps });
+        }
+    }
+    facts
 }
 
 /// S144 of a sheet that passes through itself, or S151 of one whose layers touch.

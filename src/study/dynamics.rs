@@ -142,7 +142,8 @@ pub(super) fn dynamics(
     let (history, solution, mut findings) = record.finish(prepared.case, settings.duration, damps);
     if let Some(state) = &state {
         let through = through_itself(&model.mesh, state).map(Finding::new);
-        let at_obstacles = at_obstacles(obstacles, fabric.friction, state, model.section.thickness);
+        let at_obstacles =
+            at_obstacles(obstacles, &model.mesh, fabric.friction, state, model.section.thickness);
         let touching = through.into_iter().chain(at_obstacles);
         findings.extend(touching.map(|finding| finding.at(Place::file(&prepared.case.path))));
     }

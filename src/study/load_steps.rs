@@ -218,7 +218,7 @@ impl StepSequence<'_> {
             contacts: contacts(obstacles, friction, &state),
             state: state.clone(),
         });
-        let at_obstacles = at_obstacles(obstacles, friction, &state, model.section.thickness);
+        let at_obstacles = at_obstacles(obstacles, &model.mesh, friction, &state, model.section.thickness);
         self.record.state = state;
         self.motion = Some((history, solution));
         Ok(findings.into_iter().chain(without_layers).chain(at_obstacles).collect())

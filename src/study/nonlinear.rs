@@ -2,12 +2,12 @@
 
 use std::ops::ControlFlow;
 
-use super::contact::{surfaces, through_or_on_itself, touching};
+use super::contact::{passed, surfaces, through_or_on_itself, touching};
 use super::load_path::{LoadPath, PathStep};
 use super::of_fabric::OfFabric;
 use super::result::Outcome;
 use super::{Case, PreparedCase, StudyError, Watch, refused};
-use crate::case::{MethodChoice, Nonlinear};
+use crate::case::{MethodChoice, Nonlinear, SheetObstacle};
 use crate::fields::Locator;
 use crate::finding::{Finding, Place, StudyFact};
 use crate::mesh::QuadMesh;
@@ -20,6 +20,7 @@ use crate::solve::{self, Solution};
 pub(super) struct Record<'a> {
     mesh: &'a QuadMesh,
     locators: &'a [Locator],
+    obstacles: &'a [SheetObstacle],
     pub path: LoadPath,
     pub state: State,
     pub solution: Solution,
@@ -29,6 +30,8 @@ pub(super) struct Record<'a> {
     unstable_w_max: Option<f64>,
     /// Whether the search that the case asks for led nowhere, and another one did not.
     is_other: bool,
+    /// S155 of the first step that passed an obstacle.
+    passed: Vec<StudyFact>,
     watch: Watch<'a>,
 }
 
@@ -43,6 +46,7 @@ impl<'a> Record<'a> {
         Self {
             mesh: &model.mesh,
             locators: &prepared.probes,
+            obstacles: &prepared.problem.obstacles,
             path: LoadPath {
                 method,
                 converged: true,
@@ -57,6 +61,7 @@ impl<'a> Record<'a> {
             done: 0,
             unstable_w_max: None,
             is_other: false,
+            passed: Vec::new(),
             watch,
         }
     }
@@ -77,6 +82,9 @@ impl<'a> Record<'a> {
             dissipated: step.state.memory.dissipated,
             w_max: largest_w(self.mesh, &displacement),
         });
+        if self.passed.is_empty() {
+            self.passed = passed(self.obstacles, self.mesh, [&self.state, step.state]);
+        }
         self.state.clone_from(step.state);
         self.solution.displacement = displacement;
         self.solution.reaction = step.reaction.to_vec();
@@ -220,7 +228,8 @@ pub(super) fn conclude(
     found: Result<nonlinear::Solution, NonlinearError>,
     record: &mut Record<'_>,
 ) -> Result<Vec<Finding>, StudyError> {
-    let mut findings = Vec::new();
+    let mut findings: Vec<Finding> =
+        std::mem::take(&mut record.passed).into_iter().map(Finding::new).collect();
     let (path, unstable_w_max) = (&mut record.path, record.unstable_w_max);
     let (method, is_other) = (path.method, record.is_other);
     match found {

@@ -256,6 +256,26 @@ super::facts! {
             accepted: f64,
         } = "`{obstacle}` is passed through by {} mm, {} mm are accepted: the contact has not converged there; take more cells, or \
              shorter steps", significant(1e3 * depth), significant(1e3 * accepted);
+        /// A bar or a table that a sheet may have passed.
+        "S155" ThroughObstacle {
+            /// Name of the obstacle.
+            obstacle: String,
+            /// How deep a straight line between two nodes, or between two places of a node, lies in it (m).
+            depth: f64,
+            /// Its radius (m).
+            radius: f64,
+            /// Where it does so (m).
+            at: [f64; 3],
+            /// Whether the line is the way of a node from one equilibrium to the next; else it is a side of an element.
+            between_steps: bool,
+        } = "{} `{obstacle}`, {} mm deep of a radius of {} mm, at ({}, {}, {}) m: {}",
+            if *between_steps { "a node went straight through" } else { "a side of an element goes through" },
+            significant(1e3 * depth), significant(1e3 * radius), significant(at[0]), significant(at[1]), significant(at[2]),
+            if *between_steps {
+                "the sheet may have passed it between two equilibria; take a smaller `largest_step`, or a motion in time"
+            } else {
+                "obstacles stop the nodes of a sheet; take cells that are small against the radius, or shorter steps"
+            };
         /// A friction that nobody stated.
         "S147" AssumedFriction {
             /// Name of the surface.
