@@ -1,7 +1,7 @@
 //! What the files of a group say, put together as fabrics.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::dialect::Key as HeaderKey;
 use super::read::{FileContent, ReadSettings};
@@ -119,6 +119,7 @@ fn states(fabric: &FabricInput, vocabulary: Vocabulary<'_>) -> Vec<Finding> {
     }
     let mut found = Vec::new();
     for records in by_test.into_values() {
+        found.extend(captions(&records));
         let names: BTreeSet<&String> = records.iter().flat_map(|m| m.metadata.keys()).collect();
         for name in names {
             let entry = |m: &&Measurement| m.metadata.get(name).cloned().unwrap_or_default();
@@ -129,6 +130,27 @@ fn states(fabric: &FabricInput, vocabulary: Vocabulary<'_>) -> Vec<Finding> {
                 let fact = ReadFact::RecordsOfStates { name, entries, record };
                 found.push(Finding::new(fact).at(records[0].place()));
             }
+        }
+    }
+    found
+}
+
+/// R127: lines over the records of one file whose words tell them apart; numbers in them count.
+fn captions(records: &[&Measurement]) -> Vec<Finding> {
+    let mut of_file: BTreeMap<&Path, Vec<&&Measurement>> = BTreeMap::new();
+    for record in records.iter().filter(|record| record.caption.is_some()) {
+        of_file.entry(&record.source.path).or_default().push(record);
+    }
+    let mut found = Vec::new();
+    for records in of_file.into_values() {
+        let caption = |record: &Measurement| record.caption.clone().unwrap_or_default();
+        let words = |text: &str| text.chars().filter(|c| c.is_alphabetic()).collect::<String>();
+        let first = caption(records[0]);
+        let other = records.iter().find(|record| words(&caption(record)) != words(&first));
+        if let Some(other) = other {
+            let (entries, record) = ([first, caption(other)], other.record_name());
+            let fact = ReadFact::RecordsOfStates { name: "line over the record".into(), entries, record };
+            found.push(Finding::new(fact).at(other.place()));
         }
     }
     found

@@ -14,6 +14,8 @@ use super::words::normalised;
 pub(super) struct ColumnName {
     pub role: Option<Role>,
     pub direction: Option<Direction>,
+    /// The direction that a word would be which may be a dimension as well: `width` in `force per width`.
+    pub dimension: Option<Direction>,
     pub specimen: Option<usize>,
     pub branch: Option<BranchColumn>,
     /// The words that stand in it beside these, those of the role with them.
@@ -62,7 +64,14 @@ impl ColumnName {
             self.specimen = self.specimen.or(number(digits));
             return new && self.specimen.is_some();
         }
-        if let Some(direction) = vocabulary.direction_exactly(stem).filter(|_| self.direction.is_none()) {
+        if let Some(direction) = vocabulary.direction_exactly(stem) {
+            if vocabulary.is_dimension(stem) {
+                self.dimension = self.dimension.or(Some(direction));
+                return true;
+            }
+            if self.direction.is_some() {
+                return false;
+            }
             self.direction = Some(direction);
             self.specimen = self.specimen.or(number(digits));
             return true;
@@ -94,6 +103,10 @@ mod tests {
         assert_eq!((unload.role, unload.branch), (Some(Role::Force), Some(BranchColumn::Unloading)));
         assert_eq!(parsed("load").role, Some(Role::Force));
         assert_eq!(parsed("Biegemoment").role, Some(Role::Moment));
+        for (text, role) in [("moment per unit width", Role::Moment), ("longitudinal strain", Role::Strain)] {
+            assert_eq!((parsed(text).role, parsed(text).direction), (Some(role), None), "{text}");
+        }
+        assert_eq!(parsed("moment per width, warp").direction, warp);
         assert_eq!(parsed("foo").role, None);
     }
 }

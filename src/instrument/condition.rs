@@ -56,7 +56,8 @@ pub(super) fn without(text: &str) -> Option<(String, Condition)> {
         c.is_ascii_digit() && before.is_some_and(|b| matches!(b, ' ' | '@' | '=' | '('))
     });
     for (start, _) in starts {
-        let Some((condition, end)) = quantity(&text[start..]) else { continue };
+        let found = quantity(&text[start..]).or_else(|| customary(&text[..start], &text[start..]));
+        let Some((condition, end)) = found else { continue };
         let before = prefix(&text[..start]);
         let rest = format!("{before} {}", &text[start + end..]);
         return Some((
@@ -84,6 +85,25 @@ fn quantity(text: &str) -> Option<(Condition, usize)> {
     let is_angle = !has_dimension && (is_angular(symbol) || !matches!(symbol, "%" | "1"));
     let has_meaning = is_angle || has_dimension;
     has_meaning.then_some((Condition { number, unit, is_angle }, start + length))
+}
+
+/// A number behind the sign of an abscissa, in the unit that is customary for it: `K=1.5`, `φ = 3`, `Fm=50`.
+fn customary(before: &str, text: &str) -> Option<(Condition, usize)> {
+    let end = text.find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | ','))).unwrap_or(text.len());
+    let number = text[..end].replace(',', ".").parse().ok()?;
+    if !matches!(text[end..].trim_start().chars().next(), None | Some(')' | ',' | ';')) {
+        return None;
+    }
+    let sign = before.trim_end().strip_suffix('=')?.trim_end();
+    let sign = &sign[sign.rfind([' ', '(', ',']).map_or(0, |at| at + 1)..];
+    let (symbol, is_angle) = match sign.to_lowercase().as_str() {
+        "k" | "κ" => ("1/cm", false),
+        "φ" | "ϕ" | "phi" | "θ" => ("deg", true),
+        "f" | "fm" | "fmax" => ("gf/cm", false),
+        "p" | "pm" | "pmax" => ("gf/cm²", false),
+        _ => return None,
+    };
+    Some((Condition { number, unit: unit(symbol).ok()?, is_angle }, end))
 }
 
 /// What stands before a condition, without the word that leads to it.
@@ -121,6 +141,10 @@ mod tests {
             ("T (0,5 gf/cm2)", "T", Parameter::T0, true),
             ("T (50 gf/cm2) mm", "T  mm", Parameter::T0, false),
             ("2HB bei K = 1 1/cm", "2HB", Parameter::Hb, true),
+            ("2HB (K=1.5)", "2HB", Parameter::Hb, false),
+            ("2HB (K = 1)", "2HB", Parameter::Hb, true),
+            ("2HG (φ=0.5)", "2HG", Parameter::Hg, true),
+            ("EMT, Fm=50", "EMT,", Parameter::Emt, false),
         ] {
             let (found, condition) = without(text).unwrap();
             assert_eq!(
@@ -129,7 +153,7 @@ mod tests {
             );
             assert_eq!(condition.defines(parameter), holds, "{text}");
         }
-        for text in ["2HG5", "T 40", "W-17", "B (10^-4 N·m)", "Warp 1", "EMT 5 %", "2HB (1/cm)"] {
+        for text in ["2HG5", "T 40", "W-17", "B (10^-4 N·m)", "Warp 1", "EMT 5 %", "2HB (1/cm)", "B (n=3)"] {
             assert_eq!(without(text), None, "{text}");
         }
     }

@@ -135,6 +135,7 @@ impl Measurement {
             lines: Vec::new(),
             source: Source::default(),
             metadata: BTreeMap::new(),
+            caption: None,
         }
     }
 }

@@ -93,6 +93,7 @@ pub(super) fn measurement(
         lines: points.rows.iter().map(|p| p.0).collect(),
         source: Source::default(),
         metadata: header.other.clone(),
+        caption: header.caption.clone(),
     };
     Ok(Some((measurement, findings)))
 }

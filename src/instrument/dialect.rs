@@ -190,6 +190,8 @@ pub enum DirectionWord {
     Across,
     /// It adds nothing: `along the warp`, `warp yarns`.
     Along,
+    /// In the heading of a curve it is a dimension or a part of a name: `force per width`, `longitudinal strain`.
+    Dimension,
 }
 
 /// The words and marks of one kind of file. A laboratory with a layout of its own writes one.

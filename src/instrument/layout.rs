@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use super::Direction;
 use super::column_name::ColumnName;
 use super::conditions::StatedConditions;
 use super::dialect::{Dialect, Key, Role};
@@ -62,6 +63,8 @@ pub(super) struct Entry {
 pub(super) struct Header {
     pub known: BTreeMap<Key, Entry>,
     pub other: BTreeMap<String, String>,
+    /// The last line of words alone since the record before.
+    pub caption: Option<String>,
 }
 
 /// A column of a curve.
@@ -157,6 +160,14 @@ fn unknown_layout(context: &Context<'_>, row: &Row<'_>, words: &[String]) -> Rea
     error
 }
 
+/// Words that may be dimensions are directions where both stand side by side: `length K`, `length M`, `width K`, `width M`.
+fn directions_of_dimensions(columns: &mut [Column]) {
+    let named = |direction| columns.iter().any(|c| c.says.dimension == Some(direction));
+    if named(Direction::Warp) && named(Direction::Weft) {
+        columns.iter_mut().for_each(|c| c.says.direction = c.says.direction.or(c.says.dimension));
+    }
+}
+
 pub(super) struct Scanner<'t, 'a> {
     pub(super) rows: &'t [Row<'t>],
     pub(super) context: &'a Context<'a>,
@@ -179,7 +190,8 @@ impl<'t> Scanner<'t, '_> {
             let role = says.role?;
             Some(Column { index, role, name, unit, line: row.line, column: cell.column, says })
         };
-        let columns: Vec<Column> = pairs::along_sweep(row.filled().filter_map(column).collect());
+        let mut columns: Vec<Column> = pairs::along_sweep(row.filled().filter_map(column).collect());
+        directions_of_dimensions(&mut columns);
         let sweep = columns
             .iter()
             .any(|c| c.role == Role::Position && (c.unit.is_some() || self.has_unit_below(row, c.index)));
@@ -247,6 +259,7 @@ impl<'t> Scanner<'t, '_> {
         self.distribute(&mut pairs)?;
         self.leave_out_statistics(&mut pairs);
         self.note_words(&pairs);
+        self.header.caption = None;
         Ok(Block::Curves { pairs, rows })
     }
 
@@ -449,6 +462,9 @@ impl<'t> Scanner<'t, '_> {
         match (key, values.len()) {
             (Some(Key::Remark | Key::Circumstance | Key::Factor) | None, _) => {
                 let text: Vec<String> = values.into_iter().map(|(t, _)| t).collect();
+                if text.is_empty() {
+                    self.header.caption = Some(plain.clone());
+                }
                 self.header.other.insert(plain, text.join(", "));
             }
             (Some(_), 0) => {}

@@ -99,6 +99,9 @@ pub struct Measurement {
     pub source: Source,
     /// Everything else the header said, untouched.
     pub metadata: BTreeMap<String, String>,
+    /// The line of words alone between the record before it in the file, or its beginning, and this one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub caption: Option<String>,
 }
 
 impl Measurement {

@@ -204,6 +204,7 @@ impl<'t> Table<'t, '_> {
             }
         }
         self.fill_merged_cells(&mut out);
+        self.numbers_that_do_not_count(&mut out);
         self.directions_in_names(&mut out);
         self.sort_out_summaries(&mut out);
         Ok(out)

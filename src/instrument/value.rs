@@ -40,6 +40,12 @@ pub(super) enum Printed {
 
 /// Reads a cell of a result table.
 pub(super) fn printed(cell: &str, decimal: char) -> Printed {
+    if let Some(bare) = without_raised(cell) {
+        return match value(&bare, decimal) {
+            (Number::Value(v), sd) => Printed::Marked(v, sd),
+            _ => Printed::Plain(Number::Text, None),
+        };
+    }
     let (plain, sd) = value(cell, decimal);
     if matches!(plain, Number::Value(_) | Number::NotFinite) {
         return Printed::Plain(plain, sd);
@@ -62,6 +68,18 @@ pub(super) fn printed(cell: &str, decimal: char) -> Printed {
         (Number::Value(v), sd) => Printed::Marked(v, sd),
         _ => Printed::Plain(plain, sd),
     }
+}
+
+/// A number without the raised figure of a footnote behind it, `0.52²` being 0.52 and no 0.522; none of what has no such figure,
+/// and of powers of ten.
+fn without_raised(cell: &str) -> Option<String> {
+    let is_raised = |c: char| matches!(c, '⁰' | '¹' | '²' | '³' | '⁴'..='⁹');
+    let behind_figure = |(a, b): (char, char)| a.is_ascii_digit() && is_raised(b);
+    let is_marked = cell.chars().zip(cell.chars().skip(1)).any(behind_figure);
+    let bare: String = cell.chars().filter(|c| !is_raised(*c)).collect();
+    let is_power = bare.split(|c: char| !c.is_ascii_digit()).any(|digits| digits == "10");
+    (is_marked && !is_power && bare.starts_with(|c: char| c.is_ascii_digit() || "+-−.,".contains(c)))
+        .then_some(bare)
 }
 
 /// A number without `*`, `†` or up to four letters of groups behind it. Letters need decimals before them: `2b` is a
@@ -161,6 +179,9 @@ mod tests {
             assert_eq!(printed(text, '.'), Printed::Marked(0.0812, None), "{text}");
         }
         assert_eq!(printed("0.081a ± 0.003", '.'), Printed::Marked(0.081, Some(0.003)));
+        assert_eq!(printed("0,5²", ','), Printed::Marked(0.5, None));
+        assert_eq!(printed("51¹", '.'), Printed::Marked(51.0, None));
+        assert_eq!(printed("0.5² ± 0.1", '.'), Printed::Marked(0.5, Some(0.1)));
         assert_eq!(printed("0,081 ± 0,003*", ','), Printed::Marked(0.081, Some(0.003)));
         for text in ["<0.01", "> 0.5", "≤0.1", "~0.08", "0.079-0.083", "0.079 – 0.083", "0.079 to 0.083"]
         {

@@ -180,6 +180,11 @@ impl<'a> Vocabulary<'a> {
         })
     }
 
+    /// Whether a word that may be a direction is a dimension as well.
+    pub fn is_dimension(self, word: &str) -> bool {
+        self.direction_word(word) == Some(DirectionWord::Dimension)
+    }
+
     fn direction_word(self, word: &str) -> Option<DirectionWord> {
         self.find(word, false, |d| &d.direction_words, &index().direction_words)
     }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{Cursor, Read};
 
-use calamine::{Data, DataRef, Ods, Range, Reader, SheetVisible, Xls, Xlsx};
+use calamine::{Data, DataRef, Ods, Range, Reader, SheetType, SheetVisible, Xls, Xlsx};
 
 use super::cell;
 use super::error::{Problem, bad_workbook as bad};
@@ -229,9 +229,10 @@ fn places(cells: &Cells) -> usize {
     rows.values().sum()
 }
 
-/// Names of the visible sheets; the others are told.
+/// Names of the visible sheets; the others are told. A sheet that is a chart has no cells.
 fn visible(sheets: &[calamine::Sheet], hidden: &mut Vec<String>) -> Vec<String> {
-    let (shown, rest): (Vec<_>, Vec<_>) = sheets.iter().partition(|s| s.visible == SheetVisible::Visible);
+    let sheets = sheets.iter().filter(|s| s.typ == SheetType::WorkSheet);
+    let (shown, rest): (Vec<_>, Vec<_>) = sheets.partition(|s| s.visible == SheetVisible::Visible);
     hidden.extend(rest.iter().map(|s| format!("sheet {:?}", s.name)));
     shown.into_iter().map(|s| s.name.clone()).collect()
 }

@@ -88,11 +88,11 @@ impl Table<'_, '_> {
     /// `B1, B2` and `LT-1, LT-2` of the literature: 1 is warp and 2 is weft, where no direction is stated and the numbers
     /// are these two.
     ///
-    /// In a table of FAST they are that always, and its T2, the thickness at 2 gf/cm², is no second T0.
+    /// In a table of FAST they are that always. T2 alone is no second T0: the thickness at 2 gf/cm² of FAST has that name.
     pub(super) fn directions_of_numbers(&mut self) {
+        self.leave_out_t2();
         let is_fast_table = !self.fast.is_empty();
         if is_fast_table {
-            self.leave_out_t2();
             // B of a strip under its own weight and G of a bias strip are no values of KES-FB.
             for d in self.data.iter_mut().filter(|d| [Parameter::B, Parameter::G].contains(&d.parameter)) {
                 d.inferred = true;

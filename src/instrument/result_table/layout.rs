@@ -439,8 +439,8 @@ impl Heads {
     }
 }
 
-/// Whether the numbers of columns count specimens: they follow each other, and no column is without one.
-fn numbers_count_specimens(indices: &BTreeSet<Option<usize>>) -> bool {
+/// Whether the numbers of columns or rows count specimens: they follow each other, and none is without one.
+pub(super) fn numbers_count_specimens(indices: &BTreeSet<Option<usize>>) -> bool {
     let numbers: Vec<usize> = indices.iter().flatten().copied().collect();
     let run = numbers.windows(2).all(|pair| pair[1] == pair[0] + 1);
     !indices.contains(&None) && run && (numbers.len() > 1 || numbers == [1] || numbers == [2])

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::layout::numbers_count_specimens;
 use super::rows_above::RowsAbove;
 use super::states::States;
 use super::{Contents, Datum, RowFacts, Table};
@@ -9,6 +10,7 @@ use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::cell::parts;
 use crate::instrument::dialect::{Statistic, TableColumn};
 use crate::instrument::error::{Problem, ReadError};
+use crate::instrument::facets::Facets;
 use crate::instrument::raw::Row;
 use crate::instrument::sniff::Number;
 use crate::instrument::statistic::{finding, names_statistics};
@@ -33,6 +35,27 @@ struct Group {
 }
 
 impl<'t> Table<'t, '_> {
+    /// `G` and `G5`, `2HG3`: as with columns, numbers behind the symbols of rows count specimens only where they follow each other
+    /// and none is without one. What else they are nobody says; the rows are told as not used.
+    pub(super) fn numbers_that_do_not_count(&self, rows: &mut [(&Row<'_>, RowFacts)]) {
+        if !self.layout.down || self.layout.meta(TableColumn::Specimen) {
+            return;
+        }
+        let key = |f: &RowFacts| {
+            let Facets { parameter, direction, fast, .. } = f.facets;
+            (f.fabric.clone(), parameter, direction, fast.map(|value| value.symbol()))
+        };
+        let mut numbers: BTreeMap<_, BTreeSet<Option<usize>>> = BTreeMap::new();
+        for (_, facts) in rows.iter().filter(|(_, facts)| facts.facets.statistic.is_none()) {
+            numbers.entry(key(facts)).or_default().insert(facts.facets.index);
+        }
+        for (_, facts) in rows.iter_mut() {
+            let counts = numbers.get(&key(facts)).is_none_or(numbers_count_specimens);
+            facts.facets.unknown |=
+                facts.facets.index.is_some() && facts.facets.statistic.is_none() && !counts;
+        }
+    }
+
     /// Marks rows that sum up others by what they are: the name of a statistic in the column of fabrics, a label unlike
     /// its numbered neighbours, numbers that are the mean or the deviation of those above.
     pub(super) fn sort_out_summaries(&mut self, rows: &mut Vec<(&Row<'_>, RowFacts)>) {
