@@ -332,6 +332,17 @@ fn a_case_has_obstacles() {
     assert!(newton.iter().zip(flow).all(|(a, b)| (a - b).abs() < 1e-3 * a.abs()));
 }
 
+/// A bar of 4 cm below a strip: short steps come to rest on it, one step goes through it, and that is told.
+#[test]
+fn a_bar_that_a_sheet_went_through_is_told() {
+    let bar = "kind = \"cylinder\"\nat = [\"8 cm\", \"0 cm\", \"-3 cm\"]\naxis = [0.0, 1.0, 0.0]\ndiameter = \"4 cm\"";
+    for (steps, passes) in [("", false), ("\nlargest_step = 1.0", true)] {
+        let result = case_of(bar, &format!("{NONLINEAR}{steps}")).unwrap();
+        let told = result.findings.iter().any(|finding| finding.code() == "S155");
+        assert_eq!((told, result.contacts[0].nodes == 0), (passes, passes), "{:?}", result.findings);
+    }
+}
+
 #[test]
 fn obstacles_that_make_no_sense_are_refused() {
     for (obstacle, analysis, says) in [

@@ -8,6 +8,7 @@ use approx::assert_relative_eq;
 use kesf::characterise::{FabricSheet, Settings, characterise};
 use kesf::instrument::{
     Dialect, Direction, FabricInput, FileContent, Parameter, ReadError, ReadSettings, Test, parse,
+    read_fabrics,
 };
 
 fn read_as(name: &str, text: &str, settings: &ReadSettings) -> Result<FileContent, ReadError> {
@@ -851,4 +852,86 @@ fn headings_with_the_condition_of_the_definition() {
     for heading in ["2HG at 3° (gf/cm)", "EMT at 50 gf/cm (%)", "2HB corrected (gf·cm/cm)"] {
         assert_eq!(read_one(heading, "1"), (vec![], 1), "{heading}");
     }
+}
+
+const LOOP: &str = "0,0\n1,0.1\n2,0.2\n1,0.06\n0,-0.03\n-1,-0.1\n-2,-0.2\n-1,-0.06\n0,0.03\n";
+
+/// The codes of the findings of a file.
+fn codes(name: &str, text: &str) -> Vec<&'static str> {
+    read(name, text).findings.iter().map(|finding| finding.code()).collect()
+}
+
+/// A force per width is no force along the weft; where both words stand side by side they are directions.
+#[test]
+fn dimensions_in_headings_are_no_directions() {
+    for heading in [
+        "moment per unit width (gf·cm/cm)",
+        "moment per unit length (gf·cm/cm)",
+        "transverse moment (gf·cm/cm)",
+    ] {
+        let record = |header: &str| format!("test,bending\n{header}\ncurvature (1/cm),{heading}\n{LOOP}");
+        assert_eq!(code(&record("")), "R012", "{heading}");
+        let stated = read("lab.csv", &record("direction,warp\n"));
+        assert_eq!(stated.measurements[0].direction, Some(Direction::Warp), "{heading}");
+        assert!(stated.findings.is_empty(), "{heading}: {:?}", stated.findings);
+    }
+    let both = "test,bending\n\nlength K (1/cm),length M (gf·cm/cm),width K (1/cm),width M (gf·cm/cm)\n0,0,0,0\n1,0.1,1,0.05\n2,0.2,2,0.1\n";
+    let directions: Vec<_> = read("a.csv", both).measurements.iter().map(|m| m.direction).collect();
+    assert_eq!(directions, [Some(Direction::Warp), Some(Direction::Weft)]);
+}
+
+/// Lines of words over stacked records: numbers count them, words tell them apart.
+#[test]
+fn captions_tell_records_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    for (captions, told) in
+        [(["Cotton 120", "Wool 200"], true), (["dry", "wet"], true), (["Specimen 1", "Specimen 2"], false)]
+    {
+        let record = |caption: &str| format!("\n{caption}\ncurvature (1/cm),moment (gf·cm/cm)\n{LOOP}");
+        let text = format!("test,bending\ndirection,warp\n{}{}", record(captions[0]), record(captions[1]));
+        std::fs::write(folder.path().join("lab.csv"), text).unwrap();
+        let batch = read_fabrics(&[folder.path().into()], &ReadSettings::default(), &|_| ());
+        let input: &FabricInput = &batch.fabrics[0];
+        let codes: Vec<_> = input.findings.iter().map(|finding| finding.code()).collect();
+        assert_eq!(input.measurements.len(), 2, "{captions:?}");
+        assert_eq!(codes.contains(&"R127"), told, "{captions:?}: {codes:?}");
+    }
+}
+
+/// Nobody can say whether a factor in words was applied.
+#[test]
+fn factors_in_words_are_told_or_refused() {
+    let record = |line: &str, heading: &str| {
+        format!("test,bending\ndirection,warp\n{line}\n\ncurvature (1/cm),{heading} (gf·cm/cm)\n{LOOP}")
+    };
+    for line in
+        ["moment values x 10", "Remark: moment divided by 2", "specimen,2 layers", "Number of strips: 2"]
+    {
+        assert_eq!(codes("lab.csv", &record(line, "moment")), ["R122"], "{line}");
+    }
+    assert!(codes("lab.csv", &record("size 20 x 20 cm, twill 2/2", "moment")).is_empty());
+    for heading in ["moment of 2 strips", "moment/2", "moment x2", "half moment"] {
+        assert_eq!(code(&record("", heading)), "R006", "{heading}");
+    }
+}
+
+/// Numbers behind symbols that are other quantities, conditions without a unit, and raised figures of footnotes.
+#[test]
+fn numbers_that_are_no_values_of_a_parameter_are_left_out() {
+    let values = |text: &str| -> Vec<(Parameter, f64)> {
+        let found = read("results.csv", text).results;
+        found.iter().map(|(_, r)| (r.parameter, r.mean / r.parameter.kes_factor())).collect()
+    };
+    let table = |rows: &str| format!("Parameter,Unit,Warp,Weft\nB,gf.cm2/cm,0.08,0.06\n{rows}\n");
+    for rows in ["2HG3,gf/cm,0.8,0.7", "2HB (K=1.5),gf.cm/cm,0.04,0.03", "EMT50,%,1.2,2"] {
+        assert!(values(&table(rows)).iter().all(|(p, _)| *p == Parameter::B), "{rows}");
+        assert_eq!(codes("results.csv", &table(rows)), ["R104"], "{rows}");
+    }
+    let of_g = values(&table("G,gf/cm.deg,0.85,0.80\nG5,gf/cm.deg,0.65,0.60"));
+    let of_g: Vec<f64> = of_g.iter().filter(|(p, _)| *p == Parameter::G).map(|(_, v)| *v).collect();
+    assert!((of_g[0] - 0.85).abs() < 1e-12 && (of_g[1] - 0.8).abs() < 1e-12 && of_g.len() == 2, "{of_g:?}");
+    let defined = values(&table("2HB (K=1),gf.cm/cm,0.04,0.03"));
+    assert!(defined.iter().any(|(p, _)| *p == Parameter::Hb), "{defined:?}");
+    let notes = values("Parameter;Wert;Einheit\nT0;0,5²;mm\nLT;0,7¹;-\n");
+    assert!((notes[0].1 - 0.5).abs() < 1e-12 && (notes[1].1 - 0.7).abs() < 1e-12, "{notes:?}");
 }

@@ -143,17 +143,23 @@ fn captions(records: &[&Measurement]) -> Vec<Finding> {
     }
     let mut found = Vec::new();
     for records in of_file.into_values() {
-        let caption = |record: &Measurement| record.caption.clone().unwrap_or_default();
-        let words = |text: &str| text.chars().filter(|c| c.is_alphabetic()).collect::<String>();
-        let first = caption(records[0]);
-        let other = records.iter().find(|record| words(&caption(record)) != words(&first));
-        if let Some(other) = other {
-            let (entries, record) = ([first, caption(other)], other.record_name());
+        let Some(first) = records[0].caption.as_deref() else { continue };
+        let other = records.iter().find_map(|record| {
+            let caption = record.caption.as_deref().filter(|caption| words(caption) != words(first))?;
+            Some((record, caption))
+        });
+        if let Some((other, caption)) = other {
+            let (entries, record) = ([first.to_string(), caption.to_string()], other.record_name());
             let fact = ReadFact::RecordsOfStates { name: "line over the record".into(), entries, record };
             found.push(Finding::new(fact).at(other.place()));
         }
     }
     found
+}
+
+/// The letters of a text.
+fn words(text: &str) -> String {
+    text.chars().filter(|c| c.is_alphabetic()).collect()
 }
 
 fn blank(name: &str, group: &Group, about: &AboutGroup) -> FabricInput {

@@ -4,6 +4,7 @@
 
 use super::Direction;
 use super::dialect::{BranchColumn, Role};
+use super::factor;
 use super::label::SPECIMENS;
 use super::unit_text::is_scaled;
 use super::vocabulary::{HEADING, Vocabulary};
@@ -25,7 +26,7 @@ pub(super) struct ColumnName {
 impl ColumnName {
     /// Reads a name without its unit.
     pub fn of(name: &str, vocabulary: Vocabulary<'_>) -> Self {
-        if name.chars().count() > HEADING || is_scaled(name) {
+        if name.chars().count() > HEADING || is_scaled(name) || factor::in_heading(name, vocabulary) {
             return Self::default();
         }
         if let Some(role) = vocabulary.role_exactly(name) {

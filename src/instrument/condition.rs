@@ -144,7 +144,7 @@ mod tests {
             ("2HB (K=1.5)", "2HB", Parameter::Hb, false),
             ("2HB (K = 1)", "2HB", Parameter::Hb, true),
             ("2HG (φ=0.5)", "2HG", Parameter::Hg, true),
-            ("EMT, Fm=50", "EMT,", Parameter::Emt, false),
+            ("EMT, Fm=50", "EMT, Fm", Parameter::Emt, false),
         ] {
             let (found, condition) = without(text).unwrap();
             assert_eq!(

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::dialect::{Key, Role};
+use super::factor;
 use super::layout::{Column, Entry, Pair, Scanner};
 use super::raw::Row;
 use super::sniff::{Number, number};
@@ -58,11 +59,32 @@ impl Scanner<'_, '_> {
         values: &[(String, usize)],
         line: usize,
     ) {
-        let Some((value, column)) = values.first().filter(|_| key == Some(Key::Factor)) else { return };
+        let Some((value, column)) = values.first().filter(|_| key == Some(Key::Factor)) else {
+            return self.note_factor_in_words(key, name, values, line);
+        };
         let is_one = number(value, self.context.decimal) == Number::Value(1.0);
         if !is_one && value.starts_with(|c: char| c.is_ascii_digit() || "+-.×x".contains(c)) {
             let fact = ReadFact::StatedFactor { name: name.to_string(), value: value.clone() };
             self.findings.push(Finding::new(fact).at(Place::at(self.context.path, line, *column)));
+        }
+    }
+
+    /// The same among the words of a line that is kept as text, or behind the name of a sample.
+    fn note_factor_in_words(
+        &mut self,
+        key: Option<Key>,
+        name: &str,
+        values: &[(String, usize)],
+        line: usize,
+    ) {
+        if !matches!(key, None | Some(Key::Remark | Key::Sample | Key::Specimen | Key::Sens | Key::SensX)) {
+            return;
+        }
+        let value = values.iter().map(|(text, _)| text.as_str()).collect::<Vec<_>>().join(" ");
+        if factor::is_stated(&format!("{name} {value}"), self.context.vocabulary) {
+            let (name, value) = if value.is_empty() { ("line", name) } else { (name, value.as_str()) };
+            let fact = ReadFact::StatedFactor { name: name.to_string(), value: value.to_string() };
+            self.findings.push(Finding::new(fact).at(Place::at(self.context.path, line, 1)));
         }
     }
 

@@ -23,6 +23,7 @@ mod error;
 pub mod fab;
 mod fabric_file;
 mod facets;
+mod factor;
 mod fast;
 mod file_name;
 mod folder;

@@ -70,12 +70,14 @@ pub(super) fn printed(cell: &str, decimal: char) -> Printed {
     }
 }
 
+fn is_raised(c: char) -> bool {
+    matches!(c, '⁰' | '¹' | '²' | '³' | '⁴'..='⁹')
+}
+
 /// A number without the raised figure of a footnote behind it, `0.52²` being 0.52 and no 0.522; none of what has no such figure,
 /// and of powers of ten.
 fn without_raised(cell: &str) -> Option<String> {
-    let is_raised = |c: char| matches!(c, '⁰' | '¹' | '²' | '³' | '⁴'..='⁹');
-    let behind_figure = |(a, b): (char, char)| a.is_ascii_digit() && is_raised(b);
-    let is_marked = cell.chars().zip(cell.chars().skip(1)).any(behind_figure);
+    let is_marked = cell.chars().zip(cell.chars().skip(1)).any(|(a, b)| a.is_ascii_digit() && is_raised(b));
     let bare: String = cell.chars().filter(|c| !is_raised(*c)).collect();
     let is_power = bare.split(|c: char| !c.is_ascii_digit()).any(|digits| digits == "10");
     (is_marked && !is_power && bare.starts_with(|c: char| c.is_ascii_digit() || "+-−.,".contains(c)))

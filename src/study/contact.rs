@@ -172,3 +172,37 @@ pub(super) fn through_itself(mesh: &QuadMesh, state: &State) -> Option<StudyFact
     let Crossings { pairs, at, depth, .. } = crossings(&state.position, &mesh.quads)?;
     Some(StudyFact::ThroughItself { pairs, at, depth })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::finding::Located;
+    use crate::mesh::rectangle;
+    use crate::model::SurfaceShape;
+
+    /// Cells of 5 mm over bars between and under them, and a node that comes from one side of a bar to the other.
+    #[test]
+    fn bars_in_a_sheet_and_on_the_ways_of_its_nodes_are_told() {
+        let mesh = rectangle(0.1, 0.005, 20, 1).unwrap();
+        let rest = State::rest(&mesh);
+        let bar = |x: f64, z: f64, radius: f64| {
+            let shape = SurfaceShape::Cylinder { at: Point3::new(x, 0.0, z), axis: Vector3::y(), radius };
+            [SheetObstacle { name: Located::from("bar".to_string()), shape, friction: Some(0.2) }]
+        };
+        let told = |bar: &[SheetObstacle]| {
+            let findings = at_obstacles(bar, &mesh, None, &rest, 1e-6);
+            findings.iter().map(Finding::code).collect::<Vec<_>>()
+        };
+        assert_eq!(told(&bar(0.0525, 0.0, 0.002)), ["S155"], "between two nodes");
+        assert!(told(&bar(0.05, -0.01, 0.01)).is_empty(), "the sheet lies on it");
+        assert!(told(&bar(0.0525, -0.002, 0.002)).is_empty(), "a side cuts off less than half of it");
+        let mut below = rest.clone();
+        below.position.iter_mut().for_each(|p| p.z -= 0.1);
+        for (radius, count) in [(0.01, 1), (1e-4, 1)] {
+            let facts = passed(&bar(0.05, -0.05, radius), &mesh, [&rest, &below]);
+            assert_eq!(facts.len(), count, "{facts:?}");
+        }
+        assert!(passed(&bar(0.05, -0.05, 0.01), &mesh, [&rest, &rest]).is_empty());
+        assert!(passed(&bar(0.2, -0.05, 0.01), &mesh, [&rest, &below]).is_empty(), "beside the sheet");
+    }
+}
