@@ -884,9 +884,12 @@ fn dimensions_in_headings_are_no_directions() {
 #[test]
 fn captions_tell_records_apart() {
     let folder = tempfile::tempdir().unwrap();
-    for (captions, told) in
-        [(["Cotton 120", "Wool 200"], true), (["dry", "wet"], true), (["Specimen 1", "Specimen 2"], false)]
-    {
+    for (captions, told) in [
+        (["Cotton 120", "Wool 200"], true),
+        (["dry", "wet"], true),
+        (["Specimen 1", "Specimen 2"], false),
+        (["31 Jan 2026 9:05 AM", "1 Feb 2026 1:10 PM"], false),
+    ] {
         let record = |caption: &str| format!("\n{caption}\ncurvature (1/cm),moment (gf·cm/cm)\n{LOOP}");
         let text = format!("test,bending\ndirection,warp\n{}{}", record(captions[0]), record(captions[1]));
         std::fs::write(folder.path().join("lab.csv"), text).unwrap();

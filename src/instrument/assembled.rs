@@ -157,8 +157,15 @@ fn captions(records: &[&Measurement]) -> Vec<Finding> {
     found
 }
 
-/// The letters of a text.
+/// The letters of a line that is no date and no time of the day.
 fn words(text: &str) -> String {
+    let is_year = |digits: &str| digits.len() == 4 && (digits.starts_with("19") || digits.starts_with("20"));
+    let is_time = text
+        .split(char::is_whitespace)
+        .any(|word| word.contains(':') && word.starts_with(|c: char| c.is_ascii_digit()));
+    if is_time || text.split(|c: char| !c.is_ascii_digit()).any(is_year) {
+        return String::new();
+    }
     text.chars().filter(|c| c.is_alphabetic()).collect()
 }
 

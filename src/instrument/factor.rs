@@ -1,11 +1,15 @@
 //! Factors that stand in words: `force of 2 layers`, `moment divided by 2`, `values x 10`.
 
 use super::dialect::Key;
+use super::unit_text::unit;
 use super::vocabulary::{HEADING, Vocabulary};
 use super::words::folded;
 
 /// Words between a number and what it counts, or is the factor of: `divided by 2`.
 const BETWEEN: usize = 2;
+/// Words that are factors in a heading, and parts of names elsewhere: `double jersey`.
+const IN_HEADINGS: [&str; 8] =
+    ["half", "halved", "double", "doubled", "halbe", "halbes", "doppelte", "doppeltes"];
 
 /// Whether words of a text state a factor other than 1: nobody can say whether it was applied.
 pub(super) fn is_stated(text: &str, vocabulary: Vocabulary<'_>) -> bool {
@@ -25,7 +29,9 @@ pub(super) fn in_heading(name: &str, vocabulary: Vocabulary<'_>) -> bool {
     let digits = name.trim_end_matches(|c: char| c.is_ascii_digit());
     let is_divided = digits.len() < name.len() && digits.trim_end().ends_with(['/', '×', '*', '÷']);
     is_divided
-        || name.split(|c: char| !c.is_alphanumeric()).any(|word| names_factor(word, vocabulary))
+        || name
+            .split(|c: char| !c.is_alphanumeric())
+            .any(|word| names_factor(word, vocabulary) || IN_HEADINGS.contains(&word.to_lowercase().as_str()))
         || is_stated(&name, vocabulary)
 }
 
@@ -33,11 +39,12 @@ fn names_factor(word: &str, vocabulary: Vocabulary<'_>) -> bool {
     vocabulary.key(word) == Some(Key::Factor)
 }
 
-/// A word for a factor or for what is counted, and a number near it.
+/// A word for a factor or for what is counted, and a number without a unit near it.
 fn by_word(words: &[&str], vocabulary: Vocabulary<'_>) -> bool {
     words.iter().enumerate().filter(|(_, word)| names_factor(word, vocabulary)).any(|(at, _)| {
         let near = at.saturating_sub(1)..(at + BETWEEN + 1).min(words.len());
-        words[near].iter().any(|word| is_factor(word))
+        near.into_iter()
+            .any(|i| is_factor(words[i]) && words.get(i + 1).is_none_or(|next| unit(next).is_err()))
     })
 }
 
@@ -93,6 +100,9 @@ mod tests {
             "KES-FB2 AUTO-A 10:31",
             "layers",
             "poplin 120 g/m²",
+            "double jersey 180 g/m²",
+            "strips 5 cm wide",
+            "weight gain 5 %",
         ] {
             assert!(!found(text), "{text}");
         }

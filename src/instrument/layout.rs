@@ -419,8 +419,13 @@ impl<'t> Scanner<'t, '_> {
         let mut i = 0;
         while i < filled.len() {
             let (cell, column) = &filled[i];
-            // `key: value` in one cell.
-            if let Some((name, value)) = cell.split_once([':', '=']).filter(|(_, v)| !v.trim().is_empty()) {
+            // `key: value` in one cell, and no time such as `9:05`.
+            let is_entry = |(name, value): &(&str, &str)| {
+                let is_time = name.ends_with(|c: char| c.is_ascii_digit())
+                    && value.starts_with(|c: char| c.is_ascii_digit());
+                !value.trim().is_empty() && !is_time
+            };
+            if let Some((name, value)) = cell.split_once([':', '=']).filter(is_entry) {
                 let offset = cell.chars().count() - value.trim_start().chars().count();
                 self.keep(name, vec![(value.trim().to_string(), column + offset)], row.line);
                 i += 1;
