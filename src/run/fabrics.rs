@@ -105,7 +105,7 @@ impl<'c> Workshop<'c> {
         let mine = |at: usize| self.jobs.iter().filter(move |job| job.is_for(self.work, at));
         let stages = |at: usize| mine(at).map(|job| job.task(None).stages()).sum::<usize>();
         let steps = (0..fabrics.len()).map(|at| 1 + stages(at)).sum();
-        let what = if steps > fabrics.len() { "fabrics and stages of their drapes" } else { "fabrics" };
+        let what = if steps > fabrics.len() { "fabrics and stages of their cases" } else { "fabrics" };
         // Of thousands of fabrics there are as many results: a failure that is large is kept elsewhere.
         let made = self
             .observer
