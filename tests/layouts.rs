@@ -938,3 +938,22 @@ fn numbers_that_are_no_values_of_a_parameter_are_left_out() {
     let notes = values("Parameter;Wert;Einheit\nT0;0,5²;mm\nLT;0,7¹;-\n");
     assert!((notes[0].1 - 0.5).abs() < 1e-12 && (notes[1].1 - 0.7).abs() < 1e-12, "{notes:?}");
 }
+
+/// Titles of sections between the rows of a table, the first of them right below the headings; and zeros for what was not measured.
+#[test]
+fn titles_below_headings_and_zeros_are_no_values() {
+    let table =
+        "Property,Unit,Warp,Weft\nBending,,,\nB,gf.cm2/cm,0.08,0.06\nShear,,,\nG,gf/cm.deg,0.85,0.8\n";
+    let found = read("results.csv", table).results;
+    assert_eq!(found.len(), 4, "{found:?}");
+    let zeros = "specimen,B warp (gf·cm²/cm),2HB warp (gf·cm/cm)\n1,0.08,0.03\n2,0,0\n3,0.10,0.05\n";
+    let file = read("results.csv", zeros);
+    let of = |p: Parameter| {
+        file.results.iter().find(|(_, r)| r.parameter == p).map(|(_, r)| (r.n, r.mean / p.kes_factor()))
+    };
+    let (n, b) = of(Parameter::B).unwrap();
+    assert!(n == 2 && (b - 0.09).abs() < 1e-12, "{n} {b}");
+    assert_eq!(of(Parameter::Hb).unwrap().0, 3, "a loop may be as narrow as that");
+    let codes: Vec<_> = file.findings.iter().map(|finding| finding.code()).collect();
+    assert_eq!(codes, ["R137"]);
+}

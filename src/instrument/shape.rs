@@ -311,6 +311,11 @@ fn across(heads: &[&Row<'_>], context: &Context<'_>) -> bool {
     }
 }
 
+/// Whether a row has one cell alone, and no number in it.
+fn is_alone(row: &Row<'_>, context: &Context<'_>) -> bool {
+    row.filled().count() == 1 && row.filled().all(|(_, cell)| !is_value(&cell.text, context))
+}
+
 fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
     let (mut end, mut first, mut section, mut titles) = (at, at, None, 0);
     let mut found: Vec<&Row<'_>> = Vec::new();
@@ -342,7 +347,10 @@ fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
         }
         end += 1;
     }
-    let next = || rows[end..].iter().filter(|r| !r.is_blank());
+    // The title of a section may be the first row below the heads: `Bending`, `Shear`.
+    let next = || {
+        rows[end..].iter().filter(|r| !r.is_blank()).skip_while(|r| !found.is_empty() && is_alone(r, context))
+    };
     let named = named_columns(&found, context);
     let labelled = next().take(3).take_while(|r| is_labelled(r, &named, context)).count();
     let several = found.iter().flat_map(|r| facets(r, context)).filter(Facets::names_value).count() > 1;

@@ -232,6 +232,12 @@ super::facts! {
             keys: Vec<Key>,
         } = "{} stands without a direction beside values of it with one, and is read as one of the fabric: name its direction",
             several_keys(keys);
+        /// Zeros that stand for what was not measured.
+        "R137" ZerosLeftOut {
+            /// The parameters with their directions.
+            keys: Vec<Key>,
+        } = "{} is 0 in some repeats and not in others: no cloth has none of it, and the zeros are left out as not measured; leave their \
+             cells blank", several_keys(keys);
         /// Blank cells below a direction or a parameter.
         "R124" MergedCells {} = "blank cells are read as the direction or parameter above them, as of merged cells: fill them in \
              if they are something else";

@@ -1,6 +1,7 @@
 //! Which values are repeats of one another, which sum up others, and what a fabric has in the end.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use super::layout::numbers_count_specimens;
 use super::rows_above::RowsAbove;
@@ -18,6 +19,7 @@ use crate::instrument::value::Printed;
 use crate::instrument::vocabulary::Vocabulary;
 use crate::instrument::words::folded;
 use crate::instrument::{Direction, Parameter, ResultValue};
+use crate::kes::Key as ParameterKey;
 use crate::quantity::Estimate;
 
 /// Two columns give the same value in two units if they agree to this part.
@@ -201,8 +203,9 @@ impl<'t> Table<'t, '_> {
             self.layout.left_out_rows.iter().map(|(line, t)| ((true, *line, 0), t.clone())).collect();
         let mut out: Vec<(Option<String>, ResultValue)> = Vec::new();
         let mut repeated: Vec<(Key, Place)> = Vec::new();
-        let (mut states, mut unread) = (States::new(), Vec::new());
-        for group in groups {
+        let (mut states, mut unread, mut zeros) = (States::new(), Vec::new(), Vec::new());
+        for mut group in groups {
+            zeros.extend(group.leave_out_zeros(self.context.path));
             let beside = group.key.2.is_none() && both.contains(&(group.key.0.clone(), group.key.1));
             let fabric = group.key.0.clone();
             match self.value_of(group, beside, &mut left_out, &mut repeated, (&mut states, &mut unread)) {
@@ -219,6 +222,10 @@ impl<'t> Table<'t, '_> {
         }
         self.findings.extend(states.into_iter().map(|((_, column), state)| state.finding(column)));
         self.ignored.extend(unread);
+        if let Some((_, place)) = zeros.first() {
+            let fact = ReadFact::ZerosLeftOut { keys: zeros.iter().map(|(key, _)| *key).collect() };
+            self.findings.push(Finding::new(fact).at(place.clone()));
+        }
         self.say(&left_out, &repeated);
         let failures = self.failures.into_values().collect();
         Ok(Contents { values: out, stiffnesses, findings: self.findings, failures })
@@ -398,6 +405,19 @@ impl<'t> Table<'t, '_> {
             let fact = ReadFact::Unusable { names: std::mem::take(&mut self.ignored), reason: None };
             self.findings.push(Finding::new(fact).at(place));
         }
+    }
+}
+
+impl Group {
+    /// Leaves out single values of 0 beside others, of what no cloth has none of; what they are of, and where the first stands.
+    fn leave_out_zeros(&mut self, path: &Path) -> Option<(ParameterKey, Place)> {
+        let (_, parameter, direction) = self.key;
+        let singles = self.members.iter().filter(|d| d.statistic.is_none());
+        let (zeros, others): (Vec<&Datum>, Vec<&Datum>) = singles.partition(|d| d.mean == 0.0);
+        let first = zeros.first().filter(|_| !others.is_empty() && parameter.is_never_zero())?;
+        let place = Place::at(path, first.line, first.column);
+        self.members.retain(|d| d.mean != 0.0 || d.statistic.is_some());
+        Some((ParameterKey { parameter, direction }, place))
     }
 }
 
