@@ -953,7 +953,8 @@ fn titles_below_headings_and_zeros_are_no_values() {
     };
     let (n, b) = of(Parameter::B).unwrap();
     assert!(n == 2 && (b - 0.09).abs() < 1e-12, "{n} {b}");
-    assert_eq!(of(Parameter::Hb).unwrap().0, 3, "a loop may be as narrow as that");
+    let (n, hb) = of(Parameter::Hb).unwrap();
+    assert!(n == 2 && (hb - 0.04).abs() < 1e-12, "{n} {hb}");
     let codes: Vec<_> = file.findings.iter().map(|finding| finding.code()).collect();
     assert_eq!(codes, ["R137"]);
 }

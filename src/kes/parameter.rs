@@ -167,24 +167,6 @@ impl Parameter {
         Self::ALL.iter().copied().find(|p| p.symbol().eq_ignore_ascii_case(symbol.trim()))
     }
 
-    /// Whether every cloth has some of it, so that 0 is no measured value; widths of loops and what is read of a surface may be 0 as
-    /// they were rounded.
-    pub fn is_never_zero(self) -> bool {
-        matches!(
-            self,
-            Self::B
-                | Self::G
-                | Self::W
-                | Self::T0
-                | Self::Tm
-                | Self::Emt
-                | Self::Wt
-                | Self::Lt
-                | Self::Lc
-                | Self::Wc
-        )
-    }
-
     /// Whether the hand equations take its logarithm; `None` of a parameter that is none of [`HAND`].
     pub fn takes_logarithm(self) -> Option<bool> {
         HAND.into_iter().find(|(parameter, _)| *parameter == self).map(|(_, log)| log)

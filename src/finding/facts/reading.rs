@@ -237,7 +237,7 @@ super::facts! {
             /// The parameters with their directions.
             keys: Vec<Key>,
         } = "{} is 0 in some repeats and not in others: no cloth has none of it, and the zeros are left out as not measured; leave their \
-             cells blank", several_keys(keys);
+             cells blank, or enter more digits", several_keys(keys);
         /// Blank cells below a direction or a parameter.
         "R124" MergedCells {} = "blank cells are read as the direction or parameter above them, as of merged cells: fill them in \
              if they are something else";

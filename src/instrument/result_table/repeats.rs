@@ -409,12 +409,12 @@ impl<'t> Table<'t, '_> {
 }
 
 impl Group {
-    /// Leaves out single values of 0 beside others, of what no cloth has none of; what they are of, and where the first stands.
+    /// Leaves out single values of 0 beside others; what they are of, and where the first stands.
     fn leave_out_zeros(&mut self, path: &Path) -> Option<(ParameterKey, Place)> {
         let (_, parameter, direction) = self.key;
         let singles = self.members.iter().filter(|d| d.statistic.is_none());
         let (zeros, others): (Vec<&Datum>, Vec<&Datum>) = singles.partition(|d| d.mean == 0.0);
-        let first = zeros.first().filter(|_| !others.is_empty() && parameter.is_never_zero())?;
+        let first = zeros.first().filter(|_| !others.is_empty())?;
         let place = Place::at(path, first.line, first.column);
         self.members.retain(|d| d.mean != 0.0 || d.statistic.is_some());
         Some((ParameterKey { parameter, direction }, place))
