@@ -26,7 +26,7 @@ pub(super) struct ColumnName {
 impl ColumnName {
     /// Reads a name without its unit.
     pub fn of(name: &str, vocabulary: Vocabulary<'_>) -> Self {
-        if name.chars().count() > HEADING || is_scaled(name) || factor::in_heading(name, vocabulary) {
+        if name.chars().count() > HEADING || is_scaled(name) {
             return Self::default();
         }
         if let Some(role) = vocabulary.role_exactly(name) {
@@ -53,7 +53,8 @@ impl ColumnName {
         found.words = normalised(&words.join(" "));
         let rest = rest.join(" ");
         found.role = vocabulary.role(&rest).or_else(|| vocabulary.role(name));
-        found
+        // Nobody can say whether a factor in a name was applied.
+        if found.role.is_some() && factor::in_heading(name, vocabulary) { Self::default() } else { found }
     }
 
     fn take(&mut self, word: &str, vocabulary: Vocabulary<'_>) -> bool {
