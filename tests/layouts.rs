@@ -887,6 +887,7 @@ fn captions_tell_records_apart() {
     for (captions, told) in [
         (["Cotton 120", "Wool 200"], true),
         (["dry", "wet"], true),
+        (["Wool (dry)", "Wool (wet)"], true),
         (["Specimen 1", "Specimen 2"], false),
         (["31 Jan 2026 9:05 AM", "1 Feb 2026 1:10 PM"], false),
     ] {
@@ -957,4 +958,63 @@ fn titles_below_headings_and_zeros_are_no_values() {
     assert!(n == 2 && (hb - 0.04).abs() < 1e-12, "{n} {hb}");
     let codes: Vec<_> = file.findings.iter().map(|finding| finding.code()).collect();
     assert_eq!(codes, ["R137"]);
+}
+
+/// Factors in a column of their own, and in the title of a table: told, and the values of the table are doubtful.
+#[test]
+fn factors_of_tables_are_told() {
+    let rows = "B,gf.cm2/cm,0.853,0.612\n2HB,gf.cm/cm,0.34,0.25\n";
+    let with_column = |factor: &str| {
+        rows.lines()
+            .map(|line| line.replacen(",0.", &format!(",{factor},0."), 1) + "\n")
+            .fold("Parameter,Unit,Multiplier,Warp,Weft\n".to_string(), |text, line| text + &line)
+    };
+    for factor in ["10^-1", "0.1", "x10", "E-01"] {
+        assert_eq!(codes("results.csv", &with_column(factor)), ["R122"], "{factor}");
+    }
+    for factor in ["1", "1.0", "10^0", "E+00", "-"] {
+        assert!(codes("results.csv", &with_column(factor)).is_empty(), "{factor}");
+    }
+    for title in ["Bending results (values x 10)", "Note: B and 2HB multiplied by 10"] {
+        let table = format!("{title}\nParameter,Unit,Warp,Weft\n{rows}");
+        assert_eq!(codes("results.csv", &table), ["R122"], "{title}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("results.csv"), with_column("10^-1")).unwrap();
+    let batch = read_fabrics(&[folder.path().into()], &ReadSettings::default(), &|_| ());
+    let sheet = characterise(&batch.fabrics[0], &Settings::default());
+    let of_b = sheet.statuses.iter().filter(|(key, _)| key.parameter == Parameter::B);
+    let causes: Vec<_> = of_b.map(|(key, _)| sheet.causes(*key)).collect();
+    assert_eq!(causes, [["R122"], ["R122"]]);
+}
+
+/// Angles to the warp are directions where each stands beside its partner.
+#[test]
+fn angles_to_the_warp_are_directions() {
+    for [warp, weft] in [["0°", "90°"], ["0deg", "90deg"], ["B 0°", "B 90°"]] {
+        let table = match warp.starts_with('B') {
+            true => format!("fabric,{warp} (gf·cm²/cm),{weft} (gf·cm²/cm)\na,0.08,0.06\n"),
+            false => format!("Parameter,Unit,{warp},{weft}\nB,gf·cm²/cm,0.08,0.06\n"),
+        };
+        let file = read("results.csv", &table);
+        let directions: Vec<_> = file.results.iter().map(|(_, r)| r.direction).collect();
+        assert_eq!(directions, [Some(Direction::Warp), Some(Direction::Weft)], "{warp}");
+        assert_eq!(codes("results.csv", &table), ["R133"], "{warp}");
+    }
+}
+
+/// A pressure beside a thickness says which thickness it is.
+#[test]
+fn a_condition_in_another_column_is_that_of_the_value() {
+    let table = |method: &str| {
+        format!("Property,Method,Unit,Value\nThickness,{method},mm,0.5\nMass,ISO 3801,g/m2,152\n")
+    };
+    let parameters = |method: &str| -> Vec<Parameter> {
+        read("results.csv", &table(method)).results.iter().map(|(_, r)| r.parameter).collect()
+    };
+    assert_eq!(parameters("ISO 5084 (1 kPa)"), [Parameter::W]);
+    assert_eq!(codes("results.csv", &table("ISO 5084 (1 kPa)")), ["R104"]);
+    assert_eq!(parameters("KES-FB3 at 0.5 gf/cm²"), [Parameter::T0, Parameter::W]);
+    assert_eq!(parameters("KES-FB3 at 50 gf/cm²"), [Parameter::Tm, Parameter::W]);
+    assert_eq!(parameters("FB3 speed 20 mm/min"), [Parameter::T0, Parameter::W]);
 }

@@ -113,6 +113,7 @@ const CASES: &[(&str, &str, &str)] = &[
     ("K061", "k061-fast.csv", "k061-fast.csv:2:23"),
     // Made from a known law.
     ("K064", "k064-loops.json", "k064-loops.json"),
+    ("K065", "k065-trigger.csv", "k065-trigger.csv:6"),
 ];
 
 /// Codes that no file can trigger, because reading refuses it or sets it right before; programs

@@ -1,6 +1,7 @@
 //! The parameter sheet of one fabric.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
 
 use serde::Serialize;
 
@@ -89,6 +90,8 @@ pub struct FabricSheet {
     pub bend_tests: Vec<FabTest>,
     /// How the values were evaluated.
     pub settings: Settings,
+    /// Files of the result tables that gave a value.
+    pub table_files: BTreeMap<Key, BTreeSet<PathBuf>>,
     /// What each test was run to; see [`conditions`](Self::conditions).
     pub run_to: BTreeMap<(Test, Option<Direction>), RunTo>,
     /// Files behind the sheet.

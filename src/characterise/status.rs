@@ -94,7 +94,9 @@ impl FabricSheet {
             Scope::OfRecord(record, parameter) => key.parameter == *parameter && is_of_record(key, record),
             Scope::Slope(record, name) => is_of_record(key, record) && is_slope(key.parameter, name),
             Scope::Test(test) => key.parameter.test() == Some(*test),
-            Scope::File(path) => self.is_of_file(key.parameter.test(), key.direction, path),
+            Scope::File(path) => {
+                self.is_of_file(key.parameter.test(), key.direction, path) || self.is_of_table(key, path)
+            }
             Scope::Direction(direction) => key.direction == Some(*direction),
             Scope::Moduli => false,
         })
@@ -131,6 +133,10 @@ impl FabricSheet {
             concerns(&scope).then(|| (status, finding.code()))
         };
         self.findings.iter().filter_map(remark).collect()
+    }
+
+    fn is_of_table(&self, key: Key, path: &Path) -> bool {
+        self.table_files.get(&key).is_some_and(|files| files.contains(path))
     }
 
     fn is_of_file(&self, test: Option<Test>, direction: Option<Direction>, path: &Path) -> bool {
@@ -179,6 +185,7 @@ fn of_evaluation(fact: &EvaluationFact) -> Option<(Scope<'_>, ValueStatus)> {
         F::ShortOfMaximum { record, .. }
         | F::BeyondMaximum { record, .. }
         | F::LargeCorrection { record, .. }
+        | F::BeginsUnderLoad { record, .. }
         | F::Noise { record, .. }
         | F::SeveralCycles { record, .. }
         | F::Clipped { record, .. }

@@ -39,6 +39,7 @@ pub(super) fn merge(sheet: &mut FabricSheet, input: &FabricInput, settings: &Set
         match sheet.values.get(&key) {
             None => {
                 sheet.values.insert(key, estimate);
+                sheet.table_files.insert(key, values.iter().map(|v| v.place.path.clone()).collect());
             }
             Some(own) if (own.mean - estimate.mean).abs() > DISAGREEMENT * own.mean.abs() => {
                 let fact = EvaluationFact::TableDiffers { key, table: estimate.mean, curves: own.mean };

@@ -8,6 +8,9 @@ use crate::finding::{EvaluationFact, RecordAxis};
 use crate::instrument::Parameter;
 use crate::quantity::Curve;
 
+/// Part of the strain at the maximum above which the strain that is missing before the first sample is told.
+const BEGINS_UNDER_LOAD: f64 = 0.01;
+
 /// Parameters of a tensile record (x = strain, y = N/m).
 pub(super) fn evaluate(
     curve: &Curve,
@@ -82,9 +85,24 @@ fn correct(branches: &mut [Branch], settings: &Settings, notes: &mut Notes<'_>) 
         let (record, axis, taken_off) = (notes.record(), RecordAxis::Ordinate, offset);
         notes.add(EvaluationFact::LargeCorrection { record, axis, taken_off, limit: large });
     }
+    if onset.before == 0
+        && let Some(strain) = strain_to(offset, &first.x, &first.y)
+        && strain > BEGINS_UNDER_LOAD * (top.0 - slack)
+    {
+        let record = notes.record();
+        notes.add(EvaluationFact::BeginsUnderLoad { record, load: offset, strain });
+    }
     shift(branches, [-slack, -offset]);
     // 0 - x, so that no correction reads as 0 and not as -0.
     [0.0 - slack, 0.0 - offset]
+}
+
+/// Strain to the first load along the slope at the start: less than the strain that was made, since cloth begins softly.
+/// `None` of a record that does not rise from a load.
+fn strain_to(load: f64, x: &[f64], y: &[f64]) -> Option<f64> {
+    let double = y.iter().position(|v| *v >= 2.0 * load)?;
+    let slope = (y[double] - load) / (x[double] - x[0]);
+    (load > 0.0 && slope > 0.0).then(|| load / slope)
 }
 
 /// Adds a constant to the abscissae and to the ordinates.

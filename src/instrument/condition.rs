@@ -29,13 +29,20 @@ impl Condition {
         [Some(parameter), sibling].into_iter().flatten().find(|p| self.defines(*p))
     }
 
+    /// Whether it is of the kind by which the parameter is defined: a pressure for a thickness.
+    pub fn could_define(self, parameter: Parameter) -> bool {
+        parameter.defined_at().is_some_and(|(_, symbol)| {
+            let same = Unit::parse(symbol).is_ok_and(|u| u.dimension == self.unit.dimension);
+            same && self.is_angle == (symbol == "rad")
+        })
+    }
+
     /// Whether the parameter is read there by its definition.
     pub fn defines(self, parameter: Parameter) -> bool {
-        parameter.defined_at().is_some_and(|(value, symbol)| {
-            let same = Unit::parse(symbol).is_ok_and(|u| u.dimension == self.unit.dimension);
-            let (found, is_angle) = (self.number * self.unit.factor, symbol == "rad");
-            same && is_angle == self.is_angle && (found / value - 1.0).abs() < 1e-3
-        })
+        self.could_define(parameter)
+            && parameter
+                .defined_at()
+                .is_some_and(|(value, _)| (self.number * self.unit.factor / value - 1.0).abs() < 1e-3)
     }
 }
 

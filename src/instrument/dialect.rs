@@ -155,6 +155,9 @@ pub enum TableColumn {
     N,
     /// How the row was had: `inferred` marks a value that was not measured (long form).
     Status,
+    /// A factor of the row: its words are those of [`Key::Factor`].
+    #[serde(skip)]
+    Factor,
 }
 
 /// How a row or a column sums up others; it is no specimen itself.

@@ -440,8 +440,10 @@ impl<'t> Scanner<'t, '_> {
     }
 
     fn keep(&mut self, name: &str, mut values: Vec<(String, usize)>, line: usize) {
-        let (plain, own_unit) = split_unit(name.trim_start_matches('#'));
-        let plain = plain.trim().trim_end_matches([':', '=']).trim().to_string();
+        let name = name.trim_start_matches('#');
+        let bare = |text: &str| text.trim().trim_end_matches([':', '=']).trim().to_string();
+        let (plain, own_unit) = split_unit(name);
+        let plain = bare(&plain);
         // `width,20,cm` and `幅(cm),20`: the unit goes with the number.
         let is_number = |t: &str| matches!(number(t, self.context.decimal), Number::Value(_));
         if let [(value, _), (unit_text, _)] = &values[..]
@@ -463,12 +465,14 @@ impl<'t> Scanner<'t, '_> {
             (Some(Key::Sens), [(value, _)]) if is_direction(value) => Some(Key::Direction),
             (key, _) => key,
         };
-        self.note_factor(key, &plain, &values, line);
+        // A bracket of a line without a value is no unit: `Bending results (values x 10)`, `Wool (wet)`.
+        let words = if values.is_empty() { bare(name) } else { plain.clone() };
+        self.note_factor(key, &words, &values, line);
         match (key, values.len()) {
             (Some(Key::Remark | Key::Circumstance | Key::Factor) | None, _) => {
                 let text: Vec<String> = values.into_iter().map(|(t, _)| t).collect();
                 if text.is_empty() {
-                    self.header.caption = Some(plain.clone());
+                    self.header.caption = Some(words);
                 }
                 self.header.other.insert(plain, text.join(", "));
             }

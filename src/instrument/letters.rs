@@ -1,4 +1,4 @@
-//! Letters of directions, each beside its partner: `B_K` and `B_S`, `L` and `T` over columns.
+//! Letters of directions, or angles to the warp, each beside its partner: `B_K` and `B_S`, `L` and `T` over columns, `0°` and `90°`.
 
 use std::collections::BTreeMap;
 
@@ -61,7 +61,7 @@ fn lettered(index: usize, text: &str, v: Vocabulary<'_>) -> Option<Lettered> {
         return None;
     }
     let mut at = 0;
-    for word in text.split(|c: char| !c.is_alphanumeric()) {
+    for word in text.split(is_between) {
         let (start, end) = (at, at + word.len());
         at = end + text[end..].chars().next().map_or(0, char::len_utf8);
         let Some(direction) = v.letter(word).filter(|_| start > 0) else { continue };
@@ -86,7 +86,7 @@ pub(super) fn in_names<'n>(names: &[&'n str], v: Vocabulary<'_>) -> BTreeMap<&'n
 /// A name with one letter of a direction, which may have a number behind it.
 fn lettered_name(index: usize, name: &str, v: Vocabulary<'_>) -> Option<Lettered> {
     let text = folded(name).into_owned();
-    let words: Vec<&str> = text.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).collect();
+    let words: Vec<&str> = text.split(is_between).filter(|w| !w.is_empty()).collect();
     if words.iter().any(|word| v.direction(word).is_some()) {
         return None;
     }
@@ -107,10 +107,17 @@ fn letter_of_word(word: &str, v: Vocabulary<'_>) -> Option<(Direction, String, S
     Some((v.letter(letter).filter(|_| is_short(letter))?, letter.to_string(), word.to_string()))
 }
 
+/// Whether a character stands between words; the sign of degrees belongs to its number.
+fn is_between(c: char) -> bool {
+    !(c.is_alphanumeric() || c == '°')
+}
+
+/// One letter, or an angle.
 fn is_short(word: &str) -> bool {
-    word.starts_with(char::is_alphabetic) && word.chars().nth(1).is_none()
+    let is_letter = word.starts_with(char::is_alphabetic) && word.chars().nth(1).is_none();
+    is_letter || ["°", "deg"].into_iter().any(|sign| word.ends_with(sign))
 }
 
 fn has_letter(text: &str, v: Vocabulary<'_>) -> bool {
-    text.split(|c: char| !c.is_alphanumeric()).any(|word| is_short(word) && v.letter(word).is_some())
+    text.split(is_between).any(|word| is_short(word) && v.letter(word).is_some())
 }

@@ -103,6 +103,7 @@ pub(super) fn read(
         above: None,
         marked: None,
         bounds: None,
+        factors: BTreeSet::new(),
     };
     for text in std::mem::take(&mut table.layout.texts_of_directions) {
         table.note_more_than_direction((table.layout.line, 0), &text);
@@ -155,6 +156,8 @@ struct Table<'t, 'a> {
     marked: noted::Cells,
     /// The same of cells that bound a value.
     bounds: noted::Cells,
+    /// Columns of factors that were told.
+    factors: BTreeSet<usize>,
 }
 
 impl<'t> Table<'t, '_> {
@@ -270,6 +273,7 @@ impl<'t> Table<'t, '_> {
                     facts.facets.unit = Some(folded(text).into_owned());
                     facts.unit_at = label.index;
                 }
+                Some(TableColumn::Factor) => self.note_factor(row, label, text),
                 Some(TableColumn::Status) => facts.facets.inferred |= normalised(text) == "inferred",
                 Some(TableColumn::Parameter) | None if self.layout.down => {
                     self.one_unit(row, label.index, facts.facets.unit.as_deref(), f.unit.as_deref())?;

@@ -267,7 +267,8 @@ impl<'a> Vocabulary<'a> {
     }
 
     pub fn table_column(self, name: &str) -> Option<TableColumn> {
-        self.find(name, false, |d| &d.table, &index().table)
+        let named = self.find(name, false, |d| &d.table, &index().table);
+        named.or_else(|| (self.key(name) == Some(Key::Factor)).then_some(TableColumn::Factor))
     }
 
     /// How a label says that a row or column sums up others: the whole label, and no word within it.

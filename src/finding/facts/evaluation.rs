@@ -86,6 +86,17 @@ super::facts! {
             /// The part of the value at the maximum above which a correction is large.
             limit: f64,
         } = "{record}: {}", correction(record.test, *axis, *taken_off, *limit);
+        /// A tensile record whose first sample is under load already.
+        "K065" BeginsUnderLoad {
+            /// The record.
+            record: RecordName,
+            /// The first load (N/m).
+            load: f64,
+            /// The strain that the slope at the start makes of it.
+            strain: f64,
+        } = "{record}: the record begins at {}, and shows no zero of load: strain and load are counted from its first sample. If the \
+             specimen was pulled already, EMT is low by {:.2} % of strain or more", in_unit(*load, record.test.kes_maximum()),
+            100.0 * strain;
         /// Noise of the ordinate.
         "K009" Noise {
             /// The record.

@@ -206,7 +206,7 @@ super::facts! {
         "R133" DirectionsFromLetters {
             /// The texts in which they stand.
             texts: Vec<String>,
-        } = "single letters are read as warp and weft, because each stands beside its partner: {}; write the words if they are \
+        } = "single letters, or angles to the warp, are read as warp and weft, because each stands beside its partner: {}; write the words if they are \
              something else", some(texts);
         /// Units that number formats of a workbook add.
         "R134" UnitsOfFormats {

@@ -145,6 +145,7 @@ impl Layout {
                         m,
                         TableColumn::N
                             | TableColumn::Unit
+                            | TableColumn::Factor
                             | TableColumn::Specimen
                             | TableColumn::Id
                             | TableColumn::Fabric

@@ -1,10 +1,13 @@
 //! Cells that say more than a number, or less.
 
 use super::Table;
+use super::layout::LabelColumn;
 use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::cell::parts;
 use crate::instrument::raw::Row;
-use crate::instrument::value::Printed;
+use crate::instrument::sniff::{Number, number};
+use crate::instrument::value::{Printed, is_gap};
+use crate::instrument::words::folded;
 
 /// Where the first of some cells stands (line, column), and what they say.
 pub(super) type Cells = Option<((usize, usize), Vec<String>)>;
@@ -23,6 +26,23 @@ impl Table<'_, '_> {
             .1
             .push(cell.trim().to_string());
         found == Printed::Bound
+    }
+
+    /// R122: the first factor of a column that is not 1 in any spelling (`1.0`, `x1`, `10^0`, `E+00`).
+    pub(super) fn note_factor(&mut self, row: &Row<'_>, label: &LabelColumn, text: &str) {
+        let is_one = {
+            let digits = folded(text).to_lowercase();
+            let digits = digits.trim_start_matches(['x', '×', '*']).trim();
+            let power = ["10^", "e"].into_iter().find_map(|base| digits.strip_prefix(base));
+            number(power.unwrap_or(digits), self.context.decimal)
+                == Number::Value(if power.is_some() { 0.0 } else { 1.0 })
+        };
+        if is_gap(text) || is_one || !self.factors.insert(label.index) {
+            return;
+        }
+        let fact = ReadFact::StatedFactor { name: label.name.clone(), value: text.to_string() };
+        let place = Place::at(self.context.path, row.line, row.column(label.index));
+        self.findings.push(Finding::new(fact).at(place));
     }
 
     /// Tells of the cells that were noted.

@@ -1,5 +1,6 @@
 //! What the labels of a row say of its values.
 
+use crate::instrument::condition;
 use crate::instrument::facets::Facets;
 use crate::instrument::sniff::{Number, number};
 use crate::instrument::unit_text::unit;
@@ -51,6 +52,7 @@ impl RowFacts {
             if is_unit && self.facets.unit.is_none() {
                 (self.facets.unit, self.unit_at) = (Some(folded(bare).into_owned()), index);
             }
+            self.take_condition(text);
             return;
         }
         if f.unit.is_some() {
@@ -58,5 +60,18 @@ impl RowFacts {
         }
         let plain = Facets { meta: None, ..f.clone() };
         self.facets = self.facets.or(&plain);
+    }
+
+    /// Takes a condition from a column beside the name of the value, such as `ISO 5084 (1 kPa)` beside a thickness: the value is
+    /// the one that is defined there, or none of ours.
+    fn take_condition(&mut self, text: &str) {
+        let Some(parameter) = self.facets.parameter else { return };
+        let Some((_, condition)) = condition::without(text).filter(|(_, c)| c.could_define(parameter)) else {
+            return;
+        };
+        self.facets.parameter = condition.defined(parameter, &self.label);
+        if self.facets.parameter.is_none() {
+            self.label = format!("{}: {text}", self.label);
+        }
     }
 }
