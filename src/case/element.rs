@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer};
 use super::CaseError;
 use super::error::refused;
 use crate::element::{Cells, Drilling, Formulation, Mass, Membrane, ShearInterpolation};
-use crate::finding::Node;
+use crate::finding::{Node, array};
 
 /// `[element]`; what is left out is as in the profile, and that is the default one when left out.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -93,7 +93,7 @@ impl<'de> Deserialize<'de> for Subcells {
 
             fn visit_seq<A: SeqAccess<'de>>(self, grid: A) -> Result<Subcells, A::Error> {
                 let grid = de::value::SeqAccessDeserializer::new(grid);
-                <[u8; 2]>::deserialize(grid).map(Subcells::Grid)
+                array(grid).map(Subcells::Grid)
             }
         }
         d.deserialize_any(CountOrGrid)

@@ -8,7 +8,7 @@ use super::error::refused;
 use super::load_history::load_history;
 use super::point::SheetPoint;
 use super::supports::dof_named;
-use crate::finding::{Located, Node, Place, TomlError};
+use crate::finding::{Located, Node, Place, TomlError, array, optional_array};
 use crate::model::Dof;
 use crate::quantity::{
     Acceleration, Angle, Force, Length, LineForce, LineMoment, Moment, Pressure, QuantityError,
@@ -59,6 +59,7 @@ pub(super) struct GravityTable {
     value: Option<Acceleration>,
     /// Direction, of any length.
     #[cfg_attr(test, schemars(extend("default" = [0, 0, -1]), extend("examples" = [[0.0, 0.0, -1.0]])))]
+    #[serde(default, deserialize_with = "optional_array")]
     direction: Option<[f64; 3]>,
 }
 
@@ -78,6 +79,7 @@ pub(super) struct PointTable {
     value: String,
     /// Direction of the force or axis of the moment, of any length.
     #[cfg_attr(test, schemars(extend("examples" = [[0.0, 0.0, -1.0]])))]
+    #[serde(deserialize_with = "array")]
     direction: [f64; 3],
 }
 
@@ -93,6 +95,7 @@ pub(super) struct EdgeForceTable {
     value: LineForce,
     /// Direction, of any length.
     #[cfg_attr(test, schemars(extend("examples" = [[0.0, 0.0, -1.0]])))]
+    #[serde(deserialize_with = "array")]
     direction: [f64; 3],
 }
 
@@ -108,6 +111,7 @@ pub(super) struct EdgeMomentTable {
     value: LineMoment,
     /// Axis, of any length.
     #[cfg_attr(test, schemars(extend("examples" = [[0.0, 0.0, -1.0]])))]
+    #[serde(deserialize_with = "array")]
     direction: [f64; 3],
 }
 

@@ -7,7 +7,7 @@ use super::error::refused;
 use super::load_history::load_history;
 use super::loads::{SheetLoad, SheetLoads};
 use crate::element::Mass;
-use crate::finding::{Located, Node, Place};
+use crate::finding::{Located, Node, Place, optional_array};
 use crate::quantity::{Time, Velocity};
 use crate::solve::newmark::{Beginning, LoadHistory, Scheme};
 
@@ -28,6 +28,7 @@ pub(super) struct NewmarkTable {
     tolerance: Option<f64>,
     /// Damping ratios of the first and the third natural frequency; undamped when left out.
     #[cfg_attr(test, schemars(extend("examples" = [[0.02, 0.02]])))]
+    #[serde(default, deserialize_with = "optional_array")]
     damping: Option<[f64; 2]>,
     /// `"step"`, `"ramp until 0.1 s"`, `"sine 5 Hz"` (the same as `"sine 31.416 rad/s"`), or `"off"`: nothing acts, and the
     /// sheet goes on from its `start` (in `[[steps]]`: what acted in the step before goes on).

@@ -7,7 +7,7 @@ use super::CaseError;
 use super::error::refused;
 use super::loads::unit;
 use super::point::SheetPoint;
-use crate::finding::{Located, Node, TomlError};
+use crate::finding::{Located, Node, TomlError, array, optional_array};
 use crate::model::SurfaceShape;
 use crate::quantity::Length;
 
@@ -39,6 +39,7 @@ pub(super) struct PlaneTable {
     at: SheetPoint,
     /// The side on which the sheet is, of any length.
     #[cfg_attr(test, schemars(extend("default" = [0, 0, 1]), extend("examples" = [[0.0, 0.0, 1.0]])))]
+    #[serde(default, deserialize_with = "optional_array")]
     normal: Option<[f64; 3]>,
     /// Coulomb's coefficient of friction; MIU of the fabric when left out, or else 0.2, and it is told.
     #[cfg_attr(test, schemars(example = 0.3))]
@@ -57,6 +58,7 @@ pub(super) struct CylinderTable {
     at: SheetPoint,
     /// Direction of its axis, of any length.
     #[cfg_attr(test, schemars(extend("examples" = [[0.0, 1.0, 0.0]])))]
+    #[serde(deserialize_with = "array")]
     axis: [f64; 3],
     /// Its diameter.
     diameter: Length,
@@ -77,6 +79,7 @@ pub(super) struct DiscTable {
     at: SheetPoint,
     /// The side on which the sheet is, of any length.
     #[cfg_attr(test, schemars(extend("default" = [0, 0, 1]), extend("examples" = [[0.0, 0.0, 1.0]])))]
+    #[serde(default, deserialize_with = "optional_array")]
     normal: Option<[f64; 3]>,
     /// Its diameter.
     diameter: Length,

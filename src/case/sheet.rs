@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use super::CaseError;
 use super::error::refused;
-use crate::finding::{Located, Node};
+use crate::finding::{Located, Node, optional_array};
 use crate::quantity::Length;
 
 /// `[sheet]`: a shape that is divided into cells, a mesh from a file, or the outline of a drawing.
@@ -45,6 +45,7 @@ pub(super) struct SheetTable {
     /// Cells along x and y; across the core of a disc (one number twice); along the radius and
     /// around an annulus.
     #[cfg_attr(test, schemars(extend("examples" = [[40, 40]])))]
+    #[serde(default, deserialize_with = "optional_array")]
     cells: Option<[usize; 2]>,
     /// Width of the outermost cells of an `annulus` over that of the innermost. Where a sheet bends
     /// sharply over the edge that holds it, narrow cells belong there.
@@ -57,6 +58,7 @@ pub(super) struct SheetTable {
     /// Direction of the warp, `[x, y, z]` of any length, projected on each element: for sheets that are not in a plane
     /// z = const.
     #[cfg_attr(test, schemars(extend("examples" = [[1.0, 0.0, 0.0]])))]
+    #[serde(default, deserialize_with = "optional_array")]
     warp: Option<[f64; 3]>,
     /// Seeded displacement of interior nodes along x and y, 0 to 0.5 of half an edge; of a sheet in a plane z = const.
     #[serde(default)]

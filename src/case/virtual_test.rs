@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::CaseError;
 use super::error::refused;
-use crate::finding::Node;
+use crate::finding::{Node, optional_array};
 use crate::instrument::{Shape, Test};
 use crate::quantity::{Curvature, LineForce};
 
@@ -17,6 +17,7 @@ pub(super) struct VirtualTestTable {
     pub test: Test,
     /// Elements along the gauge length and across the specimen; for shear in large rotations 10 and 80 when left out.
     #[cfg_attr(test, schemars(extend("default" = [10, 20])))]
+    #[serde(default, deserialize_with = "optional_array")]
     cells: Option<[usize; 2]>,
     /// Small displacements and one slope, or large rotations and the whole curve.
     #[serde(default)]

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::choices::{CycleChoice, Modulus, Sides, SlopeMethod, Sweeps, in_gf_per_cm, round};
-use crate::finding::{Place, TomlError, TomlFile};
+use crate::finding::{Place, TomlError, TomlFile, array, arrays};
 use crate::kes::Test;
 use crate::kes::specimen::{
     BENDING_READINGS, BENDING_SLOPE, COMPRESSION_START, DEGREE, GF_PER_CM, SHEAR_READINGS, SHEAR_SLOPE,
@@ -37,6 +37,7 @@ impl From<TomlError> for SettingsError {
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Angles between which G is fitted, on both sides (0.5 to 2.5 deg; the literature also uses 0.5 to 5 deg).
+    #[serde(deserialize_with = "array")]
     pub shear_slope: [Angle; 2],
     /// How the slopes of G, B and the tensile tangents are taken over their windows.
     pub slope_method: SlopeMethod,
@@ -48,14 +49,18 @@ pub struct Settings {
     /// (50 gf/cm²).
     pub compression_maximum: Option<Pressure>,
     /// Angles at which 2HG and 2HG5 are read (0.5 and 5 deg).
+    #[serde(deserialize_with = "array")]
     pub shear_readings: [Angle; 2],
     /// Whether the part of the constant tension, W tan φ, is taken off the shear force (off: published G contain it).
     pub tension_correction: bool,
     /// Curvatures between which B is fitted, on both sides (0.5 to 1.5 1/cm).
+    #[serde(deserialize_with = "array")]
     pub bending_slope: [Curvature; 2],
     /// Curvatures at which 2HB and 2HB05 are read (1.0 and 0.5 1/cm).
+    #[serde(deserialize_with = "array")]
     pub bending_readings: [Curvature; 2],
     /// Forces between which the modulus `tangent_low` is fitted (5 to 20 gf/cm).
+    #[serde(deserialize_with = "array")]
     pub tangent_low: [LineForce; 2],
     /// The moduli that are evaluated.
     pub moduli: Vec<Modulus>,
@@ -72,6 +77,7 @@ pub struct Settings {
     /// Force at which a FAB strip counts as under load: its strain zero (1 gf/cm).
     pub strip_onset: LineForce,
     /// Forces between which tangents of FAB strips are taken, beside `tangent_low` (2 to 5, 20 to 100 gf/cm).
+    #[serde(deserialize_with = "arrays")]
     pub strip_windows: Vec<[LineForce; 2]>,
     /// Force at which the secant of FAB strips is taken (100 gf/cm).
     pub strip_secant: LineForce,

@@ -21,7 +21,8 @@ pub enum FailureKind {
 }
 
 /// Codes that mean that numerics failed, rather than the input, or that a search did not reach its end.
-const NUMERIC: [&str; 10] = ["N001", "N002", "N003", "N005", "N006", "N007", "N010", "N012", "S004", "S112"];
+const NUMERIC: [&str; 12] =
+    ["N001", "N002", "N003", "N004", "N005", "N006", "N007", "N010", "N012", "N021", "S004", "S112"];
 
 /// Codes of failures for want of memory, which another run may not meet.
 #[cfg_attr(not(feature = "results"), allow(dead_code))]

@@ -8,6 +8,7 @@
 //! sections, `M` meshes, elements and models, `N` numerics, `S` studies (cases and
 //! comparisons), `O` output files and usage.
 
+mod arrays;
 mod error;
 mod facts;
 mod toml_file;
@@ -18,6 +19,7 @@ use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize, Serializer};
 
+pub(crate) use arrays::{array, arrays, optional_array};
 #[cfg(feature = "results")]
 pub(crate) use error::is_of_memory;
 pub use error::{Coded, FailureKind};

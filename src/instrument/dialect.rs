@@ -8,6 +8,7 @@ use serde::{Deserialize, Deserializer, de};
 use super::conditions::StatedConditions;
 use super::words::{folded, normalised};
 use super::{Direction, Test};
+use crate::finding::arrays;
 
 /// What a column of a curve holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
@@ -276,7 +277,7 @@ pub(super) fn letter_of(text: &str) -> String {
 }
 
 fn pairs<'de, D: Deserializer<'de>>(d: D) -> Result<Vec<[String; 2]>, D::Error> {
-    let pairs = Vec::<[String; 2]>::deserialize(d)?;
+    let pairs: Vec<[String; 2]> = arrays(d)?;
     Ok(pairs.into_iter().map(|pair| pair.map(|letter| letter_of(&letter))).collect())
 }
 

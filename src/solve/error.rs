@@ -1,8 +1,10 @@
 //! Why there is no solution.
 
+use nalgebra::Point3;
 use serde::Serialize;
 
 use super::factor::FactorError;
+use super::loose::LooseMotion;
 use crate::finding::errors;
 use crate::model::{DofGroup, Model, ModelError};
 use crate::platform::over;
@@ -36,7 +38,20 @@ errors! {
             hint: &'static str,
         } = "the model is singular: {dof} of node {node} at ({x:.4}, {y:.4}, {z:.4}) m moves without resistance; \
              add a support{hint}";
-        /// N006: the answer does not satisfy the equations.
+        /// N001: supports leave a part of the sheet a rigid motion.
+        "N001" Loose {
+            /// The rigid motion that nothing resists.
+            motion: String,
+            /// A node of the part that it moves, from 0.
+            node: usize,
+            /// Its x (m).
+            x: f64,
+            /// Its y (m).
+            y: f64,
+            /// Its z (m).
+            z: f64,
+        } = "nothing holds the sheet, or its part with node {node} at ({x:.4}, {y:.4}, {z:.4}) m, against {motion}: add a support that does";
+        /// N006: what the solution leaves of the forces.
         "N006" Residual {
             /// |K u - f| / |f|.
             residual: f64,
@@ -133,12 +148,12 @@ impl StepLimit {
         match self {
             Self::Tolerance => "loosen the tolerance, or ramp the load instead of a step",
             Self::Convergence => {
-                "Newton's method does not converge in shorter ones either; take a spectral_radius, such as 0.8, \
-                 damping, or a smaller step from the start"
+                "Newton's method does not converge in shorter ones either; take damping, a smaller step from the start or, outside \
+                 [[steps]], a spectral_radius, such as 0.8"
             }
             Self::Energy => {
-                "the energies of the motion do not balance in shorter ones either; take a spectral_radius, such as 0.8, \
-                 in the place of damping, or a smaller step from the start"
+                "the energies of the motion do not balance in shorter ones either; take a smaller step from the start or, outside \
+                 [[steps]], a spectral_radius, such as 0.8, in the place of damping"
             }
         }
     }
@@ -153,6 +168,12 @@ impl SolveError {
     /// N011 if so many bytes are more than a limit.
     pub(crate) fn in_memory(bytes: f64, limit: u64) -> Result<(), Self> {
         if bytes <= limit as f64 { Ok(()) } else { Err(Self::TooLarge { bytes, limit }) }
+    }
+
+    /// Of a rigid motion that nothing resists.
+    pub(super) fn loose(motion: &LooseMotion, places: &[Point3<f64>]) -> Self {
+        let p = places[motion.node];
+        Self::Loose { motion: motion.to_string(), node: motion.node, x: p.x, y: p.y, z: p.z }
     }
 
     /// What a failed factorisation means for a model.

@@ -11,6 +11,7 @@ use super::error::SolveError;
 use super::factor::{Counts, Factor, SymbolicAnalysis};
 use super::iterative::{Iterative, Settings, SetupError, Stalled};
 use super::linear::{Options, Solution, System};
+use super::loose;
 use super::sparse::BlockMatrix;
 use crate::model::{Dof, DofGroup, Links, Model, ModelError};
 
@@ -139,6 +140,13 @@ impl<'a> Equations<'a> {
         let mut load = group.gather(load);
         pattern.links.reduce(group, &mut load);
         Self { model, group, pattern, load, held, is_held }
+    }
+
+    /// N001 if a rigid motion of a part of the sheet meets no support.
+    pub fn is_supported(&self) -> Result<(), SolveError> {
+        let places = &self.model.mesh.nodes;
+        let loose = loose::motion(places, self.pattern, self.group, &self.is_held);
+        loose.map_or(Ok(()), |motion| Err(SolveError::loose(&motion, places)))
     }
 
     /// The stiffness with unit rows at held dofs.

@@ -219,6 +219,7 @@ fn planned(
     let direct = plan.groups.iter().map(|(group, analysis)| (*group, Approach::Direct(analysis)));
     for (group, approach) in direct.chain(plan.iterated.iter().map(|group| (*group, Approach::Iterative))) {
         let equations = Equations::new(model, group, &plan.pattern, &load, &held);
+        equations.is_supported()?;
         let watch = Stopwatch::start();
         let matrix = equations.matrix()?;
         solution.timings.assemble_s += watch.seconds();

@@ -7,6 +7,7 @@ pub mod factor;
 mod group;
 pub mod iterative;
 pub mod linear;
+mod loose;
 pub mod modal;
 mod multifrontal;
 pub mod newmark;

@@ -123,12 +123,25 @@ pub fn search(
     if !matches!(method, Method::ArcLength(_)) {
         system = system.with_layers(settings, options);
     }
-    match method {
-        Method::Newton(perturbation) => grow(&system, rest, settings, *perturbation, observe),
-        Method::ArcLength(arc) => arc::follow_path(&system, rest, settings, arc, observe),
-        Method::Flow(flow) => flow::relax_system(&system, rest, settings, flow, observe),
-        Method::Stable => flow::follow_stable(&system, rest, settings, observe),
-    }
+    go_on(&system, rest, settings, method, observe)
+}
+
+/// Searches from a state by a method.
+fn go_on(
+    system: &System<'_>,
+    start: State,
+    settings: &Settings,
+    method: &Method,
+    observe: impl FnMut(&Step<'_>) -> ControlFlow<()>,
+) -> Result<Solution, NonlinearError> {
+    let only_touched = system.only_touched()?;
+    let found = match method {
+        Method::Newton(perturbation) => grow(system, start, settings, *perturbation, observe),
+        Method::ArcLength(arc) => arc::follow_path(system, start, settings, arc, observe),
+        Method::Flow(flow) => flow::relax_system(system, start, settings, flow, observe),
+        Method::Stable => flow::follow_stable(system, start, settings, observe),
+    }?;
+    Ok(Solution { only_touched, ..found })
 }
 
 fn grow(

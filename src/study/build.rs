@@ -5,6 +5,7 @@ use std::path::Path;
 
 use nalgebra::{Matrix2, Matrix3, Point3, Vector3};
 
+use super::contact::holds_nothing_within;
 use super::{Case, StudyError, drawing, placed, refused};
 use crate::case::{
     Analysis, GuidedSet, Held, Layout, Mounting, Outline, PointOfAction, Prescribed, RigidSet, SectionTable,
@@ -146,7 +147,9 @@ pub(super) fn model_on_mesh(
     let loads = (problem.analysis.loads(), problem.analysis.prescribed());
     let mut mounting = problem.mounting.clone();
     mounting.supports.extend(problem.analysis.supports().iter().cloned());
-    model_of_mesh(case, (sheet, mesh), &mounting, loads, section)
+    let model = model_of_mesh(case, (sheet, mesh), &mounting, loads, section)?;
+    holds_nothing_within(case, &problem.obstacles, &model)?;
+    Ok(model)
 }
 
 /// What each step of a case does to the sheet of its model; nothing without steps.

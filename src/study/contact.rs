@@ -1,12 +1,16 @@
 //! What a sheet touches: itself, and the obstacles of its case.
 
+use std::collections::BTreeSet;
+
 use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
+use super::{Case, StudyError, refused};
 use crate::case::SheetObstacle;
 use crate::finding::{Finding, StudyFact};
 use crate::mesh::{Crossings, QuadMesh, crossings};
-use crate::model::{Model, RigidSurface};
+use crate::model::{Gap, Model, RigidSurface, SurfaceShape};
+use crate::quantity::significant;
 use crate::solve::nonlinear::{ACCEPTED, LayersInTouch, State, Touch, layers_in_touch};
 
 /// What an obstacle bears (SI).
@@ -47,6 +51,59 @@ pub(super) fn surfaces(obstacles: &[SheetObstacle], of_fabric: Option<f64>) -> V
         friction: friction(obstacle, of_fabric),
     });
     surfaces.collect()
+}
+
+/// Refuses supports that hold nodes inside an obstacle, which no contact could push out.
+///
+/// # Errors
+/// S003 at the obstacle.
+pub(super) fn holds_nothing_within(
+    case: &Case,
+    obstacles: &[SheetObstacle],
+    model: &Model,
+) -> Result<(), StudyError> {
+    let held = model.constraints();
+    let is_held = |node: u32, normal: &Vector3<f64>| {
+        (0..3).all(|k| normal[k].abs() < AXIS || held[6 * node as usize + k].is_some())
+    };
+    for obstacle in obstacles {
+        let within = within_at_rest(&obstacle.shape, &model.mesh);
+        if let Some((node, gap)) = within.into_iter().find(|(node, gap)| is_held(*node, &gap.normal)) {
+            let at = model.mesh.nodes[node as usize];
+            let text = format!(
+                "[[obstacles]] `{}` contains a node that a support holds, at ({}, {}, {}) m, {} mm deep: move the obstacle or the support",
+                obstacle.name.value,
+                significant(at.x),
+                significant(at.y),
+                significant(at.z),
+                significant(-1e3 * gap.distance)
+            );
+            return Err(refused(case, &obstacle.name, text));
+        }
+    }
+    Ok(())
+}
+
+/// A component of a normal below this is rounding.
+const AXIS: f64 = 1e-9;
+
+/// The nodes of a sheet that lie inside an obstacle at rest, and how far.
+fn within_at_rest(shape: &SurfaceShape, mesh: &QuadMesh) -> Vec<(u32, Gap)> {
+    let [low, high] = mesh.bounds();
+    let accepted = ACCEPTED * (high - low).norm();
+    let nodes: BTreeSet<u32> = mesh.quads.iter().flatten().copied().collect();
+    let gaps = nodes.into_iter().map(|node| (node, shape.gap(&mesh.nodes[node as usize])));
+    gaps.filter(|(_, gap)| gap.distance < -accepted).collect()
+}
+
+/// S160 of every obstacle that contains a part of the sheet at rest.
+pub(super) fn starts_within(obstacles: &[SheetObstacle], mesh: &QuadMesh) -> Vec<StudyFact> {
+    let depth = |shape| within_at_rest(shape, mesh).iter().map(|(_, gap)| -gap.distance).reduce(f64::max);
+    let facts = obstacles.iter().filter_map(|obstacle| {
+        let obstacle_name = obstacle.name.value.clone();
+        depth(&obstacle.shape).map(|depth| StudyFact::StartsWithin { obstacle: obstacle_name, depth })
+    });
+    facts.collect()
 }
 
 /// What each obstacle bears in a state.

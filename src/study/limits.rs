@@ -4,13 +4,14 @@ use std::collections::HashSet;
 
 use nalgebra::Vector3;
 
+use super::contact::starts_within;
 use super::result::CaseResult;
 use super::{Case, StudyError, drawing};
 use crate::case::{Analysis, Outline, Prescribed, SheetProblem};
 use crate::element::{Bending, Cells, Drilling, Membrane, ShearInterpolation};
 use crate::finding::{Excess, Finding, Place, StudyFact};
 use crate::mesh::{QuadMesh, Unjoined, normal};
-use crate::model::{Dof, Model};
+use crate::model::{Dof, Load, Model};
 
 /// Above this ratio of deflection to bending thickness the sheet's own stretching carries part of
 /// the load: an immovable clamped square is 3 % off at 0.24 and 12 % off at 0.47 (von Karman
@@ -133,6 +134,13 @@ pub(super) fn findings(
     if let Some(set) = extent.flat.then(|| turned_in_plane(problem)).flatten() {
         facts.push(StudyFact::TurnedInPlane { set: set.to_string() });
     }
+    facts.extend(starts_within(&problem.obstacles, &model.mesh));
+    if extent.flat && has_moment_about_normal(model) {
+        facts.push(StudyFact::MomentAboutNormal {});
+    }
+    if let Some(direction) = held_everywhere(model, extent.flat) {
+        facts.push(StudyFact::HeldEverywhere { direction: direction.to_string() });
+    }
     let mut findings: Vec<Finding> =
         facts.into_iter().map(|fact| Finding::new(fact).at(Place::file(&case.path))).collect();
     if let Outline::Drawn(drawn) = &problem.sheet.outline {
@@ -242,6 +250,31 @@ fn turned_in_plane(problem: &SheetProblem) -> Option<&str> {
     let of_body = |p: &Prescribed| problem.mounting.bodies.iter().any(|b| b.name.value == p.set.value);
     let turns = |p: &&Prescribed| p.dof == Dof::ThetaZ && p.value != 0.0 && !of_body(p);
     problem.analysis.all_prescribed().into_iter().find(turns).map(|p| p.set.value.as_str())
+}
+
+/// Whether a moment about z acts on nodes of a sheet that are in no body: only the drilling stiffness takes it to the sheet.
+fn has_moment_about_normal(model: &Model) -> bool {
+    let in_body = |node: &u32| model.bodies.iter().any(|body| body.nodes.contains(node));
+    model.loads.iter().any(|load| match load {
+        Load::Point { nodes, moment, .. } => moment.z != 0.0 && !nodes.iter().all(in_body),
+        Load::Edge { edges, moment, .. } => moment.z != 0.0 && !edges.iter().flatten().all(in_body),
+        Load::Pressure(_) | Load::FollowerPressure(_) | Load::Gravity(_) => false,
+    })
+}
+
+/// A direction in which loads act and every node is held at rest.
+fn held_everywhere(model: &Model, flat: bool) -> Option<&'static str> {
+    let (load, held) = (model.load_vector(), model.constraints());
+    let directions: &[(&[usize], &str)] = match flat {
+        true => &[(&[2], "across the sheet"), (&[0, 1], "in its plane")],
+        false => &[(&[0, 1, 2], "in every direction")],
+    };
+    let is_idle = |dofs: &[usize]| {
+        let loaded = dofs.iter().any(|dof| load.iter().skip(*dof).step_by(6).any(|f| *f != 0.0));
+        let mut nodes = model.mesh.quads.iter().flatten();
+        loaded && nodes.all(|node| dofs.iter().all(|dof| held[6 * *node as usize + dof] == Some(0.0)))
+    };
+    directions.iter().find(|(dofs, _)| is_idle(dofs)).map(|(_, name)| *name)
 }
 
 /// Whether the sheet is pressed in its plane anywhere, beyond rounding.

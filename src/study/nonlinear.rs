@@ -12,7 +12,9 @@ use crate::fields::Locator;
 use crate::finding::{Finding, Place, StudyFact};
 use crate::mesh::QuadMesh;
 use crate::model::Model;
-use crate::solve::nonlinear::{self, Flow, Method, NonlinearError, Obstacle, Settings, State, Step};
+use crate::solve::nonlinear::{
+    self, Flow, Method, NonlinearError, Obstacle, Settings, Stability, State, Step,
+};
 use crate::solve::{self, Solution};
 
 /// What an observer keeps.
@@ -241,9 +243,14 @@ pub(super) fn conclude(
             if solution.residual > UNBALANCED {
                 findings.push(Finding::new(StudyFact::ForcesBelowRounding { residual: solution.residual }));
             }
-            let negative = solution.stability.negative_pivots;
-            if negative > 0 {
-                findings.push(Finding::new(StudyFact::Unstable { directions: negative }));
+            let Stability { negative_pivots, lowest_eigenvalue, indifferent } = solution.stability;
+            if indifferent {
+                findings.push(Finding::new(StudyFact::Indifferent { eigenvalue: lowest_eigenvalue }));
+            } else if negative_pivots > 0 {
+                findings.push(Finding::new(StudyFact::Unstable { directions: negative_pivots }));
+            }
+            if let Some(motion) = solution.only_touched {
+                findings.push(Finding::new(StudyFact::OnlyTouched { motion }));
             }
             if solution.state.factor != 1.0 {
                 path.converged = false;

@@ -259,6 +259,15 @@ impl Sampler<'_> {
         }
         let (spread, single): (Vec<Input>, Vec<Input>) =
             self.inputs.iter().cloned().partition(|i| i.estimate.n > 1 && i.estimate.cv().is_some());
+        if let Some(measured) =
+            self.plan.exact.iter().find(|name| spread.iter().any(|i| i.name == name.value))
+        {
+            let text = format!(
+                "[uncertainty] exact: `{}` has a spread of its own, from its repeats, and counts with it: remove it from the list",
+                measured.value
+            );
+            return Err(refused(self.case, measured, text));
+        }
         for input in single.into_iter().filter(|i| !self.plan.exact.iter().any(|name| name.value == i.name)) {
             let values = self.at(
                 sheet,

@@ -142,6 +142,23 @@ super::facts! {
             /// The set.
             set: String,
         } = "theta_z of set `{set}` turns its nodes, and hardly the sheet: prescribe an in-plane rotation through [[rigid]]";
+        /// A moment about the normal of a flat sheet, on nodes that are in no body.
+        "S158" MomentAboutNormal {} = "a moment about the normal of the sheet turns the nodes that it acts on far more than the sheet: their \
+             theta_z and the energy are not those of the sheet; let it act on a body, [[rigid]], or take forces";
+        /// Loads on a mesh of which nothing can move.
+        "S159" HeldEverywhere {
+            /// The direction, as in "across the sheet".
+            direction: String,
+        } = "every node is held {direction}, where loads act: nothing can move, whatever they are; take more cells, so that there are nodes \
+             between the supports, or hold fewer of them";
+        /// An obstacle that contains a part of the sheet at rest.
+        "S160" StartsWithin {
+            /// Name of the obstacle.
+            obstacle: String,
+            /// How deep (m).
+            depth: f64,
+        } = "`{obstacle}` contains a part of the sheet at rest, {} mm deep: contact pushes it out on the nearest side from the first step on; \
+             move the obstacle if that is not meant", significant(1e3 * depth);
         /// Energies that do not add up.
         "S110" Unbalanced {
             /// The part of the largest work that is missing.
@@ -156,6 +173,18 @@ super::facts! {
             directions: usize,
         } = "the equilibrium is unstable: its energy falls in {directions} direction(s), and a real sheet would leave it; \
              take [analysis] method = \"flow\", or perturbation = 1e-3 with method = \"newton\"";
+        /// An equilibrium beside which there are others.
+        "S156" Indifferent {
+            /// The lowest eigenvalue of the tangent (N/m³).
+            eigenvalue: f64,
+        } = "the equilibrium is indifferent: a motion of the sheet meets no resistance (its eigenvalue of {eigenvalue:.1e} N/m³ is rounding), \
+             so that how far it has gone is arbitrary; add a support that stops it, or a load that turns it back, such as its weight";
+        /// A sheet that no support holds across its loads.
+        "S157" OnlyTouched {
+            /// The motion.
+            motion: String,
+        } = "no support stops {motion}, obstacles alone do: where the sheet comes to rest along it depends on friction, on the way there and \
+             on rounding; hold a node that should stay, or read the place as one of many";
         /// An equilibrium whose forces do not cancel.
         "S127" ForcesBelowRounding {
             /// Unbalanced forces, relative to loads or reactions.

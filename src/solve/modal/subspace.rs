@@ -64,6 +64,9 @@ pub(in crate::solve) fn of_either_sign(
     count: usize,
 ) -> Result<(Vec<f64>, DMatrix<f64>), SolveError> {
     let free = held.iter().filter(|held| !**held).count();
+    if free == 0 {
+        return Ok((Vec::new(), DMatrix::zeros(held.len(), 0)));
+    }
     let (values, vectors) = if DENSE * columns(count) > free {
         let (inverse, vectors) = super::dense::of_either_sign(a, b, held).map_err(SolveError::Factor)?;
         let (values, vectors) = nearest_first(&inverse, &vectors);

@@ -51,6 +51,9 @@ pub fn buckles(
 ) -> Result<Vec<Buckle>, NonlinearError> {
     let system = about(carried, model, settings, plan, options)?;
     let state = &carried.state;
+    if state.position == model.mesh.nodes {
+        system.is_supported()?;
+    }
     let balance = system.balance(state, None);
     let (stiffness, push) = system.tangent(state, &balance, &balance.forces(), 0.0);
     let analysis = &plan.groups[0].1;
@@ -66,6 +69,10 @@ pub fn buckles(
     solved(&system, &stiffness, &answer, &load)?;
     for d in (0..answer.len()).filter(|d| system.held[*d]) {
         answer[d] = system.values[d];
+    }
+    // Nothing grows, or nothing can move.
+    if answer.iter().all(|u| *u == 0.0) {
+        return Ok(Vec::new());
     }
     let quads = 0..model.mesh.quads.len();
     let forces = quads.map(|q| system.change(state, &balance, &answer, q)).collect();

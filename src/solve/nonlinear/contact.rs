@@ -56,6 +56,13 @@ pub(super) struct Surfaces<'a> {
     touch: f64,
 }
 
+impl Surfaces<'_> {
+    /// Whether there is no surface.
+    pub fn are_none(&self) -> bool {
+        self.surfaces.is_empty()
+    }
+}
+
 /// A node at a surface.
 pub(super) struct Press {
     pub node: usize,

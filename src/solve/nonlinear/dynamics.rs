@@ -49,6 +49,9 @@ use crate::solve::plan::Plan;
 use crate::solve::sparse::BlockMatrix;
 use crate::solve::{SolveError, StepLimit};
 
+/// Part of the energy at the start that is set free by what its equilibrium leaves unbalanced, with a margin.
+const UNBALANCED: f64 = 1e-7;
+
 /// What to integrate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dynamics {
@@ -128,8 +131,9 @@ pub fn integrate_with(
     let mut largest = tolerance.map_or(Ok(0.0), |_| motion.reach(&now))?;
     // What supports that move from the first instant on have given by then.
     let kinetic = motion.kinetic(&now);
-    let (mut energy, mut guard) =
-        (Energy { kinetic, work: kinetic, ..Energy::default() }, Guard::new(dynamics.duration, step));
+    let mut energy = Energy { kinetic, work: kinetic, ..Energy::default() };
+    let least = UNBALANCED * began.abs() + system.energy_of_rounding();
+    let mut guard = Guard::new(dynamics.duration, step, least);
     let show = |time, now: &Now, energy: Energy, observe: &mut dyn FnMut(&Instant<'_>) -> ControlFlow<()>| {
         let energy = Energy { strain: energy.strain + began, work: energy.work + began, ..energy };
         observe(&Instant { time, displacement: &now.state.displacement(&model.mesh), energy })

@@ -7,7 +7,7 @@
 use std::ops::ControlFlow;
 
 use super::system::{Before, System};
-use super::{Method, NonlinearError, Settings, Solution, State, Step, arc, flow, grow};
+use super::{Method, NonlinearError, Settings, Solution, State, Step, go_on};
 use crate::model::{Model, Support};
 use crate::solve::linear::Options;
 use crate::solve::plan::Plan;
@@ -91,12 +91,7 @@ pub fn continue_from(
     system.before = Some(Before { load, pressure: carried.pressure, scale: 0.0 });
     let scale = system.balance(&start, None).scale;
     system.before.iter_mut().for_each(|before| before.scale = scale);
-    let found = match step.method {
-        Method::Newton(perturbation) => grow(&system, start, step.settings, *perturbation, observe),
-        Method::ArcLength(arc) => arc::follow_path(&system, start, step.settings, arc, observe),
-        Method::Flow(flow) => flow::relax_system(&system, start, step.settings, flow, observe),
-        Method::Stable => flow::follow_stable(&system, start, step.settings, observe),
-    }?;
+    let found = go_on(&system, start, step.settings, step.method, observe)?;
     let next = Carried {
         state: State { factor: 0.0, ..found.state.clone() },
         load: step.model.dead_load_vector(),

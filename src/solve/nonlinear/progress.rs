@@ -46,6 +46,8 @@ pub struct Solution {
     pub stability: Stability,
     /// Factors of the last stable equilibria before those that were left because they were not; of [`Method::Stable`](super::Method::Stable) only.
     pub stability_lost_at: Vec<f64>,
+    /// A displacement of a part of the sheet, across its loads, that only surfaces can stop.
+    pub only_touched: Option<String>,
 }
 
 /// What a search has done so far.
@@ -108,6 +110,7 @@ impl Progress {
             iterations: self.iterations,
             stability: stability::check(system, &state, balance)?.0,
             stability_lost_at: Vec::new(),
+            only_touched: None,
             state,
         })
     }

@@ -14,6 +14,9 @@ use crate::solve::sparse::BlockMatrix;
 const ROUNDS: usize = 60;
 const SETTLED: f64 = 1e-4;
 
+/// An eigenvalue below this part of the largest is rounding.
+const INDIFFERENT: f64 = 1e-13;
+
 /// How an equilibrium answers to a small push.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -23,6 +26,9 @@ pub struct Stability {
     /// Lowest eigenvalue of the tangent per area of the sheet (N/m³), to about three digits;
     /// rotations count with the area times a twelfth of the element's area.
     pub lowest_eigenvalue: f64,
+    /// Whether that is rounding beside the largest: the sheet may move so without resistance, and where it is is arbitrary.
+    #[serde(default)]
+    pub indifferent: bool,
 }
 
 impl Stability {
@@ -62,7 +68,8 @@ pub(super) fn check(
         factor = tangent(shift).map_err(SolveError::Factor)?.1;
     }
     let (lowest_eigenvalue, shape) = inverse_iteration(system, &matrix, &factor);
-    Ok((Stability { negative_pivots, lowest_eigenvalue }, shape))
+    let indifferent = lowest_eigenvalue.abs() < INDIFFERENT * system.stiffest();
+    Ok((Stability { negative_pivots, lowest_eigenvalue, indifferent }, shape))
 }
 
 /// Directions in which a sheet under the displacements of a linear solution (six a node) has lost its stiffness: above

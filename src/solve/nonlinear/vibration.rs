@@ -53,6 +53,9 @@ pub fn vibrations(
     let mut matrix = BlockMatrix::zeros(Arc::clone(&plan.pattern.graph), 6);
     Inertia::new(&system, mass).add(&system, state, 1.0, &mut matrix);
     let (shift, shifted, factor) = definite(&system, stiffness, &matrix)?;
+    if system.held.iter().all(|held| *held) {
+        return Ok(Vec::new());
+    }
     let massive =
         (0..system.held.len()).filter(|d| !system.held[*d] && matrix.values[matrix.diagonal(*d)] > 0.0);
     let moving = massive.filter(|d| d % 6 < 3).count();

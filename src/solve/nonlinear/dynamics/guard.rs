@@ -29,9 +29,10 @@ pub struct Guard {
 }
 
 impl Guard {
-    pub fn new(duration: f64, step: f64) -> Self {
+    /// `least` is an energy (J) beside which rounding is small: a sheet that stays where it is has no other.
+    pub fn new(duration: f64, step: f64, least: f64) -> Self {
         let remaining = (ATTEMPTS * duration / step).max(LEAST_ATTEMPTS) as usize;
-        Self { duration, remaining, largest: 0.0, cause: StepLimit::Tolerance }
+        Self { duration, remaining, largest: least, cause: StepLimit::Tolerance }
     }
 
     /// Counts an attempt at a time.
@@ -86,7 +87,7 @@ mod tests {
 
     #[test]
     fn energy_from_nowhere_takes_a_step_back() {
-        let mut guard = Guard::new(1.0, 0.1);
+        let mut guard = Guard::new(1.0, 0.1, 0.0);
         let now = energy(1.0, 1.0);
         guard.keep(&now);
         assert!(!guard.refuses(&now, &energy(1.509, 1.5), false));
@@ -100,12 +101,20 @@ mod tests {
         assert!(!guard.refuses(&now, &energy(1.491, 1.5), true));
     }
 
+    /// A sheet that starts in equilibrium and stays there.
+    #[test]
+    fn rounding_is_no_energy_from_nowhere() {
+        let rounding = energy(1e-18, 0.0);
+        assert!(Guard::new(1.0, 0.1, 0.0).refuses(&Energy::default(), &rounding, true));
+        assert!(!Guard::new(1.0, 0.1, 1e-13).refuses(&Energy::default(), &rounding, true));
+    }
+
     #[test]
     fn attempts_end() {
-        let mut guard = Guard::new(1.0, 0.1);
+        let mut guard = Guard::new(1.0, 0.1, 0.0);
         let kept = (0..).take_while(|_| guard.attempt(0.5).is_ok()).count();
         assert_eq!(kept, 10_000);
-        let mut guard = Guard::new(1.0, 1e-3);
+        let mut guard = Guard::new(1.0, 1e-3, 0.0);
         let mut step = Ok(1e-3);
         let mut halvings = 0;
         while let Ok(length) = step {
