@@ -121,7 +121,8 @@ fn loads_on_a_mesh_that_is_held_everywhere_are_told() {
 fn moments_about_the_normal_are_told_unless_a_body_takes_them() {
     let held =
         fix("all", "\"w\", \"theta_x\", \"theta_y\"") + "[[supports]]\nset = \"left\"\nkind = \"clamped\"\n";
-    let moment = "[[loads]]\nkind = \"point\"\nset = \"right\"\nvalue = \"1e-4 N·m\"\ndirection = [0, 0, 1]\n";
+    let moment =
+        "[[loads]]\nkind = \"point\"\nset = \"right\"\nvalue = \"1e-4 N·m\"\ndirection = [0, 0, 1]\n";
     assert!(codes(&solved([8, 4], &format!("{held}{moment}")).unwrap()).contains(&"S158"));
     let body = "[[rigid]]\nname = \"bar\"\nset = \"right\"\n";
     let of_body = moment.replace("set = \"right\"", "set = \"bar\"");

@@ -42,7 +42,9 @@ pub struct ProbePoint {
 pub(super) struct CheckTable {
     /// `w_max`, `strain_energy`, `frequency_1` ..., `load_factor_1` ..., those of a step as `<step>.frequency_1`, or `<probe>.<u|v|w|theta_x|...|moment_x|membrane_x|shear_x ...>`. `w_max` is the
     /// largest displacement along z, whatever the plane of the sheet. Moments, membrane and shear forces are per width and along
-    /// the yarns at rest, x the warp and y the weft; displacements and rotations are along the axes of the case.
+    /// the yarns at rest, x the warp and y the weft; displacements and rotations are along the axes of the case. In a motion `w_max` is
+    /// the largest at any instant, and all else that of its end. Rotations in large rotations are vectors of half a turn at most: one of
+    /// 270 deg about an axis is one of -90 deg.
     #[cfg_attr(test, schemars(example = &"centre.w"))]
     quantity: String,
     /// Expected value with unit; a frequency in `rad/s` is an angular one.
@@ -127,7 +129,15 @@ pub(super) fn checks(
 
 impl CheckTable {
     fn check(&self, at: &Node<'_>, analysis: &Analysis, probes: &[ProbePoint]) -> Result<Check, CaseError> {
-        let (number, given) = parse_quantity(&self.expected, "3.1 mm")
+        let unit = unit_of(&self.quantity, analysis, probes);
+        // A number without a dimension needs no unit.
+        let plain =
+            self.expected.trim().parse().ok().filter(|number: &f64| number.is_finite() && unit == Some("1"));
+        let (number, given) = plain
+            .map_or_else(
+                || parse_quantity(&self.expected, "3.1 mm"),
+                |number| Ok((number, Unit::parse("1")?)),
+            )
             .or_else(|e| refused(at.value_place("expected"), format!("check of {}: {e}", self.quantity)))?;
         if number == 0.0 {
             let message = format!(
@@ -144,7 +154,7 @@ impl CheckTable {
             );
             return refused(at.value_place("relative_tolerance"), message);
         }
-        let Some(unit) = unit_of(&self.quantity, analysis, probes) else {
+        let Some(unit) = unit else {
             let names: Vec<&str> = probes.iter().map(|p| p.name.as_str()).collect();
             let message = format!(
                 "there is no quantity `{}` to check: take w_max, strain_energy, frequency_1 ..., load_factor_1 ... (of a step: STEP.frequency_1), or PROBE.COMPONENT with the probes [{}] and \
@@ -176,10 +186,12 @@ impl CheckTable {
 /// SI unit of a quantity by name, if an analysis with these probes has it.
 pub(crate) fn unit_of(quantity: &str, analysis: &Analysis, probes: &[ProbePoint]) -> Option<&'static str> {
     match quantity {
-        "w_max" => return Some("m"),
-        "strain_energy" => {
-            return (!matches!(analysis, Analysis::Modal(_) | Analysis::Buckling(_))).then_some("J");
+        // Shapes of modes and of buckling have no size.
+        "w_max" | "strain_energy" if matches!(analysis, Analysis::Modal(_) | Analysis::Buckling(_)) => {
+            return None;
         }
+        "w_max" => return Some("m"),
+        "strain_energy" => return Some("J"),
         _ => {}
     }
     let wanted = match analysis {

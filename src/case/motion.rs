@@ -26,7 +26,8 @@ pub(super) struct NewmarkTable {
     /// errors of the steps add up, over a few periods to about its power 2/3.
     #[cfg_attr(test, schemars(example = 1e-3))]
     tolerance: Option<f64>,
-    /// Damping ratios of the first and the third natural frequency; undamped when left out.
+    /// Damping ratios of the first and the third natural frequency; undamped when left out. Rayleigh's damping brakes rigid motions as
+    /// well, as a medium would: a sheet that falls free falls more slowly with it.
     #[cfg_attr(test, schemars(extend("examples" = [[0.02, 0.02]])))]
     #[serde(default, deserialize_with = "optional_array")]
     damping: Option<[f64; 2]>,
@@ -212,8 +213,11 @@ impl NewmarkTable {
         let velocity = self.start_velocity.map_or(0.0, Velocity::si);
         let beginning = Beginning { deflected: self.start == StartingShape::Deflected, velocity };
         if self.load == "off" && beginning == Beginning::default() && !goes_on {
-            let message =
-                "load = \"off\" lets nothing act: give start = \"deflected\" or a start_velocity too";
+            let message = if self.large_rotations {
+                "load = \"off\" lets nothing act, so that the sheet stays at rest: give a load, or let the motion follow a static step, in [[steps]]"
+            } else {
+                "load = \"off\" lets nothing act: give start = \"deflected\" or a start_velocity too"
+            };
             return refused(at.value_place("load"), message);
         }
         Ok(beginning)

@@ -168,12 +168,11 @@ fn torsion(
             return Ok((0.0, assumed("neglected, as Nguyen-Trong et al. allow")));
         }
     };
-    notes.positive(
-        "the torsional rigidity D66",
-        d66,
-        "N·m",
-        "choose torsion = \"huber\" or a value, or lower the bending coupling",
-    )?;
+    let cure = match torsion {
+        Torsion::Huber => "the bending coupling D12 is not below √(B1 B2): lower it, or give torsion a value",
+        _ => "choose torsion = \"huber\" or a value, or lower the bending coupling",
+    };
+    notes.positive("the torsional rigidity D66", d66, "N·m", cure)?;
     let times = d66 / (b1 * b2).sqrt();
     if times > STIFF_TORSION {
         notes.finding(SectionFact::StiffTorsion { fabric: notes.fabric(), times });

@@ -54,7 +54,13 @@ pub(super) fn in_plane(assumptions: &Assumptions, notes: &mut Notes) -> Result<f
             }
         },
     };
-    notes.positive("the shear stiffness G", g, "N/m", "look at the shear chart and its window")?;
+    let cure = match tension {
+        0.0 => "look at the shear chart and its window",
+        _ => {
+            "the tension that is taken off it is larger: lower `shear_tension`, or look at the shear chart and its window"
+        }
+    };
+    notes.positive("the shear stiffness G", g, "N/m", cure)?;
     notes.used("shear stiffness G", format!("{} N/m", significant(g)), source);
     Ok(g)
 }

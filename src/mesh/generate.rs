@@ -89,7 +89,13 @@ pub fn graded_annulus(
     [radial, around]: [usize; 2],
     grading: f64,
 ) -> Result<QuadMesh, MeshError> {
-    positive("the grading of the cells along the radius", grading)?;
+    if !(grading.is_finite() && grading > 0.0) {
+        let what = format!(
+            "the grading of the cells along the radius is {grading}: it must be a positive number, the size of the \
+                            outermost cell over the innermost"
+        );
+        return Err(MeshError::Parameters { what });
+    }
     positive("the inner radius", inner)?;
     positive("the width of the ring (outer - inner radius)", outer - inner)?;
     at_least("the number of cells along the radius", radial, 1)?;

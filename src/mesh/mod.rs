@@ -290,6 +290,9 @@ impl QuadMesh {
     }
 }
 
+/// A corner whose Jacobian is below this part of the mean makes the map singular in practice.
+const SINGULAR: f64 = 1e-3;
+
 /// What is wrong with the shape of a quad, and its smallest corner Jacobian over the mean of the four, or of a triangle its height
 /// over its longest side.
 fn defect(quad: &[u32; 4], c: &[Point3<f64>; 4]) -> Option<(&'static str, f64)> {
@@ -306,14 +309,13 @@ fn defect(quad: &[u32; 4], c: &[Point3<f64>; 4]) -> Option<(&'static str, f64)> 
     let size = (0..4).map(|i| (c[(i + 1) % 4] - c[i]).norm()).fold(0.0, f64::max);
     let mean = jacobians.iter().sum::<f64>() / 4.0;
     let smallest = jacobians.iter().copied().fold(f64::INFINITY, f64::min);
-    // A corner whose Jacobian is below a thousandth of the mean makes the map singular in practice.
     let what = if mean.is_nan() || mean <= 1e-9 * size * size {
         "degenerate"
     } else if jacobians.iter().filter(|j| **j < 0.0).count() > 1 {
         "inverted"
     } else if smallest < 0.0 {
         "non-convex"
-    } else if smallest < 1e-3 * mean {
+    } else if smallest < SINGULAR * mean {
         "degenerate"
     } else {
         return None;
@@ -327,6 +329,11 @@ fn shape_message(quad: usize, nodes: &[u32; 4], what: &str, ratio: f64) -> Strin
             "triangle {quad} (nodes {:?}) is {what}: its height is {ratio:.1e} of its longest side; \
              its corners must not lie in a line",
             nodes_of(nodes)
+        );
+    }
+    if what == "degenerate" && ratio > SINGULAR {
+        return format!(
+            "quad {quad} (nodes {nodes:?}) is {what}: its area is nothing beside the square of its longest side"
         );
     }
     format!(

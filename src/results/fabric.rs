@@ -45,6 +45,9 @@ pub struct FabricReport {
     pub deflections: Vec<(String, f64)>,
     /// Case and largest deflection over the bending thickness, of linear solves.
     pub relative_deflections: Vec<(String, f64)>,
+    /// Case and lowest frequency (Hz), or load factor nearest to zero, of modes and of buckling.
+    #[serde(default)]
+    pub eigenvalues: Vec<(String, f64)>,
     /// Title, weave, composition and origin, for people.
     pub about: String,
     /// What `fabric.toml` says; nothing of a fabric that could not be read.
@@ -221,7 +224,12 @@ impl FabricReport {
     }
 
     fn add_deflection(&mut self, result: &CaseResult) {
-        self.deflections.push((result.case.clone(), result.w_max));
+        if result.is_modal() {
+            let first = result.frequencies.first().or(result.load_factors.first());
+            self.eigenvalues.extend(first.map(|value| (result.case.clone(), *value)));
+        } else {
+            self.deflections.push((result.case.clone(), result.w_max));
+        }
         let is_linear = !result.is_modal() && result.path.is_none() && result.history.is_none();
         if is_linear && result.w_over_thickness.is_finite() {
             self.relative_deflections.push((result.case.clone(), result.w_over_thickness));

@@ -29,7 +29,7 @@ pub(super) const HEADINGS: [&str; 9] = [
 pub(super) const CAPTION: &str = "B in gf·cm²/cm, G in gf/(cm·deg); E is the tangent at low load, or the secant where that is written; ? is doubtful, * rests on an assumption, ~ is inferred";
 
 /// What the columns of predictions are.
-const PREDICTIONS: &str = "drape coefficients in %, bending lengths of cantilevers in mm, largest deflections in mm or over the bending thickness t_b (a linear solve means something below 0.3)";
+const PREDICTIONS: &str = "drape coefficients in %, bending lengths of cantilevers in mm, largest deflections in mm or over the bending thickness t_b (a linear solve means something below 0.3), lowest frequencies in Hz";
 
 /// B, G, E, T, W: KES units, except E in N/m.
 pub(super) fn cells(sheet: &FabricSheet) -> Vec<String> {
@@ -73,6 +73,10 @@ enum Prediction<'c> {
     Relative(&'c str),
     /// Largest deflection.
     Deflection(&'c str),
+    /// The lowest frequency.
+    Frequency(&'c str),
+    /// The load factor of buckling nearest to zero.
+    LoadFactor(&'c str),
 }
 
 impl<'c> Prediction<'c> {
@@ -87,10 +91,12 @@ impl<'c> Prediction<'c> {
             Problem::BendingTest(BendingTest::Cantilever(_)) => [Direction::Warp, Direction::Weft]
                 .map(|direction| Self::BendingLength(name, direction))
                 .into(),
-            Problem::Sheet(sheet) if matches!(sheet.analysis, Analysis::Linear(_)) => {
-                vec![Self::Relative(name)]
-            }
-            Problem::Sheet(_) => vec![Self::Deflection(name)],
+            Problem::Sheet(sheet) => vec![match sheet.analysis {
+                Analysis::Linear(_) => Self::Relative(name),
+                Analysis::Modal(_) => Self::Frequency(name),
+                Analysis::Buckling(_) => Self::LoadFactor(name),
+                Analysis::Newmark(_) | Analysis::Nonlinear(_) | Analysis::Steps(_) => Self::Deflection(name),
+            }],
             Problem::BendingTest(BendingTest::HeartLoop { .. } | BendingTest::FabBendLoop { .. })
             | Problem::InstrumentTest(_) => Vec::new(),
         }
@@ -101,7 +107,7 @@ impl<'c> Prediction<'c> {
         match self {
             Self::Drape(..) => 0,
             Self::BendingLength(..) => 1,
-            Self::Relative(_) | Self::Deflection(_) => 2,
+            Self::Relative(_) | Self::Deflection(_) | Self::Frequency(_) | Self::LoadFactor(_) => 2,
         }
     }
 
@@ -112,6 +118,8 @@ impl<'c> Prediction<'c> {
             Self::BendingLength(case, direction) => format!("{case} {direction} (mm)"),
             Self::Relative(case) => format!("{case} (w/t_b)"),
             Self::Deflection(case) => format!("w_max {case} (mm)"),
+            Self::Frequency(case) => format!("frequency_1 {case} (Hz)"),
+            Self::LoadFactor(case) => format!("load_factor_1 {case}"),
         }
     }
 
@@ -130,6 +138,7 @@ impl<'c> Prediction<'c> {
             }
             Self::Relative(case) => of_case(&report.relative_deflections, case),
             Self::Deflection(case) => of_case(&report.deflections, case).map(|w| 1e3 * w),
+            Self::Frequency(case) | Self::LoadFactor(case) => of_case(&report.eigenvalues, case),
         };
         value.map_or("-".into(), significant)
     }

@@ -22,6 +22,10 @@ const LINEAR_LIMIT: f64 = 0.3;
 /// that order, and what they neglect of its square.
 const DISPLACEMENT_LIMIT: f64 = 0.1;
 
+/// Above this strain along a yarn, twice what cloth has at the end of KES-FB1, neither the modulus nor the small strains in the frames
+/// of the elements say how it goes on.
+const STRAIN_LIMIT: f64 = 0.2;
+
 /// Compression below this part of the largest membrane force is that of rounding.
 const COMPRESSED: f64 = 1e-6;
 
@@ -291,6 +295,17 @@ pub(super) fn is_compressed(result: &CaseResult, extent: &Extent) -> Result<bool
     let forces = result.nodal()?.iter().map(|r| principal(r.membrane));
     let [low, high] = forces.fold([0.0f64; 2], |[low, high], [a, b]| [low.min(a), high.max(b)]);
     Ok(low < -COMPRESSED * high.max(-low))
+}
+
+/// S161 of a sheet in large rotations that is stretched beyond what a modulus can say.
+pub(super) fn stretched(result: &CaseResult) -> Result<Option<StudyFact>, StudyError> {
+    if result.state.is_none() || result.law.is_some() {
+        return Ok(None);
+    }
+    let Some(compliance) = result.model.section.d_m.try_inverse() else { return Ok(None) };
+    let strains = result.nodal()?.iter().map(|r| (compliance * Vector3::from(r.membrane)).xy().abs().max());
+    let strain = strains.fold(0.0, f64::max);
+    Ok((strain > STRAIN_LIMIT).then_some(StudyFact::LargeStrain { strain }))
 }
 
 /// The finding of a sheet that would buckle.

@@ -7,7 +7,7 @@ use super::contact::contacts;
 use super::dynamics::{dynamics, is_out_of_time, rayleigh};
 use super::eigen_steps::buckling_of;
 use super::finite::finite;
-use super::limits::{Beyond, buckles, findings, is_compressed};
+use super::limits::{Beyond, buckles, findings, is_compressed, stretched};
 use super::load_steps::load_steps;
 use super::mesh_series::Convergence;
 use super::nonlinear::{equilibrium, largest_w};
@@ -94,6 +94,8 @@ impl PreparedCase<'_> {
             None => (self.results(section, fabric, inputs, watch)?, None),
         };
         finer.as_ref().unwrap_or(self).examine(&mut result)?;
+        let stretched = stretched(&result)?;
+        result.findings.extend(stretched.map(|fact| Finding::new(fact).at(Place::file(&case.path))));
         if !self.coarser.is_empty() && result.status != Status::NotConverged {
             self.compare_meshes(&mut result, fabric, watch)?;
         }

@@ -185,6 +185,12 @@ super::facts! {
             motion: String,
         } = "no support stops {motion}, obstacles alone do: where the sheet comes to rest along it depends on friction, on the way there and \
              on rounding; hold a node that should stay, or read the place as one of many";
+        /// A sheet in large rotations with large strains.
+        "S161" LargeStrain {
+            /// The largest strain along a yarn.
+            strain: f64,
+        } = "the sheet is stretched by {:.0} % along its yarns: the modulus of the section holds for small strains, and so does the element in \
+             its frame; lower the load, or take tensile_law = \"curve\" with a measured fabric", 100.0 * strain;
         /// An equilibrium whose forces do not cancel.
         "S127" ForcesBelowRounding {
             /// Unbalanced forces, relative to loads or reactions.
@@ -480,6 +486,9 @@ fn energies(imbalance: f64, given: f64) -> String {
     }
 }
 
+/// Factors of a load that a sentence lists.
+const LISTED: usize = 4;
+
 fn buckled(factors: &[f64], unstable_w_max: Option<f64>) -> String {
     let places: Vec<String> = factors.iter().map(|f| format!("{f:.4}")).collect();
     let what = match unstable_w_max {
@@ -489,7 +498,14 @@ fn buckled(factors: &[f64], unstable_w_max: Option<f64>) -> String {
     if places.is_empty() {
         what
     } else {
-        format!("{what}, the sheet leaves it after {} of the load", places.join(", "))
+        let further = match places.len().saturating_sub(LISTED) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        format!(
+            "{what}, the sheet leaves it after {}{further} of the load",
+            places[..places.len().min(LISTED)].join(", ")
+        )
     }
 }
 

@@ -79,7 +79,7 @@ pub struct QuantityEntry {
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct ResultsEntry {
     w_max: QuantityEntry,
-    w_over_bending_thickness: f64,
+    w_over_bending_thickness: Option<f64>,
     probes: IndexMap<String, ProbeEntry>,
     /// Sums over the supports; a motion in time and a mode have none.
     reactions: Option<[f64; 3]>,
@@ -180,8 +180,9 @@ fn results(task: &Task, result: &CaseResult) -> ResultsEntry {
     // A warp direction that an element does not have was an error before.
     let error = result.error_estimate().ok().flatten();
     ResultsEntry {
-        w_max: QuantityEntry { value: result.w_max, unit: "m".into() },
-        w_over_bending_thickness: result.w_over_thickness,
+        // The shape of a mode has no size.
+        w_max: QuantityEntry { value: result.w_max, unit: if result.is_modal() { "1" } else { "m" }.into() },
+        w_over_bending_thickness: (!result.is_modal()).then_some(result.w_over_thickness),
         probes: result.probes.iter().map(|p| (p.name.clone(), ProbeEntry::new(p))).collect(),
         reactions: reactions.map(|[force, _]| force.into()),
         reaction_moments: reactions.map(|[_, moment]| moment.into()),

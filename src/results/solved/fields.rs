@@ -1,7 +1,7 @@
 //! Fields of a solved case: the VTU file, and the chart of its deflection.
 
 use crate::fields::{Resultants, warp_directions};
-use crate::quantity::Curve;
+use crate::quantity::{Curve, significant};
 use crate::report::chart::FieldPlot;
 use crate::report::vtu::{MeshField, vtu};
 use crate::results::failure::Failure;
@@ -40,6 +40,21 @@ pub fn mesh_fields<'a>(fields: &'a [Field<'a>]) -> Vec<MeshField<'a>> {
         .iter()
         .map(|(name, components, values)| MeshField { name, components: *components, values })
         .collect()
+}
+
+/// A quantity of a motion with its instant: the largest deflection of the tables is that of all instants.
+fn at_the_end(quantity: &str, result: &CaseResult) -> String {
+    let end = result.history.as_ref().and_then(|history| history.time.last());
+    end.map_or_else(|| quantity.to_string(), |time| format!("{quantity} at {} s", significant(*time)))
+}
+
+/// What the shape of a mode or of buckling is called, which has no size.
+fn shape_of(result: &CaseResult) -> Option<String> {
+    let frequency = result.frequencies.first().map(|f| format!("mode 1, {} Hz", significant(*f)));
+    let factor =
+        || result.load_factors.first().map(|f| format!("buckling at load factor {}", significant(*f)));
+    let name = frequency.or_else(factor).filter(|_| result.is_modal())?;
+    Some(format!("Shape of {name}, largest displacement 1"))
 }
 
 /// Whether a sheet only stretches and shears: no point of it moves out of its plane by more than a millionth of what it moves within.
@@ -119,12 +134,16 @@ impl Mesh {
         } else {
             ("Deflection w", &self.w, result.profile.clone())
         };
+        let (quantity, unit) = match shape_of(result) {
+            Some(shape) => (shape, ""),
+            None => (at_the_end(quantity, result), "m"),
+        };
         FieldPlot {
             title: task.case.title.clone(),
             subtitle: format!("{fabric}; {} elements, {cells} each", self.quads.len()),
             origin: task.simulated_from(),
-            quantity: quantity.into(),
-            unit: "m".into(),
+            quantity,
+            unit: unit.into(),
             nodes: &self.nodes,
             quads: &self.quads,
             values,
