@@ -120,7 +120,7 @@ pub fn make_part(
     force: bool,
     fresh: bool,
     threads: Option<usize>,
-) -> PyResult<(bool, usize, usize, usize, usize)> {
+) -> PyResult<((bool, usize, usize, usize, usize), (usize, usize, bool))> {
     let (settings, drape, shard) = making;
     let follower = Follower { progress: None, threads };
     let (done, _) = follow(py, &follower, move |observer| {
@@ -130,7 +130,10 @@ pub fn make_part(
         let settings = RunSettings { drapes: Drapes::asked(drape), fresh, ..RunSettings::default() };
         make(&Request { job: &job, settings: &settings, folder: &folder, force }, whole, observer)
     })?;
-    Ok((done.kept, done.fabrics, done.rows, done.findings, done.failures))
+    Ok((
+        (done.kept, done.fabrics, done.rows, done.findings, done.failures),
+        (done.useful, done.numerical, done.fails_a_check),
+    ))
 }
 
 /// The files of a part by their names, in the order of writing.

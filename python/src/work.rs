@@ -22,6 +22,9 @@ const INTERVAL: Duration = Duration::from_millis(50);
 /// How long work that was told to end is waited for: short, as a person waits too.
 const GRACE: Duration = Duration::from_millis(100);
 
+/// Most threads that a caller may ask for.
+const MOST_THREADS: usize = 1024;
+
 /// What the caller wants of the work beside its result.
 pub struct Follower {
     /// Called with what is done, how many steps are done and how many there are.
@@ -48,6 +51,17 @@ static THREADS: Mutex<Option<Threads>> = Mutex::new(None);
 /// Number of threads where none is asked for.
 pub fn threads(asked: Option<usize>) -> usize {
     asked.or_else(|| std::thread::available_parallelism().ok().map(usize::from)).unwrap_or(1).max(1)
+}
+
+/// Number of threads of a caller, as the command takes it.
+fn bounded(asked: Option<usize>) -> Result<usize, Failure> {
+    match asked {
+        Some(count) if !(1..=MOST_THREADS).contains(&count) => Err(Failure::new(
+            "O050",
+            format!("threads = {count}: a number of threads is 1 to {MOST_THREADS}"),
+        )),
+        asked => Ok(threads(asked)),
+    }
 }
 
 /// The pool of so many threads. A process that was forked has none of its parent's threads and gets its own.
@@ -86,7 +100,7 @@ pub fn follow<T: Send + 'static>(
     follower: &Follower,
     work: impl FnOnce(&Observer<'_>) -> Result<T, Failure> + Send + 'static,
 ) -> PyResult<(T, Messages)> {
-    let pool = pool(threads(follower.threads)).or_raise(py)?;
+    let pool = bounded(follower.threads).and_then(pool).or_raise(py)?;
     let cancelled = Arc::new(AtomicBool::new(false));
     let (sender, receiver) = mpsc::channel();
     let worker = {

@@ -162,3 +162,35 @@ def test_other_processes_work_too(method: str) -> None:
     with multiprocessing.get_context(method).Pool(2) as pool:
         results = pool.map_async(rigidity, paths).get(timeout=120)
     assert results == [rigidity(path) for path in paths]
+
+
+def test_a_number_of_threads_is_one_to_a_thousand() -> None:
+    for threads in (0, 1025, 10**6):
+        with pytest.raises(kesf.KesfError, match="a number of threads is 1 to 1024"):
+            kesf.read("kesf_data/petrak_m1", threads=threads)
+
+
+def test_a_pair_of_a_name_and_bytes_is_one_file() -> None:
+    name = "poplin_warp_FB2_1.csv"
+    pair = (name, Path("kesf_data/poplin", name).read_bytes())
+    one, listed = (kesf.read(inputs)[0].measurements[0] for inputs in (pair, [pair]))
+    assert one.y.tolist() == listed.y.tolist()
+
+
+def test_an_evaluation_of_a_shard_says_how_it_ended(tmp_path: Path) -> None:
+    check = Path("cases/benchmark_clamped_isotropic.toml").read_text(encoding="utf-8")
+    case = tmp_path / "bench.toml"
+    case.write_text(check.replace('expected = "', 'expected = "9'), encoding="utf-8")
+    thin = tmp_path / "thin"
+    thin.mkdir()
+    (thin / "results.csv").write_text("parameter,direction,mean,sd,n,unit,status\nT0,,0.3,,,mm,\n", encoding="utf-8")
+
+    def ended(*inputs: object) -> int:
+        command = [sys.executable, "-m", "kesf", "evaluate", *map(str, inputs), "-o", str(tmp_path / "parts")]
+        return subprocess.run(command, capture_output=True, check=False).returncode
+
+    assert ended("kesf_data/petrak_m1", "--cases", case) == 1
+    # The part is there already, and its check does not hold either.
+    assert ended("kesf_data/petrak_m1", "--cases", case) == 1
+    assert ended("kesf_data/petrak_m1") == 0
+    assert ended(thin) == 1

@@ -188,6 +188,22 @@ impl NonlinearTable {
         if let Some((key, _)) = fractions.into_iter().find(beyond) {
             return refused(at.value_place(key), format!("[analysis] {key} must be above 0 and at most 1"));
         }
+        let steps = [
+            ("smallest_step", self.smallest_step),
+            ("first_step", self.first_step),
+            ("largest_step", self.largest_step),
+        ];
+        let given: Vec<(&str, f64)> = steps
+            .into_iter()
+            .filter(|(key, _)| at.has(key))
+            .filter_map(|(key, value)| Some((key, value?)))
+            .collect();
+        if let Some([(key, value), (longer, limit)]) = given.array_windows().find(|[a, b]| a.1 > b.1) {
+            let message = format!(
+                "[analysis] {key} = {value} is above {longer} = {limit}: steps go from the smallest to the largest"
+            );
+            return refused(at.value_place(key), message);
+        }
         if self.perturbation.is_some_and(|p| !(0.0..=1.0).contains(&p)) {
             return refused(at.value_place("perturbation"), "[analysis] perturbation must be 0 to 1");
         }

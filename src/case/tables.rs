@@ -349,6 +349,12 @@ impl CaseTable {
             return refused(at.value_place("shaking"), message);
         }
         foreign(case, &["convergence"], NO_CONVERGENCE)?;
+        if let Some(key) = ["sizes", "shaking"].into_iter().find(|key| case.has("section") && at.has(key)) {
+            let message = format!(
+                "`{key}` is of a measured fabric: a [section] has no drape that was measured and no friction; remove it, or the section"
+            );
+            return refused(at.key_place(key), message);
+        }
         let (ring, layout) = sheet.ring(of_sheet)?;
         let message = "a drape has no [[probes]] and no [[checks]]: remove them";
         foreign(case, &["probes", "checks"], message)?;

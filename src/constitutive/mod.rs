@@ -87,6 +87,10 @@ pub struct Constitutive {
 /// ```
 pub fn section(sheet: &FabricSheet, assumptions: &Assumptions) -> Result<Constitutive, ConstitutiveError> {
     let mut notes = Notes { sheet, used: Vec::new(), origins: Vec::new(), findings: Vec::new() };
+    // Also where a measured value stands before the assumed one.
+    notes.positive("the assumed thickness", assumptions.thickness.si(), "m", "give a length above 0")?;
+    let density = assumptions.areal_density.map_or(1.0, |density| density.si());
+    notes.positive("the assumed areal density", density, "kg/m²", "give one above 0, such as 150 g/m²")?;
     let g = shear::in_plane(assumptions, &mut notes)?;
     let thickness = thickness(assumptions, &mut notes)?;
     let d_m = membrane::matrix(g, assumptions, &mut notes)?;

@@ -20,6 +20,9 @@ use crate::report::write::{hash, write_part};
 use crate::results::{Failure, Input, Job, Observer, Share, hash_of};
 use crate::run::{Drapes, RunSettings, key_of_case};
 
+/// Code of a check that does not hold.
+const CHECK_FAILS: &str = "S122";
+
 /// What part is to be made, and where.
 #[derive(Clone, Copy, Debug)]
 pub struct Request<'r> {
@@ -50,7 +53,7 @@ pub struct Done {
     pub failures: usize,
     /// How many of them are numerical.
     pub numerical: usize,
-    /// Whether a check of a case does not hold; not known of a part that was there.
+    /// Whether a check of a case does not hold.
     pub fails_a_check: bool,
 }
 
@@ -106,7 +109,7 @@ impl Done {
             findings: part.table(Table::Findings).num_rows(),
             failures: part.table(Table::Failures).num_rows(),
             numerical: numerical(texts(part.table(Table::Failures), "code")),
-            fails_a_check: false,
+            fails_a_check: texts(part.table(Table::Findings), "code").any(|code| code == CHECK_FAILS),
         }
     }
 }

@@ -1,8 +1,11 @@
 //! A part of a batch as files, and read back.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use arrow_array::RecordBatch;
+use arrow_array::cast::AsArray;
+use arrow_array::types::{Float64Type, UInt64Type};
 use bytes::Bytes;
 use sha2::{Digest, Sha256};
 
@@ -32,6 +35,8 @@ const SHARD: &str = "kesf.shard";
 const SET_UP: &str = "kesf.setup";
 const KEY: &str = "kesf.key";
 const CASES: &str = "kesf.cases";
+/// Hash of what a file holds, texts beside its table included: its pages have no checksums.
+const CONTENT: &str = "kesf.content";
 
 /// The key of a part that another run could make better: it is that of no request.
 const UNFINISHED: &str = "";
@@ -83,7 +88,7 @@ pub fn key_of<'t>(texts: impl IntoIterator<Item = &'t [u8]>) -> String {
         digest.update((text.len() as u64).to_be_bytes());
         digest.update(text);
     }
-    digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hexadecimal(digest)
 }
 
 impl Evaluation {
@@ -112,8 +117,45 @@ pub fn encode(
     let number = shard.to_string();
     let version = env!("CARGO_PKG_VERSION");
     let metadata = [(VERSION, version), (SHARD, &number), (SET_UP, set_up), (KEY, key), (CASES, cases)];
-    let file = |(table, rows): (Table, &RecordBatch)| Ok((table.file(shard), write(rows, &metadata)?));
+    let file = |(table, rows): (Table, &RecordBatch)| {
+        let content = content_of(rows, metadata.iter().map(|(key, text)| (*key, *text)));
+        let metadata = [metadata.as_slice(), &[(CONTENT, content.as_str())]].concat();
+        Ok((table.file(shard), write(rows, &metadata)?))
+    };
     TABLES.into_iter().zip(tables).map(file).collect()
+}
+
+/// The hash of the rows of a table and of the texts beside it, in any order of these.
+fn content_of<'t>(rows: &RecordBatch, metadata: impl Iterator<Item = (&'t str, &'t str)>) -> String {
+    let texts: BTreeMap<&str, &str> = metadata.collect();
+    let mut digest = Sha256::new();
+    for text in texts.into_iter().flat_map(<[&str; 2]>::from) {
+        add(&mut digest, Some(text.as_bytes()));
+    }
+    for column in rows.columns() {
+        if let Some(texts) = column.as_string_opt::<i32>() {
+            texts.iter().for_each(|text| add(&mut digest, text.map(str::as_bytes)));
+        } else if let Some(numbers) = column.as_primitive_opt::<Float64Type>() {
+            numbers.iter().for_each(|number| {
+                add(&mut digest, number.map(f64::to_be_bytes).as_ref().map(|b| b.as_slice()))
+            });
+        } else if let Some(counts) = column.as_primitive_opt::<UInt64Type>() {
+            counts.iter().for_each(|count| {
+                add(&mut digest, count.map(u64::to_be_bytes).as_ref().map(|b| b.as_slice()))
+            });
+        }
+    }
+    hexadecimal(digest)
+}
+
+/// Adds a cell with its length; one without a value has none.
+fn add(digest: &mut Sha256, cell: Option<&[u8]>) {
+    digest.update(cell.map_or(u64::MAX, |bytes| bytes.len() as u64).to_be_bytes());
+    digest.update(cell.unwrap_or_default());
+}
+
+fn hexadecimal(digest: Sha256) -> String {
+    digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 impl Part {
@@ -128,8 +170,16 @@ impl Part {
             let path = folder.join(table.file(shard));
             let failed = |problem: String| PartError::Part { path: path.clone(), problem };
             let (metadata, rows) = read(bytes).map_err(|e| failed(e.to_string()))?;
-            let metadata: Metadata =
+            let mut metadata: Metadata =
                 metadata.into_iter().filter(|(key, _)| key.starts_with("kesf.")).collect();
+            let written = metadata.remove(CONTENT);
+            if written
+                != Some(content_of(&rows, metadata.iter().map(|(key, text)| (key.as_str(), text.as_str()))))
+            {
+                return Err(failed(
+                    "it does not hold what was written to it: a disk or a copy has changed it".into(),
+                ));
+            }
             if rows.schema().fields() != table.schema().fields() {
                 return Err(failed(format!("it has other columns than a table of {}", table.name())));
             }

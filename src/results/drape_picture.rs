@@ -110,16 +110,15 @@ pub fn drape_pictures(
     Ok(DrapePictures { document, failures })
 }
 
-/// The pictures that paths name, in their order and each once; those of a folder in name order.
+/// The pictures that paths name, in their order and each once; those of a folder and of the folders in it in name order.
 fn pictures(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
-    let mut found = Vec::new();
+    let (mut found, mut entered) = (Vec::new(), BTreeSet::new());
     for path in paths {
-        if !files::is_folder(path) {
+        if files::is_folder(path) {
+            add_pictures(path, &mut found, &mut entered)?;
+        } else {
             found.push(path.clone());
-            continue;
         }
-        let unreadable = |e: std::io::Error| Failure::new("R001", e.to_string()).at(Place::file(path));
-        found.extend(files::entries(path).map_err(unreadable)?.into_iter().filter(|p| is_picture(p)));
     }
     let mut known = BTreeSet::new();
     found.retain(|picture| files::canonicalize(picture).map_or(true, |real| known.insert(real)));
@@ -130,13 +129,34 @@ fn pictures(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     Ok(found)
 }
 
+/// Adds the pictures below a folder; one that was entered before, by a link, is passed over.
+fn add_pictures(
+    folder: &Path,
+    found: &mut Vec<PathBuf>,
+    entered: &mut BTreeSet<PathBuf>,
+) -> Result<(), Failure> {
+    let unreadable = |e: std::io::Error| Failure::new("R001", e.to_string()).at(Place::file(folder));
+    if !entered.insert(files::canonicalize(folder).map_err(unreadable)?) {
+        return Ok(());
+    }
+    for entry in files::entries(folder).map_err(unreadable)? {
+        if is_picture(&entry) {
+            found.push(entry);
+        } else if files::is_folder(&entry) && !is_hidden(&entry) {
+            add_pictures(&entry, found, entered)?;
+        }
+    }
+    Ok(())
+}
+
+fn is_hidden(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'))
+}
+
 fn is_picture(path: &Path) -> bool {
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
-    files::is_file(path)
-        && ENDINGS.contains(&ending.as_str())
-        && !name.ends_with(OVERLAY)
-        && !name.starts_with('.')
+    files::is_file(path) && ENDINGS.contains(&ending.as_str()) && !name.ends_with(OVERLAY) && !is_hidden(path)
 }
 
 fn read(path: &Path, keep: bool) -> Result<Seen, Failure> {

@@ -20,7 +20,7 @@ from ._kesf import version
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs a command and says how it ended: 0 done, 2 not."""
+    """Runs a command and says how it ended: 0 done, 1 some failed or a check did not hold, 2 nothing done, 3 numerics."""
     options = _parser().parse_args(arguments)
     try:
         return int(options.command(options))
@@ -84,21 +84,24 @@ def _evaluate(options: argparse.Namespace) -> int:
             (options.settings, options.drape, (number, count, True)),
             options.output,
         )
-        kept, fabrics, rows, _, failures = made
-        return _told(options.output, number, count, fabrics, None if kept else rows, failures)
+        (kept, fabrics, rows, _, failures), (useful, numerical, fails_a_check) = made
+        _tell(options.output, number, count, fabrics, None if kept else rows, failures)
+        if failures and not useful:
+            return 3 if failures == numerical else 2
+        return int(bool(failures) or fails_a_check)
     from . import dask
 
     tasks = dask.plan(
         options.inputs, options.cases, options.output, shards=count, settings=options.settings, drape=options.drape
     )
     done = dask.work(tasks[number - 1])
-    return _told(options.output, number, count, done.fabrics, done.rows, done.failures)
+    _tell(options.output, number, count, done.fabrics, done.rows, done.failures)
+    return int(bool(done.failures))
 
 
-def _told(out: str, number: int, count: int, fabrics: int, rows: int | None, failures: int | None) -> int:
+def _tell(out: str, number: int, count: int, fabrics: int, rows: int | None, failures: int | None) -> None:
     what = "is there already" if rows is None else f"{rows} rows, {failures} failures"
     print(f"{out}: shard {number}/{count}, {fabrics} fabrics: {what}", file=sys.stderr)
-    return 0
 
 
 def _merge(options: argparse.Namespace) -> int:

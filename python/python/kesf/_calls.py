@@ -49,6 +49,9 @@ def sources(inputs: object) -> tuple[list[str], list[tuple[str, bytes]]]:
     paths: list[str] = []
     memory: list[tuple[str, bytes]] = []
     several = not isinstance(inputs, (str, bytes, bytearray, memoryview, os.PathLike, Mapping))
+    # A pair of a name and bytes is one file, and no two.
+    if isinstance(inputs, tuple) and len(inputs) == 2 and isinstance(inputs[1], (bytes, bytearray, memoryview)):
+        several = not isinstance(inputs[0], (str, os.PathLike))
     for item in cast("Iterable[object]", inputs) if several else [inputs]:
         if isinstance(item, (str, os.PathLike)):
             paths.append(os.fspath(cast("Path", item)))

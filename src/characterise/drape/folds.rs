@@ -27,7 +27,8 @@ pub struct Counted {
     pub band: [usize; 2],
     /// Directions of the folds (index of the distance), in order.
     pub at: Vec<usize>,
-    /// Half the mean difference between folds and the valleys beside them.
+    /// Half the mean difference between folds and the valleys beside them; of sharp folds somewhat less, as the distances are
+    /// averaged over a small angle.
     pub amplitude: f64,
 }
 
@@ -51,7 +52,14 @@ pub fn count(distances: &[f64]) -> Counted {
     if at.len() < 2 {
         return Counted { band, ..Counted::default() };
     }
-    Counted { count: at.len(), band, at, amplitude: 0.5 * depth }
+    // What the average takes off waves of this order.
+    let amplitude = 0.5 * depth / weight(at.len());
+    Counted { count: at.len(), band, at, amplitude }
+}
+
+/// What the average leaves of a wave of an order.
+fn weight(order: usize) -> f64 {
+    (-0.5 * (order as f64 * SMOOTH).powi(2)).exp()
 }
 
 /// The distances averaged over a small angle, and the standard deviation of the noise that is left in them.
@@ -59,7 +67,6 @@ fn smoothed(distances: &[f64]) -> (Vec<f64>, f64) {
     let n = distances.len();
     let orders = ORDERS.min(n / 3);
     let parts = harmonics(distances, orders);
-    let weight = |k: usize| (-0.5 * (k as f64 * SMOOTH).powi(2)).exp();
     let smooth = (0..n)
         .map(|i| {
             let term = |(k, [c, s]): (usize, &[f64; 2])| {

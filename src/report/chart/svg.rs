@@ -34,8 +34,8 @@ pub(super) fn file(chart: &Canvas) -> Result<Vec<u8>, ChartError> {
         .create_element("svg")
         .with_attributes(root)
         .write_inner_content(|out| {
-            out.create_element("title").write_text_content(BytesText::new(&chart.title))?;
-            out.create_element("desc").write_text_content(BytesText::new(&chart.description))?;
+            out.create_element("title").write_text_content(BytesText::new(&permitted(&chart.title)))?;
+            out.create_element("desc").write_text_content(BytesText::new(&permitted(&chart.description)))?;
             let page = [("width", "100%"), ("height", "100%"), ("fill", "#ffffff")];
             out.create_element("rect").with_attributes(page).write_empty()?;
             for group in together(&chart.marks) {
@@ -125,6 +125,13 @@ fn lines(out: &mut Out, group: &[Mark], stroke: Stroke) -> io::Result<()> {
     empty(out, "path", attributes)
 }
 
+/// A text without the characters that XML 1.0 does not permit, not even escaped.
+fn permitted(text: &str) -> String {
+    let is_permitted =
+        |c: char| (c >= ' ' && !matches!(c, '\u{fffe}' | '\u{ffff}')) || matches!(c, '\t' | '\n' | '\r');
+    text.chars().map(|c| if is_permitted(c) { c } else { char::REPLACEMENT_CHARACTER }).collect()
+}
+
 fn letters(out: &mut Out, at: Point, text: &str, kind: Type, upwards: bool) -> io::Result<()> {
     if text.is_empty() {
         return Ok(());
@@ -143,7 +150,9 @@ fn letters(out: &mut Out, at: Point, text: &str, kind: Type, upwards: bool) -> i
     if upwards {
         attributes.push(("transform", &turn));
     }
-    out.create_element("text").with_attributes(attributes).write_text_content(BytesText::new(text))?;
+    out.create_element("text")
+        .with_attributes(attributes)
+        .write_text_content(BytesText::new(&permitted(text)))?;
     Ok(())
 }
 
