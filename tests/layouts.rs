@@ -1018,3 +1018,120 @@ fn a_condition_in_another_column_is_that_of_the_value() {
     assert_eq!(parameters("KES-FB3 at 50 gf/cm²"), [Parameter::Tm, Parameter::W]);
     assert_eq!(parameters("FB3 speed 20 mm/min"), [Parameter::T0, Parameter::W]);
 }
+
+/// A name that is across a direction states none; `not washed` behind a direction is a state of the cloth.
+#[test]
+fn names_across_a_direction_are_refused() {
+    let record = format!("curvature (1/cm),moment (gf·cm/cm)\n{LOOP}");
+    let table = format!("Specimen,{B}\n1,0.1\n2,0.2\n");
+    let of = |name: &str, text: &str| read_as(name, text, &ReadSettings::default()).map_err(|e| e.code());
+    for name in
+        ["Uno_perpendicular to warp.csv", "Uno_senkrecht zur Kette.csv", "Uno normal to the warp yarns.csv"]
+    {
+        assert_eq!(of(name, &record).unwrap_err(), "R013", "{name}");
+        assert_eq!(of(name, &table).unwrap_err(), "R013", "{name}");
+        let stated = of(name, &format!("direction,weft\n\n{record}")).unwrap();
+        assert_eq!(stated.measurements[0].direction, Some(Direction::Weft), "{name}");
+    }
+    for name in ["non-crimp_warp_1.csv", "Uno_warp_not washed.csv"] {
+        let found = of(name, &record).unwrap();
+        assert_eq!(found.measurements[0].direction, Some(Direction::Warp), "{name}");
+    }
+}
+
+/// A direction above a table may be said in many words, as above a record; what is none is refused.
+#[test]
+fn directions_above_tables_are_those_of_their_values() {
+    let down = "Parameter,Value,Unit\nB,0.1,gf·cm²/cm\n";
+    let table = format!("Specimen,{B}\n1,0.1\n2,0.3\n");
+    for (text, direction, more) in [
+        ("Weft (filling)", Direction::Weft, false),
+        ("Kette / warp", Direction::Warp, false),
+        ("WARP DIR.", Direction::Warp, false),
+        ("in the weft direction", Direction::Weft, false),
+        ("タテ(経)", Direction::Warp, false),
+        ("Urdume (Warp)", Direction::Warp, false),
+        ("Warp (1)", Direction::Warp, false),
+        ("Bias (45°)", Direction::Bias, false),
+        ("warp before washing", Direction::Warp, true),
+    ] {
+        let told = if more { vec!["R125"] } else { vec![] };
+        for file in [
+            format!("Fabric,Uno\nDirection,{text}\n\n{down}"),
+            format!("Direction: {text}\n{table}"),
+            format!("Direction,{text}\nLoom,4\n\n{table}"),
+        ] {
+            let found = read("t.csv", &file);
+            let directions: Vec<_> = of_b(&found).iter().map(|v| v.1).collect();
+            assert_eq!(directions, [Some(direction)], "{file}");
+            assert_eq!(codes("t.csv", &file), told, "{file}");
+        }
+    }
+    let alone = read("t.csv", &format!("in the weft direction\n{table}"));
+    assert_eq!(of_b(&alone), [(None, Some(Direction::Weft), 0.2, 2)]);
+    for text in ["perpendicular to warp", "radial"] {
+        assert_eq!(code(&format!("Fabric,Uno\nDirection,{text}\n\n{down}")), "R018", "{text}");
+    }
+    for text in ["all", "both", "warp and weft", "-"] {
+        assert_eq!(
+            of_b(&read("t.csv", &format!("Fabric,Uno\nDirection,{text}\n\n{down}"))),
+            [(Some("Uno"), None, 0.1, 1)],
+            "{text}"
+        );
+    }
+}
+
+/// Units of deviations are their own, a unit in a description may be that of a condition, and a number may stand before its parameter.
+#[test]
+fn rows_of_parameters_with_other_columns() {
+    for head in ["CV (%)", "CV%", "COV (%)", "RSD (%)", "変動係数 (%)"] {
+        let text = format!("Parameter,Direction,Unit,Mean,SD,{head}\nB,warp,gf·cm²/cm,0.1,0.01,10\n");
+        let found = read("t.csv", &text);
+        assert_eq!(of_b(&found), [(None, Some(Direction::Warp), 0.1, 1)], "{head}");
+        assert_relative_eq!(found.results[0].1.sd.unwrap(), 0.01 * 9.80665e-5, max_relative = 1e-12);
+        assert_eq!(messages(&found, "R104").len(), 1, "{head}: {:?}", found.findings);
+    }
+    for (rows, sd) in [("B,gf·cm²/cm,0.1,10\n", 0.01 * 9.80665e-5), ("EMT,%,4,10\n", 0.1)] {
+        let found = read("t.csv", &format!("Parameter,Unit,Mean,SD (%)\n{rows}")).results;
+        assert_relative_eq!(found[0].1.sd.unwrap(), sd, max_relative = 1e-12);
+    }
+    assert_eq!(code("Parameter,Unit,Mean,SD (N)\nB,gf·cm²/cm,0.1,10\n"), "R018");
+    let specimens = "Fabric,Direction,Specimen,Parameter,Value,Unit\nUno,warp,1,B,0.1,gf·cm²/cm\nUno,warp,2,B,0.3,gf·cm²/cm\n";
+    let found = read("t.csv", specimens);
+    assert_eq!(of_b(&found), [(Some("Uno"), Some(Direction::Warp), 0.2, 2)]);
+    assert!(found.findings.is_empty(), "{:?}", found.findings);
+    let counted =
+        read("t.csv", "Fabric,Direction,n,Parameter,Mean,SD,Unit\nUno,warp,5,B,0.1,0.02,gf·cm²/cm\n");
+    assert_eq!(of_b(&counted), [(Some("Uno"), Some(Direction::Warp), 0.1, 5)]);
+    let described = "Symbol,Description,Unit,Value\nW,Weight per unit area,mg/cm²,15\nT0,Fabric thickness at 0.5 gf/cm²,mm,0.5\n";
+    let found = read("t.csv", described).results;
+    let thickness: Vec<f64> =
+        found.iter().filter(|(_, r)| r.parameter == Parameter::T0).map(|(_, r)| r.mean).collect();
+    assert_eq!(thickness, [0.5e-3]);
+}
+
+/// Measured numbers under `Reference` and numbers of records name no fabric, where another column or line does.
+#[test]
+fn columns_of_names_that_name_no_fabric() {
+    let (warp, weft) = (Some(Direction::Warp), Some(Direction::Weft));
+    let down = "Parameter,Unit,Warp,Weft,Reference\nEMT,%,4,9,4.62\nB,gf·cm²/cm,0.1,0.3,0.126\n";
+    for (header, fabric) in [("Fabric,Uno\n\n", Some("Uno")), ("", None)] {
+        let found = read("t.csv", &format!("{header}{down}"));
+        assert_eq!(of_b(&found), [(fabric, warp, 0.1, 1), (fabric, weft, 0.3, 1)]);
+        assert!(messages(&found, "R104")[0].contains("Reference"), "{:?}", found.findings);
+    }
+    let across = read(
+        "t.csv",
+        &format!("Fabric,Uno\nDirection,warp\n\nSpecimen,{B},Reference\n1,0.1,7.31\n2,0.3,7.35\n"),
+    );
+    assert_eq!(of_b(&across), [(Some("Uno"), warp, 0.2, 2)]);
+    assert!(messages(&across, "R104")[0].contains("Reference"), "{:?}", across.findings);
+    let records = "SampleID,Fabric,Component,Replicate,Result,Units\nS1,Uno,B_warp,1,0.1,gf·cm²/cm\nS2,Uno,B_warp,2,0.3,gf·cm²/cm\n";
+    assert_eq!(of_b(&read("t.csv", records)), [(Some("Uno"), warp, 0.2, 2)]);
+    // Without another name they are names.
+    let names = read("t.csv", &format!("{B},Sample\n0.1,1.1\n0.3,1.2\n"));
+    assert_eq!(of_b(&names), [(Some("1.1"), None, 0.1, 1), (Some("1.2"), None, 0.3, 1)]);
+    let fabrics =
+        read("t.csv", "ID,Material,Parameter,Value,Unit\nF1,Wool,B,0.1,gf·cm²/cm\nF2,Wool,B,0.3,gf·cm²/cm\n");
+    assert_eq!(of_b(&fabrics), [(Some("F1"), None, 0.1, 1), (Some("F2"), None, 0.3, 1)]);
+}

@@ -37,6 +37,11 @@ impl Condition {
         })
     }
 
+    /// Whether a text is the unit of the condition.
+    pub fn has_unit(self, text: &str) -> bool {
+        unit(text).is_ok_and(|unit| unit.dimension == self.unit.dimension)
+    }
+
     /// Whether the parameter is read there by its definition.
     pub fn defines(self, parameter: Parameter) -> bool {
         self.could_define(parameter)

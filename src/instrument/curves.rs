@@ -168,10 +168,21 @@ fn direction(pair: &Pair, context: &Context<'_>) -> Result<Direction, ReadError>
                 let problem = Problem::BadValue { key: "direction".into(), reason };
                 return Err(context.error(pair.x.line, pair.x.column, problem));
             }
+            if context.label.across {
+                let error = across_in_name();
+                return Err(context.error(pair.x.line, pair.x.column, error));
+            }
             let named = context.label.direction;
             named.ok_or_else(|| context.error(pair.x.line, pair.x.column, Problem::DirectionMissing))
         }
     }
+}
+
+/// R013: what is across the warp of an oblique strip is not said, and no direction is guessed from it.
+pub(super) fn across_in_name() -> Problem {
+    let reason =
+        "the name of the file or sheet says that it is across a direction: state the direction in the header";
+    Problem::BadValue { key: "direction".into(), reason: reason.to_string() }
 }
 
 /// Points from which the sign of a slope is told.

@@ -48,7 +48,9 @@ impl Facets {
         // A name may hold its condition: `thickness at 50 gf/cm²`.
         let is_plain = whole.index.is_none() && whole.unit.as_ref().is_none_or(|u| unit(u).is_ok());
         if is_plain && whole.names_value() && whole.parameter.is_some_and(|p| stated.defines(p)) {
-            return whole;
+            // The unit at its end may be that of the condition.
+            let unit = whole.unit.clone().filter(|text| !stated.has_unit(text));
+            return Self { unit, ..whole };
         }
         let other = Self::of_words(&rest, vocabulary);
         let Some(parameter) = other.parameter else { return whole };
@@ -369,6 +371,7 @@ mod tests {
         assert_eq!(parameter("2HG at 5 deg (gf/cm)"), (Hg5, None, unit("gf/cm"), false, false));
         assert_eq!(parameter("2HB at 0.5 1/cm (gf·cm/cm)").0, Parameter::Hb05);
         assert_eq!(parameter("T at 50 gf/cm2 (mm)").0, Parameter::Tm);
+        assert_eq!(parameter("Fabric thickness at 0.5 gf/cm²"), (T0, None, None, false, false));
         assert_eq!(parameter("EMT at 500 gf/cm (%) warp"), (Emt, Some(Warp), unit("%"), false, false));
         assert_eq!(parameter("弯曲刚度B(cN·cm2/cm)"), (B, None, unit("cN·cm2/cm"), false, false));
         assert_eq!(parameter("剪切滞后矩2HG5/(gf·cm-1)"), (Hg5, None, unit("(gf·cm-1)"), false, false));

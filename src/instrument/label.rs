@@ -17,6 +17,8 @@ pub(super) struct Label {
     pub specimen: Option<usize>,
     /// Two words of directions that differ: then none is taken.
     pub conflict: Option<[Direction; 2]>,
+    /// Whether it is across the direction that it names: then none is taken.
+    pub across: bool,
     /// Words that mean nothing here.
     pub unknown: bool,
 }
@@ -36,7 +38,8 @@ impl Label {
             label.unknown |= !known;
             begun |= label.test.is_some() || label.direction.is_some() || label.specimen.is_some();
         }
-        if label.conflict.is_some() {
+        label.across = label.direction.is_some() && vocabulary.is_across_in_name(&text);
+        if label.conflict.is_some() || label.across {
             label.direction = None;
         }
         label.sample = (!sample.is_empty()).then(|| sample.join("-"));
@@ -48,9 +51,10 @@ impl Label {
         Self {
             sample: other.sample,
             test: self.test.or(other.test),
-            direction: self.direction.or(other.direction),
+            direction: self.direction.or(other.direction.filter(|_| !self.across)),
             specimen: self.specimen.or(other.specimen),
             conflict: if self.direction.is_some() { None } else { self.conflict.or(other.conflict) },
+            across: self.across || (other.across && self.direction.is_none()),
             unknown: self.unknown || other.unknown,
         }
     }
@@ -129,6 +133,28 @@ mod tests {
             ("bias 45 FB2", Some(Direction::Bias)),
         ] {
             assert_eq!(direction(name), expected, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_name_that_is_across_a_direction_states_none() {
+        let label = |t| Label::parse(t, Vocabulary::new(&[]));
+        for name in [
+            "Uno_perpendicular to warp",
+            "Uno normal to the warp yarns 1",
+            "Uno not warp",
+            "Uno_90° to warp",
+            "Uno_senkrecht zur Kette",
+            "Uno_zur Kette senkrecht",
+            "perpendiculaire à la chaîne",
+            "perpendicolare all'ordito",
+            "perpendicular a la urdimbre",
+            "across warp",
+        ] {
+            assert!(label(name).across && label(name).direction.is_none(), "{name}");
+        }
+        for name in ["90_warp", "non-crimp_warp_1", "warp_not washed", "Uno along the warp"] {
+            assert_eq!(label(name).direction, Some(Direction::Warp), "{name}");
         }
     }
 }

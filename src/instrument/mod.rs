@@ -4,6 +4,7 @@
 //! and `result_table` turn cells into [`Measurement`]s and [`ResultValue`]s. Nothing here computes a
 //! parameter, and raw data are never altered beyond their units.
 
+mod across;
 pub mod anonymise;
 mod assembled;
 mod axis;
@@ -44,6 +45,7 @@ pub mod picture;
 mod raw;
 mod read;
 mod result_table;
+mod section;
 mod shape;
 mod sniff;
 mod states;

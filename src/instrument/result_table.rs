@@ -10,6 +10,7 @@ mod directions;
 mod fast_cells;
 mod layout;
 mod merged_cells;
+mod names;
 mod noted;
 mod repeats;
 mod row_facts;
@@ -21,6 +22,7 @@ mod units;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use cells::is_percent;
 use fast_cells::FastCell;
 use layout::{Column, Layout};
 pub(super) use layout::{differ, two_units};
@@ -84,7 +86,8 @@ pub(super) fn read(
     context: &Context<'_>,
     log: &mut Vec<String>,
 ) -> Result<Contents, ReadError> {
-    let layout = Layout::of(region, context)?;
+    let mut layout = Layout::of(region, context)?;
+    layout.leave_out_false_names(region, header.known.contains_key(&Key::Sample), context);
     log.push(layout.described());
     let mut table = Table {
         header,
@@ -108,6 +111,9 @@ pub(super) fn read(
     for text in std::mem::take(&mut table.layout.texts_of_directions) {
         table.note_more_than_direction((table.layout.line, 0), &text);
     }
+    if let Some(title) = region.title {
+        table.note_title(title);
+    }
     let rows = table.facts(region)?;
     let names: BTreeSet<&Option<String>> = rows.iter().map(|(_, facts)| &facts.fabric).collect();
     table.several = names.len() > 1 || table.layout.names_fabrics();
@@ -120,7 +126,8 @@ pub(super) fn read(
         })?;
     }
     table.note_cells();
-    table.direction_of_the_sheet();
+    table.direction_of_the_header()?;
+    table.direction_of_the_sheet()?;
     let unused = table.layout.unused(region, context);
     table.ignored.extend(unused);
     table.note_strangers();
@@ -190,6 +197,7 @@ impl<'t> Table<'t, '_> {
             }
             if let Some(direction) = shape::section(row, self.context) {
                 self.section = Some(direction);
+                self.note_title(row);
                 continue;
             }
             if let Some(title) = titles.get(&row.line) {
@@ -312,15 +320,21 @@ impl<'t> Table<'t, '_> {
         f: &Facets,
     ) -> Result<Option<Direction>, ReadError> {
         let v = self.context.vocabulary;
-        let of_both = v.statistic(text) == Some(Statistic::Mean);
-        if of_both || is_gap(text) || matches!(normalised(text).as_str(), "" | "all" | "none") {
+        if self.is_of_no_direction(text) {
             return Ok(None);
         }
         let conflict = f.unknown.then(|| v.direction(text)).flatten().or_else(|| v.letter(text));
-        f.direction.filter(|_| !f.unknown).or(conflict).map(Some).ok_or_else(|| {
-            let found = format!("{text:?} is not a direction (warp, weft, bias or mean)");
-            self.context.error(row.line, row.column(index), Problem::BadTable { found })
-        })
+        f.direction
+            .filter(|_| !f.unknown)
+            .or(conflict)
+            .map(Some)
+            .ok_or_else(|| self.context.error(row.line, row.column(index), directions::no_direction(text)))
+    }
+
+    /// Whether the text of a direction says that the value is of none, or of all.
+    fn is_of_no_direction(&self, text: &str) -> bool {
+        let of_all = self.context.vocabulary.statistic(text) == Some(Statistic::Mean);
+        of_all || is_gap(text) || matches!(normalised(text).as_str(), "" | "all" | "none")
     }
 
     fn repeats(&self, row: &Row<'_>, index: usize, cell: &str) -> Result<usize, ReadError> {
@@ -352,9 +366,13 @@ impl<'t> Table<'t, '_> {
             if self.states_no_value(row, column.index, cell) {
                 continue;
             }
-            let units = [&column.facets, &facts.facets].map(|f| f.unit.as_deref());
-            self.one_unit(row, column.index, units[0], units[1])?;
             let all = column.facets.or(&facts.facets);
+            // A deviation in per cent is no value of the parameter, and its unit is its own.
+            let own_unit = !all.sd && matches!(all.statistic, Some(Statistic::Spread | Statistic::Other));
+            if !own_unit {
+                let units = [&column.facets, &facts.facets].map(|f| f.unit.as_deref());
+                self.one_unit(row, column.index, units[0], units[1])?;
+            }
             let unit_place = self.unit_place(row, column, facts);
             let fabric =
                 column.fabric.clone().or_else(|| facts.fabric.clone()).filter(|_| !facts.summary_of_fabrics);
@@ -380,8 +398,6 @@ impl<'t> Table<'t, '_> {
             let summary = all
                 .statistic
                 .map(|s| (s, all.sd, if of_row { facts.label.clone() } else { column.name.clone() }));
-            // A deviation in per cent is no value of the parameter, and its unit is its own.
-            let own_unit = matches!(summary, Some((Statistic::Spread | Statistic::Other, false, _)));
             if own_unit {
                 self.summary_only(facts, column, of_row, row.line);
                 continue;
@@ -442,8 +458,17 @@ impl<'t> Table<'t, '_> {
         }
         let place = (row.line, row.column(at));
         let reading = self.reading(row, at, cell)?;
-        let (text, place) = self.stated_unit((row, at), facts.facets.unit.as_deref(), place, &reading)?;
-        let sd = reading.mean * self.unit(parameter, text, place)?.factor;
+        let (of_row, of_head) = (facts.facets.unit.as_deref(), self.layout.sd_unit.as_deref());
+        // `SD (%)` is one of the value, except where the value itself is in per cent.
+        let is_relative =
+            of_head.is_some_and(is_percent) && !is_percent(of_row.unwrap_or(parameter.kes_unit()));
+        let sd = if is_relative {
+            0.01 * reading.mean * last.mean.abs()
+        } else {
+            self.one_unit(row, at, of_head, of_row)?;
+            let (text, place) = self.stated_unit((row, at), of_row.or(of_head), place, &reading)?;
+            reading.mean * self.unit(parameter, text, place)?.factor
+        };
         if let Some(datum) = self.data.last_mut() {
             datum.sd = Some(sd);
         }

@@ -10,10 +10,10 @@ use super::layout::Context;
 use super::letters;
 use super::lines;
 use super::raw::Row;
+pub(super) use super::section::section;
 use super::sniff::{Number, number};
 use super::unit_text::{split_unit, unbracketed, unit};
 use super::value::{Printed, is_gap};
-use super::words::folded;
 use super::{Direction, Parameter};
 use crate::finding::{Finding, Place, ReadFact};
 
@@ -31,8 +31,9 @@ pub(super) struct Region<'t> {
     pub rows: Vec<&'t Row<'t>>,
     /// Whether each row is a parameter; else each column is.
     pub down: bool,
-    /// The direction that stands above the heads.
+    /// The direction that stands above the heads, and its row.
     pub section: Option<Direction>,
+    pub title: Option<&'t Row<'t>>,
 }
 
 /// What a row is, seen alone.
@@ -99,42 +100,6 @@ pub(super) fn has_numbers(row: &Row<'_>, decimal: char) -> bool {
 fn is_unit(cell: &str) -> bool {
     let bare = unbracketed(cell);
     !bare.starts_with(|c: char| c.is_ascii_digit() && !bare.starts_with("1/")) && unit(&bare).is_ok()
-}
-
-/// The section that a row opens: a direction and nothing else, also `[WARP]`, `Direction: warp`.
-pub(super) fn section(row: &Row<'_>, context: &Context<'_>) -> Option<Direction> {
-    let mut filled = row.filled();
-    let (_, first) = filled.next()?;
-    let direction = |text: &str| {
-        let bare = folded(text);
-        let bare = bare.trim_matches(['(', ')', '[', ']', '<', '>', '【', '】', '*', '=', '-', ':', ' ']);
-        let f = Facets::of(bare, context.vocabulary);
-        let alone = f.direction.filter(|_| {
-            !f.unknown
-                && f.parameter.is_none()
-                && f.index.is_none()
-                && f.statistic.is_none()
-                && f.meta.is_none()
-        });
-        alone.or_else(|| {
-            context.vocabulary.direction(bare).filter(|_| bare.chars().count() < 16 && !f.unknown)
-        })
-    };
-    match (filled.next(), filled.next()) {
-        (None, _) => match first.text.split_once([':', '=']) {
-            Some((key, of)) if is_direction_key(key, context) => direction(of),
-            _ => direction(&first.text),
-        },
-        (Some((_, second)), None) if is_direction_key(&first.text, context) => direction(&second.text),
-        _ => None,
-    }
-}
-
-fn is_direction_key(text: &str, context: &Context<'_>) -> bool {
-    let v = context.vocabulary;
-    let name = text.trim_end_matches([':', '=', ' ']);
-    v.key(name) == Some(super::dialect::Key::Direction)
-        || v.table_column(name) == Some(TableColumn::Direction)
 }
 
 fn kind(row: &Row<'_>, context: &Context<'_>) -> Kind {
@@ -279,6 +244,7 @@ struct Heads {
     end: usize,
     down: bool,
     section: Option<Direction>,
+    title: Option<usize>,
     first: usize,
 }
 
@@ -317,7 +283,7 @@ fn is_alone(row: &Row<'_>, context: &Context<'_>) -> bool {
 }
 
 fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
-    let (mut end, mut first, mut section, mut titles) = (at, at, None, 0);
+    let (mut end, mut first, mut section, mut title, mut titles) = (at, at, None, None, 0);
     let mut found: Vec<&Row<'_>> = Vec::new();
     while let Some(row) = rows.get(end).filter(|_| found.len() < HEADS) {
         if row.is_blank() {
@@ -340,7 +306,7 @@ fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
             // `1 2 3` below `Warp` and again below `Weft`.
             Kind::Values if !found.is_empty() && counts_columns(row) => found.push(row),
             Kind::Section(direction) if found.is_empty() && titles < TITLES => {
-                section = Some(direction);
+                (section, title) = (Some(direction), Some(end));
                 titles += 1;
             }
             _ => break,
@@ -365,18 +331,18 @@ fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
         let bare = rows.get(end).is_some_and(|r| is_labelled(r, &named, context))
             && labelled >= 2
             && next().take(labelled).any(|r| own(&r));
-        return bare.then_some(Heads { end, down: true, section, first: end });
+        return bare.then_some(Heads { end, down: true, section, title, first: end });
     }
     if parameter_column || (labelled > 0 && !several) {
         let enough = labelled > 0
             || parameter_column && next().next().is_some_and(|r| kind(r, context) == Kind::Values);
-        return enough.then_some(Heads { end, down: true, section, first });
+        return enough.then_some(Heads { end, down: true, section, title, first });
     }
     if !across(&found, context) {
         return None;
     }
     // Heads without anything below are a list of words.
-    next().next().is_some().then_some(Heads { end, down: false, section, first })
+    next().next().is_some().then_some(Heads { end, down: false, section, title, first })
 }
 
 /// The table that begins at a row, and the row behind it.
@@ -396,7 +362,9 @@ pub(super) fn region<'t>(
     }
     let found = heads(rows, at, context)?;
     let head_rows: Vec<&Row<'_>> = rows[found.first..found.end].iter().filter(|r| !r.is_blank()).collect();
-    let mut region = Region { heads: head_rows, rows: Vec::new(), down: found.down, section: found.section };
+    let title = found.title.and_then(|at| rows.get(at));
+    let mut region =
+        Region { heads: head_rows, rows: Vec::new(), down: found.down, section: found.section, title };
     let mut i = found.end;
     let mut end = i;
     while let Some(row) = rows.get(i) {

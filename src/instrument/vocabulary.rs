@@ -83,7 +83,7 @@ fn long_enough(word: &str) -> bool {
 }
 
 /// Words between blanks and marks.
-fn words_of(text: &str) -> impl Iterator<Item = String> {
+pub(super) fn words_of(text: &str) -> impl Iterator<Item = String> {
     let folded = folded(text).into_owned();
     let words: Vec<String> =
         folded.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).map(String::from).collect();
@@ -180,23 +180,19 @@ impl<'a> Vocabulary<'a> {
         })
     }
 
+    /// Whether a text names more than one direction: `warp and weft`.
+    pub fn names_several_directions(self, text: &str) -> bool {
+        let found = self.find(text, true, |d| &d.directions, &index().directions);
+        found.is_some_and(|found| self.names_another(text, found))
+    }
+
     /// Whether a word that may be a direction is a dimension as well.
     pub fn is_dimension(self, word: &str) -> bool {
         self.direction_word(word) == Some(DirectionWord::Dimension)
     }
 
-    fn direction_word(self, word: &str) -> Option<DirectionWord> {
+    pub fn direction_word(self, word: &str) -> Option<DirectionWord> {
         self.find(word, false, |d| &d.direction_words, &index().direction_words)
-    }
-
-    /// `perpendicular to the warp`, `not warp`.
-    fn is_across(self, text: &str) -> bool {
-        let across = |word: &str| self.direction_word(word) == Some(DirectionWord::Across);
-        let plain = normalised(text);
-        // Chinese, Japanese and Korean have no blanks around such a word.
-        let wide: Vec<char> = plain.chars().collect();
-        let mut pairs = wide.windows(2).filter(|pair| pair.iter().all(|c| *c >= '\u{1100}'));
-        words_of(text).any(|word| across(&word)) || pairs.any(|pair| across(&pair.iter().collect::<String>()))
     }
 
     /// Whether a text says more than the direction that it names: `warp before washing`.

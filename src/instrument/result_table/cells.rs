@@ -35,7 +35,7 @@ impl Reading {
     }
 }
 
-fn is_percent(text: &str) -> bool {
+pub(super) fn is_percent(text: &str) -> bool {
     unit(text) == unit("%")
 }
 

@@ -5,7 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{Datum, RowFacts, Table};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::contradictions::more_than_direction;
+use crate::instrument::curves::across_in_name;
+use crate::instrument::dialect::Key as HeaderKey;
+use crate::instrument::error::{Problem, ReadError};
 use crate::instrument::raw::Row;
+use crate::instrument::words::normalised;
 use crate::instrument::{Direction, Parameter};
 use crate::kes::Key;
 
@@ -51,14 +55,51 @@ impl Table<'_, '_> {
         }
     }
 
+    /// R125 for the title of a section that says more than its direction.
+    pub(super) fn note_title(&mut self, row: &Row<'_>) {
+        if let Some((index, cell)) = row.filled().last() {
+            self.note_more_than_direction((row.line, row.column(index)), &cell.text);
+        }
+    }
+
+    /// The direction that a line above the table states, where nothing in the table states one.
+    ///
+    /// # Errors
+    /// R018 where the line names none: its values would count as those of every direction.
+    pub(super) fn direction_of_the_header(&mut self) -> Result<(), ReadError> {
+        let v = self.context.vocabulary;
+        let Some(entry) = self.header.known.get(&HeaderKey::Direction) else { return Ok(()) };
+        let stated = self.data.iter().any(|d| d.direction.is_some() || d.row_direction.is_some());
+        let is_of_none = self.is_of_no_direction(&entry.text)
+            || normalised(&entry.text) == "both"
+            || v.names_several_directions(&entry.text);
+        if stated || is_of_none || !self.fast.is_empty() || !self.layout.numbers_of_symbols().is_empty() {
+            return Ok(());
+        }
+        let direction = v.direction(&entry.text);
+        for d in self.data.iter_mut().filter(|d| d.parameter.is_directional()) {
+            if direction.is_none() {
+                return Err(self.context.error(entry.line, entry.column, no_direction(&entry.text)));
+            }
+            d.direction = direction;
+        }
+        Ok(())
+    }
+
     /// The direction that the name of the sheet or file states, where nothing in the table states one.
-    pub(super) fn direction_of_the_sheet(&mut self) {
+    ///
+    /// # Errors
+    /// R013 where the name says that it is across a direction.
+    pub(super) fn direction_of_the_sheet(&mut self) -> Result<(), ReadError> {
         let directional = |d: &Datum| d.parameter.is_directional();
         let stated = self.data.iter().any(|d| d.direction.is_some() || d.row_direction.is_some());
         self.note_two_directions();
-        let Some(direction) = self.context.label.direction.filter(|_| !stated) else { return };
+        if self.context.label.across && !stated && self.data.iter().any(directional) {
+            return Err(self.context.error(self.layout.line, 0, across_in_name()));
+        }
+        let Some(direction) = self.context.label.direction.filter(|_| !stated) else { return Ok(()) };
         if !self.fast.is_empty() || !self.layout.numbers_of_symbols().is_empty() {
-            return;
+            return Ok(());
         }
         let mut any = false;
         for d in self.data.iter_mut().filter(|d| directional(d)) {
@@ -69,6 +110,7 @@ impl Table<'_, '_> {
             let place = Place::at(self.context.path, self.layout.line, 0);
             self.findings.push(Finding::new(ReadFact::DirectionFromName {}).at(place));
         }
+        Ok(())
     }
 
     /// R106: the table is of one direction, and the name of the sheet or file says another.
@@ -152,6 +194,10 @@ impl Table<'_, '_> {
             self.findings.push(Finding::new(ReadFact::NumbersAsSpecimens { keys }).at(place));
         }
     }
+}
+
+pub(super) fn no_direction(text: &str) -> Problem {
+    Problem::BadTable { found: format!("{text:?} is not a direction (warp, weft, bias or mean)") }
 }
 
 /// The direction that 1 and 2 behind a symbol stand for.

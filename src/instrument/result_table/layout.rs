@@ -46,6 +46,8 @@ pub(super) struct Layout {
     pub values: Vec<Column>,
     /// Standard deviations of the only column of values.
     pub sd_column: Option<usize>,
+    /// The unit that their head states.
+    pub sd_unit: Option<String>,
     /// Line of the lowest heads.
     pub line: usize,
     /// Rows of statistics that have no value of the parameter, with their labels.
@@ -75,6 +77,7 @@ impl Layout {
             labels: Vec::new(),
             values: Vec::new(),
             sd_column: None,
+            sd_unit: None,
             line: region.heads.last().or(region.rows.first()).map_or(0, |r| r.line),
             left_out_rows: BTreeMap::new(),
             numbers: BTreeSet::new(),
@@ -88,7 +91,7 @@ impl Layout {
             .rows
             .iter()
             .filter(|_| region.down)
-            .filter_map(|r| shape::row_label(r, context).map(|(i, _)| (*r, i)))
+            .filter_map(|r| heads.label_of(r, context).map(|(i, _)| (*r, i)))
             .collect();
         for index in 0..width {
             layout.add(index, &heads, region, &labels, context);
@@ -191,13 +194,15 @@ impl Layout {
             // One deviation beside one value is that of the value; among specimens it sums them up.
             let own = deviations == 1 && singles + means == 1;
             if own {
-                self.sd_column = self.values.iter().find(|c| c.facets.sd).map(|c| c.index);
+                let deviation = self.values.iter().find(|c| c.facets.sd);
+                self.sd_column = deviation.map(|c| c.index);
+                self.sd_unit = deviation.and_then(|c| c.facets.unit.clone());
                 self.values.retain(|c| !c.facets.sd);
             } else {
                 self.sd_column = None;
             }
             let labels: Vec<Facets> =
-                region.rows.iter().filter_map(|r| shape::row_label(r, context)).map(|(_, f)| f).collect();
+                region.rows.iter().filter_map(|r| heads.label_of(r, context)).map(|(_, f)| f).collect();
             self.numbers = labels.iter().filter_map(|f| f.index).collect();
             self.directions_over_columns(context);
             self.fabrics_over_columns(heads);
@@ -341,6 +346,8 @@ struct Heads {
     units: Option<Vec<(String, (usize, usize))>>,
     /// Heads whose letters are directions.
     letters: Vec<String>,
+    /// Columns whose heads say that parameters are named in them.
+    parameters: Vec<usize>,
 }
 
 impl Heads {
@@ -385,7 +392,21 @@ impl Heads {
             }
             rows.insert(0, cells);
         }
-        Self { rows, units, letters: letter_texts }
+        let cells = rows.iter().flat_map(|cells| cells.iter().enumerate());
+        let parameters =
+            cells.filter(|(_, (f, ..))| f.meta == Some(TableColumn::Parameter)).map(|(i, _)| i).collect();
+        Self { rows, units, letters: letter_texts, parameters }
+    }
+
+    /// The parameter that labels a row: before its first number, else in a column of parameters, `specimen, parameter, value`.
+    fn label_of(&self, row: &Row<'_>, context: &Context<'_>) -> Option<(usize, Facets)> {
+        shape::row_label(row, context).or_else(|| {
+            let mut named = self
+                .parameters
+                .iter()
+                .filter_map(|i| Some((*i, Facets::of(row.get(*i)?, context.vocabulary))));
+            named.find(|(_, f)| f.names_value())
+        })
     }
 
     /// The name that stands in a row above the lowest heads of a column.
