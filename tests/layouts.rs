@@ -1135,3 +1135,216 @@ fn columns_of_names_that_name_no_fabric() {
         read("t.csv", "ID,Material,Parameter,Value,Unit\nF1,Wool,B,0.1,gf·cm²/cm\nF2,Wool,B,0.3,gf·cm²/cm\n");
     assert_eq!(of_b(&fabrics), [(Some("F1"), None, 0.1, 1), (Some("F2"), None, 0.3, 1)]);
 }
+
+/// Names of files tell samples apart by numbers that count no specimens, and by words wherever they stand.
+#[test]
+fn samples_in_the_names_of_files_are_told() {
+    let text = format!("curvature (1/cm),moment (gf·cm/cm)\n{LOOP}");
+    let folder = tempfile::tempdir().unwrap();
+    for (n, (files, told)) in [
+        (["Style 501_warp", "Style 505_warp"], "Style-501, Style-505"),
+        (["PES-100_warp_1", "PES-150_warp_1"], "PES-100, PES-150"),
+        (["Lot 3_warp", "Lot 4_warp"], "Lot-3, Lot-4"),
+        (["warp_Alpha", "warp_Beta"], "Alpha, Beta"),
+        (["Uno_warp", "Uno_warp_washed"], "Uno, Uno washed"),
+        (["Uno_1_warp", "Uno_2_warp"], ""),
+        (["Uno_warp_2", "Uno_warp_3"], ""),
+        (["Uno_1_warp", "Uno_2_weft"], ""),
+        (["Uno_warp_a", "Uno_warp_b"], ""),
+        (["Uno_2024-05-12_warp_1", "Uno_2024-05-13_warp_2"], ""),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let own = folder.path().join(n.to_string());
+        std::fs::create_dir(&own).unwrap();
+        for file in files {
+            std::fs::write(own.join(format!("{file}.csv")), &text).unwrap();
+        }
+        let fabric = &read_fabrics(&[own], &ReadSettings::default(), &|_| ()).fabrics[0];
+        let found = fabric.findings.iter().find(|finding| finding.code() == "R105");
+        let message = found.map(|finding| finding.message()).unwrap_or_default();
+        assert_eq!(message.contains(told) && !message.is_empty(), !told.is_empty(), "{files:?}: {message}");
+    }
+}
+
+/// Among numbered specimens a label with a digit that is no number sums them up; and 試料番号 counts below the name of a sample.
+#[test]
+fn labels_among_numbered_specimens() {
+    let warp = Some(Direction::Warp);
+    for label in ["± 95 %", "U (k=2)", "P90", "25%", "σn-1", "3a"] {
+        let text = format!("Fabric,Uno\nDirection,warp\n\nSpecimen,{B}\n1,0.1\n2,0.2\n3,0.3\n{label},0.9\n");
+        let found = read("t.csv", &text);
+        assert_eq!(of_b(&found), [(Some("Uno"), warp, 0.2, 3)], "{label}");
+        assert!(messages(&found, "R110")[0].contains(label), "{label}: {:?}", found.findings);
+    }
+    let codes = read("t.csv", &format!("Direction,warp\n\nSpecimen,{B}\n1,0.1\n1a,0.2\n2,0.3\n2a,0.2\n"));
+    assert_eq!(of_b(&codes), [(None, warp, 0.2, 4)]);
+    let japanese = format!(
+        "試料名,Alfa\n\nタテ\n試料番号,{B}\n1,0.1\n2,0.3\n平均,0.2\n\nヨコ\n試料番号,{B}\n1,0.4\n2,0.6\n"
+    );
+    let weft = Some(Direction::Weft);
+    assert_eq!(of_b(&read("t.csv", &japanese)), [(Some("Alfa"), warp, 0.2, 2), (Some("Alfa"), weft, 0.5, 2)]);
+    let fabrics = read("t.csv", &format!("試料番号,{B}\n1,0.1\n2,0.3\n"));
+    assert_eq!(of_b(&fabrics), [(Some("1"), None, 0.1, 1), (Some("2"), None, 0.3, 1)]);
+}
+
+/// A milliradian is an angle, and no metre times a radian.
+#[test]
+fn angles_in_milliradians() {
+    let text = "direction,warp\n\nAngle (mrad),Shear force (gf/cm)\n0,0\n50,1\n100,2\n";
+    let curve = &read("t.csv", text).measurements[0].curve;
+    assert_relative_eq!(curve.x[2], 0.1, max_relative = 1e-12);
+}
+
+/// Beside a column of values, columns with words that are not known are told, and are no fabrics.
+#[test]
+fn columns_beside_values_are_no_fabrics() {
+    let warp = Some(Direction::Warp);
+    for (head, row, left_out) in [
+        ("Direction,Value,Unit,Population mean", "warp,0.1,gf·cm²/cm,0.14", "Population mean"),
+        ("Direction,Measured,Unit,Population mean,Normalised", "warp,0.1,gf·cm²/cm,0.14,-1.5", "Normalised"),
+        ("Direction,Result,Unit,U95", "warp,0.1,gf·cm²/cm,0.005", "U95"),
+        ("Direction,KES unit,Value,SI unit,SI value", "warp,gf·cm²/cm,0.1,µN·m,9.8", "SI value"),
+        ("Direction,Mean,Unit,Norm", "warp,0.1,gf·cm²/cm,0.005", "Norm"),
+    ] {
+        let found = read("t.csv", &format!("Fabric,Uno\n\nParameter,{head}\nB,{row}\n"));
+        assert_eq!(of_b(&found), [(Some("Uno"), warp, 0.1, 1)], "{head}");
+        assert!(messages(&found, "R104")[0].contains(left_out), "{head}: {:?}", found.findings);
+    }
+    let fabrics = read("t.csv", "Parameter,Unit,Uno,Due,Difference (%)\nB,gf·cm²/cm,0.1,0.3,19\n");
+    assert_eq!(of_b(&fabrics), [(Some("Uno"), None, 0.1, 1), (Some("Due"), None, 0.3, 1)]);
+    assert!(messages(&fabrics, "R104")[0].contains("Difference"), "{:?}", fabrics.findings);
+}
+
+/// A direction over the numbers of specimens, or over the names of parameters, is that of their values.
+#[test]
+fn directions_in_the_corner_of_a_table() {
+    let (warp, weft) = (Some(Direction::Warp), Some(Direction::Weft));
+    let numbered =
+        format!("Fabric,Alfa\n\nWarp,LC,{B}\n1,0.3,0.1\n2,0.3,0.3\n\nWeft,LC,{B}\n1,0.3,0.4\n2,0.3,0.6\n");
+    let found = read("t.csv", &numbered);
+    assert_eq!(of_b(&found), [(Some("Alfa"), warp, 0.2, 2), (Some("Alfa"), weft, 0.5, 2)]);
+    assert!(messages(&found, "R132").is_empty(), "{:?}", found.findings);
+    let down = read("t.csv", "Weft,1,2\nEMT (%),4,5\nB (gf·cm²/cm),0.1,0.3\n");
+    assert_eq!(of_b(&down), [(None, weft, 0.2, 2)]);
+    let width = read("t.csv", &format!("Specimen width,LC,{B}\n1,0.3,0.1\n2,0.3,0.3\n"));
+    assert_eq!(of_b(&width)[0].1, None);
+}
+
+/// Rows of statistics and limits below fabrics are none; alone they may be, and that is told.
+#[test]
+fn rows_of_statistics_and_limits_below_fabrics() {
+    let names = |below: &str| {
+        let rows =
+            format!("Sample,B warp (gf·cm²/cm),B weft (gf·cm²/cm)\nK1,0.11,0.06\nK2,0.13,0.07\n{below}");
+        let found = read("t.csv", &rows);
+        let warp = found.results.iter().filter(|(_, r)| r.direction == Some(Direction::Warp));
+        let names: Vec<String> = warp.filter_map(|(fabric, _)| fabric.clone()).collect();
+        (names.join(" "), ["R110", "R138"].map(|code| messages(&found, code).join(" ")))
+    };
+    for (below, left_out) in [
+        ("Overall mean,0.12,0.065\nOverall SD,0.02,0.01\n", "Overall SD"),
+        ("Lower limit,0.08,0.04\nUpper limit,0.15,0.09\n", "Upper limit"),
+        ("Untergrenze,0.08,0.04\nObergrenze,0.15,0.09\n", "Obergrenze"),
+    ] {
+        let (found, [summed_up, kept]) = names(below);
+        assert!(
+            found == "K1 K2" && summed_up.contains(left_out) && kept.is_empty(),
+            "{below}: {found} {kept}"
+        );
+    }
+    for word in ["Max", "Median", "Uncertainty", "Lower limit", "Wool SD"] {
+        let (found, [_, told]) = names(&format!("{word},0.14,0.08\n"));
+        assert!(found == format!("K1 K2 {word}") && told.contains(word), "{word}: {found} {told}");
+    }
+}
+
+/// Directions in the names of rows, in all the ways that laboratories have, and above the names of columns.
+#[test]
+fn directions_beside_the_names_of_fabrics() {
+    let (warp, weft) = (Some(Direction::Warp), Some(Direction::Weft));
+    for [first, second] in [
+        ["Uno warp direction", "Uno weft direction"],
+        ["Uno in warp", "Uno in weft"],
+        ["Uno sens chaîne", "Uno sens trame"],
+        ["Uno warp-way", "Uno weft-way"],
+        ["Uno (warp, 1)", "Uno (weft, 1)"],
+        ["Uno warp 1", "Uno weft 1"],
+    ] {
+        let found = read("t.csv", &format!("Sample,LC,{B}\n\"{first}\",0.3,0.1\n\"{second}\",0.3,0.4\n"));
+        assert_eq!(of_b(&found), [(Some("Uno"), warp, 0.1, 1), (Some("Uno"), weft, 0.4, 1)], "{first}");
+        assert!(messages(&found, "R125").is_empty(), "{:?}", found.findings);
+    }
+    let four = "Uno warp 1,0.3,0.1\nUno warp 2,0.3,0.3\nUno weft 1,0.3,0.4\nUno weft 2,0.3,0.6\n";
+    let found = read("t.csv", &format!("Sample,LC,{B}\n{four}"));
+    assert_eq!(of_b(&found), [(Some("Uno"), warp, 0.2, 2), (Some("Uno"), weft, 0.5, 2)]);
+    let others = read("t.csv", &format!("Sample,LC,{B}\nUno 1 (warp),0.3,0.1\nUno 2 (weft),0.3,0.4\n"));
+    assert_eq!(of_b(&others), [(Some("Uno 1 (warp)"), warp, 0.1, 1), (Some("Uno 2 (weft)"), weft, 0.4, 1)]);
+    assert_eq!(messages(&others, "R125").len(), 2, "{:?}", others.findings);
+    let knits = read("t.csv", &format!("Sample,LC,{B}\nWarp knit A,0.3,0.1\nWarp knit B,0.3,0.4\n"));
+    assert_eq!(of_b(&knits), [(Some("Warp knit A"), None, 0.1, 1), (Some("Warp knit B"), None, 0.4, 1)]);
+    let groups =
+        "Parameter,Warp,,,Weft,,\n,a,b,c,a,b,c\nEMT (%),4,5,6,7,8,9\nB (gf·cm²/cm),0.1,0.2,0.3,0.4,0.5,0.6\n";
+    let content = read("t.csv", groups);
+    let mut found = of_b(&content);
+    found.sort_by(|a, b| a.2.total_cmp(&b.2));
+    let names: Vec<_> =
+        found.iter().map(|(fabric, direction, ..)| (fabric.unwrap_or("-"), *direction)).collect();
+    let expected = [("a", warp), ("b", warp), ("c", warp), ("a", weft), ("b", weft), ("c", weft)];
+    assert_eq!(names, expected);
+}
+
+/// Specimens with their mean below one direction and again below the other.
+#[test]
+fn numbered_specimens_and_their_mean_below_each_direction() {
+    for mean in ["Mean", "Ave"] {
+        let text = format!(
+            "Parameter,Warp,,,Weft,,\n,1,2,{mean},1,2,{mean}\nEMT (%),4,5,4.5,6,7,6.5\nB (gf·cm²/cm),0.1,0.3,0.2,0.4,0.6,0.5\n"
+        );
+        let found = read("t.csv", &text);
+        let expected = [(None, Some(Direction::Warp), 0.2, 2), (None, Some(Direction::Weft), 0.5, 2)];
+        assert_eq!(of_b(&found), expected, "{mean}");
+        assert!(messages(&found, "R110")[0].contains(mean), "{mean}: {:?}", found.findings);
+    }
+}
+
+/// Rows at the head of a table without headings are told where their labels are not understood.
+#[test]
+fn rows_at_the_head_of_a_bare_table_are_told() {
+    let rows = "RT - Elasticidade ao puxar (%);65.7\nEMT (%);3.2\nB (gf·cm²/cm);0.1\n";
+    for head in [";Valor\n", ""] {
+        let found = read("t.csv", &format!("{head}{rows}"));
+        assert_eq!(of_b(&found), [(None, None, 0.1, 1)], "{head}");
+        assert!(messages(&found, "R104")[0].contains("Elasticidade"), "{head}: {:?}", found.findings);
+    }
+    let apart = read("t.csv", &format!("Loom;4\n\n{}", rows.replacen("RT - Elasticidade ao puxar", "RT", 1)));
+    assert!(messages(&apart, "R104").is_empty(), "{:?}", apart.findings);
+}
+
+/// Sides over directions keep the name of the fabric; masses of specimens are no areal densities; units as print has them.
+#[test]
+fn sides_masses_and_units_of_tables() {
+    let sides = "Fabric,Uno\n\nParameter,Face,,Back,\n,Warp,Weft,Warp,Weft\nMIU,0.18,0.19,0.21,0.22\nSMD (µm),3.1,4.2,3.9,5.1\n";
+    let found = read("t.csv", sides);
+    let names: Vec<_> = found.results.iter().filter_map(|(fabric, _)| fabric.as_deref()).collect();
+    assert!(names.contains(&"Uno Face") && names.contains(&"Uno Back"), "{names:?}");
+    let masses = read(
+        "t.csv",
+        &format!("Fabric,Uno\nDirection,warp\n\nSpecimen,Weight (g),{B}\n1,5.31,0.1\n2,5.2,0.3\n"),
+    );
+    assert_eq!(of_b(&masses), [(Some("Uno"), Some(Direction::Warp), 0.2, 2)]);
+    assert!(messages(&masses, "R104")[0].contains("Weight"), "{:?}", masses.findings);
+    assert_eq!(code("Fabric,Weight (g)\nUno,5.3\n"), "R010");
+    let area = read("t.csv", &format!("Fabric,Weight (gsm),{B}\nUno,132,0.1\n")).results;
+    assert_relative_eq!(area[0].1.mean, 0.132, max_relative = 1e-12);
+    let counted = read("t.csv", "Parameter,Direction,Unit,Mean (n=5),SD (n=5)\nB,warp,gf·cm²/cm,0.1,0.02\n");
+    assert_eq!(of_b(&counted), [(None, Some(Direction::Warp), 0.1, 5)]);
+    assert_relative_eq!(counted.results[0].1.sd.unwrap(), 0.02 * 9.80665e-5, max_relative = 1e-12);
+    let friction = read("t.csv", "Direction,warp\n\nDistance (mm),MIU\n0,0.18\n0.2,0.19\n0.4,0.2\n");
+    assert_eq!(friction.measurements[0].test, Test::Friction);
+    assert_relative_eq!(friction.measurements[0].curve.x[2], 0.4e-3, max_relative = 1e-12);
+    let record = "test,tensile\ndirection,warp\nBreite der Probe,10 cm\n\nextension (mm),load (gf)\n0,0\n0.5,100\n1,500\n";
+    let content = read("t.csv", record);
+    assert_relative_eq!(content.measurements[0].curve.y[2], 50.0 * 0.980665, max_relative = 1e-12);
+}

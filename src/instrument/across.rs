@@ -29,6 +29,13 @@ impl Vocabulary<'_> {
         word == "90deg" || (!is_number && self.direction_word(word) == Some(DirectionWord::Across))
     }
 
+    /// A word that stands beside a direction and says nothing more: `in`, `way`, `sens`, `direction`.
+    pub fn leads_to_a_direction(self, word: &str) -> bool {
+        word == "in"
+            || self.direction_word(word) == Some(DirectionWord::Along)
+            || self.key(word) == Some(Key::Direction)
+    }
+
     /// Whether words begin with a direction, perhaps behind `to the` and the like.
     fn leads_to_direction<'w>(self, words: impl IntoIterator<Item = &'w String>) -> bool {
         let mut words =

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::dialect::Key as HeaderKey;
 use super::read::{FileContent, ReadSettings};
+use super::samples;
 use super::states::told_apart;
 use super::vocabulary::Vocabulary;
 use super::{FabricInfo, FabricInput, Inference, Measurement, Parameter, ResultValue};
@@ -83,9 +84,10 @@ pub(super) fn fabrics(group: &Group, about: &AboutGroup, contents: Vec<FileConte
     // What is said of the table as a whole is said once.
     let once = |(i, mut fabric): (usize, FabricInput)| {
         fabric.findings.retain(|f| i == 0 || !about.findings.contains(f));
-        let states = states(&fabric, Vocabulary::new(&about.settings.dialects));
+        let vocabulary = Vocabulary::new(&about.settings.dialects);
+        let states = states(&fabric, vocabulary);
         fabric.findings.extend(states);
-        finished(fabric)
+        finished(fabric, vocabulary)
     };
     out.into_values().enumerate().map(once).collect()
 }
@@ -185,13 +187,13 @@ fn blank(name: &str, group: &Group, about: &AboutGroup) -> FabricInput {
 }
 
 /// Orders the measurements, numbers the specimens, and says when several samples were mixed.
-fn finished(mut fabric: FabricInput) -> FabricInput {
+fn finished(mut fabric: FabricInput, vocabulary: Vocabulary<'_>) -> FabricInput {
     if fabric.info.title.is_empty() {
         fabric.info.title.clone_from(&fabric.name);
     }
-    let samples: BTreeSet<&str> = fabric.measurements.iter().filter_map(|m| m.sample.as_deref()).collect();
+    let samples = samples::samples(&fabric, vocabulary);
     if samples.len() > 1 {
-        let fact = ReadFact::SeveralSamples { samples: samples.into_iter().map(str::to_string).collect() };
+        let fact = ReadFact::SeveralSamples { samples };
         fabric.findings.push(Finding::new(fact).at(Place::file(&fabric.path)));
     }
     // The areal density stands in the header of every file; once is enough.

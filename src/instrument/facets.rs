@@ -31,6 +31,8 @@ pub(super) struct Facets {
     /// A number behind a symbol, a direction or a word for specimens.
     pub index: Option<usize>,
     pub unit: Option<String>,
+    /// How many repeats a mean is of, `Mean (n=5)`.
+    pub repeats: Option<usize>,
     pub inferred: bool,
     /// Words that mean nothing here: a name, or prose.
     pub unknown: bool,
@@ -119,6 +121,7 @@ impl Facets {
             sd: self.sd || (self.statistic.is_none() && other.sd),
             index: self.index.or(other.index),
             unit: self.unit.clone().or_else(|| other.unit.clone()),
+            repeats: self.repeats.or(other.repeats),
             inferred: self.inferred || other.inferred,
             unknown: self.unknown || other.unknown,
         }
@@ -128,6 +131,8 @@ impl Facets {
     fn take_bracket(&mut self, inner: &str, vocabulary: Vocabulary<'_>) -> bool {
         if let Some(direction) = vocabulary.direction_exactly(inner) {
             self.direction = self.direction.or(Some(direction));
+        } else if let Some(repeats) = repeats(inner) {
+            self.repeats = self.repeats.or(Some(repeats));
         } else if unit(inner).is_err() && self.take_statistic(inner, vocabulary) {
         } else if let Some(parameter) = vocabulary.parameter(inner).filter(|_| unit(inner).is_err()) {
             self.parameter = self.parameter.or(Some(parameter));
@@ -269,6 +274,12 @@ impl Facets {
         }
         known
     }
+}
+
+/// The number of repeats in `n=5`.
+fn repeats(text: &str) -> Option<usize> {
+    let number = text.strip_prefix(['n', 'N'])?.trim_start().strip_prefix('=')?;
+    number.trim().parse().ok().filter(|n| *n > 0)
 }
 
 /// Whether the ends of a phrase are words: a sign there, such as `%`, would be swallowed with it.

@@ -7,6 +7,8 @@ use super::{Direction, Test};
 
 /// A number from here on does not count specimens.
 pub(super) const SPECIMENS: usize = 10_000;
+/// A number behind the name of a sample that is larger is a part of it: `Style 501`.
+const COUNTED: usize = 99;
 
 /// What a name says.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,6 +23,10 @@ pub(super) struct Label {
     pub across: bool,
     /// Words that mean nothing here.
     pub unknown: bool,
+    /// A sample and the number behind it, which is read as that of a specimen: `Lot 3`.
+    pub numbered: Option<(String, usize)>,
+    /// Words behind the first known one that mean nothing here.
+    pub rest: Vec<String>,
 }
 
 impl Label {
@@ -30,10 +36,21 @@ impl Label {
         let mut sample: Vec<&str> = Vec::new();
         let mut begun = false;
         let text = folded(text).replace('°', "deg");
-        for part in text.split(|c: char| !c.is_alphanumeric()).filter(|p| !p.is_empty()) {
+        let parts: Vec<&str> =
+            text.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty()).collect();
+        for (at, part) in parts.iter().enumerate() {
+            if !begun && sample.last().is_some_and(|last| at > 0 && *last == parts[at - 1]) {
+                if belongs_to_sample(&parts[at..]) {
+                    sample.push(part);
+                    continue;
+                }
+                label.numbered = part.parse().ok().map(|n| ([&sample[..], &[part]].concat().join("-"), n));
+            }
             let known = label.take(part, vocabulary) || label.take_with_number(part, vocabulary);
             if !known && !begun {
                 sample.push(part);
+            } else if !known && !part.starts_with(|c: char| c.is_ascii_digit()) && part.chars().count() > 1 {
+                label.rest.push((*part).to_string());
             }
             label.unknown |= !known;
             begun |= label.test.is_some() || label.direction.is_some() || label.specimen.is_some();
@@ -56,6 +73,8 @@ impl Label {
             conflict: if self.direction.is_some() { None } else { self.conflict.or(other.conflict) },
             across: self.across || (other.across && self.direction.is_none()),
             unknown: self.unknown || other.unknown,
+            numbered: other.numbered,
+            rest: other.rest,
         }
     }
 
@@ -72,8 +91,7 @@ impl Label {
     }
 
     fn take(&mut self, part: &str, vocabulary: Vocabulary<'_>) -> bool {
-        let number = part.bytes().all(|b| b.is_ascii_digit());
-        if number && !part.is_empty() {
+        if is_number(part) && !part.is_empty() {
             // A longer number is a date or an order; and a number alone is no angle.
             self.specimen = part.parse().ok().filter(|n| *n < SPECIMENS).or(self.specimen);
         } else if let Some(direction) = vocabulary.direction_exactly(part) {
@@ -97,6 +115,21 @@ impl Label {
     }
 }
 
+/// Whether the number right behind a sample is a part of its name: it is none of a specimen, or that follows as the last part,
+/// `Lot 3 weft 1`. Numbers that follow one another are a date.
+fn belongs_to_sample(parts: &[&str]) -> bool {
+    let [first, rest @ ..] = parts else { return false };
+    let Some(number) = first.parse::<usize>().ok().filter(|n| is_number(first) && *n < SPECIMENS) else {
+        return false;
+    };
+    let is_date = rest.first().is_some_and(|part| is_number(part));
+    !is_date && (number > COUNTED || rest.last().is_some_and(|part| is_number(part)))
+}
+
+fn is_number(part: &str) -> bool {
+    part.bytes().all(|b| b.is_ascii_digit())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -114,6 +147,21 @@ mod tests {
         assert_eq!(label("poplin_20240105_warp").specimen, None);
         assert_eq!(label("poplin_20240105_warp").sample.as_deref(), Some("poplin"));
         assert_eq!(label("経方向-3").direction, Some(Direction::Warp));
+        for (name, sample, specimen) in [
+            ("Lot 3_weft_1", "Lot-3", Some(1)),
+            ("PES-150_weft_2", "PES-150", Some(2)),
+            ("Style 501_warp", "Style-501", None),
+            ("Uno_3_warp", "Uno", Some(3)),
+            ("Uno_2024-05-12_warp_3", "Uno", Some(3)),
+            ("2024-05-12 Uno_warp_3", "Uno", Some(3)),
+            ("Uno 20240512 warp 3", "Uno", Some(3)),
+            ("Uno_warp_501", "Uno", Some(501)),
+        ] {
+            let label = label(name);
+            assert_eq!((label.sample.as_deref(), label.specimen), (Some(sample), specimen), "{name}");
+        }
+        assert_eq!(label("Lot 3_weft").numbered, Some(("Lot-3".to_string(), 3)));
+        assert_eq!(label("warp_Alpha_1_b").rest, ["Alpha"]);
     }
 
     /// A number is an angle only when it is said to be one, and two directions are none.

@@ -110,14 +110,17 @@ pub(super) fn blocks<'t>(
     let mut words: Vec<String> = Vec::new();
     // The first row of numbers under headings that nobody knows; a remark may look like one, so that it is an error only
     // where nothing else was read.
-    let (mut unread, mut behind, mut stray) = (None, Vec::new(), Vec::new());
+    let (mut unread, mut behind, mut stray, mut above) = (None, Vec::new(), Vec::new(), Vec::new());
     while let Some(row) = rows.get(scanner.at) {
         if row.is_blank() {
+            above.clear();
             scanner.at += 1;
         } else if let Some(columns) = scanner.headings(row) {
             blocks.push(scanner.curves(columns)?);
         } else if let Some((region, end)) = shape::region(rows, scanner.at, context) {
             scanner.at = end;
+            // Nothing heads the table: a row with a number right above it may be its first.
+            stray.extend(std::mem::take(&mut above).into_iter().filter(|_| region.heads.is_empty()));
             // What stood over columns of curves before is over.
             scanner.lists.clear();
             scanner.labels.clear();
@@ -135,7 +138,10 @@ pub(super) fn blocks<'t>(
             {
                 behind.push(row.line);
             }
-            stray.extend(shape::value_of_header(row, context).map(|name| (row.line, name)));
+            match shape::value_of_header(row, context) {
+                Some(name) => stray.push((row.line, name)),
+                None => above.extend(scanner.unknown_number(row).map(|name| (row.line, name))),
+            }
             words = row.filled().map(|(_, c)| folded(&c.text).into_owned()).collect();
             scanner.header_line(row);
             scanner.at += 1;
@@ -392,6 +398,16 @@ impl<'t> Scanner<'t, '_> {
         }
         self.labels.push(labels);
         true
+    }
+
+    /// The label of a header line that no dialect knows, with a number behind it.
+    fn unknown_number(&self, row: &Row<'_>) -> Option<String> {
+        let mut filled = row.filled();
+        let (_, label) = filled.next()?;
+        let (_, value) = filled.next()?;
+        let is_number = matches!(number(&value.text, self.context.decimal), Number::Value(_));
+        let is_known = self.context.vocabulary.key(&split_unit(&label.text).0).is_some();
+        (is_number && !is_known && !label.text.contains([':', '='])).then(|| label.text.to_string())
     }
 
     /// Keeps what a header line says: `key,value`, `key: value`, several pairs, or a list of values.

@@ -45,6 +45,7 @@ pub mod picture;
 mod raw;
 mod read;
 mod result_table;
+mod samples;
 mod section;
 mod shape;
 mod sniff;

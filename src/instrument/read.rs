@@ -20,7 +20,7 @@ use super::sniff::{Sniffed, sniff, sniff_lines};
 use super::vocabulary::Vocabulary;
 use super::workbook::{self, Archive};
 use super::{Measurement, Parameter, ResultValue, Source, StatedStiffness};
-use super::{cell_units, code_page, letters, limits, lines, web_page};
+use super::{cell_units, code_page, letters, limits, lines, samples, web_page};
 use crate::finding::{Fact, Finding, Place, ReadFact};
 use crate::platform;
 use crate::quantity::ArealDensity;
@@ -265,20 +265,11 @@ fn sheets(
         let fact = ReadFact::SheetNotUnderstood { reason: e.problem.to_string() };
         Finding::new(fact).at(e.place)
     }));
-    let samples = samples_of_sheets(&with_curves, Vocabulary::new(&settings.dialects));
+    let samples = samples::of_sheets(&with_curves, Vocabulary::new(&settings.dialects));
     if samples.len() > 1 {
         content.findings.push(Finding::new(ReadFact::SeveralSamples { samples }).at(Place::file(path)));
     }
     Ok(())
-}
-
-/// The names that sheets have beside directions, tests and numbers; none where all have the same.
-fn samples_of_sheets(sheets: &[&str], vocabulary: Vocabulary<'_>) -> Vec<String> {
-    let stem = |name: &String| name.trim_end_matches(|c: char| !c.is_alphabetic()).to_string();
-    let samples: Vec<String> =
-        sheets.iter().filter_map(|name| Label::parse(name, vocabulary).sample).collect();
-    let stems: BTreeSet<String> = samples.iter().map(stem).collect();
-    if stems.len() > 1 { samples } else { Vec::new() }
 }
 
 /// An archive of files: each is read by itself, and a bad one costs itself only.

@@ -87,7 +87,10 @@ pub(super) fn read(
     log: &mut Vec<String>,
 ) -> Result<Contents, ReadError> {
     let mut layout = Layout::of(region, context)?;
-    layout.leave_out_false_names(region, header.known.contains_key(&Key::Sample), context);
+    let sample = header.known.get(&Key::Sample).map(|entry| entry.text.as_str());
+    layout.leave_out_false_names(region, sample.is_some(), context);
+    layout.name_sides(sample, context);
+    layout.leave_out_masses();
     log.push(layout.described());
     let mut table = Table {
         header,
@@ -107,6 +110,7 @@ pub(super) fn read(
         marked: None,
         bounds: None,
         factors: BTreeSet::new(),
+        odd_names: Vec::new(),
     };
     for text in std::mem::take(&mut table.layout.texts_of_directions) {
         table.note_more_than_direction((table.layout.line, 0), &text);
@@ -114,6 +118,7 @@ pub(super) fn read(
     if let Some(title) = region.title {
         table.note_title(title);
     }
+    table.direction_of_the_corner();
     let rows = table.facts(region)?;
     let names: BTreeSet<&Option<String>> = rows.iter().map(|(_, facts)| &facts.fabric).collect();
     table.several = names.len() > 1 || table.layout.names_fabrics();
@@ -165,6 +170,8 @@ struct Table<'t, 'a> {
     bounds: noted::Cells,
     /// Columns of factors that were told.
     factors: BTreeSet<usize>,
+    /// Names of fabrics that are those of statistics, each with its line.
+    odd_names: Vec<(usize, String)>,
 }
 
 impl<'t> Table<'t, '_> {
@@ -418,7 +425,7 @@ impl<'t> Table<'t, '_> {
                 row_direction: facts.facets.direction,
                 mean: reading.mean * unit.factor,
                 sd: reading.sd.map(|s| s * unit.factor),
-                n: facts.n,
+                n: all.repeats.unwrap_or(facts.n),
                 inferred: all.inferred,
                 line: row.line,
                 column: row.column(column.index),

@@ -172,9 +172,10 @@ fn states_name(row: &Row<'_>, context: &Context<'_>) -> bool {
     }
 }
 
-/// Whether a row numbers columns: nothing in its first cell, then 1, 2 and so on, and perhaps from 1 again.
-fn counts_columns(row: &Row<'_>) -> bool {
-    let numbers: Option<Vec<usize>> = row.filled().map(|(_, c)| c.text.trim().parse().ok()).collect();
+/// Whether a row numbers columns: nothing in its first cell, then 1, 2 and so on, and perhaps from 1 again, with statistics between.
+fn counts_columns(row: &Row<'_>, context: &Context<'_>) -> bool {
+    let counted = row.filled().filter(|(_, c)| context.vocabulary.statistic(&c.text).is_none());
+    let numbers: Option<Vec<usize>> = counted.map(|(_, c)| c.text.trim().parse().ok()).collect();
     let begins_later = row.filled().next().is_some_and(|(i, _)| i > 0);
     let Some(numbers) = numbers.filter(|n| begins_later && n.first() == Some(&1) && n.get(1) == Some(&2))
     else {
@@ -282,6 +283,25 @@ fn is_alone(row: &Row<'_>, context: &Context<'_>) -> bool {
     row.filled().count() == 1 && row.filled().all(|(_, cell)| !is_value(&cell.text, context))
 }
 
+/// How many rows below a head for values name a parameter, where the first does in words that are not understood.
+fn below_values<'r>(
+    heads: &[&Row<'_>],
+    rows: impl Iterator<Item = &'r Row<'r>>,
+    named: &BTreeSet<usize>,
+    context: &Context<'_>,
+) -> usize {
+    let says: Vec<Facets> = heads.iter().flat_map(|row| facets(row, context)).collect();
+    if !says.iter().any(|f| f.meta == Some(TableColumn::Value)) {
+        return 0;
+    }
+    rows.take(3).filter(|row| has_own_label(row, context) && is_labelled(row, named, context)).count()
+}
+
+/// Whether a row is labelled by a parameter that no header line has: the weight and the thickness of the sample stand there too.
+fn has_own_label(row: &Row<'_>, context: &Context<'_>) -> bool {
+    row_label(row, context).is_some_and(|(_, f)| !matches!(f.parameter, Some(Parameter::T0 | Parameter::W)))
+}
+
 fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
     let (mut end, mut first, mut section, mut title, mut titles) = (at, at, None, None, 0);
     let mut found: Vec<&Row<'_>> = Vec::new();
@@ -304,7 +324,7 @@ fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
                 found.push(row);
             }
             // `1 2 3` below `Warp` and again below `Weft`.
-            Kind::Values if !found.is_empty() && counts_columns(row) => found.push(row),
+            Kind::Values if !found.is_empty() && counts_columns(row, context) => found.push(row),
             Kind::Section(direction) if found.is_empty() && titles < TITLES => {
                 (section, title) = (Some(direction), Some(end));
                 titles += 1;
@@ -319,18 +339,15 @@ fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
     };
     let named = named_columns(&found, context);
     let labelled = next().take(3).take_while(|r| is_labelled(r, &named, context)).count();
+    let labelled = if labelled == 0 { below_values(&found, next(), &named, context) } else { labelled };
     let several = found.iter().flat_map(|r| facets(r, context)).filter(Facets::names_value).count() > 1;
     let parameter_column =
         found.iter().flat_map(|r| facets(r, context)).any(|f| f.meta == Some(TableColumn::Parameter));
     if found.is_empty() {
         // Rows of parameters without heads: the values stand behind them.
-        let own = |r: &&Row<'_>| {
-            row_label(r, context)
-                .is_some_and(|(_, f)| !matches!(f.parameter, Some(Parameter::T0 | Parameter::W)))
-        };
         let bare = rows.get(end).is_some_and(|r| is_labelled(r, &named, context))
             && labelled >= 2
-            && next().take(labelled).any(|r| own(&r));
+            && next().take(labelled).any(|r| has_own_label(r, context));
         return bare.then_some(Heads { end, down: true, section, title, first: end });
     }
     if parameter_column || (labelled > 0 && !several) {

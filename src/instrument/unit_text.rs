@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use super::error::Problem;
 use super::words::folded;
-use crate::quantity::{QuantityError, UNITS, Unit, counts_angles};
+use crate::quantity::{QuantityError, UNITS, Unit, counts_angles, divides_by_length};
 
 /// Characters of the longest text that is tried as a unit.
 const LONGEST: usize = 40;
@@ -84,12 +84,12 @@ const NAMES: &[(&str, &str)] = &[
     ("°", "deg"),
     ("度", "deg"),
     ("grados", "deg"),
-    ("grad", "deg"),
     ("graus", "deg"),
     ("grau", "deg"),
     ("gradi", "deg"),
     ("grado", "deg"),
     ("graden", "deg"),
+    ("grad", "deg"),
     ("degrés", "deg"),
     ("degré", "deg"),
     ("derece", "deg"),
@@ -100,6 +100,12 @@ const NAMES: &[(&str, &str)] = &[
     ("microns", "um"),
     ("micron", "um"),
     ("gsm", "g/m2"),
+    ("dynes", "dyn"),
+    ("dyne", "dyn"),
+    ("mbar", "hPa"),
+    ("psi", "lbf/inch2"),
+    ("sqm", "m2"),
+    ("sqcm", "cm2"),
 ];
 
 /// Answers that are kept on each thread: every cell of a heading is asked a dozen times whether it is a unit, and those
@@ -133,6 +139,10 @@ fn looked_up(text: &str) -> Result<Unit, QuantityError> {
         // The word before a unit, which would be a factor of it where blanks are.
         if text.strip_prefix("in ").is_some_and(|rest| rest.trim_start().starts_with(char::is_alphabetic)) {
             return Err(error);
+        }
+        // No other unit has a prefix before an angle: a force per metre and radian has a mark between them.
+        if folded(text) == "mrad" {
+            return Unit::parse("rad").map(|unit| Unit { factor: 1e-3 * unit.factor, ..unit });
         }
         if let Some((power, rest)) = power_of_ten(text) {
             return unit(rest).map(|unit| Unit { factor: power * unit.factor, ..unit });
@@ -192,6 +202,10 @@ pub(super) fn is_scaled(name: &str) -> bool {
 fn spellings(text: &str) -> Vec<String> {
     let mut plain =
         folded(text).replace("yd.", "yd").replace("oz.", "oz").replace("sq.", "sq ").replace("  ", " ");
+    plain = plain.replace(" per ", "/");
+    if plain.starts_with('/') {
+        plain.insert(0, '1');
+    }
     plain = plain.replace(['*', '⋅', '・', ' ', '×'], "·");
     if matches!(plain.as_str(), "-" | "—") {
         return vec!["1".to_string()];
@@ -226,6 +240,10 @@ fn per_angle(text: &str) -> Option<String> {
 fn unglued(text: &str) -> Cow<'_, str> {
     // `in` ends too many words.
     let known = |s: &str| s != "in" && UNITS.iter().any(|u| u.0 == s);
+    // A milliradian is no metre times a radian.
+    if ["mrad", "mdeg"].into_iter().any(|angle| text.contains(angle)) {
+        return Cow::Borrowed(text);
+    }
     let mut out = String::new();
     let mut changed = false;
     let mut rest = text;
@@ -258,6 +276,11 @@ fn unglued(text: &str) -> Cow<'_, str> {
 pub(super) fn is_angular(text: &str) -> bool {
     let text = folded(text).to_lowercase();
     counts_angles(&text) || NAMES.iter().any(|(name, symbol)| *symbol == "deg" && text.contains(name))
+}
+
+/// Whether a unit divides by a length in any spelling that is known here, as `gsm` does.
+pub(super) fn is_per_length(text: &str) -> bool {
+    divides_by_length(text) || spellings(text).iter().any(|spelling| divides_by_length(spelling))
 }
 
 /// [`unit`] with the error of the readers.
@@ -347,8 +370,19 @@ mod tests {
         assert!((unit("inches").unwrap().factor - 0.0254).abs() < 1e-15);
         assert!((unit("uNm").unwrap().factor - 1e-6).abs() < 1e-18);
         assert!((unit("gsm").unwrap().factor - 1e-3).abs() < 1e-15);
+        assert_eq!(unit("mrad").unwrap(), Unit { factor: 1e-3, ..unit("rad").unwrap() });
+        assert!(is_angular("mrad"));
+        for text in ["gf/cm·gradi", "gf/cm per degree", "gf/cm.graden"] {
+            assert!((unit(text).unwrap().factor - 56.187_965_62).abs() < 1e-8, "{text}");
+        }
+        for (text, factor) in
+            [("psi", 6894.757_293), ("mbar", 100.0), ("/cm", 100.0), ("g/sqm", 1e-3), ("dyne/cm", 1e-3)]
+        {
+            assert!((unit(text).unwrap().factor / factor - 1.0).abs() < 1e-9, "{text}");
+        }
+        assert!(is_per_length("gsm") && !is_per_length("g"));
         // Two readings, or none.
-        for text in ["gf/cm·cm", "gf·cm/N·deg2", "gfm2x"] {
+        for text in ["N/mrad", "gf/cm·cm", "gf·cm/N·deg2", "gfm2x"] {
             assert!(unit(text).is_err(), "{text}");
         }
     }

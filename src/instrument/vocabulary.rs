@@ -191,6 +191,11 @@ impl<'a> Vocabulary<'a> {
         self.direction_word(word) == Some(DirectionWord::Dimension)
     }
 
+    /// Whether a word of a text is a dimension: `specimen width`.
+    pub fn names_dimension(self, text: &str) -> bool {
+        words_of(text).any(|word| self.is_dimension(&word))
+    }
+
     pub fn direction_word(self, word: &str) -> Option<DirectionWord> {
         self.find(word, false, |d| &d.direction_words, &index().direction_words)
     }

@@ -238,6 +238,12 @@ super::facts! {
             keys: Vec<Key>,
         } = "{} is 0 in some repeats and not in others: no cloth has none of it, and the zeros are left out as not measured; leave their \
              cells blank, or enter more digits", several_keys(keys);
+        /// Names of statistics that are read as those of fabrics.
+        "R138" StatisticsAsFabrics {
+            /// The names.
+            names: Vec<String>,
+        } = "{} are read as fabrics, and their names are those of numbers that sum up others or bound them: remove the rows, or give the \
+             fabrics other names", some(names);
         /// Blank cells below a direction or a parameter.
         "R124" MergedCells {} = "blank cells are read as the direction or parameter above them, as of merged cells: fill them in \
              if they are something else";

@@ -35,7 +35,9 @@ impl Layout {
                 }
                 None if is_first && counts && !has_specimen => {
                     label.meta = Some(TableColumn::Specimen);
-                    self.counted_by = Some(label.name.clone()).filter(|name| !name.is_empty());
+                    let is_strange =
+                        !label.name.is_empty() && context.vocabulary.direction(&label.name).is_none();
+                    self.counted_by = is_strange.then(|| label.name.clone());
                 }
                 None if is_first && !named => {
                     // Anything else names fabrics.
@@ -70,7 +72,7 @@ fn counts_beside(region: &Region<'_>, index: usize, names: usize) -> bool {
 }
 
 /// Whether cells count from 1, again and again; labels of statistics may stand between.
-fn counts(cells: &[&str]) -> bool {
+pub(super) fn counts(cells: &[&str]) -> bool {
     let mut last = 0usize;
     let (mut numbers, mut most) = (0, 0);
     for cell in cells {

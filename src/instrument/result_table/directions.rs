@@ -6,41 +6,45 @@ use super::{Datum, RowFacts, Table};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::contradictions::more_than_direction;
 use crate::instrument::curves::across_in_name;
-use crate::instrument::dialect::Key as HeaderKey;
+use crate::instrument::dialect::{Key as HeaderKey, TableColumn};
 use crate::instrument::error::{Problem, ReadError};
 use crate::instrument::raw::Row;
+use crate::instrument::vocabulary::Vocabulary;
 use crate::instrument::words::normalised;
 use crate::instrument::{Direction, Parameter};
 use crate::kes::Key;
 
 impl Table<'_, '_> {
-    /// `F1-warp`, `F1-weft` in the column of names: fabrics that end with a direction each, and occur in several of them.
+    /// `F1-warp`, `F1 weft direction`, `F1 (warp, 2)` in the column of names: fabrics that end with a direction each, and occur in
+    /// several of them. Others keep their names, and what is taken of them is told.
     pub(super) fn directions_in_names(&mut self, rows: &mut [(&Row<'_>, RowFacts)]) {
         let v = self.context.vocabulary;
-        let parts = |name: &str| {
-            let name = name.trim_end_matches([')', ']']);
-            let at = name.rfind(|c: char| !c.is_alphanumeric())?;
-            let (stem, word) = name.split_at(at);
-            let word = word.trim_start_matches(|c: char| !c.is_alphanumeric());
-            let direction = v.direction_exactly(word).or_else(|| v.letter(word))?;
-            let stem = stem.trim_end_matches(|c: char| !c.is_alphanumeric()).to_string();
-            (!stem.is_empty()).then_some((stem, direction))
-        };
-        let split: Vec<_> = rows.iter().map(|(_, f)| parts(f.fabric.as_ref()?)).collect();
-        let mut of_stem = BTreeMap::<&str, BTreeSet<Direction>>::new();
-        for (stem, direction) in split.iter().flatten() {
-            of_stem.entry(stem).or_default().insert(*direction);
-        }
-        let all = split.iter().all(Option::is_some) && of_stem.values().all(|of| of.len() > 1);
-        if !all || rows.iter().any(|(_, f)| f.facets.direction.is_some()) {
+        if rows.iter().any(|(_, f)| f.facets.direction.is_some()) {
             return;
         }
-        for ((_, facts), split) in rows.iter_mut().zip(&split) {
-            if let Some((stem, direction)) = split {
-                let name = facts.fabric.iter().filter(|name| v.direction(name).is_none());
-                self.layout.letters.extend(name.cloned());
-                (facts.fabric, facts.facets.direction) = (Some(stem.clone()), Some(*direction));
+        let split: Vec<_> = rows.iter().map(|(_, f)| DirectedName::of(f.fabric.as_deref()?, v)).collect();
+        let mut of_stem = BTreeMap::<&str, BTreeSet<Direction>>::new();
+        for name in split.iter().flatten() {
+            of_stem.entry(&name.stem).or_default().insert(name.direction);
+        }
+        let is_split = |((_, f), name): (&(&Row<'_>, RowFacts), &Option<DirectedName>)| {
+            name.is_some() || f.fabric.as_deref().is_some_and(|text| v.statistic(text).is_some())
+        };
+        let all = rows.iter().zip(&split).all(is_split) && of_stem.values().all(|of| of.len() > 1);
+        let mut told = BTreeSet::new();
+        for ((row, facts), name) in rows.iter_mut().zip(&split) {
+            let Some(name) = name else { continue };
+            let text = facts.fabric.as_deref().unwrap_or_default();
+            if all {
+                self.layout.letters.extend(name.is_letter.then(|| text.to_string()));
+                facts.fabric = Some(name.stem.clone());
+                facts.facets.index = facts.facets.index.or(name.number);
+            } else if name.is_letter {
+                continue;
+            } else if told.insert(name.direction) {
+                self.note_more_than_direction((row.line, 0), text);
             }
+            facts.facets.direction = Some(name.direction);
         }
     }
 
@@ -52,6 +56,22 @@ impl Table<'_, '_> {
         if let Some(fact) = more_than_direction(text, self.context.vocabulary) {
             let place = Place::at(self.context.path, line, column);
             self.findings.push(Finding::new(fact).at(place));
+        }
+    }
+
+    /// The direction that heads the numbers of specimens, or the parameters of rows: `Warp` over 1, 2, 3.
+    pub(super) fn direction_of_the_corner(&mut self) {
+        let v = self.context.vocabulary;
+        let corner = match self.layout.down {
+            true => self.layout.labels.first().filter(|l| l.meta.is_none()),
+            false => self.layout.labels.iter().find(|l| l.meta == Some(TableColumn::Specimen)),
+        };
+        let Some(text) = corner.map(|l| l.name.clone()).filter(|text| !v.names_dimension(text)) else {
+            return;
+        };
+        if let Some(direction) = v.direction(&text) {
+            self.section = Some(direction);
+            self.note_more_than_direction((self.layout.line, 0), &text);
         }
     }
 
@@ -194,6 +214,50 @@ impl Table<'_, '_> {
             self.findings.push(Finding::new(ReadFact::NumbersAsSpecimens { keys }).at(place));
         }
     }
+}
+
+/// A name of a fabric that ends with a direction, perhaps with a number behind it.
+struct DirectedName {
+    stem: String,
+    direction: Direction,
+    number: Option<usize>,
+    /// Whether a letter stands for the direction.
+    is_letter: bool,
+}
+
+impl DirectedName {
+    fn of(name: &str, v: Vocabulary<'_>) -> Option<Self> {
+        let (mut rest, mut word) = last_word(name)?;
+        let number = word.parse().ok();
+        if number.is_some() {
+            (rest, word) = last_word(rest)?;
+        }
+        if v.leads_to_a_direction(word) {
+            (rest, word) = last_word(rest)?;
+        }
+        let exact = v.direction_exactly(word);
+        let direction = exact.or_else(|| v.letter(word))?;
+        let (before, last) = last_word(rest)?;
+        let stem = if v.leads_to_a_direction(last) && !before.is_empty() { before } else { rest };
+        let stem = stem.trim_end_matches(is_mark);
+        (!stem.is_empty()).then(|| Self {
+            stem: stem.to_string(),
+            direction,
+            number,
+            is_letter: exact.is_none(),
+        })
+    }
+}
+
+fn is_mark(c: char) -> bool {
+    !c.is_alphanumeric()
+}
+
+/// A text without its last word, and the word.
+fn last_word(text: &str) -> Option<(&str, &str)> {
+    let text = text.trim_end_matches(is_mark);
+    let at = text.rfind(is_mark).map_or(0, |at| at + text[at..].chars().next().map_or(0, char::len_utf8));
+    (!text.is_empty()).then(|| text.split_at(at))
 }
 
 pub(super) fn no_direction(text: &str) -> Problem {

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::instrument::Direction;
 use crate::instrument::dialect::{Statistic, TableColumn};
 use crate::instrument::error::{Problem, ReadError};
 use crate::instrument::facets::Facets;
@@ -175,6 +176,7 @@ impl Layout {
     /// What can be said only when all columns are known.
     fn settle(&mut self, heads: &Heads, region: &Region<'_>, context: &Context<'_>) {
         if self.down {
+            self.leave_out_beside_values(context);
             // Numbered columns are specimens: an unknown word among them is no fabric.
             let numbered = self.values.iter().filter(|c| c.facets.index.is_some()).count();
             for c in self.values.iter_mut().filter(|c| numbered >= 2 && c.fabric.is_some()) {
@@ -205,6 +207,7 @@ impl Layout {
                 region.rows.iter().filter_map(|r| heads.label_of(r, context)).map(|(_, f)| f).collect();
             self.numbers = labels.iter().filter_map(|f| f.index).collect();
             self.directions_over_columns(context);
+            self.names_below_directions(heads);
             self.fabrics_over_columns(heads);
             self.leave_out_strangers();
             return;
@@ -227,6 +230,23 @@ impl Layout {
         for column in self.values.iter_mut().filter(|c| c.fabric.is_some()) {
             column.facets.direction = direction_of(column);
             self.texts_of_directions.extend(column.fabric.take());
+        }
+    }
+
+    /// Names of fabrics below their directions, `A` and `B` below `Warp` and again below `Weft`: each has both.
+    fn names_below_directions(&mut self, heads: &Heads) {
+        let below: Vec<_> = self.values.iter().map(|c| heads.name_below(c.index)).collect();
+        let mut of_name = BTreeMap::<&str, BTreeSet<Direction>>::new();
+        for (name, direction) in below.iter().flatten() {
+            of_name.entry(name).or_default().insert(*direction);
+        }
+        let columns: usize = of_name.values().map(BTreeSet::len).sum();
+        let is_whole = columns == self.values.len() && below.iter().all(Option::is_some);
+        if of_name.len() < 2 || !is_whole || of_name.values().any(|of| of.len() < 2) {
+            return;
+        }
+        for (column, (name, direction)) in self.values.iter_mut().zip(below.into_iter().flatten()) {
+            (column.fabric, column.facets.direction) = (Some(name), Some(direction));
         }
     }
 
@@ -415,6 +435,17 @@ impl Heads {
         let mut names =
             over.filter(|(f, text, _)| f.unknown && !text.is_empty() && text.chars().count() <= NAME);
         names.next().map(|(_, text, _)| text.clone())
+    }
+
+    /// The name in the lowest heads of a column, and the direction above it.
+    fn name_below(&self, index: usize) -> Option<(String, Direction)> {
+        let [lowest, above, ..] = &self.rows[..] else { return None };
+        let (says, text, _) = lowest.get(index)?;
+        let (over, ..) = above.get(index)?;
+        // Where rows are parameters, a symbol over a column is a name like others.
+        let is_name = says.unknown || says.parameter.is_some() || says.fast.is_some();
+        let direction = over.direction.filter(|_| !over.unknown && is_name && says.direction.is_none())?;
+        (!text.is_empty()).then(|| (text.clone(), direction))
     }
 
     /// Two units of one column that are not the same, as people read it, with the place of the second.

@@ -2,12 +2,15 @@
 
 use std::collections::BTreeSet;
 
-use super::layout::{LabelColumn, Layout};
-use crate::instrument::dialect::TableColumn;
+use super::counting::counts;
+use super::layout::{Column, LabelColumn, Layout};
+use crate::instrument::Parameter;
+use crate::instrument::dialect::{Key, TableColumn};
 use crate::instrument::layout::Context;
 use crate::instrument::raw::Row;
 use crate::instrument::shape::Region;
 use crate::instrument::sniff::{Number, number};
+use crate::instrument::unit_text::unit;
 
 impl Layout {
     /// Measured numbers behind the values, such as those of a column `Reference`, name no fabric; and where rows are parameters,
@@ -27,6 +30,7 @@ impl Layout {
             }
         }
         if !self.down {
+            self.count_under_name(region, is_named, context);
             return;
         }
         let measured = self.labels.iter().filter(|l| l.meta.is_none() && l.index > first);
@@ -39,6 +43,43 @@ impl Layout {
         }
     }
 
+    /// The mass of a specimen beside other values is no areal density.
+    pub(super) fn leave_out_masses(&mut self) {
+        let masses = self.values.iter().filter(|c| is_mass(c)).count();
+        if masses == 0 || masses == self.values.len() {
+            return;
+        }
+        let (masses, values): (Vec<_>, Vec<_>) =
+            std::mem::take(&mut self.values).into_iter().partition(is_mass);
+        self.values = values;
+        self.strangers.extend(masses.into_iter().map(|c| c.name));
+    }
+
+    /// Sides of one fabric over columns, `Face` and `Back`, where a line above names it: fabrics of their own, with its name.
+    pub(super) fn name_sides(&mut self, sample: Option<&str>, context: &Context<'_>) {
+        let Some(sample) = sample else { return };
+        let names = self.values.iter_mut().filter_map(|c| c.fabric.as_mut());
+        for side in names.filter(|name| context.vocabulary.key(name) == Some(Key::Remark)) {
+            *side = format!("{sample} {side}");
+        }
+    }
+
+    /// A heading that may mean numbers of samples and of specimens, 試料番号, over 1, 2, 3 where a line above names the sample.
+    fn count_under_name(&mut self, region: &Region<'_>, is_named: bool, context: &Context<'_>) {
+        if !is_named
+            || self.meta(TableColumn::Specimen)
+            || self.labels.iter().filter(|l| is_name(l)).count() > 1
+        {
+            return;
+        }
+        for label in self.labels.iter_mut().filter(|l| is_name(l)) {
+            let may_count = context.vocabulary.key(&label.name) == Some(Key::Specimen);
+            if may_count && counts(&cells(region, label.index).collect::<Vec<_>>()) {
+                label.meta = Some(TableColumn::Specimen);
+            }
+        }
+    }
+
     /// Whether specimens are numbered, or no parameter comes again: rows need no number to be told apart.
     fn rows_are_told_apart(&self, region: &Region<'_>, values: usize) -> bool {
         let mut labels = self
@@ -47,6 +88,12 @@ impl Layout {
             .filter(|l| l.index < values && matches!(l.meta, None | Some(TableColumn::Parameter)));
         self.meta(TableColumn::Specimen) || labels.any(|l| differs_in_rows(region, l.index))
     }
+}
+
+fn is_mass(column: &Column) -> bool {
+    let stated = column.facets.unit.as_deref().and_then(|text| unit(text).ok());
+    let of_mass = unit("kg").is_ok_and(|mass| stated.is_some_and(|own| own.dimension == mass.dimension));
+    of_mass && column.facets.parameter == Some(Parameter::W)
 }
 
 fn is_name(label: &LabelColumn) -> bool {

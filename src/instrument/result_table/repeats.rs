@@ -89,6 +89,8 @@ impl<'t> Table<'t, '_> {
         };
         let words: Vec<Option<String>> = rows.iter().zip(&statistics).map(own).collect();
         if !names_statistics(words.iter().flatten().map(String::as_str), v) {
+            let lines = rows.iter().map(|(row, _)| row.line);
+            self.odd_names.extend(lines.zip(words).filter_map(|(line, word)| Some((line, word?))));
             return;
         }
         let others = words.iter().zip(rows.iter()).any(|(w, (_, f))| w.is_none() && f.fabric.is_some());
@@ -104,8 +106,8 @@ impl<'t> Table<'t, '_> {
     }
 
     /// `F1 mean` and `SD of F1` in the column of fabrics, where `F1` is a fabric, begins names of others (`F1 1`), or has
-    /// several statistics.
-    fn statistics_of_names(&self, rows: &mut [(&Row<'_>, RowFacts)]) {
+    /// several statistics. Of any other it is told that it is read as a fabric.
+    fn statistics_of_names(&mut self, rows: &mut [(&Row<'_>, RowFacts)]) {
         let v = self.context.vocabulary;
         let split: Vec<_> = rows
             .iter()
@@ -114,6 +116,10 @@ impl<'t> Table<'t, '_> {
             })
             .collect();
         let names: Vec<Option<String>> = rows.iter().map(|(_, f)| f.fabric.clone()).collect();
+        // `Overall SD` below `Overall mean` sums up what that does.
+        let sums =
+            rows.iter().filter(|(_, f)| f.summary_of_fabrics).filter_map(|(_, f)| summed_up(&f.label, v));
+        let sums: BTreeSet<String> = sums.map(|(of, ..)| of).collect();
         let mut statistics = BTreeMap::<&str, BTreeSet<Statistic>>::new();
         for (of, statistic, _) in split.iter().flatten() {
             statistics.entry(of).or_default().insert(*statistic);
@@ -124,13 +130,16 @@ impl<'t> Table<'t, '_> {
         };
         let plain: BTreeSet<&str> =
             names.iter().zip(&split).filter(|(_, s)| s.is_none()).filter_map(|(n, _)| n.as_deref()).collect();
-        for ((_, facts), found) in rows.iter_mut().zip(&split) {
+        for ((row, facts), found) in rows.iter_mut().zip(&split) {
             let Some((of, statistic, word)) = found else { continue };
             let is_fabric = plain.contains(of.as_str()) || statistics[of.as_str()].len() > 1;
             // Names that begin with this one follow it in their order.
             let next = plain.range(of.as_str()..).find(|n| **n != of);
             let of_parts = next.is_some_and(|name| begins(name, of));
-            if !is_fabric && !of_parts {
+            if !is_fabric && !of_parts && !sums.contains(of) {
+                if *statistic != Statistic::Other {
+                    self.odd_names.extend(facts.fabric.iter().map(|name| (row.line, name.clone())));
+                }
                 continue;
             }
             facts.label = facts.fabric.take().unwrap_or_default();
@@ -141,7 +150,8 @@ impl<'t> Table<'t, '_> {
         }
     }
 
-    /// A label without a number among numbered specimens is none of them.
+    /// A label that is no number among numbered specimens is none of them: `P90` and `U (k=2)` sum up, and `3a` is one again. Where
+    /// most labels are of another kind, only those without a digit are.
     fn odd_labels(&mut self, rows: &mut [(&Row<'_>, RowFacts)]) {
         if !self.layout.meta(TableColumn::Specimen) {
             return;
@@ -150,11 +160,12 @@ impl<'t> Table<'t, '_> {
         if numbered < 2 {
             return;
         }
+        let most = 2 * numbered > rows.len();
         for (_, f) in rows.iter_mut() {
             let odd = f.facets.index.is_none()
                 && f.facets.statistic.is_none()
                 && !f.label.is_empty()
-                && !f.label.contains(|c: char| c.is_ascii_digit());
+                && (most || !f.label.contains(|c: char| c.is_ascii_digit()));
             if odd {
                 f.facets.statistic = Some(Statistic::Other);
             }

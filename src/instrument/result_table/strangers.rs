@@ -3,8 +3,10 @@
 use super::layout::{Column, Layout};
 use super::{Datum, Table};
 use crate::finding::{Finding, Place, ReadFact};
-use crate::instrument::dialect::Statistic;
+use crate::instrument::dialect::{Statistic, TableColumn};
 use crate::instrument::facets::Facets;
+use crate::instrument::layout::Context;
+use crate::instrument::unit_text::{split_unit, unit};
 
 /// A column of one specimen or direction, which has no name of its own.
 fn is_single(column: &Column) -> bool {
@@ -17,6 +19,16 @@ fn is_stranger(column: &Column, directed: bool) -> bool {
     let unnamed = fabric.is_none() && *facets == Facets::default() && name.is_empty();
     let other = directed && fabric.is_some() && facets.direction.is_none();
     unnamed || (other && facets.statistic != Some(Statistic::Mean))
+}
+
+fn is_of_values(column: &Column, context: &Context<'_>) -> bool {
+    column.fabric.is_none()
+        && context.vocabulary.table_column(&split_unit(&column.name).0) == Some(TableColumn::Value)
+}
+
+/// Whether a unit stands in a bracket behind a name.
+fn has_unit(name: &str) -> bool {
+    name.ends_with([')', ']']) && split_unit(name).1.is_some_and(|text| unit(&text).is_ok())
 }
 
 impl Layout {
@@ -32,8 +44,30 @@ impl Layout {
         let (strangers, values) =
             std::mem::take(&mut self.values).into_iter().partition(|c| is_stranger(c, directed));
         self.values = values;
-        let strangers: Vec<Column> = strangers;
-        self.strangers.extend(strangers.into_iter().map(|c| match c.name.is_empty() {
+        self.tell_strangers(strangers);
+    }
+
+    /// Beside a column of values, `Value` or `Result`, another with numbers and words that are not known is no fabric: `Population mean`,
+    /// `LOQ`. Neither is one whose head states a unit beside a column of units, `Difference (%)`.
+    pub(super) fn leave_out_beside_values(&mut self, context: &Context<'_>) {
+        let values = self.values.iter().find(|c| is_of_values(c, context));
+        // A mean may be one of the fabrics before it, or of the only one.
+        let from = match values.map(|c| (c.index, c.facets.statistic)) {
+            Some((at, Some(_))) if self.values.iter().any(|c| c.index < at) => usize::MAX,
+            Some((at, Some(_))) => at,
+            Some((_, None)) => 0,
+            None => usize::MAX,
+        };
+        let with_units = self.meta(TableColumn::Unit);
+        let (strangers, values) = std::mem::take(&mut self.values)
+            .into_iter()
+            .partition(|c| c.fabric.is_some() && (c.index >= from || (with_units && has_unit(&c.name))));
+        self.values = values;
+        self.tell_strangers(strangers);
+    }
+
+    fn tell_strangers(&mut self, columns: Vec<Column>) {
+        self.strangers.extend(columns.into_iter().map(|c| match c.name.is_empty() {
             true => format!("column {} without a heading", c.index + 1),
             false => c.name,
         }));
@@ -48,6 +82,11 @@ impl Table<'_, '_> {
         if !texts.is_empty() {
             let place = Place::at(self.context.path, self.layout.line, 0);
             self.findings.push(Finding::new(ReadFact::DirectionsFromLetters { texts }).at(place));
+        }
+        if let Some((line, _)) = self.odd_names.first() {
+            let place = Place::at(self.context.path, *line, 0);
+            let names = std::mem::take(&mut self.odd_names).into_iter().map(|(_, name)| name).collect();
+            self.findings.push(Finding::new(ReadFact::StatisticsAsFabrics { names }).at(place));
         }
         let counted = self.data.iter().any(|d: &Datum| d.index.is_some() && d.statistic.is_none());
         let column = self.layout.counted_by.take().filter(|_| counted);

@@ -5,8 +5,8 @@ use super::{RowFacts, Table};
 use crate::instrument::Parameter;
 use crate::instrument::error::{Problem, ReadError};
 use crate::instrument::raw::Row;
-use crate::instrument::unit_text::{is_angular, known_unit};
-use crate::quantity::{Unit, divides_by_length};
+use crate::instrument::unit_text::{is_angular, is_per_length, known_unit};
+use crate::quantity::Unit;
 
 impl Table<'_, '_> {
     /// R018 where a row and its heads, or two cells of a row, state units that are not the same.
@@ -54,7 +54,7 @@ impl Table<'_, '_> {
         let expected = known_unit(p.si_unit()).map_err(error)?;
         // G in gf/cm could be per degree or per radian, a factor 57: only SI is clear without deg.
         let per_angle = p == Parameter::G && text.contains("gf") && !is_angular(text);
-        let undivided = p == Parameter::W && !divides_by_length(text);
+        let undivided = p == Parameter::W && !is_per_length(text);
         // An angle has no dimension, and a ratio in degrees would be 57 times too large as one in radians.
         let angle = matches!(p.kes_unit(), "1" | "%") && is_angular(text);
         if unit.dimension != expected.dimension || per_angle || undivided || angle {
