@@ -148,17 +148,17 @@ mod tests {
         assert_eq!(label("poplin_20240105_warp").sample.as_deref(), Some("poplin"));
         assert_eq!(label("経方向-3").direction, Some(Direction::Warp));
         for (name, sample, specimen) in [
-            ("Lot 3_weft_1", "Lot-3", Some(1)),
-            ("PES-150_weft_2", "PES-150", Some(2)),
-            ("Style 501_warp", "Style-501", None),
-            ("Uno_3_warp", "Uno", Some(3)),
-            ("Uno_2024-05-12_warp_3", "Uno", Some(3)),
-            ("2024-05-12 Uno_warp_3", "Uno", Some(3)),
-            ("Uno 20240512 warp 3", "Uno", Some(3)),
-            ("Uno_warp_501", "Uno", Some(501)),
+            ("Lot 3_weft_1", Some("Lot-3"), Some(1)),
+            ("PES-150_weft_2", Some("PES-150"), Some(2)),
+            ("Style 501_warp", Some("Style-501"), None),
+            ("Uno_3_warp", Some("Uno"), Some(3)),
+            ("Uno_2024-05-12_warp_3", Some("Uno"), Some(3)),
+            ("2024-05-12 Uno_warp_3", None, Some(3)),
+            ("Uno 20240512 warp 3", Some("Uno"), Some(3)),
+            ("Uno_warp_501", Some("Uno"), Some(501)),
         ] {
             let label = label(name);
-            assert_eq!((label.sample.as_deref(), label.specimen), (Some(sample), specimen), "{name}");
+            assert_eq!((label.sample.as_deref(), label.specimen), (sample, specimen), "{name}");
         }
         assert_eq!(label("Lot 3_weft").numbered, Some(("Lot-3".to_string(), 3)));
         assert_eq!(label("warp_Alpha_1_b").rest, ["Alpha"]);

@@ -22,11 +22,10 @@ mod units;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use cells::is_percent;
 use fast_cells::FastCell;
 use layout::{Column, Layout};
 pub(super) use layout::{differ, two_units};
-use row_facts::RowFacts;
+use row_facts::{RowFacts, no_direction};
 
 use super::dialect::{Key, Statistic, TableColumn};
 use super::error::{Problem, ReadError};
@@ -34,6 +33,7 @@ use super::facets::Facets;
 use super::layout::{Context, Header};
 use super::raw::Row;
 use super::shape::{self, Region};
+use super::unit_text::is_percent;
 use super::value::is_gap;
 use super::words::{folded, normalised};
 use super::{Direction, Parameter, ResultValue, StatedStiffness};
@@ -335,7 +335,7 @@ impl<'t> Table<'t, '_> {
             .filter(|_| !f.unknown)
             .or(conflict)
             .map(Some)
-            .ok_or_else(|| self.context.error(row.line, row.column(index), directions::no_direction(text)))
+            .ok_or_else(|| self.context.error(row.line, row.column(index), no_direction(text)))
     }
 
     /// Whether the text of a direction says that the value is of none, or of all.

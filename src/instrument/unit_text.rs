@@ -232,7 +232,8 @@ fn per_angle(text: &str) -> Option<String> {
     let (above, below) = text.split_once('/')?;
     let angle = if below.ends_with("rad") { "rad" } else { "deg" };
     let length = below.strip_suffix(angle)?.trim_end_matches(['·', '.', '-']);
-    let simple = !length.is_empty() && length.chars().all(|c| c.is_ascii_alphabetic());
+    // `N/mrad` is one per milliradian.
+    let simple = !length.is_empty() && below != "mrad" && length.chars().all(|c| c.is_ascii_alphabetic());
     simple.then(|| format!("{above}/({length}·{angle})"))
 }
 
@@ -276,6 +277,10 @@ fn unglued(text: &str) -> Cow<'_, str> {
 pub(super) fn is_angular(text: &str) -> bool {
     let text = folded(text).to_lowercase();
     counts_angles(&text) || NAMES.iter().any(|(name, symbol)| *symbol == "deg" && text.contains(name))
+}
+
+pub(super) fn is_percent(text: &str) -> bool {
+    unit(text) == unit("%")
 }
 
 /// Whether a unit divides by a length in any spelling that is known here, as `gsm` does.

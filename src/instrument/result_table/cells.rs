@@ -6,7 +6,7 @@ use crate::instrument::cell::parts;
 use crate::instrument::error::{Problem, ReadError};
 use crate::instrument::raw::Row;
 use crate::instrument::sniff::Number;
-use crate::instrument::unit_text::{known_unit, unit};
+use crate::instrument::unit_text::{is_percent, known_unit};
 use crate::instrument::value::Printed;
 
 /// A cell as it is read.
@@ -33,10 +33,6 @@ impl Reading {
             self.sd = self.sd.map(|sd| 0.01 * sd * self.mean.abs());
         }
     }
-}
-
-pub(super) fn is_percent(text: &str) -> bool {
-    unit(text) == unit("%")
 }
 
 impl Table<'_, '_> {

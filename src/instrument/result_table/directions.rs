@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::row_facts::no_direction;
 use super::{Datum, RowFacts, Table};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::contradictions::more_than_direction;
 use crate::instrument::curves::across_in_name;
 use crate::instrument::dialect::{Key as HeaderKey, TableColumn};
-use crate::instrument::error::{Problem, ReadError};
+use crate::instrument::error::ReadError;
 use crate::instrument::raw::Row;
 use crate::instrument::vocabulary::Vocabulary;
 use crate::instrument::words::normalised;
@@ -232,7 +233,8 @@ impl DirectedName {
         if number.is_some() {
             (rest, word) = last_word(rest)?;
         }
-        if v.leads_to_a_direction(word) {
+        // Most names end with a number of their own, and are asked no further.
+        if !word.contains(|c: char| c.is_ascii_digit()) && v.leads_to_a_direction(word) {
             (rest, word) = last_word(rest)?;
         }
         let exact = v.direction_exactly(word);
@@ -258,10 +260,6 @@ fn last_word(text: &str) -> Option<(&str, &str)> {
     let text = text.trim_end_matches(is_mark);
     let at = text.rfind(is_mark).map_or(0, |at| at + text[at..].chars().next().map_or(0, char::len_utf8));
     (!text.is_empty()).then(|| text.split_at(at))
-}
-
-pub(super) fn no_direction(text: &str) -> Problem {
-    Problem::BadTable { found: format!("{text:?} is not a direction (warp, weft, bias or mean)") }
 }
 
 /// The direction that 1 and 2 behind a symbol stand for.

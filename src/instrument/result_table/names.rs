@@ -36,6 +36,9 @@ impl Layout {
         let measured = self.labels.iter().filter(|l| l.meta.is_none() && l.index > first);
         let measured = measured.filter(|l| is_measured(region, l.index, context));
         self.strangers.extend(measured.map(|l| l.name.clone()));
+        if !self.meta(TableColumn::Id) {
+            return;
+        }
         let repeated =
             self.labels.iter().any(|l| l.meta == Some(TableColumn::Fabric) && repeats(region, l.index));
         if (is_named || repeated) && self.rows_are_told_apart(region, first) {
