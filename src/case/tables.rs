@@ -349,11 +349,9 @@ impl CaseTable {
             return refused(at.value_place("shaking"), message);
         }
         foreign(case, &["convergence"], NO_CONVERGENCE)?;
-        if let Some(key) = ["sizes", "shaking"].into_iter().find(|key| case.has("section") && at.has(key)) {
-            let message = format!(
-                "`{key}` is of a measured fabric: a [section] has no drape that was measured and no friction; remove it, or the section"
-            );
-            return refused(at.key_place(key), message);
+        if case.has("section") && at.has("sizes") {
+            let message = "`sizes` are those of a measured drape, which a [section] has none of: remove it, or the section";
+            return refused(at.key_place("sizes"), message);
         }
         let (ring, layout) = sheet.ring(of_sheet)?;
         let message = "a drape has no [[probes]] and no [[checks]]: remove them";
