@@ -106,6 +106,12 @@ fn batch_of<R: kesf::report::table::Row>(
     batch(rows)
 }
 
+/// Whether the part was there already; fabrics, rows of results, of findings and of failures.
+type Counts = (bool, usize, usize, usize, usize);
+
+/// What gave something, numerical failures, and whether a check does not hold.
+type Ending = (usize, usize, bool);
+
 /// Makes the part of a shard of the inputs in a folder, unless it is there: whether it was, and how many fabrics, rows,
 /// findings and failures it has.
 #[pyfunction]
@@ -120,7 +126,7 @@ pub fn make_part(
     force: bool,
     fresh: bool,
     threads: Option<usize>,
-) -> PyResult<((bool, usize, usize, usize, usize), (usize, usize, bool))> {
+) -> PyResult<(Counts, Ending)> {
     let (settings, drape, shard) = making;
     let follower = Follower { progress: None, threads };
     let (done, _) = follow(py, &follower, move |observer| {

@@ -381,7 +381,7 @@ mod tests {
             assert!((unit(text).unwrap().factor - 56.187_965_62).abs() < 1e-8, "{text}");
         }
         for (text, factor) in
-            [("psi", 6894.757_293), ("mbar", 100.0), ("/cm", 100.0), ("g/sqm", 1e-3), ("dyne/cm", 1e-3)]
+            [("psi", 6_894.757_293), ("mbar", 100.0), ("/cm", 100.0), ("g/sqm", 1e-3), ("dyne/cm", 1e-3)]
         {
             assert!((unit(text).unwrap().factor / factor - 1.0).abs() < 1e-9, "{text}");
         }
