@@ -242,8 +242,8 @@ super::facts! {
         "R138" StatisticsAsFabrics {
             /// The names.
             names: Vec<String>,
-        } = "{} are read as fabrics, and their names are those of numbers that sum up others or bound them: remove the rows, or give the \
-             fabrics other names", some(names);
+        } = "rows are read as those of fabrics that are called like statistics or limits: {}; remove them if they sum up or bound the \
+             others, or give the fabrics other names", some(names);
         /// Blank cells below a direction or a parameter.
         "R124" MergedCells {} = "blank cells are read as the direction or parameter above them, as of merged cells: fill them in \
              if they are something else";
