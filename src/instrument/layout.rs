@@ -457,7 +457,6 @@ impl<'t> Scanner<'t, '_> {
 
     fn keep(&mut self, name: &str, mut values: Vec<(String, usize)>, line: usize) {
         let name = name.trim_start_matches('#');
-        let bare = |text: &str| text.trim().trim_end_matches([':', '=']).trim().to_string();
         let (plain, own_unit) = split_unit(name);
         let plain = bare(&plain);
         // `width,20,cm` and `幅(cm),20`: the unit goes with the number.
@@ -506,4 +505,9 @@ impl<'t> Scanner<'t, '_> {
             (Some(key), _) => self.lists.push((key, values.into_iter().map(entry).collect())),
         }
     }
+}
+
+/// A name without the sign that leads to its value.
+fn bare(text: &str) -> String {
+    text.trim().trim_end_matches([':', '=']).trim().to_string()
 }

@@ -198,8 +198,10 @@ impl Links {
 
     /// The direction about which rotation `k` of the unknowns of a node turns it.
     pub fn rotation_axis(&self, node: u32, k: usize) -> Vector3<f64> {
-        let of_tie = |tie: &Tie| tie.transform.fixed_view::<3, 1>(3, 3 + k).into_owned();
-        self.tie(node).map_or_else(|| Vector3::ith(k, 1.0), of_tie)
+        match self.tie(node) {
+            Some(tie) => tie.transform.fixed_view::<3, 1>(3, 3 + k).into_owned(),
+            None => Vector3::ith(k, 1.0),
+        }
     }
 
     fn tie(&self, node: u32) -> Option<&Tie> {

@@ -63,12 +63,11 @@ pub(super) fn holds_nothing_within(
     model: &Model,
 ) -> Result<(), StudyError> {
     let held = model.constraints();
-    let is_held = |node: u32, normal: &Vector3<f64>| {
-        (0..3).all(|k| normal[k].abs() < AXIS || held[6 * node as usize + k].is_some())
-    };
     for obstacle in obstacles {
         let within = within_at_rest(&obstacle.shape, &model.mesh);
-        if let Some((node, gap)) = within.into_iter().find(|(node, gap)| is_held(*node, &gap.normal)) {
+        if let Some((node, gap)) =
+            within.into_iter().find(|(node, gap)| is_held(&held[6 * *node as usize..], &gap.normal))
+        {
             let at = model.mesh.nodes[node as usize];
             let text = format!(
                 "[[obstacles]] `{}` contains a node that a support holds, at ({}, {}, {}) m, {} mm deep: move the obstacle or the support",
@@ -82,6 +81,11 @@ pub(super) fn holds_nothing_within(
         }
     }
     Ok(())
+}
+
+/// Whether the dofs of a node, its own first, are held along all of a normal.
+fn is_held(dofs: &[Option<f64>], normal: &Vector3<f64>) -> bool {
+    (0..3).all(|k| normal[k].abs() < AXIS || dofs[k].is_some())
 }
 
 /// A component of a normal below this is rounding.
@@ -98,10 +102,10 @@ fn within_at_rest(shape: &SurfaceShape, mesh: &QuadMesh) -> Vec<(u32, Gap)> {
 
 /// S160 of every obstacle that contains a part of the sheet at rest.
 pub(super) fn starts_within(obstacles: &[SheetObstacle], mesh: &QuadMesh) -> Vec<StudyFact> {
-    let depth = |shape| within_at_rest(shape, mesh).iter().map(|(_, gap)| -gap.distance).reduce(f64::max);
     let facts = obstacles.iter().filter_map(|obstacle| {
-        let obstacle_name = obstacle.name.value.clone();
-        depth(&obstacle.shape).map(|depth| StudyFact::StartsWithin { obstacle: obstacle_name, depth })
+        let depths = within_at_rest(&obstacle.shape, mesh).into_iter().map(|(_, gap)| -gap.distance);
+        let depth = depths.reduce(f64::max)?;
+        Some(StudyFact::StartsWithin { obstacle: obstacle.name.value.clone(), depth })
     });
     facts.collect()
 }

@@ -258,12 +258,19 @@ fn turned_in_plane(problem: &SheetProblem) -> Option<&str> {
 
 /// Whether a moment about z acts on nodes of a sheet that are in no body: only the drilling stiffness takes it to the sheet.
 fn has_moment_about_normal(model: &Model) -> bool {
-    let in_body = |node: &u32| model.bodies.iter().any(|body| body.nodes.contains(node));
     model.loads.iter().any(|load| match load {
-        Load::Point { nodes, moment, .. } => moment.z != 0.0 && !nodes.iter().all(in_body),
-        Load::Edge { edges, moment, .. } => moment.z != 0.0 && !edges.iter().flatten().all(in_body),
+        Load::Point { nodes, moment, .. } => {
+            moment.z != 0.0 && !nodes.iter().all(|node| is_in_body(model, *node))
+        }
+        Load::Edge { edges, moment, .. } => {
+            moment.z != 0.0 && !edges.iter().flatten().all(|node| is_in_body(model, *node))
+        }
         Load::Pressure(_) | Load::FollowerPressure(_) | Load::Gravity(_) => false,
     })
+}
+
+fn is_in_body(model: &Model, node: u32) -> bool {
+    model.bodies.iter().any(|body| body.nodes.contains(&node))
 }
 
 /// A direction in which loads act and every node is held at rest.
@@ -273,12 +280,12 @@ fn held_everywhere(model: &Model, flat: bool) -> Option<&'static str> {
         true => &[(&[2], "across the sheet"), (&[0, 1], "in its plane")],
         false => &[(&[0, 1, 2], "in every direction")],
     };
-    let is_idle = |dofs: &[usize]| {
+    let found = directions.iter().find(|(dofs, _)| {
         let loaded = dofs.iter().any(|dof| load.iter().skip(*dof).step_by(6).any(|f| *f != 0.0));
         let mut nodes = model.mesh.quads.iter().flatten();
         loaded && nodes.all(|node| dofs.iter().all(|dof| held[6 * *node as usize + dof] == Some(0.0)))
-    };
-    directions.iter().find(|(dofs, _)| is_idle(dofs)).map(|(_, name)| *name)
+    });
+    found.map(|(_, name)| *name)
 }
 
 /// Whether the sheet is pressed in its plane anywhere, beyond rounding.

@@ -327,8 +327,8 @@ impl<'a> System<'a> {
     /// N001 if there is no surface that could stop one of any direction.
     pub fn only_touched(&self) -> Result<Option<String>, SolveError> {
         let (places, pattern) = (&self.model.mesh.nodes, &self.plan.pattern);
-        let load = |f: &[f64]| f.chunks_exact(6).map(|f| Vector3::new(f[0], f[1], f[2])).sum();
-        let carried = (!self.contact.are_none()).then(|| load(&self.load));
+        let forces = self.load.chunks_exact(6).map(|f| Vector3::new(f[0], f[1], f[2]));
+        let carried = (!self.contact.are_none()).then(|| forces.sum());
         let loose = loose::displacement(places, pattern, &self.held, carried);
         match loose {
             Some(motion) if carried.is_none() => Err(SolveError::loose(&motion, places)),
