@@ -161,11 +161,16 @@ impl<'t> Table<'t, '_> {
             return;
         }
         let most = 2 * numbered > rows.len();
+        let v = self.context.vocabulary;
         for (_, f) in rows.iter_mut() {
             let odd = f.facets.index.is_none()
                 && f.facets.statistic.is_none()
                 && !f.label.is_empty()
-                && (most || !f.label.contains(|c: char| c.is_ascii_digit()));
+                && (if most {
+                    !is_numbered(&f.label, v)
+                } else {
+                    !f.label.contains(|c: char| c.is_ascii_digit())
+                });
             if odd {
                 f.facets.statistic = Some(Statistic::Other);
             }
@@ -475,4 +480,11 @@ fn rounded(cell: &str, decimal: char) -> Option<(f64, f64)> {
     let decimals = text.split_once(decimal).map_or(0, |(_, d)| d.bytes().filter(u8::is_ascii_digit).count());
     // The repeats are rounded as well.
     Some((v, 0.5001 * 10f64.powi(-(decimals.min(15) as i32)) + 1e-9 * v.abs()))
+}
+
+/// Whether a label is a number of a specimen that does not count from 1, or is a long one: `0`, `Specimen 0`, `20240105`.
+fn is_numbered(label: &str, v: Vocabulary<'_>) -> bool {
+    let stem = label.trim_end_matches(|c: char| c.is_ascii_digit());
+    let word = stem.trim_matches([' ', '#', '.', '-', '_']);
+    stem.len() < label.len() && (word.is_empty() || v.table_column(word) == Some(TableColumn::Specimen))
 }
