@@ -55,6 +55,15 @@ fn collect<K: 'static, V>(
     out
 }
 
+/// The words of columns of result tables, those for factors in headers among them.
+fn table_columns() -> HashMap<&'static str, TableColumn> {
+    let mut columns = collect(|d| &d.table, |k| Some(*k));
+    for (word, _) in collect(|d| &d.keys, |k| (*k == Key::Factor).then_some(())) {
+        columns.entry(word).or_insert(TableColumn::Factor);
+    }
+    columns
+}
+
 fn index() -> &'static Index {
     static INDEX: OnceLock<Index> = OnceLock::new();
     INDEX.get_or_init(|| Index {
@@ -64,7 +73,7 @@ fn index() -> &'static Index {
         direction_words: collect(|d| &d.direction_words, |k| Some(*k)),
         tests: collect(|d| &d.tests, |k| Some(*k)),
         branches: collect(|d| &d.branches, |k| Some(*k)),
-        table: collect(|d| &d.table, |k| Some(*k)),
+        table: table_columns(),
         statistics: collect(|d| &d.statistics, |k| Some(*k)),
         symbols: collect(|d| &d.symbols, |k| Parameter::from_symbol(k)),
         known: known(),
@@ -269,7 +278,10 @@ impl<'a> Vocabulary<'a> {
 
     pub fn table_column(self, name: &str) -> Option<TableColumn> {
         let named = self.find(name, false, |d| &d.table, &index().table);
-        named.or_else(|| (self.key(name) == Some(Key::Factor)).then_some(TableColumn::Factor))
+        // Those of the built-in dialects are in the index.
+        named.or_else(|| {
+            (!self.user.is_empty() && self.key(name) == Some(Key::Factor)).then_some(TableColumn::Factor)
+        })
     }
 
     /// How a label says that a row or column sums up others: the whole label, and no word within it.
