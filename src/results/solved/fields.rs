@@ -54,7 +54,7 @@ fn shape_of(result: &CaseResult) -> Option<String> {
     let factor =
         || result.load_factors.first().map(|f| format!("buckling at load factor {}", significant(*f)));
     let name = frequency.or_else(factor).filter(|_| result.is_modal())?;
-    Some(format!("Shape of {name}, largest displacement 1"))
+    Some(format!("Shape of {name}"))
 }
 
 /// Whether a sheet only stretches and shears: no point of it moves out of its plane by more than a millionth of what it moves within.
