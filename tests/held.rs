@@ -166,6 +166,6 @@ fn arrays_have_their_length() {
         "[[loads]]\nkind = \"edge_force\"\nset = \"right\"\nvalue = \"1 N/m\"\ndirection = [0, -1]\n",
     ] {
         let error = case([2, 2], &format!("{clamped}{rest}")).unwrap_err();
-        assert!(error.contains("expected an array of 3"), "{error}");
+        assert!(error.contains("expected an array of length 3"), "{error}");
     }
 }

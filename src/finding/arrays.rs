@@ -13,7 +13,9 @@ where
 {
     let entries = Vec::<T>::deserialize(deserializer)?;
     let found = entries.len();
-    entries.try_into().map_err(|_| D::Error::custom(format!("{found} entries, expected an array of {N}")))
+    entries
+        .try_into()
+        .map_err(|_| D::Error::custom(format!("{found} entries, expected an array of length {N}")))
 }
 
 /// The same of a key that may be left out.
