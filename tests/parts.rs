@@ -192,6 +192,12 @@ fn parts_that_do_not_belong_together_are_told_and_nothing_is_written() {
         fs::write(&part, broken).unwrap();
         assert!(refused(&merge, code).contains("part-0002-of-0003.parquet"));
     }
+    // One bit of a row: a letter of a name, which the pages hold as it is written.
+    let name = bytes.windows(9).position(|window| window == b"petrak_m2").expect("the name in the file");
+    let mut changed = bytes.clone();
+    changed[name] ^= 1;
+    fs::write(&part, &changed).unwrap();
+    assert!(refused(&merge, "O067").contains("a disk or a copy has changed it"));
     fs::write(&part, &bytes).unwrap();
     // Of other inputs.
     let other = folder.path().join("other");

@@ -142,6 +142,12 @@ fn what_is_refused_stands_where_it_is_written() {
         with(&format!("{newmark}@spectral_radius = 0.5\n")),
         with("[analysis]\nkind = \"nonlinear\"\nmethod = \"flow\"\n@largest_step = 0.5\n"),
         with("[analysis]\nkind = \"nonlinear\"\nsmallest_step = @2.0\n"),
+        with("[analysis]\nkind = \"nonlinear\"\nfirst_step = @0.5\nlargest_step = 0.1\n"),
+        with("[analysis]\nkind = \"nonlinear\"\nsmallest_step = @0.2\nlargest_step = 0.1\n"),
+        with(&check("@\"w_max\"", "0.1")).replace(
+            "[[loads]]\nkind = \"pressure\"\nvalue = \"0.5 Pa\"\n",
+            "[analysis]\nkind = \"modal\"\n",
+        ),
         with("[element]\nsubcells = @5\n"),
         with("[element]\nprofile = \"fourth_order\"\n@shear_stabilisation = 0.05\n"),
         with("[convergence]\nmeshes = @4\n"),

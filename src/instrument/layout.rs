@@ -19,7 +19,7 @@ use super::sniff::{Number, number};
 use super::suggest;
 use super::unit_text::{is_volt, split_unit, unbracketed, unit};
 use super::vocabulary::Vocabulary;
-use super::words::folded;
+use super::words::{bare, folded};
 use crate::finding::{Finding, Place, ReadFact};
 
 /// What is known of a file before its rows are read.
@@ -140,7 +140,7 @@ pub(super) fn blocks<'t>(
             }
             match shape::value_of_header(row, context) {
                 Some(name) => stray.push((row.line, name)),
-                None => above.extend(scanner.unknown_number(row).map(|name| (row.line, name))),
+                None => above.extend(shape::unknown_number(row, context).map(|name| (row.line, name))),
             }
             words = row.filled().map(|(_, c)| folded(&c.text).into_owned()).collect();
             scanner.header_line(row);
@@ -400,16 +400,6 @@ impl<'t> Scanner<'t, '_> {
         true
     }
 
-    /// The label of a header line that no dialect knows, with a number behind it.
-    fn unknown_number(&self, row: &Row<'_>) -> Option<String> {
-        let mut filled = row.filled();
-        let (_, label) = filled.next()?;
-        let (_, value) = filled.next()?;
-        let is_number = matches!(number(&value.text, self.context.decimal), Number::Value(_));
-        let is_known = self.context.vocabulary.key(&split_unit(&label.text).0).is_some();
-        (is_number && !is_known && !label.text.contains([':', '='])).then(|| label.text.to_string())
-    }
-
     /// Keeps what a header line says: `key,value`, `key: value`, several pairs, or a list of values.
     fn header_line(&mut self, row: &Row<'_>) {
         let filled: Vec<(String, usize)> =
@@ -505,9 +495,4 @@ impl<'t> Scanner<'t, '_> {
             (Some(key), _) => self.lists.push((key, values.into_iter().map(entry).collect())),
         }
     }
-}
-
-/// A name without the sign that leads to its value.
-fn bare(text: &str) -> String {
-    text.trim().trim_end_matches([':', '=']).trim().to_string()
 }

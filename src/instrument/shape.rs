@@ -240,6 +240,16 @@ pub(super) fn value_of_header(row: &Row<'_>, context: &Context<'_>) -> Option<St
     (has_value && !is_key).then(|| label.to_string())
 }
 
+/// The label of a header line that no dialect knows, with a number behind it.
+pub(super) fn unknown_number(row: &Row<'_>, context: &Context<'_>) -> Option<String> {
+    let mut filled = row.filled();
+    let (_, label) = filled.next()?;
+    let (_, value) = filled.next()?;
+    let is_number = matches!(number(&value.text, context.decimal), Number::Value(_));
+    let is_known = context.vocabulary.key(&split_unit(&label.text).0).is_some();
+    (is_number && !is_known && !label.text.contains([':', '='])).then(|| label.text.to_string())
+}
+
 /// What the heads from a row on are, if a table begins there.
 struct Heads {
     end: usize,

@@ -37,6 +37,11 @@ pub(super) fn normalised(text: &str) -> String {
         .collect()
 }
 
+/// A name without the sign that leads to its value.
+pub(super) fn bare(text: &str) -> String {
+    text.trim().trim_end_matches([':', '=']).trim().to_string()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -173,12 +173,18 @@ impl Part {
             let mut metadata: Metadata =
                 metadata.into_iter().filter(|(key, _)| key.starts_with("kesf.")).collect();
             let written = metadata.remove(CONTENT);
-            if written
-                != Some(content_of(&rows, metadata.iter().map(|(key, text)| (key.as_str(), text.as_str()))))
-            {
-                return Err(failed(
-                    "it does not hold what was written to it: a disk or a copy has changed it".into(),
-                ));
+            let texts = metadata.iter().map(|(key, text)| (key.as_str(), text.as_str()));
+            match written {
+                None => {
+                    return Err(failed(
+                        "it does not say what it holds, as those of this build do: make it again".into(),
+                    ));
+                }
+                Some(written) if written != content_of(&rows, texts) => {
+                    let problem = "it does not hold what was written to it: a disk or a copy has changed it";
+                    return Err(failed(problem.into()));
+                }
+                Some(_) => {}
             }
             if rows.schema().fields() != table.schema().fields() {
                 return Err(failed(format!("it has other columns than a table of {}", table.name())));

@@ -29,7 +29,7 @@ pub(super) const HEADINGS: [&str; 9] = [
 pub(super) const CAPTION: &str = "B in gf·cm²/cm, G in gf/(cm·deg); E is the tangent at low load, or the secant where that is written; ? is doubtful, * rests on an assumption, ~ is inferred";
 
 /// What the columns of predictions are.
-const PREDICTIONS: &str = "drape coefficients in %, bending lengths of cantilevers in mm, largest deflections in mm or over the bending thickness t_b (a linear solve means something below 0.3), lowest frequencies in Hz";
+const PREDICTIONS: &str = "drape coefficients in %, bending lengths of cantilevers in mm, largest deflections in mm or over the bending thickness t_b (a linear solve means something below 0.3), lowest frequencies in Hz, load factors of buckling";
 
 /// B, G, E, T, W: KES units, except E in N/m.
 pub(super) fn cells(sheet: &FabricSheet) -> Vec<String> {

@@ -84,6 +84,9 @@ fn an_input_without_spread_forbids_the_band() {
         error.to_string().contains("areal density") && error.to_string().starts_with("t.toml:8:10:"),
         "{error}"
     );
+    // One that its repeats give a spread is none.
+    let error = sample(&with("B warp"), &sheet, &made, Watch::default()).unwrap_err();
+    assert!(error.to_string().contains("`B warp` has a spread of its own"), "{error}");
 }
 
 /// Under a load that comes at once and stays, an undamped sheet swings to twice its rest, whatever its

@@ -189,7 +189,7 @@ super::facts! {
         "S161" LargeStrain {
             /// The largest strain along a yarn.
             strain: f64,
-        } = "the sheet is stretched by {:.0} % along its yarns: the modulus of the section holds for small strains, and so does the element in \
+        } = "the sheet is strained by {:.0} % along its yarns: the modulus of the section holds for small strains, and so does the element in \
              its frame; lower the load, or take tensile_law = \"curve\" with a measured fabric", 100.0 * strain;
         /// An equilibrium whose forces do not cancel.
         "S127" ForcesBelowRounding {

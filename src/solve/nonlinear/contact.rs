@@ -56,13 +56,6 @@ pub(super) struct Surfaces<'a> {
     touch: f64,
 }
 
-impl Surfaces<'_> {
-    /// Whether there is no surface.
-    pub fn are_none(&self) -> bool {
-        self.surfaces.is_empty()
-    }
-}
-
 /// A node at a surface.
 pub(super) struct Press {
     pub node: usize,
@@ -84,6 +77,11 @@ impl Press {
 }
 
 impl<'a> Surfaces<'a> {
+    /// Whether there is no surface.
+    pub fn are_none(&self) -> bool {
+        self.surfaces.is_empty()
+    }
+
     /// `metric` are the areas, six a node; `stiffest` is the stiffness per area of the membrane.
     pub fn new(
         surfaces: &'a [RigidSurface],

@@ -4,6 +4,7 @@ mod apart;
 mod presses;
 mod rates;
 mod stress;
+mod supported;
 
 use std::sync::Arc;
 
@@ -24,7 +25,6 @@ use crate::solve::SolveError;
 use crate::solve::assemble::{scatter, unit_rows};
 use crate::solve::factor::{Factor, FactorError};
 use crate::solve::linear::Options;
-use crate::solve::loose;
 use crate::solve::plan::Plan;
 use crate::solve::sparse::BlockMatrix;
 
@@ -35,9 +35,6 @@ use crate::solve::sparse::BlockMatrix;
 pub fn plan(model: &Model, options: &Options) -> Result<Plan, NonlinearError> {
     Ok(Plan::direct(model, &[DofGroup::Shell], options)?)
 }
-
-/// Part of the size of a sheet that displacements do not tell apart, far above what numbers do.
-const ROUNDING: f64 = 1e-13;
 
 /// Elements whose tangents are held at a time before they are added up in order.
 const BATCH: usize = 512;
@@ -312,34 +309,6 @@ impl<'a> System<'a> {
     /// Area of each node; 0 off the sheet (m²).
     pub fn areas_of_nodes(&self) -> Vec<f64> {
         self.metric.iter().step_by(6).copied().collect()
-    }
-
-    /// N001 if a rigid motion of a part of the sheet at rest meets no support.
-    pub fn is_supported(&self) -> Result<(), SolveError> {
-        let places = &self.model.mesh.nodes;
-        let loose = loose::motion(places, &self.plan.pattern, DofGroup::Shell, &self.held);
-        loose.map_or(Ok(()), |motion| Err(SolveError::loose(&motion, places)))
-    }
-
-    /// A displacement of a part of the sheet, across its loads, that only surfaces can stop.
-    ///
-    /// # Errors
-    /// N001 if there is no surface that could stop one of any direction.
-    pub fn only_touched(&self) -> Result<Option<String>, SolveError> {
-        let (places, pattern) = (&self.model.mesh.nodes, &self.plan.pattern);
-        let forces = self.load.chunks_exact(6).map(|f| Vector3::new(f[0], f[1], f[2]));
-        let carried = (!self.contact.are_none()).then(|| forces.sum());
-        let loose = loose::displacement(places, pattern, &self.held, carried);
-        match loose {
-            Some(motion) if carried.is_none() => Err(SolveError::loose(&motion, places)),
-            other => Ok(other.map(|motion| motion.to_string())),
-        }
-    }
-
-    /// About the energy (J) of displacements that are far below what numbers of the size of the sheet can tell apart.
-    pub fn energy_of_rounding(&self) -> f64 {
-        let area: f64 = self.areas.iter().sum();
-        self.stiffest() * area * (ROUNDING * self.size).powi(2)
     }
 
     /// The order of the largest eigenvalue per area: the membrane of an element (N/m³).

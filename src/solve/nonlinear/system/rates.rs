@@ -6,7 +6,16 @@ use super::{Balance, Forces, State, System, vector};
 use crate::element::Vector24;
 use crate::model::rigid::lever;
 
+/// Part of the size of a sheet that displacements do not tell apart, far above what numbers do.
+const ROUNDING: f64 = 1e-13;
+
 impl System<'_> {
+    /// About the energy (J) of steps that are far below what numbers of the size of the sheet can tell apart.
+    pub fn energy_of_rounding(&self) -> f64 {
+        let area: f64 = self.areas.iter().sum();
+        self.stiffest() * area * (ROUNDING * self.size).powi(2)
+    }
+
     /// Displacement and spin of a node for a step of the dofs, to first order; its velocities for theirs.
     fn node_step(&self, state: &State, step: &[f64], node: usize) -> (Vector3<f64>, Vector3<f64>) {
         let at = 6 * self.links.leads[node] as usize;
