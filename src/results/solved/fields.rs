@@ -42,19 +42,17 @@ pub fn mesh_fields<'a>(fields: &'a [Field<'a>]) -> Vec<MeshField<'a>> {
         .collect()
 }
 
-/// A quantity of a motion with its instant: the largest deflection of the tables is that of all instants.
-fn at_the_end(quantity: &str, result: &CaseResult) -> String {
-    let end = result.history.as_ref().and_then(|history| history.time.last());
-    end.map_or_else(|| quantity.to_string(), |time| format!("{quantity} at {} s", significant(*time)))
-}
-
-/// What the shape of a mode or of buckling is called, which has no size.
-fn shape_of(result: &CaseResult) -> Option<String> {
-    let frequency = result.frequencies.first().map(|f| format!("mode 1, {} Hz", significant(*f)));
-    let factor =
-        || result.load_factors.first().map(|f| format!("buckling at load factor {}", significant(*f)));
-    let name = frequency.or_else(factor).filter(|_| result.is_modal())?;
-    Some(format!("Shape of {name}"))
+/// Which shape of modes or of buckling a chart shows, and which instant of a motion: the largest deflection in tables is that of all
+/// instants.
+fn shown(result: &CaseResult) -> Option<String> {
+    if let (true, Some(frequency)) = (result.is_modal(), result.frequencies.first()) {
+        return Some(format!("mode 1, {} Hz, of no size", significant(*frequency)));
+    }
+    if let (true, Some(factor)) = (result.is_modal(), result.load_factors.first()) {
+        return Some(format!("buckling at load factor {}, of no size", significant(*factor)));
+    }
+    let end = result.history.as_ref()?.time.last()?;
+    Some(format!("at its end, {} s", significant(*end)))
 }
 
 /// Whether a sheet only stretches and shears: no point of it moves out of its plane by more than a millionth of what it moves within.
@@ -134,15 +132,13 @@ impl Mesh {
         } else {
             ("Deflection w", &self.w, result.profile.clone())
         };
-        let (quantity, unit) = match shape_of(result) {
-            Some(shape) => (shape, ""),
-            None => (at_the_end(quantity, result), "m"),
-        };
+        let (quantity, unit) = if result.is_modal() { ("Shape", "") } else { (quantity, "m") };
+        let shown = shown(result).map_or_else(String::new, |what| format!("; {what}"));
         FieldPlot {
             title: task.case.title.clone(),
-            subtitle: format!("{fabric}; {} elements, {cells} each", self.quads.len()),
+            subtitle: format!("{fabric}; {} elements, {cells} each{shown}", self.quads.len()),
             origin: task.simulated_from(),
-            quantity,
+            quantity: quantity.into(),
             unit: unit.into(),
             nodes: &self.nodes,
             quads: &self.quads,
