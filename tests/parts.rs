@@ -192,13 +192,19 @@ fn parts_that_do_not_belong_together_are_told_and_nothing_is_written() {
         fs::write(&part, broken).unwrap();
         assert!(refused(&merge, code).contains("part-0002-of-0003.parquet"));
     }
-    // One bit of a row: a letter of a name, which the pages hold as it is written.
-    let name = bytes.windows(9).position(|window| window == b"petrak_m2").expect("the name in the file");
-    let mut changed = bytes.clone();
-    changed[name] ^= 1;
-    fs::write(&part, &changed).unwrap();
-    assert!(refused(&merge, "O067").contains("a disk or a copy has changed it"));
     fs::write(&part, &bytes).unwrap();
+    // One bit of a row: a letter of a name, which the pages hold as it is written.
+    let paths = (1..=3).map(|k| out.join(format!("part-000{k}-of-0003.parquet")));
+    let named = paths.map(|path| (fs::read(&path).unwrap(), path));
+    let found = |(bytes, path): (Vec<u8>, PathBuf)| {
+        Some((bytes.windows(8).position(|window| window == b"petrak_m")?, bytes, path))
+    };
+    let (at, whole, path) = named.filter_map(found).next().expect("a part with rows");
+    let mut changed = whole.clone();
+    changed[at] ^= 1;
+    fs::write(&path, &changed).unwrap();
+    assert!(refused(&merge, "O067").contains("a disk or a copy has changed it"));
+    fs::write(&path, &whole).unwrap();
     // Of other inputs.
     let other = folder.path().join("other");
     all(&["kesf_data/petrak_m1", "kesf_data/petrak_m3"], 3, &other);
