@@ -95,12 +95,44 @@ fn a_check_that_fails_and_a_set_that_is_missing_are_told_with_their_line() {
         ("0.02", "-0.5", "c.toml:20:22: S003"),
         ("boundary", "nowhere", "c.toml:9:7: M007"),
         ("1e-6 Pa", "1e-6 m", "c.toml:13:9: S002"),
-        ("value = \"1e-6 Pa\"\n", "", "c.toml:11:1: S002 missing field `value`"),
+        ("value = \"1e-6 Pa\"\n", "", "c.toml:11:1: S002 missing key `value`"),
     ] {
         fs::write(here.join("c.toml"), (case(&fabric, "") + check).replace(from, to)).unwrap();
         let (code, text) = status_and_errors(&run_in(here, &["solve", "c.toml"], ""));
         assert!(code == 2 && text.contains(expected), "{to}: {text}");
     }
+}
+
+#[test]
+fn keys_that_have_no_effect_and_points_off_the_sheet_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let plain = case(&format!("{DATA}/poplin"), "");
+    let drape = fs::read_to_string(format!("{DATA}/../cases/drape.toml")).unwrap();
+    let section = fs::read_to_string(format!("{DATA}/../cases/self_weight_clamped.toml")).unwrap();
+    let section = section[section.find("[section]").unwrap()..].split("\n\n").next().unwrap().to_string();
+    let probe = |at: &str| format!("{plain}[[probes]]\nname = \"p\"\nat = {at}\n");
+    for (text, expected) in [
+        (plain.replace("[sheet]\n", "[sheet]\nseed = 3\n"), "and there is none"),
+        (plain.replace("[sheet]\n", "[sheet]\ncels = [2, 2]\n"), "did you mean `cells`?"),
+        (drape.replace("[sheet]\n", "[sheet]\ndistortion = 0.1\n"), "the mesh of a drape is not distorted"),
+        (
+            drape.replace("fabric = ", "# ").replace("sizes = \"measured\"", "shaking = 0.5")
+                + "\n"
+                + &section
+                + "\n",
+            "friction of a measured fabric",
+        ),
+        (probe("[\"5 cm\", \"5 cm\", \"1 mm\"]"), "lies outside the sheet"),
+    ] {
+        fs::write(here.join("c.toml"), &text).unwrap();
+        let (code, said) = status_and_errors(&run_in(here, &["check", "c.toml"], ""));
+        assert!(code == 2 && said.contains(expected), "{expected}: {said}\n{text}");
+    }
+    // In the plane it is found.
+    fs::write(here.join("c.toml"), probe("[\"5 cm\", \"5 cm\", \"0 mm\"]")).unwrap();
+    let (code, said) = status_and_errors(&run_in(here, &["check", "c.toml"], ""));
+    assert!(code == 0, "{said}");
 }
 
 #[test]

@@ -304,7 +304,7 @@ fn steps_that_mean_nothing_are_refused_at_their_place() {
         ),
         (format!("{NONLINEAR}{WEIGHT}{step}[[steps.supports]]\nset = \"left\"\n"), "either `kind` or `fix`"),
         (format!("{NONLINEAR}{WEIGHT}{step}[[steps.loads]]\nkind = \"push\"\n"), "unknown variant `push`"),
-        (format!("{NONLINEAR}{WEIGHT}{step}of = 1\n"), "unknown field `of`"),
+        (format!("{NONLINEAR}{WEIGHT}{step}of = 1\n"), "unknown key `of`"),
     ];
     for (text, expected) in cases {
         let error = parsed(&text).unwrap_err().to_string();

@@ -9,7 +9,7 @@ use kesf::report::OutputFolder;
 use kesf::report::chart::Format;
 use kesf::report::table::{FabricRow, PredictionRow, ProblemRow};
 use kesf::results::{Event, Failure, Job, MemorySink, Sink};
-use kesf::run::{Drapes, RunReport, RunSettings, read, write};
+use kesf::run::{Drapes, FILES, RunReport, RunSettings, read, write};
 use kesf::verify::{document, run as check_all, suite};
 use pyo3::prelude::*;
 
@@ -117,6 +117,7 @@ pub fn run(
             return Ok((rows, report, files));
         };
         let folder = OutputFolder::open(&out, force)?;
+        folder.expect(&FILES)?;
         let report = write(&job, &settings, &work, &folder, observer)?;
         let rows = rows(&report, &folder)?;
         let remaining = folder.finish()?;

@@ -218,6 +218,15 @@ def test_notebooks_show_pictures_and_tables(poplin: kesf.Sheet, sheets: kesf.She
     assert len(mesh._repr_html_()) < 100_000
 
 
+def test_an_error_keeps_its_failures_in_a_pickle() -> None:
+    with pytest.raises(kesf.KesfError) as raised:
+        kesf.read(["nowhere.csv", "neither.csv"])
+    again = round_trip(raised.value)
+    assert isinstance(again, kesf.KesfError)
+    assert str(again) == str(raised.value)
+    assert len(again.failures) == 2 and again.failures == raised.value.failures
+
+
 def test_the_pickle_of_another_version_is_refused(poplin: kesf.Sheet) -> None:
     from kesf import _kesf
 

@@ -64,7 +64,7 @@ pub(super) struct SheetTable {
     #[serde(default)]
     #[cfg_attr(test, schemars(example = 0.2))]
     distortion: f64,
-    /// Seed of the distortion.
+    /// Seed of the distortion; of a drape, of the shapes that its search begins with.
     #[serde(default)]
     seed: u64,
 }
@@ -231,6 +231,10 @@ impl SheetTable {
                 "a drape needs a [sheet] of shape = \"annulus\" with inner_diameter (the disc), diameter and cells",
             );
         }
+        if self.distortion != 0.0 {
+            let message = "the mesh of a drape is not distorted: remove `distortion` (its `seed` is that of the search)";
+            return refused(at.key_place("distortion"), message);
+        }
         Ok((self.annulus(at)?, self.layout(at)?))
     }
 
@@ -249,6 +253,11 @@ impl SheetTable {
                 return refused(place, "[sheet] needs one of `shape`, `file` and `outline`, and not two");
             }
         };
+        if at.has("seed") && self.distortion == 0.0 {
+            let message =
+                "[sheet] seed is that of a `distortion`, and there is none: remove it, or give a distortion";
+            return refused(at.key_place("seed"), message);
+        }
         Ok(Sheet { outline, layout: self.layout(at)?, table: at.located(()) })
     }
 

@@ -353,6 +353,11 @@ impl CaseTable {
             let message = "`sizes` are those of a measured drape, which a [section] has none of: remove it, or the section";
             return refused(at.key_place("sizes"), message);
         }
+        if case.has("section") && at.has("shaking") {
+            let message = "`shaking` works against the friction of a measured fabric, which a [section] has none of: remove it, or the \
+                           section";
+            return refused(at.key_place("shaking"), message);
+        }
         let (ring, layout) = sheet.ring(of_sheet)?;
         let message = "a drape has no [[probes]] and no [[checks]]: remove them";
         foreign(case, &["probes", "checks"], message)?;

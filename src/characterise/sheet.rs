@@ -109,6 +109,18 @@ pub struct RunTo {
     pub alike: bool,
 }
 
+impl FabricSheet {
+    /// Drops the curves of specimens and strips; what is known of them otherwise stays, as the bands of laws ask for it.
+    pub fn drop_curves(&mut self) {
+        for SpecimenResult { measurement, branches, windows, fits, .. } in &mut self.specimens {
+            measurement.curve = Curve::default();
+            measurement.lines = Vec::new();
+            (*branches, *windows, *fits) = (Vec::new(), Vec::new(), Vec::new());
+        }
+        self.strips = Vec::new();
+    }
+}
+
 impl SpecimenResult {
     /// The number of the cycle that the parameters are taken from.
     pub(super) fn cycle(&self, choice: CycleChoice) -> Option<usize> {

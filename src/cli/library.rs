@@ -9,6 +9,7 @@ use super::library_find::{self, Find};
 use super::ui::Ui;
 use crate::documents::LibraryDocument;
 use crate::library::{Shelf, Stored};
+use crate::report::number::counted;
 use crate::report::write::write_file;
 use crate::results::Failure;
 
@@ -55,6 +56,6 @@ fn build(options: &Build, ui: &Ui) -> Result<Exit, Failure> {
     if ui.json {
         return ui.document(LibraryDocument::new(output, shelf.len()));
     }
-    ui.note(&format!("{output}: {} fabrics", shelf.len()));
+    ui.note(&format!("{output}: {}", counted(shelf.len(), "fabric")));
     Ok(Exit::Done)
 }

@@ -12,6 +12,7 @@ use crate::documents::ReportDocument;
 use crate::finding::Place;
 use crate::report::OutputFolder;
 use crate::report::html::{LIMIT, OneFile, self_contained};
+use crate::report::number::counted;
 use crate::report::write::{results_reader, write_file};
 use crate::results::Failure;
 
@@ -60,7 +61,8 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     if !left_out.is_empty() {
         let (count, folder) = (left_out.len(), folder.display());
         ui.note(&format!(
-            "{count} pictures are not in it, they are in {folder}; --all-pictures puts them in"
+            "left out: {}, to be found in {folder}; --all-pictures puts them in",
+            counted(count, "picture")
         ));
     }
     let written = match &options.output {

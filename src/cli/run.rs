@@ -81,12 +81,13 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         return Ok(Exit::of_batch(0, &work.failures));
     }
     let folder = open_folder(&options.output, options.task.force)?;
+    folder.expect(&run::FILES)?;
     let report = ui.observe(|observer| run::write(&job, &settings, &work, &folder, observer))?;
     let shown = options.output.display();
     let predictions = if ui.json { report.predictions(&folder)? } else { Vec::new() };
     let remaining = folder.finish()?;
     if let Some(first) = remaining.first() {
-        let note = format!("{} files of earlier runs are still there, {first} among them", remaining.len());
+        let note = format!("left of earlier runs: {}, {first} among them", counted(remaining.len(), "file"));
         ui.note(&format!("{shown}: {note}"));
     }
     if ui.json {
@@ -96,11 +97,11 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         let tables: Vec<String> = report.tables.iter().map(|table| table.text()).collect();
         ui.print(&tables.join("\n"))?;
         if report.resumed > 0 {
-            let those = format!("{} of {} fabrics", report.resumed, report.names().len());
+            let those = format!("{} of {}", report.resumed, counted(report.names().len(), "fabric"));
             ui.note(&format!("{those} are as an earlier run left them; --fresh computes them anew"));
         }
         if report.unlisted > 0 {
-            ui.note(&format!("{} more fabrics are in fabrics.csv", report.unlisted));
+            ui.note(&format!("not shown here, but in fabrics.csv: {}", counted(report.unlisted, "fabric")));
         }
         let charts = if settings.charts { ", charts" } else { "" };
         let files = format!("index.html, fabrics.csv, predictions.csv{charts}");

@@ -6,6 +6,7 @@ use super::exit::Exit;
 use super::ui::Ui;
 use crate::documents::{PartDocument, PartRows};
 use crate::parts::{self, Done, make};
+use crate::report::number::counted;
 use crate::results::{Failure, Job, Shard, Share};
 use crate::run::RunSettings;
 
@@ -38,8 +39,12 @@ pub fn run(shard: Shard, request: &ShardRequest, ui: &Ui) -> Result<Exit, Failur
     let Done { fabrics, useful, rows, findings, failures, numerical, .. } = done;
     let kept = if done.kept { " is there already; --fresh makes it anew" } else { "" };
     ui.note(&format!(
-        "{}{kept}: {fabrics} fabrics, {rows} rows; {findings} findings, {failures} failures beside it",
-        output.display()
+        "{}{kept}: {}, {}; {}, {} beside it",
+        output.display(),
+        counted(fabrics, "fabric"),
+        counted(rows, "row"),
+        counted(findings, "finding"),
+        counted(failures, "failure"),
     ));
     let strict = settings.strict && findings > 0;
     Ok(Exit::of_counts(useful, failures, numerical).unless(done.fails_a_check || strict))

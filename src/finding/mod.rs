@@ -12,6 +12,7 @@ mod arrays;
 mod error;
 mod facts;
 mod toml_file;
+mod toml_words;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -31,6 +32,7 @@ pub use facts::{
 };
 pub use toml_file::Located;
 pub(crate) use toml_file::{Node, ReadLater, TomlError, TomlFile, position};
+pub(crate) use toml_words::{in_words, with_meant};
 
 /// Where in an input something was found. Lines and columns count from 1; a column counts
 /// characters of the decoded line. 0 means "not applicable".

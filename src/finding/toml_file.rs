@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
-use super::Place;
+use super::{Place, in_words};
 
 /// A value together with the place in the file where it is written.
 ///
@@ -197,8 +197,7 @@ impl<'de> Deserialize<'de> for ReadLater {
 
 fn at_position(path: &Path, text: &str, error: &toml::de::Error) -> TomlError {
     let (line, column) = position(text, error.span().map_or(0, |span| span.start));
-    let message = error.message().lines().map(str::trim).collect::<Vec<_>>().join("; ");
-    TomlError { place: Place::at(path, line, column), message }
+    TomlError { place: Place::at(path, line, column), message: in_words(error) }
 }
 
 /// Line and column (from 1, in characters) of a byte offset.

@@ -8,7 +8,7 @@ use super::conditions::StatedConditions;
 use super::dialect::Dialect;
 use super::error::{Problem, ReadError};
 use super::{FabricInfo, MeasuredResult, Origin};
-use crate::finding::{Finding, Place, ReadFact, position};
+use crate::finding::{Finding, Place, ReadFact, in_words, position};
 use crate::platform::files;
 use crate::quantity::{ArealDensity, Length, Ratio};
 
@@ -113,6 +113,6 @@ fn from_toml<T: serde::de::DeserializeOwned>(
         .map_err(|e| ReadError::new(Place::file(path), Problem::Unreadable { reason: e.to_string() }))?;
     toml::from_str(&text).map_err(|e: toml::de::Error| {
         let (line, column) = position(&text, e.span().map_or(0, |s| s.start));
-        ReadError::new(Place::at(path, line, column), problem(e.message().replace('\n', "; ")))
+        ReadError::new(Place::at(path, line, column), problem(in_words(&e)))
     })
 }

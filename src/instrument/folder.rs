@@ -37,7 +37,8 @@ const BESIDE: [&str; 3] = ["fabric.toml", "dialect.toml", DRAPE_FILE];
 /// results of this program. A single file belongs to the fabric of its folder or of one above it, if
 /// there is a fabric.toml, and is read as that fabric with the others that are named; else it is a
 /// fabric named by its sample or its stem. A result table of several fabrics makes several.
-/// `dialect.toml` in a folder is tried first for its files. What this program wrote is never read.
+/// `dialect.toml` in a folder is tried first for its files. What this program wrote is never read, and what several inputs
+/// name is read once, with a finding.
 pub struct Library {
     groups: Vec<Group>,
     settings: ReadSettings,
@@ -78,10 +79,30 @@ impl Library {
                 });
             }
         }
+        if overlap(inputs) {
+            library.leave_out_twice();
+        }
         // Of a library of thousands of fabrics it knows as many folders.
         library.own = OwnResults::default();
         library.groups.shrink_to_fit();
         library
+    }
+
+    /// Leaves out what is there already, by another input or on another path: it would count twice in every mean.
+    fn leave_out_twice(&mut self) {
+        let (mut seen, mut twice) = (BTreeSet::new(), BTreeMap::new());
+        let mut is_new = |path: &Path| files::canonicalize(path).map_or(true, |real| seen.insert(real));
+        self.groups.retain_mut(|group| {
+            let of_folder = group.name.is_some() && !group.named;
+            let (is_new_folder, before) = (!of_folder || is_new(&group.path), group.files.len());
+            group.files.retain(|file| is_new(file));
+            if group.files.len() < before {
+                twice.insert(group.path.clone(), before - group.files.len());
+            }
+            is_new_folder && (before == 0 || !group.files.is_empty())
+        });
+        let told = twice.into_iter().map(|(path, files)| (Place::file(path), UsageFact::ReadOnce { files }));
+        self.findings.extend(told.map(|(place, fact)| Finding::new(fact).at(place)));
     }
 
     /// Adds a file that was named to those of its folder that were; `known` are the folders met so far, with
@@ -254,6 +275,14 @@ impl Group {
             }),
         }
     }
+}
+
+/// Whether one of the inputs is another one, or lies in it.
+fn overlap(inputs: &[PathBuf]) -> bool {
+    let mut real: Vec<PathBuf> = inputs.iter().filter_map(|path| files::canonicalize(path).ok()).collect();
+    // What lies in a folder comes right behind it.
+    real.sort();
+    real.windows(2).any(|pair| pair[1].starts_with(&pair[0]))
 }
 
 /// Reads folders and files as fabrics, in parallel, and keeps them all: see [`Library`].

@@ -132,6 +132,23 @@ impl OutputFolder {
         Ok(self.root.join(name))
     }
 
+    /// Refuses files of these names that are not ours, before the long run at whose end they would be refused.
+    ///
+    /// # Errors
+    /// [`OutputError::NotOurs`], [`OutputError::Name`], or [`OutputError::Write`] for one that cannot be read.
+    pub fn expect(&self, names: &[&str]) -> Result<(), OutputError> {
+        for name in names {
+            let path = self.path(name)?;
+            if let Some(bytes) = existing(&path)?
+                && !self.force
+                && !self.is_ours(name, &digest(&bytes))
+            {
+                return Err(OutputError::NotOurs { path });
+            }
+        }
+        Ok(())
+    }
+
     /// Whether a file with these bytes is yet to be written.
     fn is_new(&self, name: &str, path: &Path, new: &Digest32) -> Result<bool, OutputError> {
         match existing(path)?.as_deref().map(digest) {

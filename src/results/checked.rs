@@ -15,6 +15,7 @@ use super::work::{named_fabric, no_such_fabric};
 use crate::finding::{Finding, Place};
 use crate::instrument::{FabricInput, Inference, Source};
 use crate::platform::files;
+use crate::report::number::counted;
 use crate::solve::Options;
 use crate::study::{Case, StudyError, validate};
 
@@ -159,7 +160,11 @@ impl Checked {
         for case in &self.cases {
             columns.row([case.name.as_str(), "case"]);
         }
-        let counts = (self.fabrics.len(), self.cases.len(), self.failures.len());
-        text + &format!("{}{} fabrics, {} cases, {} errors\n", columns.text(), counts.0, counts.1, counts.2)
+        let [fabrics, cases, errors] = [
+            counted(self.fabrics.len(), "fabric"),
+            counted(self.cases.len(), "case"),
+            counted(self.failures.len(), "error"),
+        ];
+        text + &format!("{}{fabrics}, {cases}, {errors}\n", columns.text())
     }
 }

@@ -261,8 +261,7 @@ impl Reading {
         let evaluated = |input: FabricInput| {
             let mut sheet = characterise(&input, &settings);
             if curves == Curves::Dropped {
-                sheet.specimens = Vec::new();
-                sheet.strips = Vec::new();
+                sheet.drop_curves();
             }
             Fabric { path: input.path, sheet }
         };

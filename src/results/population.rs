@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::failure::Failure;
-use crate::finding::Place;
+use crate::finding::{Place, in_words};
 use crate::platform::files;
 use crate::report::population::{Population, Problem, Written, of_csv, of_written};
 
@@ -46,7 +46,7 @@ fn of_toml(bytes: &[u8]) -> Result<Population, Problem> {
     let line_at = |at: usize| 1 + text.bytes().take(at).filter(|byte| *byte == b'\n').count();
     let document: Document = toml::from_str(text).map_err(|e| Problem {
         line: e.span().map_or(0, |span| line_at(span.start)),
-        message: e.message().to_string(),
+        message: in_words(&e),
     })?;
     let written = document.parameters.iter().map(|row| (line_at(row.span().start), row.get_ref()));
     of_written(written, &document.source)

@@ -397,7 +397,7 @@ pub(super) fn locate(
     what: &str,
 ) -> Result<Locator, StudyError> {
     let point = at.value.point();
-    finder.find(&point).ok_or_else(|| {
+    finder.find(&point).filter(|found| is_on(finder.mesh(), found, &point)).ok_or_else(|| {
         let given: Vec<String> = at.value.coordinates().iter().map(f64::to_string).collect();
         let near = nearest(finder.mesh(), &point);
         let distance = (near - point).norm();
@@ -411,4 +411,12 @@ pub(super) fn locate(
         );
         refused(case, at, message)
     })
+}
+
+/// Whether a point that was found in a mesh is one of the sheet. Between its nodes a curved sheet is as far from its
+/// elements as they are coarse; a flat one is where they are.
+fn is_on(mesh: &QuadMesh, found: &Locator, point: &Point3<f64>) -> bool {
+    let corners = mesh.corners(found.quad);
+    let on: Vector3<f64> = corners.iter().zip(found.weights).map(|(corner, w)| corner.coords * w).sum();
+    (point.coords - on).norm() <= 1e-6 * (corners[2] - corners[0]).norm() || !mesh.is_flat()
 }

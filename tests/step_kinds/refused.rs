@@ -48,10 +48,7 @@ fn steps_that_cannot_be_are_refused_at_their_place() {
             "begin with 0",
         ),
         (format!("{pulled}{}", guided("times = [\"0 s\", \"1 s\"]")), "and not both"),
-        (
-            pulled.replace("edge_force\"", "prescribed\"\ndof = \"u\"\ncourse = \"sine 1 Hz\""),
-            "unknown field",
-        ),
+        (pulled.replace("edge_force\"", "prescribed\"\ndof = \"u\"\ncourse = \"sine 1 Hz\""), "unknown key"),
     ];
     for (text, expected) in cases {
         let error = strip.parsed(&format!("{held}{NONLINEAR}{text}")).unwrap_err().to_string();

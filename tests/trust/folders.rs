@@ -55,6 +55,61 @@ fn results_that_are_named_are_no_measurements() {
     }
 }
 
+/// What two inputs name is one fabric, and its repeats do not count twice.
+#[test]
+fn what_is_named_twice_is_read_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let lab = folder.path().join("lab");
+    for name in ["a", "b"] {
+        write(&lab.join(name), "t.csv", &table(&[name]));
+    }
+    let [lab, a, file] = ["lab", "lab/a", "lab/a/t.csv"].map(|name| folder.path().join(name));
+    let [lab, a, file] = [&lab, &a, &file].map(|path| path.to_str().unwrap());
+    let fabrics = |inputs: &[&str]| {
+        let done = run(&[&["characterise"], inputs].concat());
+        assert_eq!(code(&done), 0, "{}", stderr(&done));
+        (String::from_utf8(done.stdout.clone()).unwrap(), stderr(&done))
+    };
+    let (once, errors) = fabrics(&[lab]);
+    assert!(!errors.contains("O075"), "{errors}");
+    for inputs in [&[lab, lab][..], &[lab, a], &[lab, file], &[a, lab, &format!("{lab}/../lab/b")]] {
+        let (again, errors) = fabrics(inputs);
+        assert_eq!(again, once, "{inputs:?}");
+        assert!(errors.contains("O075") && !errors.contains("O056"), "{inputs:?}: {errors}");
+    }
+    // Others of one name are two.
+    write(&folder.path().join("other/a"), "t.csv", &table(&["a"]));
+    let (_, errors) = fabrics(&[a, folder.path().join("other/a").to_str().unwrap()]);
+    assert!(errors.contains("O056") && !errors.contains("O075"), "{errors}");
+}
+
+/// A file of somebody else is told before the work and not at its end.
+#[test]
+fn a_table_of_somebody_else_is_told_before_the_work() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    write(&out, "predictions.csv", "mine\n");
+    let arguments = ["run", "--no-charts", "kesf_data/petrak_m1", CASE, "-o", out.to_str().unwrap()];
+    let done = run(&arguments);
+    assert_eq!(code(&done), 2);
+    assert!(stderr(&done).contains("O002") && stderr(&done).contains("predictions.csv"), "{}", stderr(&done));
+    assert!(!out.join("petrak_m1").exists(), "nothing was computed");
+    assert_eq!(code(&run(&[&arguments[..], &["--force"]].concat())), 0);
+}
+
+/// `kesf characterise` and `kesf run` say the same of a fabric.
+#[test]
+fn the_sheet_of_a_run_is_that_of_characterise() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let read = |bytes: &[u8]| serde_json::from_slice::<serde_json::Value>(bytes).unwrap();
+    run(&["run", "--no-charts", "kesf_data/poplin", "-o", out.to_str().unwrap()]);
+    let of_run = read(&fs::read(out.join("poplin/sheet.json")).unwrap());
+    let characterised = read(&run(&["characterise", "kesf_data/poplin", "--json"]).stdout);
+    assert_eq!(characterised["fabrics"], of_run["fabrics"]);
+    assert_eq!(characterised["fabrics"][0]["friction_bands"].as_array().unwrap().len(), 7);
+}
+
 /// A name that a spreadsheet would run is text in every table.
 #[test]
 fn names_are_no_formulas() {

@@ -34,7 +34,8 @@ fn of_reading(path: &Path) -> Option<f64> {
 }
 
 /// Four times as many pieces take less than eight times as long, where they would take sixteen times as long if each
-/// were compared with all before it.
+/// were compared with all before it. What else the machine does can only lengthen one of the two: the pair is timed again
+/// before it counts as too long.
 #[test]
 fn reading_is_linear_in_the_size_of_a_file() {
     let folder = tempfile::tempdir().unwrap();
@@ -48,14 +49,17 @@ fn reading_is_linear_in_the_size_of_a_file() {
         );
     }
     for (name, pieces, ending, text) in SHAPES {
-        let path = folder.path().join(format!("file.{ending}"));
-        let seconds = [pieces / 4, *pieces].map(|n| {
+        let paths = [pieces / 4, *pieces].map(|n| {
+            let path = folder.path().join(format!("{n}.{ending}"));
             fs::write(&path, text(n)).unwrap();
-            // The better of two: others have the caches too.
-            (0..2).map(|_| of_reading(&path).unwrap()).fold(f64::INFINITY, f64::min)
+            path
         });
-        let growth = seconds[1] / seconds[0];
-        println!("{name}: {:.4} and {:.4} s, times {growth:.1}", seconds[0], seconds[1]);
-        assert!(growth < 8.0, "{name}: {seconds:?} s for {} and {pieces} pieces", pieces / 4);
+        let mut tried = Vec::new();
+        while tried.len() < 6 && tried.last().is_none_or(|growth| *growth >= 8.0) {
+            let [few, many] = paths.each_ref().map(|path| of_reading(path).unwrap());
+            println!("{name}: {few:.4} and {many:.4} s, times {:.1}", many / few);
+            tried.push(many / few);
+        }
+        assert!(tried.last().is_some_and(|growth| *growth < 8.0), "{name}: {tried:?} times as long");
     }
 }

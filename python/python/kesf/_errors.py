@@ -81,6 +81,7 @@ class KesfError(Exception):
         return (
             KesfError._of,
             (self.code, self.message, self.path, self.line, self.column, self._hint, json.dumps(self.fields)),
+            {"failures": self.failures},
         )
 
 

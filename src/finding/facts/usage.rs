@@ -28,6 +28,11 @@ super::facts! {
             /// How many files.
             files: usize,
         } = "{}", own_results(*files);
+        /// Several inputs name the same files.
+        "O075" ReadOnce {
+            /// How many files.
+            files: usize,
+        } = "{}", read_once(*files);
         /// A link among the inputs leads nowhere.
         "O062" DanglingLink {} = "this link leads nowhere, and nothing was read: restore what it leads to, or remove it";
     }
@@ -38,6 +43,11 @@ fn own_results(files: usize) -> String {
     format!(
         "{what} here are results of this program and were not read as measurements: write results elsewhere with -o"
     )
+}
+
+fn read_once(files: usize) -> String {
+    let what = if files == 1 { "a file here is".into() } else { format!("{files} files here are") };
+    format!("{what} named by another input too: what is named twice is read once")
 }
 
 fn renamed_because(name: &str, renamed: &str, because: Renaming) -> String {

@@ -202,7 +202,7 @@ fn font(kind: Type) -> FontDesc<'static> {
 /// Makes the font known to plotters, which takes fonts everywhere but in a browser: there it has those of the page.
 #[cfg(not(target_arch = "wasm32"))]
 fn are_known() -> bool {
-    use super::letters::dejavu_file;
+    use super::fonts::dejavu_file;
     use plotters::style::register_font;
     register_font(FONT, FontStyle::Normal, dejavu_file(false)).is_ok()
         && register_font(FONT, FontStyle::Bold, dejavu_file(true)).is_ok()

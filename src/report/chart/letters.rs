@@ -6,15 +6,13 @@
 use std::sync::OnceLock;
 
 use ab_glyph::{Font, FontRef, ScaleFont};
-use unifont::Glyph;
 
 use super::canvas::{Align, Canvas, Mark, OVERSAMPLING, Point, Type};
 use super::error::ChartError;
+use super::fonts::{DOTS, Glyph, dejavu_file};
 
 /// Plotters measures a font by ascent + descent, in this many ems for DejaVu Sans.
 pub(super) const LINE_PER_EM: f64 = 1.164;
-/// Dots per em of Unifont, in each direction.
-const DOTS: usize = 16;
 /// Rows of dots above the baseline.
 const ROWS_ABOVE: usize = 14;
 
@@ -27,12 +25,6 @@ fn dot_of(kind: Type) -> f64 {
 pub(super) enum Run<'a> {
     DejaVu(&'a str),
     Unifont(&'static Glyph),
-}
-
-/// The file of DejaVu Sans in one of its weights. Were it inlined, each unit of the library that asks for it would hold its own 1.5 MB.
-#[inline(never)]
-pub(super) fn dejavu_file(bold: bool) -> &'static [u8] {
-    if bold { dejavu::sans::bold() } else { dejavu::sans::regular() }
 }
 
 /// DejaVu Sans in one of its weights.
@@ -54,7 +46,7 @@ fn only_unifont(c: char) -> Option<&'static Glyph> {
     if c.is_ascii() {
         return None;
     }
-    if dejavu_sans(false).ok()?.glyph_id(c).0 == 0 { unifont::get_glyph(c) } else { None }
+    if dejavu_sans(false).ok()?.glyph_id(c).0 == 0 { Glyph::of(c) } else { None }
 }
 
 /// The parts of a text.
@@ -94,7 +86,7 @@ impl Run<'_> {
                 }
                 Ok(f64::from(width as i32) / OVERSAMPLING as f64)
             }
-            Self::Unifont(glyph) => Ok(glyph.get_width() as f64 * dot_of(kind)),
+            Self::Unifont(glyph) => Ok(glyph.width() as f64 * dot_of(kind)),
         }
     }
 }
@@ -155,9 +147,9 @@ pub(super) fn dots(at: Point, glyph: &Glyph, kind: Type, upwards: bool) -> Vec<[
     let mut polygons = Vec::new();
     for y in 0..DOTS {
         let mut x = 0;
-        while x < glyph.get_width() {
+        while x < glyph.width() {
             let from = x;
-            while glyph.get_pixel(x, y) {
+            while glyph.has_dot(x, y) {
                 x += 1;
             }
             if x == from {
@@ -181,7 +173,7 @@ mod tests {
     fn shape(text: &str) -> String {
         let letter = |run: Run<'_>| match run {
             Run::DejaVu(text) => text.to_owned(),
-            Run::Unifont(glyph) => if glyph.is_fullwidth() { "[2]" } else { "[1]" }.into(),
+            Run::Unifont(glyph) => if glyph.width() == 16 { "[2]" } else { "[1]" }.into(),
         };
         runs(text).into_iter().map(letter).collect::<Vec<_>>().join("|")
     }

@@ -16,6 +16,7 @@ mod drape;
 mod error;
 mod fabric;
 mod field;
+mod fonts;
 mod force;
 mod friction;
 mod head;

@@ -16,7 +16,8 @@ use plotters::prelude::RGBColor;
 
 use super::canvas::{Canvas, DPI, HEIGHT, Mark, Point, Stroke, Type, WIDTH, together};
 use super::error::ChartError;
-use super::letters::{Run, dejavu_file, dejavu_sans, dots, placed};
+use super::fonts::dejavu_file;
+use super::letters::{Run, dejavu_sans, dots, placed};
 use super::surface;
 
 /// Points of a PDF page in a pixel.
