@@ -88,19 +88,24 @@ impl Library {
         library
     }
 
-    /// Leaves out what is there already, by another input or on another path: it would count twice in every mean.
+    /// Leaves out what is there already, by another input or on another path: it would count twice in every mean. What is named
+    /// by its folder stays there, with the rest of its fabric.
     fn leave_out_twice(&mut self) {
         let (mut seen, mut twice) = (BTreeSet::new(), BTreeMap::new());
         let mut is_new = |path: &Path| files::canonicalize(path).map_or(true, |real| seen.insert(real));
-        self.groups.retain_mut(|group| {
-            let of_folder = group.name.is_some() && !group.named;
-            let (is_new_folder, before) = (!of_folder || is_new(&group.path), group.files.len());
-            group.files.retain(|file| is_new(file));
-            if group.files.len() < before {
-                twice.insert(group.path.clone(), before - group.files.len());
-            }
-            is_new_folder && (before == 0 || !group.files.is_empty())
-        });
+        for named in [false, true] {
+            self.groups.retain_mut(|group| {
+                if group.named != named {
+                    return true;
+                }
+                let (is_new_folder, before) = (named || is_new(&group.path), group.files.len());
+                group.files.retain(|file| is_new(file));
+                if group.files.len() < before {
+                    twice.insert(group.path.clone(), before - group.files.len());
+                }
+                is_new_folder && (before == 0 || !group.files.is_empty())
+            });
+        }
         let told = twice.into_iter().map(|(path, files)| (Place::file(path), UsageFact::ReadOnce { files }));
         self.findings.extend(told.map(|(place, fact)| Finding::new(fact).at(place)));
     }

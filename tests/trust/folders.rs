@@ -72,7 +72,9 @@ fn what_is_named_twice_is_read_once() {
     };
     let (once, errors) = fabrics(&[lab]);
     assert!(!errors.contains("O075"), "{errors}");
-    for inputs in [&[lab, lab][..], &[lab, a], &[lab, file], &[a, lab, &format!("{lab}/../lab/b")]] {
+    for inputs in
+        [&[lab, lab][..], &[lab, a], &[lab, file], &[file, lab], &[a, lab, &format!("{lab}/../lab/b")]]
+    {
         let (again, errors) = fabrics(inputs);
         assert_eq!(again, once, "{inputs:?}");
         assert!(errors.contains("O075") && !errors.contains("O056"), "{inputs:?}: {errors}");
