@@ -6,7 +6,6 @@ use super::exit::Exit;
 use super::ui::Ui;
 use crate::documents::{PartDocument, PartRows};
 use crate::parts::{self, Done, make};
-use crate::report::number::counted;
 use crate::results::{Failure, Job, Shard, Share};
 use crate::run::RunSettings;
 
@@ -36,16 +35,9 @@ pub fn run(shard: Shard, request: &ShardRequest, ui: &Ui) -> Result<Exit, Failur
             rows: PartRows { results: done.rows, findings: done.findings, failures: done.failures },
         })?;
     }
-    let Done { fabrics, useful, rows, findings, failures, numerical, .. } = done;
     let kept = if done.kept { " is there already; --fresh makes it anew" } else { "" };
-    ui.note(&format!(
-        "{}{kept}: {}, {}; {}, {} beside it",
-        output.display(),
-        counted(fabrics, "fabric"),
-        counted(rows, "row"),
-        counted(findings, "finding"),
-        counted(failures, "failure"),
-    ));
+    ui.note(&format!("{}{kept}: {done}", output.display()));
+    let Done { useful, findings, failures, numerical, .. } = done;
     let strict = settings.strict && findings > 0;
     Ok(Exit::of_counts(useful, failures, numerical).unless(done.fails_a_check || strict))
 }

@@ -1,5 +1,7 @@
 //! What a TOML file should have said, in a user's words.
 
+use strsim::normalized_damerau_levenshtein as alike;
+
 /// Rust's words in the messages of deserialisers, and those of TOML.
 const WORDS: [(&str, &str); 19] = [
     ("expected usize", "expected a whole number, 0 or more"),
@@ -59,9 +61,8 @@ fn meant(message: &str) -> Option<&str> {
     }
     let mut words = message.split('`').skip(1).step_by(2);
     let found = words.next()?.to_lowercase();
-    let alike = |word: &str| strsim::normalized_damerau_levenshtein(&found, word);
-    let nearest = words.max_by(|a, b| alike(a).total_cmp(&alike(b)))?;
-    (alike(nearest) >= ALIKE).then_some(nearest)
+    let nearest = words.max_by(|a, b| alike(&found, a).total_cmp(&alike(&found, b)))?;
+    (alike(&found, nearest) >= ALIKE).then_some(nearest)
 }
 
 #[cfg(test)]

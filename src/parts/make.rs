@@ -1,6 +1,7 @@
 //! A part of a batch is made, unless it is there.
 
 use std::collections::BTreeSet;
+use std::fmt;
 use std::path::Path;
 
 use arrow_array::cast::AsArray;
@@ -16,6 +17,7 @@ use crate::instrument::Library;
 use crate::platform::files;
 use crate::report::OutputError;
 use crate::report::arrow::read;
+use crate::report::number::counted;
 use crate::report::write::{hash, write_part};
 use crate::results::{Failure, Input, Job, Observer, Share, hash_of};
 use crate::run::{Drapes, RunSettings, key_of_case};
@@ -55,6 +57,15 @@ pub struct Done {
     pub numerical: usize,
     /// Whether a check of a case does not hold.
     pub fails_a_check: bool,
+}
+
+impl fmt::Display for Done {
+    /// What is in the part, for people.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [fabrics, rows] = [counted(self.fabrics, "fabric"), counted(self.rows, "row")];
+        let [findings, failures] = [counted(self.findings, "finding"), counted(self.failures, "failure")];
+        write!(f, "{fabrics}, {rows}; {findings}, {failures} beside it")
+    }
 }
 
 /// Makes the part of a share, or leaves it as it is if it was made of the same inputs, cases and settings by the same
