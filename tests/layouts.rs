@@ -1348,3 +1348,102 @@ fn sides_masses_and_units_of_tables() {
     let content = read("t.csv", record);
     assert_relative_eq!(content.measurements[0].curve.y[2], 50.0 * 0.980665, max_relative = 1e-12);
 }
+
+/// A stated size is width by length of what is between the jaws, in the order that its key or the instrument says; where neither
+/// does, nothing is taken of it. 400 gf over 20 cm are 20 gf/cm, over 10 cm 40 gf/cm.
+#[test]
+fn a_size_is_in_the_order_that_is_said() {
+    let record = "extension (mm),load (gf)\n0,0\n0.5,100\n1,400\n";
+    for (size, expected) in [
+        ("Specimen size,20 x 5 cm", 20.0),
+        ("Specimen size (W x L),20 x 5 cm", 20.0),
+        ("Specimen size (L x W),5 x 20 cm", 20.0),
+        ("Specimen size (length x width),10 x 20 cm", 20.0),
+        ("Specimen size (L x W),50 mm x 100 mm", 40.0),
+        ("Specimen size (W x L),10 x 20 cm", 40.0),
+        ("Specimen size (L × B),5 × 10 cm", 40.0),
+        // The jaws of KES-FB1 are 20 cm wide and 5 cm from each other.
+        ("Specimen size,5 x 20 cm", 20.0),
+        ("Specimen size,2.5 x 5 cm", 160.0),
+    ] {
+        let found = read("a.csv", &format!("test,tensile\ndirection,warp\n{size}\n\n{record}"));
+        let last = found.measurements[0].curve.y[2];
+        assert_relative_eq!(last, expected * 0.980665, max_relative = 1e-12);
+        assert!(messages(&found, "R109").is_empty(), "{size}: {:?}", found.findings);
+    }
+    // Nobody says which number is the width: that of the instrument is assumed, and it is told.
+    for size in ["10 x 20 cm", "5 x 10 cm"] {
+        let text = format!("test,tensile\ndirection,warp\nSpecimen size,{size}\n\n{record}");
+        let found = read("a.csv", &text);
+        assert_relative_eq!(found.measurements[0].curve.y[2], 20.0 * 0.980665, max_relative = 1e-12);
+        assert!(messages(&found, "R109").iter().all(|text| text.contains(size)), "{:?}", found.findings);
+        assert_eq!(messages(&found, "R109").len(), 2, "the width and the distance of the jaws");
+    }
+}
+
+/// The difference of two thicknesses is none of them, whatever is written between the symbols.
+#[test]
+fn a_difference_of_thicknesses_is_no_thickness() {
+    for heading in ["T0-Tm (mm)", "T0 - Tm (mm)", "(T0-Tm) mm", "T0 − Tm [mm]"] {
+        let found = read("t.csv", &format!("Fabric,T0 (mm),{heading},{B}\nUno,0.61,0.2,0.1\n"));
+        let thickness: Vec<_> =
+            found.results.iter().map(|(_, v)| v.parameter).filter(|p| *p != Parameter::B).collect();
+        assert_eq!(thickness, [Parameter::T0], "{heading}: {:?}", found.results);
+        assert!(messages(&found, "R104")[0].contains("Tm"), "{heading}: {:?}", found.findings);
+    }
+    let named = read("t.csv", &format!("Fabric,thickness TM (mm),{B}\nUno,0.41,0.1\n"));
+    assert!(named.results.iter().any(|(_, v)| v.parameter == Parameter::Tm), "{:?}", named.results);
+}
+
+/// `S` among fabrics is a fabric, and a deviation beside the mean; numbers below `Reference` are told.
+#[test]
+fn heads_of_one_letter_and_of_a_reference_over_values() {
+    let fabrics = read("t.csv", "Parameter,Unit,P,T,S\nLT,-,0.65,0.61,0.68\nB,gf·cm²/cm,0.1,0.13,0.09\n");
+    let names: Vec<_> =
+        of_b(&fabrics).into_iter().map(|(name, ..)| name.unwrap_or("-").to_string()).collect();
+    assert_eq!(names, ["P", "T", "S"]);
+    let deviation = read("t.csv", "Parameter,Unit,Mean,S\nLT,-,0.65,0.02\nB,gf·cm²/cm,0.1,0.01\n");
+    assert_eq!(of_b(&deviation), [(None, None, 0.1, 1)]);
+    let reference =
+        read("t.csv", "Parameter,Unit,Reference,Treated\nLT,-,0.65,0.61\nB,gf·cm²/cm,0.100,0.130\n");
+    assert!(messages(&reference, "R104")[0].contains("Reference"), "{:?}", reference.findings);
+    // Numbers without a head are no fabric beside those with a name, whatever they count.
+    let counted =
+        read("t.csv", "Property;;Cotton;Wool\nLT;1;0.65;0.62\n;2;0.70;0.66\nRT (%);1;50;51\n;2;52;53\n");
+    let names: Vec<_> = counted.results.iter().map(|(name, _)| name.as_deref()).collect();
+    assert!(names.iter().all(|name| [Some("Cotton"), Some("Wool")].contains(name)), "{names:?}");
+    assert!(messages(&counted, "R104")[0].contains("column 2"), "{:?}", counted.findings);
+}
+
+/// Rows are parameters, and the heads of columns hold a fabric or a state and a direction.
+#[test]
+fn heads_of_columns_with_a_fabric_and_a_direction() {
+    let warp = Some(Direction::Warp);
+    let weft = Some(Direction::Weft);
+    for (heads, names) in [
+        ("F1 warp,F1 weft,F2 warp,F2 weft", ["F1", "F2"]),
+        ("Warp before,Weft before,Warp after,Weft after", ["before", "after"]),
+        ("Control_warp,Control_weft,Treated_warp,Treated_weft", ["Control", "Treated"]),
+        ("dry (warp),dry (weft),wet (warp),wet (weft)", ["dry", "wet"]),
+        ("F1 経,F1 緯,F2 経,F2 緯", ["F1", "F2"]),
+    ] {
+        let text = format!(
+            "Parameter,{heads}\nLT,0.65,0.70,0.62,0.66\n\"B, gf·cm²/cm\",0.1,0.08,0.12,0.09\nT0 (mm),0.7,,0.75,\n"
+        );
+        let found = read("t.csv", &text);
+        let [one, two] = names.map(Some);
+        let expected =
+            [(one, warp, 0.1, 1), (one, weft, 0.08, 1), (two, warp, 0.12, 1), (two, weft, 0.09, 1)];
+        assert_eq!(of_b(&found), expected, "{heads}");
+        let of_fabric = |name| found.results.iter().filter(|(f, _)| f.as_deref() == name).count();
+        assert_eq!([one, two].map(of_fabric), [5, 5], "{heads}");
+    }
+    // One fabric in one direction: the names stay, and the directions are taken.
+    let found = read(
+        "t.csv",
+        "Parameter,F1 warp,F1 weft,F2 warp\nLT,0.65,0.70,0.62\n\"B, gf·cm²/cm\",0.1,0.08,0.12\n",
+    );
+    let expected =
+        [(Some("F1 warp"), warp, 0.1, 1), (Some("F1 weft"), weft, 0.08, 1), (Some("F2 warp"), warp, 0.12, 1)];
+    assert_eq!(of_b(&found), expected);
+}

@@ -130,7 +130,7 @@ impl Axes<'_> {
     /// What is said of a column that was divided by a dimension which nobody stated.
     pub fn assumed(&self, column: &Column, axis: Axis) -> Option<Finding> {
         let by = axis.by.filter(|key| {
-            let by_size = match (key, size(self.header, self.context)) {
+            let by_size = match (key, size(self.test, self.header, self.context)) {
                 (Key::Area | Key::Contact, _) | (_, None) => false,
                 (Key::Gauge, Some((_, gauge))) => gauge.is_some(),
                 (_, Some(_)) => true,

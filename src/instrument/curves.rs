@@ -233,7 +233,7 @@ fn conditions(
     log: &mut Vec<String>,
 ) -> Result<Conditions, ReadError> {
     let mut c = context.conditions.over_standard(test);
-    if let Some((width, gauge)) = size(header, context) {
+    if let Some((width, gauge)) = size(test, header, context) {
         c.width = width;
         c.gauge = gauge.filter(|_| test.spec().gauge != 0.0).unwrap_or(c.gauge);
     }
@@ -285,10 +285,12 @@ fn conditions(
 }
 
 /// Width and distance between the jaws (m) of `20 x 5 cm`: the specimen is wide and short. A square, `20 x 20 cm`, is that of
-/// the cloth that was cut, and says nothing of the jaws.
-pub(super) fn size(header: &Header, context: &Context<'_>) -> Option<(f64, Option<f64>)> {
+/// the cloth that was cut, and says nothing of the jaws. `5 x 20 cm (L x W)` is the other way round, and so are the sizes of the
+/// instrument, `5 x 20 cm`, without a word; `5 x 10 cm` and `10 x 20 cm` are not understood then.
+pub(super) fn size(test: Test, header: &Header, context: &Context<'_>) -> Option<(f64, Option<f64>)> {
     let entry = header.known.get(&Key::Size)?;
     let text = folded(&entry.text).replace(['×', 'X', '*'], "x");
+    let (text, order) = text.split_once('(').unwrap_or((&text, ""));
     let (first, second) = text.split_once('x')?;
     let mark = |t: &str| if context.decimal == ',' { t.replace(',', ".") } else { t.to_string() };
     let second = mark(second.trim());
@@ -297,8 +299,35 @@ pub(super) fn size(header: &Header, context: &Context<'_>) -> Option<(f64, Optio
     let first = mark(first.trim());
     let first = if first.ends_with(|c: char| c.is_ascii_digit()) { format!("{first} {unit}") } else { first };
     let length = |t: &str| t.parse::<Length>().ok().map(Length::si).filter(|v| *v > f64::MIN_POSITIVE);
-    let (width, gauge) = (length(&first)?, length(&second)?);
+    let (first, second) = (length(&first)?, length(&second)?);
+    let jaws = test.spec().gauge;
+    let (width, gauge) = match width_is_first(order) {
+        Some(true) => (first, second),
+        Some(false) => (second, first),
+        None if first >= second || jaws == 0.0 || alike(second, jaws) => (first, second),
+        None if alike(first, jaws) && alike(second, test.spec().width) => (second, first),
+        None => return None,
+    };
     Some((width, (gauge != width).then_some(gauge)))
+}
+
+/// Whether two lengths are one but for rounding.
+fn alike(a: f64, b: f64) -> bool {
+    (a / b - 1.0).abs() < 1e-6
+}
+
+/// Whether an order such as `W x L` or `length x width` begins with the width; `None` of other words.
+fn width_is_first(order: &str) -> Option<bool> {
+    let order = order.to_lowercase();
+    let (first, second) = order.split_once('x')?;
+    let [first, second] = [first, second].map(|word| is_width(word.trim()));
+    (first != second).then_some(first)
+}
+
+/// Whether a word is one for the width, by its beginning; `largo` is the length.
+fn is_width(word: &str) -> bool {
+    let width = ["w", "b", "anch", "larg", "幅", "宽", "寬"];
+    !word.starts_with("largo") && width.iter().any(|beginning| word.starts_with(beginning))
 }
 
 /// The axis that has a set maximum.

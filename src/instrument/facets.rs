@@ -190,9 +190,10 @@ impl Facets {
         let mut i = 0;
         while i < words.len() {
             let longest = PHRASE.min(words.len() - i);
-            let taken = (1..=longest)
-                .rev()
-                .find(|n| is_phrase(&words[i..i + n]) && self.take_phrase(&words[i..i + n], vocabulary));
+            let taken = (1..=longest).rev().find(|n| {
+                let (before, phrase) = (&words[..i], &words[i..i + n]);
+                is_phrase(phrase) && self.take_phrase(before, phrase, vocabulary)
+            });
             if taken.is_none() {
                 rest.push(words[i]);
             }
@@ -213,11 +214,15 @@ impl Facets {
         }
     }
 
-    fn take_phrase(&mut self, words: &[&str], vocabulary: Vocabulary<'_>) -> bool {
+    fn take_phrase(&mut self, before: &[&str], words: &[&str], vocabulary: Vocabulary<'_>) -> bool {
         let phrase = words.join(" ");
-        // The symbol says which of two siblings a name stands for: `thickness TM`.
+        // The symbol says which of two siblings a name stands for: `thickness TM`. Two symbols are two values: `T0-Tm`.
         if let Some(parameter) = vocabulary.parameter(&phrase)
-            && self.parameter.is_none_or(|p| p == parameter || condition::sibling(p) == Some(parameter))
+            && self.parameter.is_none_or(|p| {
+                p == parameter
+                    || (condition::sibling(p) == Some(parameter)
+                        && !before.iter().any(|word| word.len() <= 4 && is_symbol(word, vocabulary)))
+            })
         {
             self.parameter = Some(parameter);
             return true;

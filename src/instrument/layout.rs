@@ -458,10 +458,12 @@ impl<'t> Scanner<'t, '_> {
         {
             values = vec![(format!("{value} {unit_text}"), values[0].1)];
         }
-        if let (Some(unit_text), [(value, _)]) = (&own_unit, &mut values[..])
-            && is_number(value)
-        {
-            *value = format!("{value} {unit_text}");
+        if let (Some(inside), [(value, _)]) = (&own_unit, &mut values[..]) {
+            if is_number(value) {
+                *value = format!("{value} {inside}");
+            } else if self.context.vocabulary.key(&plain) == Some(Key::Size) {
+                *value = format!("{value} ({inside})"); // `(L x W)`, or a unit that the value has not.
+            }
         }
         let entry = |(text, column): (String, usize)| Entry { text, line, column };
         // "Sens" is a range in English and the direction in French: the value tells.

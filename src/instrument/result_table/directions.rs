@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::layout::Layout;
 use super::row_facts::no_direction;
 use super::{Datum, RowFacts, Table};
 use crate::finding::{Finding, Place, ReadFact};
@@ -217,6 +218,31 @@ impl Table<'_, '_> {
     }
 }
 
+impl Layout {
+    /// `F1 warp, F1 weft, F2 warp, F2 weft` and `Warp before, Weft before, Warp after, Weft after` over columns: fabrics in several
+    /// directions each. Where they are not, the columns keep their names beside their directions.
+    pub(super) fn directions_in_heads(&mut self, v: Vocabulary<'_>) {
+        if self.values.iter().any(|c| c.facets.direction.is_some()) {
+            return;
+        }
+        let split: Vec<_> =
+            self.values.iter().map(|c| DirectedName::of_head(c.fabric.as_deref()?, v)).collect();
+        let mut of_stem = BTreeMap::<&str, BTreeSet<Direction>>::new();
+        for name in split.iter().flatten() {
+            of_stem.entry(&name.stem).or_default().insert(name.direction);
+        }
+        let columns: usize = of_stem.values().map(BTreeSet::len).sum();
+        let all = columns == self.values.len() && of_stem.values().all(|of| of.len() > 1);
+        for (column, name) in self.values.iter_mut().zip(&split) {
+            let Some(name) = name else { continue };
+            column.facets.direction = Some(name.direction);
+            if all {
+                column.fabric = Some(name.stem.clone());
+            }
+        }
+    }
+}
+
 /// A name of a fabric that ends with a direction, perhaps with a number behind it.
 struct DirectedName {
     stem: String,
@@ -227,6 +253,21 @@ struct DirectedName {
 }
 
 impl DirectedName {
+    /// Of the head of a column, which may begin with the direction as well; letters stand for none there.
+    fn of_head(name: &str, v: Vocabulary<'_>) -> Option<Self> {
+        let behind = Self::of(name, v).filter(|name| !name.is_letter && name.number.is_none());
+        behind.or_else(|| {
+            let (word, rest) = name.trim_start_matches(is_mark).split_once(is_mark)?;
+            let (direction, stem) = (v.direction_exactly(word)?, rest.trim_matches(is_mark));
+            (!stem.is_empty()).then(|| Self {
+                stem: stem.to_string(),
+                direction,
+                number: None,
+                is_letter: false,
+            })
+        })
+    }
+
     fn of(name: &str, v: Vocabulary<'_>) -> Option<Self> {
         let (mut rest, mut word) = last_word(name)?;
         let number = word.parse().ok();

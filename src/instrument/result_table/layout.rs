@@ -190,6 +190,7 @@ impl Layout {
                 c.fabric = Some(c.name.clone());
                 c.facets.index = None;
             }
+            self.name_single_letters();
             let singles = self.values.iter().filter(|c| c.facets.statistic.is_none()).count();
             let means = self.values.iter().filter(|c| c.facets.statistic == Some(Statistic::Mean)).count();
             let deviations = self.values.iter().filter(|c| c.facets.sd).count();
@@ -207,6 +208,7 @@ impl Layout {
                 region.rows.iter().filter_map(|r| heads.label_of(r, context)).map(|(_, f)| f).collect();
             self.numbers = labels.iter().filter_map(|f| f.index).collect();
             self.directions_over_columns(context);
+            self.directions_in_heads(context.vocabulary);
             self.names_below_directions(heads);
             self.fabrics_over_columns(heads);
             self.leave_out_strangers();

@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use super::counting::counts;
 use super::layout::{Column, LabelColumn, Layout};
 use crate::instrument::Parameter;
-use crate::instrument::dialect::{Key, TableColumn};
+use crate::instrument::dialect::{Key, Statistic, TableColumn};
+use crate::instrument::facets::Facets;
 use crate::instrument::layout::Context;
 use crate::instrument::raw::Row;
 use crate::instrument::shape::Region;
@@ -24,8 +25,9 @@ impl Layout {
         let names = self.labels.iter().filter(|l| is_name(l)).count();
         let otherwise = self.down || is_named || names > 1 || self.meta(TableColumn::Specimen);
         let first = self.values.iter().map(|c| c.index).min().unwrap_or(usize::MAX);
-        for label in self.labels.iter_mut().filter(|l| is_name(l) && otherwise && l.index > first) {
-            if is_measured(region, label.index, context) {
+        let down = self.down;
+        for label in self.labels.iter_mut().filter(|l| is_name(l) && otherwise && (down || l.index > first)) {
+            if is_measured(region, label.index, down, context) {
                 label.meta = None;
             }
         }
@@ -33,8 +35,8 @@ impl Layout {
             self.count_under_name(region, is_named, context);
             return;
         }
-        let measured = self.labels.iter().filter(|l| l.meta.is_none() && l.index > first);
-        let measured = measured.filter(|l| is_measured(region, l.index, context));
+        let measured = self.labels.iter().filter(|l| l.meta.is_none());
+        let measured = measured.filter(|l| is_measured(region, l.index, true, context));
         self.strangers.extend(measured.map(|l| l.name.clone()));
         if !self.meta(TableColumn::Id) {
             return;
@@ -43,6 +45,20 @@ impl Layout {
             self.labels.iter().any(|l| l.meta == Some(TableColumn::Fabric) && repeats(region, l.index));
         if (is_named || repeated) && self.rows_are_told_apart(region, first) {
             self.labels.retain(|l| l.meta != Some(TableColumn::Id) || !differs_in_rows(region, l.index));
+        }
+    }
+
+    /// `S` among fabrics, `P` and `T`, is one of them: a deviation stands beside a mean or beside the one value that it is of.
+    pub(super) fn name_single_letters(&mut self) {
+        let summed_up = self
+            .values
+            .iter()
+            .any(|c| c.facets.index.is_some() || c.facets.statistic == Some(Statistic::Mean));
+        if summed_up || self.values.iter().filter(|c| c.fabric.is_some()).count() < 2 {
+            return;
+        }
+        for c in self.values.iter_mut().filter(|c| c.facets.sd && c.name.trim().chars().count() == 1) {
+            (c.fabric, c.facets) = (Some(c.name.clone()), Facets::default());
         }
     }
 
@@ -107,14 +123,13 @@ fn cells<'r>(region: &'r Region<'_>, index: usize) -> impl Iterator<Item = &'r s
     region.rows.iter().filter_map(move |row: &&Row<'_>| row.get(index))
 }
 
-/// Whether every cell is a number with decimals.
-fn is_measured(region: &Region<'_>, index: usize, context: &Context<'_>) -> bool {
-    let decimal = context.decimal;
-    let mut any = false;
-    cells(region, index).all(|cell| {
-        any = true;
-        cell.contains(decimal) && matches!(number(cell, decimal), Number::Value(_))
-    }) && any
+/// Whether every cell is a number, each of them with decimals, or, where rows are parameters (`down`), one of them.
+fn is_measured(region: &Region<'_>, index: usize, down: bool, context: &Context<'_>) -> bool {
+    let mut decimals = cells(region, index).map(|cell| cell.contains(context.decimal));
+    let enough = if down { decimals.any(|has| has) } else { decimals.all(|has| has) };
+    enough
+        && cells(region, index).next().is_some()
+        && cells(region, index).all(|cell| matches!(number(cell, context.decimal), Number::Value(_)))
 }
 
 /// Whether names come again.

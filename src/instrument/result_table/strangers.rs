@@ -33,12 +33,13 @@ fn has_unit(name: &str) -> bool {
 
 impl Layout {
     /// Beside columns of directions or numbered specimens, a column with another head or none belongs to neither: `Setting`
-    /// beside `Warp` and `Weft` is no fabric, and a number without a head no repeat.
+    /// beside `Warp` and `Weft` is no fabric, and a number without a head no repeat, and none of a fabric beside those that are named.
     pub(super) fn leave_out_strangers(&mut self) {
         let singles: Vec<&Column> = self.values.iter().filter(|c| is_single(c)).collect();
         let directed = singles.iter().any(|c| c.facets.direction.is_some());
         let numbered = singles.iter().filter(|c| c.facets.index.is_some()).count() > 1;
-        if !directed && !numbered {
+        let named = self.values.iter().any(|c| c.fabric.is_some());
+        if !directed && !numbered && !named {
             return;
         }
         let (strangers, values) =
