@@ -35,6 +35,7 @@ use crate::results::{
     Catalogue, Columns, FabricReport, Failure, Folder, Job, JobInputs, Observer, Record, Sink,
 };
 
+pub use crate::results::FILES;
 #[cfg(feature = "parquet")]
 pub(crate) use fabrics::key_of_case;
 pub use settings::{Drapes, FieldFiles, RunSettings};
@@ -194,9 +195,6 @@ pub fn read(job: &Job, settings: &RunSettings, observer: &Observer) -> Result<Ru
     }
     Ok(work)
 }
-
-/// Tables, page and account of the command, which every run writes.
-pub const FILES: [&str; 5] = ["fabrics.csv", "index.html", "predictions.csv", "problems.csv", "run.json"];
 
 /// Simulates what was found, and writes everything. Fabrics that an earlier run has made of the same inputs, settings
 /// and cases are left as they are.

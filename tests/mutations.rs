@@ -162,8 +162,8 @@ fn mutations_neither_panic_nor_hang_nor_leave_anything_unfinished() {
         }
     }
     println!("{read} of {count} mutations were still read; the slowest took {slowest:?}");
-    // A file of a kilobyte takes microseconds; ten seconds mean a loop, also where others have the processors.
-    assert!(slowest < Duration::from_secs(10));
+    // A file of a kilobyte takes microseconds; a second means a loop.
+    assert!(slowest < Duration::from_secs(1));
     assert!(read > 0);
 }
 

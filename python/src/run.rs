@@ -117,7 +117,7 @@ pub fn run(
             return Ok((rows, report, files));
         };
         let folder = OutputFolder::open(&out, force)?;
-        folder.expect(&FILES)?;
+        folder.refuse_foreign(&FILES)?;
         let report = write(&job, &settings, &work, &folder, observer)?;
         let rows = rows(&report, &folder)?;
         let remaining = folder.finish()?;

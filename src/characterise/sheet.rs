@@ -110,11 +110,13 @@ pub struct RunTo {
 }
 
 impl FabricSheet {
-    /// Drops the curves of specimens and strips; what is known of them otherwise stays, as the bands of laws ask for it.
+    /// Drops the curves of specimens and strips with what their files say beside; values and conditions of specimens stay, as the bands
+    /// of laws ask for them.
     pub fn drop_curves(&mut self) {
         for SpecimenResult { measurement, branches, windows, fits, .. } in &mut self.specimens {
             measurement.curve = Curve::default();
             measurement.lines = Vec::new();
+            measurement.metadata = BTreeMap::new();
             (*branches, *windows, *fits) = (Vec::new(), Vec::new(), Vec::new());
         }
         self.strips = Vec::new();

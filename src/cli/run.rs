@@ -81,7 +81,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         return Ok(Exit::of_batch(0, &work.failures));
     }
     let folder = open_folder(&options.output, options.task.force)?;
-    folder.expect(&run::FILES)?;
+    folder.refuse_foreign(&run::FILES)?;
     let report = ui.observe(|observer| run::write(&job, &settings, &work, &folder, observer))?;
     let shown = options.output.display();
     let predictions = if ui.json { report.predictions(&folder)? } else { Vec::new() };

@@ -150,6 +150,11 @@ impl<'de> Deserialize<'de> for FileList {
     }
 }
 
+/// Whether a name (with `/` between its parts) is that of a file for the next run, which people are not shown.
+pub fn is_hidden(name: &str) -> bool {
+    name.rsplit('/').next().is_some_and(|file| file.starts_with('.'))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

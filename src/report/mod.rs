@@ -39,7 +39,8 @@ const CHART_PIXELS: (usize, usize) = (1800, 1350);
 #[cfg(feature = "pictures")]
 pub mod overlay;
 
-pub use output_folder::{OutputFolder, Pending, is_hidden};
+pub use file_list::is_hidden;
+pub use output_folder::{OutputFolder, Pending};
 pub use table_stream::CsvTable;
 #[cfg(feature = "parquet")]
 pub use table_stream::ParquetTable;

@@ -8,6 +8,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use sha2::{Digest, Sha256};
 use tempfile::NamedTempFile;
 
+use super::file_list::is_hidden;
 use super::write::{
     Digest32, FileBytes, FileList, MANIFEST, OutputError, digest, existing, from_hexadecimal, hexadecimal,
     inside, is_temporary, manifest, place, temporary, write_manifest,
@@ -135,29 +136,31 @@ impl OutputFolder {
     /// Refuses files of these names that are not ours, before the long run at whose end they would be refused.
     ///
     /// # Errors
-    /// [`OutputError::NotOurs`], [`OutputError::Name`], or [`OutputError::Write`] for one that cannot be read.
-    pub fn expect(&self, names: &[&str]) -> Result<(), OutputError> {
-        for name in names {
+    /// Those of [`write`](Self::write).
+    pub fn refuse_foreign(&self, names: &[&str]) -> Result<(), OutputError> {
+        names.iter().try_for_each(|name| {
             let path = self.path(name)?;
-            if let Some(bytes) = existing(&path)?
-                && !self.force
-                && !self.is_ours(name, &digest(&bytes))
-            {
-                return Err(OutputError::NotOurs { path });
+            match existing(&path)? {
+                Some(bytes) if self.is_foreign(name, &digest(&bytes)) => Err(OutputError::NotOurs { path }),
+                _ => Ok(()),
             }
-        }
-        Ok(())
+        })
     }
 
     /// Whether a file with these bytes is yet to be written.
     fn is_new(&self, name: &str, path: &Path, new: &Digest32) -> Result<bool, OutputError> {
         match existing(path)?.as_deref().map(digest) {
             Some(old) if old == *new => Ok(false),
-            Some(old) if !self.force && !self.is_ours(name, &old) => {
+            Some(old) if self.is_foreign(name, &old) => {
                 Err(OutputError::NotOurs { path: path.to_path_buf() })
             }
             _ => Ok(true),
         }
+    }
+
+    /// Whether a file is somebody else's, and to be left as it is.
+    fn is_foreign(&self, name: &str, hash: &Digest32) -> bool {
+        !self.force && !self.is_ours(name, hash)
     }
 
     /// Whether a file is as an earlier run left it, or written by this one.
@@ -222,11 +225,6 @@ impl OutputFolder {
         let _ = fs::remove_file(self.root.join(JOURNAL));
         Ok(left_over)
     }
-}
-
-/// Whether a name (with `/` between its parts) is that of a file for the next run, which people are not shown.
-pub fn is_hidden(name: &str) -> bool {
-    name.rsplit('/').next().is_some_and(|file| file.starts_with('.'))
 }
 
 impl Drop for OutputFolder {

@@ -74,7 +74,7 @@ pub use inputs::{
     readable, unread, without_cases,
 };
 pub(crate) use inputs::{unread_by_fabric, unread_of};
-pub use names::distinguish_fabrics;
+pub use names::{FILES, distinguish_fabrics};
 pub use observer::{Event, Found, Observer};
 pub use outcome::{ComparisonDocument, ComparisonEntry, Document, Outcome, Solution, SolutionDocument};
 pub use paper::write_claims;

@@ -20,7 +20,12 @@ fn folder_name(name: &str) -> String {
     let chart = lower.rsplit_once('.').is_some_and(|(stem, ending)| {
         CHARTS_OF_RUN.contains(&stem) && ["png", "svg", "pdf"].contains(&ending)
     });
-    if is_device(&bare) || page || chart || OF_RUN.contains(&lower.as_str()) {
+    if is_device(&bare)
+        || page
+        || chart
+        || FILES.contains(&lower.as_str())
+        || OF_RUN.contains(&lower.as_str())
+    {
         format!("fabric-{bare}")
     } else {
         bare
@@ -30,17 +35,11 @@ fn folder_name(name: &str) -> String {
 /// The charts that `run` puts beside the folders of the fabrics, without their endings.
 const CHARTS_OF_RUN: [&str; 4] = ["drape_parity", "friction_energy", "friction_stiffness", "parity"];
 
+/// Tables, page and account, which every run writes.
+pub const FILES: [&str; 5] = ["fabrics.csv", "index.html", "predictions.csv", "problems.csv", "run.json"];
+
 /// What else it puts there.
-const OF_RUN: [&str; 8] = [
-    "cases",
-    "fabrics.csv",
-    "fabrics.parquet",
-    "index.html",
-    "predictions.csv",
-    "predictions.parquet",
-    "problems.csv",
-    "run.json",
-];
+const OF_RUN: [&str; 3] = ["cases", "fabrics.parquet", "predictions.parquet"];
 
 /// Whether a fabric has files of its own of that name.
 fn is_reserved(name: &str) -> bool {

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::layout::Layout;
+use super::layout::{Column, Layout};
 use super::row_facts::no_direction;
 use super::{Datum, RowFacts, Table};
 use crate::finding::{Finding, Place, ReadFact};
@@ -219,6 +219,21 @@ impl Table<'_, '_> {
 }
 
 impl Layout {
+    /// `Warp yarn` and `Filling direction` over columns: names that are directions, each of another.
+    pub(super) fn directions_over_columns(&mut self, v: Vocabulary<'_>) {
+        let direction_of = |c: &Column| c.facets.direction.or_else(|| v.direction(c.fabric.as_deref()?));
+        let columns = self.values.iter().filter(|c| c.facets.statistic.is_none());
+        let Some(found) = columns.map(direction_of).collect::<Option<Vec<_>>>() else { return };
+        let distinct: BTreeSet<_> = found.iter().collect();
+        if distinct.len() < 2 || distinct.len() < found.len() {
+            return;
+        }
+        for column in self.values.iter_mut().filter(|c| c.fabric.is_some()) {
+            column.facets.direction = direction_of(column);
+            self.texts_of_directions.extend(column.fabric.take());
+        }
+    }
+
     /// `F1 warp, F1 weft, F2 warp, F2 weft` and `Warp before, Weft before, Warp after, Weft after` over columns: fabrics in several
     /// directions each. Where they are not, the columns keep their names beside their directions.
     pub(super) fn directions_in_heads(&mut self, v: Vocabulary<'_>) {

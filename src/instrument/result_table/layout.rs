@@ -207,7 +207,7 @@ impl Layout {
             let labels: Vec<Facets> =
                 region.rows.iter().filter_map(|r| heads.label_of(r, context)).map(|(_, f)| f).collect();
             self.numbers = labels.iter().filter_map(|f| f.index).collect();
-            self.directions_over_columns(context);
+            self.directions_over_columns(context.vocabulary);
             self.directions_in_heads(context.vocabulary);
             self.names_below_directions(heads);
             self.fabrics_over_columns(heads);
@@ -217,22 +217,6 @@ impl Layout {
         self.drop_numbers_that_do_not_count();
         self.numbers = self.values.iter().filter_map(|c| c.facets.index).collect();
         self.counters(region, context);
-    }
-
-    /// `Warp yarn` and `Filling direction` over columns: names that are directions, each of another.
-    fn directions_over_columns(&mut self, context: &Context<'_>) {
-        let direction_of =
-            |c: &Column| c.facets.direction.or_else(|| context.vocabulary.direction(c.fabric.as_deref()?));
-        let columns = self.values.iter().filter(|c| c.facets.statistic.is_none());
-        let Some(found) = columns.map(direction_of).collect::<Option<Vec<_>>>() else { return };
-        let distinct: BTreeSet<_> = found.iter().collect();
-        if distinct.len() < 2 || distinct.len() < found.len() {
-            return;
-        }
-        for column in self.values.iter_mut().filter(|c| c.fabric.is_some()) {
-            column.facets.direction = direction_of(column);
-            self.texts_of_directions.extend(column.fabric.take());
-        }
     }
 
     /// Names of fabrics below their directions, `A` and `B` below `Warp` and again below `Weft`: each has both.

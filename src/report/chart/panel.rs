@@ -19,6 +19,8 @@ pub(super) enum Row {
     Value(String, String),
     /// A remark, broken into lines as needed.
     Remark(String, RGBColor),
+    /// What does not fit beside the marker above.
+    More(String),
     /// Half a line of nothing.
     Gap,
 }
@@ -26,6 +28,7 @@ pub(super) enum Row {
 const LINE: f64 = 37.0;
 const SIZE: f64 = 25.0;
 const SAMPLE: f64 = 66.0;
+const MARKER: f64 = 34.0;
 
 /// Draws the rows from `top` down, between `left` and `right`, closer together if they must be to end
 /// above `bottom`.
@@ -41,6 +44,12 @@ pub(super) fn draw(
             Row::Remark(text, color) => {
                 let lines = wrap(canvas, text, Type::new(SIZE * 0.92, *color), right - left)?;
                 broken.extend(lines.into_iter().map(|line| Row::Remark(line, *color)));
+            }
+            Row::Marker(group, name) => {
+                let lines = wrap(canvas, name, Type::new(SIZE, INK), right - left - MARKER)?;
+                let mut lines = lines.into_iter();
+                broken.push(Row::Marker(*group, lines.next().unwrap_or_default()));
+                broken.extend(lines.map(Row::More));
             }
             row => broken.push(row.clone()),
         }
@@ -79,9 +88,9 @@ fn draw_row(
         }
         Row::Marker(group, name) => {
             marker(canvas, (left + 12.0, middle), 10.0, *group)?;
-            let name = fitted(canvas, name, text, right - left - 34.0)?;
-            canvas.text((left + 34.0, baseline), &name, text)
+            canvas.text((left + MARKER, baseline), name, text)
         }
+        Row::More(line) => canvas.text((left + MARKER, baseline), line, text),
         Row::Value(name, value) => {
             let width = canvas.text_width(value, text)?;
             let name = fitted(canvas, name, text, right - left - width - 12.0)?;

@@ -361,6 +361,15 @@ fn parity_of_one_and_of_four_quantities() {
     four.extend((0..4).map(|i| point(i, "Drape coefficient", "%", 22.0)));
     four.extend((0..1).map(|i| point(i, "Bending length", "m", 0.021)));
     drawn("parity-four.png", || parity(&four, "Simulated against measured", "ten fabrics"));
+    // Where the data are from is said whole: the name of a group goes on in the next line.
+    for point in &mut four {
+        point.group =
+            if point.group == "warp" { "assumed spectrum, published data" } else { "from a loop" }.into();
+    }
+    let chart = parity(&four, "Simulated against measured", "ten fabrics").unwrap();
+    let texts = svg_texts(&chart.svg().unwrap());
+    assert!(texts.contains("published") && texts.contains("data") && !texts.contains('…'), "{texts}");
+    keep("parity-names.png", &chart.png().unwrap());
 }
 
 #[test]
