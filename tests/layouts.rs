@@ -1357,6 +1357,7 @@ fn a_size_is_in_the_order_that_is_said() {
     for (size, expected) in [
         ("Specimen size,20 x 5 cm", 20.0),
         ("Specimen size (W x L),20 x 5 cm", 20.0),
+        ("Specimen size (cm),20 x 5", 20.0),
         ("Specimen size (L x W),5 x 20 cm", 20.0),
         ("Specimen size (length x width),10 x 20 cm", 20.0),
         ("Specimen size (L x W),50 mm x 100 mm", 40.0),

@@ -10,6 +10,7 @@ use super::label::SPECIMENS;
 use super::layout::{Context, Entry, Header, Pair};
 use super::raw::Row;
 use super::sniff::{Number, number};
+use super::unit_text;
 use super::value::value;
 use super::words::folded;
 use super::{Conditions, Direction, Measurement, Shape, Source, Test};
@@ -290,10 +291,16 @@ fn conditions(
 pub(super) fn size(test: Test, header: &Header, context: &Context<'_>) -> Option<(f64, Option<f64>)> {
     let entry = header.known.get(&Key::Size)?;
     let text = folded(&entry.text).replace(['×', 'X', '*'], "x");
-    let (text, order) = text.split_once('(').unwrap_or((&text, ""));
+    // In the bracket of the key, `(L x W)` or `(cm)`.
+    let (text, inside) = text.split_once('(').unwrap_or((&text, ""));
+    let inside = inside.trim_end_matches(')').trim();
     let (first, second) = text.split_once('x')?;
     let mark = |t: &str| if context.decimal == ',' { t.replace(',', ".") } else { t.to_string() };
     let second = mark(second.trim());
+    let second = match unit_text::unit(inside) {
+        Ok(_) if second.ends_with(|c: char| c.is_ascii_digit()) => format!("{second} {inside}"),
+        _ => second,
+    };
     let unit: String =
         second.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.' || c == ' ').to_string();
     let first = mark(first.trim());
@@ -301,7 +308,7 @@ pub(super) fn size(test: Test, header: &Header, context: &Context<'_>) -> Option
     let length = |t: &str| t.parse::<Length>().ok().map(Length::si).filter(|v| *v > f64::MIN_POSITIVE);
     let (first, second) = (length(&first)?, length(&second)?);
     let jaws = test.spec().gauge;
-    let (width, gauge) = match width_is_first(order) {
+    let (width, gauge) = match width_is_first(inside) {
         Some(true) => (first, second),
         Some(false) => (second, first),
         None if first >= second || jaws == 0.0 || alike(second, jaws) => (first, second),

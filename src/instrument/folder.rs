@@ -88,8 +88,8 @@ impl Library {
         library
     }
 
-    /// Leaves out what is there already, by another input or on another path: it would count twice in every mean. What is named
-    /// by its folder stays there, with the rest of its fabric.
+    /// Leaves out what another input names too: it would count twice in every mean. What is named by its folder stays there, with
+    /// the rest of its fabric.
     fn leave_out_twice(&mut self) {
         let (mut seen, mut twice) = (BTreeSet::new(), BTreeMap::new());
         let mut is_new = |path: &Path| files::canonicalize(path).map_or(true, |real| seen.insert(real));

@@ -462,7 +462,7 @@ impl<'t> Scanner<'t, '_> {
             if is_number(value) {
                 *value = format!("{value} {inside}");
             } else if self.context.vocabulary.key(&plain) == Some(Key::Size) {
-                *value = format!("{value} ({inside})"); // `(L x W)`, or a unit that the value has not.
+                *value = format!("{value} ({inside})"); // `(L x W)`, `(cm)`
             }
         }
         let entry = |(text, column): (String, usize)| Entry { text, line, column };
