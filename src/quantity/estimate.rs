@@ -39,10 +39,10 @@ impl Estimate {
         self.sd.filter(|_| self.mean != 0.0).map(|sd| sd / self.mean.abs())
     }
 
-    /// Half width of the two-sided 95 % Student t interval of the mean.
+    /// Half width of the two-sided 95 % Student t interval of the mean; `None` without a deviation or below two repeats.
     pub fn ci95(&self) -> Option<f64> {
         let sd = self.sd?;
-        let t = StudentsT::new(0.0, 1.0, (self.n - 1) as f64).ok()?.inverse_cdf(0.975);
+        let t = StudentsT::new(0.0, 1.0, self.n.checked_sub(1)? as f64).ok()?.inverse_cdf(0.975);
         Some(t * sd / (self.n as f64).sqrt())
     }
 }
@@ -79,5 +79,9 @@ mod tests {
         assert_relative_eq!(e.ci95().unwrap(), 4.302652729911275 / 3f64.sqrt(), max_relative = 1e-8);
         assert_eq!(Estimate::of(&[]), None);
         assert_eq!(Estimate::of(&[4.0]).unwrap().ci95(), None);
+        // A deviation beside it: of repeats whose number nobody stated, or of a damaged document.
+        for n in [0, 1] {
+            assert_eq!(Estimate { mean: 4.0, sd: Some(1.0), n, values: vec![] }.ci95(), None);
+        }
     }
 }

@@ -164,13 +164,16 @@ fn sheet(entry: SheetEntry) -> Result<FabricSheet, DocumentError> {
     Ok(sheet)
 }
 
-/// An estimate that has a mean, in this unit.
+/// An estimate that has a mean of at least one repeat, in this unit.
 fn estimate(entry: EstimateEntry, unit: &str, fabric: &str, of: &str) -> Result<Estimate, DocumentError> {
     let wrong = |what: String| DocumentError::Content { fabric: fabric.into(), what };
     if entry.unit != unit {
         return Err(wrong(format!("{of} in {} where {unit} was expected", entry.unit)));
     }
     let mean = entry.mean.ok_or_else(|| wrong(format!("{of} without a mean")))?;
+    if entry.n == 0 {
+        return Err(wrong(format!("{of} as the mean of no repeats (n = 0)")));
+    }
     Ok(Estimate { mean, sd: entry.sd, n: entry.n, values: Vec::new() })
 }
 
@@ -284,6 +287,7 @@ mod tests {
             ("\"B\"", "\"bend\"", "not a parameter"),
             ("\"warp\"", "\"up\"", "up"),
             ("\"mean\"", "\"average\"", "O042"),
+            ("\"n\": 3", "\"n\": 0", "no repeats"),
         ] {
             let error = super::read(written.replace(from, to).as_bytes()).unwrap_err().to_string();
             assert!(error.starts_with("O042") && error.contains(what), "{error}");
