@@ -42,6 +42,7 @@ impl Facets {
     /// Reads a cell.
     pub fn of(cell: &str, vocabulary: Vocabulary<'_>) -> Self {
         let text = folded(cell).replace(['[', '【'], "(").replace([']', '】'], ")");
+        let text = without_deviation(&text, vocabulary).unwrap_or(text);
         // `2HG at 0.5°`: a condition that is in the definition of the parameter says nothing new, another one makes it another
         // quantity.
         let whole = Self::of_words(&text, vocabulary);
@@ -279,6 +280,25 @@ impl Facets {
         }
         known
     }
+}
+
+/// `LT mean ± SD` and `LT mean (SD)` without the deviation, which stands beside each number; none of other heads.
+fn without_deviation(text: &str, vocabulary: Vocabulary<'_>) -> Option<String> {
+    let is_deviation = |word: &str| {
+        vocabulary.statistic(word) == Some(Statistic::Spread)
+            || vocabulary.table_column(word) == Some(TableColumn::Sd)
+    };
+    if text.chars().count() > HEADING {
+        return None;
+    }
+    if let Some((before, behind)) = ["±", "+/-"].iter().find_map(|mark| text.split_once(mark)) {
+        let (word, rest) = behind.split_at(behind.find(['(', ')', ',']).unwrap_or(behind.len()));
+        return is_deviation(word).then(|| format!("{}{rest}", before.trim_end()));
+    }
+    let (before, inner) = bracket(text)?;
+    let names_mean =
+        || before.split([' ', '_', '-', '(']).any(|word| vocabulary.statistic(word) == Some(Statistic::Mean));
+    (is_deviation(inner) && names_mean()).then(|| before.to_string())
 }
 
 /// The number of repeats in `n=5`.

@@ -6,6 +6,7 @@
 
 mod cells;
 mod counting;
+mod deviations;
 mod directions;
 mod fast_cells;
 mod layout;
@@ -294,10 +295,10 @@ impl<'t> Table<'t, '_> {
                     self.one_unit(row, label.index, facts.facets.unit.as_deref(), f.unit.as_deref())?;
                     facts.take_label(&f, text, label.index);
                 }
-                // A number under a head that is not understood counts nothing.
+                // A number under a head that is not understood counts nothing, and one with a unit is a quantity.
                 None if f.index.is_some()
                     && !label.name.is_empty()
-                    && text.bytes().all(|b| b.is_ascii_digit()) =>
+                    && (f.unit.is_some() || text.bytes().all(|b| b.is_ascii_digit())) =>
                 {
                     facts.take(&Facets { index: None, ..f.clone() }, text);
                 }

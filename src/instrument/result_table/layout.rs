@@ -97,6 +97,7 @@ impl Layout {
         for index in 0..width {
             layout.add(index, &heads, region, &labels, context);
         }
+        layout.deviations_beside_values(region, context);
         layout.settle(&heads, region, context);
         let indices = layout.values.iter().map(|c| c.index).chain(layout.sd_column);
         match indices.into_iter().find_map(|i| heads.two_units(i)) {
@@ -277,12 +278,15 @@ impl Layout {
 
     /// Heading texts of columns with numbers that name no parameter; words describe and need no remark.
     pub fn unused(&self, region: &Region<'_>, context: &Context<'_>) -> Vec<String> {
-        let is_number = |t: &str| matches!(number(t, context.decimal), Number::Value(_));
-        let numeric = |i: usize| region.rows.iter().any(|r| r.get(i).is_some_and(is_number));
+        let numeric =
+            |i: usize| region.rows.iter().any(|r| r.get(i).is_some_and(|c| shape::is_value(c, context)));
         let Some(head) = region.heads.iter().rev().find(|h| !is_units(h)) else { return Vec::new() };
         let unknown = |i: usize| {
             !self.values.iter().any(|c| c.index == i)
-                && !self.labels.iter().any(|l| l.index == i && l.meta.is_some())
+                && !self
+                    .labels
+                    .iter()
+                    .any(|l| l.index == i && l.meta.is_some_and(|meta| meta != TableColumn::Sd))
                 && self.sd_column != Some(i)
         };
         let unused = head.filled().filter(|(i, _)| !self.down && unknown(*i) && numeric(*i));
@@ -331,6 +335,20 @@ fn is_units(row: &Row<'_>) -> bool {
     any
 }
 
+/// The column behind the last of several directions over columns, `Warp` and `Weft`, each of which reaches as far: none where they are no
+/// directions, or reach over different numbers of columns.
+fn end_of_directions(head: &Row<'_>, context: &Context<'_>) -> Option<usize> {
+    let named: Vec<(usize, Direction)> = head
+        .filled()
+        .filter_map(|(i, c)| Some((i, Facets::of(&c.text, context.vocabulary).direction?)))
+        .collect();
+    let last = head.filled().last()?.0;
+    let [.., (before, one), (at, other)] = named[..] else { return None };
+    let width = at - before;
+    let is_even = named.windows(2).all(|pair| pair[1].0 - pair[0].0 == width);
+    (is_even && one != other && last == at).then_some(at + width)
+}
+
 /// Whether two texts are units that are not the same.
 pub(in crate::instrument) fn differ(a: &str, b: &str) -> bool {
     let (Ok(a), Ok(b)) = (unit(a), unit(b)) else { return false };
@@ -372,11 +390,15 @@ impl Heads {
         for (k, head) in words.iter().enumerate() {
             let lowest = k + 1 == words.len();
             let mut cells: Vec<Head> = Vec::with_capacity(width);
+            let ends = end_of_directions(head, context);
             for i in 0..width {
                 let at = (head.line, head.column(i));
                 let cell =
                     head.get(i).map(|t| (Facets::of(t, context.vocabulary), folded(t).into_owned(), at));
                 let spread = || {
+                    if ends.is_some_and(|end| i >= end) {
+                        return None;
+                    }
                     let below = |j: usize| words[k + 1..].iter().any(|r| r.get(j).is_some());
                     let before = cells.last().filter(|_| !lowest && below(i))?;
                     (before.0.meta.is_none() && !before.1.is_empty()).then(|| before.clone())

@@ -1,0 +1,84 @@
+//! Standard deviations that stand with the values of a column, or in a column of their own behind it.
+
+use super::layout::{Column, Layout};
+use crate::instrument::cell::parts;
+use crate::instrument::dialect::{Statistic, TableColumn};
+use crate::instrument::facets::Facets;
+use crate::instrument::layout::Context;
+use crate::instrument::shape::Region;
+use crate::instrument::sniff::Number;
+use crate::instrument::unit_text::split_unit;
+use crate::instrument::value::Printed;
+
+impl Layout {
+    /// `LT (SD)` over `0.61 (0.03)` heads values, and `SD` behind each column of values the deviations of that one. Deviations of values that
+    /// the table does not have are told as not used.
+    pub(super) fn deviations_beside_values(&mut self, region: &Region<'_>, context: &Context<'_>) {
+        self.pair_deviations();
+        let alone: Vec<usize> =
+            self.values.iter().filter(|c| !self.has_value_of(c)).map(|c| c.index).collect();
+        let (alone, mut kept): (Vec<Column>, Vec<Column>) =
+            std::mem::take(&mut self.values).into_iter().partition(|c| alone.contains(&c.index));
+        for column in alone {
+            if has_own_deviations(&column, region, context) {
+                kept.push(Column {
+                    facets: Facets { statistic: None, sd: false, ..column.facets },
+                    ..column
+                });
+            } else if self.down {
+                kept.push(column);
+            } else {
+                self.strangers.push(column.name);
+            }
+        }
+        kept.sort_by_key(|c| c.index);
+        self.values = kept;
+    }
+
+    /// Whether a column is none of deviations, or has the values beside it that they are of.
+    fn has_value_of(&self, column: &Column) -> bool {
+        let of = |c: &Column| (c.facets.parameter, c.facets.fast, c.facets.direction, c.fabric.clone());
+        let is_value = |c: &Column| matches!(c.facets.statistic, None | Some(Statistic::Mean));
+        !column.facets.sd || self.values.iter().any(|c| is_value(c) && of(c) == of(column))
+    }
+
+    /// Where parameters are columns and one of deviations stands behind each of them, it is that of the one before it.
+    fn pair_deviations(&mut self) {
+        if self.down {
+            return;
+        }
+        let pairs: Vec<(usize, Column)> = self
+            .labels
+            .iter()
+            .enumerate()
+            .filter(|(_, label)| label.meta == Some(TableColumn::Sd))
+            .filter_map(|(at, label)| {
+                let value = self.values.iter().find(|c| c.index + 1 == label.index && !c.facets.sd)?;
+                let unit = split_unit(&label.name).1.or_else(|| value.facets.unit.clone());
+                let facets =
+                    Facets { statistic: Some(Statistic::Spread), sd: true, unit, ..value.facets.clone() };
+                Some((at, Column { index: label.index, facets, name: label.name.clone(), ..value.clone() }))
+            })
+            .collect();
+        let values = self.values.iter().filter(|c| c.facets.statistic.is_none()).count();
+        if pairs.len() != values {
+            return;
+        }
+        for (at, column) in pairs.into_iter().rev() {
+            self.labels.remove(at);
+            self.values.push(column);
+        }
+        self.values.sort_by_key(|c| c.index);
+    }
+}
+
+/// Whether every number of a column has a deviation behind it.
+fn has_own_deviations(column: &Column, region: &Region<'_>, context: &Context<'_>) -> bool {
+    let mut own = region.rows.iter().filter_map(|r| r.get(column.index)).filter_map(|cell| {
+        match parts(cell, context.decimal).printed {
+            Printed::Plain(Number::Value(_), sd) | Printed::Marked(_, sd) => Some(sd.is_some()),
+            _ => None,
+        }
+    });
+    own.next() == Some(true) && own.all(|has| has)
+}
