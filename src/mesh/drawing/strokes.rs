@@ -32,9 +32,12 @@ impl SmoothCurve {
         Self(vec![PathSeg::Line(Line::new(from, to))])
     }
 
-    /// An arc of an ellipse, as cubics that keep to it within 1e-9 of its size.
+    /// An arc of an ellipse, as cubics that keep to it within 1e-9 of its size; a point where no number is as small as that.
     pub fn arc(arc: &Arc) -> Self {
         let tolerance = 1e-9 * arc.radii.x.abs().max(arc.radii.y.abs());
+        if tolerance < f64::MIN_POSITIVE {
+            return Self::line(arc.center, arc.center);
+        }
         let mut at = arc.eval(0.0);
         let mut cubics = Vec::new();
         for element in arc.append_iter(tolerance) {

@@ -305,6 +305,7 @@ fn what_is_not_read_is_refused_with_its_line() {
         ("0=REGION;5=3A;8=0\n", "REGION (handle 3A) is not read"),
         ("0=SHEEP;5=3A;8=0\n", "SHEEP (handle 3A) is not read"),
         ("0=CIRCLE;5=3A;8=0;10=0;20=0;30=0;40=-2\n", "CIRCLE (handle 3A): its radius"),
+        ("0=CIRCLE;5=3A;8=0;10=2;20=2;30=0;40=1e-320\n", "CIRCLE (handle 3A)"),
         ("0=CIRCLE;5=3A;8=0;10=0;20=0;30=0;40=2;210=1;220=0;230=0\n", "no plane z = const"),
         ("0=SPLINE;5=3A;8=0;71=3;11=0;21=0;31=0\n", "no control points"),
         ("0=SPLINE;5=3A;8=0;71=3;40=0;10=0;20=0;30=0\n", "1 knots make no spline"),
