@@ -142,6 +142,8 @@ pub enum TableColumn {
     Fabric,
     /// Number of the specimen: its rows are averaged.
     Specimen,
+    /// Number of a specimen or of a sample, which the word does not say: read as `Specimen`, and told (R132).
+    Number,
     /// Symbol of the parameter (long form).
     Parameter,
     /// Value (long form).
@@ -159,6 +161,13 @@ pub enum TableColumn {
     /// A factor of the row: its words are those of [`Key::Factor`].
     #[serde(skip)]
     Factor,
+}
+
+impl TableColumn {
+    /// Whether its numbers may be those of specimens.
+    pub(super) fn counts(self) -> bool {
+        matches!(self, Self::Specimen | Self::Number)
+    }
 }
 
 /// How a row or a column sums up others; it is no specimen itself.

@@ -251,7 +251,7 @@ impl Facets {
             self.inferred = true;
             return true;
         }
-        if vocabulary.table_column(word) == Some(TableColumn::Specimen) {
+        if vocabulary.table_column(word).is_some_and(TableColumn::counts) {
             return true;
         }
         // `経1`, `B2`, `No.3`.
@@ -273,7 +273,7 @@ impl Facets {
                 self.parameter = Some(parameter);
                 true
             }
-            _ => vocabulary.table_column(stem) == Some(TableColumn::Specimen),
+            _ => vocabulary.table_column(stem).is_some_and(TableColumn::counts),
         };
         if known && self.index.is_none() {
             self.index = Some(n);

@@ -16,6 +16,7 @@ mod noted;
 mod repeats;
 mod row_facts;
 mod rows_above;
+mod sections;
 mod shifted;
 mod states;
 mod strangers;
@@ -27,6 +28,7 @@ use fast_cells::FastCell;
 use layout::{Column, Layout};
 pub(super) use layout::{differ, two_units};
 use row_facts::{RowFacts, no_direction};
+use sections::Title;
 
 use super::dialect::{Key, Statistic, TableColumn};
 use super::error::{Problem, ReadError};
@@ -90,6 +92,7 @@ pub(super) fn read(
     let mut layout = Layout::of(region, context)?;
     let sample = header.known.get(&Key::Sample).map(|entry| entry.text.as_str());
     layout.leave_out_false_names(region, sample.is_some(), context);
+    layout.count_columns(region, sample.is_some(), context);
     layout.name_sides(sample, context);
     layout.leave_out_masses();
     log.push(layout.described());
@@ -198,24 +201,41 @@ impl<'t> Table<'t, '_> {
     fn facts<'r>(&mut self, region: &Region<'r>) -> Result<Vec<(&'r Row<'r>, RowFacts)>, ReadError> {
         let mut out = Vec::new();
         let titles = self.titles(region);
+        let (mut group, mut sums_up) = (None, false);
         for row in &region.rows {
             let is_remark = row.get(0).is_some_and(|t| t.starts_with('#')) && row.filled().count() == 1;
             if is_remark {
                 continue;
             }
             if let Some(direction) = shape::section(row, self.context) {
-                self.section = Some(direction);
+                (self.section, sums_up) = (Some(direction), false);
                 self.note_title(row);
                 continue;
             }
             if let Some(title) = titles.get(&row.line) {
-                self.above = Some(title.clone());
+                match title {
+                    Title::Fabric(name) => self.above = Some(name.clone()),
+                    Title::Group(name) => group = Some(name),
+                    Title::NoDirection => (self.section, sums_up) = (None, false),
+                    Title::Summary(text) => {
+                        sums_up = true;
+                        self.layout.left_out_rows.insert(row.line, text.clone());
+                    }
+                }
+                continue;
+            }
+            if sums_up {
                 continue;
             }
             self.note_row_in_one_cell(row);
             let facts = self.within_heads(row, region).and_then(|()| self.row_facts(row));
             match facts {
-                Ok(facts) => out.push((*row, facts)),
+                Ok(mut facts) => {
+                    if let (Some(group), Some(name)) = (group, &facts.fabric) {
+                        facts.fabric = Some(format!("{group} {name}"));
+                    }
+                    out.push((*row, facts));
+                }
                 Err(error) => {
                     let fabric = self.above.clone();
                     self.leave_out(fabric, error)?;
@@ -301,6 +321,11 @@ impl<'t> Table<'t, '_> {
                     && (f.unit.is_some() || text.bytes().all(|b| b.is_ascii_digit())) =>
                 {
                     facts.take(&Facets { index: None, ..f.clone() }, text);
+                }
+                // `25 %` among labels of rows is no specimen: `describe` of a table prints quartiles so.
+                _ if f.unit.as_deref() == Some("%") && f.index.is_some() => {
+                    facts.facets.statistic = Some(Statistic::Other);
+                    facts.label = text.to_string();
                 }
                 _ => facts.take(&f, text),
             }

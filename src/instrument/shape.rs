@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::cell::parts;
 use super::column_name::ColumnName;
-use super::dialect::{Role, TableColumn};
+use super::dialect::{Role, Statistic, TableColumn};
 use super::facets::Facets;
 use super::layout::Context;
 use super::letters;
@@ -202,14 +202,14 @@ pub(super) fn row_label(row: &Row<'_>, context: &Context<'_>) -> Option<(usize, 
 /// Columns whose heads say that they name fabrics, directions or specimens, beside one that names a value with its unit or a
 /// column of directions: a sample called `T` there is no thickness. `Sample` alone may stand over parameters, beside names.
 fn named_columns(heads: &[&Row<'_>], context: &Context<'_>) -> BTreeSet<usize> {
-    use TableColumn::{Direction, Fabric, Id, N, Specimen};
+    use TableColumn::{Direction, Fabric, Id, N, Number, Specimen};
     let cells: Vec<Facets> = heads.iter().flat_map(|row| facets(row, context)).collect();
     let has_directions = cells.iter().any(|f| f.meta == Some(Direction));
     if !cells.iter().any(|f| f.names_value() && (f.unit.is_some() || has_directions)) {
         return BTreeSet::new();
     }
     let all = heads.iter().flat_map(|row| facets(row, context).into_iter().enumerate());
-    all.filter(|(_, f)| matches!(f.meta, Some(Id | Fabric | Direction | Specimen | N)))
+    all.filter(|(_, f)| matches!(f.meta, Some(Id | Fabric | Direction | Specimen | Number | N)))
         .map(|(i, _)| i)
         .collect()
 }
@@ -262,7 +262,8 @@ struct Heads {
 /// Whether heads of parameters make a table: several, or one with a column of names or a unit.
 fn across(heads: &[&Row<'_>], context: &Context<'_>) -> bool {
     let all: Vec<Facets> = heads.iter().flat_map(|r| facets(r, context)).collect();
-    let parameters: Vec<&Facets> = all.iter().filter(|f| f.names_value() && f.statistic.is_none()).collect();
+    let is_mean = |f: &&Facets| matches!(f.statistic, None | Some(Statistic::Mean));
+    let parameters: Vec<&Facets> = all.iter().filter(|f| f.names_value()).filter(is_mean).collect();
     let named = all.iter().any(|f| {
         matches!(
             f.meta,
@@ -271,6 +272,7 @@ fn across(heads: &[&Row<'_>], context: &Context<'_>) -> bool {
                     | TableColumn::Fabric
                     | TableColumn::Direction
                     | TableColumn::Specimen
+                    | TableColumn::Number
                     | TableColumn::N
             )
         )

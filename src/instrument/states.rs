@@ -16,22 +16,42 @@ pub(super) fn told_apart(entries: &[String], decimal: char) -> Option<[String; 2
         _ => None,
     };
     let numbers: Option<Vec<f64>> = entries.iter().map(plain_value).collect();
+    // `0 washes` and `5 washes`: numbers with one word.
+    let with_word = if numbers.is_none() { numbers_of_one_word(entries, decimal) } else { None };
+    let has_word = with_word.is_some();
+    let numbers = numbers.or(with_word);
     let tells = match numbers {
         // A count 1, 2, 3 is that of the repeats, and what was measured has decimals.
         Some(numbers) => {
             let whole = numbers.iter().all(|v| v.fract() == 0.0);
             let round = numbers.iter().all(|v| v % 5.0 == 0.0);
-            let set = (numbers.len() > 2 || round) && numbers.windows(2).all(|w| w[1] > w[0] + 1.0);
+            let set =
+                (numbers.len() > 2 || round || has_word) && numbers.windows(2).all(|w| w[1] > w[0] + 1.0);
             whole && (grouped || set)
         }
         None => {
             // `record 12` and `record 13` count; dates and times have no letters.
             let words = |e: &&String| e.chars().filter(|c| c.is_alphabetic()).collect::<String>();
             let words: BTreeSet<String> = distinct.iter().map(words).collect();
-            words.len() > 1 && (grouped || distinct.len() == 2)
+            let has_digits = distinct.iter().any(|e| e.contains(|c: char| c.is_ascii_digit()));
+            words.len() > 1 && (grouped || distinct.len() == 2 || !has_digits)
         }
     };
     tells.then(|| [first.clone(), other.clone()])
+}
+
+/// The numbers before a word or unit that all entries share.
+fn numbers_of_one_word(entries: &[String], decimal: char) -> Option<Vec<f64>> {
+    let mut words = BTreeSet::new();
+    let mut numbers = Vec::new();
+    for entry in entries {
+        let is_part = |c: char| c.is_ascii_digit() || c == decimal;
+        let (digits, word) = entry.split_at(entry.find(|c: char| !is_part(c))?);
+        let Number::Value(value) = number(digits, decimal) else { return None };
+        words.insert(word.trim());
+        numbers.push(value);
+    }
+    (words.len() == 1).then_some(numbers)
 }
 
 #[cfg(test)]
@@ -51,6 +71,10 @@ mod tests {
             &["0", "90"],
             &["0", "0", "5", "5"],
             &["X", "X", "Y"],
+            &["0 washes", "5 washes"],
+            &["20/cm", "24/cm"],
+            &["0 %", "2 %", "5 %"],
+            &["untreated", "silicone", "enzyme"],
         ] {
             assert!(tells(states), "{states:?}");
         }
@@ -62,7 +86,8 @@ mod tests {
             &["2024-03-01", "2024-03-01", "2024-03-02"],
             &["same", "same"],
             &["record 12", "record 13"],
-            &["red", "green", "blue"],
+            &["20 °C", "21 °C"],
+            &["20.1 °C", "20.4 °C"],
         ] {
             assert!(!tells(repeats), "{repeats:?}");
         }

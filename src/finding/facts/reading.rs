@@ -196,12 +196,12 @@ super::facts! {
             /// What stands in the cells.
             cells: Vec<String>,
         } = "bounds and ranges are no values, and left out: {}; enter the value if it is known", some(cells);
-        /// Numbers of specimens in a column whose heading is not understood.
+        /// Numbers that the heading does not say to be those of specimens.
         "R132" CountedUnder {
-            /// Its heading.
+            /// The heading, or the headings that are numbered.
             column: String,
-        } = "the numbers in the column {column:?}, which is not understood, count as those of specimens, whose values are averaged: head \
-             it `specimen` if that is so, or give rows of different states different fabrics";
+        } = "{column:?} is taken to count specimens, whose values are averaged: call it `specimen` if that is so, and `fabric` if each \
+             number is of another fabric or state";
         /// Letters that stand for directions.
         "R133" DirectionsFromLetters {
             /// The texts in which they stand.

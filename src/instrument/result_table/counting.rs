@@ -1,12 +1,17 @@
 //! Columns that count specimens: 1, 2, 3, and what stands beside them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-use super::layout::{LabelColumn, Layout};
-use crate::instrument::dialect::TableColumn;
+use super::layout::{Column, LabelColumn, Layout};
+use crate::instrument::dialect::{Statistic, TableColumn};
 use crate::instrument::facets::Facets;
 use crate::instrument::layout::Context;
+use crate::instrument::raw::Row;
 use crate::instrument::shape::Region;
+use crate::instrument::sniff::{Number, number};
+
+/// Printed means are those of their repeats up to this part.
+const ROUNDED: f64 = 5e-3;
 
 impl Layout {
     /// Columns that count: `N` over 1, 2, 3, and the first column where its head is empty or strange.
@@ -15,6 +20,7 @@ impl Layout {
         let named = has(&self.labels, TableColumn::Fabric) || has(&self.labels, TableColumn::Id);
         let has_specimen = has(&self.labels, TableColumn::Specimen);
         let first = self.labels.first().map(|l| l.index);
+        self.name_by_numbers(region);
         let counted = self.names_that_count(region);
         for label in self.labels.iter_mut().filter(|l| !has_specimen && Some(l.index) == counted) {
             label.meta = Some(TableColumn::Specimen);
@@ -48,6 +54,65 @@ impl Layout {
         }
     }
 
+    /// `Sample No.` over 1, 1, 2, 2 beside a column that counts 1, 2, 1, 2: numbers of fabrics beside those of specimens.
+    fn name_by_numbers(&mut self, region: &Region<'_>) {
+        let Some(name) = self.numbered_by.clone() else { return };
+        let (numbers, others): (Vec<&LabelColumn>, Vec<&LabelColumn>) = self
+            .labels
+            .iter()
+            .filter(|l| l.meta == Some(TableColumn::Specimen))
+            .partition(|l| l.name == name);
+        let ([one], [other]) = (&numbers[..], &others[..]) else { return };
+        if counts_beside(region, other.index, one.index) {
+            let at = one.index;
+            for label in self.labels.iter_mut().filter(|l| l.index == at) {
+                label.meta = Some(TableColumn::Fabric);
+            }
+            self.numbered_by = None;
+        }
+    }
+
+    /// `Test 1, Test 2, Test 3` over columns are specimens where a line above names the fabric or a mean of them stands beside, and so are `Forward`
+    /// and `Backward` beside their mean. That they are is told.
+    pub(super) fn count_columns(&mut self, region: &Region<'_>, is_named: bool, context: &Context<'_>) {
+        let named: Vec<&Column> = self.values.iter().filter(|c| c.fabric.is_some()).collect();
+        let has_mean = self.values.iter().any(|c| c.facets.statistic == Some(Statistic::Mean));
+        let directions: BTreeSet<_> = named.iter().map(|c| c.facets.direction).collect();
+        let of_each = |d| named.iter().filter(move |c| c.facets.direction == d).map(|c| c.name.as_str());
+        let are_counted = (is_named || has_mean) && directions.iter().all(|d| follow_each_other(of_each(*d)));
+        if !self.down
+            || named.len() < 2
+            || !(are_counted || is_named && has_mean && self.is_mean_of_named(region, context))
+        {
+            return;
+        }
+        let names: Vec<&str> = named.iter().map(|c| c.name.as_str()).collect();
+        self.counted_by = Some(names.join(", "));
+        let mut last = BTreeMap::new();
+        for column in self.values.iter_mut().filter(|c| c.fabric.is_some()) {
+            let number = last.entry(column.facets.direction).and_modify(|n| *n += 1).or_insert(1);
+            (column.fabric, column.facets.index) = (None, Some(*number));
+        }
+    }
+
+    /// Whether the only column of means has those of all columns that are named, row by row.
+    fn is_mean_of_named(&self, region: &Region<'_>, context: &Context<'_>) -> bool {
+        let mut means = self.values.iter().filter(|c| c.facets.statistic == Some(Statistic::Mean));
+        let (Some(mean), None) = (means.next(), means.next()) else { return false };
+        let value = |row: &Row<'_>, index: usize| match number(row.get(index)?, context.decimal) {
+            Number::Value(v) => Some(v),
+            _ => None,
+        };
+        let mut compared = region.rows.iter().filter_map(|row| {
+            let columns = self.values.iter().filter(|c| c.fabric.is_some());
+            let parts: Option<Vec<f64>> = columns.map(|c| value(row, c.index)).collect();
+            let parts = parts?;
+            let expected = parts.iter().sum::<f64>() / parts.len() as f64;
+            Some((value(row, mean.index)? - expected).abs() <= ROUNDED * expected.abs())
+        });
+        compared.next() == Some(true) && compared.all(|same| same)
+    }
+
     /// A column of names that counts, `1, 2, 3, mean`, beside another in which names come again.
     fn names_that_count(&self, region: &Region<'_>) -> Option<usize> {
         let names: Vec<usize> = self
@@ -62,6 +127,20 @@ impl Layout {
         }
         counts_beside(region, other, one).then_some(other)
     }
+}
+
+/// Whether names are one word with the numbers 1, 2, 3.
+fn follow_each_other<'n>(names: impl Iterator<Item = &'n str>) -> bool {
+    let (mut stems, mut count) = (BTreeSet::new(), 0);
+    for name in names {
+        count += 1;
+        let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
+        if name[stem.len()..].parse() != Ok(count) {
+            return false;
+        }
+        stems.insert(stem.trim_end());
+    }
+    count > 1 && stems.len() == 1
 }
 
 /// Whether a column counts beside one of names that come again.

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::layout::{Column, Layout};
+use super::repeats::summed_up;
 use super::row_facts::no_direction;
 use super::{Datum, RowFacts, Table};
 use crate::finding::{Finding, Place, ReadFact};
@@ -29,10 +30,19 @@ impl Table<'_, '_> {
         for name in split.iter().flatten() {
             of_stem.entry(&name.stem).or_default().insert(name.direction);
         }
+        // `A mean` beside `A warp` and `A weft` sums them up.
         let is_split = |((_, f), name): (&(&Row<'_>, RowFacts), &Option<DirectedName>)| {
-            name.is_some() || f.fabric.as_deref().is_some_and(|text| v.statistic(text).is_some())
+            let is_sum = |text: &str| {
+                v.statistic(text).is_some()
+                    || summed_up(text, v).is_some_and(|(of, ..)| of_stem.contains_key(of.as_str()))
+            };
+            name.is_some() || f.fabric.as_deref().is_some_and(is_sum)
         };
-        let all = rows.iter().zip(&split).all(is_split) && of_stem.values().all(|of| of.len() > 1);
+        // A letter may be a part of a name where one fabric has no partner to it; of a word that is told.
+        let has_letters = split.iter().flatten().any(|name| name.is_letter);
+        let mut pairs = of_stem.values().map(|of| of.len() > 1);
+        let is_paired = if has_letters { pairs.all(|two| two) } else { pairs.any(|two| two) };
+        let all = is_paired && rows.iter().zip(&split).all(is_split);
         let mut told = BTreeSet::new();
         for ((row, facts), name) in rows.iter_mut().zip(&split) {
             let Some(name) = name else { continue };

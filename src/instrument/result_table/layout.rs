@@ -61,6 +61,8 @@ pub(super) struct Layout {
     pub strangers: Vec<String>,
     /// The head over numbers of specimens, where it is not understood.
     pub counted_by: Option<String>,
+    /// The head over numbers of specimens or samples, which it does not say.
+    pub numbered_by: Option<String>,
     /// Heads and names whose letters are directions.
     pub letters: Vec<String>,
     /// What each column holds, for people.
@@ -85,6 +87,7 @@ impl Layout {
             texts_of_directions: Vec::new(),
             strangers: Vec::new(),
             counted_by: None,
+            numbered_by: None,
             letters: heads.letters.clone(),
             descriptions: Vec::new(),
         };
@@ -115,7 +118,13 @@ impl Layout {
         context: &Context<'_>,
     ) {
         let (facets, name, place) = heads.column(index, region);
-        let meta = facets.meta;
+        let meta = match facets.meta {
+            Some(TableColumn::Number) => {
+                self.numbered_by = Some(name.clone());
+                Some(TableColumn::Specimen)
+            }
+            meta => meta,
+        };
         let has_values =
             region.rows.iter().any(|r| r.get(index).is_some_and(|c| shape::is_value(c, context)));
         let column = |facets: Facets, fabric| Column { index, facets, fabric, name: name.clone(), place };

@@ -1,45 +1,31 @@
 //! Cells that were merged, and titles: a direction, a parameter or a name stands once for the rows below it.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::layout::{LabelColumn, NAME};
 use super::{RowFacts, Table};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::Direction;
 use crate::instrument::dialect::TableColumn;
 use crate::instrument::facets::Facets;
 use crate::instrument::raw::Row;
-use crate::instrument::shape::Region;
-use crate::instrument::words::folded;
 
 impl Table<'_, '_> {
     /// Gives rows with a blank cell what the cell above them states (R124).
     pub(super) fn fill_merged_cells(&mut self, rows: &mut [(&Row<'_>, RowFacts)]) {
-        let filled = if self.layout.down { parameters_below(rows) } else { self.directions_below(rows) };
+        let filled = if self.layout.down {
+            let is_over_parameters = rows
+                .iter()
+                .any(|(_, facts)| facts.direction_at.is_some() && facts.direction_at < facts.parameter_at);
+            let directions = if is_over_parameters { self.directions_below(rows) } else { None };
+            directions.or(parameters_below(rows))
+        } else {
+            self.directions_below(rows)
+        };
         if let Some((line, column)) = filled {
             let place = Place::at(self.context.path, line, column);
             self.findings.push(Finding::new(ReadFact::MergedCells {}).at(place));
         }
-    }
-
-    /// Rows of a name alone over rows of specimens, by their lines: fabrics, or states of one. There are several, and the first
-    /// row is one; a single one may be a remark.
-    pub(super) fn titles(&self, region: &Region<'_>) -> BTreeMap<usize, String> {
-        let counts = |l: &LabelColumn| l.meta == Some(TableColumn::Specimen);
-        let Some(first) = self.layout.labels.first().filter(|l| !self.layout.down && counts(l)) else {
-            return BTreeMap::new();
-        };
-        let title = |row: &&Row<'_>| {
-            let text = row.get(first.index).filter(|_| row.filled().count() == 1)?;
-            let says = Facets::of(text, self.context.vocabulary);
-            let is_name = says.statistic.is_none() && says.direction.is_none() && says.index.is_none();
-            (is_name && text.chars().any(char::is_alphabetic) && text.chars().count() <= NAME)
-                .then(|| (row.line, folded(text).into_owned()))
-        };
-        let titles: BTreeMap<usize, String> = region.rows.iter().filter_map(title).collect();
-        let begins = region.rows.first().is_some_and(|r| titles.contains_key(&r.line));
-        if begins && titles.len() > 1 { titles } else { BTreeMap::new() }
     }
 
     /// Directions of rows of specimens or fabrics. A column right of the names states those of each fabric anew.

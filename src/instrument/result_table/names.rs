@@ -12,6 +12,7 @@ use crate::instrument::raw::Row;
 use crate::instrument::shape::Region;
 use crate::instrument::sniff::{Number, number};
 use crate::instrument::unit_text::unit;
+use crate::instrument::value::is_gap;
 
 impl Layout {
     /// Measured numbers behind the values, such as those of a column `Reference`, name no fabric; and where rows are parameters,
@@ -35,6 +36,7 @@ impl Layout {
             self.count_under_name(region, is_named, context);
             return;
         }
+        self.values_of_the_fabric(region, context);
         let measured = self.labels.iter().filter(|l| l.meta.is_none());
         let measured = measured.filter(|l| is_measured(region, l.index, true, context));
         self.strangers.extend(measured.map(|l| l.name.clone()));
@@ -46,6 +48,30 @@ impl Layout {
         if (is_named || repeated) && self.rows_are_told_apart(region, first) {
             self.labels.retain(|l| l.meta != Some(TableColumn::Id) || !differs_in_rows(region, l.index));
         }
+    }
+
+    /// `Parameter, Warp, Weft, Fabric`: beside directions, numbers below a heading of names are those of the fabric as a whole.
+    fn values_of_the_fabric(&mut self, region: &Region<'_>, context: &Context<'_>) {
+        let has_names = self.values.iter().any(|c| c.fabric.is_some());
+        if has_names || !self.values.iter().any(|c| c.facets.direction.is_some()) {
+            return;
+        }
+        let first = self.values.iter().map(|c| c.index).min().unwrap_or(usize::MAX);
+        let (of_fabric, labels): (Vec<LabelColumn>, Vec<LabelColumn>) =
+            std::mem::take(&mut self.labels).into_iter().partition(|l| {
+                let mut numbers = cells(region, l.index)
+                    .filter(|cell| !is_gap(cell))
+                    .map(|cell| matches!(number(cell, context.decimal), Number::Value(_)));
+                is_name(l) && l.index > first && numbers.next() == Some(true) && numbers.all(|is| is)
+            });
+        self.labels = labels;
+        self.values.extend(of_fabric.into_iter().map(|label| Column {
+            index: label.index,
+            facets: Facets::default(),
+            fabric: None,
+            name: label.name,
+            place: (self.line, 0),
+        }));
     }
 
     /// `S` among fabrics, `P` and `T`, is one of them: a deviation stands beside a mean or beside the one value that it is of.

@@ -457,7 +457,7 @@ fn statistic_of_row(name: &str, below_mean: bool, v: Vocabulary<'_>) -> Option<S
 }
 
 /// The name, the statistic and its word in `F1 mean`, `F1 (SD)` and `mean of F1`.
-fn summed_up(text: &str, v: Vocabulary<'_>) -> Option<(String, Statistic, String)> {
+pub(super) fn summed_up(text: &str, v: Vocabulary<'_>) -> Option<(String, Statistic, String)> {
     let edge = |c: char| !c.is_alphanumeric();
     let plain = text.trim_end_matches(edge);
     let behind = plain.rfind(edge).map(|at| (&plain[..at], &plain[at..]));
@@ -486,5 +486,5 @@ fn rounded(cell: &str, decimal: char) -> Option<(f64, f64)> {
 fn is_numbered(label: &str, v: Vocabulary<'_>) -> bool {
     let stem = label.trim_end_matches(|c: char| c.is_ascii_digit());
     let word = stem.trim_matches([' ', '#', '.', '-', '_']);
-    stem.len() < label.len() && (word.is_empty() || v.table_column(word) == Some(TableColumn::Specimen))
+    stem.len() < label.len() && (word.is_empty() || v.table_column(word).is_some_and(TableColumn::counts))
 }

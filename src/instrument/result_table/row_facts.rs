@@ -46,6 +46,13 @@ impl RowFacts {
         if self.label.is_empty() {
             self.label = text.to_string();
         }
+        // `mean` and `min` beside the parameter: they sum up, and a minimum is no unit of time.
+        if f.statistic.is_some() && !f.unknown && !f.names_value() && f.direction.is_none() {
+            let of_row = Facets { statistic: f.statistic, sd: f.sd, ..Facets::default() };
+            self.facets = self.facets.or(&of_row);
+            self.label = text.to_string();
+            return;
+        }
         let bare = text.trim_matches(['(', ')', '[', ']']);
         if !f.is_clear() || (f.parameter.is_none() && f.direction.is_none() && f.fast.is_none()) {
             let is_unit =

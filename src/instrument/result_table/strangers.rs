@@ -26,6 +26,11 @@ fn is_of_values(column: &Column, context: &Context<'_>) -> bool {
         && context.vocabulary.table_column(&split_unit(&column.name).0) == Some(TableColumn::Value)
 }
 
+/// `% change` and `Δ` are made of other columns; `PES 35 %` is a name.
+fn is_change(name: &str) -> bool {
+    name.contains(['Δ', '∆']) || (name.contains('%') && !name.contains(|c: char| c.is_ascii_digit()))
+}
+
 /// Whether a unit stands in a bracket behind a name.
 fn has_unit(name: &str) -> bool {
     name.ends_with([')', ']']) && split_unit(name).1.is_some_and(|text| unit(&text).is_ok())
@@ -60,9 +65,10 @@ impl Layout {
             None => usize::MAX,
         };
         let with_units = self.meta(TableColumn::Unit);
-        let (strangers, values) = std::mem::take(&mut self.values)
-            .into_iter()
-            .partition(|c| c.fabric.is_some() && (c.index >= from || (with_units && has_unit(&c.name))));
+        let (strangers, values) = std::mem::take(&mut self.values).into_iter().partition(|c| {
+            let is_other = c.index >= from || (with_units && has_unit(&c.name)) || is_change(&c.name);
+            c.fabric.is_some() && is_other
+        });
         self.values = values;
         self.tell_strangers(strangers);
     }
@@ -90,7 +96,9 @@ impl Table<'_, '_> {
             self.findings.push(Finding::new(ReadFact::StatisticsAsFabrics { names }).at(place));
         }
         let counted = self.data.iter().any(|d: &Datum| d.index.is_some() && d.statistic.is_none());
-        let column = self.layout.counted_by.take().filter(|_| counted);
+        let is_stated = self.data.iter().any(|d| d.fabric.is_some() || d.statistic.is_some());
+        let numbered = self.layout.numbered_by.take().filter(|_| !is_stated);
+        let column = self.layout.counted_by.take().or(numbered).filter(|_| counted);
         if let Some(column) = column {
             let place = Place::at(self.context.path, self.layout.line, 0);
             self.findings.push(Finding::new(ReadFact::CountedUnder { column }).at(place));

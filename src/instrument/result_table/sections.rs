@@ -1,0 +1,131 @@
+//! Rows of one text alone between rows of values: what they say of those below them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::Table;
+use super::layout::NAME;
+use crate::instrument::Direction;
+use crate::instrument::dialect::{Key, TableColumn};
+use crate::instrument::facets::Facets;
+use crate::instrument::layout::Context;
+use crate::instrument::raw::Row;
+use crate::instrument::shape::{self, Region};
+use crate::instrument::words::{folded, normalised};
+
+/// What a row of one text says of the rows below it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Title {
+    /// They are of this fabric.
+    Fabric(String),
+    /// Their names come again below other titles: each is of a fabric of this group.
+    Group(String),
+    /// They are of no direction, in a table whose sections are directions.
+    NoDirection,
+    /// They sum up the sections above, in the words of the title.
+    Summary(String),
+}
+
+/// A row of the table as titles are told from each other.
+enum Line<'r> {
+    Direction(Direction),
+    Text(&'r Row<'r>, String),
+    Values(&'r Row<'r>),
+}
+
+impl Table<'_, '_> {
+    /// The rows of titles by their lines.
+    pub(super) fn titles(&self, region: &Region<'_>) -> BTreeMap<usize, Title> {
+        let lines: Vec<Line<'_>> = region.rows.iter().filter_map(|row| line(row, self.context)).collect();
+        if !lines.iter().any(|line| matches!(line, Line::Text(..))) {
+            return BTreeMap::new();
+        }
+        let named = self.titles_of_fabrics(&lines);
+        if named.is_empty() { ends_of_sections(&lines, self.context) } else { named }
+    }
+
+    /// Rows of a name alone over rows of specimens, parameters or names that come again: fabrics, or states of one. There are several, and
+    /// the first row is one; a single one may be a remark.
+    fn titles_of_fabrics(&self, lines: &[Line<'_>]) -> BTreeMap<usize, Title> {
+        let Some(first) = self.layout.labels.first() else { return BTreeMap::new() };
+        let is_name = |text: &str| {
+            let says = Facets::of(text, self.context.vocabulary);
+            let means_nothing = says.statistic.is_none() && says.direction.is_none() && says.index.is_none();
+            means_nothing && text.chars().any(char::is_alphabetic) && text.chars().count() <= NAME
+        };
+        let mut below: Vec<(usize, &str, BTreeSet<&str>)> = Vec::new();
+        for line in lines {
+            match line {
+                Line::Text(row, text) if row.get(first.index).is_some() && is_name(text) => {
+                    below.push((row.line, text, BTreeSet::new()));
+                }
+                Line::Values(row) => match below.last_mut() {
+                    Some((_, _, names)) => names.extend(row.get(first.index)),
+                    None => return BTreeMap::new(),
+                },
+                _ => {}
+            }
+        }
+        let counts = !self.layout.down && first.meta == Some(TableColumn::Specimen);
+        let come_again = below
+            .iter()
+            .enumerate()
+            .any(|(i, (.., names))| below[..i].iter().any(|(.., before)| !names.is_disjoint(before)));
+        let is_named = self.header.known.contains_key(&Key::Sample) || self.layout.names_fabrics();
+        let holds_names = matches!(first.meta, Some(TableColumn::Id | TableColumn::Fabric));
+        let title = |text: &str| match (counts, self.layout.down) {
+            (true, _) => Some(Title::Fabric(text.to_string())),
+            (_, true) if come_again && !is_named => Some(Title::Fabric(text.to_string())),
+            (_, false) if come_again && holds_names => Some(Title::Group(text.to_string())),
+            _ => None,
+        };
+        if below.len() < 2 {
+            return BTreeMap::new();
+        }
+        below.iter().filter_map(|(line, text, _)| Some((*line, title(text)?))).collect()
+    }
+}
+
+fn line<'r>(row: &'r Row<'r>, context: &Context<'_>) -> Option<Line<'r>> {
+    if let Some(direction) = shape::section(row, context) {
+        return Some(Line::Direction(direction));
+    }
+    let mut filled = row.filled();
+    let (_, cell) = filled.next()?;
+    let is_text = filled.next().is_none()
+        && !cell.text.starts_with('#')
+        && !shape::is_value(&cell.text, context)
+        && cell.text.contains(char::is_alphabetic);
+    Some(if is_text { Line::Text(row, folded(&cell.text).into_owned()) } else { Line::Values(row) })
+}
+
+/// Behind sections of several directions: titles that stood in none of those before the last end it, and such that name a statistic or several
+/// directions sum up. Those that come again in each are parts of them.
+fn ends_of_sections(lines: &[Line<'_>], context: &Context<'_>) -> BTreeMap<usize, Title> {
+    let v = context.vocabulary;
+    let mut directions = BTreeSet::new();
+    let (mut before, mut since) = (BTreeSet::new(), BTreeSet::new());
+    let mut out = BTreeMap::new();
+    for line in lines {
+        match line {
+            Line::Direction(direction) => {
+                directions.insert(*direction);
+                before.append(&mut since);
+                // Only what stands behind the last direction ends a section.
+                out.retain(|_, title| matches!(title, Title::Summary(_)));
+            }
+            Line::Text(row, text) if directions.len() > 1 => {
+                if v.statistic(text).is_some() || v.names_several_directions(text) {
+                    out.insert(row.line, Title::Summary(text.clone()));
+                } else if !before.contains(&normalised(text)) {
+                    out.insert(row.line, Title::NoDirection);
+                }
+                since.insert(normalised(text));
+            }
+            Line::Text(_, text) => {
+                since.insert(normalised(text));
+            }
+            Line::Values(_) => {}
+        }
+    }
+    out
+}
