@@ -9,6 +9,7 @@ mod counting;
 mod deviations;
 mod directions;
 mod fast_cells;
+mod heads;
 mod layout;
 mod merged_cells;
 mod names;
@@ -36,7 +37,7 @@ use super::facets::Facets;
 use super::layout::{Context, Header};
 use super::raw::Row;
 use super::shape::{self, Region};
-use super::unit_text::is_percent;
+use super::sniff::{Number, number};
 use super::value::is_gap;
 use super::words::{folded, normalised};
 use super::{Direction, Parameter, ResultValue, StatedStiffness};
@@ -93,6 +94,7 @@ pub(super) fn read(
     let sample = header.known.get(&Key::Sample).map(|entry| entry.text.as_str());
     layout.leave_out_false_names(region, sample.is_some(), context);
     layout.count_columns(region, sample.is_some(), context);
+    layout.note_numbered_columns(sample.is_some());
     layout.name_sides(sample, context);
     layout.leave_out_masses();
     log.push(layout.described());
@@ -323,7 +325,7 @@ impl<'t> Table<'t, '_> {
                     facts.take(&Facets { index: None, ..f.clone() }, text);
                 }
                 // `25 %` among labels of rows is no specimen: `describe` of a table prints quartiles so.
-                _ if f.unit.as_deref() == Some("%") && f.index.is_some() => {
+                Some(TableColumn::Specimen) if is_percentage(text) => {
                     facts.facets.statistic = Some(Statistic::Other);
                     facts.label = text.to_string();
                 }
@@ -467,47 +469,6 @@ impl<'t> Table<'t, '_> {
         self.attach_own(row, facts, first)
     }
 
-    /// Gives the standard deviations of a row to its values.
-    fn attach(&mut self, first: usize, deviations: Vec<Datum>) {
-        for sd in deviations {
-            let same = |d: &&mut Datum| {
-                d.parameter == sd.parameter && d.direction == sd.direction && d.fabric == sd.fabric
-            };
-            if let Some(datum) = self.data[first..].iter_mut().find(same) {
-                datum.sd = Some(sd.mean);
-            }
-        }
-    }
-
-    /// The column of standard deviations beside one of values.
-    fn attach_own(&mut self, row: &Row<'_>, facts: &RowFacts, first: usize) -> Result<(), ReadError> {
-        let Some(at) = self.layout.sd_column else { return Ok(()) };
-        let (Some(cell), Some(last)) = (row.get(at).filter(|c| !is_gap(c)), self.data[first..].last()) else {
-            return Ok(());
-        };
-        let (parameter, count) = (last.parameter, self.data.len() - first);
-        if count != 1 {
-            return Ok(());
-        }
-        let place = (row.line, row.column(at));
-        let reading = self.reading(row, at, cell)?;
-        let (of_row, of_head) = (facts.facets.unit.as_deref(), self.layout.sd_unit.as_deref());
-        // `SD (%)` is one of the value, except where the value itself is in per cent.
-        let is_relative =
-            of_head.is_some_and(is_percent) && !is_percent(of_row.unwrap_or(parameter.kes_unit()));
-        let sd = if is_relative {
-            0.01 * reading.mean * last.mean.abs()
-        } else {
-            self.one_unit(row, at, of_head, of_row)?;
-            let (text, place) = self.stated_unit((row, at), of_row.or(of_head), place, &reading)?;
-            reading.mean * self.unit(parameter, text, place)?.factor
-        };
-        if let Some(datum) = self.data.last_mut() {
-            datum.sd = Some(sd);
-        }
-        Ok(())
-    }
-
     /// A column or row of coefficients of variation, extremes and the like.
     fn summary_only(&mut self, facts: &RowFacts, column: &Column, of_row: bool, line: usize) {
         let label = if of_row { &facts.label } else { &column.name };
@@ -517,4 +478,8 @@ impl<'t> Table<'t, '_> {
             self.ignored.push(label.clone());
         }
     }
+}
+
+fn is_percentage(text: &str) -> bool {
+    text.strip_suffix('%').is_some_and(|n| matches!(number(n.trim(), '.'), Number::Value(_)))
 }

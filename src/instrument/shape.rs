@@ -302,8 +302,9 @@ fn below_values<'r>(
     named: &BTreeSet<usize>,
     context: &Context<'_>,
 ) -> usize {
-    let says: Vec<Facets> = heads.iter().flat_map(|row| facets(row, context)).collect();
-    if !says.iter().any(|f| f.meta == Some(TableColumn::Value)) {
+    let mut says = heads.iter().flat_map(|row| facets(row, context).into_iter().enumerate());
+    // In the first column it is no head of values: a name stands before each.
+    if !says.any(|(i, f)| i > 0 && f.meta == Some(TableColumn::Value)) {
         return 0;
     }
     rows.take(3).filter(|row| has_own_label(row, context) && is_labelled(row, named, context)).count()
@@ -419,6 +420,10 @@ pub(super) fn region<'t>(
                 });
             if !goes_on {
                 break;
+            }
+            // `Surface` is a title as well as a key.
+            if row.filled().count() == 1 && !row.filled().any(|(_, c)| c.text.contains([':', '='])) {
+                region.rows.push(row);
             }
             i += 1;
             continue;

@@ -95,6 +95,17 @@ impl Layout {
         }
     }
 
+    /// `1, 2, 3` over columns, where nothing says what they count.
+    pub(super) fn note_numbered_columns(&mut self, is_named: bool) {
+        let numbered = self.values.iter().filter(|c| c.facets.index.is_some());
+        let names: Vec<&str> = numbered.map(|c| c.name.as_str()).collect();
+        let are_bare = names.len() > 1 && names.iter().all(|name| name.bytes().all(|b| b.is_ascii_digit()));
+        let has_statistic = self.values.iter().any(|c| c.facets.statistic.is_some());
+        if self.down && are_bare && !is_named && !has_statistic && self.counted_by.is_none() {
+            self.numbered_by = Some(names.join(", "));
+        }
+    }
+
     /// Whether the only column of means has those of all columns that are named, row by row.
     fn is_mean_of_named(&self, region: &Region<'_>, context: &Context<'_>) -> bool {
         let mut means = self.values.iter().filter(|c| c.facets.statistic == Some(Statistic::Mean));

@@ -1,14 +1,18 @@
 //! Standard deviations that stand with the values of a column, or in a column of their own behind it.
 
 use super::layout::{Column, Layout};
+use super::row_facts::RowFacts;
+use super::{Datum, Table};
 use crate::instrument::cell::parts;
 use crate::instrument::dialect::{Statistic, TableColumn};
+use crate::instrument::error::ReadError;
 use crate::instrument::facets::Facets;
 use crate::instrument::layout::Context;
+use crate::instrument::raw::Row;
 use crate::instrument::shape::Region;
 use crate::instrument::sniff::Number;
-use crate::instrument::unit_text::split_unit;
-use crate::instrument::value::Printed;
+use crate::instrument::unit_text::{is_percent, split_unit};
+use crate::instrument::value::{Printed, is_gap};
 
 impl Layout {
     /// `LT (SD)` over `0.61 (0.03)` heads values, and `SD` behind each column of values the deviations of that one. Deviations of values that
@@ -69,6 +73,54 @@ impl Layout {
             self.values.push(column);
         }
         self.values.sort_by_key(|c| c.index);
+    }
+}
+
+impl Table<'_, '_> {
+    /// Gives the standard deviations of a row to its values.
+    pub(super) fn attach(&mut self, first: usize, deviations: Vec<Datum>) {
+        for sd in deviations {
+            let same = |d: &&mut Datum| {
+                d.parameter == sd.parameter && d.direction == sd.direction && d.fabric == sd.fabric
+            };
+            if let Some(datum) = self.data[first..].iter_mut().find(same) {
+                datum.sd = Some(sd.mean);
+            }
+        }
+    }
+
+    /// The column of standard deviations beside one of values.
+    pub(super) fn attach_own(
+        &mut self,
+        row: &Row<'_>,
+        facts: &RowFacts,
+        first: usize,
+    ) -> Result<(), ReadError> {
+        let Some(at) = self.layout.sd_column else { return Ok(()) };
+        let (Some(cell), Some(last)) = (row.get(at).filter(|c| !is_gap(c)), self.data[first..].last()) else {
+            return Ok(());
+        };
+        let (parameter, count) = (last.parameter, self.data.len() - first);
+        if count != 1 {
+            return Ok(());
+        }
+        let place = (row.line, row.column(at));
+        let reading = self.reading(row, at, cell)?;
+        let (of_row, of_head) = (facts.facets.unit.as_deref(), self.layout.sd_unit.as_deref());
+        // `SD (%)` is one of the value, except where the value itself is in per cent.
+        let is_relative =
+            of_head.is_some_and(is_percent) && !is_percent(of_row.unwrap_or(parameter.kes_unit()));
+        let sd = if is_relative {
+            0.01 * reading.mean * last.mean.abs()
+        } else {
+            self.one_unit(row, at, of_head, of_row)?;
+            let (text, place) = self.stated_unit((row, at), of_row.or(of_head), place, &reading)?;
+            reading.mean * self.unit(parameter, text, place)?.factor
+        };
+        if let Some(datum) = self.data.last_mut() {
+            datum.sd = Some(sd);
+        }
+        Ok(())
     }
 }
 

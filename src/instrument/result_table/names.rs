@@ -23,6 +23,9 @@ impl Layout {
         is_named: bool,
         context: &Context<'_>,
     ) {
+        if self.down {
+            self.values_of_the_fabric(region, context);
+        }
         let names = self.labels.iter().filter(|l| is_name(l)).count();
         let otherwise = self.down || is_named || names > 1 || self.meta(TableColumn::Specimen);
         let first = self.values.iter().map(|c| c.index).min().unwrap_or(usize::MAX);
@@ -36,7 +39,6 @@ impl Layout {
             self.count_under_name(region, is_named, context);
             return;
         }
-        self.values_of_the_fabric(region, context);
         let measured = self.labels.iter().filter(|l| l.meta.is_none());
         let measured = measured.filter(|l| is_measured(region, l.index, true, context));
         self.strangers.extend(measured.map(|l| l.name.clone()));
@@ -50,19 +52,27 @@ impl Layout {
         }
     }
 
-    /// `Parameter, Warp, Weft, Fabric`: beside directions, numbers below a heading of names are those of the fabric as a whole.
+    /// `Parameter, Warp, Weft, Fabric`: beside directions, numbers below a heading of names are those of the fabric as a whole, in
+    /// rows that have none of a direction.
     fn values_of_the_fabric(&mut self, region: &Region<'_>, context: &Context<'_>) {
         let has_names = self.values.iter().any(|c| c.fabric.is_some());
         if has_names || !self.values.iter().any(|c| c.facets.direction.is_some()) {
             return;
         }
         let first = self.values.iter().map(|c| c.index).min().unwrap_or(usize::MAX);
+        let directed: Vec<usize> =
+            self.values.iter().filter(|c| c.facets.direction.is_some()).map(|c| c.index).collect();
         let (of_fabric, labels): (Vec<LabelColumn>, Vec<LabelColumn>) =
             std::mem::take(&mut self.labels).into_iter().partition(|l| {
                 let mut numbers = cells(region, l.index)
                     .filter(|cell| !is_gap(cell))
                     .map(|cell| matches!(number(cell, context.decimal), Number::Value(_)));
-                is_name(l) && l.index > first && numbers.next() == Some(true) && numbers.all(|is| is)
+                let mut rows = region.rows.iter().filter(|row| row.get(l.index).is_some());
+                is_name(l)
+                    && l.index > first
+                    && numbers.next() == Some(true)
+                    && numbers.all(|is| is)
+                    && rows.all(|row| directed.iter().all(|i| row.get(*i).is_none_or(is_gap)))
             });
         self.labels = labels;
         self.values.extend(of_fabric.into_iter().map(|label| Column {

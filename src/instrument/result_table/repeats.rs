@@ -288,7 +288,8 @@ impl<'t> Table<'t, '_> {
         for d in &summaries {
             let is_taken = taken.as_ref().is_some_and(|t| (t.line, t.column) == (d.line, d.column));
             // The deviation of the only value, or of the mean, is used.
-            let is_used = singles.len() < 2 && !d.by_row && d.statistic.as_ref().is_some_and(|t| t.1);
+            let is_deviation = d.statistic.as_ref().is_some_and(|t| t.1);
+            let is_used = is_deviation && (taken.is_some() || (singles.len() < 2 && !d.by_row));
             if !is_taken
                 && !is_used
                 && let Some((_, _, label)) = &d.statistic
