@@ -1448,3 +1448,181 @@ fn heads_of_columns_with_a_fabric_and_a_direction() {
         [(Some("F1 warp"), warp, 0.1, 1), (Some("F1 weft"), weft, 0.08, 1), (Some("F2 warp"), warp, 0.12, 1)];
     assert_eq!(of_b(&found), expected);
 }
+
+/// Means with their deviations in one cell, below heads that name one, the other or both.
+#[test]
+fn heads_of_means_with_deviations() {
+    for head in [
+        "\"B (SD), gf·cm²/cm\"",
+        "B mean ± SD (gf·cm²/cm)",
+        "\"B (gf·cm²/cm), mean ± SD\"",
+        "B ± SD (gf·cm²/cm)",
+        "B (mean ± SD) (gf·cm²/cm)",
+        "B (SD) [gf·cm²/cm]",
+    ] {
+        for cell in ["0.1 (0.01)", "0.1 ± 0.01"] {
+            let found = read("t.csv", &format!("Fabric,{head},LT\nUno,{cell},0.6\nDos,{cell},0.7\n"));
+            assert_eq!(of_b(&found), [(Some("Uno"), None, 0.1, 1), (Some("Dos"), None, 0.1, 1)], "{head}");
+            let b = found.results.iter().find(|(_, r)| r.parameter == Parameter::B).unwrap();
+            assert_relative_eq!(b.1.sd.unwrap(), 0.01 * 9.80665e-5, max_relative = 1e-12);
+        }
+    }
+    // Deviations behind each value; such without a value are told.
+    let pairs = read("t.csv", &format!("Fabric,{B} warp,SD,{B} weft,SD\nUno,0.1,0.01,0.2,0.03\n"));
+    let deviations: Vec<f64> = pairs.results.iter().map(|(_, r)| r.sd.unwrap() / 9.80665e-5).collect();
+    assert_relative_eq!(deviations[..], [0.01, 0.03][..], max_relative = 1e-12);
+    let alone = read("t.csv", &format!("Fabric,{B},LT (SD)\nUno,0.1,0.02\nDos,0.2,0.03\n"));
+    assert_eq!(alone.results.len(), 2);
+    assert!(messages(&alone, "R104")[0].contains("LT (SD)"), "{:?}", alone.findings);
+    // Per cent and values of the other direction are no deviations.
+    for (title, cell) in
+        [("Mean and CV% (in brackets)\n", "0.1 (0.04)"), ("", "0.1 (4.2)"), ("", "0.1 (0.09)")]
+    {
+        let found = read("t.csv", &format!("{title}Fabric,{B},LT\nUno,{cell},0.6\nDos,0.1 (0.01),0.7\n"));
+        assert!(found.results.iter().all(|(_, r)| r.sd.is_none()), "{cell}: {:?}", found.results);
+        assert_eq!(messages(&found, "R140").len(), 1, "{cell}: {:?}", found.findings);
+    }
+}
+
+/// A title behind the sections of directions ends them, sums them up or comes again in each.
+#[test]
+fn titles_that_are_no_directions() {
+    let (warp, weft) = (Some(Direction::Warp), Some(Direction::Weft));
+    let directed = [(Some("Uno"), warp, 0.1, 1), (Some("Uno"), weft, 0.2, 1)];
+    for (behind, none, told) in [
+        ("Surface\nUno,0.3\n", true, "R136"),
+        ("Mean\nUno,0.15\n", false, "R110"),
+        ("Warp and weft\nUno,0.15\n", false, "R110"),
+    ] {
+        let found = read("t.csv", &format!("Fabric,{B}\nWarp\nUno,0.1\nWeft\nUno,0.2\n{behind}"));
+        let expected: Vec<_> =
+            directed.iter().copied().chain(none.then_some((Some("Uno"), None, 0.3, 1))).collect();
+        assert_eq!(of_b(&found), expected, "{behind}");
+        assert_eq!(messages(&found, told).len(), 1, "{behind}: {:?}", found.findings);
+    }
+    let nested = "Parameter,Uno\nWarp\nTensile\nLT,0.6\nBending\nB (gf·cm²/cm),0.1\nWeft\nTensile\nLT,0.7\nBending\nB (gf·cm²/cm),0.2\n";
+    assert_eq!(of_b(&read("t.csv", nested)).iter().map(|b| b.1).collect::<Vec<_>>(), [warp, weft]);
+    // Groups of fabrics whose names come again, and fabrics over parameters that do.
+    let groups = read(
+        "t.csv",
+        &format!("Treatment,{B},LT\nCotton\nRaw,0.1,0.6\nSoft,0.2,0.6\nPES\nRaw,0.3,0.6\nSoft,0.4,0.6\n"),
+    );
+    let names: Vec<_> = of_b(&groups).into_iter().map(|b| b.0.unwrap_or("-").to_string()).collect();
+    assert_eq!(names, ["Cotton Raw", "Cotton Soft", "PES Raw", "PES Soft"]);
+    let down = read(
+        "t.csv",
+        "Parameter,Warp,Weft\nCotton\nB (gf·cm²/cm),0.1,0.2\nLT,0.6,0.7\nWool\nB (gf·cm²/cm),0.3,0.4\nLT,0.6,0.7\n",
+    );
+    let expected = [
+        (Some("Cotton"), warp, 0.1, 1),
+        (Some("Cotton"), weft, 0.2, 1),
+        (Some("Wool"), warp, 0.3, 1),
+        (Some("Wool"), weft, 0.4, 1),
+    ];
+    assert_eq!(of_b(&down), expected);
+}
+
+/// Heads over several columns end where the others of their row do.
+#[test]
+fn heads_over_columns_reach_equally_far() {
+    for over in ["Fabric,Warp,,Weft,,,", "Fabric,Warp,Warp,Weft,Weft,,"] {
+        let found = read("t.csv", &format!("{over}\n,{B},LT,{B},LT,MIU,MMD\nUno,0.1,0.6,0.2,0.7,0.2,0.02\n"));
+        let of_miu = found.results.iter().filter(|(_, r)| r.parameter == Parameter::Miu);
+        assert_eq!(of_miu.map(|(_, r)| r.direction).collect::<Vec<_>>(), [None], "{over}");
+        assert_eq!(
+            of_b(&found).iter().map(|b| b.1).collect::<Vec<_>>(),
+            [Some(Direction::Warp), Some(Direction::Weft)]
+        );
+    }
+}
+
+/// Numbers that may be those of fabrics are told, those beside numbers of specimens are names, and a quantity counts nothing.
+#[test]
+fn numbers_of_samples_and_of_specimens() {
+    for (head, told) in
+        [("Sample No.", 1), ("No.", 1), ("#", 1), ("编号", 1), ("Specimen", 0), ("Test No.", 0)]
+    {
+        let found = read("t.csv", &format!("{head},{B},LT\n1,0.1,0.6\n2,0.2,0.7\n3,0.3,0.8\n"));
+        assert_eq!(of_b(&found), [(None, None, 0.2, 3)], "{head}");
+        assert_eq!(messages(&found, "R132").len(), told, "{head}: {:?}", found.findings);
+    }
+    let both = read(
+        "t.csv",
+        &format!("Sample No.,Rep,{B},LT\n1,1,0.1,0.6\n1,2,0.2,0.6\n2,1,0.3,0.7\n2,2,0.4,0.7\n"),
+    );
+    assert_eq!(of_b(&both), [(Some("1"), None, 0.15, 2), (Some("2"), None, 0.35, 2)]);
+    let over = read("t.csv", "Parameter,1,2,3\nLT,0.6,0.7,0.8\nB (gf·cm²/cm),0.1,0.2,0.3\n");
+    assert_eq!((of_b(&over), messages(&over, "R132").len()), (vec![(None, None, 0.2, 3)], 1));
+    for states in [["0 %", "2 %"], ["20/cm", "24/cm"], ["0 washes", "5 washes"]] {
+        let rows: String = states.iter().map(|state| format!("Uno,{state},0.1,0.6\n")).collect();
+        let found = read("t.csv", &format!("Fabric,Setting,{B},LT\n{rows}"));
+        assert_eq!(messages(&found, "R126").len(), 1, "{states:?}: {:?}", found.findings);
+    }
+    // Numbered columns below the name of a fabric are its specimens.
+    let tests = "Sample: Poplin\nDirection: warp\n\nParameter;Test 1;Test 2;Mean\nLT;0.6;0.7;0.65\nB (gf·cm²/cm);0.1;0.2;0.15\n";
+    for text in [tests.to_string(), tests.replace("Test 1", "Forward").replace("Test 2", "Backward")] {
+        let found = read("t.csv", &text);
+        assert_eq!(of_b(&found), [(Some("Poplin"), Some(Direction::Warp), 0.15, 2)], "{text}");
+        assert_eq!(messages(&found, "R132").len(), 1, "{:?}", found.findings);
+    }
+}
+
+/// Directions in merged cells and names, values of the whole fabric, and columns that are made of others.
+#[test]
+fn directions_and_other_columns_over_parameters() {
+    let (warp, weft) = (Some(Direction::Warp), Some(Direction::Weft));
+    let merged =
+        "Direction,Parameter,Uno\nWarp,LT,0.6\n,B (gf·cm²/cm),0.1\nWeft,LT,0.7\n,B (gf·cm²/cm),0.2\n";
+    assert_eq!(of_b(&read("t.csv", merged)), [(Some("Uno"), warp, 0.1, 1), (Some("Uno"), weft, 0.2, 1)]);
+    let names = read(
+        "t.csv",
+        &format!("Fabric,{B},LT\nA warp,0.1,0.6\nA weft,0.2,0.7\nA mean,0.15,0.65\nC warp,0.3,0.6\n"),
+    );
+    assert_eq!(
+        of_b(&names),
+        [(Some("A"), warp, 0.1, 1), (Some("A"), weft, 0.2, 1), (Some("C"), warp, 0.3, 1)]
+    );
+    let whole =
+        read("t.csv", "Parameter,Warp,Weft,Fabric\nB (gf·cm²/cm),0.1,0.2,\nT0 (mm),,,0.6\nW (g/m2),,,120\n");
+    assert_eq!((whole.results.len(), of_b(&whole).len()), (4, 2));
+    for change in ["% change", "Difference", "Δ", "Change", "Veränderung", "变化率"] {
+        let text = format!("Parameter;Unit;Raw;Soft;{change}\nLT;-;0.6;0.7;0.1\nB;gf·cm²/cm;0.1;0.2;0.3\n");
+        let found = read("t.csv", &text);
+        assert_eq!(of_b(&found), [(Some("Raw"), None, 0.1, 1), (Some("Soft"), None, 0.2, 1)], "{change}");
+        assert!(messages(&found, "R104").len() + messages(&found, "R110").len() == 1, "{:?}", found.findings);
+    }
+    let captioned =
+        read("t.csv", &format!("Table 3. Properties in weft direction\nFabric,{B},LT\nUno,0.1,0.6\n"));
+    assert_eq!(of_b(&captioned), [(Some("Uno"), weft, 0.1, 1)]);
+    assert_eq!(messages(&captioned, "R125").len(), 1);
+    // Long tables whose rows say by which statistic they sum up, and quartiles of `describe`.
+    let long = "sample,direction,property,statistic,value,unit\nUno,warp,B,min,0.05,gf·cm²/cm\nUno,warp,B,mean,0.1,gf·cm²/cm\nUno,warp,B,sd,0.02,gf·cm²/cm\n";
+    let found = read("t.csv", long);
+    assert_eq!(of_b(&found), [(Some("Uno"), warp, 0.1, 1)]);
+    assert_relative_eq!(found.results[0].1.sd.unwrap(), 0.02 * 9.80665e-5, max_relative = 1e-12);
+    let described = read(
+        "t.csv",
+        &format!(
+            ",LT,{B}\ncount,5,5\nmean,0.6,0.1\nstd,0.05,0.02\nmin,0.5,0.07\n25%,0.55,0.08\n50%,0.6,0.09\n75%,0.65,0.11\nmax,0.7,0.13\n"
+        ),
+    );
+    assert_eq!(of_b(&described), [(None, None, 0.1, 1)]);
+}
+
+/// The folders of a fabric that are named after the tests are not fabrics.
+#[test]
+fn folders_of_tests_below_a_fabric() {
+    let folder = tempfile::tempdir().unwrap();
+    for (test, parameter) in
+        [("bending", "B (gf·cm²/cm)"), ("shear", "G (gf/(cm·deg))"), ("KES-FB1", "RT (%)")]
+    {
+        let inner = folder.path().join("cupro").join(test);
+        std::fs::create_dir_all(&inner).unwrap();
+        std::fs::write(inner.join("t.csv"), format!("Direction,{parameter},n\nwarp,0.5,3\n")).unwrap();
+    }
+    let batch = read_fabrics(&[folder.path().into()], &ReadSettings::default(), &|_| ());
+    assert_eq!(
+        batch.fabrics.iter().map(|f| (f.name.as_str(), f.results.len())).collect::<Vec<_>>(),
+        [("cupro", 3)]
+    );
+}

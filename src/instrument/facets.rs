@@ -284,21 +284,22 @@ impl Facets {
 
 /// `LT mean ± SD` and `LT mean (SD)` without the deviation, which stands beside each number; none of other heads.
 fn without_deviation(text: &str, vocabulary: Vocabulary<'_>) -> Option<String> {
-    let is_deviation = |word: &str| {
-        vocabulary.statistic(word) == Some(Statistic::Spread)
-            || vocabulary.table_column(word) == Some(TableColumn::Sd)
-    };
     if text.chars().count() > HEADING {
         return None;
     }
     if let Some((before, behind)) = ["±", "+/-"].iter().find_map(|mark| text.split_once(mark)) {
         let (word, rest) = behind.split_at(behind.find(['(', ')', ',']).unwrap_or(behind.len()));
-        return is_deviation(word).then(|| format!("{}{rest}", before.trim_end()));
+        return is_deviation(word, vocabulary).then(|| format!("{}{rest}", before.trim_end()));
     }
     let (before, inner) = bracket(text)?;
-    let names_mean =
-        || before.split([' ', '_', '-', '(']).any(|word| vocabulary.statistic(word) == Some(Statistic::Mean));
-    (is_deviation(inner) && names_mean()).then(|| before.to_string())
+    let mut words = before.split([' ', '_', '-', '(']);
+    (is_deviation(inner, vocabulary) && words.any(|word| vocabulary.statistic(word) == Some(Statistic::Mean)))
+        .then(|| before.to_string())
+}
+
+fn is_deviation(word: &str, vocabulary: Vocabulary<'_>) -> bool {
+    vocabulary.statistic(word) == Some(Statistic::Spread)
+        || vocabulary.table_column(word) == Some(TableColumn::Sd)
 }
 
 /// The number of repeats in `n=5`.

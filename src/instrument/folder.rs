@@ -9,6 +9,8 @@ use super::fabric_file::{DRAPE_FILE, read_dialect, read_fabric_file};
 use super::file_name::{ABOUT, EXTENSIONS};
 use super::own_results::{JOURNAL, MANIFEST, OwnResults};
 use super::read::{ReadSettings, read};
+use super::vocabulary::Vocabulary;
+use super::words::normalised;
 use super::{FabricInfo, FabricInput};
 use crate::finding::{Finding, Place, ReadFact, UsageFact};
 use crate::platform::{self, files};
@@ -409,7 +411,8 @@ fn search(folder: &Path, settings: &ReadSettings, library: &mut Library) {
     let mut files: Vec<PathBuf> = visible().filter(|p| is_data(p)).cloned().collect();
     let stated = folder.join("fabric.toml");
     let has_fabric_file = files::is_file(&stated);
-    if has_fabric_file {
+    let is_whole = has_fabric_file || (files.is_empty() && holds_tests(&paths, settings));
+    if is_whole {
         // Everything below belongs to this fabric.
         let is_inner = |p: &PathBuf| !is_hidden(p) && files::is_folder(p) && !is_results(p);
         let mut folders: Vec<PathBuf> = paths.iter().filter(|p| is_inner(p)).cloned().collect();
@@ -436,11 +439,30 @@ fn search(folder: &Path, settings: &ReadSettings, library: &mut Library) {
             Err(error) => library.failures.push(error),
         }
     }
-    if !has_fabric_file {
+    if !is_whole {
         for inner in visible().filter(|p| files::is_folder(p) && !is_results(p)) {
             walk(inner, settings, library);
         }
     }
+}
+
+/// Whether the folders below are those of tests, `bending` and `shear` or `FB1` and `FB2`, with the records of one fabric.
+fn holds_tests(paths: &[PathBuf], settings: &ReadSettings) -> bool {
+    let vocabulary = Vocabulary::new(&settings.dialects);
+    let mut folders = 0;
+    for folder in paths.iter().filter(|p| !is_hidden(p) && files::is_folder(p) && !is_results(p)) {
+        let name = folder.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
+        let instrument = normalised(&name);
+        let is_instrument =
+            matches!(instrument.strip_prefix("kes").unwrap_or(&instrument), "fb1" | "fb2" | "fb3" | "fb4");
+        if !is_instrument && vocabulary.test_exactly(&name).is_none()
+            || files::is_file(&folder.join("fabric.toml"))
+        {
+            return false;
+        }
+        folders += 1;
+    }
+    folders > 1
 }
 
 /// The fabric of a folder; the error of its fabric.toml or dialect.toml names it.

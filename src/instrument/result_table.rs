@@ -28,8 +28,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use fast_cells::FastCell;
 use layout::{Column, Layout};
 pub(super) use layout::{differ, two_units};
-use row_facts::{RowFacts, no_direction};
-use sections::Title;
+use row_facts::{RowFacts, Title, no_direction};
 
 use super::dialect::{Key, Statistic, TableColumn};
 use super::error::{Problem, ReadError};
@@ -78,6 +77,8 @@ struct Datum {
     column: usize,
     /// Index of its cell.
     cell: usize,
+    /// Whether its deviation stands in brackets behind it.
+    has_bracket: bool,
 }
 
 /// Reads a table. In one of several fabrics a bad row leaves out its own fabric only.
@@ -136,9 +137,11 @@ pub(super) fn read(
             if e.place.line == row.line { table.leave_out(facts.fabric.clone(), e) } else { Err(e) }
         })?;
     }
+    table.leave_out_brackets();
     table.note_cells();
     table.direction_of_the_header()?;
     table.direction_of_the_sheet()?;
+    table.direction_of_the_caption();
     let unused = table.layout.unused(region, context);
     table.ignored.extend(unused);
     table.note_strangers();
@@ -276,10 +279,8 @@ impl<'t> Table<'t, '_> {
             match label.meta {
                 Some(TableColumn::Id | TableColumn::Fabric) => {
                     // `Warp-1` under "Sample" is no fabric; `B-2` is.
-                    let is_name = !f.is_clear()
-                        || f.parameter.is_some()
-                        || f.statistic.is_some()
-                        || f.direction.is_none();
+                    let is_name =
+                        !f.is_clear() || f.names_value() || f.statistic.is_some() || f.direction.is_none();
                     if !is_name {
                         facts.take(&f, text);
                     } else {
@@ -458,6 +459,7 @@ impl<'t> Table<'t, '_> {
                 line: row.line,
                 column: row.column(column.index),
                 cell: column.index,
+                has_bracket: reading.sd.is_some() && cell.trim_end().ends_with([')', '）']),
             };
             if all.sd && !of_row && !self.layout.down {
                 deviations.push(datum);

@@ -262,8 +262,9 @@ struct Heads {
 /// Whether heads of parameters make a table: several, or one with a column of names or a unit.
 fn across(heads: &[&Row<'_>], context: &Context<'_>) -> bool {
     let all: Vec<Facets> = heads.iter().flat_map(|r| facets(r, context)).collect();
-    let is_mean = |f: &&Facets| matches!(f.statistic, None | Some(Statistic::Mean));
-    let parameters: Vec<&Facets> = all.iter().filter(|f| f.names_value()).filter(is_mean).collect();
+    let named = all.iter().filter(|f| f.names_value());
+    let parameters: Vec<&Facets> =
+        named.filter(|f| matches!(f.statistic, None | Some(Statistic::Mean))).collect();
     let named = all.iter().any(|f| {
         matches!(
             f.meta,

@@ -45,8 +45,7 @@ fn numbers_of_one_word(entries: &[String], decimal: char) -> Option<Vec<f64>> {
     let mut words = BTreeSet::new();
     let mut numbers = Vec::new();
     for entry in entries {
-        let is_part = |c: char| c.is_ascii_digit() || c == decimal;
-        let (digits, word) = entry.split_at(entry.find(|c: char| !is_part(c))?);
+        let (digits, word) = entry.split_at(entry.find(|c: char| !(c.is_ascii_digit() || c == decimal))?);
         let Number::Value(value) = number(digits, decimal) else { return None };
         words.insert(word.trim());
         numbers.push(value);

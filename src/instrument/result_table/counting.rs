@@ -78,8 +78,11 @@ impl Layout {
         let named: Vec<&Column> = self.values.iter().filter(|c| c.fabric.is_some()).collect();
         let has_mean = self.values.iter().any(|c| c.facets.statistic == Some(Statistic::Mean));
         let directions: BTreeSet<_> = named.iter().map(|c| c.facets.direction).collect();
-        let of_each = |d| named.iter().filter(move |c| c.facets.direction == d).map(|c| c.name.as_str());
-        let are_counted = (is_named || has_mean) && directions.iter().all(|d| follow_each_other(of_each(*d)));
+        let are_counted = (is_named || has_mean)
+            && directions.iter().all(|d| {
+                let of_one = named.iter().filter(|c| c.facets.direction == *d);
+                follow_each_other(of_one.map(|c| c.name.as_str()))
+            });
         if !self.down
             || named.len() < 2
             || !(are_counted || is_named && has_mean && self.is_mean_of_named(region, context))
@@ -110,16 +113,12 @@ impl Layout {
     fn is_mean_of_named(&self, region: &Region<'_>, context: &Context<'_>) -> bool {
         let mut means = self.values.iter().filter(|c| c.facets.statistic == Some(Statistic::Mean));
         let (Some(mean), None) = (means.next(), means.next()) else { return false };
-        let value = |row: &Row<'_>, index: usize| match number(row.get(index)?, context.decimal) {
-            Number::Value(v) => Some(v),
-            _ => None,
-        };
         let mut compared = region.rows.iter().filter_map(|row| {
             let columns = self.values.iter().filter(|c| c.fabric.is_some());
-            let parts: Option<Vec<f64>> = columns.map(|c| value(row, c.index)).collect();
+            let parts: Option<Vec<f64>> = columns.map(|c| value(row, c.index, context)).collect();
             let parts = parts?;
             let expected = parts.iter().sum::<f64>() / parts.len() as f64;
-            Some((value(row, mean.index)? - expected).abs() <= ROUNDED * expected.abs())
+            Some((value(row, mean.index, context)? - expected).abs() <= ROUNDED * expected.abs())
         });
         compared.next() == Some(true) && compared.all(|same| same)
     }
@@ -137,6 +136,13 @@ impl Layout {
             return Some(one);
         }
         counts_beside(region, other, one).then_some(other)
+    }
+}
+
+fn value(row: &Row<'_>, index: usize, context: &Context<'_>) -> Option<f64> {
+    match number(row.get(index)?, context.decimal) {
+        Number::Value(v) => Some(v),
+        _ => None,
     }
 }
 

@@ -1,8 +1,11 @@
 //! Standard deviations that stand with the values of a column, or in a column of their own behind it.
 
+use std::collections::BTreeSet;
+
 use super::layout::{Column, Layout};
 use super::row_facts::RowFacts;
 use super::{Datum, Table};
+use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::cell::parts;
 use crate::instrument::dialect::{Statistic, TableColumn};
 use crate::instrument::error::ReadError;
@@ -13,6 +16,11 @@ use crate::instrument::shape::Region;
 use crate::instrument::sniff::Number;
 use crate::instrument::unit_text::{is_percent, split_unit};
 use crate::instrument::value::{Printed, is_gap};
+use crate::instrument::vocabulary::Vocabulary;
+use crate::kes::Key;
+
+/// The largest part of its mean that a number in brackets may be as a standard deviation: repeats of one cloth lie closer.
+const LARGEST_DEVIATION: f64 = 0.5;
 
 impl Layout {
     /// `LT (SD)` over `0.61 (0.03)` heads values, and `SD` behind each column of values the deviations of that one. Deviations of values that
@@ -41,9 +49,12 @@ impl Layout {
 
     /// Whether a column is none of deviations, or has the values beside it that they are of.
     fn has_value_of(&self, column: &Column) -> bool {
-        let of = |c: &Column| (c.facets.parameter, c.facets.fast, c.facets.direction, c.fabric.clone());
-        let is_value = |c: &Column| matches!(c.facets.statistic, None | Some(Statistic::Mean));
-        !column.facets.sd || self.values.iter().any(|c| is_value(c) && of(c) == of(column))
+        !column.facets.sd
+            || self.values.iter().any(|c| {
+                matches!(c.facets.statistic, None | Some(Statistic::Mean))
+                    && (c.facets.parameter, c.facets.fast) == (column.facets.parameter, column.facets.fast)
+                    && (c.facets.direction, &c.fabric) == (column.facets.direction, &column.fabric)
+            })
     }
 
     /// Where parameters are columns and one of deviations stands behind each of them, it is that of the one before it.
@@ -77,6 +88,26 @@ impl Layout {
 }
 
 impl Table<'_, '_> {
+    /// R140: numbers in brackets that are no standard deviations, as the line above the table says or as one shows that is more than half of its
+    /// mean: all of that column are left out.
+    pub(super) fn leave_out_brackets(&mut self) {
+        let stated =
+            self.header.caption.as_deref().is_some_and(|text| names_another(text, self.context.vocabulary));
+        let behind = self.data.iter().filter(|d| d.has_bracket);
+        let others =
+            behind.filter(|d| stated || d.sd.is_some_and(|sd| sd > LARGEST_DEVIATION * d.mean.abs()));
+        let columns: BTreeSet<usize> = others.map(|d| d.cell).collect();
+        let mut found = Vec::new();
+        for d in self.data.iter_mut().filter(|d| d.has_bracket && columns.contains(&d.cell)) {
+            d.sd = None;
+            found.push((Key { parameter: d.parameter, direction: d.direction }, d.line, d.column));
+        }
+        let Some((_, line, column)) = found.first().copied() else { return };
+        let keys: BTreeSet<Key> = found.into_iter().map(|(key, ..)| key).collect();
+        let fact = ReadFact::BracketsLeftOut { keys: keys.into_iter().collect() };
+        self.findings.push(Finding::new(fact).at(Place::at(self.context.path, line, column)));
+    }
+
     /// Gives the standard deviations of a row to its values.
     pub(super) fn attach(&mut self, first: usize, deviations: Vec<Datum>) {
         for sd in deviations {
@@ -122,6 +153,13 @@ impl Table<'_, '_> {
         }
         Ok(())
     }
+}
+
+/// Whether a line names another spread than the standard deviation: `mean and CV% (in brackets)`.
+fn names_another(text: &str, v: Vocabulary<'_>) -> bool {
+    let words = text.split(|c: char| !c.is_alphanumeric()).filter(|word| word.chars().count() > 1);
+    let spreads: Vec<&str> = words.filter(|word| v.statistic(word) == Some(Statistic::Spread)).collect();
+    !spreads.is_empty() && spreads.iter().all(|word| v.table_column(word) != Some(TableColumn::Sd))
 }
 
 /// Whether every number of a column has a deviation behind it.

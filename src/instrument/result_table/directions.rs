@@ -32,11 +32,11 @@ impl Table<'_, '_> {
         }
         // `A mean` beside `A warp` and `A weft` sums them up.
         let is_split = |((_, f), name): (&(&Row<'_>, RowFacts), &Option<DirectedName>)| {
-            let is_sum = |text: &str| {
-                v.statistic(text).is_some()
-                    || summed_up(text, v).is_some_and(|(of, ..)| of_stem.contains_key(of.as_str()))
-            };
-            name.is_some() || f.fabric.as_deref().is_some_and(is_sum)
+            name.is_some()
+                || f.fabric.as_deref().is_some_and(|text| {
+                    v.statistic(text).is_some()
+                        || summed_up(text, v).is_some_and(|(of, ..)| of_stem.contains_key(of.as_str()))
+                })
         };
         // A letter may be a part of a name where one fabric has no partner to it; of a word that is told.
         let has_letters = split.iter().flatten().any(|name| name.is_letter);
@@ -143,6 +143,25 @@ impl Table<'_, '_> {
             self.findings.push(Finding::new(ReadFact::DirectionFromName {}).at(place));
         }
         Ok(())
+    }
+
+    /// R125: the direction in a line of words above the table, where nothing else states one.
+    pub(super) fn direction_of_the_caption(&mut self) {
+        let v = self.context.vocabulary;
+        let stated = self.data.iter().any(|d| d.direction.is_some() || d.row_direction.is_some())
+            || !self.fast.is_empty()
+            || !self.layout.numbers_of_symbols().is_empty()
+            // `weft in brackets`
+            || self.data.iter().any(|d| d.has_bracket);
+        let caption = self.header.caption.clone().filter(|_| !stated);
+        let Some((text, direction)) = caption.and_then(|text| Some((text.clone(), v.direction(&text)?)))
+        else {
+            return;
+        };
+        for d in self.data.iter_mut().filter(|d| d.parameter.is_directional()) {
+            d.direction = Some(direction);
+        }
+        self.note_more_than_direction((self.layout.line, 0), &text);
     }
 
     /// R106: the table is of one direction, and the name of the sheet or file says another.

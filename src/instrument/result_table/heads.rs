@@ -161,6 +161,10 @@ fn end_of_directions(head: &Row<'_>, context: &Context<'_>) -> Option<usize> {
         .collect();
     let last = head.filled().last()?.0;
     let [.., (before, one), (at, other)] = named[..] else { return None };
+    // `Warp, Warp, Weft, Weft`: each column has its own.
+    if last == at && named.windows(2).any(|pair| pair[0].0 + 1 == pair[1].0 && pair[0].1 == pair[1].1) {
+        return Some(at + 1);
+    }
     let width = at - before;
     let is_even = named.windows(2).all(|pair| pair[1].0 - pair[0].0 == width);
     (is_even && one != other && last == at).then_some(at + width)

@@ -7,6 +7,19 @@ use crate::instrument::sniff::{Number, number};
 use crate::instrument::unit_text::unit;
 use crate::instrument::words::folded;
 
+/// What a row of one text says of the rows below it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Title {
+    /// They are of this fabric.
+    Fabric(String),
+    /// Their names come again below other titles: each is of a fabric of this group.
+    Group(String),
+    /// They are of no direction, in a table whose sections are directions.
+    NoDirection,
+    /// They sum up the sections above, in the words of the title.
+    Summary(String),
+}
+
 /// What a row says of its values.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RowFacts {

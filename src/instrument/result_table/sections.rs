@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::Table;
 use super::layout::NAME;
+use super::row_facts::Title;
 use crate::instrument::Direction;
 use crate::instrument::dialect::{Key, TableColumn};
 use crate::instrument::facets::Facets;
@@ -11,19 +12,6 @@ use crate::instrument::layout::Context;
 use crate::instrument::raw::Row;
 use crate::instrument::shape::{self, Region};
 use crate::instrument::words::{folded, normalised};
-
-/// What a row of one text says of the rows below it.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Title {
-    /// They are of this fabric.
-    Fabric(String),
-    /// Their names come again below other titles: each is of a fabric of this group.
-    Group(String),
-    /// They are of no direction, in a table whose sections are directions.
-    NoDirection,
-    /// They sum up the sections above, in the words of the title.
-    Summary(String),
-}
 
 /// A row of the table as titles are told from each other.
 enum Line<'r> {
@@ -47,15 +35,10 @@ impl Table<'_, '_> {
     /// the first row is one; a single one may be a remark.
     fn titles_of_fabrics(&self, lines: &[Line<'_>]) -> BTreeMap<usize, Title> {
         let Some(first) = self.layout.labels.first() else { return BTreeMap::new() };
-        let is_name = |text: &str| {
-            let says = Facets::of(text, self.context.vocabulary);
-            let means_nothing = says.statistic.is_none() && says.direction.is_none() && says.index.is_none();
-            means_nothing && text.chars().any(char::is_alphabetic) && text.chars().count() <= NAME
-        };
         let mut below: Vec<(usize, &str, BTreeSet<&str>)> = Vec::new();
         for line in lines {
             match line {
-                Line::Text(row, text) if row.get(first.index).is_some() && is_name(text) => {
+                Line::Text(row, text) if row.get(first.index).is_some() && is_name(text, self.context) => {
                     below.push((row.line, text, BTreeSet::new()));
                 }
                 Line::Values(row) => match below.last_mut() {
@@ -72,17 +55,23 @@ impl Table<'_, '_> {
             .any(|(i, (.., names))| below[..i].iter().any(|(.., before)| !names.is_disjoint(before)));
         let is_named = self.header.known.contains_key(&Key::Sample) || self.layout.names_fabrics();
         let holds_names = matches!(first.meta, Some(TableColumn::Id | TableColumn::Fabric));
-        let title = |text: &str| match (counts, self.layout.down) {
-            (true, _) => Some(Title::Fabric(text.to_string())),
-            (_, true) if come_again && !is_named => Some(Title::Fabric(text.to_string())),
-            (_, false) if come_again && holds_names => Some(Title::Group(text.to_string())),
-            _ => None,
+        let title: fn(String) -> Title = match (counts, self.layout.down) {
+            (true, _) => Title::Fabric,
+            (_, true) if come_again && !is_named => Title::Fabric,
+            (_, false) if come_again && holds_names => Title::Group,
+            _ => return BTreeMap::new(),
         };
         if below.len() < 2 {
             return BTreeMap::new();
         }
-        below.iter().filter_map(|(line, text, _)| Some((*line, title(text)?))).collect()
+        below.iter().map(|(line, text, _)| (*line, title((*text).to_string()))).collect()
     }
+}
+
+fn is_name(text: &str, context: &Context<'_>) -> bool {
+    let says = Facets::of(text, context.vocabulary);
+    let means_nothing = says.statistic.is_none() && says.direction.is_none() && says.index.is_none();
+    means_nothing && text.chars().any(char::is_alphabetic) && text.chars().count() <= NAME
 }
 
 fn line<'r>(row: &'r Row<'r>, context: &Context<'_>) -> Option<Line<'r>> {
