@@ -8,6 +8,7 @@ mod common;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use approx::assert_relative_eq;
 use kesf::characterise::{Basis, FabricSheet, Key, Settings, characterise};
 use kesf::instrument::{Direction, Parameter, ReadSettings, Test, read_fabrics};
 use kesf::quantity::Unit;
@@ -190,5 +191,43 @@ fn a_real_fab_record() {
     }
     for code in ["K030", "K032", "K033", "K064"] {
         assert!(sheet.findings.iter().any(|f| f.code() == code), "{code}");
+    }
+}
+
+/// The foot comes from half a millimetre or from five above the cloth, with a zero that is off: P = A (exp((Tc - T) / l) - 1) on the cloth, so
+/// that T0 and Tm, at 0.5 and 50 gf/cm², are Tc - l ln 2 and Tc - l ln 101 with A = 0.5 gf/cm².
+#[test]
+fn compression_begins_in_the_air() {
+    let (contact, length) = (0.65_f64, 0.05_f64);
+    let pressure = |t: f64| 0.5 * (((contact - t) / length).exp() - 1.0).max(0.0);
+    let [t0, tm] = [2.0_f64, 101.0].map(|ratio| contact - length * ratio.ln());
+    let work = 0.5 * length * (101.0 - 2.0 - (101.0_f64 / 2.0).ln());
+    for (air, zero) in [(0.5, 0.3), (0.5, -0.3), (0.5, -1.0), (5.0, 0.0)] {
+        let steps = 400 + (air / 0.002) as usize;
+        let lowest = tm - 1e-4;
+        let thickness = |k: usize| contact + air + (lowest - contact - air) * k as f64 / steps as f64;
+        let way = (0..=steps).map(thickness).chain((0..100).map(|k| lowest + 0.0025 * f64::from(k)));
+        // Noise that repeats itself, and no random number: 0.01 gf/cm² at most.
+        let rows: String = way
+            .enumerate()
+            .map(|(k, t)| {
+                let p = if k > steps { 0.8 * pressure(t) } else { pressure(t) };
+                format!("{t:.5},{:.4}\n", p + zero + 0.002 * (k * 7 % 11) as f64 - 0.01)
+            })
+            .collect();
+        let text =
+            format!("test,compression\nsample,Uno\narea,2 cm²\n\nthickness (mm),pressure (gf/cm²)\n{rows}");
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("a.csv"), text).unwrap();
+        let batch = read_fabrics(&[folder.path().into()], &ReadSettings::default(), &|_| ());
+        let sheet = characterise(&batch.fabrics[0], &Settings::default());
+        let found =
+            |p| sheet.get(p, None).unwrap_or_else(|| panic!("{p} at {air} mm, {:?}", sheet.findings)).mean;
+        assert_relative_eq!(found(Parameter::T0), 1e-3 * t0, max_relative = 5e-3);
+        assert_relative_eq!(found(Parameter::Tm), 1e-3 * tm, max_relative = 5e-3);
+        // 1 gf/cm² over 1 mm is 0.0980665 J/m².
+        assert_relative_eq!(found(Parameter::Wc), 0.0980665 * work, max_relative = 2e-2);
+        assert_relative_eq!(found(Parameter::Lc), work / (25.0 * (t0 - tm)), max_relative = 2e-2);
+        assert!(sheet.get(Parameter::Rc, None).is_some(), "{air} mm: {:?}", sheet.findings);
     }
 }

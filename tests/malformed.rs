@@ -116,6 +116,7 @@ const CASES: &[(&str, &str, &str)] = &[
     // Made from a known law.
     ("K064", "k064-loops.json", "k064-loops.json"),
     ("K065", "k065-trigger.csv", "k065-trigger.csv:6"),
+    ("K067", "k067-below-zero.csv", "k067-below-zero.csv:7"),
 ];
 
 /// Codes that no file can trigger, because reading refuses it or sets it right before; programs

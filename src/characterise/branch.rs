@@ -3,6 +3,11 @@
 use super::Branch;
 use crate::quantity::Curve;
 
+/// The part of the maximum above which the foot is on the cloth, whatever the zero of the pressure.
+const UNDER_LOAD: f64 = 0.05;
+/// The longest way that counts, in ways under load: a record without an approach has less.
+const WAY: f64 = 4.0;
+
 /// Indices at which the drive turns, the first and the last sample included; `None` if the
 /// abscissa never moves by more than `threshold`.
 ///
@@ -38,9 +43,13 @@ pub(super) fn turning_points(x: &[f64], threshold: f64) -> Option<Vec<usize>> {
 
 /// Range of the abscissa times `part`.
 fn threshold(x: &[f64], part: f64) -> f64 {
-    let low = x.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    part * (high - low)
+    part * range(x.iter().copied())
+}
+
+fn range(values: impl Iterator<Item = f64>) -> f64 {
+    let (low, high) =
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    (high - low).max(0.0)
 }
 
 fn piece(curve: &Curve, from: usize, to: usize) -> Curve {
@@ -50,7 +59,19 @@ fn piece(curve: &Curve, from: usize, to: usize) -> Curve {
 /// Branches of a test that is driven to one side: outgoing where the abscissa moves by `sense`
 /// (+1 rising, -1 falling). A new cycle begins with each outgoing branch.
 pub(super) fn one_sided(curve: &Curve, sense: f64, part: f64) -> Option<Vec<Branch>> {
-    let turns = turning_points(&curve.x, threshold(&curve.x, part))?;
+    one_sided_beyond(curve, sense, threshold(&curve.x, part))
+}
+
+/// The same of a test that begins in the air: a way of some millimetres there must not hide the short way back from the maximum.
+pub(super) fn pressed(curve: &Curve, sense: f64, part: f64) -> Option<Vec<Branch>> {
+    let peak = curve.y.iter().copied().fold(0.0, f64::max);
+    let under_load = curve.x.iter().zip(&curve.y).filter(|(_, y)| **y > UNDER_LOAD * peak);
+    let way = WAY * range(under_load.map(|(x, _)| *x));
+    one_sided_beyond(curve, sense, threshold(&curve.x, part).min(part * way))
+}
+
+fn one_sided_beyond(curve: &Curve, sense: f64, threshold: f64) -> Option<Vec<Branch>> {
+    let turns = turning_points(&curve.x, threshold)?;
     let mut branches: Vec<Branch> = Vec::new();
     for ends in turns.windows(2) {
         let outgoing = sense * (curve.x[ends[1]] - curve.x[ends[0]]) > 0.0;

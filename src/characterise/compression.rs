@@ -12,13 +12,18 @@ use crate::quantity::{Curve, in_unit};
 /// Samples before contact that make a baseline from which the pressure's zero can be told.
 const BASELINE: usize = 5;
 
+/// Samples that say at which pressure a record begins.
+const AT_START: usize = 3;
+/// The part of the pressure of T0 by which a record may begin below zero.
+const BELOW_ZERO: f64 = 0.2;
+
 /// Parameters of a compression record (x = thickness in m, y = Pa).
 pub(super) fn evaluate(
     curve: &Curve,
     settings: &Settings,
     notes: &mut Notes<'_>,
 ) -> Result<Evaluation, String> {
-    let mut branches = branch::one_sided(curve, -1.0, settings.reversal.si())
+    let mut branches = branch::pressed(curve, -1.0, settings.reversal.si())
         .filter(|b| b.first().is_some_and(|b| b.outgoing))
         .ok_or("the thickness does not fall from the start, so there is no loading branch")?;
     let correction = correct(&mut branches, settings, notes);
@@ -75,6 +80,11 @@ fn correct(branches: &mut [Branch], settings: &Settings, notes: &mut Notes<'_>) 
     let along: Vec<f64> = first.x.iter().map(|x| -x).collect();
     let onset = onset(&along, &first.y);
     if !settings.correct_zero || onset.before < BASELINE {
+        let begins = first.y.iter().take(AT_START).sum::<f64>() / first.y.len().clamp(1, AT_START) as f64;
+        if begins < -BELOW_ZERO * settings.compression_start.si() {
+            let record = notes.record();
+            notes.add(EvaluationFact::PressureBelowZero { record, pressure: begins });
+        }
         return [0.0; 2];
     }
     let peak = first.y.iter().copied().fold(0.0, f64::max);

@@ -21,6 +21,9 @@ const CANDIDATES: usize = 16;
 /// First guesses of the exponent: from a stiff start to a J curve.
 const EXPONENTS: [f64; 6] = [0.8, 1.2, 1.6, 2.1, 3.0, 4.5];
 
+/// The largest exponent: steeper ones describe a flat approach and the rise behind it as one curve from the first sample on.
+const STEEPEST: f64 = 5.0;
+
 /// Finds the onset of load on a loading branch, abscissae rising.
 ///
 /// The toe (up to 5 % of the rise) is described by `y0 + a (x - x0)^p` for `x > x0` and by `y0`
@@ -99,7 +102,7 @@ fn search(x: &[f64], y: &[f64]) -> (usize, f64) {
 /// Golden-section search for the exponent around a guess: least misfit and its exponent.
 fn refine(toe: &[(f64, f64)], x0: f64, guess: f64) -> (f64, f64) {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let (mut a, mut b) = (guess / 1.5, guess * 1.5);
+    let (mut a, mut b) = (guess / 1.5, (guess * 1.5).min(STEEPEST));
     let (mut c, mut d) = (b - GOLDEN * (b - a), a + GOLDEN * (b - a));
     let (mut fc, mut fd) = (misfit(toe, x0, c), misfit(toe, x0, d));
     for _ in 0..24 {

@@ -186,6 +186,7 @@ fn of_evaluation(fact: &EvaluationFact) -> Option<(Scope<'_>, ValueStatus)> {
         | F::BeyondMaximum { record, .. }
         | F::LargeCorrection { record, .. }
         | F::BeginsUnderLoad { record, .. }
+        | F::PressureBelowZero { record, .. }
         | F::Noise { record, .. }
         | F::SeveralCycles { record, .. }
         | F::Clipped { record, .. }

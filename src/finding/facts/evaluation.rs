@@ -97,6 +97,14 @@ super::facts! {
         } = "{record}: the record begins at {}, and shows no zero of load: strain and load are counted from its first sample. If the \
              specimen was pulled already, EMT is low by {:.2} % of strain or more", in_unit(*load, record.test.kes_maximum()),
             100.0 * strain;
+        /// A compression record that begins below zero.
+        "K067" PressureBelowZero {
+            /// The record.
+            record: RecordName,
+            /// The first pressure (Pa).
+            pressure: f64,
+        } = "{record}: the record begins at {}, below zero, and has no approach from which the zero could be told: pressures are taken as \
+             they stand, and T0 is low and LC high if they are too low throughout", in_unit(*pressure, "gf/cm²");
         /// Noise of the ordinate.
         "K009" Noise {
             /// The record.
