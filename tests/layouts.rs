@@ -1626,3 +1626,16 @@ fn folders_of_tests_below_a_fabric() {
         [("cupro", 3)]
     );
 }
+
+/// States of the fabrics of the rows over the same parameters.
+#[test]
+fn states_over_columns_of_parameters() {
+    for heads in ["Fabric,Raw,,Soft,\n,", ",Raw,,Soft,\nFabric,", ",Raw,Raw,Soft,Soft\nFabric,"] {
+        let found =
+            read("t.csv", &format!("{heads}{B},LT,{B},LT\nUno,0.1,0.6,0.2,0.7\nDos,0.3,0.6,0.4,0.7\n"));
+        let names = ["Uno Raw", "Uno Soft", "Dos Raw", "Dos Soft"];
+        let expected: Vec<_> =
+            names.into_iter().zip([0.1, 0.2, 0.3, 0.4]).map(|(f, b)| (Some(f), None, b, 1)).collect();
+        assert_eq!(of_b(&found), expected, "{heads}");
+    }
+}

@@ -410,8 +410,7 @@ impl<'t> Table<'t, '_> {
                 self.one_unit(row, column.index, units[0], units[1])?;
             }
             let unit_place = self.unit_place(row, column, facts);
-            let fabric =
-                column.fabric.clone().or_else(|| facts.fabric.clone()).filter(|_| !facts.summary_of_fabrics);
+            let fabric = column.fabric_of(facts.fabric.as_deref()).filter(|_| !facts.summary_of_fabrics);
             let of_row = facts.facets.statistic.is_some();
             if let Some(fast) = all.fast.filter(|_| all.parameter.is_none()) {
                 let reading = self.reading(row, column.index, cell)?;

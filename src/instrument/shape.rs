@@ -291,6 +291,15 @@ fn across(heads: &[&Row<'_>], context: &Context<'_>) -> bool {
     }
 }
 
+/// Whether names stand over the symbols of the next row, and none over its first column.
+fn stands_over(row: &Row<'_>, next: Option<&Row<'_>>, context: &Context<'_>) -> bool {
+    row.get(0).is_none()
+        && row.filled().nth(1).is_some()
+        && row.filled().all(|(_, c)| !is_value(&c.text, context))
+        && facets(row, context).iter().all(|f| f.unknown || *f == Facets::default())
+        && next.is_some_and(|next| has_symbols(next, context))
+}
+
 /// Whether a row has one cell alone, and no number in it.
 fn is_alone(row: &Row<'_>, context: &Context<'_>) -> bool {
     row.filled().count() == 1 && row.filled().all(|(_, cell)| !is_value(&cell.text, context))
@@ -339,6 +348,10 @@ fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
             }
             // `1 2 3` below `Warp` and again below `Weft`.
             Kind::Values if !found.is_empty() && counts_columns(row, context) => found.push(row),
+            Kind::Other if found.is_empty() && stands_over(row, rows.get(end + 1), context) => {
+                first = end;
+                found.push(row);
+            }
             Kind::Section(direction) if found.is_empty() && titles < TITLES => {
                 (section, title) = (Some(direction), Some(end));
                 titles += 1;

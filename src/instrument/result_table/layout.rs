@@ -22,10 +22,23 @@ pub(super) struct Column {
     pub facets: Facets,
     /// The fabric that its head names.
     pub fabric: Option<String>,
+    /// The state of the fabrics of the rows that stands over it, `before washing`: each state is a fabric of its own.
+    pub state: Option<String>,
     /// The texts of its heads.
     pub name: String,
     /// Line and column of the head that names it or its unit.
     pub place: (usize, usize),
+}
+
+impl Column {
+    /// The fabric of a value in the row of a fabric.
+    pub fn fabric_of(&self, row: Option<&str>) -> Option<String> {
+        match (&self.fabric, &self.state, row) {
+            (Some(fabric), ..) => Some(fabric.clone()),
+            (None, Some(state), Some(row)) => Some(format!("{row} {state}")),
+            (None, state, row) => state.clone().or(row.map(str::to_string)),
+        }
+    }
 }
 
 /// A column of words about rows.
@@ -125,7 +138,8 @@ impl Layout {
         };
         let has_values =
             region.rows.iter().any(|r| r.get(index).is_some_and(|c| shape::is_value(c, context)));
-        let column = |facets: Facets, fabric| Column { index, facets, fabric, name: name.clone(), place };
+        let column =
+            |facets: Facets, fabric| Column { index, facets, fabric, state: None, name: name.clone(), place };
         if !self.down {
             if facets.names_value() {
                 self.descriptions.push(described(&name, &facets));
@@ -222,6 +236,7 @@ impl Layout {
             self.leave_out_strangers();
             return;
         }
+        self.states_over_columns(heads);
         self.drop_numbers_that_do_not_count();
         self.numbers = self.values.iter().filter_map(|c| c.facets.index).collect();
         self.counters(region, context);
@@ -256,6 +271,24 @@ impl Layout {
         }
     }
 
+    /// `Control` and `Treated` over the same parameters: where every column has one above it, and is told from the others by it alone.
+    fn states_over_columns(&mut self, heads: &Heads) {
+        let states: Vec<_> = self.values.iter().map(|c| heads.name_over(c.index)).collect();
+        let (mut bare, mut named) = (BTreeSet::new(), BTreeSet::new());
+        for (column, state) in self.values.iter().zip(&states) {
+            let Facets { parameter, fast, direction, statistic, sd, index, .. } = column.facets;
+            let key = (parameter, fast.map(|f| f.symbol()), direction, statistic, sd, index);
+            bare.insert(key);
+            named.insert((state, key));
+        }
+        let all = states.iter().all(Option::is_some) && named.len() == states.len();
+        if all && bare.len() < states.len() {
+            for (column, state) in self.values.iter_mut().zip(states) {
+                column.state = state;
+            }
+        }
+    }
+
     /// `B`, `B1`, `B2` and `EMT`, `EMT50`: beside a column without a number, or with gaps between them, numbers do not count
     /// specimens. What they are nobody says; the columns are told as not used.
     fn drop_numbers_that_do_not_count(&mut self) {
@@ -272,7 +305,7 @@ impl Layout {
     }
 
     pub fn names_fabrics(&self) -> bool {
-        self.values.iter().filter(|c| c.fabric.is_some()).count() > 1
+        self.values.iter().filter(|c| c.fabric.is_some() || c.state.is_some()).count() > 1
     }
 
     pub fn numbers_of_symbols(&self) -> BTreeSet<usize> {

@@ -79,6 +79,7 @@ impl Layout {
             index: label.index,
             facets: Facets::default(),
             fabric: None,
+            state: None,
             name: label.name,
             place: (self.line, 0),
         }));
