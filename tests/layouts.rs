@@ -1408,6 +1408,8 @@ fn heads_of_one_letter_and_of_a_reference_over_values() {
     let reference =
         read("t.csv", "Parameter,Unit,Reference,Treated\nLT,-,0.65,0.61\nB,gf·cm²/cm,0.100,0.130\n");
     assert!(messages(&reference, "R104")[0].contains("Reference"), "{:?}", reference.findings);
+    let whole = read("t.csv", "Parameter;Unit;Treated;Reference\nRT;%;55;54\nRC;%;50;49\n");
+    assert!(messages(&whole, "R104")[0].contains("Reference"), "{:?}", whole.findings);
     // Numbers without a head are no fabric beside those with a name, whatever they count.
     let counted =
         read("t.csv", "Property;;Cotton;Wool\nLT;1;0.65;0.62\n;2;0.70;0.66\nRT (%);1;50;51\n;2;52;53\n");

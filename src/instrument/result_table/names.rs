@@ -31,7 +31,9 @@ impl Layout {
         let first = self.values.iter().map(|c| c.index).min().unwrap_or(usize::MAX);
         let down = self.down;
         for label in self.labels.iter_mut().filter(|l| is_name(l) && otherwise && (down || l.index > first)) {
-            if is_measured(region, label.index, down, context) {
+            // Behind values of parameters no name stands: whole numbers are values as well.
+            let is_value = down && label.index > first && is_numeric(region, label.index, context);
+            if is_value || is_measured(region, label.index, down, context) {
                 label.meta = None;
             }
         }
@@ -40,7 +42,10 @@ impl Layout {
             return;
         }
         let measured = self.labels.iter().filter(|l| l.meta.is_none());
-        let measured = measured.filter(|l| is_measured(region, l.index, true, context));
+        let measured = measured.filter(|l| {
+            is_measured(region, l.index, true, context)
+                || (l.index > first && is_numeric(region, l.index, context))
+        });
         self.strangers.extend(measured.map(|l| l.name.clone()));
         if !self.meta(TableColumn::Id) {
             return;
@@ -164,8 +169,11 @@ fn cells<'r>(region: &'r Region<'_>, index: usize) -> impl Iterator<Item = &'r s
 fn is_measured(region: &Region<'_>, index: usize, down: bool, context: &Context<'_>) -> bool {
     let mut decimals = cells(region, index).map(|cell| cell.contains(context.decimal));
     let enough = if down { decimals.any(|has| has) } else { decimals.all(|has| has) };
-    enough
-        && cells(region, index).next().is_some()
+    enough && is_numeric(region, index, context)
+}
+
+fn is_numeric(region: &Region<'_>, index: usize, context: &Context<'_>) -> bool {
+    cells(region, index).next().is_some()
         && cells(region, index).all(|cell| matches!(number(cell, context.decimal), Number::Value(_)))
 }
 
