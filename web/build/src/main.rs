@@ -1,6 +1,6 @@
 //! Makes the page that is dropped on: `cargo run -p kesf-web-build [-- FILE]`.
 //!
-//! It compiles `kesf-web` to WebAssembly and puts everything into one HTML file: engine (brotli, base64) and what unpacks
+//! It compiles `kesf-web` to WebAssembly and puts everything into one HTML file: engine (LZMA, base64) and what unpacks
 //! it (gzip, base64), script, worker and style. One file opens from a disk as from a server, asks for nothing once it is there, and can be sent; and its
 //! policy can name the scripts that may run by their hashes, and forbid every request.
 
@@ -12,9 +12,9 @@ use std::{env, fs};
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use brotli::enc::BrotliEncoderParams;
 use flate2::Compression;
 use flate2::write::GzEncoder;
+use lzma_rust2::{LzmaOptions, LzmaWriter};
 use sha2::{Digest, Sha256};
 use wasm_bindgen_cli_support::Bindgen;
 
@@ -111,7 +111,7 @@ fn page(engine: &Part, unpack: &Part) -> Result<String, Box<dyn Error>> {
             return Err("a script must not hold what ends it in a page".into());
         }
     }
-    let packed = STANDARD.encode(brotli(&engine.wasm)?);
+    let packed = STANDARD.encode(lzma(&engine.wasm)?);
     let unpack = STANDARD.encode(gzip(&unpack.wasm)?);
     let parts = [
         ("{{policy}}", policy().as_str()),
@@ -150,11 +150,13 @@ fn policy() -> String {
     )
 }
 
-fn brotli(bytes: &[u8]) -> Result<Vec<u8>, std::io::Error> {
-    let params = BrotliEncoderParams { quality: 11, lgwin: 24, size_hint: bytes.len(), ..Default::default() };
-    let mut packed = Vec::new();
-    brotli::BrotliCompress(&mut &*bytes, &mut packed, &params)?;
-    Ok(packed)
+/// The densest settings that were tried: code of WebAssembly is not aligned, and its bytes depend on the one before.
+fn lzma(bytes: &[u8]) -> Result<Vec<u8>, std::io::Error> {
+    let options =
+        LzmaOptions { lc: 4, pb: 0, nice_len: LzmaOptions::NICE_LEN_MAX, ..LzmaOptions::with_preset(9) };
+    let mut writer = LzmaWriter::new_use_header(Vec::new(), &options, Some(bytes.len() as u64))?;
+    writer.write_all(bytes)?;
+    writer.finish()
 }
 
 fn gzip(bytes: &[u8]) -> Result<Vec<u8>, std::io::Error> {
