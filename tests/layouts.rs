@@ -92,6 +92,40 @@ fn one_abscissa_may_serve_several_ordinates() {
     assert_relative_eq!(content.measurements[1].curve.y[2], 0.4 * 9.80665e-3, max_relative = 1e-14);
 }
 
+/// What is recorded beside a curve is no repeat of it: the shear force of 0.4 gf/cm is the only one.
+#[test]
+fn another_ordinate_under_the_abscissa_is_no_repeat() {
+    for (abscissa, ordinates, other, rows) in [
+        ("angle (deg)", "shear force (gf/cm),tension (gf/cm)", "tension", "0,0,10\n1,0.2,10.1\n2,0.4,10\n"),
+        ("angle (deg)", "force (gf),normal load (gf/cm)", "normal load", "0,0,10\n1,4,10\n2,8,10\n"),
+        ("angle (deg)", "shear force (gf),shear force (gf/cm)", "shear force", "0,0,0\n1,9,0.2\n2,18,0.4\n"),
+        ("curvature (1/cm)", "moment (V),moment (gf·cm/cm)", "moment", "0,0,0\n1,3,0.2\n2,6,0.4\n"),
+        ("thickness (mm)", "pressure (gf/cm²),force (gf)", "force", "2,0,0\n1,0.2,1\n0.5,0.4,2\n"),
+        ("curvature (1/cm)", "force (gf),moment (gf·cm/cm)", "force", "0,0,0\n1,9,0.2\n2,18,0.4\n"),
+        ("curvature (1/cm)", "torque (gf·cm),moment (gf·cm/cm)", "torque", "0,0,0\n1,9,0.2\n2,18,0.4\n"),
+    ] {
+        let heads = format!("{abscissa},{ordinates}");
+        let found = read("a.csv", &format!("direction,warp\n{heads}\n{rows}"));
+        assert_eq!(found.measurements.len(), 1, "{heads}");
+        assert_eq!(
+            messages(&found, "R104"),
+            [format!("no KES parameters, and left out: {other}")],
+            "{heads}"
+        );
+        let m = &found.measurements[0];
+        let si = match m.test {
+            Test::Bending => 9.80665e-3,
+            Test::Compression => 98.0665,
+            _ => 0.980665,
+        };
+        assert_relative_eq!(m.curve.y[2], 0.4 * si, max_relative = 1e-12);
+    }
+    // Two of one role and one kind of unit are repeats, whatever their units.
+    let two =
+        "direction,warp\nangle (deg),shear force (gf/cm),shear force (N/m)\n0,0,0\n1,0.2,0.3\n2,0.4,0.6\n";
+    assert_eq!(read("a.csv", two).measurements.len(), 2);
+}
+
 #[test]
 fn stacked_tests_and_blank_lines_and_trailing_delimiters() {
     let text = "sample,lab,\ntest,tensile,\ndirection,warp,\n\nstrain (%),force (N/m),\n0,0,\n1,5,\n\n2,20,\n\n\
@@ -902,7 +936,6 @@ fn captions_tell_records_apart() {
     }
 }
 
-/// Nobody can say whether a factor in words was applied.
 #[test]
 fn factors_in_words_are_told_or_refused() {
     let record = |line: &str, heading: &str| {

@@ -261,7 +261,7 @@ impl<'t> Scanner<'t, '_> {
         }
         self.check_width(heading, &rows)?;
         self.note_strange_columns(heading, &columns, &rows);
-        let mut pairs = self.pairs(columns)?;
+        let mut pairs = self.pairs(columns, &rows)?;
         self.distribute(&mut pairs)?;
         self.leave_out_statistics(&mut pairs);
         self.note_words(&pairs);

@@ -37,6 +37,7 @@ mod lines;
 mod marks;
 mod measurement;
 mod number_format;
+mod ordinates;
 mod own_results;
 mod pages;
 mod pairs;

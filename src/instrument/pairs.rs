@@ -6,6 +6,7 @@ use super::dialect::{BranchColumn, Key, Role, Statistic};
 use super::error::{Problem, ReadError};
 use super::label::Label;
 use super::layout::{Column, Entry, Pair, Scanner};
+use super::raw::Row;
 use super::statistic::{self, Kinds};
 use super::vocabulary::Vocabulary;
 
@@ -92,8 +93,8 @@ fn named_in_heads(pair: &mut Pair) {
 
 impl Scanner<'_, '_> {
     /// Abscissa and ordinate of each curve: a new pair begins where a kind of column comes again.
-    /// A single abscissa serves all ordinates.
-    pub(super) fn pairs(&mut self, columns: Vec<Column>) -> Result<Vec<Pair>, ReadError> {
+    /// A single abscissa serves all ordinates that are repeats.
+    pub(super) fn pairs(&mut self, columns: Vec<Column>, rows: &[&Row<'_>]) -> Result<Vec<Pair>, ReadError> {
         let mut halves: Vec<Halves> = vec![(None, None)];
         let shared = columns.iter().filter(|c| c.role.is_abscissa()).count() == 1;
         for column in columns.into_iter().filter(|c| c.role != Role::Ignored) {
@@ -120,7 +121,10 @@ impl Scanner<'_, '_> {
             }
             (None, None) => Err(self.context.error(0, 0, Problem::Empty)),
         };
-        let pairs: Vec<Pair> = halves.into_iter().map(pair).collect::<Result<_, _>>()?;
+        let mut pairs: Vec<Pair> = halves.into_iter().map(pair).collect::<Result<_, _>>()?;
+        if first.is_some() {
+            self.leave_out_companions(&mut pairs, rows);
+        }
         Ok(joined(pairs))
     }
 
