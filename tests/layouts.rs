@@ -126,6 +126,21 @@ fn another_ordinate_under_the_abscissa_is_no_repeat() {
     assert_eq!(read("a.csv", two).measurements.len(), 2);
 }
 
+/// The arm of a force in bending is unknown: N is the unit of a moment per width, and of no force there.
+#[test]
+fn a_bare_force_in_bending_is_refused() {
+    for head in ["force (gf)", "load (mN)", "force (N)"] {
+        let text = format!("test,bending\ndirection,warp\ncurvature (1/cm),{head}\n0,0\n1,0.2\n2,0.4\n");
+        let error = read_as("lab.csv", &text, &ReadSettings::default()).unwrap_err();
+        assert_eq!(error.code(), "R010", "{head}");
+        assert!(error.to_string().contains("multiply the force by its arm"), "{error}");
+    }
+    for head in ["force (gf·cm/cm)", "moment (N)", "moment (gf)"] {
+        let text = format!("test,bending\ndirection,warp\ncurvature (1/cm),{head}\n0,0\n1,0.2\n2,0.4\n");
+        assert_eq!(read("a.csv", &text).measurements.len(), 1, "{head}");
+    }
+}
+
 #[test]
 fn stacked_tests_and_blank_lines_and_trailing_delimiters() {
     let text = "sample,lab,\ntest,tensile,\ndirection,warp,\n\nstrain (%),force (N/m),\n0,0,\n1,5,\n\n2,20,\n\n\

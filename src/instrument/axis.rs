@@ -1,7 +1,7 @@
 //! Axes: the scale that takes the numbers of a column to the SI axis of its test.
 
 use super::curves::{positive, size};
-use super::dialect::Key;
+use super::dialect::{Key, Role};
 use super::error::{Problem, ReadError};
 use super::layout::{Column, Context, Entry, Header};
 use super::unit_text::{is_angular, is_volt, known_unit};
@@ -80,7 +80,9 @@ impl Axes<'_> {
         };
         if !is_volt(&text) {
             let unit = known_unit(&text).map_err(error)?;
-            return self.axis(abscissa, unit, &text)?.map_err(|expected| error(wrong(&text, expected)));
+            return self
+                .axis(column.role, abscissa, unit, &text)?
+                .map_err(|expected| error(wrong(&text, expected)));
         }
         // An analogue output of 10 V is the full scale that the range setting states.
         let key = if abscissa { Key::SensX } else { Key::Sens };
@@ -92,14 +94,20 @@ impl Axes<'_> {
         let number = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',' | 'e' | 'E' | ' ');
         let full = folded(&entry.text);
         let Axis { scale, by } =
-            self.axis(abscissa, unit, full.trim_start_matches(number))?.map_err(at_entry)?;
+            self.axis(column.role, abscissa, unit, full.trim_start_matches(number))?.map_err(at_entry)?;
         let volts = if text == "mV" { 1e-3 } else { 1.0 };
         Ok(Axis { scale: scale.times(value * volts / 10.0), by })
     }
 
     /// The axis from a unit: directly, or from raw force, moment or travel and the geometry. The
     /// inner error is a unit that would do.
-    fn axis(&self, abscissa: bool, unit: Unit, text: &str) -> Result<Result<Axis, &'static str>, ReadError> {
+    fn axis(
+        &self,
+        role: Role,
+        abscissa: bool,
+        unit: Unit,
+        text: &str,
+    ) -> Result<Result<Axis, &'static str>, ReadError> {
         let is_angle = is_angular(text);
         let (f, Conditions { width, gauge, .. }) = (unit.factor, self.conditions);
         let plain = Axis { scale: Scale::Linear(f), by: None };
@@ -116,6 +124,8 @@ impl Axes<'_> {
             (Test::Bending, true, PER_LENGTH) | (Test::Compression, true, LENGTH) => plain,
             (Test::Tensile | Test::Shear, false, LINE_FORCE) => plain,
             (Test::Tensile | Test::Shear, false, FORCE) if raw() => over(Key::Width, *width),
+            // A moment per width has the dimension of a force; a force is no moment, and nobody knows its arm.
+            (Test::Bending, false, FORCE) if role == Role::Force && raw() => return Ok(Err(OF_MOMENT)),
             (Test::Bending, false, FORCE) => plain,
             (Test::Bending, false, MOMENT) if raw() => over(Key::Width, *width),
             (Test::Compression, false, PRESSURE) => plain,
@@ -178,6 +188,9 @@ impl Axes<'_> {
         positive(value * unit.factor, Key::Area, self.header, self.context)
     }
 }
+
+/// What would do for a force in bending.
+const OF_MOMENT: &str = "gf·cm/cm or gf·cm: multiply the force by its arm, and call the column moment";
 
 /// Units that would do.
 fn expected(test: Test, abscissa: bool) -> &'static str {
