@@ -1430,6 +1430,27 @@ fn a_size_is_in_the_order_that_is_said() {
     }
 }
 
+/// A length of the specimen in a line of its own is the distance of the jaws only where it may be it. 1 mm over 5 cm is 2 %.
+#[test]
+fn a_length_of_the_cloth_is_not_the_distance_of_the_jaws() {
+    let record = "extension (mm),load (gf/cm)\n0,0\n0.5,100\n1,400\n";
+    for (lines, strain, told) in [
+        ("Specimen length,20 cm\nSpecimen width,20 cm", 0.02, 1),
+        ("Specimen length,20 cm", 0.02, 1),
+        ("Probenlänge,20 cm\nProbenbreite,20 cm", 0.02, 1),
+        ("Sample length,5 cm\nSpecimen width,5 cm", 0.02, 1),
+        ("Specimen length,5 cm\nSpecimen width,20 cm", 0.02, 0),
+        ("Specimen length,2.5 cm", 0.04, 0),
+        ("Specimen length,20 cm\nGauge length,10 cm", 0.01, 0),
+        ("Jaw distance,10 cm\nSpecimen length,20 cm", 0.01, 0),
+    ] {
+        let found = read("a.csv", &format!("test,tensile\ndirection,warp\n{lines}\n\n{record}"));
+        assert_relative_eq!(found.measurements[0].curve.x[2], strain, max_relative = 1e-12);
+        assert_eq!(messages(&found, "R109").len(), told, "{lines}: {:?}", found.findings);
+        assert_eq!(messages(&found, "R118"), [""; 0], "{lines}");
+    }
+}
+
 /// The difference of two thicknesses is none of them, whatever is written between the symbols.
 #[test]
 fn a_difference_of_thicknesses_is_no_thickness() {

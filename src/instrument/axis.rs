@@ -1,9 +1,10 @@
 //! Axes: the scale that takes the numbers of a column to the SI axis of its test.
 
-use super::curves::{positive, size};
 use super::dialect::{Key, Role};
 use super::error::{Problem, ReadError};
+use super::header_value::positive;
 use super::layout::{Column, Context, Entry, Header};
+use super::specimen_size::{gauge, size};
 use super::unit_text::{is_angular, is_volt, known_unit};
 use super::words::folded;
 use super::{Conditions, Test};
@@ -137,6 +138,10 @@ impl Axes<'_> {
         }))
     }
 
+    fn states_gauge(&self) -> bool {
+        gauge(self.test, self.header, self.conditions.width, self.context).is_ok_and(|g| g.is_some())
+    }
+
     /// What is said of a column that was divided by a dimension which nobody stated.
     pub fn assumed(&self, column: &Column, axis: Axis) -> Option<Finding> {
         let by = axis.by.filter(|key| {
@@ -145,9 +150,11 @@ impl Axes<'_> {
                 (Key::Gauge, Some((_, gauge))) => gauge.is_some(),
                 (_, Some(_)) => true,
             };
-            !by_size
-                && !self.header.known.contains_key(key)
-                && !self.context.conditions.states(self.test, *key)
+            let in_header = match key {
+                Key::Gauge => self.states_gauge(),
+                key => self.header.known.contains_key(key),
+            };
+            !by_size && !in_header && !self.context.conditions.states(self.test, *key)
         })?;
         // The same for all columns of a kind: one finding a file.
         let (dimension, value, test) = match by {
@@ -172,6 +179,9 @@ impl Axes<'_> {
         };
         let known = |key: &String| self.context.vocabulary.key(key).is_some();
         let size = self.header.known.get(&Key::Size).filter(|_| by != Key::Contact).map(|e| e.text.clone());
+        let size = size.or_else(|| {
+            self.header.known.get(&Key::Length).filter(|_| by == Key::Gauge).map(|e| e.text.clone())
+        });
         let other = self.header.other.iter().filter(|(key, value)| !known(key) && is_size(value));
         other.map(|(key, value)| format!("{key}: {value}")).chain(size).collect()
     }

@@ -16,7 +16,13 @@ impl Scanner<'_, '_> {
         let Some(before) = self.header.known.get(&key) else { return };
         let of_test = matches!(
             key,
-            Key::Direction | Key::Width | Key::Gauge | Key::Maximum | Key::Pretension | Key::Contact
+            Key::Direction
+                | Key::Width
+                | Key::Gauge
+                | Key::Length
+                | Key::Maximum
+                | Key::Pretension
+                | Key::Contact
         );
         let is_number = |row: &Row<'_>| {
             let first = row.filled().next().map(|(_, c)| number(&c.text, self.context.decimal));

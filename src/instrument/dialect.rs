@@ -107,6 +107,8 @@ pub enum Key {
     Width,
     /// Distance between jaws or clamps.
     Gauge,
+    /// Length of the specimen: the distance between the jaws, unless it is that of the cloth that was cut.
+    Length,
     /// Width and distance between the jaws in one: `20 x 5 cm`.
     Size,
     /// Area of the compression foot.

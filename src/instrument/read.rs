@@ -12,6 +12,7 @@ use super::curves;
 use super::dialect::{Dialect, Key};
 use super::error::{Problem, ReadError};
 use super::fab::{self, FabFile};
+use super::header_value;
 use super::label::Label;
 use super::layout::{self, Block, Context, Header};
 use super::raw::{self, Row};
@@ -365,7 +366,7 @@ fn table(
 /// An areal density in the header of a curve file is a result value of its own.
 fn weight(header: &Header, context: &Context<'_>, content: &mut FileContent) -> Result<(), ReadError> {
     let Some(entry) = header.known.get(&Key::Weight) else { return Ok(()) };
-    let value: ArealDensity = curves::quantity(entry, "weight", "mg/cm²", context)?;
+    let value: ArealDensity = header_value::quantity(entry, "weight", "mg/cm²", context)?;
     let known = |(_, v): &(Option<String>, ResultValue)| v.parameter == Parameter::W && v.mean == value.si();
     if !content.results.iter().any(known) {
         let place = Place::at(context.path, entry.line, entry.column);
