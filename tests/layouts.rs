@@ -608,6 +608,33 @@ fn units_of_rigidities_are_refused_for_forces_and_moments() {
     assert_eq!(read("a.csv", &force("angle (deg)", "gf/cm")).measurements.len(), 1);
 }
 
+/// A column of the unloading branch is that of the loading one beside it, whichever comes first and whatever the force is called.
+#[test]
+fn columns_of_load_and_unload_are_one_curve() {
+    for [load, unload] in [
+        ["Load", "Unload"],
+        ["carga", "descarga"],
+        ["charge", "décharge"],
+        ["carico", "scarico"],
+        ["Force+", "Force-"],
+        ["Force", "Recovery force"],
+    ] {
+        let rows = [["0,0,0", "1,10,2", "2,50,50"], ["0,0,0", "1,2,10", "2,50,50"]];
+        for (heads, rows) in [[load, unload], [unload, load]].into_iter().zip(rows) {
+            let [a, b] = heads;
+            let text = format!("direction,warp\nstrain (%),{a} (gf/cm),{b} (gf/cm)\n{}\n", rows.join("\n"));
+            let found = read("a.csv", &text);
+            let forces: Vec<f64> =
+                found.measurements[0].curve.y.iter().map(|f| (f / 0.980665).round()).collect();
+            assert_eq!(
+                (found.measurements.len(), forces),
+                (1, vec![0.0, 10.0, 50.0, 50.0, 2.0, 0.0]),
+                "{heads:?}"
+            );
+        }
+    }
+}
+
 /// A dimension of the specimen that the standard set gave is told once; one that is stated is not.
 #[test]
 fn standard_dimensions_are_told() {

@@ -38,25 +38,33 @@ pub(super) fn along_sweep(mut columns: Vec<Column>) -> Vec<Column> {
     columns
 }
 
-/// Pairs of a loading and an unloading branch are one curve.
+/// Pairs of a loading and an unloading branch are one curve, whichever stands first.
 fn joined(pairs: Vec<Pair>) -> Vec<Pair> {
     let mut out: Vec<Pair> = Vec::with_capacity(pairs.len());
-    let branch = |c: &Column| c.says.branch;
     for pair in pairs {
-        let specimen = (pair.y.says.direction, pair.y.says.specimen);
-        let loading = out.last_mut().filter(|before| {
-            before.back.is_none()
-                && branch(&before.y) == Some(BranchColumn::Loading)
-                && branch(&pair.y) == Some(BranchColumn::Unloading)
-                && before.y.role == pair.y.role
-                && (before.y.says.direction, before.y.says.specimen) == specimen
-        });
-        match loading {
-            Some(before) => before.back = Some((pair.x, pair.y)),
+        match out.iter().position(|before| are_branches(before, &pair)) {
+            Some(at) if unloads(&pair) => out[at].back = Some((pair.x, pair.y)),
+            Some(at) => {
+                let before = std::mem::replace(&mut out[at], pair);
+                out[at].back = Some((before.x, before.y));
+            }
             None => out.push(pair),
         }
     }
     out
+}
+
+fn unloads(pair: &Pair) -> bool {
+    pair.y.says.branch == Some(BranchColumn::Unloading)
+}
+
+/// Whether one of two columns of a specimen is the unloading branch and the other is not: `load` is the force itself.
+fn are_branches(before: &Pair, pair: &Pair) -> bool {
+    before.back.is_none()
+        && pair.back.is_none()
+        && unloads(before) != unloads(pair)
+        && (before.x.role, before.y.role) == (pair.x.role, pair.y.role)
+        && (before.y.says.direction, before.y.says.specimen) == (pair.y.says.direction, pair.y.says.specimen)
 }
 
 /// Gives every curve the label that stands over its columns, or to the left of them where heads are merged.
