@@ -1478,6 +1478,24 @@ fn a_length_of_the_cloth_is_not_the_distance_of_the_jaws() {
     }
 }
 
+/// The peak that a program prints is no set maximum; a round number is one, in its own unit or in that of KES.
+#[test]
+fn a_printed_peak_is_no_set_maximum() {
+    for (stated, peak, set) in [
+        ("455 gf/cm", 455.0, 500.0),
+        ("455.0 gf/cm", 455.2, 500.0),
+        ("450 gf/cm", 450.0, 450.0),
+        ("455 gf/cm", 480.0, 455.0),
+        ("490.3 N/m", 499.96, 499.967),
+        ("100 N/m", 101.972, 101.9716),
+    ] {
+        let text =
+            format!("direction,warp\nMax load,{stated}\n\nstrain (%),force (gf/cm)\n0,0\n1,100\n2,{peak}\n");
+        let maximum = read("a.csv", &text).measurements[0].conditions.maximum / 0.980665;
+        assert_relative_eq!(maximum, set, max_relative = 1e-4);
+    }
+}
+
 /// The difference of two thicknesses is none of them, whatever is written between the symbols.
 #[test]
 fn a_difference_of_thicknesses_is_no_thickness() {

@@ -10,7 +10,9 @@ use super::layout::{Context, Header, Pair};
 use super::raw::Row;
 use super::sniff::{Number, number};
 use super::specimen_size::{gauge, length_of, size};
+use super::unit_text;
 use super::value::value;
+use super::words::folded;
 use super::{Conditions, Direction, Measurement, Shape, Source, Test};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::quantity::{Angle, Curvature, Curve, Force, Length, LineForce, Pressure};
@@ -27,7 +29,7 @@ pub(super) fn measurement(
     let (test, why) = test_of(pair, context)?;
     log.push(format!("columns {:?} and {:?}: {} test, {why}", pair.x.name, pair.y.name, test.name()));
     let header = &pair.header;
-    let conditions = conditions(test, header, context, log)?;
+    let mut conditions = conditions(test, header, context, log)?;
     let axes = Axes { test, conditions: &conditions, header, context };
     let (x_axis, y_axis) = (axes.of(&pair.x, true)?, axes.of(&pair.y, false)?);
     let (x, y) = (x_axis.scale, y_axis.scale);
@@ -74,6 +76,10 @@ pub(super) fn measurement(
     if let Some(i) = curve.points().position(|(x, y)| !(x.is_finite() && y.is_finite())) {
         let found = format!("{} or {} in SI", points.rows[i].1, points.rows[i].2);
         return Err(context.error(points.rows[i].0, pair.x.column, Problem::NotFinite { found }));
+    }
+    if is_peak(test, header, conditions.maximum, &curve) {
+        conditions.maximum = context.conditions.over_standard(test).maximum;
+        log.push("the stated maximum is the peak of the record: it is no setting".to_string());
     }
     let specimen = specimen(header, context)?;
     log.push(inference::curve(test, direction, specimen, pair, context, &points.rows));
@@ -274,6 +280,29 @@ fn maximum(test: Test, header: &Header, context: &Context<'_>) -> Result<Option<
             quantity_of::<Length>(header, key, name, unit, context)?.map(Length::si)
         }
     })
+}
+
+/// Part of a maximum by which a printed peak may differ from it, and a round number from its value in other units.
+const PRINTED: f64 = 1e-3;
+
+/// Whether a stated maximum is the peak of this record that a program printed: it is what the record reaches, and no round
+/// number as those that are set.
+fn is_peak(test: Test, header: &Header, stated: f64, curve: &Curve) -> bool {
+    let of_abscissa = matches!(driven(test), Role::Angle | Role::Curvature | Role::Position);
+    let values = if of_abscissa { &curve.x } else { &curve.y };
+    let peak = values.iter().fold(0.0f64, |peak, v| peak.max(v.abs()));
+    let text = header.known.get(&Key::Maximum).map_or(String::new(), |e| folded(&e.text).into_owned());
+    let start = text.trim_start_matches(|c: char| !c.is_ascii_digit());
+    let number: String = start.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
+    let customary = unit_text::unit(driven(test).kes_unit()).map_or(f64::NAN, |u| stated / u.factor);
+    let is_set = is_round(customary) || number.parse().is_ok_and(is_round);
+    header.known.contains_key(&Key::Maximum) && !is_set && (peak / stated - 1.0).abs() <= PRINTED
+}
+
+/// Whether two digits are enough for a number: 500, 50, 2.5, 8.
+fn is_round(value: f64) -> bool {
+    let unit = 10f64.powf(value.abs().log10().floor() - 1.0);
+    ((value / unit).round() * unit / value - 1.0).abs() <= PRINTED
 }
 
 /// The axis that has a set maximum.
