@@ -55,6 +55,29 @@ fn volts_are_scaled_by_the_range() {
     assert_relative_eq!(m.curve.y[1], 2.4 * 9.80665e-3, max_relative = 1e-14);
 }
 
+/// 5 V of an output that ends at 5 V are the full scale, wherever the header says so; that 10 V are taken is told.
+#[test]
+fn a_stated_voltage_is_that_of_the_full_scale() {
+    let record = "curvature (1/cm),moment (V)\n0,0\n1,2.5\n2,5\n";
+    for (lines, expected, told) in [
+        ("sens,20 gf·cm/cm", 10.0, 1),
+        ("sens,20 gf·cm/cm\nFull scale voltage,5 V", 20.0, 0),
+        ("sens,20 gf·cm/cm\nFull scale: 5 V", 20.0, 0),
+        ("Range: 5 V\nSENS: 20 gf·cm/cm", 20.0, 0),
+        ("sens,20 gf·cm/cm (5 V)", 20.0, 0),
+        ("sens,4 gf·cm/cm/V", 20.0, 0),
+        ("sens,5 V = 20 gf·cm/cm", 20.0, 0),
+        ("sens,20 gf·cm/cm\nsens x,2.5 1/cm\nOutput,report.csv", 10.0, 1),
+    ] {
+        let found = read("a.csv", &format!("direction,warp\n{lines}\n\n{record}"));
+        let last = found.measurements[0].curve.y[2];
+        assert_relative_eq!(last, expected * 9.80665e-3, max_relative = 1e-12);
+        let told_of: Vec<String> = messages(&found, "R109");
+        assert!(told_of.len() == told && told_of.iter().all(|t| t.contains("10 V")), "{lines}: {told_of:?}");
+        assert!(messages(&found, "R122").is_empty(), "{lines}");
+    }
+}
+
 #[test]
 fn metadata_come_from_the_file_name_where_the_header_has_none() {
     let text = "strain (%),load (gf/cm)\n0,0\n1,10\n2,50\n";

@@ -55,7 +55,7 @@ pub(super) fn measurement(
     let direction = if test.is_directional() { Some(direction(pair, context)?) } else { None };
     let mut findings = points.findings;
     findings
-        .extend([(&pair.x, x_axis), (&pair.y, y_axis)].into_iter().filter_map(|(c, a)| axes.assumed(c, a)));
+        .extend([(&pair.x, x_axis), (&pair.y, y_axis)].into_iter().flat_map(|(c, a)| axes.assumptions(c, a)));
     if direction.is_some() && !header.known.contains_key(&Key::Direction) {
         let place = Place::at(context.path, pair.x.line, 0);
         findings.push(Finding::new(ReadFact::DirectionFromName {}).at(place));

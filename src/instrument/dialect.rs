@@ -119,10 +119,12 @@ pub enum Key {
     Pretension,
     /// Load on the contactor of a sweep.
     Contact,
-    /// Full scale (10 V) of the ordinate.
+    /// Full scale of the ordinate, in volts that of [`Key::Voltage`] or 10 V.
     Sens,
-    /// Full scale (10 V) of the abscissa.
+    /// Full scale of the abscissa.
     SensX,
+    /// Voltage of an analogue output at the full scale.
+    Voltage,
     /// Areal density from a balance.
     Weight,
     /// A number that the samples are to be multiplied by, or were: it is told, never applied.

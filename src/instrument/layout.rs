@@ -19,6 +19,7 @@ use super::sniff::{Number, number};
 use super::suggest;
 use super::unit_text::{is_volt, split_unit, unbracketed, unit};
 use super::vocabulary::Vocabulary;
+use super::volts;
 use super::words::{bare, folded};
 use crate::finding::{Finding, Place, ReadFact};
 
@@ -470,6 +471,9 @@ impl<'t> Scanner<'t, '_> {
         let is_direction = |t: &str| self.context.vocabulary.direction_exactly(t).is_some();
         let key = match (self.context.vocabulary.key(&plain), &values[..]) {
             (Some(Key::Sens), [(value, _)]) if is_direction(value) => Some(Key::Direction),
+            // `Full scale: 5 V` is that of the output; `Output: report.csv` is none.
+            (Some(Key::Sens), [(value, _)]) if volts::value(value).is_some() => Some(Key::Voltage),
+            (Some(Key::Voltage), values) if !values.iter().any(|(v, _)| volts::value(v).is_some()) => None,
             (key, _) => key,
         };
         // A bracket of a line without a value is no unit: `Bending results (values x 10)`, `Wool (wet)`.

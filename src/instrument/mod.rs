@@ -59,6 +59,7 @@ mod unit_text;
 mod unpacked;
 mod value;
 mod vocabulary;
+mod volts;
 mod web_page;
 mod words;
 mod workbook;

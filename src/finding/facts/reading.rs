@@ -54,7 +54,7 @@ super::facts! {
         "R109" AssumedDimension {
             /// By which it was divided.
             dimension: Divisor,
-            /// Its standard value (SI).
+            /// Its standard value (SI; V of a voltage).
             value: f64,
             /// The test of a gauge, which is stated for each test of its own; none of the others.
             test: Option<Test>,
@@ -296,6 +296,10 @@ fn assumed(dimension: Divisor, value: f64, test: Option<Test>, not_understood: &
         Divisor::Contact => format!(
             "no load on the contactor is {stated}: force was divided by the standard {} gf; state `contact load` in the header or `contact` in [conditions.friction] of fabric.toml",
             without_rounding(value / (1e-3 * STANDARD_GRAVITY))
+        ),
+        Divisor::Voltage => format!(
+            "no full-scale voltage is {stated}: the range was taken as that of {} V; state `full scale voltage` in the header",
+            without_rounding(value)
         ),
         Divisor::Width => format!(
             "no width is {stated}: force or moment was divided by the standard {cm} cm; state `width` in the header or in [conditions] of fabric.toml"
