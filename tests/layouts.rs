@@ -1001,6 +1001,26 @@ fn captions_tell_records_apart() {
     }
 }
 
+/// Files and records called after a mean, beside those of single specimens, are none.
+#[test]
+fn records_called_after_a_mean_are_left_out() {
+    let heads = "K (1/cm),M (gf·cm/cm)\n0,0\n1,0.1\n2,0.2\n";
+    for names in [["warp_1", "warp_2", "warp_mean"], ["F01_warp_1", "F01_warp_2", "F01_warp_Mittelwert"]] {
+        let folder = tempfile::tempdir().unwrap();
+        for name in names {
+            std::fs::write(folder.path().join(format!("{name}.csv")), heads).unwrap();
+        }
+        let fabric = &read_fabrics(&[folder.path().into()], &ReadSettings::default(), &|_| ()).fabrics[0];
+        let left_out = fabric.findings.iter().filter(|f| f.code() == "R110").count();
+        assert_eq!((fabric.measurements.len(), left_out), (2, 1), "{names:?}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let captions = ["Specimen 1", "Specimen 2", "Mean"].map(|line| format!("{line}\n{heads}"));
+    std::fs::write(folder.path().join("warp.csv"), captions.join("\n")).unwrap();
+    let fabric = &read_fabrics(&[folder.path().into()], &ReadSettings::default(), &|_| ()).fabrics[0];
+    assert_eq!(fabric.measurements.len(), 2, "{:?}", fabric.findings);
+}
+
 #[test]
 fn factors_in_words_are_told_or_refused() {
     let record = |line: &str, heading: &str| {

@@ -36,6 +36,7 @@ mod letters;
 mod limits;
 mod lines;
 mod marks;
+mod means;
 mod measurement;
 mod number_format;
 mod ordinates;

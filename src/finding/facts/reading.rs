@@ -63,7 +63,7 @@ super::facts! {
         } = "{}", assumed(*dimension, *value, *test, not_understood);
         /// Rows, columns or curves that sum up others.
         "R110" SummingUp {
-            /// `rows`, `columns` or `curves`.
+            /// `rows`, `columns`, `curves`, `sheets` or `files`.
             what: String,
             /// Which ones.
             left_out: Vec<LeftOutLine>,
