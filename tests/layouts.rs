@@ -1001,6 +1001,16 @@ fn captions_tell_records_apart() {
     }
 }
 
+/// Names that fill all cells over their columns are those of blocks.
+#[test]
+fn names_again_over_each_column_are_those_of_blocks() {
+    let heads = "K (1/cm),M (gf·cm/cm),K (1/cm),M (gf·cm/cm)\n0,0,0,0\n1,0.1,1,0.2\n2,0.2,2,0.3\n";
+    for names in ["Cotton,Cotton,Wool,Wool", "before,before,after,after", "Cotton,,Wool,"] {
+        let found = read("a.csv", &format!("direction,warp\n{names}\n{heads}"));
+        assert_eq!(messages(&found, "R119").len(), 1, "{names}");
+    }
+}
+
 /// Files and records called after a mean, beside those of single specimens, are none.
 #[test]
 fn records_called_after_a_mean_are_left_out() {

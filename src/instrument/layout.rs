@@ -190,7 +190,7 @@ pub(super) struct Scanner<'t, 'a> {
 
 impl<'t> Scanner<'t, '_> {
     /// The columns of a heading row: at least an abscissa and an ordinate.
-    fn headings(&self, row: &Row<'_>) -> Option<Vec<Column>> {
+    pub(super) fn headings(&self, row: &Row<'_>) -> Option<Vec<Column>> {
         let column = |(index, cell): (usize, &super::raw::Cell<'_>)| {
             let (name, unit) = split_unit(&cell.text);
             let says = ColumnName::of(&name, self.context.vocabulary);
@@ -363,42 +363,6 @@ impl<'t> Scanner<'t, '_> {
             Problem::RaggedRow { found: format!("the row has {cells} cells under {named} headings") }
         };
         Err(self.context.error(row.line, row.column(named), problem))
-    }
-
-    /// A row of labels over column blocks: `1,,2,,3`, `経-1 … 経-2`, `Warp,,Weft` or `試料番号 1 … 試料番号 2`.
-    fn labels(&mut self, row: &Row<'_>) -> bool {
-        let label = |(index, c): (usize, &super::raw::Cell<'_>)| {
-            let entry = Entry { text: folded(&c.text).into_owned(), line: row.line, column: c.column };
-            (index, Label::parse(&c.text, self.context.vocabulary), entry)
-        };
-        let labels: Vec<(usize, Label, Entry)> = row.filled().map(label).collect();
-        let is_mean = |e: &Entry| pairs::of_label(&e.text, self.context.vocabulary).is_some();
-        // Specimens and directions come first: `maximum,2.5 1/cm` is a header line, and so is `direction,warp`.
-        let is_key = labels.first().is_some_and(|(_, _, e)| self.context.vocabulary.key(&e.text).is_some());
-        // `width,20`: a key, and not the direction of that name.
-        let complete = !is_key
-            && labels.first().is_some_and(|(_, l, _)| l.is_plain())
-            && labels.iter().all(|(_, l, e)| l.is_plain() || is_mean(e));
-        let below = || self.rows[self.at + 1..].iter().filter(|r| !r.is_blank()).take(2);
-        if labels.len() < 2 || !below().any(|r| self.headings(r).is_some()) {
-            return false;
-        }
-        if !complete {
-            let names: Vec<String> = labels.iter().map(|(_, _, e)| e.text.clone()).collect();
-            let key = |e: &Entry| self.context.vocabulary.key(&split_unit(&e.text).0);
-            let is_name = |(_, l, e): &(usize, Label, Entry)| {
-                (l.sample.is_some() || l.unknown) && key(e).is_none_or(|k| k == Key::Remark)
-            };
-            // `X1,,X2,`: names over blocks of columns, a blank beside each.
-            let over_blocks = labels.windows(2).all(|pair| pair[1].0 > pair[0].0 + 1);
-            if over_blocks && labels.iter().all(is_name) {
-                let place = Place::at(self.context.path, row.line, 0);
-                self.findings.push(Finding::new(ReadFact::ColumnsAsSpecimens { names }).at(place));
-            }
-            return false;
-        }
-        self.labels.push(labels);
-        true
     }
 
     /// Keeps what a header line says: `key,value`, `key: value`, several pairs, or a list of values.

@@ -40,6 +40,7 @@ mod means;
 mod measurement;
 mod number_format;
 mod ordinates;
+mod over_columns;
 mod own_results;
 mod pages;
 mod pairs;
