@@ -1001,6 +1001,21 @@ fn captions_tell_records_apart() {
     }
 }
 
+/// Nobody can say whether a factor in words was applied.
+/// A line over the headings that is a direction alone is that of the record below it.
+#[test]
+fn a_direction_above_a_record_is_its_own() {
+    let record = "curvature (1/cm),moment (gf·cm/cm)\n0,0\n1,0.1\n2,0.2\n";
+    for line in ["Weft direction", "** WEFT **", "Weft-1", "Weft", "緯"] {
+        let found = read("a_warp.csv", &format!("{line}\n{record}"));
+        assert_eq!(found.measurements[0].direction, Some(Direction::Weft), "{line}");
+        assert_eq!(messages(&found, "R106").len(), 1, "{line}");
+    }
+    let two = read("a.csv", &format!("Warp\n{record}\nWeft\n{record}"));
+    let directions: Vec<_> = two.measurements.iter().map(|m| m.direction).collect();
+    assert_eq!(directions, [Some(Direction::Warp), Some(Direction::Weft)]);
+}
+
 /// Names that fill all cells over their columns are those of blocks.
 #[test]
 fn names_again_over_each_column_are_those_of_blocks() {

@@ -106,7 +106,8 @@ pub(super) fn blocks<'t>(
     context: &Context<'_>,
 ) -> Result<(Vec<Block<'t>>, Vec<Finding>), ReadError> {
     let (header, lists, findings) = (Header::default(), Vec::new(), Vec::new());
-    let mut scanner = Scanner { rows, context, at: 0, header, lists, labels: Vec::new(), findings };
+    let (labels, caption_line) = (Vec::new(), 0);
+    let mut scanner = Scanner { rows, context, at: 0, header, lists, labels, caption_line, findings };
     let mut blocks = Vec::new();
     let mut words: Vec<String> = Vec::new();
     // The first row of numbers under headings that nobody knows; a remark may look like one, so that it is an error only
@@ -184,6 +185,8 @@ pub(super) struct Scanner<'t, 'a> {
     pub(super) lists: Vec<(Key, Vec<Entry>)>,
     /// Rows of labels over the columns of the next headings, each with the index of its cell.
     pub(super) labels: Vec<Vec<(usize, Label, Entry)>>,
+    /// Line of the header's caption.
+    pub(super) caption_line: usize,
     /// Curves that were left out.
     pub(super) findings: Vec<Finding>,
 }
@@ -260,6 +263,7 @@ impl<'t> Scanner<'t, '_> {
             self.at = next;
             rows.extend(self.data_rows(&columns));
         }
+        self.direction_above();
         self.check_width(heading, &rows)?;
         self.note_strange_columns(heading, &columns, &rows);
         let mut pairs = self.pairs(columns, &rows)?;
@@ -448,6 +452,7 @@ impl<'t> Scanner<'t, '_> {
                 let text: Vec<String> = values.into_iter().map(|(t, _)| t).collect();
                 if text.is_empty() {
                     self.header.caption = Some(words);
+                    self.caption_line = line;
                 }
                 self.header.other.insert(plain, text.join(", "));
             }

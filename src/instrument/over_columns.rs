@@ -1,4 +1,4 @@
-//! What stands over the columns of curves: rows of labels.
+//! What stands over the columns of curves: rows of labels, and a line that is a direction alone.
 
 use super::dialect::Key;
 use super::label::Label;
@@ -45,6 +45,24 @@ impl Scanner<'_, '_> {
         }
         self.labels.push(labels);
         true
+    }
+
+    /// `Weft direction` or `** WARP **` right above the headings is the direction of the record below.
+    pub(super) fn direction_above(&mut self) {
+        let Some(text) = self.header.caption.clone() else { return };
+        let (line, column) = (self.caption_line, 1);
+        let vocabulary = self.context.vocabulary;
+        let label = Label::parse(&text, vocabulary);
+        let alone = label.is_plain() && label.test.is_none();
+        let direction = vocabulary.direction_exactly(&text).or(label.direction.filter(|_| alone));
+        let Some(direction) = direction else { return };
+        let entry = Entry { text: direction.to_string(), line, column };
+        self.note_contradiction(Key::Direction, &entry);
+        self.header.known.insert(Key::Direction, entry);
+        if let Some(number) = label.specimen.filter(|_| alone) {
+            self.header.known.insert(Key::Specimen, Entry { text: number.to_string(), line, column });
+        }
+        self.header.caption = None;
     }
 }
 
