@@ -71,7 +71,7 @@ const CASES: &[(&str, &str, &str)] = &[
     ("R136", "r136-direction.csv", "r136-direction.csv:3:8"),
     ("R137", "r137-zeros.csv", "r137-zeros.csv:3:3"),
     ("R138", "r138-maximum.csv", "r138-maximum.csv:4"),
-    ("R140", "r140-brackets.csv", "r140-brackets.csv:3:3"),
+    ("R139", "r139-brackets.csv", "r139-brackets.csv:3:3"),
     ("R135", "r135-page.csv", "r135-page.csv"),
     ("R123", "r123-colours.xlsx", "r123-colours.xlsx[Colour]:3:1"),
     ("K001", "k001-five-samples.csv", "k001-five-samples.csv:6"),
@@ -116,7 +116,7 @@ const CASES: &[(&str, &str, &str)] = &[
     // Made from a known law.
     ("K064", "k064-loops.json", "k064-loops.json"),
     ("K065", "k065-trigger.csv", "k065-trigger.csv:6"),
-    ("K067", "k067-below-zero.csv", "k067-below-zero.csv:7"),
+    ("K066", "k066-below-zero.csv", "k066-below-zero.csv:7"),
 ];
 
 /// Codes that no file can trigger, because reading refuses it or sets it right before; programs

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::dialect::Key as HeaderKey;
+use super::means;
 use super::read::{FileContent, ReadSettings};
 use super::samples;
 use super::states::told_apart;
@@ -85,6 +86,8 @@ pub(super) fn fabrics(group: &Group, about: &AboutGroup, contents: Vec<FileConte
     let once = |(i, mut fabric): (usize, FabricInput)| {
         fabric.findings.retain(|f| i == 0 || !about.findings.contains(f));
         let vocabulary = Vocabulary::new(&about.settings.dialects);
+        let means = means::leave_out_files(&mut fabric.measurements, &fabric.path, vocabulary);
+        fabric.findings.extend(means);
         let states = states(&fabric, vocabulary);
         fabric.findings.extend(states);
         finished(fabric, vocabulary)

@@ -1,10 +1,12 @@
 //! Axes: the scale that takes the numbers of a column to the SI axis of its test.
 
-use super::curves::{positive, size};
-use super::dialect::Key;
+use super::dialect::{Key, Role};
 use super::error::{Problem, ReadError};
+use super::header_value::positive;
 use super::layout::{Column, Context, Entry, Header};
+use super::specimen_size::{gauge, size};
 use super::unit_text::{is_angular, is_volt, known_unit};
+use super::volts;
 use super::words::folded;
 use super::{Conditions, Test};
 use crate::finding::{Divisor, Finding, Place, ReadFact};
@@ -43,6 +45,14 @@ pub(super) struct Axis {
     pub scale: Scale,
     /// Width, gauge, foot area or contact load, by which raw force, moment or travel is divided.
     pub by: Option<Key>,
+    /// Whether volts were divided by the customary full scale, as none is stated.
+    pub by_customary_voltage: bool,
+}
+
+impl Axis {
+    fn of(scale: Scale, by: Option<Key>) -> Self {
+        Self { scale, by, by_customary_voltage: false }
+    }
 }
 
 const RATIO: Dimension = Dimension { kg: 0, m: 0, s: 0 };
@@ -80,30 +90,42 @@ impl Axes<'_> {
         };
         if !is_volt(&text) {
             let unit = known_unit(&text).map_err(error)?;
-            return self.axis(abscissa, unit, &text)?.map_err(|expected| error(wrong(&text, expected)));
+            return self
+                .axis(column.role, abscissa, unit, &text)?
+                .map_err(|expected| error(wrong(&text, expected)));
         }
-        // An analogue output of 10 V is the full scale that the range setting states.
+        // An analogue output of 10 V, or of what the header says, is the full scale that the range setting states.
         let key = if abscissa { Key::SensX } else { Key::Sens };
         let Some(entry) = self.header.known.get(&key) else {
             return Err(error(Problem::NoRange { found: column.name.clone() }));
         };
-        let (value, unit) = full_scale(entry, self.context)?;
+        let (range, of_range) = volts::of_range(&entry.text);
+        let stated = self.header.known.get(&Key::Voltage).and_then(|e| volts::value(&e.text));
+        let full_volts = of_range.or(stated);
+        let (value, unit) = full_scale(&Entry { text: range.clone(), ..entry.clone() }, self.context)?;
         let at_entry = |expected| self.context.error(entry.line, entry.column, wrong(&entry.text, expected));
         let number = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',' | 'e' | 'E' | ' ');
-        let full = folded(&entry.text);
-        let Axis { scale, by } =
-            self.axis(abscissa, unit, full.trim_start_matches(number))?.map_err(at_entry)?;
-        let volts = if text == "mV" { 1e-3 } else { 1.0 };
-        Ok(Axis { scale: scale.times(value * volts / 10.0), by })
+        let full = folded(&range);
+        let Axis { scale, by, .. } =
+            self.axis(column.role, abscissa, unit, full.trim_start_matches(number))?.map_err(at_entry)?;
+        let per_volt = value / full_volts.unwrap_or(volts::FULL_SCALE);
+        let scale = scale.times(per_volt * if text == "mV" { 1e-3 } else { 1.0 });
+        Ok(Axis { scale, by, by_customary_voltage: full_volts.is_none() })
     }
 
     /// The axis from a unit: directly, or from raw force, moment or travel and the geometry. The
     /// inner error is a unit that would do.
-    fn axis(&self, abscissa: bool, unit: Unit, text: &str) -> Result<Result<Axis, &'static str>, ReadError> {
+    fn axis(
+        &self,
+        role: Role,
+        abscissa: bool,
+        unit: Unit,
+        text: &str,
+    ) -> Result<Result<Axis, &'static str>, ReadError> {
         let is_angle = is_angular(text);
         let (f, Conditions { width, gauge, .. }) = (unit.factor, self.conditions);
-        let plain = Axis { scale: Scale::Linear(f), by: None };
-        let over = |by, size: f64| Axis { scale: Scale::Linear(f / size), by: Some(by) };
+        let plain = Axis::of(Scale::Linear(f), None);
+        let over = |by, size: f64| Axis::of(Scale::Linear(f / size), Some(by));
         // A raw force or moment has no length below: gf·cm²/cm has the dimension of a moment and is the unit of B.
         let raw = || !divides_by_length(text);
         Ok(Ok(match (self.test, abscissa, unit.dimension) {
@@ -112,10 +134,12 @@ impl Axes<'_> {
             (Test::Tensile, true, RATIO) if !is_angle => plain,
             (Test::Tensile, true, LENGTH) => over(Key::Gauge, *gauge),
             (Test::Shear, true, RATIO) if is_angle => plain,
-            (Test::Shear, true, LENGTH) => Axis { scale: Scale::Atan(f / gauge), by: Some(Key::Gauge) },
+            (Test::Shear, true, LENGTH) => Axis::of(Scale::Atan(f / gauge), Some(Key::Gauge)),
             (Test::Bending, true, PER_LENGTH) | (Test::Compression, true, LENGTH) => plain,
             (Test::Tensile | Test::Shear, false, LINE_FORCE) => plain,
             (Test::Tensile | Test::Shear, false, FORCE) if raw() => over(Key::Width, *width),
+            // A moment per width has the dimension of a force; a force is no moment, and nobody knows its arm.
+            (Test::Bending, false, FORCE) if role == Role::Force && raw() => return Ok(Err(OF_MOMENT)),
             (Test::Bending, false, FORCE) => plain,
             (Test::Bending, false, MOMENT) if raw() => over(Key::Width, *width),
             (Test::Compression, false, PRESSURE) => plain,
@@ -127,17 +151,39 @@ impl Axes<'_> {
         }))
     }
 
+    /// What is said of a column that was divided by what nobody stated.
+    pub fn assumptions(&self, column: &Column, axis: Axis) -> Vec<Finding> {
+        [self.assumed(column, axis), self.assumed_voltage(column, axis)].into_iter().flatten().collect()
+    }
+
+    fn states_gauge(&self) -> bool {
+        gauge(self.test, self.header, self.conditions.width, self.context).is_ok_and(|g| g.is_some())
+    }
+
+    fn assumed_voltage(&self, column: &Column, axis: Axis) -> Option<Finding> {
+        let fact = ReadFact::AssumedDimension {
+            dimension: Divisor::Voltage,
+            value: volts::FULL_SCALE,
+            test: None,
+            not_understood: Vec::new(),
+        };
+        let place = Place::at(self.context.path, column.line, 0);
+        axis.by_customary_voltage.then(|| Finding::new(fact).at(place))
+    }
+
     /// What is said of a column that was divided by a dimension which nobody stated.
-    pub fn assumed(&self, column: &Column, axis: Axis) -> Option<Finding> {
+    fn assumed(&self, column: &Column, axis: Axis) -> Option<Finding> {
         let by = axis.by.filter(|key| {
             let by_size = match (key, size(self.test, self.header, self.context)) {
                 (Key::Area | Key::Contact, _) | (_, None) => false,
                 (Key::Gauge, Some((_, gauge))) => gauge.is_some(),
                 (_, Some(_)) => true,
             };
-            !by_size
-                && !self.header.known.contains_key(key)
-                && !self.context.conditions.states(self.test, *key)
+            let in_header = match key {
+                Key::Gauge => self.states_gauge(),
+                key => self.header.known.contains_key(key),
+            };
+            !by_size && !in_header && !self.context.conditions.states(self.test, *key)
         })?;
         // The same for all columns of a kind: one finding a file.
         let (dimension, value, test) = match by {
@@ -162,6 +208,9 @@ impl Axes<'_> {
         };
         let known = |key: &String| self.context.vocabulary.key(key).is_some();
         let size = self.header.known.get(&Key::Size).filter(|_| by != Key::Contact).map(|e| e.text.clone());
+        let size = size.or_else(|| {
+            self.header.known.get(&Key::Length).filter(|_| by == Key::Gauge).map(|e| e.text.clone())
+        });
         let other = self.header.other.iter().filter(|(key, value)| !known(key) && is_size(value));
         other.map(|(key, value)| format!("{key}: {value}")).chain(size).collect()
     }
@@ -178,6 +227,9 @@ impl Axes<'_> {
         positive(value * unit.factor, Key::Area, self.header, self.context)
     }
 }
+
+/// What would do for a force in bending.
+const OF_MOMENT: &str = "gf·cm/cm or gf·cm: multiply the force by its arm, and call the column moment";
 
 /// Units that would do.
 fn expected(test: Test, abscissa: bool) -> &'static str {

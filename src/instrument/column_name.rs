@@ -29,6 +29,9 @@ impl ColumnName {
         if name.chars().count() > HEADING || is_scaled(name) {
             return Self::default();
         }
+        if let Some(found) = Self::signed(name, vocabulary) {
+            return found;
+        }
         if let Some(role) = vocabulary.role_exactly(name) {
             return Self { role: Some(role), ..Self::default() };
         }
@@ -55,6 +58,15 @@ impl ColumnName {
         found.role = vocabulary.role(&rest).or_else(|| vocabulary.role(name));
         // Nobody can say whether a factor in a name was applied.
         if found.role.is_some() && factor::in_heading(name, vocabulary) { Self::default() } else { found }
+    }
+
+    /// `Force+` and `Force-`: a load that grows, and one that falls.
+    fn signed(name: &str, vocabulary: Vocabulary<'_>) -> Option<Self> {
+        let stem = name.trim_end().strip_suffix(['+', '-', '−', '–'])?;
+        let role = vocabulary.role_exactly(stem).filter(|r| matches!(r, Role::Force | Role::Pressure))?;
+        let up = name.trim_end().ends_with('+');
+        let branch = Some(if up { BranchColumn::Loading } else { BranchColumn::Unloading });
+        Some(Self { role: Some(role), branch, ..Self::default() })
     }
 
     fn take(&mut self, word: &str, vocabulary: Vocabulary<'_>) -> bool {

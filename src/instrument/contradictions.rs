@@ -16,7 +16,14 @@ impl Scanner<'_, '_> {
         let Some(before) = self.header.known.get(&key) else { return };
         let of_test = matches!(
             key,
-            Key::Direction | Key::Width | Key::Gauge | Key::Maximum | Key::Pretension | Key::Contact
+            Key::Direction
+                | Key::Width
+                | Key::Gauge
+                | Key::Length
+                | Key::Maximum
+                | Key::Pretension
+                | Key::Contact
+                | Key::Voltage
         );
         let is_number = |row: &Row<'_>| {
             let first = row.filled().next().map(|(_, c)| number(&c.text, self.context.decimal));
@@ -81,7 +88,9 @@ impl Scanner<'_, '_> {
             return;
         }
         let value = values.iter().map(|(text, _)| text.as_str()).collect::<Vec<_>>().join(" ");
-        if factor::is_stated(&format!("{name} {value}"), self.context.vocabulary) {
+        // `sens x` is a name, and its number is no factor.
+        let text = if key == Some(Key::SensX) { value.clone() } else { format!("{name} {value}") };
+        if factor::is_stated(&text, self.context.vocabulary) {
             let (name, value) = if value.is_empty() { ("line", name) } else { (name, value.as_str()) };
             let fact = ReadFact::StatedFactor { name: name.to_string(), value: value.to_string() };
             self.findings.push(Finding::new(fact).at(Place::at(self.context.path, line, 1)));

@@ -1,21 +1,21 @@
 //! Column pairs to measurements: which test it is, its conditions, and SI.
 
-use std::str::FromStr;
-
 use super::axis::Axes;
 use super::dialect::{Key, Role};
 use super::error::{Problem, ReadError};
+use super::header_value::{positive, quantity_of};
 use super::inference;
 use super::label::SPECIMENS;
-use super::layout::{Context, Entry, Header, Pair};
+use super::layout::{Context, Header, Pair};
 use super::raw::Row;
 use super::sniff::{Number, number};
+use super::specimen_size::{gauge, length_of, size};
 use super::unit_text;
 use super::value::value;
 use super::words::folded;
 use super::{Conditions, Direction, Measurement, Shape, Source, Test};
 use crate::finding::{Finding, Place, ReadFact};
-use crate::quantity::{Angle, Curvature, Curve, Force, Length, LineForce, Pressure, QuantityError};
+use crate::quantity::{Angle, Curvature, Curve, Force, Length, LineForce, Pressure};
 
 /// The measurement of one column pair, with what was noticed on the way; `None` if the pair holds
 /// no value at all (an empty column block).
@@ -29,7 +29,7 @@ pub(super) fn measurement(
     let (test, why) = test_of(pair, context)?;
     log.push(format!("columns {:?} and {:?}: {} test, {why}", pair.x.name, pair.y.name, test.name()));
     let header = &pair.header;
-    let conditions = conditions(test, header, context, log)?;
+    let mut conditions = conditions(test, header, context, log)?;
     let axes = Axes { test, conditions: &conditions, header, context };
     let (x_axis, y_axis) = (axes.of(&pair.x, true)?, axes.of(&pair.y, false)?);
     let (x, y) = (x_axis.scale, y_axis.scale);
@@ -55,7 +55,7 @@ pub(super) fn measurement(
     let direction = if test.is_directional() { Some(direction(pair, context)?) } else { None };
     let mut findings = points.findings;
     findings
-        .extend([(&pair.x, x_axis), (&pair.y, y_axis)].into_iter().filter_map(|(c, a)| axes.assumed(c, a)));
+        .extend([(&pair.x, x_axis), (&pair.y, y_axis)].into_iter().flat_map(|(c, a)| axes.assumptions(c, a)));
     if direction.is_some() && !header.known.contains_key(&Key::Direction) {
         let place = Place::at(context.path, pair.x.line, 0);
         findings.push(Finding::new(ReadFact::DirectionFromName {}).at(place));
@@ -76,6 +76,10 @@ pub(super) fn measurement(
     if let Some(i) = curve.points().position(|(x, y)| !(x.is_finite() && y.is_finite())) {
         let found = format!("{} or {} in SI", points.rows[i].1, points.rows[i].2);
         return Err(context.error(points.rows[i].0, pair.x.column, Problem::NotFinite { found }));
+    }
+    if is_peak(test, header, conditions.maximum, &curve) {
+        conditions.maximum = context.conditions.over_standard(test).maximum;
+        log.push("the stated maximum is the peak of the record: it is no setting".to_string());
     }
     let specimen = specimen(header, context)?;
     log.push(inference::curve(test, direction, specimen, pair, context, &points.rows));
@@ -238,32 +242,11 @@ fn conditions(
         c.width = width;
         c.gauge = gauge.filter(|_| test.spec().gauge != 0.0).unwrap_or(c.gauge);
     }
-    let value = |key: Key, name: &str| quantity_of::<Length>(header, key, name, "mm", context);
-    if let Some(width) = value(Key::Width, "width")? {
-        c.width = positive(width.si(), Key::Width, header, context)?;
+    if let Some(width) = length_of(header, Key::Width, "width", context)? {
+        c.width = width;
     }
-    if let Some(gauge) = value(Key::Gauge, "gauge")?.filter(|_| test.spec().gauge > 0.0) {
-        c.gauge = positive(gauge.si(), Key::Gauge, header, context)?;
-    }
-    let maximum =
-        |unit| {
-            Ok::<_, ReadError>(match test {
-                Test::Tensile => quantity_of::<LineForce>(header, Key::Maximum, "maximum", unit, context)?
-                    .map(LineForce::si),
-                Test::Shear => {
-                    quantity_of::<Angle>(header, Key::Maximum, "maximum", unit, context)?.map(Angle::si)
-                }
-                Test::Bending => quantity_of::<Curvature>(header, Key::Maximum, "maximum", unit, context)?
-                    .map(Curvature::si),
-                Test::Compression => {
-                    quantity_of::<Pressure>(header, Key::Maximum, "maximum", unit, context)?.map(Pressure::si)
-                }
-                Test::Friction | Test::Roughness => {
-                    quantity_of::<Length>(header, Key::Maximum, "maximum", unit, context)?.map(Length::si)
-                }
-            })
-        };
-    if let Some(m) = maximum(driven(test).kes_unit())? {
+    c.gauge = gauge(test, header, c.width, context)?.unwrap_or(c.gauge);
+    if let Some(m) = maximum(test, header, context)? {
         c.maximum = positive(m.abs(), Key::Maximum, header, context)?;
     }
     if test.spec().pretension > 0.0
@@ -285,56 +268,41 @@ fn conditions(
     Ok(c)
 }
 
-/// Width and distance between the jaws (m) of `20 x 5 cm`: the specimen is wide and short. A square, `20 x 20 cm`, is that of
-/// the cloth that was cut, and says nothing of the jaws. `5 x 20 cm (L x W)` is the other way round, and so are the sizes of the
-/// instrument, `5 x 20 cm`, without a word; `5 x 10 cm` and `10 x 20 cm` are not understood then.
-pub(super) fn size(test: Test, header: &Header, context: &Context<'_>) -> Option<(f64, Option<f64>)> {
-    let entry = header.known.get(&Key::Size)?;
-    let text = folded(&entry.text).replace(['×', 'X', '*'], "x");
-    // In the bracket of the key, `(L x W)` or `(cm)`.
-    let (text, inside) = text.split_once('(').unwrap_or((&text, ""));
-    let inside = inside.trim_end_matches(')').trim();
-    let (first, second) = text.split_once('x')?;
-    let mark = |t: &str| if context.decimal == ',' { t.replace(',', ".") } else { t.to_string() };
-    let second = mark(second.trim());
-    let second = match unit_text::unit(inside) {
-        Ok(_) if second.ends_with(|c: char| c.is_ascii_digit()) => format!("{second} {inside}"),
-        _ => second,
-    };
-    let unit: String =
-        second.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.' || c == ' ').to_string();
-    let first = mark(first.trim());
-    let first = if first.ends_with(|c: char| c.is_ascii_digit()) { format!("{first} {unit}") } else { first };
-    let length = |t: &str| t.parse::<Length>().ok().map(Length::si).filter(|v| *v > f64::MIN_POSITIVE);
-    let (first, second) = (length(&first)?, length(&second)?);
-    let jaws = test.spec().gauge;
-    let (width, gauge) = match width_is_first(inside) {
-        Some(true) => (first, second),
-        Some(false) => (second, first),
-        None if first >= second || jaws == 0.0 || alike(second, jaws) => (first, second),
-        None if alike(first, jaws) && alike(second, test.spec().width) => (second, first),
-        None => return None,
-    };
-    Some((width, (gauge != width).then_some(gauge)))
+/// The stated maximum of the driven axis (SI).
+fn maximum(test: Test, header: &Header, context: &Context<'_>) -> Result<Option<f64>, ReadError> {
+    let (key, name, unit) = (Key::Maximum, "maximum", driven(test).kes_unit());
+    Ok(match test {
+        Test::Tensile => quantity_of::<LineForce>(header, key, name, unit, context)?.map(LineForce::si),
+        Test::Shear => quantity_of::<Angle>(header, key, name, unit, context)?.map(Angle::si),
+        Test::Bending => quantity_of::<Curvature>(header, key, name, unit, context)?.map(Curvature::si),
+        Test::Compression => quantity_of::<Pressure>(header, key, name, unit, context)?.map(Pressure::si),
+        Test::Friction | Test::Roughness => {
+            quantity_of::<Length>(header, key, name, unit, context)?.map(Length::si)
+        }
+    })
 }
 
-/// Whether two lengths are one but for rounding.
-fn alike(a: f64, b: f64) -> bool {
-    (a / b - 1.0).abs() < 1e-6
+/// Part of a maximum by which a printed peak may differ from it, and a round number from its value in other units.
+const PRINTED: f64 = 1e-3;
+
+/// Whether a stated maximum is the peak of this record that a program printed: it is what the record reaches, and no round
+/// number as those that are set.
+fn is_peak(test: Test, header: &Header, stated: f64, curve: &Curve) -> bool {
+    let of_abscissa = matches!(driven(test), Role::Angle | Role::Curvature | Role::Position);
+    let values = if of_abscissa { &curve.x } else { &curve.y };
+    let peak = values.iter().fold(0.0f64, |peak, v| peak.max(v.abs()));
+    let text = header.known.get(&Key::Maximum).map_or(String::new(), |e| folded(&e.text).into_owned());
+    let start = text.trim_start_matches(|c: char| !c.is_ascii_digit());
+    let number: String = start.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
+    let customary = unit_text::unit(driven(test).kes_unit()).map_or(f64::NAN, |u| stated / u.factor);
+    let is_set = is_round(customary) || number.parse().is_ok_and(is_round);
+    header.known.contains_key(&Key::Maximum) && !is_set && (peak / stated - 1.0).abs() <= PRINTED
 }
 
-/// Whether an order such as `W x L` or `length x width` begins with the width; `None` of other words.
-fn width_is_first(order: &str) -> Option<bool> {
-    let order = order.to_lowercase();
-    let (first, second) = order.split_once('x')?;
-    let [first, second] = [first, second].map(|word| is_width(word.trim()));
-    (first != second).then_some(first)
-}
-
-/// Whether a word is one for the width, by its beginning; `largo` is the length.
-fn is_width(word: &str) -> bool {
-    let width = ["w", "b", "anch", "larg", "幅", "宽", "寬"];
-    !word.starts_with("largo") && width.iter().any(|beginning| word.starts_with(beginning))
+/// Whether two digits are enough for a number: 500, 50, 2.5, 8.
+fn is_round(value: f64) -> bool {
+    let unit = 10f64.powf(value.abs().log10().floor() - 1.0);
+    ((value / unit).round() * unit / value - 1.0).abs() <= PRINTED
 }
 
 /// The axis that has a set maximum.
@@ -346,59 +314,6 @@ pub(super) fn driven(test: Test) -> Role {
         Test::Compression => Role::Pressure,
         Test::Friction | Test::Roughness => Role::Position,
     }
-}
-
-/// The value, if it is greater than zero.
-pub(super) fn positive(
-    value: f64,
-    key: Key,
-    header: &Header,
-    context: &Context<'_>,
-) -> Result<f64, ReadError> {
-    if value.is_finite() && value > f64::MIN_POSITIVE {
-        return Ok(value);
-    }
-    let (line, column, text) = header.known.get(&key).map_or((0, 0, ""), |e| (e.line, e.column, &e.text));
-    let reason = format!("{text:?} must be greater than zero");
-    Err(context.error(line, column, Problem::BadValue { key: format!("{key:?}").to_lowercase(), reason }))
-}
-
-/// A header value as a quantity. Without a unit it is refused, unless KES units are taken.
-fn quantity_of<Q: FromStr<Err = QuantityError>>(
-    header: &Header,
-    key: Key,
-    name: &str,
-    kes_unit: &'static str,
-    context: &Context<'_>,
-) -> Result<Option<Q>, ReadError> {
-    let Some(entry) = header.known.get(&key) else { return Ok(None) };
-    quantity(entry, name, kes_unit, context).map(Some)
-}
-
-/// See [`quantity_of`].
-pub(super) fn quantity<Q: FromStr<Err = QuantityError>>(
-    entry: &Entry,
-    name: &str,
-    kes_unit: &'static str,
-    context: &Context<'_>,
-) -> Result<Q, ReadError> {
-    let mut text =
-        folded(&entry.text).trim_start_matches(['±', '<', '=', ' ']).trim_start_matches("+-").to_string();
-    if context.decimal == ',' {
-        text = text.replace(',', ".");
-    }
-    if context.kes_units && matches!(number(&text, '.'), Number::Value(_)) {
-        text = format!("{text} {kes_unit}");
-    }
-    text.parse().map_err(|e: QuantityError| {
-        let problem = match e {
-            QuantityError::NoUnit { found, .. } => {
-                Problem::UnitMissing { found: format!("{name} {found}"), expected: kes_unit }
-            }
-            e => Problem::BadValue { key: name.to_string(), reason: e.to_string() },
-        };
-        context.error(entry.line, entry.column, problem)
-    })
 }
 
 struct Points {

@@ -107,6 +107,8 @@ pub enum Key {
     Width,
     /// Distance between jaws or clamps.
     Gauge,
+    /// Length of the specimen: the distance between the jaws, unless it is that of the cloth that was cut.
+    Length,
     /// Width and distance between the jaws in one: `20 x 5 cm`.
     Size,
     /// Area of the compression foot.
@@ -117,10 +119,12 @@ pub enum Key {
     Pretension,
     /// Load on the contactor of a sweep.
     Contact,
-    /// Full scale (10 V) of the ordinate.
+    /// Full scale of the ordinate, in volts that of [`Key::Voltage`] or 10 V.
     Sens,
-    /// Full scale (10 V) of the abscissa.
+    /// Full scale of the abscissa.
     SensX,
+    /// Voltage of an analogue output at the full scale.
+    Voltage,
     /// Areal density from a balance.
     Weight,
     /// A number that the samples are to be multiplied by, or were: it is told, never applied.

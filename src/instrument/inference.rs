@@ -61,7 +61,8 @@ pub(super) fn conditions(test: Test, c: &Conditions, header: &Header) -> String 
         .into_iter()
         .filter(|(.., standard, _)| *standard > 0.0)
         .map(|(key, name, value, standard, unit)| {
-            let from = match header.known.get(&key) {
+            let length = header.known.get(&Key::Length).filter(|_| key == Key::Gauge && value != standard);
+            let from = match header.known.get(&key).or(length) {
                 Some(entry) => format!("line {}", entry.line),
                 None if value == standard => "standard, not in the file".to_string(),
                 None => "fabric.toml or dialect, not in the file".to_string(),

@@ -19,6 +19,7 @@ use super::sniff::{Number, number};
 use super::suggest;
 use super::unit_text::{is_volt, split_unit, unbracketed, unit};
 use super::vocabulary::Vocabulary;
+use super::volts;
 use super::words::{bare, folded};
 use crate::finding::{Finding, Place, ReadFact};
 
@@ -105,7 +106,8 @@ pub(super) fn blocks<'t>(
     context: &Context<'_>,
 ) -> Result<(Vec<Block<'t>>, Vec<Finding>), ReadError> {
     let (header, lists, findings) = (Header::default(), Vec::new(), Vec::new());
-    let mut scanner = Scanner { rows, context, at: 0, header, lists, labels: Vec::new(), findings };
+    let (labels, caption_line) = (Vec::new(), 0);
+    let mut scanner = Scanner { rows, context, at: 0, header, lists, labels, caption_line, findings };
     let mut blocks = Vec::new();
     let mut words: Vec<String> = Vec::new();
     // The first row of numbers under headings that nobody knows; a remark may look like one, so that it is an error only
@@ -183,13 +185,15 @@ pub(super) struct Scanner<'t, 'a> {
     pub(super) lists: Vec<(Key, Vec<Entry>)>,
     /// Rows of labels over the columns of the next headings, each with the index of its cell.
     pub(super) labels: Vec<Vec<(usize, Label, Entry)>>,
+    /// Line of the header's caption.
+    pub(super) caption_line: usize,
     /// Curves that were left out.
     pub(super) findings: Vec<Finding>,
 }
 
 impl<'t> Scanner<'t, '_> {
     /// The columns of a heading row: at least an abscissa and an ordinate.
-    fn headings(&self, row: &Row<'_>) -> Option<Vec<Column>> {
+    pub(super) fn headings(&self, row: &Row<'_>) -> Option<Vec<Column>> {
         let column = |(index, cell): (usize, &super::raw::Cell<'_>)| {
             let (name, unit) = split_unit(&cell.text);
             let says = ColumnName::of(&name, self.context.vocabulary);
@@ -259,9 +263,10 @@ impl<'t> Scanner<'t, '_> {
             self.at = next;
             rows.extend(self.data_rows(&columns));
         }
+        self.direction_above();
         self.check_width(heading, &rows)?;
         self.note_strange_columns(heading, &columns, &rows);
-        let mut pairs = self.pairs(columns)?;
+        let mut pairs = self.pairs(columns, &rows)?;
         self.distribute(&mut pairs)?;
         self.leave_out_statistics(&mut pairs);
         self.note_words(&pairs);
@@ -364,42 +369,6 @@ impl<'t> Scanner<'t, '_> {
         Err(self.context.error(row.line, row.column(named), problem))
     }
 
-    /// A row of labels over column blocks: `1,,2,,3`, `経-1 … 経-2`, `Warp,,Weft` or `試料番号 1 … 試料番号 2`.
-    fn labels(&mut self, row: &Row<'_>) -> bool {
-        let label = |(index, c): (usize, &super::raw::Cell<'_>)| {
-            let entry = Entry { text: folded(&c.text).into_owned(), line: row.line, column: c.column };
-            (index, Label::parse(&c.text, self.context.vocabulary), entry)
-        };
-        let labels: Vec<(usize, Label, Entry)> = row.filled().map(label).collect();
-        let is_mean = |e: &Entry| pairs::of_label(&e.text, self.context.vocabulary).is_some();
-        // Specimens and directions come first: `maximum,2.5 1/cm` is a header line, and so is `direction,warp`.
-        let is_key = labels.first().is_some_and(|(_, _, e)| self.context.vocabulary.key(&e.text).is_some());
-        // `width,20`: a key, and not the direction of that name.
-        let complete = !is_key
-            && labels.first().is_some_and(|(_, l, _)| l.is_plain())
-            && labels.iter().all(|(_, l, e)| l.is_plain() || is_mean(e));
-        let below = || self.rows[self.at + 1..].iter().filter(|r| !r.is_blank()).take(2);
-        if labels.len() < 2 || !below().any(|r| self.headings(r).is_some()) {
-            return false;
-        }
-        if !complete {
-            let names: Vec<String> = labels.iter().map(|(_, _, e)| e.text.clone()).collect();
-            let key = |e: &Entry| self.context.vocabulary.key(&split_unit(&e.text).0);
-            let is_name = |(_, l, e): &(usize, Label, Entry)| {
-                (l.sample.is_some() || l.unknown) && key(e).is_none_or(|k| k == Key::Remark)
-            };
-            // `X1,,X2,`: names over blocks of columns, a blank beside each.
-            let over_blocks = labels.windows(2).all(|pair| pair[1].0 > pair[0].0 + 1);
-            if over_blocks && labels.iter().all(is_name) {
-                let place = Place::at(self.context.path, row.line, 0);
-                self.findings.push(Finding::new(ReadFact::ColumnsAsSpecimens { names }).at(place));
-            }
-            return false;
-        }
-        self.labels.push(labels);
-        true
-    }
-
     /// Keeps what a header line says: `key,value`, `key: value`, several pairs, or a list of values.
     fn header_line(&mut self, row: &Row<'_>) {
         let filled: Vec<(String, usize)> =
@@ -470,6 +439,9 @@ impl<'t> Scanner<'t, '_> {
         let is_direction = |t: &str| self.context.vocabulary.direction_exactly(t).is_some();
         let key = match (self.context.vocabulary.key(&plain), &values[..]) {
             (Some(Key::Sens), [(value, _)]) if is_direction(value) => Some(Key::Direction),
+            // `Full scale: 5 V` is that of the output; `Output: report.csv` is none.
+            (Some(Key::Sens), [(value, _)]) if volts::value(value).is_some() => Some(Key::Voltage),
+            (Some(Key::Voltage), values) if !values.iter().any(|(v, _)| volts::value(v).is_some()) => None,
             (key, _) => key,
         };
         // A bracket of a line without a value is no unit: `Bending results (values x 10)`, `Wool (wet)`.
@@ -480,6 +452,7 @@ impl<'t> Scanner<'t, '_> {
                 let text: Vec<String> = values.into_iter().map(|(t, _)| t).collect();
                 if text.is_empty() {
                     self.header.caption = Some(words);
+                    self.caption_line = line;
                 }
                 self.header.other.insert(plain, text.join(", "));
             }

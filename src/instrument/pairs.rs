@@ -6,6 +6,7 @@ use super::dialect::{BranchColumn, Key, Role, Statistic};
 use super::error::{Problem, ReadError};
 use super::label::Label;
 use super::layout::{Column, Entry, Pair, Scanner};
+use super::raw::Row;
 use super::statistic::{self, Kinds};
 use super::vocabulary::Vocabulary;
 
@@ -37,25 +38,33 @@ pub(super) fn along_sweep(mut columns: Vec<Column>) -> Vec<Column> {
     columns
 }
 
-/// Pairs of a loading and an unloading branch are one curve.
+/// Pairs of a loading and an unloading branch are one curve, whichever stands first.
 fn joined(pairs: Vec<Pair>) -> Vec<Pair> {
     let mut out: Vec<Pair> = Vec::with_capacity(pairs.len());
-    let branch = |c: &Column| c.says.branch;
     for pair in pairs {
-        let specimen = (pair.y.says.direction, pair.y.says.specimen);
-        let loading = out.last_mut().filter(|before| {
-            before.back.is_none()
-                && branch(&before.y) == Some(BranchColumn::Loading)
-                && branch(&pair.y) == Some(BranchColumn::Unloading)
-                && before.y.role == pair.y.role
-                && (before.y.says.direction, before.y.says.specimen) == specimen
-        });
-        match loading {
-            Some(before) => before.back = Some((pair.x, pair.y)),
+        match out.iter().position(|before| are_branches(before, &pair)) {
+            Some(at) if unloads(&pair) => out[at].back = Some((pair.x, pair.y)),
+            Some(at) => {
+                let before = std::mem::replace(&mut out[at], pair);
+                out[at].back = Some((before.x, before.y));
+            }
             None => out.push(pair),
         }
     }
     out
+}
+
+fn unloads(pair: &Pair) -> bool {
+    pair.y.says.branch == Some(BranchColumn::Unloading)
+}
+
+/// Whether one of two columns of a specimen is the unloading branch and the other is not: `load` is the force itself.
+fn are_branches(before: &Pair, pair: &Pair) -> bool {
+    before.back.is_none()
+        && pair.back.is_none()
+        && unloads(before) != unloads(pair)
+        && (before.x.role, before.y.role) == (pair.x.role, pair.y.role)
+        && (before.y.says.direction, before.y.says.specimen) == (pair.y.says.direction, pair.y.says.specimen)
 }
 
 /// Gives every curve the label that stands over its columns, or to the left of them where heads are merged.
@@ -92,8 +101,8 @@ fn named_in_heads(pair: &mut Pair) {
 
 impl Scanner<'_, '_> {
     /// Abscissa and ordinate of each curve: a new pair begins where a kind of column comes again.
-    /// A single abscissa serves all ordinates.
-    pub(super) fn pairs(&mut self, columns: Vec<Column>) -> Result<Vec<Pair>, ReadError> {
+    /// A single abscissa serves all ordinates that are repeats.
+    pub(super) fn pairs(&mut self, columns: Vec<Column>, rows: &[&Row<'_>]) -> Result<Vec<Pair>, ReadError> {
         let mut halves: Vec<Halves> = vec![(None, None)];
         let shared = columns.iter().filter(|c| c.role.is_abscissa()).count() == 1;
         for column in columns.into_iter().filter(|c| c.role != Role::Ignored) {
@@ -120,7 +129,10 @@ impl Scanner<'_, '_> {
             }
             (None, None) => Err(self.context.error(0, 0, Problem::Empty)),
         };
-        let pairs: Vec<Pair> = halves.into_iter().map(pair).collect::<Result<_, _>>()?;
+        let mut pairs: Vec<Pair> = halves.into_iter().map(pair).collect::<Result<_, _>>()?;
+        if first.is_some() {
+            self.leave_out_companions(&mut pairs, rows);
+        }
         Ok(joined(pairs))
     }
 

@@ -12,6 +12,7 @@ use super::curves;
 use super::dialect::{Dialect, Key};
 use super::error::{Problem, ReadError};
 use super::fab::{self, FabFile};
+use super::header_value;
 use super::label::Label;
 use super::layout::{self, Block, Context, Header};
 use super::raw::{self, Row};
@@ -20,7 +21,7 @@ use super::sniff::{Sniffed, sniff, sniff_lines};
 use super::vocabulary::Vocabulary;
 use super::workbook::{self, Archive};
 use super::{Measurement, Parameter, ResultValue, Source, StatedStiffness};
-use super::{cell_units, code_page, letters, limits, lines, samples, web_page};
+use super::{cell_units, code_page, letters, limits, lines, means, samples, web_page};
 use crate::finding::{Fact, Finding, Place, ReadFact};
 use crate::platform;
 use crate::quantity::ArealDensity;
@@ -221,6 +222,7 @@ fn sheets(
     let letters = letters::in_names(&names, Vocabulary::new(&settings.dialects));
     let several = sheets.len() > 1;
     let (mut with_curves, mut unread, mut of_letters) = (Vec::new(), Vec::new(), Vec::new());
+    let mut of_sheets: Vec<String> = Vec::new();
     for sheet in &sheets {
         // The place of a cell needs its sheet: `book.xlsx[sheet]:line:column`.
         let named = PathBuf::from(format!("{}[{}]", path.display(), sheet.name));
@@ -245,6 +247,7 @@ fn sheets(
             }
             result => result?,
         }
+        of_sheets.resize(content.measurements.len(), sheet.name.clone());
         let is_used = content.measurements.len() > curves || content.results.len() > values;
         if is_used && letter.is_some() {
             of_letters.push(sheet.name.clone());
@@ -265,6 +268,12 @@ fn sheets(
         let fact = ReadFact::SheetNotUnderstood { reason: e.problem.to_string() };
         Finding::new(fact).at(e.place)
     }));
+    let vocabulary = Vocabulary::new(&settings.dialects);
+    let means = means::leave_out(&mut content.measurements, &of_sheets, "sheets", path, vocabulary);
+    if let Some(means) = means {
+        with_curves.retain(|name| !means::names_mean(name, vocabulary));
+        content.findings.push(means);
+    }
     let samples = samples::of_sheets(&with_curves, Vocabulary::new(&settings.dialects));
     if samples.len() > 1 {
         content.findings.push(Finding::new(ReadFact::SeveralSamples { samples }).at(Place::file(path)));
@@ -281,6 +290,7 @@ fn archive(
 ) -> Result<(), ReadError> {
     let error = |problem| ReadError::new(Place::file(path), problem);
     limits::archive(bytes).map_err(error)?;
+    let mut of_files: Vec<String> = Vec::new();
     for (name, inner) in workbook::files(bytes).map_err(error)? {
         let at = PathBuf::from(format!("{}[{name}]", path.display()));
         match parse(&at, &inner, settings) {
@@ -295,7 +305,12 @@ fn archive(
             }
             Err(e) => content.failures.push(e),
         }
+        let stem = Path::new(&name).file_stem().map(|s| s.to_string_lossy().into_owned());
+        of_files.resize(content.measurements.len(), stem.unwrap_or_default());
     }
+    let vocabulary = Vocabulary::new(&settings.dialects);
+    let means = means::leave_out(&mut content.measurements, &of_files, "files", path, vocabulary);
+    content.findings.extend(means);
     if content.measurements.is_empty() && content.results.is_empty() && content.fab.is_none() {
         return Err(content.failures.drain(..).next().unwrap_or_else(|| error(Problem::Empty)));
     }
@@ -365,7 +380,7 @@ fn table(
 /// An areal density in the header of a curve file is a result value of its own.
 fn weight(header: &Header, context: &Context<'_>, content: &mut FileContent) -> Result<(), ReadError> {
     let Some(entry) = header.known.get(&Key::Weight) else { return Ok(()) };
-    let value: ArealDensity = curves::quantity(entry, "weight", "mg/cm²", context)?;
+    let value: ArealDensity = header_value::quantity(entry, "weight", "mg/cm²", context)?;
     let known = |(_, v): &(Option<String>, ResultValue)| v.parameter == Parameter::W && v.mean == value.si();
     if !content.results.iter().any(known) {
         let place = Place::at(context.path, entry.line, entry.column);

@@ -98,7 +98,7 @@ super::facts! {
              specimen was pulled already, EMT is low by {:.2} % of strain or more", in_unit(*load, record.test.kes_maximum()),
             100.0 * strain;
         /// A compression record that begins below zero.
-        "K067" PressureBelowZero {
+        "K066" PressureBelowZero {
             /// The record.
             record: RecordName,
             /// The first pressure (Pa).

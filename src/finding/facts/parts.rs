@@ -113,6 +113,8 @@ pub enum Divisor {
     Width,
     /// Load on the contactor (N).
     Contact,
+    /// Full scale of an analogue output (V).
+    Voltage,
 }
 
 /// How a linear result is beyond its meaning.

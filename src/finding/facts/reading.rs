@@ -54,7 +54,7 @@ super::facts! {
         "R109" AssumedDimension {
             /// By which it was divided.
             dimension: Divisor,
-            /// Its standard value (SI).
+            /// Its standard value (SI; V of a voltage).
             value: f64,
             /// The test of a gauge, which is stated for each test of its own; none of the others.
             test: Option<Test>,
@@ -63,7 +63,7 @@ super::facts! {
         } = "{}", assumed(*dimension, *value, *test, not_understood);
         /// Rows, columns or curves that sum up others.
         "R110" SummingUp {
-            /// `rows`, `columns` or `curves`.
+            /// `rows`, `columns`, `curves`, `sheets` or `files`.
             what: String,
             /// Which ones.
             left_out: Vec<LeftOutLine>,
@@ -245,7 +245,7 @@ super::facts! {
         } = "rows are read as those of fabrics that are called like statistics or limits: {}; remove them if they sum up or bound the \
              others, or give the fabrics other names", some(names);
         /// Numbers in brackets behind values that are no deviations.
-        "R140" BracketsLeftOut {
+        "R139" BracketsLeftOut {
             /// The parameters with their directions.
             keys: Vec<Key>,
         } = "the numbers in brackets behind {} are no standard deviations, as the line above the table or their size says, and are \
@@ -302,6 +302,10 @@ fn assumed(dimension: Divisor, value: f64, test: Option<Test>, not_understood: &
         Divisor::Contact => format!(
             "no load on the contactor is {stated}: force was divided by the standard {} gf; state `contact load` in the header or `contact` in [conditions.friction] of fabric.toml",
             without_rounding(value / (1e-3 * STANDARD_GRAVITY))
+        ),
+        Divisor::Voltage => format!(
+            "no full-scale voltage is {stated}: the range was taken as that of {} V; state `full scale voltage` in the header",
+            without_rounding(value)
         ),
         Divisor::Width => format!(
             "no width is {stated}: force or moment was divided by the standard {cm} cm; state `width` in the header or in [conditions] of fabric.toml"

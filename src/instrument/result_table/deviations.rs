@@ -88,7 +88,7 @@ impl Layout {
 }
 
 impl Table<'_, '_> {
-    /// R140: numbers in brackets that are no standard deviations, as the line above the table says or as one shows that is more than half of its
+    /// R139: numbers in brackets that are no standard deviations, as the line above the table says or as one shows that is more than half of its
     /// mean: all of that column are left out.
     pub(super) fn leave_out_brackets(&mut self) {
         let stated =

@@ -1,0 +1,63 @@
+//! Values of header lines as quantities.
+
+use std::str::FromStr;
+
+use super::dialect::Key;
+use super::error::{Problem, ReadError};
+use super::layout::{Context, Entry, Header};
+use super::sniff::{Number, number};
+use super::words::folded;
+use crate::quantity::QuantityError;
+
+/// The value, if it is greater than zero.
+pub(super) fn positive(
+    value: f64,
+    key: Key,
+    header: &Header,
+    context: &Context<'_>,
+) -> Result<f64, ReadError> {
+    if value.is_finite() && value > f64::MIN_POSITIVE {
+        return Ok(value);
+    }
+    let (line, column, text) = header.known.get(&key).map_or((0, 0, ""), |e| (e.line, e.column, &e.text));
+    let reason = format!("{text:?} must be greater than zero");
+    Err(context.error(line, column, Problem::BadValue { key: format!("{key:?}").to_lowercase(), reason }))
+}
+
+/// A header value as a quantity. Without a unit it is refused, unless KES units are taken.
+pub(super) fn quantity_of<Q: FromStr<Err = QuantityError>>(
+    header: &Header,
+    key: Key,
+    name: &str,
+    kes_unit: &'static str,
+    context: &Context<'_>,
+) -> Result<Option<Q>, ReadError> {
+    let Some(entry) = header.known.get(&key) else { return Ok(None) };
+    quantity(entry, name, kes_unit, context).map(Some)
+}
+
+/// See [`quantity_of`].
+pub(super) fn quantity<Q: FromStr<Err = QuantityError>>(
+    entry: &Entry,
+    name: &str,
+    kes_unit: &'static str,
+    context: &Context<'_>,
+) -> Result<Q, ReadError> {
+    let mut text =
+        folded(&entry.text).trim_start_matches(['±', '<', '=', ' ']).trim_start_matches("+-").to_string();
+    if context.decimal == ',' {
+        text = text.replace(',', ".");
+    }
+    if context.kes_units && matches!(number(&text, '.'), Number::Value(_)) {
+        text = format!("{text} {kes_unit}");
+    }
+    text.parse().map_err(|e: QuantityError| {
+        let problem = match e {
+            QuantityError::NoUnit { found, .. } => {
+                Problem::UnitMissing { found: format!("{name} {found}"), expected: kes_unit }
+            }
+            e => Problem::BadValue { key: name.to_string(), reason: e.to_string() },
+        };
+        context.error(entry.line, entry.column, problem)
+    })
+}
