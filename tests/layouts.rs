@@ -1823,3 +1823,29 @@ fn states_over_columns_of_parameters() {
         assert_eq!(of_b(&found), expected, "{heads}");
     }
 }
+
+/// Tables between bars, as Markdown has them, and in columns of blanks.
+#[test]
+fn tables_between_bars_and_in_columns_of_blanks() {
+    let expected =
+        [(Some("Uno"), Some(Direction::Warp), 0.1, 1), (Some("Dos"), Some(Direction::Warp), 0.2, 1)];
+    let bars =
+        format!("| Fabric | {B} warp | LT warp |\n|---|---|---|\n| Uno | 0.1 | 0.6 |\n| Dos | 0.2 | 0.7 |\n");
+    assert_eq!(of_b(&read("t.md.txt", &bars)), expected);
+    assert_eq!(
+        of_b(&read(
+            "t.txt",
+            &bars
+                .replace(" |\n", "\n")
+                .replace("| F", "F")
+                .replace("| U", "U")
+                .replace("| D", "D")
+                .replace("|---|---|---|\n", "")
+        )),
+        expected
+    );
+    let blanks = format!(
+        "Fabric   {B} warp   LT warp\nUno      0.1                  0.6\nDos      0.2                  0.7\n"
+    );
+    assert_eq!(of_b(&read("t.txt", &blanks)), expected);
+}

@@ -40,7 +40,9 @@ fn by_gaps(text: &str) -> Option<String> {
     // A hole in a row of values would shift the cells behind it; header lines hold two cells.
     let whole = counts.iter().all(|n| *n == usual || *n == 2);
     let rows = counts.iter().filter(|n| **n == usual).count();
-    if !whole || rows < ROWS || usual < 2 {
+    // Heads with as many cells are a row of the table as well.
+    let heads = text.lines().filter(|l| !has_number(l) && cells(l) == usual && usual > 2).count().min(1);
+    if !whole || rows + heads < ROWS || usual < 2 {
         return None;
     }
     let first = end_of_first_cells(text, |line| has_number(line) && cells(line) == usual);
@@ -95,6 +97,13 @@ mod tests {
         let expected = "direction  \twarp\n\n   curvature (1/cm)  \tmoment (gf·cm/cm)\r\n  0.0\t-0.01\n  0.5   \t0.05  \n  1.0   \t0.10";
         assert_eq!(tabbed(text).as_deref(), Some(expected));
         assert_eq!(expected.chars().count(), text.chars().count());
+    }
+
+    #[test]
+    fn two_rows_below_their_heads_are_a_table() {
+        let text = "Fabric   LT warp   LT weft\nA        0.65      0.70\nB        0.61      0.66\n";
+        assert_eq!(tabbed(text).as_deref().map(|t| t.matches('\t').count()), Some(6));
+        assert_eq!(tabbed("Fabric   LT warp\nA        0.65\nB        0.61\n"), None);
     }
 
     #[test]

@@ -414,7 +414,8 @@ pub(super) fn region<'t>(
     while let Some(row) = rows.get(i) {
         // A blank row may stand below the heads.
         let after_blank = i > end && !region.rows.is_empty();
-        if row.is_blank() {
+        // A rule below the heads, `|---|---|`, says nothing.
+        if row.is_blank() || row.filled().all(|(_, c)| is_gap(&c.text)) {
             i += 1;
             continue;
         }

@@ -89,7 +89,7 @@ pub(super) fn sniff(text: &str, delimiter: Option<char>, decimal: Option<char>) 
     let occurs = |c: char| text.contains(c);
     let delimiters: Vec<char> = match delimiter {
         Some(known) => vec![known],
-        None => ['\t', ';', ','].into_iter().filter(|d| occurs(*d)).collect(),
+        None => ['\t', ';', ',', '|'].into_iter().filter(|d| occurs(*d)).collect(),
     };
     for d in if delimiters.is_empty() { vec!['\t'] } else { delimiters } {
         for m in ['.', ','].into_iter().filter(|m| decimal.is_none_or(|known| known == *m)) {

@@ -139,8 +139,8 @@ fn grouped(text: &str, decimal: char) -> Option<Number> {
 
 /// A cell that stands for "not measured".
 pub(super) fn is_gap(cell: &str) -> bool {
-    const GAPS: [&str; 14] =
-        ["-", "–", "—", "--", "n/m", "n.m.", "n.d.", "nd", "n/d", "n/a", "n.a.", "na", "n.t.", "k.a."];
+    const GAPS: [&str; 15] =
+        ["-", "–", "—", "--", "---", "n/m", "n.m.", "n.d.", "nd", "n/d", "n/a", "n.a.", "na", "n.t.", "k.a."];
     let text = cell.trim();
     text.len() <= 4 && GAPS.iter().any(|gap| text.eq_ignore_ascii_case(gap))
 }
