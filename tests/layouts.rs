@@ -1824,6 +1824,13 @@ fn states_over_columns_of_parameters() {
     }
 }
 
+/// `sample,Poplin, white`: commas in the name of the only curve of a file are a part of it.
+#[test]
+fn commas_in_the_name_of_a_sample() {
+    let text = "sample,Poplin, white, lot 3\ntest,tensile\ndirection,warp\n\nstrain (%),force (gf/cm)\n0,0\n1,10\n2,50\n";
+    assert_eq!(read("a.csv", text).measurements[0].sample.as_deref(), Some("Poplin, white, lot 3"));
+}
+
 /// Tables between bars, as Markdown has them, and in columns of blanks.
 #[test]
 fn tables_between_bars_and_in_columns_of_blanks() {

@@ -159,6 +159,13 @@ impl Scanner<'_, '_> {
     /// Gives every pair its own of the header values that were listed for all of them.
     pub(super) fn distribute(&mut self, pairs: &mut [Pair]) -> Result<(), ReadError> {
         for (key, entries) in std::mem::take(&mut self.lists) {
+            if let ([pair], Key::Sample, Some(first)) = (&mut *pairs, key, entries.first()) {
+                // `sample,Poplin, white`: a name with commas in it.
+                let texts: Vec<&str> = entries.iter().map(|entry| entry.text.as_str()).collect();
+                let name = Entry { text: texts.join(", "), ..first.clone() };
+                pair.header.known.insert(key, name);
+                continue;
+            }
             if entries.len() != pairs.len() {
                 let (n, m) = (entries.len(), pairs.len());
                 let reason = format!("{n} values stand over {m} curves");

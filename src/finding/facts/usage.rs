@@ -39,10 +39,11 @@ super::facts! {
 }
 
 fn own_results(files: usize) -> String {
-    let what = if files == 1 { "a file".into() } else { format!("{files} files") };
-    format!(
-        "{what} here are results of this program and were not read as measurements: write results elsewhere with -o"
-    )
+    let what = match files {
+        1 => "a file here is a result of this program and was not read as a measurement".into(),
+        _ => format!("{files} files here are results of this program and were not read as measurements"),
+    };
+    format!("{what}: write results elsewhere with -o")
 }
 
 fn read_once(files: usize) -> String {

@@ -12,6 +12,9 @@ use super::output::Chart;
 use super::palette::{GREY, INK, lighter};
 use super::panel::{self, Row, marker};
 
+/// Values that differ by less than this part of their mean are one.
+const ROUNDED: f64 = 1e-6;
+
 /// One comparison.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ParityPoint {
@@ -61,7 +64,8 @@ fn agreement(points: &[&ParityPoint]) -> Agreement {
         .collect();
     Agreement {
         rmse: (residual / n as f64).sqrt(),
-        r2: (n > 1 && total > 0.0).then(|| 1.0 - residual / total),
+        // Values that are one but for rounding have no spread to be explained.
+        r2: (n > 1 && total > n as f64 * (ROUNDED * mean).powi(2)).then(|| 1.0 - residual / total),
         mape: (!relative.is_empty()).then(|| relative.iter().sum::<f64>() / relative.len() as f64),
         n,
     }
@@ -206,7 +210,12 @@ fn summary(points: &[&ParityPoint], factor: f64, unit: &str) -> [String; 2] {
         return ["closed loop: the section is made".into(), made_of];
     }
     let a = agreement(points);
-    let r2 = a.r2.map_or("–".into(), |v| fixed(v, 3));
+    let r2 = match a.r2 {
+        None => "–".into(),
+        // The mean of the measured values says more than the simulation; how much more is no figure.
+        Some(v) if v < 0.0 => "below 0".into(),
+        Some(v) => fixed(v, 3),
+    };
     let mape = a.mape.map_or("–".into(), |v| format!("{} %", significant(100.0 * v, 3)));
     // A difference of two percentages is no part of either.
     let unit = if unit == "%" { "percentage points" } else { unit };
