@@ -20,7 +20,7 @@ from ._kesf import version
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs a command and says how it ended: 0 done, 1 some failed or a check did not hold, 2 nothing done, 3 numerics."""
+    """Runs a command and says how it ended: 0 done, 1 some failed or a check failed, 2 nothing done, 3 numerics."""
     options = _parser().parse_args(arguments)
     try:
         return int(options.command(options))
