@@ -135,8 +135,12 @@ fn refined(points: &[Point2<f64>], edges: &[[usize; 2]], cell: f64, about: f64) 
     let largest = 0.65 * cell * cell;
     let most = 20 * (about as usize + points.len()) + 1000;
     for angle in ANGLES {
-        let mut cdt =
-            Constrained::bulk_load_cdt(points.to_vec(), edges.to_vec()).map_err(|e| e.to_string())?;
+        let mut crossed = false;
+        let mut cdt = Constrained::try_bulk_load_cdt(points.to_vec(), edges.to_vec(), |_| crossed = true)
+            .map_err(|e| e.to_string())?;
+        if crossed {
+            return Err("sides of its contours cross, or are too short for the numbers of the drawing".into());
+        }
         let parameters = RefinementParameters::new()
             .exclude_outer_faces(true)
             .with_angle_limit(AngleLimit::from_deg(angle))
