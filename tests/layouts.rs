@@ -1658,6 +1658,30 @@ fn heads_of_means_with_deviations() {
     let alone = read("t.csv", &format!("Fabric,{B},LT (SD)\nUno,0.1,0.02\nDos,0.2,0.03\n"));
     assert_eq!(alone.results.len(), 2);
     assert!(messages(&alone, "R104")[0].contains("LT (SD)"), "{:?}", alone.findings);
+    let means = read(
+        "t.csv",
+        &format!("Fabric,{B} mean,SD,LT mean,SD\nUno,0.1,0.01,0.6,0.02\nDos,0.2,0.01,0.7,0.02\n"),
+    );
+    assert!(means.results.iter().all(|(_, r)| r.sd.is_some()), "{:?}", means.results);
+    // A standard error, per cent of the mean, and what is negative.
+    for head in
+        ["B mean ± SE (gf·cm²/cm)", "B (gf·cm²/cm) mean (CV%)", "B, mean ± standard error (gf·cm²/cm)"]
+    {
+        let found = read("t.csv", &format!("Fabric,\"{head}\",LT\nUno,0.1 ± 0.01,0.6\nDos,0.2 ± 0.02,0.7\n"));
+        assert_eq!(of_b(&found).len(), 2, "{head}: {:?}", found.findings);
+        assert!(found.results.iter().all(|(_, r)| r.sd.is_none()), "{head}: {:?}", found.results);
+        assert_eq!(messages(&found, "R139").len(), 1, "{head}: {:?}", found.findings);
+    }
+    let stated = read(
+        "t.csv",
+        &format!(
+            "Means with standard deviations in brackets, CV below 5 %\nFabric,{B},LT\nUno,0.1 (0.01),0.6\nDos,0.2 (0.01),0.7\n"
+        ),
+    );
+    assert_eq!((messages(&stated, "R139").len(), of_b(&stated).len()), (0, 2));
+    let relative = read("t.csv", &format!("Fabric,{B},SD (%)\nUno,0.1,3\nDos,0.2,4\n"));
+    assert!(messages(&relative, "R104")[0].contains("SD (%)"), "{:?}", relative.findings);
+    assert_eq!(code("parameter,mean,sd,n,unit\nB,0.1,-0.01,3,gf·cm²/cm\nLT,0.6,0.01,3,-\n"), "R018");
     // Per cent and values of the other direction are no deviations.
     for (title, cell) in
         [("Mean and CV% (in brackets)\n", "0.1 (0.04)"), ("", "0.1 (4.2)"), ("", "0.1 (0.09)")]
@@ -1809,6 +1833,15 @@ fn folders_of_tests_below_a_fabric() {
         batch.fabrics.iter().map(|f| (f.name.as_str(), f.results.len())).collect::<Vec<_>>(),
         [("cupro", 3)]
     );
+    // Folders of fabrics below those of tests stay apart.
+    let folder = tempfile::tempdir().unwrap();
+    for inner in ["bending/uno", "bending/dos", "shear/tres"] {
+        let inner = folder.path().join(inner);
+        std::fs::create_dir_all(&inner).unwrap();
+        std::fs::write(inner.join("t.csv"), "Direction,RT (%),n\nwarp,50,3\n").unwrap();
+    }
+    let batch = read_fabrics(&[folder.path().into()], &ReadSettings::default(), &|_| ());
+    assert_eq!(batch.fabrics.len(), 3);
 }
 
 /// States of the fabrics of the rows over the same parameters.

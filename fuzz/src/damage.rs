@@ -1,6 +1,8 @@
 //! What is done to a file: slips of bytes, of lines and of numbers, and texts that some reader has to think about.
 
 use bolero::TypeGenerator;
+use bolero::generator::bolero_generator::driver::{ByteSliceDriver, Options};
+use rand::{Rng, SeedableRng};
 
 /// The most that a damaged file has (bytes): a piece of it that is repeated may make it as large.
 const MOST: usize = 96 << 10;
@@ -20,6 +22,18 @@ pub struct Damage {
     edits: Vec<Edit>,
     /// Whether the parts of a container are damaged, and not the container: which part.
     inside: Option<u8>,
+}
+
+/// Bytes that the damage of one number is made of.
+const DRAWN: usize = 1024;
+
+impl Damage {
+    /// The damage of a number, the same every time; bolero draws all but its first from the system.
+    pub fn numbered(number: u64) -> Option<Self> {
+        let mut bytes = [0; DRAWN];
+        rand_pcg::Pcg64::seed_from_u64(number).fill_bytes(&mut bytes);
+        Self::generate(&mut ByteSliceDriver::new(&bytes[..], &Options::default()))
+    }
 }
 
 /// A slip. Places are parts of the length of the file.

@@ -5,7 +5,7 @@
 //! is read from what is written of it.
 //!
 //! `cargo test --release -p kesf-fuzz` runs every target for a minute; `KESF_FUZZ_SECONDS` is another time,
-//! `BOLERO_RANDOM_ITERATIONS` a number of files instead. With
+//! `KESF_FUZZ_FILES` a number of files instead, the same ones every time. With
 //! `cargo-bolero`, `cargo bolero test -p kesf-fuzz text` lets libFuzzer choose the damage by what it reaches.
 #![warn(missing_docs)]
 

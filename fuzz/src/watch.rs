@@ -17,14 +17,15 @@ const EACH_BYTE: Duration = Duration::from_micros(100);
 /// A reader that takes so long will not end.
 const HANG: u64 = 300;
 
-/// How long each target runs: `KESF_FUZZ_SECONDS`, or a minute; without end where a number of files is set, as a machine that
-/// is twice as fast would read other files otherwise.
+/// How long each target runs: `KESF_FUZZ_SECONDS`, or a minute.
 pub fn seconds() -> Duration {
-    if std::env::var_os("BOLERO_RANDOM_ITERATIONS").is_some() {
-        return Duration::MAX;
-    }
     let set = std::env::var("KESF_FUZZ_SECONDS").ok().and_then(|s| s.parse().ok());
     Duration::from_secs_f64(set.unwrap_or(60.0))
+}
+
+/// How many files each target reads, the same ones every time, in the place of a time: `KESF_FUZZ_FILES`.
+pub fn files() -> Option<u64> {
+    std::env::var("KESF_FUZZ_FILES").ok().and_then(|s| s.parse().ok())
 }
 
 /// Whether nothing but a hang is too slow (`KESF_FUZZ_UNTIMED`): for machines of which nobody knows how fast they are.

@@ -9,10 +9,13 @@ macro_rules! targets {
         $(#[test]
         fn $name() {
             let run = Run::new(stringify!($name), readers::$name());
-            bolero::check!()
-                .with_test_time(watch::seconds())
-                .with_type::<Damage>()
-                .for_each(|damage: &Damage| run.read_damaged(damage));
+            match watch::files() {
+                Some(files) => (0..files).filter_map(Damage::numbered).for_each(|damage| run.read_damaged(&damage)),
+                None => bolero::check!()
+                    .with_test_time(watch::seconds())
+                    .with_type::<Damage>()
+                    .for_each(|damage: &Damage| run.read_damaged(damage)),
+            }
             run.end();
         })*
 

@@ -1,6 +1,6 @@
 //! Texts that say `across the warp`: the direction that they name is not theirs.
 
-use super::dialect::{DirectionWord, Key};
+use super::dialect::{DirectionWord, Key, TableColumn};
 use super::vocabulary::{Vocabulary, words_of};
 use super::words::normalised;
 
@@ -27,6 +27,15 @@ impl Vocabulary<'_> {
     fn says_across(self, word: &str) -> bool {
         let is_number = word.bytes().all(|b| b.is_ascii_digit());
         word == "90deg" || (!is_number && self.direction_word(word) == Some(DirectionWord::Across))
+    }
+
+    /// Whether a word of a text is `direction`: `in weft direction` and 纬向, and not `of other weft densities`.
+    pub fn says_direction(self, text: &str) -> bool {
+        let is_direction = |word: String| {
+            self.key(&word) == Some(Key::Direction)
+                || self.table_column(&word) == Some(TableColumn::Direction)
+        };
+        text.contains(['向', '방']) || words_of(text).any(is_direction)
     }
 
     /// A word that stands beside a direction and says nothing more: `in`, `way`, `sens`, `direction`.

@@ -455,7 +455,11 @@ fn holds_tests(paths: &[PathBuf], settings: &ReadSettings) -> bool {
         let instrument = normalised(&name);
         let is_instrument =
             matches!(instrument.strip_prefix("kes").unwrap_or(&instrument), "fb1" | "fb2" | "fb3" | "fb4");
-        if !is_instrument && vocabulary.test_exactly(&name).is_none()
+        // Folders of fabrics below those of tests are theirs.
+        let is_last = entries(folder)
+            .is_ok_and(|inner| !inner.iter().any(|p| files::is_folder(p) && !is_hidden(p) && !is_results(p)));
+        if !(is_instrument || vocabulary.test_exactly(&name).is_some())
+            || !is_last
             || files::is_file(&folder.join("fabric.toml"))
         {
             return false;

@@ -77,8 +77,17 @@ struct Datum {
     column: usize,
     /// Index of its cell.
     cell: usize,
-    /// Whether its deviation stands in brackets behind it.
-    has_bracket: bool,
+    /// How its deviation stands behind it, if it does.
+    own: Option<Own>,
+}
+
+/// How a deviation stands behind a number in one cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Own {
+    /// `0.61 (0.03)`.
+    Bracket,
+    /// `0.61 ± 0.03`.
+    Sign,
 }
 
 /// Reads a table. In one of several fabrics a bad row leaves out its own fabric only.
@@ -137,7 +146,8 @@ pub(super) fn read(
             if e.place.line == row.line { table.leave_out(facts.fabric.clone(), e) } else { Err(e) }
         })?;
     }
-    table.leave_out_brackets();
+    table.leave_out_other_spreads();
+    table.refuse_negative_deviations()?;
     table.note_cells();
     table.direction_of_the_header()?;
     table.direction_of_the_sheet()?;
@@ -458,7 +468,10 @@ impl<'t> Table<'t, '_> {
                 line: row.line,
                 column: row.column(column.index),
                 cell: column.index,
-                has_bracket: reading.sd.is_some() && cell.trim_end().ends_with([')', '）']),
+                own: reading.sd.map(|_| match cell.contains(['±', '+']) {
+                    true => Own::Sign,
+                    false => Own::Bracket,
+                }),
             };
             if all.sd && !of_row && !self.layout.down {
                 deviations.push(datum);

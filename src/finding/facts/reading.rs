@@ -244,12 +244,12 @@ super::facts! {
             names: Vec<String>,
         } = "rows are read as those of fabrics that are called like statistics or limits: {}; remove them if they sum up or bound the \
              others, or give the fabrics other names", some(names);
-        /// Numbers in brackets behind values that are no deviations.
-        "R139" BracketsLeftOut {
+        /// Numbers behind values that are no standard deviations.
+        "R139" OtherSpreads {
             /// The parameters with their directions.
             keys: Vec<Key>,
-        } = "the numbers in brackets behind {} are no standard deviations, as the line above the table or their size says, and are \
-             left out: give them a column of their own", several_keys(keys);
+        } = "the numbers behind {} in its cells are no standard deviations, as a heading, the line above the table or their size says, and \
+             are left out: give them a column of their own", several_keys(keys);
         /// Blank cells below a direction or a parameter.
         "R124" MergedCells {} = "blank cells are read as the direction or parameter above them, as of merged cells: fill them in \
              if they are something else";

@@ -72,20 +72,19 @@ impl Layout {
         }
     }
 
-    /// `Test 1, Test 2, Test 3` over columns are specimens where a line above names the fabric or a mean of them stands beside, and so are `Forward`
-    /// and `Backward` beside their mean. That they are is told.
+    /// `Test 1, Test 2, Test 3` over columns are specimens where a line above names the fabric, and so are `Forward` and `Backward` beside their
+    /// mean. That they are is told; where nothing names the fabric, they may be fabrics.
     pub(super) fn count_columns(&mut self, region: &Region<'_>, is_named: bool, context: &Context<'_>) {
         let named: Vec<&Column> = self.values.iter().filter(|c| c.fabric.is_some()).collect();
-        let has_mean = self.values.iter().any(|c| c.facets.statistic == Some(Statistic::Mean));
         let directions: BTreeSet<_> = named.iter().map(|c| c.facets.direction).collect();
-        let are_counted = (is_named || has_mean)
+        let are_counted = is_named
             && directions.iter().all(|d| {
                 let of_one = named.iter().filter(|c| c.facets.direction == *d);
                 follow_each_other(of_one.map(|c| c.name.as_str()))
             });
         if !self.down
             || named.len() < 2
-            || !(are_counted || is_named && has_mean && self.is_mean_of_named(region, context))
+            || !(are_counted || is_named && self.is_mean_of_named(region, context))
         {
             return;
         }

@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 
 use super::layout::{Column, Layout};
 use super::row_facts::RowFacts;
-use super::{Datum, Table};
+use super::{Datum, Own, Table};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::cell::parts;
 use crate::instrument::dialect::{Statistic, TableColumn};
-use crate::instrument::error::ReadError;
+use crate::instrument::error::{Problem, ReadError};
 use crate::instrument::facets::Facets;
 use crate::instrument::layout::Context;
 use crate::instrument::raw::Row;
@@ -69,13 +69,19 @@ impl Layout {
             .filter(|(_, label)| label.meta == Some(TableColumn::Sd))
             .filter_map(|(at, label)| {
                 let value = self.values.iter().find(|c| c.index + 1 == label.index && !c.facets.sd)?;
-                let unit = split_unit(&label.name).1.or_else(|| value.facets.unit.clone());
+                let own = split_unit(&label.name).1;
+                // In per cent it is one of the value.
+                let is_relative = own.as_deref().is_some_and(is_percent)
+                    && !value.facets.unit.as_deref().is_some_and(is_percent);
+                let unit = own.filter(|_| !is_relative).or_else(|| value.facets.unit.clone());
                 let facets =
                     Facets { statistic: Some(Statistic::Spread), sd: true, unit, ..value.facets.clone() };
-                Some((at, Column { index: label.index, facets, name: label.name.clone(), ..value.clone() }))
+                let column = Column { index: label.index, facets, name: label.name.clone(), ..value.clone() };
+                (!is_relative).then_some((at, column))
             })
             .collect();
-        let values = self.values.iter().filter(|c| c.facets.statistic.is_none()).count();
+        let is_value = |c: &&Column| matches!(c.facets.statistic, None | Some(Statistic::Mean));
+        let values = self.values.iter().filter(is_value).count();
         if pairs.len() != values {
             return;
         }
@@ -88,24 +94,34 @@ impl Layout {
 }
 
 impl Table<'_, '_> {
-    /// R139: numbers in brackets that are no standard deviations, as the line above the table says or as one shows that is more than half of its
-    /// mean: all of that column are left out.
-    pub(super) fn leave_out_brackets(&mut self) {
-        let stated =
-            self.header.caption.as_deref().is_some_and(|text| names_another(text, self.context.vocabulary));
-        let behind = self.data.iter().filter(|d| d.has_bracket);
-        let others =
-            behind.filter(|d| stated || d.sd.is_some_and(|sd| sd > LARGEST_DEVIATION * d.mean.abs()));
-        let columns: BTreeSet<usize> = others.map(|d| d.cell).collect();
+    /// R139: numbers behind values that are no standard deviations, as the head or the line above the table says, or as one in brackets shows that
+    /// is more than half of its mean: all of that column are left out.
+    pub(super) fn leave_out_other_spreads(&mut self) {
+        let v = self.context.vocabulary;
+        let by_caption = self.header.caption.as_deref().is_some_and(|text| names_another(text, v));
+        let by_head = self.layout.values.iter().filter(|c| names_another(&c.name, v)).map(|c| c.index);
+        let mut columns: BTreeSet<usize> = by_head.collect();
+        columns.extend(self.data.iter().filter(|d| by_caption || d.is_beyond()).map(|d| d.cell));
         let mut found = Vec::new();
-        for d in self.data.iter_mut().filter(|d| d.has_bracket && columns.contains(&d.cell)) {
+        for d in self.data.iter_mut().filter(|d| d.own.is_some() && columns.contains(&d.cell)) {
             d.sd = None;
             found.push((Key { parameter: d.parameter, direction: d.direction }, d.line, d.column));
         }
         let Some((_, line, column)) = found.first().copied() else { return };
         let keys: BTreeSet<Key> = found.into_iter().map(|(key, ..)| key).collect();
-        let fact = ReadFact::BracketsLeftOut { keys: keys.into_iter().collect() };
+        let fact = ReadFact::OtherSpreads { keys: keys.into_iter().collect() };
         self.findings.push(Finding::new(fact).at(Place::at(self.context.path, line, column)));
+    }
+
+    /// R018 of a standard deviation below zero.
+    pub(super) fn refuse_negative_deviations(&mut self) -> Result<(), ReadError> {
+        let negative = self.data.iter().filter(|d| d.sd.is_some_and(|sd| sd < 0.0));
+        let negative: Vec<_> = negative.map(|d| (d.fabric.clone(), d.parameter, d.line, d.column)).collect();
+        for (fabric, parameter, line, column) in negative {
+            let found = format!("the standard deviation of {parameter} is negative");
+            self.leave_out(fabric, self.context.error(line, column, Problem::BadTable { found }))?;
+        }
+        Ok(())
     }
 
     /// Gives the standard deviations of a row to its values.
@@ -155,11 +171,25 @@ impl Table<'_, '_> {
     }
 }
 
-/// Whether a line names another spread than the standard deviation: `mean and CV% (in brackets)`.
+impl Datum {
+    /// Whether a number in brackets is too large for a standard deviation.
+    fn is_beyond(&self) -> bool {
+        self.own == Some(Own::Bracket) && self.sd.is_some_and(|sd| sd > LARGEST_DEVIATION * self.mean.abs())
+    }
+}
+
+/// Words of the longest name of a statistic.
+const PHRASE: usize = 3;
+
+/// Whether a text names a spread and none that is the standard deviation: `mean and CV% (in brackets)`, `B mean ± SE`.
 fn names_another(text: &str, v: Vocabulary<'_>) -> bool {
-    let words = text.split(|c: char| !c.is_alphanumeric()).filter(|word| word.chars().count() > 1);
-    let spreads: Vec<&str> = words.filter(|word| v.statistic(word) == Some(Statistic::Spread)).collect();
-    !spreads.is_empty() && spreads.iter().all(|word| v.table_column(word) != Some(TableColumn::Sd))
+    let words: Vec<&str> =
+        text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+    let phrases = (1..=PHRASE).flat_map(|n| words.windows(n)).map(|words| words.join(" "));
+    let spreads: Vec<String> = phrases
+        .filter(|phrase| phrase.chars().count() > 1 && v.statistic(phrase) == Some(Statistic::Spread))
+        .collect();
+    !spreads.is_empty() && spreads.iter().all(|phrase| v.table_column(phrase) != Some(TableColumn::Sd))
 }
 
 /// Whether every number of a column has a deviation behind it.

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::layout::{Column, Layout};
 use super::repeats::summed_up;
 use super::row_facts::no_direction;
-use super::{Datum, RowFacts, Table};
+use super::{Datum, Own, RowFacts, Table};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::contradictions::more_than_direction;
 use crate::instrument::curves::across_in_name;
@@ -152,8 +152,9 @@ impl Table<'_, '_> {
             || !self.fast.is_empty()
             || !self.layout.numbers_of_symbols().is_empty()
             // `weft in brackets`
-            || self.data.iter().any(|d| d.has_bracket);
-        let caption = self.header.caption.clone().filter(|_| !stated);
+            || self.data.iter().any(|d| d.own == Some(Own::Bracket));
+        // `in weft direction`, and not `of other weft densities`.
+        let caption = self.header.caption.clone().filter(|text| !stated && v.says_direction(text));
         let Some((text, direction)) = caption.and_then(|text| Some((text.clone(), v.direction(&text)?)))
         else {
             return;

@@ -271,8 +271,13 @@ impl<'t> Table<'t, '_> {
         (states, unread): (&mut States, &mut Vec<String>),
     ) -> Result<Option<Named>, ReadError> {
         let (fabric, parameter, direction) = group.key;
-        let (summaries, singles): (Vec<Datum>, Vec<Datum>) =
+        let (mut summaries, mut singles): (Vec<Datum>, Vec<Datum>) =
             group.members.into_iter().partition(|d| d.statistic.is_some());
+        // Several rows below `mean` without single values are repeats as those below `value` are.
+        if singles.is_empty() && summaries.iter().filter(|d| d.is_mean_of_column()).count() > 1 && !beside {
+            (singles, summaries) = summaries.into_iter().partition(Datum::is_mean_of_column);
+            singles.iter_mut().for_each(|d| d.statistic = None);
+        }
         let is = |d: &Datum, s: Statistic| d.statistic.as_ref().is_some_and(|t| t.0 == s);
         let mean =
             summaries.iter().find(|d| is(d, Statistic::Mean) && !beside && !d.of_fabrics(self)).cloned();
@@ -439,6 +444,11 @@ impl Group {
 }
 
 impl Datum {
+    /// Whether its column, and not its row, says that it is a mean.
+    fn is_mean_of_column(&self) -> bool {
+        !self.by_row && self.statistic.as_ref().is_some_and(|(statistic, ..)| *statistic == Statistic::Mean)
+    }
+
     /// Whether it sums up fabrics, and belongs to none.
     fn of_fabrics(&self, table: &Table<'_, '_>) -> bool {
         self.by_row && table.several && self.fabric.is_none()
