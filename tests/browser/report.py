@@ -551,6 +551,8 @@ def many(browser, index):
     check("it sorts at once", first() != start and page.evaluate("performance.now()") - before < 2000, (start, first()))
     table.locator("tbody a").first.click()
     page.locator("#parameters tbody tr").first.wait_for()
+    # The part of the fabric opens after the rows of the tables stand.
+    page.locator("details.fabric[open] h3").first.wait_for()
     opened_part = page.locator("details.fabric[open] h3").all_inner_texts()
     check("a name leads to the fabric on its page", len(opened_part) == 1 and len(names(page)) == 100, opened_part)
     paint = page.evaluate("performance.getEntriesByType('paint').find((e) => e.name === 'first-contentful-paint')?.startTime")
