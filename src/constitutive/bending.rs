@@ -12,7 +12,7 @@
 
 use nalgebra::Matrix3;
 
-use super::notes::{Because, Notes};
+use super::notes::{Because, Notes, because, for_both};
 use super::{Assumptions, BendingCoupling, Constant, ConstitutiveError, Provenance, Torsion};
 use crate::characterise::{Key, ValueStatus};
 use crate::finding::{EvaluationFact, Fact, Finding, SectionFact};
@@ -109,23 +109,35 @@ impl Origin {
 /// Where B comes from; C018 if it is the slope of buckled strips.
 fn rigidity_source(notes: &mut Notes) -> Because {
     let along = [Direction::Warp, Direction::Weft];
-    let known = |d: &Option<Direction>| notes.sheet.get(Parameter::B, *d).is_some();
-    let directed: Vec<Option<Direction>> = along.into_iter().map(Some).filter(known).collect();
-    // One value for the fabric, or what is left of both.
-    let used = if directed.is_empty() { vec![None] } else { directed };
+    let known = |d: &Direction| notes.sheet.get(Parameter::B, Some(*d)).is_some();
+    let directed: Vec<Direction> = along.into_iter().filter(known).collect();
+    let of_fabric = directed.len() < 2 && notes.sheet.get(Parameter::B, None).is_some();
+    let used: Vec<Option<Direction>> =
+        if of_fabric { vec![None] } else { directed.iter().copied().map(Some).collect() };
     let origins: Vec<(Option<Direction>, Origin)> =
-        used.into_iter().map(|d| (d, Origin::of(notes, d))).collect();
+        used.iter().map(|d| (*d, Origin::of(notes, *d))).collect();
     let buckled = origins.iter().filter(|(_, o)| *o == Origin::Buckled);
     let directions: Vec<Direction> = buckled.filter_map(|(d, _)| *d).collect();
     if !directions.is_empty() {
         notes.finding(SectionFact::StripRigidity { fabric: notes.fabric(), directions });
     }
     let first = origins[0].1;
-    if origins.iter().all(|(_, o)| *o == first) {
-        return (first.provenance(), first.text().into());
+    let text = if origins.iter().all(|(_, o)| *o == first) {
+        first.text().into()
+    } else {
+        let each = origins.iter().map(|(d, o)| format!("{}: {}", d.map_or("", Direction::name), o.text()));
+        each.collect::<Vec<_>>().join("; ")
+    };
+    let values: Vec<_> = used.iter().map(|direction| notes.known(Parameter::B, *direction)).collect();
+    let (_, why) = because(&values, text);
+    match used[..] {
+        [Some(one)] => for_both(one, &why),
+        [None] => (first.provenance(), format!("{why}, one value of the fabric for both").into()),
+        _ if origins.iter().all(|(_, o)| o.provenance() == Provenance::Measured) => {
+            (Provenance::Measured, why)
+        }
+        _ => (Provenance::Inferred, why),
     }
-    let each = origins.iter().map(|(d, o)| format!("{}: {}", d.map_or("", Direction::name), o.text()));
-    (Provenance::Inferred, each.collect::<Vec<_>>().join("; ").into())
 }
 
 fn assumed(why: &'static str) -> Because {

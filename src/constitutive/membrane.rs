@@ -9,10 +9,10 @@
 
 use nalgebra::Matrix3;
 
-use super::notes::{Because, Notes};
+use super::notes::{Because, Notes, because, for_both};
 use super::{Assumptions, Constant, ConstitutiveError, InputSource, PoissonRule, Provenance, TensileLaw};
 use crate::characterise::Modulus;
-use crate::finding::{EvaluationFact, Fact, Finding, SectionFact};
+use crate::finding::{EvaluationFact, Fact, SectionFact};
 use crate::instrument::Direction;
 use crate::quantity::{Estimate, significant};
 
@@ -54,62 +54,121 @@ pub(super) fn matrix(
     Ok(Matrix3::new(e1 * d, d12, 0.0, d12, e2 * d, 0.0, 0.0, 0.0, g))
 }
 
-/// E1 t and E2 t (N/m): the chosen slope, else the next that the sheet allows, else the stand-in.
-fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], ConstitutiveError> {
-    let chosen = assumptions.modulus;
-    if let Some(e) = known(chosen, notes) {
-        let stated = |f: &Finding| match &f.fact {
-            Fact::Evaluation(EvaluationFact::StatedStiffness { what, .. }) => Some(what.clone()),
-            _ => None,
-        };
-        let source = match notes.sheet.findings.iter().find_map(stated) {
-            Some(what) if chosen == Modulus::TangentLow => {
-                (Provenance::Inferred, format!("{chosen} of {what}").into())
-            }
-            _ => (Provenance::Measured, chosen.to_string().into()),
-        };
-        return Ok(record(e, Some(chosen), source, notes));
-    }
-    if let Modulus::Window(..) = chosen {
-        return Err(notes.missing(
-            format!("{chosen} modulus in warp and weft"),
-            "widen the window, or choose tangent_low, secant or energy",
-        ));
-    }
-    for other in [Modulus::Secant, Modulus::Energy].into_iter().filter(|m| *m != chosen) {
-        if let Some(e) = known(other, notes) {
-            let (chosen_name, used) = (chosen.to_string(), other.to_string());
-            notes.finding(SectionFact::OtherModulus { fabric: notes.fabric(), chosen: chosen_name, used });
-            let why = format!("{other}, because there is no {chosen} modulus");
-            return Ok(record(e, Some(other), (Provenance::Measured, why.into()), notes));
-        }
-    }
-    let e = assumptions.tensile;
-    notes.finding(SectionFact::NoTensileModulus { fabric: notes.fabric(), assumed: e.si() });
-    let stand_in = Estimate::single(e.si());
-    Ok(record([&stand_in; 2], None, (Provenance::Assumed, "not measured".into()), notes))
+/// A modulus of the sheet in one direction.
+#[derive(Clone, Copy)]
+struct Slope<'a> {
+    modulus: Modulus,
+    direction: Direction,
+    estimate: &'a Estimate,
 }
 
-/// Writes down the two moduli and gives their values.
-/// Writes two moduli down, those of the stand-in without a name.
-fn record(
-    [warp, weft]: [&Estimate; 2],
-    modulus: Option<Modulus>,
-    source: Because,
-    notes: &mut Notes,
-) -> [f64; 2] {
-    let [e1, e2] = [warp.mean, weft.mean];
-    let from =
-        |direction| modulus.map_or(InputSource::Tensile, |m| InputSource::Modulus(m.name(), direction));
-    notes.origin("E warp", (warp, from(Direction::Warp)), &[(Constant::Tensile(0), 1.0)]);
-    notes.origin("E weft", (weft, from(Direction::Weft)), &[(Constant::Tensile(1), 1.0)]);
+/// E1 t and E2 t (N/m): the chosen slope, else the next that the sheet has; of one direction, if the other has none; else the
+/// stand-in.
+fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], ConstitutiveError> {
+    let chosen = assumptions.modulus;
+    let known = known(chosen, notes);
+    if let Modulus::Window(..) = chosen {
+        // A direction whose curves do not reach the window has other slopes.
+        let has_others = |direction| slope(Modulus::Secant, direction, notes).is_some();
+        let lacks = |(slope, direction): (&Option<Slope>, _)| slope.is_none() && has_others(direction);
+        if known.iter().zip(DIRECTIONS).any(lacks) || known.iter().all(Option::is_none) {
+            return Err(notes.missing(
+                format!("{chosen} modulus in warp and weft"),
+                "widen the window, or choose tangent_low, secant or energy",
+            ));
+        }
+    }
+    let others: Vec<Slope> = known.into_iter().flatten().filter(|slope| slope.modulus != chosen).collect();
+    if let Some(other) = others.first() {
+        // Of one direction alone, where the other has the chosen one.
+        let direction = (others.len() == 1 && known.iter().all(Option::is_some)).then_some(other.direction);
+        let (fabric, chosen, used) = (notes.fabric(), chosen.to_string(), other.modulus.to_string());
+        notes.finding(SectionFact::OtherModulus { fabric, chosen, used, direction });
+    }
+    match known {
+        [Some(warp), Some(weft)] => Ok(record([warp, weft], both(chosen, [warp, weft], notes), notes)),
+        [Some(one), None] | [None, Some(one)] => {
+            let (fabric, known) = (notes.fabric(), one.direction);
+            notes.finding(SectionFact::OneModulus { fabric, known, modulus: one.modulus.to_string() });
+            Ok(record([one, one], for_both(known, &because_of_one(one, notes).1), notes))
+        }
+        [None, None] => {
+            let e = assumptions.tensile;
+            notes.finding(SectionFact::NoTensileModulus { fabric: notes.fabric(), assumed: e.si() });
+            let stand_in = Estimate::single(e.si());
+            let values = [(&stand_in, InputSource::Tensile), (&stand_in, InputSource::Tensile)];
+            Ok(write_down(values, (Provenance::Assumed, "not measured".into()), notes))
+        }
+    }
+}
+
+const DIRECTIONS: [Direction; 2] = [Direction::Warp, Direction::Weft];
+
+fn slope<'a>(modulus: Modulus, direction: Direction, notes: &Notes<'a>) -> Option<Slope<'a>> {
+    let estimate = notes.sheet.moduli.get(&(modulus.name(), direction))?;
+    Some(Slope { modulus, direction, estimate })
+}
+
+/// The first modulus that both directions have, else the first of each.
+fn known<'a>(chosen: Modulus, notes: &Notes<'a>) -> [Option<Slope<'a>>; 2] {
+    let mut kinds = vec![chosen];
+    if !matches!(chosen, Modulus::Window(..)) {
+        kinds.extend([Modulus::Secant, Modulus::Energy].into_iter().filter(|other| *other != chosen));
+    }
+    let of_kind = |kind: &Modulus| DIRECTIONS.map(|direction| slope(*kind, direction, notes));
+    let each = || DIRECTIONS.map(|direction| kinds.iter().find_map(|kind| slope(*kind, direction, notes)));
+    kinds.iter().map(of_kind).find(|both| both.iter().all(Option::is_some)).unwrap_or_else(each)
+}
+
+/// What two moduli rest on.
+fn both(chosen: Modulus, slopes: [Slope; 2], notes: &Notes) -> Because {
+    let [warp, weft] = slopes.map(|slope| slope.modulus);
+    let values = slopes.map(|slope| notes.known_modulus(slope.modulus, slope.direction));
+    match stated(notes) {
+        Some(what) if [warp, weft] == [Modulus::TangentLow; 2] => {
+            (Provenance::Inferred, format!("{chosen} of {what}").into())
+        }
+        _ if [warp, weft] == [chosen; 2] => because(&values, chosen.to_string()),
+        _ if warp == weft => because(&values, format!("{warp}, because there is no {chosen} modulus")),
+        _ => because(&values, format!("{warp} of the warp, {weft} of the weft")),
+    }
+}
+
+/// What the modulus of one direction rests on.
+fn because_of_one(slope: Slope, notes: &Notes) -> Because {
+    because(&[notes.known_modulus(slope.modulus, slope.direction)], slope.modulus.to_string())
+}
+
+/// The stiffness that the source of the sheet states in the place of a curve.
+fn stated(notes: &Notes) -> Option<String> {
+    notes.sheet.findings.iter().find_map(|finding| match &finding.fact {
+        Fact::Evaluation(EvaluationFact::StatedStiffness { what, .. }) => Some(what.clone()),
+        _ => None,
+    })
+}
+
+/// Writes two moduli of the sheet down and gives their values.
+fn record(slopes: [Slope; 2], source: Because, notes: &mut Notes) -> [f64; 2] {
+    let from = |slope: &Slope| InputSource::Modulus(slope.modulus.name(), slope.direction);
+    if slopes[0].direction == slopes[1].direction {
+        let Slope { direction, estimate, .. } = slopes[0];
+        let gives = [(Constant::Tensile(0), 1.0), (Constant::Tensile(1), 1.0)];
+        notes.origin(format!("E {direction}"), (estimate, from(&slopes[0])), &gives);
+        return stated_values([estimate.mean; 2], source, notes);
+    }
+    write_down(slopes.map(|slope| (slope.estimate, from(&slope))), source, notes)
+}
+
+/// Writes two moduli down, each with where it stands, and gives their values.
+fn write_down([warp, weft]: [(&Estimate, InputSource); 2], source: Because, notes: &mut Notes) -> [f64; 2] {
+    let values = [warp.0.mean, weft.0.mean];
+    notes.origin("E warp", warp, &[(Constant::Tensile(0), 1.0)]);
+    notes.origin("E weft", weft, &[(Constant::Tensile(1), 1.0)]);
+    stated_values(values, source, notes)
+}
+
+fn stated_values([e1, e2]: [f64; 2], source: Because, notes: &mut Notes) -> [f64; 2] {
     let value = format!("warp {} N/m, weft {} N/m", significant(e1), significant(e2));
     notes.used("tensile modulus", value, source);
     [e1, e2]
-}
-
-/// The modulus of the sheet in both directions.
-fn known<'a>(modulus: Modulus, notes: &Notes<'a>) -> Option<[&'a Estimate; 2]> {
-    let moduli = &notes.sheet.moduli;
-    Some([moduli.get(&(modulus.name(), Direction::Warp))?, moduli.get(&(modulus.name(), Direction::Weft))?])
 }

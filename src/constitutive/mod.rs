@@ -36,7 +36,7 @@ pub use assumptions::{
 };
 pub use error::ConstitutiveError;
 pub use faces::face_laws;
-use notes::{Because, Notes, value};
+use notes::{Because, Notes, because, value};
 pub use notes::{Provenance, Used};
 pub use perturbed::{InputSource, law_inputs, perturbed};
 use sensitivity::Constant;
@@ -125,7 +125,7 @@ fn thickness(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, Consti
     let sheet = notes.sheet;
     let measured = [Parameter::T0, Parameter::Tm]
         .into_iter()
-        .find_map(|p| Some((value(sheet, p, None)?, (Provenance::Measured, p.symbol().into()))));
+        .find_map(|p| Some((value(sheet, p, None)?, because(&[notes.known(p, None)], p.symbol()))));
     let single = |t: f64| (Estimate::single(t), InputSource::Thickness);
     let stated = || sheet.info.thickness.map(|t| (single(t), MEASURED_ELSEWHERE));
     let ((estimate, from), source) = measured.or_else(stated).unwrap_or_else(|| {
@@ -143,7 +143,8 @@ fn thickness(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, Consti
 /// W, else `fabric.toml`, else what is assumed explicitly (kg/m²).
 fn areal_density(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, ConstitutiveError> {
     let sheet = notes.sheet;
-    let measured = value(sheet, Parameter::W, None).map(|w| (w, (Provenance::Measured, "W".into())));
+    let measured = value(sheet, Parameter::W, None)
+        .map(|w| (w, because(&[notes.known(Parameter::W, None)], Parameter::W.symbol())));
     let single = |w: f64| (Estimate::single(w), InputSource::ArealDensity);
     let stated = || sheet.info.areal_density.map(|w| (single(w), MEASURED_ELSEWHERE));
     let assumed =

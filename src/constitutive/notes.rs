@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::error::ConstitutiveError;
 use super::perturbed::InputSource;
 use super::sensitivity::{Constant, Origin};
-use crate::characterise::{FabricSheet, Key};
+use crate::characterise::{FabricSheet, Key, Modulus, ValueStatus};
 use crate::finding::{Finding, SectionFact};
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::Estimate;
@@ -56,6 +56,48 @@ pub struct Used {
     pub source: String,
 }
 
+/// A value that a section rests on, as its sheet knows it.
+pub(super) struct Known {
+    /// Symbol and direction, e.g. `B warp`.
+    name: String,
+    status: ValueStatus,
+    /// Codes of the findings that gave the status.
+    causes: Vec<&'static str>,
+}
+
+/// What a constant of the section rests on that follows from these values, with what speaks against any of them.
+pub(super) fn because(known: &[Known], why: impl Into<String>) -> Because {
+    let mut why = why.into();
+    for Known { name, status, causes } in known {
+        let remark = match status {
+            ValueStatus::Doubtful => "is doubtful",
+            ValueStatus::Assumed => "rests on an assumption",
+            ValueStatus::Measured | ValueStatus::Inferred => continue,
+        };
+        let causes = if causes.is_empty() { String::new() } else { format!(" ({})", causes.join(", ")) };
+        why += &format!("; {name} {remark}{causes}");
+    }
+    let inferred = known.iter().any(|value| value.status == ValueStatus::Inferred);
+    (if inferred { Provenance::Inferred } else { Provenance::Measured }, why.into())
+}
+
+/// What is said where the one direction that is known stands for both.
+pub(super) fn for_both(known: Direction, why: &str) -> Because {
+    let other = if known == Direction::Warp { Direction::Weft } else { Direction::Warp };
+    (
+        Provenance::Assumed,
+        format!("{why}; that of the {known} stands for the {other}, which is not known").into(),
+    )
+}
+
+/// The symbol of a parameter and its direction, e.g. `B warp`.
+fn name_of(Key { parameter, direction }: Key) -> String {
+    match direction {
+        Some(direction) => format!("{parameter} {direction}"),
+        None => parameter.symbol().to_string(),
+    }
+}
+
 /// An estimate of the sheet, and where it stands.
 pub(super) fn value(
     sheet: &FabricSheet,
@@ -94,17 +136,29 @@ impl Notes<'_> {
         gives: &[(Constant, f64)],
     ) {
         if let Some((estimate, from)) = value(self.sheet, parameter, direction) {
-            let name = match direction {
-                Some(direction) => format!("{parameter} {direction}"),
-                None => parameter.symbol().to_string(),
-            };
-            self.origin(name, (&estimate, from), gives);
+            self.origin(name_of(Key { parameter, direction }), (&estimate, from), gives);
         }
     }
 
     pub fn used(&mut self, name: &'static str, value: impl Into<String>, (provenance, why): Because) {
         let source = format!("{}: {why}", provenance.name());
         self.used.push(Used { name: name.into(), value: value.into(), provenance, source });
+    }
+
+    /// A parameter of the sheet as what a constant rests on.
+    pub fn known(&self, parameter: Parameter, direction: Option<Direction>) -> Known {
+        let (key, sheet) = (Key { parameter, direction }, self.sheet);
+        Known { name: name_of(key), status: sheet.status(key), causes: sheet.causes(key) }
+    }
+
+    /// A tensile modulus of the sheet as what a constant rests on.
+    pub fn known_modulus(&self, modulus: Modulus, direction: Direction) -> Known {
+        let (name, sheet) = (modulus.name(), self.sheet);
+        Known {
+            name: format!("E {direction}"),
+            status: sheet.modulus_status(&name, direction),
+            causes: sheet.modulus_causes(&name, direction),
+        }
     }
 
     /// Name of the fabric.

@@ -12,8 +12,8 @@
 
 use nalgebra::Matrix2;
 
+use super::notes::because;
 use super::{Assumptions, Constant, ConstitutiveError, InputSource, Notes, Provenance, TransverseShear};
-use crate::characterise::{Key, ValueStatus};
 use crate::finding::SectionFact;
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::{Estimate, significant};
@@ -35,16 +35,16 @@ pub(super) fn in_plane(assumptions: &Assumptions, notes: &mut Notes) -> Result<f
             notes.origin_value(Parameter::G, directions[1], &[(Constant::Shear, 0.5 * weft / g)]);
             let values = format!("{} and {} N/m", significant(warp), significant(weft));
             let why = format!("mean of G warp and weft, {values}{}", taken_off(tension));
-            (g, (Provenance::Measured, why.into()))
+            let values = [directions[0], directions[1]].map(|d| notes.known(Parameter::G, d));
+            (g, because(&values, why))
         }
         _ => match directions.into_iter().find_map(|d| Some((d, sheet.get(Parameter::G, d)?))) {
             Some((direction, measured)) => {
                 let g = measured.mean - tension;
                 notes.origin_value(Parameter::G, direction, &[(Constant::Shear, measured.mean / g)]);
-                let inferred =
-                    sheet.status(Key { parameter: Parameter::G, direction }) == ValueStatus::Inferred;
-                let provenance = if inferred { Provenance::Inferred } else { Provenance::Measured };
-                (g, (provenance, format!("G{}", taken_off(tension)).into()))
+                let of = direction.map_or(String::new(), |direction| format!(" of the {direction} alone"));
+                let why = format!("G{of}{}", taken_off(tension));
+                (g, because(&[notes.known(Parameter::G, direction)], why))
             }
             None => {
                 let g = assumptions.shear;

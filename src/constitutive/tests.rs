@@ -2,7 +2,7 @@
 //! factor of the gram-force.
 
 use super::*;
-use crate::characterise::{Key, Modulus};
+use crate::characterise::{Key, Modulus, ValueStatus};
 use crate::instrument::Direction;
 use crate::quantity::{BendingRigidity, Estimate, LineForce};
 use approx::assert_relative_eq;
@@ -164,6 +164,61 @@ fn stand_ins_are_marked_and_do_not_touch_bending() {
     assert_eq!(c.section.thickness, 4.97e-4);
     assert_eq!(codes(&c), ["C013", "C012", "C010"]);
     assert!(c.used.iter().any(|u| u.name == "tensile modulus" && u.provenance == Provenance::Assumed));
+}
+
+/// Warp curves of FB1 and FB2 alone: what they give stands for the weft, and the section says so.
+#[test]
+fn one_direction_stands_for_both() {
+    let mut warp = sheet(&[
+        (Parameter::B, WARP, 8e-6),
+        (Parameter::G, WARP, 50.0),
+        (Parameter::T0, None, 5e-4),
+        (Parameter::W, None, 0.15),
+    ]);
+    for (name, e) in [("tangent_low", 3000.0), ("secant", 4000.0)] {
+        warp.moduli.insert((name.into(), Direction::Warp), Estimate::single(e));
+    }
+    let assumptions = Assumptions { poisson_rule: PoissonRule::Zero, ..Assumptions::default() };
+    let c = section(&warp, &assumptions).unwrap();
+    assert_eq!((c.section.d_m[(0, 0)], c.section.d_m[(1, 1)]), (3000.0, 3000.0));
+    assert_eq!(codes(&c), ["C020", "C010"]);
+    for name in ["tensile modulus", "bending rigidity"] {
+        let used = c.used.iter().find(|u| u.name == name).unwrap();
+        assert_eq!(used.provenance, Provenance::Assumed, "{}", used.source);
+        assert!(
+            used.source.ends_with("that of the warp stands for the weft, which is not known"),
+            "{used:?}"
+        );
+    }
+    let e = c.inputs.iter().find(|i| i.name == "E warp").unwrap();
+    assert!(e.derivative.d_m[(0, 0)] > 0.0 && e.derivative.d_m[(1, 1)] > 0.0);
+    // The weft has another slope: both have that one, and nothing is made up.
+    warp.moduli.insert(("secant".into(), Direction::Weft), Estimate::single(2000.0));
+    let c = section(&warp, &assumptions).unwrap();
+    assert_eq!((c.section.d_m[(0, 0)], c.section.d_m[(1, 1)]), (4000.0, 2000.0));
+    // Slopes of two kinds, each said.
+    warp.moduli.remove(&("secant".into(), Direction::Warp));
+    let c = section(&warp, &assumptions).unwrap();
+    assert_eq!((c.section.d_m[(0, 0)], c.section.d_m[(1, 1)]), (3000.0, 2000.0));
+    let said = c.findings.iter().find(|f| f.code() == "C011").unwrap().to_string();
+    assert!(said.contains("no tangent_low modulus of the weft"), "{said}");
+    // A window is a choice that nothing replaces.
+    let window = Assumptions { modulus: Modulus::Window(LineForce(5.0), LineForce(20.0)), ..assumptions };
+    assert_eq!(section(&warp, &window).unwrap_err().code(), "C004");
+}
+
+/// What a finding says against a value stands beside it where it is used.
+#[test]
+fn doubts_of_the_sheet_stand_in_the_sources() {
+    let mut doubtful = cloth();
+    let (b, e) =
+        (Key { parameter: Parameter::B, direction: WEFT }, ("tangent_low".to_string(), Direction::Warp));
+    doubtful.statuses.insert(b, ValueStatus::Doubtful);
+    doubtful.modulus_statuses.insert(e, ValueStatus::Inferred);
+    let c = section(&doubtful, &Assumptions::default()).unwrap();
+    let source = |name: &str| c.used.iter().find(|u| u.name == name).map(|u| u.source.clone()).unwrap();
+    assert_eq!(source("bending rigidity"), "measured: B of KES-FB2 is D11, D22; B weft is doubtful");
+    assert_eq!(source("tensile modulus"), "inferred: tangent_low");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! measured value that a finding speaks against.
 
 use crate::finding::{Fact, Finding, SectionFact};
-use crate::instrument::{Parameter, Test};
+use crate::instrument::{Direction, Parameter, Test};
 use crate::report::table::FabricRow;
 
 /// Status of a value that a finding speaks against.
@@ -14,8 +14,9 @@ pub(super) const OF_PLATE: &str = "w_max";
 /// `an assumed E and a doubtful B warp`; nothing for a value of `quantity` that rests on measured values alone.
 pub(super) fn remark(rows: &[FabricRow], findings: &[Finding], quantity: &str) -> String {
     let (_, direction) = quantity.split_once(' ').unwrap_or_default();
-    let of_input = |symbol: &&str| match stand_in(symbol, findings) {
-        Some(assumed) => vec![assumed],
+    let of_input = |symbol: &&str| match stand_in(symbol, direction, findings) {
+        // What stands in is one value, of whatever direction.
+        Some(stand_in) => std::iter::once(stand_in).chain(doubts(rows, symbol, "")).collect(),
         None => doubts(rows, symbol, direction),
     };
     let mut remarks: Vec<String> = inputs(quantity).iter().flat_map(of_input).collect();
@@ -23,27 +24,62 @@ pub(super) fn remark(rows: &[FabricRow], findings: &[Finding], quantity: &str) -
     remarks.join(" and ")
 }
 
-/// `an assumed E`, where the stiffness that a test shows is a stand-in of the section.
-pub(super) fn assumed_of_test(test: Test, findings: &[Finding]) -> Option<String> {
+/// `an assumed E`, where the stiffness that a test along a direction shows is a stand-in of the section.
+pub(super) fn assumed_of_test(test: Test, direction: Direction, findings: &[Finding]) -> Option<String> {
     let symbol = match test {
         Test::Tensile => "E",
         Test::Shear => "G",
-        Test::Bending | Test::Compression | Test::Friction | Test::Roughness => return None,
+        Test::Bending => "B",
+        Test::Compression | Test::Friction | Test::Roughness => return None,
     };
-    stand_in(symbol, findings)
+    let is_stand_in = |finding: &Finding| {
+        Substitute::of(&finding.fact).is_some_and(|substitute| substitute.replaces(symbol, direction.name()))
+    };
+    findings.iter().any(is_stand_in).then(|| format!("an assumed {symbol}"))
 }
 
-fn stand_in(symbol: &str, findings: &[Finding]) -> Option<String> {
-    let is_of_symbol = |finding: &Finding| symbol_of_stand_in(&finding.fact) == Some(symbol);
-    findings.iter().any(is_of_symbol).then(|| format!("an assumed {symbol}"))
+/// `an assumed E weft`: what stands for a stiffness in a direction (any, if it is empty) that the sheet does not have.
+fn stand_in(symbol: &str, direction: &str, findings: &[Finding]) -> Option<String> {
+    findings.iter().find_map(|finding| {
+        if let Fact::Section(SectionFact::OneRigidity { known: None, .. }) = &finding.fact {
+            return (symbol == "B").then(|| "one B for warp and weft".to_string());
+        }
+        let substitute = Substitute::of(&finding.fact)?;
+        substitute.replaces(symbol, direction).then(|| format!("an assumed {}", substitute.name()))
+    })
 }
 
-/// The stiffness that a section has a stand-in for.
-fn symbol_of_stand_in(fact: &Fact) -> Option<&'static str> {
-    match fact {
-        Fact::Section(SectionFact::NoTensileModulus { .. }) => Some("E"),
-        Fact::Section(SectionFact::NoShearTest { .. }) => Some("G"),
-        _ => None,
+/// A stiffness that nobody measured, and for which the section has another value.
+struct Substitute {
+    symbol: &'static str,
+    /// The direction; none for both.
+    direction: Option<Direction>,
+}
+
+impl Substitute {
+    fn of(fact: &Fact) -> Option<Self> {
+        let (symbol, known) = match fact {
+            Fact::Section(SectionFact::NoTensileModulus { .. }) => ("E", None),
+            Fact::Section(SectionFact::NoShearTest { .. }) => ("G", None),
+            Fact::Section(SectionFact::OneModulus { known, .. }) => ("E", Some(*known)),
+            Fact::Section(SectionFact::OneRigidity { known: Some(known), .. }) => ("B", Some(*known)),
+            _ => return None,
+        };
+        let direction = known.map(|known| match known {
+            Direction::Warp => Direction::Weft,
+            Direction::Weft | Direction::Bias => Direction::Warp,
+        });
+        Some(Self { symbol, direction })
+    }
+
+    /// Whether it stands for that stiffness in a direction; in any, if `along` is empty.
+    fn replaces(&self, symbol: &str, along: &str) -> bool {
+        self.symbol == symbol
+            && (along.is_empty() || self.direction.is_none_or(|direction| direction.name() == along))
+    }
+
+    fn name(&self) -> String {
+        self.direction.map_or(self.symbol.to_string(), |direction| format!("{} {direction}", self.symbol))
     }
 }
 
@@ -115,8 +151,32 @@ mod tests {
     #[test]
     fn a_test_that_shows_a_stand_in_says_so() {
         let (_, findings) = sheet();
-        assert_eq!(assumed_of_test(Test::Tensile, &findings).as_deref(), Some("an assumed E"));
-        assert_eq!(assumed_of_test(Test::Bending, &findings), None);
-        assert_eq!(assumed_of_test(Test::Tensile, &[]), None);
+        let assumed = |test, findings: &[Finding]| assumed_of_test(test, Direction::Weft, findings);
+        assert_eq!(assumed(Test::Tensile, &findings).as_deref(), Some("an assumed E"));
+        assert_eq!(assumed(Test::Bending, &findings), None);
+        assert_eq!(assumed(Test::Tensile, &[]), None);
+    }
+
+    /// A sheet with tests of the warp alone: what is said of the weft rests on them.
+    #[test]
+    fn one_direction_that_stands_for_both_is_no_measurement_of_the_other() {
+        let (rows, _) = sheet();
+        let (fabric, known) = ("a".to_string(), Direction::Warp);
+        let modulus = "tangent_low".to_string();
+        let findings = [
+            Finding::new(SectionFact::OneModulus { fabric: fabric.clone(), known, modulus }),
+            Finding::new(SectionFact::OneRigidity { fabric, known: Some(known) }),
+        ];
+        let remark = |quantity: &str| remark(&rows, &findings, quantity);
+        assert_eq!((remark("E warp"), remark("E weft")), (String::new(), "an assumed E weft".into()));
+        assert_eq!(remark("bending_length warp"), "a doubtful B warp");
+        assert_eq!(remark("bending_length weft"), "an assumed B weft and a doubtful B warp");
+        assert_eq!(assumed_of_test(Test::Tensile, Direction::Warp, &findings), None);
+        assert_eq!(
+            assumed_of_test(Test::Bending, Direction::Weft, &findings).as_deref(),
+            Some("an assumed B")
+        );
+        let one = [Finding::new(SectionFact::OneRigidity { fabric: "a".into(), known: None })];
+        assert_eq!(super::remark(&rows[1..], &one, "bending_length warp"), "one B for warp and weft");
     }
 }

@@ -14,7 +14,7 @@ use super::observer::Observer;
 use crate::characterise::{FabricSheet, Key};
 use crate::constitutive::{Assumptions, Constitutive, InputSource, Provenance, Used, entries, section};
 use crate::finding::{EvaluationFact, Fact, Place};
-use crate::instrument::{FabricInfo, Origin};
+use crate::instrument::{FabricInfo, Origin, Parameter};
 use crate::platform::files;
 use crate::quantity::{Bands, repeats_text, significant};
 use crate::report::cards::{self, read::StatedSection};
@@ -188,7 +188,8 @@ fn sectioned(
     let made =
         section(&sheet, assumptions).map_err(|e| Failure::of_fabric(e, &sheet.name).at(place.clone()))?;
     let name = shared.contains(&path).then_some(sheet.name.as_str());
-    for finding in &made.findings {
+    // What is doubtful about its inputs is doubtful about the section.
+    for finding in sheet.findings.iter().chain(&made.findings) {
         let mut finding = finding.clone();
         finding.place.get_or_insert(place.clone());
         observer.found(name, &finding);
@@ -198,7 +199,7 @@ fn sectioned(
 
 /// The matrices of a section, the assumptions behind them, the bands of their entries and the repeats of the inputs.
 pub fn section_text(sheet: &FabricSheet, c: &Constitutive) -> String {
-    let mut page = format!("{}\n", sheet.name);
+    let mut page = format!("{} ({})\n", sheet.name, sheet.info.origin.name());
     for (symbol, unit, d) in [("D_m", "N/m", &c.section.d_m), ("D_b", "N·m", &c.section.d_b)] {
         let _ = writeln!(page, "\n{symbol} ({unit}), x = warp, y = weft\n{}", matrix(d));
     }
@@ -222,37 +223,46 @@ fn bands(c: &Constitutive) -> Columns {
         "value",
         "± 95 % of the mean",
         "± 95 % of one specimen",
+        "unit",
         "no spread known of",
     ]);
     for e in entries(&c.section, &c.inputs) {
         let half = |of: fn(&Bands) -> f64| e.bands.as_ref().map_or("-".into(), |b| significant(of(b)));
+        let unit = if e.matrix == "d_b" { Parameter::B.si_unit() } else { FORCE };
         columns.row([
             format!("{}[{},{}]", e.matrix, e.row, e.column),
             significant(e.value),
             half(|b| b.mean_fabric.half_width),
             half(|b| b.next_specimen.half_width),
+            unit.into(),
             e.without_spread.join(", "),
         ]);
     }
     columns
 }
 
-/// The measured inputs with their spread, and whether a repeat stands apart (K010).
+/// SI unit of moduli and of entries of D_m and D_s.
+const FORCE: &str = "N/m";
+
+/// The inputs with their spread, and whether a repeat stands apart (K010); a stand-in has no repeats.
 fn repeats(sheet: &FabricSheet, c: &Constitutive) -> Columns {
-    let mut columns = Columns::new(["measured", "mean", "SD", "n", "outlier"]);
+    let mut columns = Columns::new(["repeats of", "mean", "SD", "n", "unit", "outlier"]);
     for input in &c.inputs {
         let e = &input.estimate;
+        let (unit, n) = match &input.source {
+            InputSource::Value(key) => (key.parameter.si_unit(), repeats_text(e.n as u64, e.sd)),
+            InputSource::Modulus(..) => (FORCE, repeats_text(e.n as u64, e.sd)),
+            InputSource::Thickness => (Parameter::T0.si_unit(), "-".into()),
+            InputSource::ArealDensity => (Parameter::W.si_unit(), "-".into()),
+            InputSource::Tensile | InputSource::Shear => (FORCE, "stand-in".into()),
+        };
         let outlier = match input.source {
             InputSource::Value(key) => sheet.findings.iter().find_map(|f| outlier(key, &f.fact)),
             _ => None,
         };
-        columns.row([
-            input.name.clone(),
-            significant(e.mean),
-            e.sd.map_or("-".into(), significant),
-            repeats_text(e.n as u64, e.sd),
-            outlier.unwrap_or_default(),
-        ]);
+        let sd = e.sd.map_or("-".into(), significant);
+        let outlier = outlier.unwrap_or_default();
+        columns.row([input.name.clone(), significant(e.mean), sd, n, unit.into(), outlier]);
     }
     columns
 }

@@ -158,7 +158,7 @@ fn test_specimen(task: &Task, specimen: &ShellSpecimen, sheet: &FabricSheet) -> 
             let options = task.options().single();
             curve.cycle = study::simulate_cycle(specimen, direction, sheet, made, &options)?;
         }
-        let assumed = made.as_ref().and_then(|made| assumed_of_test(curve.test, &made.findings));
+        let assumed = made.as_ref().and_then(|made| assumed_of_test(curve.test, direction, &made.findings));
         tested.push(Tested { assumed, ..Tested::new(task.case, sheet, curve) });
     }
     Ok(tested)

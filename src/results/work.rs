@@ -226,8 +226,10 @@ pub(crate) fn without_fabric_named(
         )
     } else if lacks_law {
         (
-            format!("{name} is for fabrics with a friction law of bending, and none has one"),
-            "add FB2 loops, or 2HB beside B in a result table, or compute without friction (`law = \"elastic\"` in the case)",
+            format!(
+                "{name} is for fabrics with a friction law of bending for warp and weft, and none has both"
+            ),
+            "add FB2 loops of both directions, or 2HB beside B in a result table, or compute without friction (`law = \"elastic\"` in the case)",
         )
     } else {
         (

@@ -22,7 +22,19 @@ super::facts! {
             chosen: String,
             /// The one that is used.
             used: String,
-        } = "{fabric}: there is no {chosen} modulus; the {used} modulus is used instead";
+            /// The direction that lacks the chosen one, if the other has it.
+            direction: Option<Direction>,
+        } = "{fabric}: there is no {chosen} modulus{}; the {used} modulus is used instead",
+            direction.map_or(String::new(), |direction| format!(" of the {direction}"));
+        /// One tensile modulus stands for both directions.
+        "C020" OneModulus {
+            /// Name of the fabric.
+            fabric: String,
+            /// The direction that is known.
+            known: Direction,
+            /// The modulus that is used.
+            modulus: String,
+        } = "{fabric}: a tensile modulus is known of the {known} only ({modulus}); it stands for warp and weft alike";
         /// No tensile modulus.
         "C012" NoTensileModulus {
             /// Name of the fabric.

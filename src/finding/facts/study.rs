@@ -371,7 +371,7 @@ super::facts! {
         "S118" WithoutLaw {
             /// Their names.
             fabrics: Vec<String>,
-        } = "no friction law of bending (no FB2 loop, no 2HB beside B): left out for {}", fabrics.join(", ");
+        } = "no friction law of bending for both warp and weft (each takes FB2 loops, or 2HB beside B): left out for {}", fabrics.join(", ");
         /// A drape that the mesh leaves open.
         "S119" CoarseDrape {
             /// Elements of the finest mesh.
