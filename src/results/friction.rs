@@ -16,7 +16,7 @@ pub(super) fn text(sheet: &FabricSheet, units: UnitSystem) -> String {
     if sheet.laws.is_empty() {
         return String::new();
     }
-    let headings = ["friction law", "", "", "fit (%)", "line (%)", "noise (%)", "loop energy (%)"];
+    let headings = ["friction law", "", "", "fit (%)", "line (%)", "noise (%)", "energy error (%)"];
     let mut laws = Columns::new(headings);
     for law in &sheet.laws {
         let basis = match law.basis {

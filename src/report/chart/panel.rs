@@ -15,12 +15,12 @@ pub(super) enum Row {
     Sample(Stroke, String),
     /// The marker of a group (by number) and what it stands for.
     Marker(usize, String),
-    /// A name, and a value at the right edge.
+    /// A name, and a value at the right edge; below the name where both do not fit.
     Value(String, String),
     /// A remark, broken into lines as needed.
     Remark(String, RGBColor),
-    /// What does not fit beside the marker above.
-    More(String),
+    /// What does not fit into the line above, and how far from the left edge it begins.
+    More(String, f64),
     /// Half a line of nothing.
     Gap,
 }
@@ -29,6 +29,10 @@ const LINE: f64 = 37.0;
 const SIZE: f64 = 25.0;
 const SAMPLE: f64 = 66.0;
 const MARKER: f64 = 34.0;
+/// Between the sample of a line and its name.
+const AFTER_SAMPLE: f64 = 14.0;
+/// The least between a name and its value.
+const BETWEEN: f64 = 12.0;
 
 /// Draws the rows from `top` down, between `left` and `right`, closer together if they must be to end
 /// above `bottom`.
@@ -40,19 +44,7 @@ pub(super) fn draw(
 ) -> Result<(), ChartError> {
     let mut broken = Vec::new();
     for row in rows {
-        match row {
-            Row::Remark(text, color) => {
-                let lines = wrap(canvas, text, Type::new(SIZE * 0.92, *color), right - left)?;
-                broken.extend(lines.into_iter().map(|line| Row::Remark(line, *color)));
-            }
-            Row::Marker(group, name) => {
-                let lines = wrap(canvas, name, Type::new(SIZE, INK), right - left - MARKER)?;
-                let mut lines = lines.into_iter();
-                broken.push(Row::Marker(*group, lines.next().unwrap_or_default()));
-                broken.extend(lines.map(Row::More));
-            }
-            row => broken.push(row.clone()),
-        }
+        broken.extend(lines_of(canvas, row, right - left)?);
     }
     let lines: f64 = broken.iter().map(|r| if matches!(r, Row::Gap) { 0.5 } else { 1.0 }).sum();
     let shrink = ((bottom - top) / (lines * LINE)).min(1.0);
@@ -70,6 +62,43 @@ pub(super) fn draw(
     Ok(())
 }
 
+/// A row as lines of a width: no word of it is cut where it can be broken.
+fn lines_of(canvas: &Canvas, row: &Row, width: f64) -> Result<Vec<Row>, ChartError> {
+    let text = Type::new(SIZE, INK);
+    Ok(match row {
+        Row::Remark(remark, color) => {
+            let lines = wrap(canvas, remark, Type::new(SIZE * 0.92, *color), width)?;
+            lines.into_iter().map(|line| Row::Remark(line, *color)).collect()
+        }
+        Row::Heading(heading) => {
+            let lines = wrap(canvas, heading, text.bold(), width)?;
+            lines.into_iter().map(Row::Heading).collect()
+        }
+        Row::Marker(group, name) => {
+            let lines = wrap(canvas, name, text, width - MARKER)?;
+            first_and_more(lines, |line| Row::Marker(*group, line), MARKER)
+        }
+        Row::Sample(stroke, name) => {
+            let lines = wrap(canvas, name, text, width - SAMPLE - AFTER_SAMPLE)?;
+            first_and_more(lines, |line| Row::Sample(*stroke, line), SAMPLE + AFTER_SAMPLE)
+        }
+        Row::Value(name, value)
+            if canvas.text_width(name, text)? + canvas.text_width(value, text)? > width - BETWEEN =>
+        {
+            vec![Row::Value(name.clone(), String::new()), Row::Value(String::new(), value.clone())]
+        }
+        row => vec![row.clone()],
+    })
+}
+
+/// The first line as a row of its kind, and the others below it.
+fn first_and_more(lines: Vec<String>, first: impl Fn(String) -> Row, indent: f64) -> Vec<Row> {
+    let mut lines = lines.into_iter();
+    let mut rows = vec![first(lines.next().unwrap_or_default())];
+    rows.extend(lines.map(|line| Row::More(line, indent)));
+    rows
+}
+
 fn draw_row(
     canvas: &mut Canvas,
     row: &Row,
@@ -83,17 +112,16 @@ fn draw_row(
         Row::Heading(heading) => canvas.text((left, baseline), heading, text.bold()),
         Row::Sample(stroke, name) => {
             canvas.line(&[(left, middle), (left + SAMPLE, middle)], *stroke)?;
-            let name = fitted(canvas, name, text, right - left - SAMPLE - 14.0)?;
-            canvas.text((left + SAMPLE + 14.0, baseline), &name, text)
+            canvas.text((left + SAMPLE + AFTER_SAMPLE, baseline), name, text)
         }
         Row::Marker(group, name) => {
             marker(canvas, (left + 12.0, middle), 10.0, *group)?;
             canvas.text((left + MARKER, baseline), name, text)
         }
-        Row::More(line) => canvas.text((left + MARKER, baseline), line, text),
+        Row::More(line, indent) => canvas.text((left + indent, baseline), line, text),
         Row::Value(name, value) => {
             let width = canvas.text_width(value, text)?;
-            let name = fitted(canvas, name, text, right - left - width - 12.0)?;
+            let name = fitted(canvas, name, text, right - left - width - BETWEEN)?;
             canvas.text((left, baseline), &name, Type { color: GREY, ..text })?;
             canvas.text((right, baseline), value, text.align(Align::Right))
         }
@@ -148,4 +176,43 @@ pub(super) fn fitted(canvas: &Canvas, text: &str, kind: Type, width: f64) -> Res
         }
     }
     Ok("…".to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text(row: &Row) -> &str {
+        match row {
+            Row::Heading(text) | Row::Sample(_, text) | Row::Marker(_, text) => text,
+            Row::Value(name, value) => {
+                if name.is_empty() {
+                    value
+                } else {
+                    name
+                }
+            }
+            Row::Remark(text, _) | Row::More(text, _) => text,
+            Row::Gap => "",
+        }
+    }
+
+    /// The last words of a legend may be those that matter: `on an assumed E`.
+    #[test]
+    fn words_are_broken_into_lines_and_not_cut() {
+        let canvas = Canvas::new();
+        let rows = [
+            Row::Heading("warp, simulated, on an assumed E".into()),
+            Row::Sample(Stroke::solid(INK, 3.0), "warp, simulated, on an assumed E".into()),
+            Row::Value("warp".into(), "0.013355 ± 0.000052 gf·cm²/cm".into()),
+        ];
+        let words = |row: &Row| {
+            let lines = lines_of(&canvas, row, 260.0).unwrap();
+            (lines.len(), lines.iter().map(text).collect::<Vec<_>>().join(" "))
+        };
+        let [heading, sample, value] = rows.each_ref().map(words);
+        assert!(heading.0 > 1 && sample.0 > 1 && value.0 == 2, "{heading:?} {sample:?} {value:?}");
+        assert_eq!([heading.1.as_str(), sample.1.as_str()], ["warp, simulated, on an assumed E"; 2]);
+        assert_eq!(value.1, "warp 0.013355 ± 0.000052 gf·cm²/cm");
+    }
 }

@@ -143,7 +143,7 @@ impl Mesh {
             nodes: &self.nodes,
             quads: &self.quads,
             values,
-            profile_along: "x, middle line of the mesh".into(),
+            profile_along: "x of the flat sheet, middle line".into(),
             profile,
             notes: (sampled::values(task, "w_max", "mm", 1e-3).into_iter())
                 .map(|(band, value)| format!("{band}: largest |w| {value}"))
