@@ -23,6 +23,7 @@ mod onset;
 mod oracles;
 mod recording;
 mod relations;
+mod saturation;
 mod settings;
 mod sheet;
 mod simulated;

@@ -7,7 +7,8 @@ use std::ops::Range;
 use super::branch;
 use super::evaluation::Notes;
 use super::onset::{self, usual_step};
-use super::{CycleChoice, Settings};
+use super::specimen::noise_of;
+use super::{CycleChoice, Settings, saturation};
 use crate::finding::{EvaluationFact, RecordAxis, Samples};
 use crate::instrument::{Measurement, Shape, Test};
 use crate::quantity::Curve;
@@ -332,6 +333,9 @@ fn clipped(curve: &Curve, usual: f64, kept: &[usize], notes: &mut Notes<'_>) {
     let extremes = [(high, "greatest"), (low, "least")];
     let runs = level_runs(curve, usual);
     for (extreme, name) in extremes.into_iter().take(if two_sided { 2 } else { 1 }) {
+        if flickers(curve, usual, (extreme, name), kept, notes) {
+            continue;
+        }
         let (at, near): (Vec<_>, Vec<_>) = (runs.iter())
             .filter(|r| (curve.y[r.0.start] - extreme).abs() <= 0.5 * (high - low))
             .partition(|r| curve.y[r.0.start] == extreme);
@@ -345,11 +349,42 @@ fn clipped(curve: &Curve, usual: f64, kept: &[usize], notes: &mut Notes<'_>) {
             count: run.len(),
             first: named(m, &[kept[run.start]]),
             ordinate: extreme,
+            within: 0.0,
             extreme: name.to_string(),
             between: ends(&curve.x[run.clone()]),
         };
         notes.add_at(kept[run.start], fact);
     }
+}
+
+/// K044 of samples that are level within their noise.
+fn flickers(
+    curve: &Curve,
+    usual: f64,
+    (extreme, name): (f64, &str),
+    kept: &[usize],
+    notes: &mut Notes<'_>,
+) -> bool {
+    let Some(noise) = noise_of(&curve.y).filter(|noise| *noise > 0.0) else { return false };
+    let sign = if extreme == ends(&curve.y)[1] { 1.0 } else { -1.0 };
+    let turned = Curve::from_points(curve.points().map(|(x, y)| (x, sign * y)));
+    let steps = |run: Range<usize>| 1 + steps_made(&curve.x[run], usual);
+    let Some(run) = saturation::plateau(&turned, noise, usual, steps) else { return false };
+    let level = &curve.y[run.clone()];
+    let [low, high] = ends(level);
+    notes.add_at(
+        kept[run.start],
+        EvaluationFact::Clipped {
+            record: notes.record(),
+            count: run.len(),
+            first: named(notes.measurement, &[kept[run.start]]),
+            ordinate: level.iter().sum::<f64>() / level.len() as f64,
+            within: high - low,
+            extreme: name.to_string(),
+            between: ends(&curve.x[run]),
+        },
+    );
+    true
 }
 
 /// Runs of equal ordinates, each with the number of samples that the drive makes in it: one where it rests with

@@ -72,18 +72,24 @@ fn finite(curve: &Curve, dropouts: &[usize], notes: &mut Notes<'_>) -> Curve {
     Curve::from_points(kept.map(|(_, p)| p))
 }
 
-/// K009: the noise of the ordinate, from the median second difference, against its range.
-fn noise(curve: &Curve, settings: &Settings, notes: &mut Notes<'_>) {
-    let mut bends: Vec<f64> = curve.y.windows(3).map(|w| w[0] - 2.0 * w[1] + w[2]).collect();
+/// The standard deviation of the noise of ordinates, from the median of their second differences; `None` where these are those of a
+/// curve that is sampled far apart.
+pub(super) fn noise_of(y: &[f64]) -> Option<f64> {
+    let mut bends: Vec<f64> = y.windows(3).map(|w| w[0] - 2.0 * w[1] + w[2]).collect();
     // Those of noise change their sign twice in three steps; those of a curve that is sampled far apart keep it.
     let turns = bends.windows(2).filter(|w| w[0] * w[1] < 0.0).count();
     if 3 * turns < bends.len() {
-        return;
+        return None;
     }
     bends.iter_mut().for_each(|b| *b = b.abs());
     bends.sort_by(f64::total_cmp);
     // SD of white noise s: second differences have SD s √6, their median absolute value is 0.6745 of it.
-    let sd = bends[bends.len() / 2] / (0.6745 * 6f64.sqrt());
+    bends.get(bends.len() / 2).map(|median| median / (0.6745 * 6f64.sqrt()))
+}
+
+/// K009: the noise of the ordinate, from the median second difference, against its range.
+fn noise(curve: &Curve, settings: &Settings, notes: &mut Notes<'_>) {
+    let Some(sd) = noise_of(&curve.y) else { return };
     let low = curve.y.iter().copied().fold(f64::INFINITY, f64::min);
     let high = curve.y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let part = sd / (high - low);

@@ -391,14 +391,17 @@ super::facts! {
             count: usize,
             /// The first of them.
             first: Samples,
-            /// The ordinate (SI).
+            /// The ordinate, or the mean of those that flicker (SI).
             ordinate: f64,
+            /// By how much they flicker (SI); 0 where all are the same.
+            within: f64,
             /// `greatest` or `least`.
             extreme: String,
             /// The abscissae between which they lie (SI).
             between: [f64; 2],
-        } = "{record}: {count} samples in a row from {first} on sit at exactly {}, the {extreme} of the record, between {} and \
+        } = "{record}: {count} samples in a row from {first} on sit {} {}, the {extreme} of the record, between {} and \
              {}: the range of the amplifier? What is read there is not the cloth's",
+            level_within(*within, record.test),
             in_unit(*ordinate, record.test.kes_axes()[1]),
             in_unit(between[0], record.test.kes_axes()[0]),
             in_unit(between[1], record.test.kes_axes()[0]);
@@ -488,6 +491,15 @@ fn not_together(relation: Relation, keys: &[Key], ratio: f64) -> String {
         relation.text(),
         significant(ratio)
     )
+}
+
+/// How near to one ordinate samples stay: `at exactly`, or `within 2 gf/cm at`.
+fn level_within(within: f64, test: Test) -> String {
+    if within == 0.0 {
+        "at exactly".into()
+    } else {
+        format!("within {} of each other at", in_unit(within, test.kes_axes()[1]))
+    }
 }
 
 fn implausible(key: Key, range: Option<[f64; 2]>) -> String {
