@@ -56,6 +56,7 @@ mod sniff;
 mod specimen_size;
 mod states;
 mod statistic;
+mod status_word;
 mod suggest;
 mod unit_text;
 mod unpacked;

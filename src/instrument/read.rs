@@ -23,6 +23,7 @@ use super::workbook::{self, Archive};
 use super::{Measurement, Parameter, ResultValue, Source, StatedStiffness};
 use super::{cell_units, code_page, letters, limits, lines, means, samples, web_page};
 use crate::finding::{Fact, Finding, Place, ReadFact};
+use crate::kes::ValueStatus;
 use crate::platform;
 use crate::quantity::ArealDensity;
 
@@ -392,7 +393,7 @@ fn weight(header: &Header, context: &Context<'_>, content: &mut FileContent) -> 
             n: 1,
             values: Vec::new(),
             lines: Vec::new(),
-            inferred: false,
+            status: ValueStatus::Measured,
             place,
         };
         content.results.push((None, result));

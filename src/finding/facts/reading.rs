@@ -250,6 +250,15 @@ super::facts! {
             keys: Vec<Key>,
         } = "the numbers behind {} in its cells are no standard deviations, as a heading, the line above the table or their size says, and \
              are left out: give them a column of their own", several_keys(keys);
+        /// Words in a column of statuses that are none.
+        "R140" UnknownStatus {
+            /// The words with their lines.
+            cells: Vec<LeftOutLine>,
+        } = "words under `status` are not known, and their values are read as measured: {}; the words are measured, inferred, assumed \
+             and doubtful", lines(cells);
+        /// A fabric.toml that does not say where the data come from.
+        "R141" AssumedOrigin {} = "no `origin` is stated, and the data count as measured: write `origin = \"measured\"`, \"published\" or \
+             \"synthetic\"";
         /// Blank cells below a direction or a parameter.
         "R124" MergedCells {} = "blank cells are read as the direction or parameter above them, as of merged cells: fill them in \
              if they are something else";

@@ -56,5 +56,9 @@ impl Table<'_, '_> {
         if let Some((place, cells)) = self.bounds.take() {
             tell(ReadFact::BoundsLeftOut { cells }, place);
         }
+        if let Some(first) = self.unknown_statuses.first() {
+            let place = (first.line, 0);
+            tell(ReadFact::UnknownStatus { cells: std::mem::take(&mut self.unknown_statuses) }, place);
+        }
     }
 }
