@@ -72,6 +72,8 @@ const CASES: &[(&str, &str, &str)] = &[
     ("R137", "r137-zeros.csv", "r137-zeros.csv:3:3"),
     ("R138", "r138-maximum.csv", "r138-maximum.csv:4"),
     ("R139", "r139-brackets.csv", "r139-brackets.csv:3:3"),
+    ("R142", "r142-stars.csv", "r142-stars.csv:2:3"),
+    ("R143", "r143-row-names.csv", "r143-row-names.csv:1"),
     ("R141", "r141-no-origin", "r141-no-origin/fabric.toml"),
     ("R140", "r140-status.csv", "r140-status.csv:3"),
     ("R135", "r135-page.csv", "r135-page.csv"),

@@ -49,6 +49,7 @@ pub mod picture;
 mod raw;
 mod read;
 mod result_table;
+mod row_names;
 mod samples;
 mod section;
 mod shape;

@@ -127,6 +127,7 @@ pub(super) fn read(
         above: None,
         marked: None,
         bounds: None,
+        overflows: None,
         unknown_statuses: Vec::new(),
         factors: BTreeSet::new(),
         odd_names: Vec::new(),
@@ -190,6 +191,8 @@ struct Table<'t, 'a> {
     marked: noted::Cells,
     /// The same of cells that bound a value.
     bounds: noted::Cells,
+    /// Those that an instrument could not show.
+    overflows: noted::Cells,
     /// Words for statuses that are not known, with their lines.
     unknown_statuses: Vec<LeftOutLine>,
     /// Columns of factors that were told.
@@ -222,6 +225,8 @@ impl<'t> Table<'t, '_> {
         let mut out = Vec::new();
         let titles = self.titles(region);
         let (mut group, mut sums_up) = (None, false);
+        // Directions within each fabric end with it; those over several fabrics do not.
+        let mut within = None;
         for row in &region.rows {
             let is_remark = row.get(0).is_some_and(|t| t.starts_with('#')) && row.filled().count() == 1;
             if is_remark {
@@ -234,8 +239,14 @@ impl<'t> Table<'t, '_> {
             }
             if let Some(title) = titles.get(&row.line) {
                 match title {
-                    Title::Fabric(name) => self.above = Some(name.clone()),
-                    Title::Group(name) => group = Some(name),
+                    Title::Fabric(name) => {
+                        self.above = Some(name.clone());
+                        self.end_section(&mut within);
+                    }
+                    Title::Group(name) => {
+                        group = Some(name);
+                        self.end_section(&mut within);
+                    }
                     Title::NoDirection => (self.section, sums_up) = (None, false),
                     Title::Summary(text) => {
                         sums_up = true;
@@ -416,7 +427,10 @@ impl<'t> Table<'t, '_> {
         let mut deviations = Vec::new();
         let first = self.data.len();
         for column in &columns {
-            let Some(cell) = row.get(column.index).filter(|c| !is_gap(c)) else { continue };
+            let Some(cell) = row.get(column.index).filter(|c| !self.is_not_measured(row, column.index, c))
+            else {
+                continue;
+            };
             if self.states_no_value(row, column.index, cell) {
                 continue;
             }
