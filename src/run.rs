@@ -186,7 +186,10 @@ pub fn read(job: &Job, settings: &RunSettings, observer: &Observer) -> Result<Ru
     let fabrics = job.share.is_none().then(|| catalogue.len());
     let cases = settings.drapes.choose(cases, fabrics, observer);
     let (threads, limits, share) = (job.threads.max(1), job.limits, job.share);
-    let work = RunWork { cases, catalogue, failures, threads, limits, share };
+    let mut work = RunWork { cases, catalogue, failures, threads, limits, share };
+    let idle = work.leave_out_idle_cases();
+    idle.iter().for_each(|failure| observer.failed(failure));
+    work.failures.extend(idle);
     // A shard may have nothing.
     let may_be_empty = work.catalogue.left_out || job.share.is_some_and(|share| !share.of_whole);
     if work.is_empty() && work.failures.is_empty() && !may_be_empty {

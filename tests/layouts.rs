@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use approx::assert_relative_eq;
-use kesf::characterise::{FabricSheet, Settings, characterise};
+use kesf::characterise::{FabricSheet, Settings, ValueStatus, characterise};
 use kesf::instrument::{
     Dialect, Direction, FabricInput, FileContent, Parameter, ReadError, ReadSettings, Test, parse,
     read_fabrics,
@@ -285,7 +285,7 @@ fn fast_values_give_bending_and_shear_rigidity() {
         max_relative = 1e-12
     );
     assert_relative_eq!(value_of(Parameter::G, None).mean, 41.0, max_relative = 1e-12);
-    assert!(value_of(Parameter::G, None).inferred);
+    assert!(value_of(Parameter::G, None).status == ValueStatus::Inferred);
     assert!(content.findings.iter().any(|f| f.code() == "R104" && f.message().contains("E100-1")));
 }
 
@@ -302,7 +302,7 @@ fn a_sheet_of_fast_is_read_for_what_it_determines() {
     for (direction, b) in [(Direction::Warp, 11.34e-6), (Direction::Weft, 9.4e-6)] {
         let found = value_of(Parameter::B, Some(direction)).unwrap();
         assert_relative_eq!(found.mean, b, max_relative = 1e-12);
-        assert!(found.inferred && found.n == 1);
+        assert!(found.status == ValueStatus::Inferred && found.n == 1);
     }
     assert_relative_eq!(value_of(Parameter::G, None).unwrap().mean, 39.7, max_relative = 1e-12);
     assert!(value_of(Parameter::T0, None).is_none() && value_of(Parameter::B, None).is_none());

@@ -5,8 +5,9 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use approx::assert_relative_eq;
+use kesf::characterise::{Key, Settings, ValueStatus, characterise};
 use kesf::instrument::fab::FabKind;
-use kesf::instrument::{Direction, Parameter, ReadSettings, Shape, Test, read_fabrics};
+use kesf::instrument::{Direction, FabricInput, Parameter, ReadSettings, Shape, Test, parse, read_fabrics};
 
 /// Every synthetic fabric has 3 specimens of 4 tests in 2 directions (compression has none).
 #[test]
@@ -83,7 +84,7 @@ fn published_result_tables_are_read() {
     // M2: B weft = 0.33 µN·m; EMT weft = 31.3 %, marked as inferred in the table.
     assert_relative_eq!(value(5, Parameter::B, Some(Direction::Weft)).mean, 0.33e-6, max_relative = 1e-14);
     let emt = value(5, Parameter::Emt, Some(Direction::Weft));
-    assert!(emt.inferred);
+    assert!(emt.status == ValueStatus::Inferred);
     assert_relative_eq!(emt.mean, 0.313, max_relative = 1e-14);
 }
 
@@ -237,4 +238,50 @@ fn files_that_are_named_know_their_fabric() {
     // Without a fabric.toml each is its own; what stands before a `..` is not above it.
     assert_eq!(names(&[file("b/x_1.csv"), file("b/x_2.csv")]), [("x".into(), 1), ("x".into(), 1)]);
     assert_eq!(names(&[file("a/raw/../../b/x_1.csv")]), [("x".into(), 1)]);
+}
+
+/// What a table says of each value goes with it, in words of several languages; what is not known is told by line and word.
+#[test]
+fn the_status_of_a_table_is_that_of_its_values() {
+    let text = "parameter,direction,mean,unit,status\nB,warp,0.1,gf·cm²/cm,published\nB,weft,0.09,gf·cm²/cm,doubtful\n\
+                2HB,warp,0.05,gf·cm/cm,calculated\nT0,,0.5,mm,assumed\nTm,,0.3,mm,estimated\nG,warp,0.7,gf/(cm·deg),angenommen\n\
+                G,weft,0.7,gf/(cm·deg),approved\nW,,12,mg/cm²,mean_of_warp_and_weft\n";
+    let content = parse(Path::new("t.csv"), text.as_bytes(), &ReadSettings::default()).unwrap();
+    let told: Vec<String> =
+        content.findings.iter().filter(|f| f.code() == "R140").map(ToString::to_string).collect();
+    assert!(told.len() == 1 && told[0].starts_with("t.csv:8: ") && told[0].contains("\"approved\" (line 8)"));
+    let results = content.results.into_iter().map(|(_, value)| value).collect();
+    let input = FabricInput { name: "x".into(), results, ..FabricInput::default() };
+    let sheet = characterise(&input, &Settings::default());
+    let (warp, weft) = (Some(Direction::Warp), Some(Direction::Weft));
+    for (parameter, direction, status) in [
+        (Parameter::B, warp, ValueStatus::Measured),
+        (Parameter::B, weft, ValueStatus::Doubtful),
+        (Parameter::Hb, warp, ValueStatus::Inferred),
+        (Parameter::T0, None, ValueStatus::Assumed),
+        (Parameter::Tm, None, ValueStatus::Assumed),
+        (Parameter::G, warp, ValueStatus::Assumed),
+        (Parameter::G, weft, ValueStatus::Measured),
+        (Parameter::W, None, ValueStatus::Measured),
+    ] {
+        assert_eq!(sheet.status(Key { parameter, direction }), status, "{parameter} {direction:?}");
+    }
+    // A mean is no better than the worst of its repeats, whichever comes first.
+    let repeats = "parameter,direction,mean,unit,status\nB,warp,0.1,gf·cm²/cm,measured\nB,warp,0.12,gf·cm²/cm,assumed\n";
+    let content = parse(Path::new("t.csv"), repeats.as_bytes(), &ReadSettings::default()).unwrap();
+    assert_eq!(content.results[0].1.status, ValueStatus::Assumed);
+}
+
+/// A fabric.toml that does not say where the data come from is told, once; one that does is not.
+#[test]
+fn an_origin_that_nobody_states_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("t.csv"), "parameter,direction,mean,unit\nB,warp,0.1,gf·cm²/cm\n")
+        .unwrap();
+    for (toml, told) in [("name = \"x\"\n", 1), ("origin = \"measured\"\n", 0)] {
+        std::fs::write(folder.path().join("fabric.toml"), toml).unwrap();
+        let batch = read_fabrics(&[folder.path().to_path_buf()], &ReadSettings::default(), &|_: &Path| ());
+        let found = batch.fabrics[0].findings.iter().filter(|f| f.code() == "R141").count();
+        assert_eq!(found, told, "{toml}");
+    }
 }

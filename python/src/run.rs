@@ -8,7 +8,7 @@ use kesf::case::SolverChoice;
 use kesf::report::OutputFolder;
 use kesf::report::chart::Format;
 use kesf::report::table::{FabricRow, PredictionRow, ProblemRow};
-use kesf::results::{Event, Failure, Job, MemorySink, Sink};
+use kesf::results::{Event, Failure, Job, MemorySink, Sink, refuse_inputs};
 use kesf::run::{Drapes, FILES, RunReport, RunSettings, read, write};
 use kesf::verify::{document, run as check_all, suite};
 use pyo3::prelude::*;
@@ -116,6 +116,7 @@ pub fn run(
             let files = if keep { sink.into_files().into_iter().collect() } else { Files::new() };
             return Ok((rows, report, files));
         };
+        refuse_inputs(&out, &job.inputs)?;
         let folder = OutputFolder::open(&out, force)?;
         folder.refuse_foreign(&FILES)?;
         let report = write(&job, &settings, &work, &folder, observer)?;

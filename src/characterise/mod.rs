@@ -36,9 +36,8 @@ mod strip_bending;
 mod surface;
 mod tables;
 mod tensile;
-mod value_status;
 
-pub use crate::kes::Key;
+pub use crate::kes::{Key, ValueStatus};
 pub use choices::{CycleChoice, Modulus, Sides, SlopeMethod, Sweeps};
 pub(crate) use friction::nnls::nnls;
 pub use friction::{
@@ -51,7 +50,6 @@ pub use sheet::{Branch, FabricSheet, RunTo, SpecimenResult, Window};
 pub use simulated::parameters;
 pub use spread::{MeanBranch, mean_branches};
 pub use strip::{StripCycle, StripTest};
-pub use value_status::ValueStatus;
 
 use crate::finding::Place;
 use crate::instrument::{FabricInput, Measurement};

@@ -383,7 +383,7 @@ fn what_the_set_of_records_says_about_itself() {
 fn tables_stand_beside_curves() {
     use crate::finding::Place;
     use crate::instrument::ResultValue;
-    let cell = |parameter, direction, mean, inferred| ResultValue {
+    let cell = |parameter, direction, mean, status| ResultValue {
         parameter,
         direction,
         mean,
@@ -391,7 +391,7 @@ fn tables_stand_beside_curves() {
         n: 5,
         values: Vec::new(),
         lines: Vec::new(),
-        inferred,
+        status,
         place: Place::at("results.csv", 2, 3),
     };
     let warp = Some(Direction::Warp);
@@ -399,11 +399,11 @@ fn tables_stand_beside_curves() {
         FabricInput { measurements: vec![bent(8e-6, Direction::Warp, 1)], ..FabricInput::default() };
     input.info.thickness = Some(4e-4);
     input.results = vec![
-        cell(P::B, warp, 9e-6, false),
-        cell(P::Hb, warp, 6.1e-4, false),
-        cell(P::Emt, warp, 0.05, true),
-        cell(P::Lt, warp, 0.8, false),
-        cell(P::B, None, 8.5e-6, false),
+        cell(P::B, warp, 9e-6, ValueStatus::Measured),
+        cell(P::Hb, warp, 6.1e-4, ValueStatus::Measured),
+        cell(P::Emt, warp, 0.05, ValueStatus::Inferred),
+        cell(P::Lt, warp, 0.8, ValueStatus::Measured),
+        cell(P::B, None, 8.5e-6, ValueStatus::Measured),
     ];
     let sheet = characterise(&input, &Settings::default());
     assert_eq!(codes(&sheet), ["K014", "K016", "K017", "K021", "K020"], "{:#?}", sheet.findings);

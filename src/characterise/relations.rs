@@ -92,7 +92,7 @@ mod tests {
                 n: 1,
                 values: Vec::new(),
                 lines: Vec::new(),
-                inferred: false,
+                status: Default::default(),
                 place: Place::at("table.csv", 2, column + 1),
             }
         });

@@ -8,8 +8,7 @@ use serde::Serialize;
 use super::friction::FrictionLaw;
 use super::graph::LineFit;
 use super::strip::StripTest;
-use super::value_status::ValueStatus;
-use super::{CycleChoice, Key, Settings};
+use super::{CycleChoice, Key, Settings, ValueStatus};
 use crate::finding::Finding;
 use crate::instrument::fab::FabTest;
 use crate::instrument::{

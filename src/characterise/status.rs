@@ -3,10 +3,9 @@
 use std::path::Path;
 
 use super::FabricSheet;
-use super::value_status::ValueStatus;
 use crate::finding::{EvaluationFact, Fact, Finding, Place, ReadFact};
 use crate::instrument::Test;
-use crate::kes::{Direction, Key, Parameter, RecordName};
+use crate::kes::{Direction, Key, Parameter, RecordName, ValueStatus};
 
 /// What a finding speaks of.
 enum Scope<'a> {
@@ -201,7 +200,7 @@ fn of_evaluation(fact: &EvaluationFact) -> Option<(Scope<'_>, ValueStatus)> {
         F::OtherDirection { parameter, own, .. } => (value(*parameter, Some(*own)), Doubtful),
         F::ShearDiffers { .. } => (Scope::Test(Test::Shear), Doubtful),
         F::OtherThickness { .. } => (value(Parameter::T0, None), Doubtful),
-        F::Inferred { key } => (Scope::Value(*key), Inferred),
+        F::StatedStatus { key, status } => (Scope::Value(*key), *status),
         F::BuckledStrips { direction, .. } => (value(Parameter::B, Some(*direction)), Inferred),
         F::BendLoopLaw { keys, .. } => (Scope::Values(keys), Inferred),
         F::LowLoad { direction, .. } => (value(Parameter::B, Some(*direction)), Doubtful),

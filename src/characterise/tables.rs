@@ -6,6 +6,7 @@ use super::statistics::outlier;
 use super::{FabricSheet, Key, Modulus, Settings};
 use crate::finding::{EvaluationFact, Finding, Place};
 use crate::instrument::{Direction, FabricInput, Parameter, ResultValue};
+use crate::kes::ValueStatus;
 use crate::quantity::Estimate;
 
 /// Difference between a table and the curves that is reported.
@@ -19,8 +20,8 @@ pub(super) fn merge(sheet: &mut FabricSheet, input: &FabricInput, settings: &Set
         cells.entry(key).or_default().push(value);
     }
     for (key, values) in cells {
-        for value in values.iter().filter(|v| v.inferred) {
-            let fact = EvaluationFact::Inferred { key };
+        for value in values.iter().filter(|v| v.status != ValueStatus::Measured) {
+            let fact = EvaluationFact::StatedStatus { key, status: value.status };
             sheet.findings.push(Finding::new(fact).at(value.place.clone()));
         }
         let Some(estimate) = together(&values) else { continue };

@@ -49,6 +49,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
 }
 
 fn build(options: &Build, ui: &Ui) -> Result<Exit, Failure> {
+    Shelf::refuse_ending(&options.output)?;
     let mut shelf = Shelf::default();
     options.results.iter().try_for_each(|path| shelf.add(&Stored(path.clone())))?;
     write_file(&options.output, &shelf.parquet()?, options.force)?;

@@ -14,6 +14,7 @@ use crate::library::{Answer, Bounds, LibraryError, LibraryFile, Like, Question};
 use crate::platform::files;
 use crate::report::arrow::write;
 use crate::report::arrow_text::{Records, csv, units};
+use crate::report::number::counted;
 use crate::report::table::{FabricRow, UnitSystem, fabric_rows};
 use crate::results::{Curves, Failure, Input};
 
@@ -86,7 +87,7 @@ fn rows(path: &Path, options: &Find, ui: &Ui) -> Result<Vec<FabricRow>, Failure>
         [] if !failures.is_empty() => Err(failures.remove(0)),
         several => Err(Failure::new(
             "O058",
-            format!("{} has {} fabrics, and one is asked for", path.display(), several.len()),
+            format!("{} has {}, and one is asked for", path.display(), counted(several.len(), "fabric")),
         )
         .hint("name the folder or the file of one fabric")),
     }

@@ -24,7 +24,7 @@ pub struct Options {
 }
 
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
-    let folder = open_folder(&options.output, options.force)?;
+    let folder = open_folder(&options.output, &[], options.force)?;
     let mut command = Cli::command().disable_help_subcommand(true);
     command.build();
     let inner = command.get_subcommands().flat_map(|own| std::iter::once(own).chain(own.get_subcommands()));

@@ -56,7 +56,7 @@ use crate::results::Failure;
 
 /// Runs the program with these arguments (the first is its name) and says how it ended.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let arguments = when::joined(arguments);
     hush_guarded();
     let cli = match Cli::try_parse_from(&arguments) {
         Ok(cli) => cli,

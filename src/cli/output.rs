@@ -9,7 +9,7 @@ use super::format::{ResultFormat, TableFormat};
 use crate::report::OutputFolder;
 use crate::report::table::marked;
 use crate::report::write::write_file;
-use crate::results::Failure;
+use crate::results::{Failure, Input, refuse_inputs};
 
 /// Where a single result goes.
 #[derive(Debug, Args)]
@@ -31,8 +31,9 @@ impl OutputArgs {
         let ending = self.output.extension().and_then(|e| e.to_str()).unwrap_or_default();
         match ending.to_ascii_lowercase().as_str() {
             _ if is_stdin(&self.output) => Ok(if json { ResultFormat::Json } else { ResultFormat::Text }),
-            "txt" => Ok(ResultFormat::Text),
             "json" => Ok(ResultFormat::Json),
+            _ if json => Err(self.no_such_format(".json, or leave --json out")),
+            "txt" => Ok(ResultFormat::Text),
             "csv" => Ok(ResultFormat::Csv),
             "parquet" => Ok(ResultFormat::Parquet),
             "xlsx" => Ok(ResultFormat::Xlsx),
@@ -93,11 +94,12 @@ pub fn is_stdin(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Opens a folder of results before the long work.
-pub fn open_folder(root: &Path, force: bool) -> Result<OutputFolder, Failure> {
+/// Opens a folder of results of these inputs before the long work.
+pub fn open_folder(root: &Path, inputs: &[Input], force: bool) -> Result<OutputFolder, Failure> {
     if is_stdin(root) {
         return Err(Failure::new("O050", "several files do not go to standard output")
             .hint("name a folder, such as `-o out`; `--json` prints one document"));
     }
+    refuse_inputs(root, inputs)?;
     Ok(OutputFolder::open(root, force)?)
 }

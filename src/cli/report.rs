@@ -13,7 +13,7 @@ use crate::finding::Place;
 use crate::report::OutputFolder;
 use crate::report::html::{LIMIT, OneFile, self_contained};
 use crate::report::number::counted;
-use crate::report::write::{results_reader, write_file};
+use crate::report::write::{refuse_part_of, results_reader, write_file};
 use crate::results::Failure;
 
 /// Name of the page within the folder.
@@ -59,11 +59,8 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let OneFile { page, left_out } = self_contained(&index, limit, required)?
         .ok_or_else(|| Failure::new("O059", "index.html is none of `kesf run`").at(Place::file(folder)))?;
     if !left_out.is_empty() {
-        let (count, folder) = (left_out.len(), folder.display());
-        ui.note(&format!(
-            "left out: {}, to be found in {folder}; --all-pictures puts them in",
-            counted(count, "picture")
-        ));
+        let (count, folder) = (counted(left_out.len(), "picture"), folder.display());
+        ui.note(&format!("left out: {count}, to be found in {folder}; --all-pictures puts them in"));
     }
     let written = match &options.output {
         Some(output) if is_stdin(output) && ui.json => {
@@ -72,6 +69,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         Some(output) if is_stdin(output) => return ui.print(&page),
         Some(output) => {
             let output = if is_folder(output) { output.join(PAGE) } else { output.clone() };
+            refuse_part_of(folder, &output, PAGE)?;
             write_file(&output, page.as_bytes(), options.force)?;
             output
         }

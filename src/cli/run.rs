@@ -63,8 +63,8 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         charts: !options.task.no_charts,
         formats: options.task.format.0.clone(),
         population: options.population.as_deref().map(population).transpose()?,
-        fields: options.fields.into(),
-        drapes: options.drape.into(),
+        fields: options.fields.answer().into(),
+        drapes: options.drape.answer().into(),
         fresh: options.fresh,
         program: program(),
         stamp: options.stamp.then(now),
@@ -80,7 +80,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     if work.is_empty() {
         return Ok(Exit::of_batch(0, &work.failures));
     }
-    let folder = open_folder(&options.output, options.task.force)?;
+    let folder = open_folder(&options.output, &job.inputs, options.task.force)?;
     folder.refuse_foreign(&run::FILES)?;
     let report = ui.observe(|observer| run::write(&job, &settings, &work, &folder, observer))?;
     let shown = options.output.display();

@@ -6,7 +6,7 @@ use super::exit::Exit;
 use super::ui::Ui;
 use crate::documents::{PartDocument, PartRows};
 use crate::parts::{self, Done, make};
-use crate::results::{Failure, Job, Shard, Share};
+use crate::results::{Failure, Job, Shard, Share, refuse_inputs};
 use crate::run::RunSettings;
 
 /// What is to be done of it.
@@ -18,6 +18,7 @@ pub struct ShardRequest<'r> {
 }
 
 pub fn run(shard: Shard, request: &ShardRequest, ui: &Ui) -> Result<Exit, Failure> {
+    refuse_inputs(request.folder, &request.job.inputs)?;
     let share = Share { shard, of_whole: true };
     let job = Job { share: Some(share), ..request.job.clone() };
     let (settings, folder, force) = (&request.settings, request.folder, request.force);

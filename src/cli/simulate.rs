@@ -24,7 +24,8 @@ pub struct SimulateArgs {
 pub fn simulate(kind: BatchKind, inputs: &[PathBuf], args: &SimulateArgs, ui: &Ui) -> Result<Exit, Failure> {
     let job = args.task.job(inputs, ui)?;
     let mut work = ui.observe(|observer| job.read(observer))?;
-    let sink = args.output.as_ref().map(|root| open_folder(root, args.task.force)).transpose()?;
+    let sink =
+        args.output.as_ref().map(|root| open_folder(root, &job.inputs, args.task.force)).transpose()?;
     let folder =
         sink.as_ref().map(|sink| Folder::new(sink, !args.task.no_charts).with_formats(&args.task.format.0));
     let batch = ui.observe(|observer| Batch::simulate(&mut work, kind, folder.as_ref(), observer))?;

@@ -100,7 +100,7 @@ fn paper(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         .collect();
     let seconds = start.elapsed().as_secs_f64();
     if let Some(path) = &options.output {
-        let sink = open_folder(path, options.force)?;
+        let sink = open_folder(path, &[], options.force)?;
         write_claims(&claims, &Folder::new(&sink, true))?;
         sink.finish()?;
     }

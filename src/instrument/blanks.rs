@@ -12,6 +12,9 @@ const ROWS: usize = 3;
 /// The text with a tab at the end of each gap between two cells, so that every character keeps its column; `None` if
 /// the text is no table of that kind.
 pub(super) fn tabbed(text: &str) -> Option<String> {
+    if let Some(out) = quoted(text) {
+        return Some(out);
+    }
     let mut out = String::with_capacity(text.len());
     let (mut rows, mut before) = (0, None);
     for line in text.split_inclusive('\n') {
@@ -27,6 +30,38 @@ pub(super) fn tabbed(text: &str) -> Option<String> {
         split_gaps(line, if numbers { 1 } else { 2 }, &mut out);
     }
     if rows >= ROWS { Some(out) } else { by_gaps(text) }
+}
+
+/// A table of R: one blank between cells, words in quotes, and heads that are all words, over all columns or all but that of the names of
+/// rows.
+fn quoted(text: &str) -> Option<String> {
+    let mut lines = text.lines().filter(|line| !line.trim().is_empty());
+    let heads = lines.next().filter(|line| line.starts_with('"') && line.ends_with('"'))?;
+    let width = blanks_between(heads).count();
+    let mut counts: Vec<usize> = lines
+        .filter(|line| !line.contains('\t') && line.starts_with('"'))
+        .map(|line| blanks_between(line).count())
+        .collect();
+    let rows = text.lines().filter(|line| !line.trim().is_empty()).count() - 1;
+    let is_whole = counts.len() == rows && rows > 0 && width > 0;
+    counts.dedup();
+    let is_table = is_whole && (counts == [width] || counts == [width + 1]);
+    let mut out = text.as_bytes().to_vec();
+    let mut start = 0;
+    for line in text.split_inclusive('\n') {
+        blanks_between(line.trim_end()).for_each(|at| out[start + at] = b'\t');
+        start += line.len();
+    }
+    String::from_utf8(out).ok().filter(|_| is_table)
+}
+
+/// Where the blanks outside of quotes are.
+fn blanks_between(line: &str) -> impl Iterator<Item = usize> + '_ {
+    let mut is_within = false;
+    line.char_indices().filter_map(move |(at, c)| {
+        is_within ^= c == '"';
+        (c == ' ' && !is_within).then_some(at)
+    })
 }
 
 /// A table with words in its rows: cells stand apart by two blanks or more, and every row of values has as many of them.

@@ -17,6 +17,7 @@ use super::error::{Problem, ReadError};
 use super::fab::as_number;
 use super::{Direction, Parameter, ResultValue, StatedStiffness};
 use crate::finding::Place;
+use crate::kes::ValueStatus;
 
 /// A dyn times a cm (N·m).
 const DYN_CM: f64 = 1e-7;
@@ -87,7 +88,7 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<Option<Block>, ReadError>
 fn inferred(path: &Path, parameter: Parameter, direction: Option<Direction>, mean: f64) -> ResultValue {
     let place = Place::file(path);
     let (sd, values, lines) = (None, Vec::new(), Vec::new());
-    ResultValue { parameter, direction, mean, sd, n: 1, values, lines, inferred: true, place }
+    ResultValue { parameter, direction, mean, sd, n: 1, values, lines, status: ValueStatus::Inferred, place }
 }
 
 #[cfg(test)]
@@ -103,7 +104,7 @@ mod tests {
     fn values_have_the_units_of_the_help() {
         let block = parse(Path::new("cupro.json"), FILE).unwrap().unwrap();
         let rounded = |(name, v): &(Option<String>, ResultValue)| {
-            assert!(v.inferred && name.as_deref() == Some("cupro"));
+            assert!(v.status == ValueStatus::Inferred && name.as_deref() == Some("cupro"));
             (v.parameter.symbol(), v.direction, (v.mean * 1e9).round())
         };
         let (warp, weft) = (Some(Direction::Warp), Some(Direction::Weft));

@@ -81,6 +81,13 @@ pub(super) fn measurement(
         conditions.maximum = context.conditions.over_standard(test).maximum;
         log.push("the stated maximum is the peak of the record: it is no setting".to_string());
     }
+    if bare_force(header).is_some() && (peak(test, &curve) / conditions.maximum - 1.0).abs() > OFF_SETTING {
+        conditions.maximum = context.conditions.over_standard(test).maximum;
+        log.push(
+            "the stated maximum is a force, and not where the record ends: it is that of the load cell"
+                .to_string(),
+        );
+    }
     let specimen = specimen(header, context)?;
     log.push(inference::curve(test, direction, specimen, pair, context, &points.rows));
     let measurement = Measurement {
@@ -246,7 +253,12 @@ fn conditions(
         c.width = width;
     }
     c.gauge = gauge(test, header, c.width, context)?.unwrap_or(c.gauge);
-    if let Some(m) = maximum(test, header, context)? {
+    if let Some(force) = bare_force(header) {
+        // What a load cell can bear says nothing of a test that ends at a curvature or an angle.
+        if test == Test::Tensile {
+            c.maximum = positive(force / c.width, Key::Maximum, header, context)?;
+        }
+    } else if let Some(m) = maximum(test, header, context)? {
         c.maximum = positive(m.abs(), Key::Maximum, header, context)?;
     }
     if test.spec().pretension > 0.0
@@ -268,6 +280,12 @@ fn conditions(
     Ok(c)
 }
 
+/// The stated maximum as a force (SI), `Maximum load: 10 kgf`, whatever the test.
+fn bare_force(header: &Header) -> Option<f64> {
+    let entry = header.known.get(&Key::Maximum)?;
+    folded(&entry.text).parse::<Force>().ok().map(Force::si)
+}
+
 /// The stated maximum of the driven axis (SI).
 fn maximum(test: Test, header: &Header, context: &Context<'_>) -> Result<Option<f64>, ReadError> {
     let (key, name, unit) = (Key::Maximum, "maximum", driven(test).kes_unit());
@@ -285,12 +303,20 @@ fn maximum(test: Test, header: &Header, context: &Context<'_>) -> Result<Option<
 /// Part of a maximum by which a printed peak may differ from it, and a round number from its value in other units.
 const PRINTED: f64 = 1e-3;
 
+/// Part of a maximum stated as a force by which the record may end elsewhere.
+const OFF_SETTING: f64 = 0.1;
+
+/// The largest value of the driven axis.
+fn peak(test: Test, curve: &Curve) -> f64 {
+    let of_abscissa = matches!(driven(test), Role::Angle | Role::Curvature | Role::Position);
+    let values = if of_abscissa { &curve.x } else { &curve.y };
+    values.iter().fold(0.0f64, |peak, v| peak.max(v.abs()))
+}
+
 /// Whether a stated maximum is the peak of this record that a program printed: it is what the record reaches, and no round
 /// number as those that are set.
 fn is_peak(test: Test, header: &Header, stated: f64, curve: &Curve) -> bool {
-    let of_abscissa = matches!(driven(test), Role::Angle | Role::Curvature | Role::Position);
-    let values = if of_abscissa { &curve.x } else { &curve.y };
-    let peak = values.iter().fold(0.0f64, |peak, v| peak.max(v.abs()));
+    let peak = peak(test, curve);
     let text = header.known.get(&Key::Maximum).map_or(String::new(), |e| folded(&e.text).into_owned());
     let start = text.trim_start_matches(|c: char| !c.is_ascii_digit());
     let number: String = start.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();

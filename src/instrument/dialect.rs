@@ -160,7 +160,7 @@ pub enum TableColumn {
     Sd,
     /// Number of repeats of the row.
     N,
-    /// How the row was had: `inferred` marks a value that was not measured (long form).
+    /// How the row was had: `measured`, `inferred`, `assumed` or `doubtful`, and words for these (long form).
     Status,
     /// A factor of the row: its words are those of [`Key::Factor`].
     #[serde(skip)]

@@ -21,7 +21,8 @@ pub(crate) struct FabricFile {
     name: Option<String>,
     weave: Option<String>,
     composition: Option<String>,
-    origin: Origin,
+    /// Without it, the data count as measured, and that is told.
+    origin: Option<Origin>,
     source: Option<String>,
     climate: Option<String>,
     areal_density: Option<ArealDensity>,
@@ -66,11 +67,14 @@ pub(super) fn read_fabric_file(
             }
         }
     }
+    if file.origin.is_none() {
+        findings.push(Finding::new(ReadFact::AssumedOrigin {}).at(Place::file(&path)));
+    }
     let info = FabricInfo {
         title: file.name.unwrap_or_default(),
         weave: file.weave,
         composition: file.composition,
-        origin: file.origin,
+        origin: file.origin.unwrap_or_default(),
         source: file.source,
         climate: file.climate,
         areal_density: file.areal_density.map(ArealDensity::si),

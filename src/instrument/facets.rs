@@ -6,10 +6,12 @@
 use super::condition;
 use super::dialect::{Statistic, TableColumn};
 use super::fast::{self, FastValue};
+use super::status_word;
 use super::unit_text::{is_scaled, matching_open, split_unit, unit};
 use super::vocabulary::{HEADING, Vocabulary};
 use super::words::{folded, normalised};
 use super::{Direction, Parameter};
+use crate::kes::ValueStatus;
 
 /// The most words of a name that are looked up together.
 const PHRASE: usize = 6;
@@ -33,7 +35,8 @@ pub(super) struct Facets {
     pub unit: Option<String>,
     /// How many repeats a mean is of, `Mean (n=5)`.
     pub repeats: Option<usize>,
-    pub inferred: bool,
+    /// How the value was had, as the words of the cell say.
+    pub status: ValueStatus,
     /// Words that mean nothing here: a name, or prose.
     pub unknown: bool,
 }
@@ -123,7 +126,7 @@ impl Facets {
             index: self.index.or(other.index),
             unit: self.unit.clone().or_else(|| other.unit.clone()),
             repeats: self.repeats.or(other.repeats),
-            inferred: self.inferred || other.inferred,
+            status: self.status.max(other.status),
             unknown: self.unknown || other.unknown,
         }
     }
@@ -247,8 +250,9 @@ impl Facets {
             self.index = self.index.or(counted(word));
             return new && self.index.is_some();
         }
-        if normalised(word) == "inferred" {
-            self.inferred = true;
+        // Other words of these meanings may be parts of names here: `B calculated` beside `B`.
+        if let "inferred" | "assumed" | "doubtful" = normalised(word).as_str() {
+            self.status = self.status.max(status_word::meaning(word).unwrap_or_default());
             return true;
         }
         if vocabulary.table_column(word).is_some_and(TableColumn::counts) {
@@ -370,7 +374,7 @@ mod tests {
     fn parameter(text: &str) -> (Parameter, Option<Direction>, Option<String>, bool, bool) {
         let f = of(text);
         assert!(!f.unknown, "{text}: {f:?}");
-        (f.parameter.unwrap(), f.direction, f.unit, f.sd, f.inferred)
+        (f.parameter.unwrap(), f.direction, f.unit, f.sd, f.status != ValueStatus::Measured)
     }
 
     #[test]
@@ -381,6 +385,8 @@ mod tests {
         assert_eq!(parameter("B_gf_cm2_per_cm"), (B, None, unit("gf·cm2/(cm)"), false, false));
         assert_eq!(parameter("B_warp_uN_m"), (B, Some(Warp), unit("uN·m"), false, false));
         assert_eq!(parameter("EMT_weft_percent_inferred"), (Emt, Some(Weft), unit("%"), false, true));
+        assert_eq!(of("T0_mm_assumed").status, ValueStatus::Assumed);
+        assert_eq!(of("B warp doubtful").status, ValueStatus::Doubtful);
         assert_eq!(parameter("G [gf/(cm·deg)]"), (G, None, unit("gf/(cm·deg)"), false, false));
         assert_eq!(parameter("2HB warp (gf·cm/cm)"), (Hb, Some(Warp), unit("gf·cm/cm"), false, false));
         assert_eq!(parameter("2HG5 sd"), (Hg5, None, None, true, false));

@@ -20,7 +20,9 @@ impl Lettered {
     /// Whether the other is the same text with the letter of the other direction.
     fn is_partner(&self, other: &Self, v: Vocabulary<'_>) -> bool {
         let (warp, weft) = if self.direction == Direction::Warp { (self, other) } else { (other, self) };
-        normalised(&self.rest) == normalised(&other.rest) && v.are_partners(&warp.letter, &weft.letter)
+        let fill = warp.letter.eq_ignore_ascii_case("w") && weft.letter.eq_ignore_ascii_case("f");
+        normalised(&self.rest) == normalised(&other.rest)
+            && (fill || v.are_partners(&warp.letter, &weft.letter))
     }
 }
 
@@ -64,7 +66,7 @@ fn lettered(index: usize, text: &str, v: Vocabulary<'_>) -> Option<Lettered> {
     for word in text.split(is_between) {
         let (start, end) = (at, at + word.len());
         at = end + text[end..].chars().next().map_or(0, char::len_utf8);
-        let Some(direction) = v.letter(word).filter(|_| start > 0) else { continue };
+        let Some(direction) = behind_name(word, v).filter(|_| start > 0) else { continue };
         let rest =
             format!("{} {}", text[..start].trim_end_matches(['_', '-', ' ']), text[end..].trim_start());
         let rest = rest.replace("( )", "").replace("()", "").trim().to_string();
@@ -73,6 +75,16 @@ fn lettered(index: usize, text: &str, v: Vocabulary<'_>) -> Option<Lettered> {
         }
     }
     None
+}
+
+/// The direction of a letter behind the name of a value. `B_w` and `B_f` are warp and fill there, and nowhere else: alone W is the areal
+/// density, and `B_f` without its partner the rigidity of the face.
+fn behind_name(word: &str, v: Vocabulary<'_>) -> Option<Direction> {
+    match word {
+        "w" | "W" => Some(Direction::Warp),
+        "f" | "F" => Some(Direction::Weft),
+        _ => v.letter(word),
+    }
 }
 
 /// The directions that names state by letters, each beside its partner: sheets `L` and `T`, `silk O` and `silk T`.
@@ -119,5 +131,5 @@ fn is_short(word: &str) -> bool {
 }
 
 fn has_letter(text: &str, v: Vocabulary<'_>) -> bool {
-    text.split(is_between).any(|word| is_short(word) && v.letter(word).is_some())
+    text.split(is_between).any(|word| is_short(word) && behind_name(word, v).is_some())
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::fab::FabFile;
 use super::{Direction, Parameter, Test};
 use crate::finding::{Finding, Place};
-use crate::kes::RecordName;
+use crate::kes::{RecordName, ValueStatus};
 use crate::quantity::Curve;
 
 /// Where data come from; stated in every sheet and chart.
@@ -134,8 +134,8 @@ pub struct ResultValue {
     pub values: Vec<f64>,
     /// The line of each repeat.
     pub lines: Vec<usize>,
-    /// Whether the table itself marks it as inferred rather than measured.
-    pub inferred: bool,
+    /// How the table itself says that it was had.
+    pub status: ValueStatus,
     /// Cell it was read from.
     pub place: Place,
 }

@@ -21,8 +21,9 @@ use super::sniff::{Sniffed, sniff, sniff_lines};
 use super::vocabulary::Vocabulary;
 use super::workbook::{self, Archive};
 use super::{Measurement, Parameter, ResultValue, Source, StatedStiffness};
-use super::{cell_units, code_page, letters, limits, lines, means, samples, web_page};
+use super::{cell_units, code_page, letters, limits, lines, means, row_names, samples, web_page};
 use crate::finding::{Fact, Finding, Place, ReadFact};
+use crate::kes::ValueStatus;
 use crate::platform;
 use crate::quantity::ArealDensity;
 
@@ -135,6 +136,12 @@ fn text(
         (content.fab, content.findings) = (Some(file), findings);
         return Ok(());
     }
+    if let Some(list) = text.trim_start().strip_prefix('[')
+        && list.trim_start().starts_with(['{', '['])
+    {
+        let reason = "a list of records in JSON is not read: write the table as CSV, in pandas by `to_csv(\"table.csv\", index=False)`";
+        return Err(error((0, 0, Problem::BadFab { reason: reason.into() })));
+    }
     if web_page::is_page(&text) {
         content.inference.push("a web page or XML workbook: its tables are read".to_string());
         let rows = web_page::rows(&text).map_err(|p| error((0, 0, p)))?;
@@ -158,8 +165,12 @@ fn text(
     content
         .inference
         .push(format!("delimiter {:?}, decimal mark {:?}: {why}", format.delimiter, format.decimal));
-    let rows = raw::rows(&text, format.delimiter);
+    let mut rows = raw::rows(&text, format.delimiter);
     let context = context(path, settings, dialect, format.delimiter, format.decimal);
+    if row_names::put_under_heads(&mut rows, &text, format.decimal, context.vocabulary) {
+        let line = rows.iter().find(|row| !row.is_blank()).map_or(0, |row| row.line);
+        content.findings.push(Finding::new(ReadFact::NamesOfRows {}).at(Place::at(path, line, 0)));
+    }
     table(&rows, &context, text.ends_with('\n'), content)
 }
 
@@ -392,7 +403,7 @@ fn weight(header: &Header, context: &Context<'_>, content: &mut FileContent) -> 
             n: 1,
             values: Vec::new(),
             lines: Vec::new(),
-            inferred: false,
+            status: ValueStatus::Measured,
             place,
         };
         content.results.push((None, result));

@@ -20,6 +20,7 @@ mod rows_above;
 mod sections;
 mod shifted;
 mod states;
+mod statuses;
 mod strangers;
 mod units;
 
@@ -40,7 +41,8 @@ use super::sniff::{Number, number};
 use super::value::is_gap;
 use super::words::{folded, normalised};
 use super::{Direction, Parameter, ResultValue, StatedStiffness};
-use crate::finding::Finding;
+use crate::finding::{Finding, LeftOutLine};
+use crate::kes::ValueStatus;
 
 /// Values with the fabric that each belongs to.
 pub(super) type Values = Vec<(Option<String>, ResultValue)>;
@@ -72,7 +74,7 @@ struct Datum {
     mean: f64,
     sd: Option<f64>,
     n: usize,
-    inferred: bool,
+    status: ValueStatus,
     line: usize,
     column: usize,
     /// Index of its cell.
@@ -125,6 +127,8 @@ pub(super) fn read(
         above: None,
         marked: None,
         bounds: None,
+        overflows: None,
+        unknown_statuses: Vec::new(),
         factors: BTreeSet::new(),
         odd_names: Vec::new(),
     };
@@ -187,6 +191,10 @@ struct Table<'t, 'a> {
     marked: noted::Cells,
     /// The same of cells that bound a value.
     bounds: noted::Cells,
+    /// Those that an instrument could not show.
+    overflows: noted::Cells,
+    /// Words for statuses that are not known, with their lines.
+    unknown_statuses: Vec<LeftOutLine>,
     /// Columns of factors that were told.
     factors: BTreeSet<usize>,
     /// Names of fabrics that are those of statistics, each with its line.
@@ -217,6 +225,8 @@ impl<'t> Table<'t, '_> {
         let mut out = Vec::new();
         let titles = self.titles(region);
         let (mut group, mut sums_up) = (None, false);
+        // Directions within each fabric end with it; those over several fabrics do not.
+        let mut within = None;
         for row in &region.rows {
             let is_remark = row.get(0).is_some_and(|t| t.starts_with('#')) && row.filled().count() == 1;
             if is_remark {
@@ -229,8 +239,14 @@ impl<'t> Table<'t, '_> {
             }
             if let Some(title) = titles.get(&row.line) {
                 match title {
-                    Title::Fabric(name) => self.above = Some(name.clone()),
-                    Title::Group(name) => group = Some(name),
+                    Title::Fabric(name) => {
+                        self.above = Some(name.clone());
+                        self.end_section(&mut within);
+                    }
+                    Title::Group(name) => {
+                        group = Some(name);
+                        self.end_section(&mut within);
+                    }
                     Title::NoDirection => (self.section, sums_up) = (None, false),
                     Title::Summary(text) => {
                         sums_up = true;
@@ -323,7 +339,10 @@ impl<'t> Table<'t, '_> {
                     facts.unit_at = label.index;
                 }
                 Some(TableColumn::Factor) => self.note_factor(row, label, text),
-                Some(TableColumn::Status) => facts.facets.inferred |= normalised(text) == "inferred",
+                Some(TableColumn::Status) => {
+                    let status = self.status_in(row, text);
+                    facts.facets.status = facts.facets.status.max(status);
+                }
                 Some(TableColumn::Parameter) | None if self.layout.down => {
                     self.one_unit(row, label.index, facts.facets.unit.as_deref(), f.unit.as_deref())?;
                     facts.take_label(&f, text, label.index);
@@ -408,7 +427,10 @@ impl<'t> Table<'t, '_> {
         let mut deviations = Vec::new();
         let first = self.data.len();
         for column in &columns {
-            let Some(cell) = row.get(column.index).filter(|c| !is_gap(c)) else { continue };
+            let Some(cell) = row.get(column.index).filter(|c| !self.is_not_measured(row, column.index, c))
+            else {
+                continue;
+            };
             if self.states_no_value(row, column.index, cell) {
                 continue;
             }
@@ -464,7 +486,7 @@ impl<'t> Table<'t, '_> {
                 mean: reading.mean * unit.factor,
                 sd: reading.sd.map(|s| s * unit.factor),
                 n: all.repeats.unwrap_or(facts.n),
-                inferred: all.inferred,
+                status: all.status,
                 line: row.line,
                 column: row.column(column.index),
                 cell: column.index,

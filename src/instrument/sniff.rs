@@ -61,11 +61,25 @@ pub(super) fn number(cell: &str, decimal: char) -> Number {
             Err(_) => Number::Broken,
         };
     }
+    if let Some(spelt) = of_fortran(&text, decimal) {
+        return number(&spelt, decimal);
+    }
     // "20 cm" is not meant as a number; "0,35" and "1.2.3" are.
     if bytes.iter().all(|&b| in_number(b) || matches!(b, b'.' | b',' | b';' | b'\t')) {
         return Number::Broken;
     }
     Number::Text
+}
+
+/// `1.234D-02` with the `e` of other languages. Double precision is printed with a decimal mark and the sign of the exponent: `3D1`
+/// is a name.
+fn of_fortran(text: &str, decimal: char) -> Option<String> {
+    let (mantissa, exponent) = text.split_once(['D', 'd'])?;
+    let digits = exponent.strip_prefix(['+', '-'])?;
+    let is_exponent = (1..=3).contains(&digits.len()) && digits.bytes().all(|b| b.is_ascii_digit());
+    let is_mantissa = mantissa.contains(decimal)
+        && mantissa.trim_start_matches(['+', '-']).chars().all(|c| c.is_ascii_digit() || c == decimal);
+    (is_exponent && is_mantissa).then(|| format!("{mantissa}e{exponent}"))
 }
 
 /// The names that programs give to values that are none.
@@ -229,6 +243,11 @@ mod tests {
         assert_eq!(number("20 cm", '.'), Number::Text);
         assert_eq!(number("2024-01-05", '.'), Number::Text);
         assert_eq!(number("-", '.'), Number::Text);
+        assert_eq!(number("-1.25D-02", '.'), Number::Value(-0.0125));
+        assert_eq!(number("0,5D+01", ','), Number::Value(5.0));
+        assert_eq!(number("3D1", '.'), Number::Text);
+        assert_eq!(number("1.5D2", '.'), Number::Text);
+        assert_eq!(number("1.5D-2a", '.'), Number::Text);
         assert_eq!(number("", '.'), Number::Text);
     }
 

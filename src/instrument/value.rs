@@ -142,7 +142,13 @@ pub(super) fn is_gap(cell: &str) -> bool {
     const GAPS: [&str; 15] =
         ["-", "–", "—", "--", "---", "n/m", "n.m.", "n.d.", "nd", "n/d", "n/a", "n.a.", "na", "n.t.", "k.a."];
     let text = cell.trim();
-    text.len() <= 4 && GAPS.iter().any(|gap| text.eq_ignore_ascii_case(gap))
+    (text.len() <= 4 && GAPS.iter().any(|gap| text.eq_ignore_ascii_case(gap))) || is_overflow(text)
+}
+
+/// `***` or `####`: programs print such signs in the place of a number that they cannot show.
+pub(super) fn is_overflow(cell: &str) -> bool {
+    let text = cell.trim();
+    text.len() >= 3 && ['*', '#'].iter().any(|sign| text.chars().all(|c| c == *sign))
 }
 
 #[cfg(test)]
@@ -202,6 +208,7 @@ mod tests {
         for text in ["n.d.", "N/A", "-", "k.A.", "nd"] {
             assert!(is_gap(text), "{text}");
         }
+        assert!(is_gap("***") && is_gap("#####") && !is_gap("**"));
         assert!(!is_gap("nm") && !is_gap("no"));
     }
 }

@@ -4,6 +4,7 @@ mod drape_method;
 mod parameter;
 mod relation;
 pub mod specimen;
+mod value_status;
 
 use std::fmt;
 
@@ -12,6 +13,7 @@ use serde::{Deserialize, Serialize};
 pub use drape_method::{CUSICK, CUSICK_DISC, DrapeMethod, JIS};
 pub use parameter::{Direction, HAND, Key, Parameter};
 pub use relation::Relation;
+pub use value_status::ValueStatus;
 
 /// The KES-F test that a curve comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

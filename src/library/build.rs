@@ -55,6 +55,17 @@ struct Filled {
 }
 
 impl Shelf {
+    /// Refuses the name of a library that says it is something else than Parquet, before the results are read.
+    ///
+    /// # Errors
+    /// O050.
+    pub fn refuse_ending(path: &Path) -> Result<(), LibraryError> {
+        match path.extension() {
+            Some(ending) if ending.eq_ignore_ascii_case("parquet") => Ok(()),
+            _ => Err(LibraryError::Ending { path: path.to_path_buf() }),
+        }
+    }
+
     /// Adds the fabrics of results on disk.
     ///
     /// # Errors

@@ -20,6 +20,13 @@ errors! {
         /// O069: no fabric in them.
         "O069" Empty = "there is no fabric in the results"
             => "name folders of results, as in `kesf library build library.parquet results`";
+        /// O050: a library is Parquet, whatever its name.
+        "O050" Ending {
+            /// The file that was asked for.
+            #[serde(serialize_with = "path_as_text")]
+            path: PathBuf,
+        } at Place::file(path), = "a library is a Parquet file, and this name says something else"
+            => "end its name in .parquet; `kesf library find ... -o table.csv` writes CSV";
         /// O068: in two of the results.
         "O068" Twice {
             /// The second of them.

@@ -44,6 +44,8 @@ pub struct Answer {
     pub table: RecordBatch,
     /// What is usual in the library, where fabrics were compared.
     pub axes: Vec<Axis>,
+    /// How many more fabrics the question holds for than were asked for.
+    pub more: usize,
 }
 
 /// What is kept of every fabric while they are compared.
@@ -62,16 +64,20 @@ impl LibraryFile {
         match &question.like {
             Some(like) => self.nearest(like, question),
             None => {
-                let mut found = Vec::new();
+                let (mut found, mut all) = (Vec::new(), 0);
                 let wanted = question.bounds.as_ref();
                 let names: Vec<&str> =
                     ["fabric"].into_iter().chain(wanted.into_iter().flat_map(Bounds::columns)).collect();
                 self.scan(&names, |piece, first| {
                     let within = |row: &usize| wanted.is_none_or(|bounds| bounds.hold(piece, *row));
-                    let rows = (0..piece.num_rows()).filter(within).map(|row| first + row);
-                    found.extend(rows.take(question.count - found.len()));
+                    for row in (0..piece.num_rows()).filter(within) {
+                        all += 1;
+                        if found.len() < question.count {
+                            found.push(first + row);
+                        }
+                    }
                 })?;
-                Ok(Answer { table: self.rows(&found)?, axes: Vec::new() })
+                Ok(Answer { table: self.rows(&found)?, axes: Vec::new(), more: all - found.len() })
             }
         }
     }
@@ -116,8 +122,9 @@ impl LibraryFile {
             .filter(|(_, count, _)| *count >= FEWEST as u64)
             .collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.2.name.cmp(&b.2.name)));
+        let more = near.len().saturating_sub(question.count);
         near.truncate(question.count);
-        Ok(Answer { table: self.with_distances(&near)?, axes })
+        Ok(Answer { table: self.with_distances(&near)?, axes, more })
     }
 
     /// The columns that a comparison needs.

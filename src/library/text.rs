@@ -1,11 +1,13 @@
 //! An answer as text.
 
 use arrow_array::RecordBatch;
+use arrow_array::cast::AsArray;
+use arrow_array::types::UInt64Type;
 
 use super::bounds::Bounds;
 use super::find::Answer;
 use crate::report::arrow_text::{Cell, cell, units};
-use crate::report::number::significant;
+use crate::report::number::{counted, significant};
 use crate::results::Columns;
 
 /// What people ask for first; the other columns are in tables and documents.
@@ -30,7 +32,29 @@ impl Answer {
         for row in 0..table.num_rows() {
             columns.row(names.iter().map(|name| shown(table, name, row)));
         }
-        columns.text()
+        columns.text() + &self.notes()
+    }
+
+    /// How many fabrics are not shown, and that distances over other parameters are not alike.
+    fn notes(&self) -> String {
+        let mut notes = String::new();
+        let counts = self.table.column_by_name("parameters").and_then(|c| c.as_primitive_opt::<UInt64Type>());
+        let counts = counts.map_or(&[][..], |counts| counts.values());
+        if let (Some(fewest), Some(most)) = (counts.iter().min(), counts.iter().max())
+            && fewest < most
+        {
+            notes += &format!(
+                "distances are over {fewest} to {most} parameters, as the column `parameters` says: one over few of them says less\n"
+            );
+        }
+        if self.more > 0 {
+            notes += &format!(
+                "{} more, not shown: -n {} shows all\n",
+                counted(self.more, "fabric"),
+                self.table.num_rows() + self.more
+            );
+        }
+        notes
     }
 }
 

@@ -35,6 +35,20 @@ errors! {
             path: PathBuf,
         } at Place::file(path), = "exists and is not as this program left it"
             => "write elsewhere with -o, or overwrite it with --force";
+        /// O002: a file of that name is there, and nobody knows who wrote it.
+        "O002" Exists {
+            /// The file.
+            #[serde(serialize_with = "path_as_text")]
+            path: PathBuf,
+        } at Place::file(path), = "exists, and holds something else than would be written"
+            => "write elsewhere with -o, or overwrite it with --force";
+        /// O006: a file of the results that are read.
+        "O006" Read {
+            /// The file.
+            #[serde(serialize_with = "path_as_text")]
+            path: PathBuf,
+        } at Place::file(path), = "is one of the results that are read here, and would be lost"
+            => "give another name with -o; without it the page is `report.html` in the folder";
         /// O003: a name that would leave the folder, or none.
         "O003" Name {
             /// The name.
@@ -136,11 +150,11 @@ pub(super) fn is_temporary(name: &str) -> bool {
 /// Writes a single file unless another with other bytes is there (or `force` is set).
 ///
 /// # Errors
-/// [`OutputError::NotOurs`] or [`OutputError::Write`].
+/// [`OutputError::Exists`] or [`OutputError::Write`].
 pub fn write_file(path: &Path, bytes: &[u8], force: bool) -> Result<(), OutputError> {
     match existing(path)? {
         Some(old) if old == bytes => Ok(()),
-        Some(_) if !force => Err(OutputError::NotOurs { path: path.to_path_buf() }),
+        Some(_) if !force => Err(OutputError::Exists { path: path.to_path_buf() }),
         _ => write_atomic(path, bytes),
     }
 }
@@ -224,6 +238,21 @@ pub fn results_reader(root: &Path) -> Result<impl Fn(&str) -> FileBytes, OutputE
     })
 }
 
+/// Refuses to write over a file of a folder of results, but for one of this name: `kesf report p -o p/index.html` would lose
+/// the page that it reads.
+///
+/// # Errors
+/// [`OutputError::Read`], and [`OutputError::Manifest`] if the list of our files is none.
+pub fn refuse_part_of(root: &Path, output: &Path, but: &str) -> Result<(), OutputError> {
+    let Some((root, real)) = root.canonicalize().ok().zip(output.canonicalize().ok()) else { return Ok(()) };
+    let Ok(name) = real.strip_prefix(&root) else { return Ok(()) };
+    let name = name.iter().map(|part| part.to_string_lossy()).collect::<Vec<_>>().join("/");
+    if name != but && manifest(&root)?.has(&name) {
+        return Err(OutputError::Read { path: output.to_path_buf() });
+    }
+    Ok(())
+}
+
 fn read_manifest(file: File) -> Result<FileList, String> {
     let manifest: Manifest = serde_json::from_reader(BufReader::new(file)).map_err(|e| e.to_string())?;
     if manifest.schema != SCHEMA {
@@ -242,7 +271,7 @@ mod tests {
         let path = folder.path().join("curves.csv");
         write_file(&path, b"1", false).unwrap();
         write_file(&path, b"1", false).unwrap();
-        assert!(matches!(write_file(&path, b"2", false), Err(OutputError::NotOurs { .. })));
+        assert!(matches!(write_file(&path, b"2", false), Err(OutputError::Exists { .. })));
         write_file(&path, b"2", true).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"2");
     }

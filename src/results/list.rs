@@ -53,8 +53,16 @@ impl List {
 
 const FORMATS: &[&[&str]] = &[
     &["csv tsv txt dat asc prn kes fb1 fb2 fb3", "text tables: curves of FB1, FB2, FB3, and result tables"],
-    &["xlsx xlsm xls", "workbooks with the same tables"],
+    &["xlsx xlsm xls ods", "workbooks with the same tables"],
     &["json u3m", "FAB strip measurements inside U3M 1.1"],
+    &[
+        "sheet.json section.json",
+        "parameter sheets and sections that this program wrote, for `kesf section`, `solve` and `export`",
+    ],
+    &["fabric.json", "the open fabric file, which `kesf export --to fabric` writes"],
+    &["msh", "meshes of Gmsh, as the `file` of a [sheet]"],
+    &["svg dxf", "drawings of outlines, as the `outline` of a [sheet]"],
+    &["png jpg jpeg", "pictures of a drape test, for `kesf drape-image`"],
     &["fabric.toml", "what people know of a fabric: name, weave, origin, areal density, measured results"],
     &["dialect.toml", "a laboratory's own words and marks, beside its files"],
 ];

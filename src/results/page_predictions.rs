@@ -7,6 +7,7 @@ use super::rests_on::OF_PLATE;
 use crate::finding::{Fact, StudyFact};
 use crate::quantity::significant;
 use crate::report::html::{Block, TableCell};
+use crate::report::number::counted;
 use crate::report::table::PredictionRow;
 
 /// Deflection over the bending thickness below which a linear solve is meaningful.
@@ -194,7 +195,7 @@ fn plates_caption(reports: &[FabricReport], cases: &[&str]) -> String {
                 || reports.iter().flat_map(|r| &r.relative_deflections).filter(|(name, _)| name == case);
             let beyond = of_case().filter(|(_, value)| value.abs() > MEANINGFUL).count();
             let title = title(reports, case);
-            (beyond > 0).then(|| format!("{beyond} of {} fabrics in “{title}”", of_case().count()))
+            (beyond > 0).then(|| format!("{beyond} of {} in “{title}”", counted(of_case().count(), "fabric")))
         })
         .collect();
     if !beyond.is_empty() {

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::finding::explain;
 use crate::report::html::{Problem, ProblemGroup, local};
+use crate::report::number::counted;
 use crate::report::table::ProblemRow;
 
 /// Of a linear solve beyond its meaning: it holds of cloth as such and is said once.
@@ -102,7 +103,7 @@ impl OfCode {
             0 if self.count == 1 => "once".to_string(),
             0 => format!("{} times", self.count),
             some if some > KEPT => format!("more than {KEPT} of {fabrics} fabrics"),
-            some => format!("{some} of {fabrics} fabrics"),
+            some => format!("{some} of {}", counted(fabrics, "fabric")),
         };
         if !self.places.is_empty() {
             let places: Vec<String> = self.places.iter().map(|place| local(place)).collect();

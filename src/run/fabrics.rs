@@ -13,6 +13,7 @@ use super::work::RunWork;
 use crate::case::{Case, Outline};
 use crate::finding::{Finding, Place};
 use crate::platform::{files, map_several};
+use crate::report::number::counted;
 use crate::results::{
     Fabric, FabricReport, Failure, FileEntry, Folder, Job, Observer, Record, Shared, Task, hash_of,
     is_within, named_fabric, without_fabric, without_law,
@@ -237,9 +238,10 @@ impl<'c> Workshop<'c> {
         for job in self.jobs.iter().filter(|job| all > 0 && job.case.is_quick()) {
             let hung = job.tally().tasks;
             self.observer.note(&format!(
-                "{}: quick drapes for {hung} of {all} fabrics, those with measured curves; --drape makes the whole of \
+                "{}: quick drapes for {hung} of {}, those with measured curves; --drape makes the whole of \
                  the case for every fabric",
-                job.case.path.display()
+                job.case.path.display(),
+                counted(all, "fabric")
             ));
         }
     }

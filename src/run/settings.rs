@@ -50,6 +50,20 @@ pub enum Drapes {
     Never,
 }
 
+impl From<Option<bool>> for Drapes {
+    /// All, none, or as the program decides.
+    fn from(answer: Option<bool>) -> Self {
+        answer.map_or(Self::Auto, Self::asked)
+    }
+}
+
+impl From<Option<bool>> for FieldFiles {
+    /// Always, never, or as the program decides.
+    fn from(answer: Option<bool>) -> Self {
+        answer.map_or(Self::Auto, |always| if always { Self::Always } else { Self::Never })
+    }
+}
+
 impl Drapes {
     /// All or none.
     pub fn asked(all: bool) -> Self {

@@ -1,7 +1,8 @@
 //! What a run is to do.
 
 use crate::case::Case;
-use crate::results::{Catalogue, Failure, Limits, Share};
+use crate::platform::files;
+use crate::results::{Catalogue, Failure, Limits, Share, named_fabric, without_fabric};
 
 /// What a run is to do: its cases, and its fabrics by name and hash.
 pub struct RunWork {
@@ -18,6 +19,20 @@ impl RunWork {
     /// Whether there is neither a fabric nor a case.
     pub fn is_empty(&self) -> bool {
         self.catalogue.len() == 0 && self.cases.is_empty()
+    }
+
+    /// Without a fabric, takes out the cases that are for one, each with its failure: a run that can do nothing writes nothing.
+    /// A case of which the fabric is not where it says has its failure already.
+    pub(super) fn leave_out_idle_cases(&mut self) -> Vec<Failure> {
+        if self.catalogue.len() > 0 || self.catalogue.left_out || self.share.is_some() {
+            return Vec::new();
+        }
+        if self.cases.iter().any(|case| case.fabric().is_none()) {
+            return Vec::new();
+        }
+        let mut idle = std::mem::take(&mut self.cases);
+        idle.retain(|case| named_fabric(case).is_none_or(|path| files::exists(&path)));
+        idle.iter().map(|case| without_fabric(case, false)).collect()
     }
 
     /// Tasks share the threads; one that is alone has them all.

@@ -56,7 +56,7 @@ fn is_told(values: &[(Parameter, f64)]) -> bool {
         n: 1,
         values: Vec::new(),
         lines: Vec::new(),
-        inferred: false,
+        status: Default::default(),
         place: Place::at("table.csv", 2, column + 1),
     };
     let results = values.iter().enumerate().map(result).collect();

@@ -2,7 +2,7 @@
 
 use super::parts::{Missed, RecordAxis, Samples, StripLength, Subject};
 use crate::finding::Place;
-use crate::kes::{Direction, Key, Parameter, RecordName, Relation, Test, series};
+use crate::kes::{Direction, Key, Parameter, RecordName, Relation, Test, ValueStatus, series};
 use crate::quantity::{STANDARD_GRAVITY, in_unit, significant};
 
 super::facts! {
@@ -170,11 +170,13 @@ super::facts! {
             /// Number of the specimen.
             specimen: usize,
         } = "{parameter}: {own} specimen {specimen} fits the {other} specimens and not its own: is its direction labelled correctly?";
-        /// A value that its table calls inferred.
-        "K014" Inferred {
+        /// A value that its table does not call measured.
+        "K014" StatedStatus {
             /// The value.
             key: Key,
-        } = "{key} is inferred by its source, not measured";
+            /// What the table calls it.
+            status: ValueStatus,
+        } = "{key} is {}", stated_status(*status);
         /// A record without a direction.
         "K015" NoDirection {
             /// The record.
@@ -499,6 +501,16 @@ fn level_within(within: f64, test: Test) -> String {
         "at exactly".into()
     } else {
         format!("within {} of each other at", in_unit(within, test.kes_axes()[1]))
+    }
+}
+
+/// What a table says of a value that it does not call measured.
+fn stated_status(status: ValueStatus) -> String {
+    match status {
+        ValueStatus::Doubtful => "doubtful, as its source says".to_string(),
+        ValueStatus::Measured | ValueStatus::Inferred | ValueStatus::Assumed => {
+            format!("{} by its source, not measured", status.name())
+        }
     }
 }
 

@@ -250,6 +250,24 @@ super::facts! {
             keys: Vec<Key>,
         } = "the numbers behind {} in its cells are no standard deviations, as a heading, the line above the table or their size says, and \
              are left out: give them a column of their own", several_keys(keys);
+        /// Words in a column of statuses that are none.
+        "R140" UnknownStatus {
+            /// The words with their lines.
+            cells: Vec<LeftOutLine>,
+        } = "words under `status` are not known, and their values are read as measured: {}; the words are measured, inferred, assumed \
+             and doubtful", lines(cells);
+        /// A fabric.toml that does not say where the data come from.
+        "R141" AssumedOrigin {} = "no `origin` is stated, and the data count as measured: write `origin = \"measured\"`, \"published\" or \
+             \"synthetic\"";
+        /// Signs in the place of numbers that could not be shown.
+        "R142" Overflow {
+            /// What stands in the cells.
+            cells: Vec<String>,
+        } = "signs in the place of numbers that could not be shown are read as not measured: {}; enter the values if they are known",
+            some(cells);
+        /// A line of heads with one field less than the rows.
+        "R143" NamesOfRows {} = "the line of headings has one field less than the rows, as `write.table` of R has it: the first column is read \
+             as the names of the rows; write a heading over it if it is something else";
         /// Blank cells below a direction or a parameter.
         "R124" MergedCells {} = "blank cells are read as the direction or parameter above them, as of merged cells: fill them in \
              if they are something else";

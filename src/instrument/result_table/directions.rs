@@ -15,7 +15,7 @@ use crate::instrument::raw::Row;
 use crate::instrument::vocabulary::Vocabulary;
 use crate::instrument::words::normalised;
 use crate::instrument::{Direction, Parameter};
-use crate::kes::Key;
+use crate::kes::{Key, ValueStatus};
 
 impl Table<'_, '_> {
     /// `F1-warp`, `F1 weft direction`, `F1 (warp, 2)` in the column of names: fabrics that end with a direction each, and occur in
@@ -189,7 +189,7 @@ impl Table<'_, '_> {
         if is_fast_table {
             // B of a strip under its own weight and G of a bias strip are no values of KES-FB.
             for d in self.data.iter_mut().filter(|d| [Parameter::B, Parameter::G].contains(&d.parameter)) {
-                d.inferred = true;
+                d.status = d.status.max(ValueStatus::Inferred);
             }
         }
         let numbered = self.layout.numbers_of_symbols();

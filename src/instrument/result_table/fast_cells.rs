@@ -6,6 +6,7 @@ use crate::instrument::error::{Problem, ReadError};
 use crate::instrument::fast::FastValue;
 use crate::instrument::unit_text::known_unit;
 use crate::instrument::{Direction, Parameter, ResultValue, StatedStiffness};
+use crate::kes::ValueStatus;
 use crate::quantity::Unit;
 
 /// A FAST value (SI) that is not a KES parameter itself.
@@ -117,7 +118,7 @@ impl Table<'_, '_> {
                 n: 1,
                 values: Vec::new(),
                 lines: vec![cell.line],
-                inferred: true,
+                status: ValueStatus::Inferred,
                 place: place.clone(),
             };
             let fact = ReadFact::FromFast { parameter, symbol: cell.value.symbol().to_string() };

@@ -6,7 +6,7 @@ use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::cell::parts;
 use crate::instrument::raw::Row;
 use crate::instrument::sniff::{Number, number};
-use crate::instrument::value::{Printed, is_gap};
+use crate::instrument::value::{Printed, is_gap, is_overflow};
 use crate::instrument::words::folded;
 
 /// Where the first of some cells stands (line, column), and what they say.
@@ -26,6 +26,15 @@ impl Table<'_, '_> {
             .1
             .push(cell.trim().to_string());
         found == Printed::Bound
+    }
+
+    /// Whether a cell holds no value; one that an instrument could not show, `***`, is noted.
+    pub(super) fn is_not_measured(&mut self, row: &Row<'_>, index: usize, cell: &str) -> bool {
+        if is_overflow(cell) {
+            let first = || ((row.line, row.column(index)), Vec::new());
+            self.overflows.get_or_insert_with(first).1.push(cell.trim().to_string());
+        }
+        is_gap(cell)
     }
 
     /// R122: the first factor of a column that is not 1 in any spelling (`1.0`, `x1`, `10^0`, `E+00`).
@@ -55,6 +64,13 @@ impl Table<'_, '_> {
         }
         if let Some((place, cells)) = self.bounds.take() {
             tell(ReadFact::BoundsLeftOut { cells }, place);
+        }
+        if let Some((place, cells)) = self.overflows.take() {
+            tell(ReadFact::Overflow { cells }, place);
+        }
+        if let Some(first) = self.unknown_statuses.first() {
+            let place = (first.line, 0);
+            tell(ReadFact::UnknownStatus { cells: std::mem::take(&mut self.unknown_statuses) }, place);
         }
     }
 }

@@ -391,7 +391,8 @@ impl<'t> Table<'t, '_> {
             n: first.n,
             values: Vec::new(),
             lines: members.iter().map(|d| d.line).collect(),
-            inferred: first.inferred,
+            // A mean is no better than the worst of its repeats.
+            status: members.iter().map(|d| d.status).max().unwrap_or_default(),
             place: Place::at(self.context.path, first.line, first.column),
         };
         let means: Vec<f64> = members.iter().map(|d| d.mean).collect();

@@ -21,6 +21,13 @@ enum Line<'r> {
 }
 
 impl Table<'_, '_> {
+    /// Ends the section of a direction at the title of a fabric, if the first such title stood over the directions.
+    pub(super) fn end_section(&mut self, within: &mut Option<bool>) {
+        if *within.get_or_insert(self.section.is_none()) {
+            self.section = None;
+        }
+    }
+
     /// The rows of titles by their lines.
     pub(super) fn titles(&self, region: &Region<'_>) -> BTreeMap<usize, Title> {
         let lines: Vec<Line<'_>> = region.rows.iter().filter_map(|row| line(row, self.context)).collect();

@@ -1,0 +1,137 @@
+//! Tables and headers as programs write them: what is read of each, and what is told.
+//!
+//! Kind: analytical. The numbers are those in the texts, times exact factors of units.
+
+use std::path::Path;
+
+use approx::assert_relative_eq;
+use kesf::instrument::{Direction, FileContent, Parameter, ReadError, ReadSettings, parse};
+
+fn attempt(text: &str) -> Result<FileContent, ReadError> {
+    parse(Path::new("t.csv"), text.as_bytes(), &ReadSettings { kes_units: true, ..ReadSettings::default() })
+}
+
+fn read(text: &str) -> FileContent {
+    attempt(text).unwrap_or_else(|e| panic!("{e}: {text}"))
+}
+
+/// Fabric, parameter, direction and value in the KES unit, in the order of the file.
+fn values(content: &FileContent) -> Vec<(String, Parameter, Option<Direction>, f64)> {
+    let value = |(name, v): &(Option<String>, kesf::instrument::ResultValue)| {
+        let mean = (v.mean / v.parameter.kes_factor() * 1e9).round() / 1e9;
+        (name.clone().unwrap_or_default(), v.parameter, v.direction, mean)
+    };
+    let mut all: Vec<_> = content.results.iter().map(value).collect();
+    all.sort_by(|a, b| (&a.0, a.1, a.2).cmp(&(&b.0, b.1, b.2)));
+    all
+}
+
+fn told(content: &FileContent, code: &str) -> Vec<String> {
+    content.findings.iter().filter(|f| f.code() == code).map(|f| f.message()).collect()
+}
+
+const WARP: Option<Direction> = Some(Direction::Warp);
+const WEFT: Option<Direction> = Some(Direction::Weft);
+
+/// `B_w` beside `B_f` is warp and fill, which is told; `B_f` beside `B_b` is the face, as it was.
+#[test]
+fn warp_and_fill_are_letters_beside_each_other() {
+    let pair = read("fabric,B_w,B_f,G_w,G_f,LT\nx,0.1,0.05,0.7,0.8,0.6\n");
+    let found = values(&pair);
+    for (parameter, direction, value) in [
+        (Parameter::B, WARP, 0.1),
+        (Parameter::B, WEFT, 0.05),
+        (Parameter::G, WARP, 0.7),
+        (Parameter::G, WEFT, 0.8),
+        (Parameter::Lt, None, 0.6),
+    ] {
+        assert!(found.contains(&("x".into(), parameter, direction, value)), "{found:?}");
+    }
+    assert_eq!(found.len(), 5, "{found:?}");
+    assert!(told(&pair, "R133")[0].contains("B_f"), "{:?}", pair.findings);
+    let sides = read("fabric,B_f,B_b\nx,0.1,0.05\n");
+    assert!(sides.results.iter().all(|(_, v)| v.direction.is_none()), "{:?}", sides.results);
+    assert!(told(&sides, "R133").is_empty());
+    // W is the areal density, and no direction of its own.
+    let mass = read("fabric,W,B_warp\nx,12,0.05\n");
+    assert_eq!(values(&mass).len(), 2, "{:?}", mass.results);
+}
+
+/// Directions below a fabric end with it; those over the fabrics hold for all of them.
+#[test]
+fn a_title_of_a_fabric_ends_the_direction_within_the_one_before() {
+    let inner = "Specimen,B,LT\nUno,,\nWarp,,\n1,0.1,0.6\n2,0.1,0.6\nWeft,,\n1,0.2,0.7\n2,0.2,0.7\nDos,,\n1,0.3,0.8\n2,0.3,0.8\n";
+    let found = values(&read(inner));
+    let of_dos: Vec<_> = found.iter().filter(|v| v.0 == "Dos").map(|v| (v.1, v.2, v.3)).collect();
+    assert_eq!(of_dos, [(Parameter::Lt, None, 0.8), (Parameter::B, None, 0.3)]);
+    let outer = "Specimen,B,LT\nWarp,,\nUno,,\n1,0.1,0.6\n2,0.1,0.6\nDos,,\n1,0.3,0.8\n2,0.3,0.8\n\
+                 Weft,,\nUno,,\n1,0.2,0.7\n2,0.2,0.7\nDos,,\n1,0.4,0.9\n2,0.4,0.9\n";
+    let found = values(&read(outer));
+    let of_b: Vec<_> =
+        found.iter().filter(|v| v.1 == Parameter::B).map(|v| (v.0.as_str(), v.2, v.3)).collect();
+    assert_eq!(of_b, [("Dos", WARP, 0.3), ("Dos", WEFT, 0.4), ("Uno", WARP, 0.1), ("Uno", WEFT, 0.2)]);
+}
+
+/// `write.table` of R has no heading over the names of rows. Where the last heading may as well be missing, the table is refused.
+#[test]
+fn names_of_rows_have_no_heading_in_tables_of_r() {
+    for text in [
+        "\"fabric\",\"B\",\"LT\"\n\"1\",\"Uno\",0.1,0.6\n\"2\",\"Dos\",0.2,0.7\n",
+        "fabric,B,LT\n1,Uno,0.1,0.6\n2,Dos,0.2,0.7\n",
+        "\"B\",\"LT\"\n\"Uno\",0.1,0.6\n\"Dos\",0.2,0.7\n",
+        "\"fabric\" \"B\" \"LT\"\n\"1\" \"Uno\" 0.1 0.6\n\"2\" \"Dos\" 0.2 0.7\n",
+        "\"B\" \"LT (-)\"\n\"Uno\" 0.1 0.6\n\"Dos\" 0.2 0.7\n",
+    ] {
+        let content = read(text);
+        let of_b: Vec<_> =
+            values(&content).into_iter().filter(|v| v.1 == Parameter::B).map(|v| (v.0, v.3)).collect();
+        assert_eq!(of_b, [("Dos".into(), 0.2), ("Uno".into(), 0.1)], "{text}: {:?}", content.results);
+        assert_eq!(told(&content, "R143").len(), 1, "{text}: {:?}", content.findings);
+    }
+    assert!(attempt("fabric,B\nUno,0.1,0.2\nDos,0.2,0.3\n").is_err());
+    assert!(attempt("\"fabric\",\"B\"\n\"Uno\",0.1,0.2\n").is_err());
+}
+
+/// What a program could not show is missing, and told; signs of significance are as they were.
+#[test]
+fn signs_in_the_place_of_numbers_are_told() {
+    let content = read("fabric,B warp,LT warp,EMT warp\nx,***,0.6,5\ny,0.1,####,6\n");
+    let found = values(&content);
+    assert_eq!(found.len(), 4, "{found:?}");
+    let messages = told(&content, "R142");
+    assert!(messages.len() == 1 && messages[0].contains("\"***\", \"####\""), "{messages:?}");
+}
+
+/// `-1.25D-02` of Fortran is -0.0125.
+#[test]
+fn exponents_of_fortran() {
+    let content = read("fabric,B warp,LT warp\nx,1.000D-01,6.0D-01\n");
+    assert_eq!(values(&content).iter().map(|v| v.3).collect::<Vec<_>>(), [0.6, 0.1]);
+    let curve = "test: bending\ndirection: warp\n\ncurvature (1/cm),moment (gf·cm/cm)\n0.0D+00,0.0D+00\n1.0D+00,1.0D-01\n2.0D+00,2.0D-01\n";
+    assert_relative_eq!(read(curve).measurements[0].curve.y[1], 0.1 * 9.80665e-3, max_relative = 1e-12);
+}
+
+/// 10 kgf on 20 cm are 500 gf/cm. A load cell says nothing of a test that ends elsewhere.
+#[test]
+fn a_maximum_load_is_one_over_the_width() {
+    let tensile = |header: &str, last: f64| {
+        let text = format!(
+            "test: tensile\ndirection: warp\n{header}\n\nstrain (%),load (gf/cm)\n0,0\n1,{}\n2,{last}\n",
+            0.3 * last
+        );
+        read(&text).measurements[0].conditions.maximum / 0.980665
+    };
+    assert_relative_eq!(tensile("Maximum load: 10 kgf", 500.0), 500.0, max_relative = 1e-12);
+    assert_relative_eq!(tensile("width: 10 cm\nMaximum load: 500 gf", 50.0), 50.0, max_relative = 1e-12);
+    assert_relative_eq!(tensile("Maximum load: 50 kgf", 500.0), 500.0, max_relative = 1e-12);
+    let bending = read(
+        "test: bending\ndirection: warp\nMaximum load: 10 kgf\n\ncurvature (1/cm),moment (gf·cm/cm)\n0,0\n1,0.1\n2.5,0.25\n",
+    );
+    assert_relative_eq!(bending.measurements[0].conditions.maximum, 250.0, max_relative = 1e-12);
+}
+
+#[test]
+fn a_list_of_records_is_refused_with_what_to_do() {
+    let error = attempt("[{\"fabric\":\"x\",\"B\":0.1}]").unwrap_err();
+    assert!(error.code() == "R023" && error.to_string().contains("to_csv"), "{error}");
+}
