@@ -1,7 +1,9 @@
 //! What a run is to do.
 
+use std::path::Path;
+
 use crate::case::Case;
-use crate::results::{Catalogue, Failure, Limits, Share};
+use crate::results::{Catalogue, Failure, Limits, Share, fabric_of};
 
 /// What a run is to do: its cases, and its fabrics by name and hash.
 pub struct RunWork {
@@ -18,6 +20,25 @@ impl RunWork {
     /// Whether there is neither a fabric nor a case.
     pub fn is_empty(&self) -> bool {
         self.catalogue.len() == 0 && self.cases.is_empty()
+    }
+
+    /// Folders or files of the fabrics, and their names.
+    pub(super) fn known(&self) -> Vec<(&Path, &str)> {
+        let fabrics = &self.catalogue;
+        (0..fabrics.len()).map(|at| (fabrics.path(at), fabrics.name(at))).collect()
+    }
+
+    /// What could not be read, with the fabric that each belongs to.
+    pub(super) fn failures_of_fabrics(&self) -> Vec<Failure> {
+        if self.failures.is_empty() {
+            return Vec::new();
+        }
+        let known = self.known();
+        let named = self.failures.iter().map(|failure| {
+            let fabric = fabric_of(&known, failure);
+            Failure { fabric: fabric.map(Into::into).or(failure.fabric.clone()), ..failure.clone() }
+        });
+        named.collect()
     }
 
     /// Tasks share the threads; one that is alone has them all.
