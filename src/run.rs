@@ -229,7 +229,7 @@ pub fn write(
     failures.extend(made.iter().flat_map(|m| m.failures.iter().cloned()));
     failures.extend(own.iter().flat_map(Own::failures));
     failures.iter().for_each(|failure| observer.failed(failure));
-    failures.splice(0..0, work.failures.iter().cloned());
+    failures.splice(0..0, work.failures_of_fabrics());
 
     let results = Results {
         work,

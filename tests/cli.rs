@@ -179,8 +179,8 @@ fn a_dash_is_standard_input_and_output() {
     let output = child.wait_with_output().unwrap();
     assert_eq!((code(&output), stderr(&output).as_str()), (0, ""));
     let text = stdout(&output);
-    assert!(text.starts_with("fabric,test,direction,specimen,index,x,x_unit,y,y_unit\n"), "{text}");
-    assert!(text.contains(",bending,warp,1,1,0.1,1/cm,0.01,gf·cm/cm\n"), "{text}");
+    assert!(text.starts_with("fabric,test,direction,specimen,index,x,x_unit,y,y_unit,origin\n"), "{text}");
+    assert!(text.contains(",bending,warp,1,1,0.1,1/cm,0.01,gf·cm/cm,measured\n"), "{text}");
 }
 
 #[test]

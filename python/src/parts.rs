@@ -32,6 +32,7 @@ type Curves = (
     Vec<String>,
     Vec<f64>,
     Vec<String>,
+    Vec<Option<String>>,
 );
 
 /// Settings file, whether drape cases are solved, and which shard of how many is wanted, with whether the batch is all
@@ -45,19 +46,11 @@ type Evaluated = (Table, Table, Table, String, bool);
 type Files<'py> = (usize, usize, Bound<'py, PyBytes>, Bound<'py, PyBytes>, Bound<'py, PyBytes>);
 
 fn rows(curves: Curves) -> Vec<CurveRow> {
-    let (fabric, test, direction, specimen, index, x, x_unit, y, y_unit) = curves;
+    let (fabric, test, direction, specimen, index, x, x_unit, y, y_unit, origin) = curves;
     let names = fabric.into_iter().zip(test).zip(direction).zip(specimen.into_iter().zip(index));
-    let points = x.into_iter().zip(x_unit).zip(y.into_iter().zip(y_unit));
-    let row = |((((fabric, test), direction), (specimen, index)), ((x, x_unit), (y, y_unit)))| CurveRow {
-        fabric,
-        test,
-        direction,
-        specimen,
-        index,
-        x,
-        x_unit,
-        y,
-        y_unit,
+    let points = x.into_iter().zip(x_unit).zip(y.into_iter().zip(y_unit)).zip(origin);
+    let row = |((((fabric, test), direction), (specimen, index)), (((x, x_unit), (y, y_unit)), origin))| {
+        CurveRow { fabric, test, direction, specimen, index, x, x_unit, y, y_unit, origin }
     };
     names.zip(points).map(row).collect()
 }

@@ -257,7 +257,7 @@ impl Sheet {
 /// Mean and unit of the parameters and directions of a sheet.
 type Cells = HashMap<(String, Option<String>), (Option<f64>, String)>;
 
-/// Columns `B_warp`, `T0`, `E_secant_weft` ...: those that any of the sheets has.
+/// Columns `B_warp`, `T0`, `E_secant_weft` ...: those that any of the sheets has; then the origin.
 fn wide(sheets: &[&FabricSheet], units: UnitSystem) -> Vec<Column> {
     let name = sheets.iter().map(|s| Some(s.name.clone())).collect();
     let mut columns =
@@ -285,6 +285,8 @@ fn wide(sheets: &[&FabricSheet], units: UnitSystem) -> Vec<Column> {
             metadata: HashMap::from([("unit".into(), unit)]),
         });
     }
+    let origins = sheets.iter().map(|s| Some(s.info.origin.name().into())).collect();
+    columns.push(Column { name: "origin".into(), values: Values::Text(origins), metadata: HashMap::new() });
     columns
 }
 

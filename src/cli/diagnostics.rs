@@ -86,8 +86,10 @@ impl Diagnostics {
         }
         let place = finding.place.as_ref().map_or_else(|| "kesf".to_string(), ToString::to_string);
         let code = self.paint("33", finding.code());
-        let fabric = fabric.map(|name| format!("{name}: ")).unwrap_or_default();
-        self.line(&format!("{place}: {code} {fabric}{}", finding.fact));
+        let fact = finding.fact.to_string();
+        // Some facts name the fabric themselves.
+        let fabric = fabric.map(|name| format!("{name}: ")).filter(|name| !fact.starts_with(name));
+        self.line(&format!("{place}: {code} {}{fact}", fabric.unwrap_or_default()));
     }
 
     /// A remark that is neither an error nor a finding.

@@ -105,7 +105,10 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         }
         let charts = if settings.charts { ", charts" } else { "" };
         let files = format!("index.html, fabrics.csv, predictions.csv{charts}");
-        ui.note(&format!("{shown}: {files}; {} in problems.csv", counted(ui.findings(), "finding")));
+        let failures = report.failures.len();
+        let failed =
+            if failures == 0 { String::new() } else { format!("{} and ", counted(failures, "failure")) };
+        ui.note(&format!("{shown}: {files}; {failed}{} in problems.csv", counted(ui.findings(), "finding")));
     }
     let strict = options.task.strict && ui.findings() > 0;
     Ok(Exit::of_batch(report.useful, &report.failures).unless(report.fails_a_check || strict))

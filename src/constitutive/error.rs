@@ -3,6 +3,7 @@
 use super::PoissonRule;
 use crate::finding::{as_text, errors};
 use crate::law::LawError;
+use crate::quantity::{significant, without_rounding};
 use crate::section::SectionError;
 
 errors! {
@@ -36,7 +37,7 @@ errors! {
             unit: &'static str,
             /// What to do.
             cure: &'static str,
-        } = "{fabric}: {what} is {value:e} {unit}, a positive number is needed: {cure}";
+        } = "{fabric}: {what} is {}, a positive number is needed: {cure}", shown(*value, unit);
         /// C006: Poisson's ratio is outside the range in which energy is positive.
         "C006" Poisson {
             /// Name of the fabric.
@@ -49,5 +50,13 @@ errors! {
             /// The limit of its absolute value.
             limit: f64,
         } = "Poisson's ratio {poisson} ({rule}) is too large: |nu| < {limit} is needed for {fabric}";
+    }
+}
+
+/// A value (SI) as people write it: an areal density in g/m².
+fn shown(value: f64, unit: &str) -> String {
+    match unit {
+        "kg/m²" => format!("{} g/m²", without_rounding(1e3 * value)),
+        _ => format!("{} {unit}", significant(value)),
     }
 }

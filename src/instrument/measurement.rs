@@ -9,7 +9,7 @@ use super::fab::FabFile;
 use super::{Direction, Parameter, Test};
 use crate::finding::{Finding, Place};
 use crate::kes::{RecordName, ValueStatus};
-use crate::quantity::Curve;
+use crate::quantity::{Curve, Length, Ratio};
 
 /// Where data come from; stated in every sheet and chart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -33,6 +33,17 @@ impl Origin {
             Self::Published => "published",
             Self::Synthetic => "synthetic",
         }
+    }
+
+    /// The origin of a name, if it is one.
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Measured, Self::Published, Self::Synthetic].into_iter().find(|origin| origin.name() == name)
+    }
+
+    /// The name of a fabric as people read it: `poplin (synthetic data)`. A laboratory's own measurements are what a
+    /// reader expects, and need no word.
+    pub fn beside(self, fabric: &str) -> String {
+        if self == Self::Measured { fabric.into() } else { format!("{fabric} ({} data)", self.name()) }
     }
 }
 
@@ -153,6 +164,30 @@ pub struct MeasuredResult {
     pub method: String,
     /// Yarn direction, where it has one.
     pub direction: Option<Direction>,
+}
+
+impl MeasuredResult {
+    /// The value in SI, and the SI unit; nothing of a quantity that is compared with nothing, or of a text that is no value.
+    pub fn si(&self) -> Option<(f64, &'static str)> {
+        match self.quantity.as_str() {
+            "drape_coefficient" => Some((self.value.parse::<Ratio>().ok()?.si(), "1")),
+            "drape_nodes" => Some((self.value.parse().ok()?, "1")),
+            "bending_length" => Some((self.value.parse::<Length>().ok()?.si(), "m")),
+            _ => None,
+        }
+    }
+
+    /// `82.9 % (Cusick drape, 30 cm specimen on an 18 cm disc)`.
+    pub fn text(&self) -> String {
+        let method = Some(&self.method).filter(|method| !method.is_empty());
+        method.map_or(self.value.clone(), |method| format!("{} ({method})", self.value))
+    }
+
+    /// What it is, as people read it: `drape coefficient`, `bending length warp`.
+    pub fn name(&self) -> String {
+        let name = self.quantity.replace('_', " ");
+        self.direction.map_or(name.clone(), |direction| format!("{name} {direction}"))
+    }
 }
 
 /// What `fabric.toml` says of a fabric.

@@ -37,6 +37,8 @@ pub struct Shelf {
     /// Place of a fabric, and the results that it came from.
     fabrics: HashMap<String, (usize, usize)>,
     names: Vec<String>,
+    /// Where the data of each come from; nothing where the results do not say it, as those of earlier versions.
+    origins: Vec<Option<String>>,
     /// Values by column: in the order of parameters, directions, and moduli after them.
     columns: BTreeMap<Order, Filled>,
     /// What was added, for messages.
@@ -95,6 +97,7 @@ impl Shelf {
                 )));
             }
             let at = self.fabric(&row.fabric, number, path)?;
+            self.origins[at] = row.origin.clone().or_else(|| self.origins[at].take());
             let name = || column(&row.parameter, row.direction.as_deref());
             let filled = self.columns.entry(order).or_insert_with(|| Filled {
                 name: name(),
@@ -125,6 +128,7 @@ impl Shelf {
             }),
             None => {
                 self.names.push(name.into());
+                self.origins.push(None);
                 self.fabrics.insert(name.into(), (self.names.len() - 1, results));
                 Ok(self.names.len() - 1)
             }
@@ -164,6 +168,9 @@ impl Shelf {
                 arrays.push(Arc::clone(&array));
             }
         }
+        let origins: StringArray = order.iter().map(|at| self.origins[*at].as_deref()).collect();
+        fields.push(Field::new("origin", DataType::Utf8, true));
+        arrays.push(Arc::new(origins));
         let table = RecordBatch::try_new(Arc::new(Schema::new(fields)), arrays);
         Ok(table.map_err(|e| TableError::Encode { format: "Parquet", problem: e.to_string() })?)
     }
@@ -258,7 +265,8 @@ fn rows_of_results(table: &RecordBatch) -> Result<Vec<FabricRow>, &'static str> 
     Ok(rows.into_iter().enumerate().filter(|(at, _)| cases.is_null(*at)).map(|(_, row)| row).collect())
 }
 
-/// Rows of columns: fabric, parameter, direction, mean and unit; the name of one that is missing.
+/// Rows of columns: fabric, parameter, direction, mean and unit, and the origin where there is that column; the name of
+/// one that is missing.
 fn rows(table: &RecordBatch, names: [&'static str; 5]) -> Result<Vec<FabricRow>, &'static str> {
     let text =
         |name: &'static str| table.column_by_name(name).and_then(|c| c.as_string_opt::<i32>()).ok_or(name);
@@ -266,12 +274,14 @@ fn rows(table: &RecordBatch, names: [&'static str; 5]) -> Result<Vec<FabricRow>,
     let (fabric, parameter, direction, unit) = (fabric?, parameter?, direction?, unit?);
     let mean =
         table.column_by_name(names[3]).and_then(|c| c.as_primitive_opt::<Float64Type>()).ok_or(names[3])?;
+    let origins = text("origin").ok();
     let row = |at: usize| FabricRow {
         fabric: fabric.value(at).into(),
         parameter: parameter.value(at).into(),
         direction: direction.is_valid(at).then(|| direction.value(at).into()),
         mean: mean.is_valid(at).then(|| mean.value(at)),
         unit: unit.value(at).into(),
+        origin: origins.filter(|column| column.is_valid(at)).map(|column| column.value(at).into()),
         ..FabricRow::default()
     };
     Ok((0..table.num_rows()).map(row).collect())

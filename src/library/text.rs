@@ -6,6 +6,7 @@ use arrow_array::types::UInt64Type;
 
 use super::bounds::Bounds;
 use super::find::Answer;
+use crate::instrument::Origin;
 use crate::report::arrow_text::{Cell, cell, units};
 use crate::report::number::{counted, significant};
 use crate::results::Columns;
@@ -30,7 +31,13 @@ impl Answer {
         };
         let mut columns = Columns::new(names.iter().map(heading));
         for row in 0..table.num_rows() {
-            columns.row(names.iter().map(|name| shown(table, name, row)));
+            let mut cells: Vec<String> = names.iter().map(|name| shown(table, name, row)).collect();
+            if let (Some(fabric), Some(origin)) =
+                (cells.first_mut(), Origin::from_name(&shown(table, "origin", row)))
+            {
+                *fabric = origin.beside(fabric);
+            }
+            columns.row(cells);
         }
         columns.text() + &self.notes()
     }

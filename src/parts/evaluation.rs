@@ -83,6 +83,7 @@ fn parameter(row: FabricRow) -> Option<ResultRow> {
         sd: row.sd,
         n: Some(row.n),
         status: Some(row.status),
+        origin: row.origin,
         ..ResultRow::default()
     })
 }
@@ -97,11 +98,14 @@ fn prediction(row: PredictionRow) -> ResultRow {
         measured: row.measured,
         low: row.simulated_low,
         high: row.simulated_high,
+        status: row.status,
+        origin: row.origin,
+        remark: row.remark,
         ..ResultRow::default()
     }
 }
 
 pub(super) fn remark(row: ProblemRow) -> RemarkRow {
-    let ProblemRow { place, code, message, fabric } = row;
-    RemarkRow { fabric, code, place, message }
+    let ProblemRow { place, code, message, fabric, hint } = row;
+    RemarkRow { fabric, code, place, message, hint }
 }

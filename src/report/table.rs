@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::CsvTable;
 use crate::characterise::{FabricSheet, ValueStatus};
 use crate::finding::{Finding, errors};
-use crate::instrument::{Direction, FabricInput, Measurement, Parameter, Test};
+use crate::instrument::{Direction, FabricInput, MeasuredResult, Measurement, Parameter, Test};
 use crate::quantity::Estimate;
 use crate::study::CaseResult;
 
@@ -139,7 +139,7 @@ row! {
     FabricRow {
         /// Identifier of the fabric.
         fabric: String,
-        /// Symbol, e.g. `2HB`.
+        /// Symbol, e.g. `2HB`, or a measured result of `fabric.toml`, e.g. `drape_coefficient`.
         parameter: String,
         /// `warp`, `weft`, `bias`, or nothing for the fabric as a whole.
         direction: Option<String>,
@@ -158,6 +158,9 @@ row! {
         cv: Option<f64>,
         /// Half width of the 95 % Student t interval of the mean.
         ci95: Option<f64>,
+        /// `measured`, `published` or `synthetic`: where the data of the fabric come from; nothing of a fabric that could
+        /// not be read.
+        origin: Option<String>,
     }
 }
 
@@ -183,6 +186,13 @@ row! {
         simulated_low: Option<f64>,
         /// Upper end of that band.
         simulated_high: Option<f64>,
+        /// Origin of the data of the fabric, as in `fabrics.csv`; nothing of a case with constants of its own.
+        origin: Option<String>,
+        /// What weighs most against the value: `not converged`, `check failed`, `beyond linear`, `doubtful`, `assumed` or
+        /// `quick`; nothing where nothing does.
+        status: Option<String>,
+        /// What of its inputs speaks against it, e.g. `rests on an assumed E and a doubtful B warp`.
+        remark: Option<String>,
     }
 }
 
@@ -215,6 +225,8 @@ row! {
         message: String,
         /// The fabric that it is about.
         fabric: Option<String>,
+        /// What to do about a failure; the message of a finding says it itself.
+        hint: Option<String>,
     }
 }
 
@@ -243,8 +255,12 @@ row! {
         low: Option<f64>,
         /// Upper end of that band.
         high: Option<f64>,
-        /// Status of a parameter, as in `fabrics.csv`.
+        /// Status of a parameter as in `fabrics.csv`, of a prediction as in `predictions.csv`.
         status: Option<String>,
+        /// Origin of the data of the fabric, as in `fabrics.csv`; nothing of a case with constants of its own.
+        origin: Option<String>,
+        /// Remark on a prediction, as in `predictions.csv`.
+        remark: Option<String>,
     }
 }
 
@@ -259,6 +275,8 @@ row! {
         place: String,
         /// One sentence.
         message: String,
+        /// What to do about a failure; the message of a finding says it itself.
+        hint: Option<String>,
     }
 }
 
@@ -283,6 +301,8 @@ row! {
         y: f64,
         /// Its unit.
         y_unit: String,
+        /// Origin of the data of the fabric, as in `fabrics.csv`.
+        origin: Option<String>,
     }
 }
 
@@ -329,7 +349,8 @@ pub fn relative_error(simulated: f64, measured: f64) -> Option<f64> {
     Some((simulated - measured) / measured).filter(|e| e.is_finite())
 }
 
-/// The rows of a sheet, in the order of its parameters and directions; then its moduli (`E secant`).
+/// The rows of a sheet, in the order of its parameters and directions; then its moduli (`E secant`), and the results that
+/// its `fabric.toml` states (`drape_coefficient`), which are in SI always.
 pub fn fabric_rows(sheet: &FabricSheet, units: UnitSystem) -> Vec<FabricRow> {
     let row = |name: String,
                direction: Option<Direction>,
@@ -348,6 +369,7 @@ pub fn fabric_rows(sheet: &FabricSheet, units: UnitSystem) -> Vec<FabricRow> {
             status: status.name().into(),
             cv: e.cv(),
             ci95: e.ci95().map(shown),
+            origin: Some(sheet.info.origin.name().into()),
         }
     };
     let values = sheet.values.iter().map(|(key, e)| {
@@ -358,10 +380,31 @@ pub fn fabric_rows(sheet: &FabricSheet, units: UnitSystem) -> Vec<FabricRow> {
         let status = sheet.modulus_status(name, *direction);
         row(format!("E {name}"), Some(*direction), e, units.of_modulus(), status)
     });
-    values.chain(moduli).collect()
+    values.chain(moduli).chain(sheet.info.results.iter().filter_map(|r| stated_row(sheet, r))).collect()
+}
+
+/// The row of a measured result of `fabric.toml`, which does not say of how many repeats it is.
+fn stated_row(sheet: &FabricSheet, result: &MeasuredResult) -> Option<FabricRow> {
+    let (mean, unit) = result.si()?;
+    Some(FabricRow {
+        fabric: sheet.name.clone(),
+        parameter: result.quantity.clone(),
+        direction: result.direction.map(|d| d.name().into()),
+        mean: Some(mean),
+        n: 1,
+        unit: unit.into(),
+        status: ValueStatus::Measured.name().into(),
+        origin: Some(sheet.info.origin.name().into()),
+        ..FabricRow::default()
+    })
 }
 
 impl FabricRow {
+    /// Whether it is of a KES parameter or a modulus, and not of a result that `fabric.toml` states.
+    pub fn is_of_parameter(&self) -> bool {
+        self.parameter.starts_with("E ") || Parameter::from_symbol(&self.parameter).is_some()
+    }
+
     /// A row of SI in other units.
     #[must_use]
     pub fn in_units(&self, units: UnitSystem) -> Self {
@@ -431,22 +474,23 @@ pub fn problem_row(finding: &Finding, otherwise: &str) -> ProblemRow {
         code: finding.code().into(),
         message: finding.message(),
         fabric: None,
+        hint: None,
     }
 }
 
 /// Every point of every curve of a fabric, in SI or in KES units.
 pub fn curve_rows(fabric: &FabricInput, units: UnitSystem) -> Vec<CurveRow> {
-    fabric.measurements.iter().flat_map(|m| measurement_rows(&fabric.name, m, units)).collect()
+    fabric.measurements.iter().flat_map(|m| measurement_rows(fabric, m, units)).collect()
 }
 
 fn measurement_rows<'a>(
-    fabric: &'a str,
+    fabric: &'a FabricInput,
     measurement: &'a Measurement,
     units: UnitSystem,
 ) -> impl Iterator<Item = CurveRow> + 'a {
     let [(x_unit, x_factor), (y_unit, y_factor)] = curve_units(measurement.test, units);
     measurement.curve.points().enumerate().map(move |(index, (x, y))| CurveRow {
-        fabric: fabric.into(),
+        fabric: fabric.name.clone(),
         test: measurement.test.name().into(),
         direction: measurement.direction.map(|d| d.name().into()),
         specimen: measurement.specimen as u64,
@@ -455,6 +499,7 @@ fn measurement_rows<'a>(
         x_unit: x_unit.into(),
         y: in_unit(y, y_factor),
         y_unit: y_unit.into(),
+        origin: Some(fabric.info.origin.name().into()),
     })
 }
 

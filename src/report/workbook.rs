@@ -1,7 +1,5 @@
 //! Workbooks (.xlsx) for spreadsheet programs: fabrics side by side, statistics, predictions, findings.
 
-use std::collections::BTreeMap;
-
 use rust_xlsxwriter::{Color, DocProperties, ExcelDateTime, Format, Workbook, Worksheet, XlsxError};
 use serde_json::Value;
 
@@ -29,27 +27,27 @@ pub fn workbook(tables: &Tables<'_>) -> Result<Vec<u8>, TableError> {
     build(tables).map_err(|e| TableError::Encode { format: "XLSX", problem: e.to_string() })
 }
 
-/// A workbook of parameters alone, side by side and with their statistics; `origins` are those of the fabrics by name.
+/// A workbook of parameters alone, side by side and with their statistics.
 ///
 /// # Errors
 /// Those of [`workbook()`].
-pub fn parameters(fabrics: &[FabricRow], origins: &BTreeMap<&str, &str>) -> Result<Vec<u8>, TableError> {
-    let saved = begun(fabrics, origins).and_then(|mut book| book.save_to_buffer());
+pub fn parameters(fabrics: &[FabricRow]) -> Result<Vec<u8>, TableError> {
+    let saved = begun(fabrics).and_then(|mut book| book.save_to_buffer());
     saved.map_err(|e| TableError::Encode { format: "XLSX", problem: e.to_string() })
 }
 
 /// A workbook with the sheets of parameters.
-fn begun(fabrics: &[FabricRow], origins: &BTreeMap<&str, &str>) -> Result<Workbook, XlsxError> {
+fn begun(fabrics: &[FabricRow]) -> Result<Workbook, XlsxError> {
     let mut book = Workbook::new();
     // The same input gives the same bytes: the earliest date that an archive can hold.
     book.set_properties(&DocProperties::new().set_creation_datetime(&ExcelDateTime::from_ymd(1980, 1, 1)?));
-    side_by_side(book.add_worksheet().set_name("fabrics")?, fabrics, origins)?;
+    side_by_side(book.add_worksheet().set_name("fabrics")?, fabrics)?;
     tidy(book.add_worksheet().set_name("statistics")?, fabrics)?;
     Ok(book)
 }
 
 fn build(tables: &Tables<'_>) -> Result<Vec<u8>, XlsxError> {
-    let mut book = begun(tables.fabrics, &BTreeMap::new())?;
+    let mut book = begun(tables.fabrics)?;
     if !tables.predictions.is_empty() {
         tidy(book.add_worksheet().set_name("predictions")?, tables.predictions)?;
     }
@@ -64,22 +62,20 @@ struct Line<'a> {
     /// Column, from 0 behind the name, and value.
     cells: Vec<(usize, f64)>,
     remarks: Vec<String>,
+    origin: Option<&'a str>,
 }
 
-/// One line a fabric, one column a parameter and direction; the last columns name the origin of the fabric, where it is
-/// known, and the values that are not measured.
-fn side_by_side(
-    sheet: &mut Worksheet,
-    rows: &[FabricRow],
-    origins: &BTreeMap<&str, &str>,
-) -> Result<(), XlsxError> {
+/// One line a fabric, one column a parameter and direction; the last columns name the origin of the fabric and
+/// the values that are not measured.
+fn side_by_side(sheet: &mut Worksheet, rows: &[FabricRow]) -> Result<(), XlsxError> {
     let mut columns: Vec<String> = Vec::new();
     let mut lines: Vec<Line> = Vec::new();
     for row in rows {
         if lines.last().is_none_or(|line| line.fabric != row.fabric) {
             lines.push(Line { fabric: &row.fabric, ..Line::default() });
         }
-        let Some(Line { cells, remarks, .. }) = lines.last_mut() else { continue };
+        let Some(Line { cells, remarks, origin, .. }) = lines.last_mut() else { continue };
+        *origin = origin.or(row.origin.as_deref());
         let Some(mean) = row.mean else {
             remarks.push(row.status.clone());
             continue;
@@ -96,16 +92,15 @@ fn side_by_side(
         });
         cells.push((at, mean));
     }
-    let last: &[&str] = if origins.is_empty() { &["remarks"] } else { &["origin", "remarks"] };
-    let headings =
-        ["fabric"].into_iter().chain(columns.iter().map(String::as_str)).chain(last.iter().copied());
+    let last = ["origin", "remarks"];
+    let headings = ["fabric"].into_iter().chain(columns.iter().map(String::as_str)).chain(last);
     head(sheet, headings)?;
-    for (line, Line { fabric, cells, remarks }) in (1u32..).zip(&lines) {
+    for (line, Line { fabric, cells, remarks, origin }) in (1u32..).zip(&lines) {
         sheet.write_string(line, 0, *fabric)?;
         for (at, mean) in cells {
             sheet.write_number(line, column(at + 1)?, *mean)?;
         }
-        if let Some(origin) = origins.get(fabric) {
+        if let Some(origin) = origin {
             sheet.write_string(line, column(columns.len() + 1)?, *origin)?;
         }
         sheet.write_string(line, column(columns.len() + last.len())?, remarks.join("; "))?;
@@ -182,7 +177,10 @@ mod tests {
         let fabrics = [
             row("=1+1", "B", Some("warp"), 8.5e-6, "measured"),
             row("=1+1", "B", Some("weft"), 5.5e-6, "doubtful"),
-            row("knit", "B", Some("weft"), 1.5e-6, "measured"),
+            FabricRow {
+                origin: Some("synthetic".into()),
+                ..row("knit", "B", Some("weft"), 1.5e-6, "measured")
+            },
             FabricRow { fabric: "lost".into(), status: "R004".into(), ..FabricRow::default() },
         ];
         let problem = ProblemRow { place: "a.csv:3".into(), code: "K003".into(), ..ProblemRow::default() };
@@ -197,15 +195,13 @@ mod tests {
         assert_eq!(cell(1, 0), Data::String("=1+1".into()));
         assert_eq!((cell(1, 1), cell(1, 2)), (Data::Float(8.5e-6), Data::Float(5.5e-6)));
         assert_eq!((cell(2, 1), cell(2, 2)), (Data::Empty, Data::Float(1.5e-6)));
-        assert_eq!(cell(1, 3), Data::String("B weft is doubtful".into()));
-        assert_eq!(cell(3, 3), Data::String("R004".into()));
-        let of_parameters = super::parameters(&fabrics, &[("knit", "synthetic")].into()).unwrap();
-        let mut book: Xlsx<_> = calamine::open_workbook_from_rs(Cursor::new(of_parameters)).unwrap();
-        assert_eq!(book.sheet_names(), ["fabrics", "statistics"]);
-        let with_origins = book.worksheet_range("fabrics").unwrap();
-        let cell = |r, c| with_origins.get_value((r, c)).cloned().unwrap_or(Data::Empty);
+        assert_eq!(cell(1, 4), Data::String("B weft is doubtful".into()));
+        assert_eq!(cell(3, 4), Data::String("R004".into()));
         assert_eq!((cell(0, 3), cell(0, 4)), (Data::String("origin".into()), Data::String("remarks".into())));
         assert_eq!((cell(1, 3), cell(2, 3)), (Data::Empty, Data::String("synthetic".into())));
+        let of_parameters = super::parameters(&fabrics).unwrap();
+        let book: Xlsx<_> = calamine::open_workbook_from_rs(Cursor::new(of_parameters)).unwrap();
+        assert_eq!(book.sheet_names(), ["fabrics", "statistics"]);
         let sheet = sheets.worksheet_range("statistics").unwrap();
         assert_eq!(sheet.get_value((1, 5)), Some(&Data::Float(3.0)));
         let sheet = sheets.worksheet_range("findings").unwrap();

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
@@ -141,6 +141,18 @@ impl Checked {
         }
     }
 
+    /// The row of what cannot be read or makes no problem: the fabric or the case, and the code of the error.
+    fn failed(&self, failure: &Failure) -> [String; 7] {
+        let known: Vec<(&Path, &str)> =
+            self.fabrics.iter().map(|f| (f.path.as_path(), f.name.as_str())).collect();
+        let stem = || failure.place.as_ref().and_then(|p| p.path.file_stem()).map(|s| s.to_string_lossy());
+        let fabric = inputs::fabric_of(&known, failure);
+        let kind = if fabric.is_some() { "fabric" } else { "case" };
+        let name = fabric.unwrap_or_else(|| stem().map_or("-".into(), |stem| stem.into_owned()));
+        let [files, curves, values, findings] = [const { String::new() }; 4];
+        [name, kind.into(), files, curves, values, findings, failure.code.to_string()]
+    }
+
     /// One line an input; with `verbose`, before it, how each file was understood.
     pub fn text(&self, verbose: bool) -> String {
         let mut text = String::new();
@@ -150,15 +162,18 @@ impl Checked {
                 text += &format!("{}\n{}\n", inference.path.display(), decisions.concat());
             }
         }
-        let mut columns = Columns::new(["input", "kind", "files", "curves", "values", "findings"]);
+        let mut columns = Columns::new(["input", "kind", "files", "curves", "values", "findings", "status"]);
         for f in &self.fabrics {
             let curves = f.measurements.len() + f.fab.iter().map(|fab| fab.tests.len()).sum::<usize>();
             let numbers = [f.sources.len(), curves, f.results.len(), f.findings.len()];
             let name = [f.name.clone(), "fabric".to_string()];
-            columns.row(name.into_iter().chain(numbers.map(|n| n.to_string())));
+            columns.row(name.into_iter().chain(numbers.map(|n| n.to_string())).chain(["ok".to_string()]));
         }
         for case in &self.cases {
-            columns.row([case.name.as_str(), "case"]);
+            columns.row([case.name.as_str(), "case", "", "", "", "", "ok"]);
+        }
+        for failure in &self.failures {
+            columns.row(self.failed(failure));
         }
         let [fabrics, cases, errors] = [
             counted(self.fabrics.len(), "fabric"),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use crate::finding::errors;
-use crate::instrument::{Direction, FabricInput, Measurement, Source, Test};
+use crate::instrument::{Direction, FabricInfo, FabricInput, Measurement, Origin, Source, Test};
 use crate::quantity::{Curve, Unit};
 use crate::report::table::{CurveRow, UnitSystem, curve_units};
 
@@ -41,16 +41,33 @@ type Points = Vec<(u64, usize, f64, f64)>;
 /// [`CurveTableError`] with the number of the row.
 pub fn fabrics_of_curves(rows: &[CurveRow]) -> Result<Vec<FabricInput>, CurveTableError> {
     let mut fabrics: BTreeMap<&str, BTreeMap<Name, Points>> = BTreeMap::new();
+    let mut origins: BTreeMap<&str, Origin> = BTreeMap::new();
     for (at, row) in rows.iter().enumerate() {
         let failed =
             |problem: String| CurveTableError::Row { fabric: row.fabric.clone(), row: at + 1, problem };
         let (name, x, y) = point(row).map_err(failed)?;
         fabrics.entry(&row.fabric).or_default().entry(name).or_default().push((row.index, at + 1, x, y));
+        let origin = origin(row).map_err(failed)?;
+        if *origins.entry(&row.fabric).or_insert(origin) != origin {
+            return Err(failed(format!("the origin is {} here and another before", origin.name())));
+        }
     }
-    fabrics.into_iter().map(|(name, curves)| fabric(name, curves)).collect()
+    let named = fabrics.into_iter().zip(origins.into_values());
+    named.map(|((name, curves), origin)| fabric(name, origin, curves)).collect()
 }
 
-fn fabric(name: &str, curves: BTreeMap<Name, Points>) -> Result<FabricInput, CurveTableError> {
+/// Where the fabric of a row comes from; a table that does not say it is of measurements.
+fn origin(row: &CurveRow) -> Result<Origin, String> {
+    let Some(name) = &row.origin else { return Ok(Origin::default()) };
+    Origin::from_name(name)
+        .ok_or_else(|| format!("`{name}` is no origin; there are measured, published and synthetic"))
+}
+
+fn fabric(
+    name: &str,
+    origin: Origin,
+    curves: BTreeMap<Name, Points>,
+) -> Result<FabricInput, CurveTableError> {
     let source = Source { path: PathBuf::from(name), ..Source::default() };
     let mut measurements = Vec::new();
     for ((test, direction, specimen), mut points) in curves {
@@ -77,7 +94,15 @@ fn fabric(name: &str, curves: BTreeMap<Name, Points>) -> Result<FabricInput, Cur
         });
     }
     let path = PathBuf::from(name);
-    Ok(FabricInput { name: name.into(), path, measurements, sources: vec![source], ..FabricInput::default() })
+    let info = FabricInfo { origin, ..FabricInfo::default() };
+    Ok(FabricInput {
+        name: name.into(),
+        path,
+        info,
+        measurements,
+        sources: vec![source],
+        ..FabricInput::default()
+    })
 }
 
 /// The curve and the point of a row in SI, or what is wrong with it.
@@ -136,7 +161,17 @@ mod tests {
             x_unit: "1/cm".into(),
             y: 0.1 * index as f64,
             y_unit: "gf·cm/cm".into(),
+            origin: None,
         }
+    }
+
+    #[test]
+    fn what_was_made_by_a_generator_stays_so() {
+        let origin = |origin: Option<&str>| {
+            let rows = [0, 1, 2].map(|index| CurveRow { origin: origin.map(Into::into), ..row(index) });
+            fabrics_of_curves(&rows).unwrap()[0].info.origin
+        };
+        assert_eq!((origin(Some("synthetic")), origin(None)), (Origin::Synthetic, Origin::Measured));
     }
 
     #[test]
@@ -169,5 +204,7 @@ mod tests {
         wrong(|row| row.x_unit = "gf".into(), "the unit is `gf` where one such as 1/m");
         wrong(|row| row.index = 1, "index 1 is there twice");
         wrong(|row| row.test = "compression".into(), "compression has no direction");
+        wrong(|row| row.origin = Some("guessed".into()), "`guessed` is no origin");
+        wrong(|row| row.origin = Some("synthetic".into()), "the origin is synthetic here and another before");
     }
 }

@@ -54,7 +54,7 @@ pub(super) fn table<'a, 'f: 'a, 'c: 'a>(
         let ([low, high], s) = (d.band(), &d.finest);
         table.row([
             d.case.clone(),
-            task.fabric_name().unwrap_or_default().into(),
+            task.shown_fabric(),
             law(task).into(),
             percent(s.coefficient),
             format!("{} to {}", percent(low), percent(high)),
@@ -79,6 +79,9 @@ pub struct DrapeEntry {
     model: ModelEntry,
     results: DrapeResults,
     findings: Vec<Finding>,
+    /// Origin of the data of the fabric: `measured`, `published` or `synthetic`.
+    #[serde(default)]
+    origin: Option<String>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -225,6 +228,7 @@ pub(super) fn entry(task: &Task, d: &Drape) -> DrapeEntry {
         model: ModelEntry::new(&d.model, 6 * d.model.mesh.nodes.len()),
         results: DrapeResults { drape },
         findings: d.findings.clone(),
+        origin: task.origin_name(),
     }
 }
 

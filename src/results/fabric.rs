@@ -141,14 +141,25 @@ impl FabricReport {
             status,
             rows: vec![row],
             cells: vec!["-".into(); overview::HEADINGS.len() - 1],
-            failures: vec![failure],
+            failures: vec![Failure { fabric: Some(name.into()), ..failure }],
             ..Self::default()
         }
     }
 
-    /// `measured`, `published` or `synthetic`; empty of a fabric that could not be read.
-    pub(super) fn origin(&self) -> &'static str {
-        self.info.as_ref().map_or("", |info| info.origin.name())
+    /// `measured`, `published` or `synthetic`; nothing of a fabric that could not be read.
+    pub(crate) fn origin(&self) -> Option<&'static str> {
+        self.info.as_ref().map(|info| info.origin.name())
+    }
+
+    /// The drape coefficient that its `fabric.toml` states, 0 to 1.
+    pub(super) fn measured_drape(&self) -> Option<f64> {
+        let results = self.info.iter().flat_map(|info| &info.results);
+        results.filter(|r| r.quantity == "drape_coefficient").find_map(|r| r.si()).map(|(value, _)| value)
+    }
+
+    /// Its name as people read it, with the origin of what is not measured.
+    pub(super) fn shown_name(&self) -> String {
+        self.info.as_ref().map_or_else(|| self.name.clone(), |info| info.origin.beside(&self.name))
     }
 
     /// Whether another run could not find more: nothing failed for want of time, memory or a place to write to.
@@ -265,11 +276,15 @@ impl FabricReport {
         for finding in &mut self.findings {
             finding.place.get_or_insert_with(|| Place::file(&fabric.path));
         }
+        for failure in &mut self.failures {
+            failure.fabric.get_or_insert_with(|| self.name.as_str().into());
+        }
         if let Some(failure) = self.failures.first() {
             self.status = failure.code.to_string();
             self.rows.push(FabricRow {
                 fabric: self.name.clone(),
                 status: self.status.clone(),
+                origin: self.origin().map(str::to_string),
                 ..FabricRow::default()
             });
         }

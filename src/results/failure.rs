@@ -102,6 +102,7 @@ impl Failure {
             code: self.code.to_string(),
             message: self.message.clone(),
             fabric: self.fabric.as_deref().map(str::to_string),
+            hint: self.hint.as_deref().map(str::to_string),
         }
     }
 

@@ -415,7 +415,8 @@ pub(crate) fn unread_by_fabric<'f>(
     failures.iter().filter_map(|failure| Some((fabric_of(fabrics, failure)?, failure)))
 }
 
-fn fabric_of(fabrics: &[(&Path, &str)], failure: &Failure) -> Option<String> {
+/// The fabric of what could not be read: the one whose folder it is in, or else the name that its file would give one.
+pub(crate) fn fabric_of(fabrics: &[(&Path, &str)], failure: &Failure) -> Option<String> {
     let path = &failure.place.as_ref().filter(|_| failure.code.starts_with('R'))?.path;
     let mut inside =
         fabrics.iter().filter(|(folder, _)| path.starts_with(folder) && files::is_folder(folder));

@@ -26,6 +26,7 @@ mod folder;
 mod friction;
 mod init;
 mod inputs;
+mod judged;
 pub mod list;
 mod names;
 mod observer;
@@ -74,7 +75,7 @@ pub use inputs::{
     Curves, Fabric, FileEntry, Input, Read, Reading, ReadingEntry, cases, nothing_to_read, paths_of_several,
     readable, unread, without_cases,
 };
-pub(crate) use inputs::{unread_by_fabric, unread_of};
+pub(crate) use inputs::{fabric_of, unread_by_fabric, unread_of};
 pub use names::{FILES, distinguish_fabrics};
 pub use observer::{Event, Found, Observer};
 pub use outcome::{ComparisonDocument, ComparisonEntry, Document, Outcome, Solution, SolutionDocument};

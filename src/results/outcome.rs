@@ -9,6 +9,7 @@ use super::deflected::{Deflected, PageSheet};
 use super::draped::{self, DrapeEntry, DrapePoint};
 use super::failure::Failure;
 use super::folder::Folder;
+use super::judged;
 use super::sampled;
 use super::solved::{self, SolutionEntry};
 use super::task::Task;
@@ -138,16 +139,22 @@ impl Outcome {
         }
     }
 
-    /// Rows of `predictions.csv`, with the bands that were sampled.
+    /// Rows of `predictions.csv`, with the bands that were sampled and with what speaks against them.
     pub fn rows(&self, task: &Task) -> Vec<PredictionRow> {
-        let mut rows = match self {
+        let mut rows = self.values(task);
+        sampled::fill(&mut rows, task);
+        judged::fill(&mut rows, task, self);
+        rows
+    }
+
+    /// What was simulated, beside what was measured.
+    fn values(&self, task: &Task) -> Vec<PredictionRow> {
+        match self {
             Self::Solved(result) => solved::rows(task, result),
             Self::Draped(drape) => draped::rows(task, drape),
             Self::Tested(tested) => tested.iter().flat_map(|t| tested::rows(task, t)).collect(),
             Self::Bent(result, _) => bent::rows(task, result),
-        };
-        sampled::fill(&mut rows, task);
-        rows
+        }
     }
 
     /// Writes the files of the task: its document, fields and charts. Returns the charts.
@@ -219,7 +226,7 @@ impl Outcome {
                 if row.quantity == "drape_nodes" { "folds".into() } else { row.quantity.replace('_', " ") };
             row.simulated.map(|v| format!("{name} {}{unit}", number(v)))
         };
-        let values: Vec<String> = self.rows(task).iter().filter_map(described).take(VALUES_SEEN).collect();
+        let values: Vec<String> = self.values(task).iter().filter_map(described).take(VALUES_SEEN).collect();
         let values = if values.is_empty() { String::new() } else { format!("; {}", values.join(", ")) };
         format!("{}{fabric}: {what}{values}.", task.case.title)
     }

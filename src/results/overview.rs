@@ -4,13 +4,15 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::columns::Columns;
 use super::fabric::FabricReport;
+use super::judged::of_remark;
 use super::page_problems::BEYOND_LINEAR;
-use super::sheet_text::mark;
+use super::sheet_text::{BOTH, BOTH_LEGEND, mark};
 use crate::case::{Analysis, BendingTest, Case, Problem};
 use crate::characterise::{FabricSheet, Key};
 use crate::finding::Place;
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::significant;
+use crate::report::table::PredictionRow;
 
 /// Headings before the deflections, in KES units.
 pub(super) const HEADINGS: [&str; 9] = [
@@ -29,7 +31,7 @@ pub(super) const HEADINGS: [&str; 9] = [
 pub(super) const CAPTION: &str = "B in gf·cm²/cm, G in gf/(cm·deg); E is the tangent at low load, or the secant where that is written; ? is doubtful, * rests on an assumption, ~ is inferred";
 
 /// What the columns of predictions are.
-const PREDICTIONS: &str = "drape coefficients in %, bending lengths of cantilevers in mm, largest deflections in mm or over the bending thickness t_b (a linear solve means something below 0.3), lowest frequencies in Hz, load factors of buckling";
+const PREDICTIONS: &str = "drape coefficients in %, bending lengths of cantilevers in mm, largest deflections in mm or over the bending thickness t_b (a linear solve means something below 0.3), lowest frequencies in Hz, load factors of buckling; ? and * behind a prediction are of what it rests on";
 
 /// B, G, E, T, W: KES units, except E in N/m.
 pub(super) fn cells(sheet: &FabricSheet) -> Vec<String> {
@@ -50,7 +52,8 @@ fn parameter(sheet: &FabricSheet, parameter: Parameter, direction: Option<Direct
     let keys = [direction, None].map(|direction| Key { parameter, direction });
     let found = keys.into_iter().find_map(|key| Some((key, sheet.values.get(&key)?)));
     found.map_or("-".into(), |(key, e)| {
-        format!("{}{}", significant(e.mean / parameter.kes_factor()), mark(sheet.status(key)))
+        let both = if key.direction == direction { "" } else { BOTH };
+        format!("{}{both}{}", significant(e.mean / parameter.kes_factor()), mark(sheet.status(key)))
     })
 }
 
@@ -127,10 +130,7 @@ impl<'c> Prediction<'c> {
         let of_case = |list: &[(String, f64)], case: &str| {
             list.iter().find(|(name, _)| name == case).map(|(_, value)| *value)
         };
-        let predicted = |case: &str, quantity: &str| {
-            let row = report.predictions.iter().find(|row| row.case == case && row.quantity == quantity);
-            row.and_then(|row| row.simulated)
-        };
+        let predicted = |case: &str, quantity: &str| predicted(report, case, quantity)?.simulated;
         let value = match self {
             Self::Drape(case, _) => predicted(case, "drape_coefficient").map(|part| 1e2 * part),
             Self::BendingLength(case, direction) => {
@@ -140,8 +140,39 @@ impl<'c> Prediction<'c> {
             Self::Deflection(case) => of_case(&report.deflections, case).map(|w| 1e3 * w),
             Self::Frequency(case) | Self::LoadFactor(case) => of_case(&report.eigenvalues, case),
         };
-        value.map_or("-".into(), significant)
+        match (value, self, report.measured_drape()) {
+            (None, Self::Drape(..), Some(measured)) => {
+                format!("- ({} measured)", significant(1e2 * measured))
+            }
+            (value, ..) => value.map_or("-".into(), |value| {
+                format!("{}{}", significant(value), self.row(report).map_or("", doubt))
+            }),
+        }
     }
+
+    /// The row that says what speaks against the value: of a sheet its first, as all of them rest on the same.
+    fn row<'r>(&self, report: &'r FabricReport) -> Option<&'r PredictionRow> {
+        match self {
+            Self::Drape(case, _) => predicted(report, case, "drape_coefficient"),
+            Self::BendingLength(case, direction) => {
+                predicted(report, case, &format!("bending_length {direction}"))
+            }
+            Self::Relative(case)
+            | Self::Deflection(case)
+            | Self::Frequency(case)
+            | Self::LoadFactor(case) => report.predictions.iter().find(|row| row.case == *case),
+        }
+    }
+}
+
+/// The row of what a case predicts.
+fn predicted<'r>(report: &'r FabricReport, case: &str, quantity: &str) -> Option<&'r PredictionRow> {
+    report.predictions.iter().find(|row| row.case == case && row.quantity == quantity)
+}
+
+/// The mark of a prediction whose inputs something speaks against, as parameters have it.
+fn doubt(row: &PredictionRow) -> &'static str {
+    mark(of_remark(row.remark.as_deref().unwrap_or_default()))
 }
 
 /// One line a fabric, with columns of what its cases predict.
@@ -150,6 +181,8 @@ pub(crate) struct Overview<'c> {
     table: Columns,
     /// Cases whose linear solve means nothing of a shape, and for how many fabrics.
     beyond: BTreeMap<String, usize>,
+    /// Whether one value stands in the place of two.
+    has_both: bool,
 }
 
 impl<'c> Overview<'c> {
@@ -159,13 +192,14 @@ impl<'c> Overview<'c> {
         predictions.sort_by_key(Prediction::rank);
         let predicted = predictions.iter().map(Prediction::heading);
         let headings = HEADINGS.map(String::from).into_iter().chain(predicted).chain(["status".to_string()]);
-        Self { table: Columns::new(headings), predictions, beyond: BTreeMap::new() }
+        Self { table: Columns::new(headings), predictions, beyond: BTreeMap::new(), has_both: false }
     }
 
     /// Adds a fabric.
     pub fn row(&mut self, report: &FabricReport) {
-        let mut row = vec![report.name.clone()];
+        let mut row = vec![report.shown_name()];
         row.extend(report.cells.iter().cloned());
+        self.has_both |= report.cells.iter().any(|cell| cell.contains(BOTH));
         row.extend(self.predictions.iter().map(|prediction| prediction.cell(report)));
         row.push(report.status.clone());
         self.table.row(row);
@@ -174,10 +208,20 @@ impl<'c> Overview<'c> {
         cases.into_iter().for_each(|case| *self.beyond.entry(case).or_default() += 1);
     }
 
+    /// Adds a fabric of which nothing could be read; the code says why.
+    pub fn unread(&mut self, fabric: &str, code: &str) {
+        let values = HEADINGS.len() - 1 + self.predictions.len();
+        let nothing = std::iter::repeat_n("-".to_string(), values);
+        self.table.row(std::iter::once(fabric.to_string()).chain(nothing).chain([code.to_string()]));
+    }
+
     /// The table.
     pub fn table(self) -> Columns {
         let mut caption =
             if self.predictions.is_empty() { CAPTION.into() } else { format!("{CAPTION}; {PREDICTIONS}") };
+        if self.has_both {
+            caption += &format!("; {BOTH_LEGEND}");
+        }
         if !self.beyond.is_empty() {
             let named: Vec<String> =
                 self.beyond.iter().map(|(case, fabrics)| format!("{case} of {fabrics} fabrics")).collect();
@@ -198,7 +242,7 @@ mod tests {
 
     use super::*;
     use crate::finding::{Excess, Fact, Finding, StudyFact};
-    use crate::report::table::PredictionRow;
+    use crate::quantity::Estimate;
 
     fn case(file: &str) -> Case {
         Case::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(file)).unwrap()
@@ -218,7 +262,10 @@ mod tests {
             name: "poplin".into(),
             cells: vec!["-".into(); HEADINGS.len() - 1],
             predictions: vec![
-                row("drape", "drape_coefficient", 0.5),
+                PredictionRow {
+                    remark: Some("rests on an assumed E and a doubtful B warp".into()),
+                    ..row("drape", "drape_coefficient", 0.5)
+                },
                 row("cantilever", "bending_length warp", 0.02),
             ],
             relative_deflections: vec![("seed_clamped".into(), 1e-5)],
@@ -237,8 +284,29 @@ mod tests {
         ];
         let places: Vec<usize> = order.iter().map(|name| head.find(name).unwrap()).collect();
         assert!(places.is_sorted(), "{text}");
-        let values: Vec<&str> = text.lines().nth(1).unwrap().split_whitespace().rev().take(5).collect();
-        assert_eq!(values, ["ok", "1.000e-5", "-", "20.00", "50.00"], "{text}");
+        let values: Vec<&str> = text.lines().nth(1).unwrap().split_whitespace().rev().take(6).collect();
+        assert_eq!(values, ["ok", "1.000e-5", "-", "20.00", "?", "50.00"], "{text}");
+    }
+
+    #[test]
+    fn one_value_for_the_fabric_is_marked_and_a_fabric_that_is_lost_has_a_row() {
+        let mut sheet = FabricSheet::default();
+        let key = Key { parameter: Parameter::B, direction: None };
+        sheet.values.insert(key, Estimate::single(1.0));
+        let cells = cells(&sheet);
+        assert!(cells[0].ends_with(BOTH) && cells[1].ends_with(BOTH), "{cells:?}");
+        let mut overview = Overview::new(std::iter::empty());
+        overview.row(&FabricReport {
+            name: "a".into(),
+            cells,
+            status: "ok".into(),
+            ..FabricReport::default()
+        });
+        overview.unread("lost", "R101");
+        let text = overview.table().text();
+        assert!(text.contains(BOTH_LEGEND), "{text}");
+        let lost = text.lines().find(|line| line.starts_with("lost")).unwrap();
+        assert!(lost.ends_with("R101"), "{text}");
     }
 
     /// A linear solve that cannot hold for cloth says so once, not once a fabric.

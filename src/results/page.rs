@@ -153,9 +153,7 @@ fn workbooks(reports: &[FabricReport]) -> Option<Workbooks> {
     let rows = |units: UnitSystem| -> Vec<FabricRow> {
         reports.iter().flat_map(|r| &r.rows).map(|row| row.in_units(units)).collect()
     };
-    let origins = reports.iter().map(|r| (r.name.as_str(), r.origin())).collect();
-    let [kes, si] =
-        [UnitSystem::Kes, UnitSystem::Si].map(|units| workbook::parameters(&rows(units), &origins));
+    let [kes, si] = [UnitSystem::Kes, UnitSystem::Si].map(|units| workbook::parameters(&rows(units)));
     (!reports.is_empty()).then_some(Workbooks { kes: kes.ok()?, si: si.ok()? })
 }
 
@@ -190,7 +188,7 @@ fn data(reports: &[FabricReport]) -> PageData {
     let fabrics = reports.iter().map(|r| FabricValues {
         name: r.name.clone(),
         about: without_folders(&r.about),
-        origin: r.origin().into(),
+        origin: r.origin().unwrap_or_default().into(),
         failed: r.unread.len() + r.failures.len(),
         ..FabricValues::default()
     });

@@ -95,8 +95,9 @@ fn facts(report: &FabricReport) -> Option<Block> {
     ];
     let origin = ("Origin".to_string(), format!("{} data", info.origin.name()));
     let stated = stated.into_iter().filter_map(|(name, text)| Some((name.to_string(), text?)));
+    let results = info.results.iter().map(|r| (format!("Measured {}", r.name()), r.text()));
     let notes = info.notes.iter().map(|note| ("Note".to_string(), note.clone()));
-    Some(Block::Facts(std::iter::once(origin).chain(stated).chain(notes).collect()))
+    Some(Block::Facts(std::iter::once(origin).chain(stated).chain(results).chain(notes).collect()))
 }
 
 /// Its parameters, one a line.
@@ -107,7 +108,7 @@ fn values(report: &FabricReport) -> Option<Block> {
 }
 
 fn value_row(row: &FabricRow) -> Option<Vec<[String; 2]>> {
-    let mean = row.mean?;
+    let mean = row.mean.filter(|_| row.is_of_parameter())?;
     let parameter = Parameter::from_symbol(&row.parameter);
     let units = [UnitSystem::Kes, UnitSystem::Si]
         .map(|system| parameter.map_or(system.of_modulus(), |parameter| system.of(parameter)));
@@ -125,7 +126,7 @@ fn value_row(row: &FabricRow) -> Option<Vec<[String; 2]>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::instrument::{FabricInfo, Origin};
+    use crate::instrument::{FabricInfo, MeasuredResult, Origin};
 
     #[test]
     fn pictures_that_the_script_draws_are_links() {
@@ -144,6 +145,12 @@ mod tests {
             climate: Some("20 °C, 65 % RH".into()),
             origin: Origin::Published,
             notes: vec!["no spread".into()],
+            results: vec![MeasuredResult {
+                quantity: "drape_coefficient".into(),
+                value: "82.9 %".into(),
+                method: "Cusick drape".into(),
+                direction: None,
+            }],
             ..FabricInfo::default()
         };
         let row = FabricRow { parameter: "T0".into(), mean: Some(2.5e-4), n: 1, ..FabricRow::default() };
@@ -159,7 +166,8 @@ mod tests {
         };
         assert_eq!(failed[0].code, "R009");
         let named: Vec<&str> = facts.iter().map(|(name, _)| name.as_str()).collect();
-        assert_eq!(named, ["Origin", "Climate of the tests", "Note"]);
+        assert_eq!(named, ["Origin", "Climate of the tests", "Measured drape coefficient", "Note"]);
+        assert_eq!(facts[2].1, "82.9 % (Cusick drape)");
         assert_eq!(rows[0][1], ["0.25", "2.5 × 10⁻⁴"]);
     }
 }

@@ -1,10 +1,7 @@
 //! Predictions of cases on the page: what a laboratory measures first, plates in a form without units after it.
 
 use super::fabric::FabricReport;
-use super::overview::stem;
-use super::page_values::rests_on;
 use super::rests_on::OF_PLATE;
-use crate::finding::{Fact, StudyFact};
 use crate::quantity::significant;
 use crate::report::html::{Block, TableCell};
 use crate::report::number::counted;
@@ -63,11 +60,17 @@ fn leading_table(reports: &[FabricReport], friction: bool) -> Option<Block> {
             columns.extend(new);
         }
     }
+    if !friction && reports.iter().any(|report| report.measured_drape().is_some()) {
+        add_measured_drape(&mut columns);
+    }
     columns.sort_by(|a, b| {
         let key = |c: &Column| (!is_drape(&c.quantity), c.case.clone(), c.quantity.clone(), c.is_measured);
         key(a).cmp(&key(b))
     });
     let heading = |column: &Column| match column {
+        Column { case, quantity, is_measured: true } if case.is_empty() => {
+            format!("measured drape coefficient ({})", unit(quantity))
+        }
         Column { quantity, is_measured: true, .. } => format!("measured ({})", unit(quantity)),
         Column { case, quantity, .. } => {
             let name = quantity.replace("_friction", "").replace('_', " ");
@@ -84,6 +87,15 @@ fn leading_table(reports: &[FabricReport], friction: bool) -> Option<Block> {
         rows: reports.iter().map(line).collect(),
         of_fabrics: true,
     })
+}
+
+/// A column of measured drapes where there is none: what was measured is shown where nothing was simulated, too.
+fn add_measured_drape(columns: &mut Vec<Column>) {
+    if columns.iter().any(|column| is_drape(&column.quantity) && column.is_measured) {
+        return;
+    }
+    let case = columns.iter().find(|c| is_drape(&c.quantity)).map_or(String::new(), |c| c.case.clone());
+    columns.push(Column { case, quantity: "drape_coefficient".into(), is_measured: true });
 }
 
 /// Names only what the table has.
@@ -112,8 +124,18 @@ fn unit(quantity: &str) -> &'static str {
     if is_drape(quantity) { "%" } else { "mm" }
 }
 
+/// The cell of a fabric that the case was not solved for: its measured drape all the same.
+fn not_simulated(report: &FabricReport, column: &Column) -> TableCell {
+    let Some(measured) = report.measured_drape().filter(|_| is_drape(&column.quantity)) else {
+        return "-".into();
+    };
+    if column.is_measured { format!("{:.1}", 1e2 * measured).into() } else { "not simulated".into() }
+}
+
 fn leading_cell(report: &FabricReport, column: &Column) -> TableCell {
-    let Some(row) = found(report, &column.case, &column.quantity) else { return "-".into() };
+    let Some(row) = found(report, &column.case, &column.quantity) else {
+        return not_simulated(report, column);
+    };
     let text = |value: f64| {
         if is_drape(&row.quantity) { format!("{:.1}", 1e2 * value) } else { significant(1e3 * value) }
     };
@@ -132,24 +154,9 @@ fn leading_cell(report: &FabricReport, column: &Column) -> TableCell {
     let band = least.zip(greatest).map_or(String::new(), |(a, b)| format!(" ({}–{})", text(a), text(b)));
     TableCell {
         text: format!("{}{band}{}", text(value), folds(counted.and_then(|row| row.simulated))),
-        remark: [quick(report, &row.case), rests_on(report, &row.quantity)]
-            .into_iter()
-            .filter(|remark| !remark.is_empty())
-            .collect::<Vec<_>>()
-            .join("; "),
+        remark: row.remark.clone().unwrap_or_default(),
         ..TableCell::default()
     }
-}
-
-/// What is said of a case whose drape is a quick one.
-fn quick(report: &FabricReport, case: &str) -> String {
-    for finding in &report.findings {
-        let Fact::Study(StudyFact::QuickDrape { elements, .. }) = &finding.fact else { continue };
-        if finding.place.as_ref().is_some_and(|place| stem(place) == case) {
-            return format!("quick, {elements} elements");
-        }
-    }
-    String::new()
 }
 
 /// Linear solves, one row a fabric and one column a case.
@@ -162,10 +169,10 @@ pub(super) fn plates(reports: &[FabricReport]) -> Option<Block> {
     }
     let line = |report: &FabricReport| {
         let cell = |case: &&str| {
-            let found = report.relative_deflections.iter().find(|(name, _)| name == case);
-            found.map_or("-".into(), |(_, value)| TableCell {
+            let deflection = report.relative_deflections.iter().find(|(name, _)| name == case);
+            deflection.map_or("-".into(), |(_, value)| TableCell {
                 text: significant(*value),
-                remark: rests_on(report, OF_PLATE),
+                remark: found(report, case, OF_PLATE).and_then(|row| row.remark.clone()).unwrap_or_default(),
                 ..TableCell::default()
             })
         };
@@ -206,12 +213,8 @@ fn plates_caption(reports: &[FabricReport], cases: &[&str]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
-    use crate::finding::{Finding, Place};
-    use crate::report::table::FabricRow;
-    use crate::results::rests_on::DOUBTFUL;
+    use crate::instrument::{FabricInfo, MeasuredResult};
 
     fn row(case: &str, quantity: &str, simulated: f64, measured: Option<f64>) -> PredictionRow {
         PredictionRow {
@@ -238,16 +241,15 @@ mod tests {
                 row("cantilever", "bending_length warp", 0.0212, None),
                 row("cantilever", "bending_length_friction warp", 0.0234, None),
                 row("seed_clamped", "w_max", 3.5e-7, None),
-                row("drape", "drape_coefficient", 0.647, Some(0.5)),
+                PredictionRow {
+                    remark: Some("quick, 1260 elements".into()),
+                    ..row("drape", "drape_coefficient", 0.647, Some(0.5))
+                },
                 row("drape", "drape_coefficient_least", 0.622, None),
                 row("drape", "drape_coefficient_greatest", 0.674, None),
                 row("drape", "drape_nodes", 7.0, Some(6.0)),
                 row("drape_friction", "drape_coefficient", 0.7, None),
                 row("virtual_bending", "B warp", 9.80665e-6, Some(9.80665e-6)),
-            ],
-            findings: vec![
-                Finding::new(StudyFact::QuickDrape { elements: 1260, change: 0.02 })
-                    .at(Place::file(Path::new("cases/drape.toml"))),
             ],
             ..FabricReport::default()
         };
@@ -276,6 +278,30 @@ mod tests {
     }
 
     #[test]
+    fn a_drape_that_was_measured_is_shown_where_none_was_simulated() {
+        let stated = MeasuredResult {
+            quantity: "drape_coefficient".into(),
+            value: "82.9 %".into(),
+            method: String::new(),
+            direction: None,
+        };
+        let info = FabricInfo { results: vec![stated], ..FabricInfo::default() };
+        let measured = FabricReport { info: Some(info), ..FabricReport::default() };
+        let simulated = FabricReport {
+            predictions: vec![row("drape", "drape_coefficient", 0.647, None)],
+            ..FabricReport::default()
+        };
+        let (_, header, rows) = table(leading(&[measured.clone(), simulated]).into_iter().next());
+        assert_eq!(header[2], "measured (%)");
+        assert_eq!([&rows[0][1].text, &rows[0][2].text, &rows[1][2].text], ["not simulated", "82.9", "-"]);
+        let (_, header, rows) = table(leading(&[measured]).into_iter().next());
+        assert_eq!(
+            (header[1].as_str(), rows[0][1].text.as_str()),
+            ("measured drape coefficient (%)", "82.9")
+        );
+    }
+
+    #[test]
     fn without_a_drape_nothing_says_drape() {
         let predictions = vec![row("cantilever", "bending_length warp", 0.0212, None)];
         let report = FabricReport { predictions, ..FabricReport::default() };
@@ -286,17 +312,22 @@ mod tests {
     /// That a linear solve is beyond its meaning is said once; what speaks against one fabric stands beside its value.
     #[test]
     fn only_another_cause_marks_a_plate() {
-        let b = FabricRow { parameter: "B".into(), status: DOUBTFUL.into(), ..FabricRow::default() };
-        let report = |name: &str, rows: Vec<FabricRow>, value: f64| FabricReport {
+        let resting = |row: PredictionRow, on: &str| PredictionRow {
+            remark: Some(on.to_string()).filter(|on| !on.is_empty()),
+            ..row
+        };
+        let report = |name: &str, on: &str, value: f64| FabricReport {
             name: name.into(),
-            rows,
             cases: [("own".to_string(), ("Own weight".to_string(), false))].into(),
             relative_deflections: vec![("own".into(), value)],
-            predictions: vec![row("cantilever", "bending_length warp", 0.0212, None)],
+            predictions: vec![
+                resting(row("cantilever", "bending_length warp", 0.0212, None), on),
+                resting(row("own", "w_max", 1e-3, None), on),
+            ],
             ..FabricReport::default()
         };
         let reports =
-            [report("a", vec![b], 710.0), report("b", Vec::new(), -45.0), report("c", Vec::new(), 0.01)];
+            [report("a", "rests on a doubtful B", 710.0), report("b", "", -45.0), report("c", "", 0.01)];
         let (caption, header, rows) = table(plates(&reports));
         assert_eq!(header, ["fabric", "Own weight"]);
         assert!(caption.ends_with("Above it: 2 of 3 fabrics in “Own weight”."), "{caption}");

@@ -125,6 +125,7 @@ mod tests {
             place: "cases/plate.toml".into(),
             message: "m".into(),
             fabric: fabric.map(String::from),
+            hint: None,
         }
     }
 

@@ -1,7 +1,7 @@
 //! Values of fabrics on the page: simulated tests beside what was measured, and what is not to be relied on.
 
 use super::fabric::FabricReport;
-use super::rests_on::{DOUBTFUL, remark};
+use super::rests_on::DOUBTFUL;
 use crate::instrument::Parameter;
 use crate::report::html::{Block, DoubtfulValue};
 use crate::report::number::{self, concise, unit_text};
@@ -18,16 +18,10 @@ fn symbol(row: &PredictionRow) -> Option<Option<Parameter>> {
     if first == "E" { Some(None) } else { Parameter::from_symbol(first).map(Some) }
 }
 
-/// `rests on a doubtful B warp`; nothing where there is nothing to say.
-pub(super) fn rests_on(report: &FabricReport, quantity: &str) -> String {
-    let remark = remark(&report.rows, &report.findings, quantity);
-    if remark.is_empty() { remark } else { format!("rests on {remark}") }
-}
-
 /// Measured against simulated, every KES test of the fabric.
 pub(super) fn tests(report: &FabricReport) -> Option<Block> {
     let rows: Vec<Vec<[String; 2]>> =
-        report.predictions.iter().filter(|row| is_of_test(row)).map(|row| test_row(report, row)).collect();
+        report.predictions.iter().filter(|row| is_of_test(row)).map(test_row).collect();
     (!rows.is_empty()).then(|| Block::Units {
         caption: "Measured against simulated. The section is made of the measured stiffness, so agreement there shows \
                   that the simulated test reads it back; a difference is of clamps, edges and friction."
@@ -39,7 +33,7 @@ pub(super) fn tests(report: &FabricReport) -> Option<Block> {
     })
 }
 
-fn test_row(report: &FabricReport, row: &PredictionRow) -> Vec<[String; 2]> {
+fn test_row(row: &PredictionRow) -> Vec<[String; 2]> {
     let parameter = symbol(row).flatten();
     let [kes, si] = [UnitSystem::Kes, UnitSystem::Si]
         .map(|system| parameter.map_or(system.of_modulus(), |p| system.of(p)));
@@ -60,20 +54,8 @@ fn test_row(report: &FabricReport, row: &PredictionRow) -> Vec<[String; 2]> {
         }),
         [kes.0, si.0].map(unit_text),
         same(row.case.clone()),
-        same(test_remark(report, row)),
+        same(row.remark.clone().unwrap_or_default()),
     ]
-}
-
-/// What a measured value is of, and what a simulated one rests on.
-fn test_remark(report: &FabricReport, row: &PredictionRow) -> String {
-    let (symbol, direction) = row.quantity.split_once(' ').unwrap_or((&row.quantity, ""));
-    let has = |along: Option<&str>| {
-        report.rows.iter().any(|r| r.parameter == symbol && r.direction.as_deref() == along)
-    };
-    let is_of_both = row.measured.is_some() && has(None) && !has(Some(direction)) && !direction.is_empty();
-    let both = is_of_both.then(|| "measured for warp and weft together".to_string());
-    let resting = Some(rests_on(report, &row.quantity)).filter(|text| !text.is_empty());
-    both.into_iter().chain(resting).collect::<Vec<_>>().join("; ")
 }
 
 /// Values that a finding speaks against, then those that rest on an assumption; `page` is that of the problems, empty for
@@ -126,7 +108,6 @@ mod tests {
 
     #[test]
     fn tests_stand_beside_what_was_measured_with_what_speaks_against_them() {
-        let b = FabricRow { parameter: "B".into(), status: DOUBTFUL.into(), ..FabricRow::default() };
         let row = |quantity: &str, unit: &str| PredictionRow {
             case: "virtual_bending".into(),
             quantity: quantity.into(),
@@ -134,10 +115,10 @@ mod tests {
             simulated: Some(9.80665e-6),
             measured: Some(9.80665e-6),
             unit: unit.into(),
+            remark: Some("measured for warp and weft together; rests on a doubtful B".into()),
             ..PredictionRow::default()
         };
         let report = FabricReport {
-            rows: vec![b],
             predictions: vec![row("bending_length warp", "m"), row("B warp", "N·m")],
             ..FabricReport::default()
         };

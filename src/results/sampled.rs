@@ -32,7 +32,7 @@ pub(super) fn table<'a, 'f: 'a, 'c: 'a>(tasks: impl Iterator<Item = &'a Task<'f,
             table.row([
                 q.quantity.clone(),
                 task.case.name.clone(),
-                task.fabric_name().unwrap_or_default().into(),
+                task.shown_fabric(),
                 significant(q.value),
                 interval(q.mean_fabric, 1.0),
                 interval(q.next_specimen, 1.0),

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::columns::Columns;
 use super::friction;
 use crate::characterise::{FabricSheet, Key, Settings, ValueStatus};
-use crate::instrument::{Direction, Parameter};
+use crate::instrument::{Direction, MeasuredResult, Parameter};
 use crate::quantity::{Estimate, repeats_text, significant, stated_repeats};
 use crate::report::table::{UnitSystem, fabric_rows};
 
@@ -40,7 +40,9 @@ pub fn parameters_text(sheet: &FabricSheet, units: UnitSystem) -> String {
     }
     let head = format!("{} ({}), mean ± SD (n)", sheet.name, sheet.info.origin.name());
     let (text, legend) = (columns.text(), legend(sheet));
-    format!("{head}\n{text}{legend}{}", friction::text(sheet, units))
+    let stated = |r: &MeasuredResult| format!("measured {}: {}\n", r.name(), r.text());
+    let stated: String = sheet.info.results.iter().map(stated).collect();
+    format!("{head}\n{text}{legend}{stated}{}", friction::text(sheet, units))
 }
 
 fn modulus_names(sheet: &FabricSheet) -> BTreeSet<&String> {
@@ -105,6 +107,12 @@ pub(super) fn mark(status: ValueStatus) -> &'static str {
         ValueStatus::Doubtful => " ?",
     }
 }
+
+/// Behind a value in the place of a direction that is one for the fabric as a whole.
+pub(super) const BOTH: &str = " both";
+
+/// What [`BOTH`] means.
+pub(super) const BOTH_LEGEND: &str = "both: one value for warp and weft together, not a measurement of each";
 
 /// What the marks mean, in the order in which they prevail.
 pub(super) const MARKS: &str = "? doubtful (see its findings), * rests on an assumption, ~ inferred";

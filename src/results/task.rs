@@ -152,8 +152,19 @@ impl Task<'_, '_> {
         PredictionRow {
             fabric: self.fabric_name().unwrap_or_default().into(),
             case: self.case.name.clone(),
+            origin: self.origin_name(),
             ..PredictionRow::default()
         }
+    }
+
+    /// `measured`, `published` or `synthetic`; nothing without a fabric.
+    pub(super) fn origin_name(&self) -> Option<String> {
+        self.fabric.map(|f| f.info.origin.name().to_string())
+    }
+
+    /// Its fabric in a table for people, with the origin of what is not measured; nothing without a fabric.
+    pub(super) fn shown_fabric(&self) -> String {
+        self.fabric.map_or_else(String::new, |f| f.info.origin.beside(&f.name))
     }
 
     /// `measured data`, `published data` or `synthetic data`; nothing without a fabric.
@@ -197,6 +208,12 @@ impl Task<'_, '_> {
     pub(super) fn measured(&self, parameter: Parameter, direction: Option<Direction>) -> Option<f64> {
         let sheet = self.fabric?;
         sheet.get(parameter, direction).or_else(|| sheet.get(parameter, None)).map(|e| e.mean)
+    }
+
+    /// Whether what [`measured`](Self::measured) gives for a direction is one value for the fabric as a whole.
+    pub(super) fn is_of_both(&self, parameter: Parameter, direction: Option<Direction>) -> bool {
+        let has = |direction| self.fabric.is_some_and(|sheet| sheet.get(parameter, direction).is_some());
+        direction.is_some() && !has(direction) && has(None)
     }
 
     /// Whether its case is a drape.

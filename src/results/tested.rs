@@ -11,6 +11,7 @@ use super::columns::Columns;
 use super::failure::Failure;
 use super::folder::Folder;
 use super::sampled::{self, SamplingEntry};
+use super::sheet_text::{BOTH, BOTH_LEGEND};
 use super::task::Task;
 use crate::characterise::{FabricSheet, Modulus};
 use crate::instrument::{Direction, Parameter, Test};
@@ -138,6 +139,9 @@ pub struct TestEntry {
     x: Option<Vec<f64>>,
     simulated: Option<Vec<f64>>,
     measured: Option<Vec<f64>>,
+    /// Origin of the data of the fabric: `measured`, `published` or `synthetic`.
+    #[serde(default)]
+    origin: Option<String>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -182,6 +186,7 @@ pub(super) fn entry(task: &Task, t: &Tested) -> TestEntry {
         x: c.map(|c| c.measured.x.clone()),
         simulated: c.map(|c| c.simulated.y.clone()),
         measured: c.map(|c| c.measured.y.clone()),
+        origin: task.origin_name(),
     }
 }
 
@@ -391,18 +396,21 @@ pub(super) fn text(compared: &[(&Task, &Tested)]) -> String {
     for (task, t) in compared {
         table.row(text_row(task, t));
     }
+    if compared.iter().any(|(_, t)| t.stiffness.as_ref().is_some_and(|stiffness| stiffness.is_of_both)) {
+        table = table.with_note(BOTH_LEGEND);
+    }
     let notes: Vec<String> = compared.iter().flat_map(|(task, t)| notes(task, t)).collect();
     [table.text(), notes.concat()].concat()
 }
 
 fn text_row(task: &Task, t: &Tested) -> Vec<String> {
-    let mut cells = vec![t.name.clone(), task.fabric_name().unwrap_or_default().to_string()];
+    let mut cells = vec![t.name.clone(), task.shown_fabric()];
     match &t.stiffness {
-        Some(Stiffness { symbol, unit, measured, .. }) => cells.extend([
+        Some(Stiffness { symbol, unit, measured, is_of_both }) => cells.extend([
             symbol.to_string(),
             significant(t.simulated.apparent),
             or_dash(t.band().map(|b| b.half_width)),
-            or_dash(measured.as_ref().map(|e| e.mean)),
+            or_dash(measured.as_ref().map(|e| e.mean)) + if *is_of_both { BOTH } else { "" },
             or_dash(measured.as_ref().and_then(Estimate::ci95)),
             unit.to_string(),
         ]),
@@ -455,8 +463,9 @@ fn notes(task: &Task, t: &Tested) -> Vec<String> {
         let measured = task.measured(p, simulated.direction).map(|m| m / p.kes_factor());
         let (value, unit) = (significant(value / p.kes_factor()), p.kes_unit());
         let measured = or_dash(measured);
+        let of = if task.is_of_both(p, simulated.direction) { " for warp and weft together" } else { "" };
         notes.push(format!(
-            "{name}: {p} {value} {unit} in the simulated cycle with friction, {measured} measured\n"
+            "{name}: {p} {value} {unit} in the simulated cycle with friction, {measured} measured{of}\n"
         ));
     }
     notes

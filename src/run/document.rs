@@ -27,6 +27,17 @@ pub(crate) struct RunDocument<'d> {
     cases: Vec<CaseEntry>,
     #[serde(skip_serializing_if = "Option::is_none")]
     date: Option<String>,
+    /// Where the data of each fabric come from.
+    origins: Vec<OriginEntry>,
+}
+
+/// Where the data of a fabric come from.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct OriginEntry {
+    pub fabric: String,
+    /// `measured`, `published` or `synthetic`; `null` of a fabric that could not be read.
+    pub origin: Option<&'static str>,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -78,6 +89,7 @@ pub(super) fn document<'d>(
     cases: impl Iterator<Item = &'d Case>,
     sources: impl Iterator<Item = Result<Source, Failure>> + 'd,
     stated: impl Iterator<Item = Result<FileEntry, Failure>> + 'd,
+    origins: Vec<OriginEntry>,
 ) -> RunDocument<'d> {
     let case = |c: &Case| CaseEntry { name: c.name.clone(), file: FileEntry::of(&c.path) };
     let inputs = readable(job.inputs.iter().map(|input| input.path()));
@@ -99,5 +111,6 @@ pub(super) fn document<'d>(
         fabrics: Streamed(RefCell::new(Some(Box::new(stated)))),
         cases: cases.map(case).collect(),
         date: settings.stamp.clone(),
+        origins,
     }
 }

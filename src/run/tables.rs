@@ -1,9 +1,8 @@
 //! Tables, pages and charts over all fabrics, from their records: one in memory at a time.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
-use super::document::document;
+use super::document::{OriginEntry, document};
 use super::fabrics::Made;
 use super::own::Own;
 use super::settings::RunSettings;
@@ -111,6 +110,7 @@ impl Results<'_, '_> {
         let mut overview = Overview::new(self.cases.iter().copied());
         let begin = pages_begin(self.made.iter().map(|made| made.length));
         let mut kept = Kept { begin, ..Kept::default() };
+        let mut origins = Vec::new();
         for at in 0..self.made.len() {
             observer.go_on()?;
             let mut report = self.record(at)?.report;
@@ -123,13 +123,22 @@ impl Results<'_, '_> {
             if at < LISTED {
                 overview.row(&report);
             }
+            origins.push(OriginEntry { fabric: report.name.clone(), origin: report.origin() });
             self.keep(at, report, &mut kept)?;
+        }
+        let listed = LISTED.saturating_sub(self.made.len());
+        for (at, (name, failures)) in lost.into_iter().enumerate() {
+            let Some(failure) = failures.into_iter().next() else { continue };
+            if at < listed {
+                overview.unread(&name, &failure.code);
+            }
+            kept.reports.push(FabricReport::failed(&name, failure));
         }
         for own in self.own {
             own.findings().into_iter().for_each(|finding| observer.found_in_batch(finding));
         }
         let problems = self.finish(tables)?;
-        self.write_document(job)?;
+        self.write_document(job, origins)?;
         let benchmarks: Vec<Benchmark> = self.own.iter().filter_map(Own::benchmark).collect();
         let bracket = bracket(&kept.drapes);
         self.write_pages(kept, &benchmarks, problems)?;
@@ -148,21 +157,19 @@ impl Results<'_, '_> {
             return BTreeMap::new();
         }
         let mut unread: BTreeMap<String, Vec<Failure>> = BTreeMap::new();
-        for (fabric, failure) in unread_by_fabric(&self.known(), &self.work.failures) {
+        for (fabric, failure) in unread_by_fabric(&self.work.known(), &self.work.failures) {
             unread.entry(fabric).or_default().push(failure.clone());
         }
         unread
     }
 
-    /// Folders or files of the fabrics, and their names.
-    fn known(&self) -> Vec<(&Path, &str)> {
-        let fabrics = &self.work.catalogue;
-        (0..fabrics.len()).map(|at| (fabrics.path(at), fabrics.name(at))).collect()
-    }
-
     /// Rows of inputs that could not be read.
     pub fn unread_rows(&self) -> Vec<FabricRow> {
-        if self.work.failures.is_empty() { Vec::new() } else { unread_of(&self.known(), &self.work.failures) }
+        if self.work.failures.is_empty() {
+            Vec::new()
+        } else {
+            unread_of(&self.work.known(), &self.work.failures)
+        }
     }
 
     /// Rows of findings that belong to no fabric.
@@ -280,7 +287,7 @@ impl Results<'_, '_> {
         Ok(figures)
     }
 
-    fn write_document(&self, job: &Job) -> Result<(), Failure> {
+    fn write_document(&self, job: &Job, origins: Vec<OriginEntry>) -> Result<(), Failure> {
         let fabrics = &self.work.catalogue;
         let sources = (0..self.made.len()).flat_map(|at| match self.record(at) {
             Ok(record) => record.sources.into_iter().map(Ok::<Source, Failure>).collect(),
@@ -288,8 +295,10 @@ impl Results<'_, '_> {
         });
         let stated = (0..fabrics.len()).map(|at| fabrics.path(at).join("fabric.toml"));
         let stated = stated.filter(|path| files::is_file(path)).map(|path| Ok(FileEntry::of(&path)));
-        self.folder
-            .stream("run.json", &document(job, self.settings, self.cases.iter().copied(), sources, stated))
+        self.folder.stream(
+            "run.json",
+            &document(job, self.settings, self.cases.iter().copied(), sources, stated, origins),
+        )
     }
 }
 

@@ -1,8 +1,10 @@
 //! What a run is to do.
 
+use std::path::Path;
+
 use crate::case::Case;
 use crate::platform::files;
-use crate::results::{Catalogue, Failure, Limits, Share, named_fabric, without_fabric};
+use crate::results::{Catalogue, Failure, Limits, Share, fabric_of, named_fabric, without_fabric};
 
 /// What a run is to do: its cases, and its fabrics by name and hash.
 pub struct RunWork {
@@ -33,6 +35,25 @@ impl RunWork {
         let mut idle = std::mem::take(&mut self.cases);
         idle.retain(|case| named_fabric(case).is_none_or(|path| files::exists(&path)));
         idle.iter().map(|case| without_fabric(case, false)).collect()
+    }
+
+    /// Folders or files of the fabrics, and their names.
+    pub(super) fn known(&self) -> Vec<(&Path, &str)> {
+        let fabrics = &self.catalogue;
+        (0..fabrics.len()).map(|at| (fabrics.path(at), fabrics.name(at))).collect()
+    }
+
+    /// What could not be read, with the fabric that each belongs to.
+    pub(super) fn failures_of_fabrics(&self) -> Vec<Failure> {
+        if self.failures.is_empty() {
+            return Vec::new();
+        }
+        let known = self.known();
+        let named = self.failures.iter().map(|failure| {
+            let fabric = fabric_of(&known, failure);
+            Failure { fabric: fabric.map(Into::into).or(failure.fabric.clone()), ..failure.clone() }
+        });
+        named.collect()
     }
 
     /// Tasks share the threads; one that is alone has them all.

@@ -18,6 +18,7 @@ mod names;
 mod resume;
 mod same;
 mod sizes;
+mod told;
 
 use std::collections::BTreeMap;
 use std::fs;

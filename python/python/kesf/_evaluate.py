@@ -16,7 +16,7 @@ from ._table import Table
 from ._types import Path, Progress
 
 #: Columns of a table of curves, as :meth:`kesf.Batch.curves` gives it.
-CURVES = ("fabric", "test", "direction", "specimen", "index", "x", "x_unit", "y", "y_unit")
+CURVES = ("fabric", "test", "direction", "specimen", "index", "x", "x_unit", "y", "y_unit", "origin")
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,11 +26,12 @@ class Evaluation(Result):
     It is a table for programs of data frames itself, as ``results`` is. Columns: fabric, case (null for a measured
     parameter), quantity (``B`` with its direction, ``E secant``, or what a case predicts, such as ``w_max``),
     direction, value, unit, sd and n of a parameter, the measured value beside a prediction, low and high, its
-    95 % band, and the status of a parameter as in ``fabrics.csv``: ``doubtful`` is one that a finding speaks of.
+    95 % band, the status of a parameter as in ``fabrics.csv`` (``doubtful`` is one that a finding speaks of) or of a
+    prediction as in ``predictions.csv``, the origin of the fabric, and a remark on a prediction.
 
     Attributes:
         results: Parameters and predictions.
-        findings: What a reader of the results must know: fabric, code, place, message.
+        findings: What a reader of the results must know: fabric, code, place, message, hint.
         failures: What gave nothing, likewise.
     """
 
@@ -123,16 +124,20 @@ def _given(batch: object) -> tuple[Iterable[Any], Any]:
         names = table.column("path").to_pylist()
         contents = table.column("content").to_pylist() if "content" in table.column_names else [None] * len(names)
         return [n if data is None else (n, data) for n, data in zip(names, contents, strict=True)], None
-    missing = [name for name in CURVES if name not in table.column_names]
+    # A table of an earlier version does not say where its curves come from.
+    unsaid = ("direction", "origin")
+    missing = [name for name in CURVES if name not in table.column_names and name != "origin"]
     if missing:
         raise KesfError(
             f"the table has no column `path` and no column `{missing[0]}`; it has {', '.join(table.column_names)}",
             code="O073",
             cure=f"a table of files has `path` (and `content`), one of curves has {', '.join(CURVES)}",
         )
-    columns = [table.column(name).to_pylist() for name in CURVES]
+    columns = [
+        table.column(name).to_pylist() if name in table.column_names else [None] * table.num_rows for name in CURVES
+    ]
     for name, column in zip(CURVES, columns, strict=True):
-        if name != "direction" and None in column:
+        if name not in unsaid and None in column:
             raise KesfError(
                 f"row {column.index(None) + 1} of the table of curves has no {name}",
                 code="O073",

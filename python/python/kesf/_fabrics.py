@@ -243,8 +243,8 @@ class Batch(Sequence[Fabric]):
     def curves(self, test: Test | None = None, direction: Direction | None = None, units: Units = "si") -> Table:
         """The points of all curves as a table, those of one test and direction where these are given.
 
-        Columns: fabric, test, direction, specimen, index (from 0 in recorded order), x, x_unit, y, y_unit. With one
-        test the fields ``x`` and ``y`` have their unit in the metadata.
+        Columns: fabric, test, direction, specimen, index (from 0 in recorded order), x, x_unit, y, y_unit,
+        origin. With one test the fields ``x`` and ``y`` have their unit in the metadata.
 
         >>> import kesf
         >>> kesf.read("kesf_data/poplin").curves("bending", units="kes").units["x"]

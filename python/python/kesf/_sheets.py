@@ -259,9 +259,9 @@ class Sheets(Sequence[Sheet]):
     def parameters(self, units: Units = "si", wide: bool = False) -> Table:
         """Parameters and moduli of all fabrics as a table.
 
-        A row each: fabric, parameter (``E secant`` is a modulus), direction, mean, sd, n, unit, status, cv, ci95. With
-        ``wide`` a row a fabric, and a column for each parameter in a direction (``B_warp``, ``T0``,
-        ``E_secant_weft``) with its unit in the metadata.
+        A row each: fabric, parameter (``E secant`` is a modulus), direction, mean, sd, n, unit, status, cv, ci95,
+        origin. With ``wide`` a row a fabric, and a column for each parameter in a direction (``B_warp``, ``T0``,
+        ``E_secant_weft``) with its unit in the metadata, and the origin.
 
         >>> import kesf
         >>> wide = kesf.characterise("kesf_data/petrak_m1").parameters(wide=True)

@@ -3,7 +3,7 @@
 use super::parts::{Missed, RecordAxis, Samples, StripLength, Subject};
 use crate::finding::Place;
 use crate::kes::{Direction, Key, Parameter, RecordName, Relation, Test, ValueStatus, series};
-use crate::quantity::{STANDARD_GRAVITY, in_unit, significant};
+use crate::quantity::{STANDARD_GRAVITY, in_unit, significant, without_rounding};
 
 super::facts! {
     /// What a reader of a parameter sheet must know.
@@ -144,7 +144,7 @@ super::facts! {
             value: f64,
             /// The plausible range (KES unit); none of a value that is negative.
             range: Option<[f64; 2]>,
-        } = "{key} = {:.4} {} {}", value / key.parameter.kes_factor(), key.parameter.kes_unit(), implausible(*key, *range);
+        } = "{key} = {} {} {}", significant(value / key.parameter.kes_factor()), key.parameter.kes_unit(), implausible(*key, *range);
         /// Values of one fabric that do not go together.
         "K059" NotTogether {
             /// What they do not obey.
@@ -223,8 +223,8 @@ super::facts! {
         "K020" ModuliOfTable {
             /// The force per width at which EMT is taken (N/m).
             maximum: f64,
-        } = "tensile moduli come from the table's EMT, taken at {:.4} gf/cm; the low-load tangent cannot be known from a table",
-            maximum / Parameter::Hg.kes_factor();
+        } = "tensile moduli come from the table's EMT, taken at {} gf/cm; the low-load tangent cannot be known from a table",
+            without_rounding(maximum / Parameter::Hg.kes_factor());
         /// A tensile stiffness of FAST.
         "K061" StatedStiffness {
             /// The direction of the load.

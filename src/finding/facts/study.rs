@@ -1,7 +1,7 @@
 //! Facts of cases and their results.
 
 use super::parts::{CoarseQuantity, Excess, RefinementEnd};
-use crate::quantity::significant;
+use crate::quantity::{in_unit, significant};
 
 super::facts! {
     /// What a reader of a result must know.
@@ -446,14 +446,29 @@ fn beyond_linear(excess: Excess, value: f64, ratio: f64, limit: f64, in_time: bo
     };
     match excess {
         Excess::Deflection => format!(
-            "the deflection of {value:.3e} m is {ratio:.2e} bending thicknesses: a linear solve is meaningful below {limit} only; \
-             {cure}"
+            "the deflection of {} is {} bending thicknesses: a linear solve is meaningful below {limit} only; {cure}",
+            in_unit(value, "mm"),
+            three_digits(ratio)
         ),
         Excess::Displacement => format!(
-            "the displacement of {value:.3e} m is {ratio:.2e} of the size of the sheet: a linear solve is meaningful for small \
-             ones, below {limit}; {cure}"
+            "the displacement of {} is {} of the size of the sheet: a linear solve is meaningful for small ones, below \
+             {limit}; {cure}",
+            in_unit(value, "mm"),
+            three_digits(ratio)
         ),
     }
+}
+
+/// A ratio to three digits: `21.9`, `0.412`, `4600`.
+fn three_digits(ratio: f64) -> String {
+    let digits = match ratio.abs() {
+        r if r >= 1e6 => return format!("{ratio:.2e}"),
+        r if r >= 99.95 => 0,
+        r if r >= 9.995 => 1,
+        r if r >= 0.9995 => 2,
+        _ => 3,
+    };
+    format!("{ratio:.digits$}")
 }
 
 fn coarse(quantities: &[CoarseQuantity]) -> String {

@@ -220,7 +220,7 @@ fn is_zero(count: &usize) -> bool {
 /// The parameters and directions that occur: [`LEADING`], the other parameters in their order, then moduli.
 fn columns<'a>(rows: impl Iterator<Item = &'a FabricRow>) -> Vec<Column> {
     let mut seen: Vec<((usize, String), Option<String>)> = rows
-        .filter(|row| row.mean.is_some())
+        .filter(|row| row.mean.is_some() && row.is_of_parameter())
         .map(|row| {
             let order = LEADING.iter().chain(Parameter::ALL).position(|p| p.symbol() == row.parameter);
             ((order.unwrap_or(usize::MAX), row.parameter.clone()), row.direction.clone())

@@ -14,13 +14,13 @@ fn fabrics_as_csv() {
     // B: 9.80665e-6 N·m is 0.1 gf·cm²/cm.
     let text = String::from_utf8(csv(&fabric_rows(&sheet(), UnitSystem::Kes)).unwrap()).unwrap();
     let mut lines = text.lines();
-    assert_eq!(lines.next(), Some("fabric,parameter,direction,mean,sd,n,unit,status,cv,ci95"));
+    assert_eq!(lines.next(), Some("fabric,parameter,direction,mean,sd,n,unit,status,cv,ci95,origin"));
     let b = lines.next().unwrap();
     // t(0.975, 2) = 4.30265272991 (tables): 0.001 t / √3.
-    let (values, half) = b.rsplit_once(',').unwrap();
+    let (values, half) = b.strip_suffix(",measured").unwrap().rsplit_once(',').unwrap();
     assert_eq!(values, "\"poplin, \"\"A\"\"\",B,warp,0.1,0.001,3,gf·cm²/cm,measured,0.01");
     assert!((half.parse::<f64>().unwrap() / 0.002_484_137_711_8 - 1.0).abs() < 1e-10);
-    assert!(lines.next().unwrap().ends_with(",T0,,0.4,,1,mm,measured,,"));
+    assert!(lines.next().unwrap().ends_with(",T0,,0.4,,1,mm,measured,,,measured"));
     let si = String::from_utf8(csv(&fabric_rows(&sheet(), UnitSystem::Si)).unwrap()).unwrap();
     assert!(si.contains(",B,warp,9.80665e-6,9.80665e-8,3,N·m,measured"), "{si}");
 }
@@ -54,7 +54,7 @@ fn no_text_is_a_formula_and_numbers_stay_numbers() {
 
 #[test]
 fn an_empty_table_keeps_its_header() {
-    assert_eq!(csv::<ProblemRow>(&[]).unwrap(), b"place,code,message,fabric\n");
+    assert_eq!(csv::<ProblemRow>(&[]).unwrap(), b"place,code,message,fabric,hint\n");
 }
 
 #[test]

@@ -28,6 +28,9 @@ pub struct BendingEntry {
     /// Of tests with sampled bands, or `null`; a FAB test has none.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "stated")]
     uncertainty: Option<Option<SamplingEntry>>,
+    /// Origin of the data of the fabric: `measured`, `published` or `synthetic`.
+    #[serde(default)]
+    origin: Option<String>,
 }
 
 /// What is there, `null` too; what is not there has its default.
@@ -247,6 +250,7 @@ fn entry(
         fabric: task.fabric_name().map(str::to_string),
         test,
         uncertainty: has_bands.then(sampling),
+        origin: task.origin_name(),
     }
 }
 

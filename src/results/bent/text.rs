@@ -73,7 +73,7 @@ fn cantilever_row(task: &Task, c: &Cantilever) -> Vec<String> {
     let friction = c.friction.as_ref().map(|f| f.bending_length);
     vec![
         c.direction.to_string(),
-        task.fabric_name().unwrap_or_default().into(),
+        task.shown_fabric(),
         mm(c.overhang),
         mm(c.bending_length),
         mm(c.closed_form),
@@ -87,7 +87,7 @@ fn cantilever_row(task: &Task, c: &Cantilever) -> Vec<String> {
 fn heart_row(task: &Task, h: &HeartLoop) -> Vec<String> {
     vec![
         h.direction.to_string(),
-        task.fabric_name().unwrap_or_default().into(),
+        task.shown_fabric(),
         mm(h.length),
         mm(h.height),
         or_dash(h.closed_form, mm),
@@ -101,12 +101,8 @@ fn fab_rows(task: &Task, d: &BendLoops) -> Vec<Vec<String>> {
     let percent = |a: Option<Agreement>| or_dash(a, |a| format!("{} %", significant(100.0 * a.nrmse)));
     let degrees = |angle: f64| significant(angle.to_degrees());
     let row = |l: &BendLoop, law: [String; 4], s: &Simulated, held_out: Option<&Simulated>| {
-        let head = [
-            d.direction.to_string(),
-            task.fabric_name().unwrap_or_default().into(),
-            l.kind.name().to_string(),
-            role(l).to_string(),
-        ];
+        let head =
+            [d.direction.to_string(), task.shown_fabric(), l.kind.name().to_string(), role(l).to_string()];
         let figures = [
             percent(s.outer),
             or_dash(s.outer, |a| significant(a.r2)),

@@ -14,7 +14,7 @@ pub(super) fn meshes(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
             table.row([
                 (k + 1).to_string(),
                 r.case.clone(),
-                task.fabric_name().unwrap_or_default().to_string(),
+                task.shown_fabric(),
                 mesh.elements.to_string(),
                 mesh.triangles.to_string(),
                 mesh.dofs.to_string(),
@@ -36,7 +36,7 @@ pub(super) fn quantities(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
             table.row([
                 q.quantity.clone(),
                 r.case.clone(),
-                task.fabric_name().unwrap_or_default().to_string(),
+                task.shown_fabric(),
                 q.unit.to_string(),
                 values.join("  "),
                 format!("{:.3}", 100.0 * q.change()),

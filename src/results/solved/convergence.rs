@@ -16,7 +16,7 @@ pub(super) fn table(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
             table.row([
                 q.quantity.clone(),
                 r.case.clone(),
-                task.fabric_name().unwrap_or_default().to_string(),
+                task.shown_fabric(),
                 q.unit.to_string(),
                 values.join("  "),
                 significant(q.extrapolation.value),

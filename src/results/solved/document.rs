@@ -39,6 +39,9 @@ pub struct SolutionEntry {
     history: Option<History>,
     #[serde(skip_serializing_if = "Option::is_none")]
     timings: Option<TimingsEntry>,
+    /// Origin of the data of the fabric: `measured`, `published` or `synthetic`.
+    #[serde(default)]
+    origin: Option<String>,
 }
 
 /// Size of a model.
@@ -168,6 +171,7 @@ pub(in crate::results) fn entry(task: &Task, result: &CaseResult, timings: bool)
         search: result.path.as_ref().map(SearchEntry::new),
         history: result.history.clone(),
         timings: timings.then(|| TimingsEntry::new(&result.solution)),
+        origin: task.origin_name(),
     }
 }
 

@@ -31,7 +31,7 @@ pub(super) fn searches(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
         table.row([
             method_name(path.method).into(),
             r.case.clone(),
-            task.fabric_name().unwrap_or_default().into(),
+            task.shown_fabric(),
             or_dash(last.map(|s| s.factor)),
             path.steps.len().to_string(),
             path.iterations().to_string(),
@@ -54,7 +54,7 @@ pub(super) fn steps(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
             table.row([
                 (k + 1).to_string(),
                 r.case.clone(),
-                task.fabric_name().unwrap_or_default().into(),
+                task.shown_fabric(),
                 significant(s.factor),
                 s.iterations.to_string(),
                 s.cut_backs.to_string(),
@@ -89,7 +89,7 @@ pub(super) fn load_steps(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
             table.row([
                 end.name.clone(),
                 r.case.clone(),
-                task.fabric_name().unwrap_or_default().into(),
+                task.shown_fabric(),
                 steps.len().to_string(),
                 steps.iter().map(|s| s.iterations).sum::<usize>().to_string(),
                 steps.iter().map(|s| s.cut_backs).sum::<usize>().to_string(),
@@ -112,8 +112,8 @@ pub(super) fn eigenvalues(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
             let frequencies = end.frequencies.iter().map(|f| [significant(*f), "-".into()]).enumerate();
             let factors = end.load_factors.iter().map(|f| ["-".into(), significant(*f)]).enumerate();
             for (k, values) in frequencies.chain(factors) {
-                let fabric = task.fabric_name().unwrap_or_default();
-                let head = [end.name.clone(), r.case.clone(), fabric.into(), (k + 1).to_string()];
+                let fabric = task.shown_fabric();
+                let head = [end.name.clone(), r.case.clone(), fabric, (k + 1).to_string()];
                 table.row(head.into_iter().chain(values));
             }
         }

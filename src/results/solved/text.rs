@@ -21,7 +21,7 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
     // That a linear solve cannot hold for cloth is said once, however many fabrics there are.
     let beyond = solved.iter().filter(|(_, r)| r.status == Status::BeyondLinear).count();
     for (task, r) in solved {
-        let fabric = task.fabric_name().unwrap_or_default().to_string();
+        let fabric = task.shown_fabric();
         for (k, f) in r.frequencies.iter().enumerate() {
             let elements = elements(&r.model);
             let half = half_width(r, &format!("frequency_{}", k + 1), 1.0);
@@ -102,7 +102,7 @@ fn histories(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
         let Some(history) = &r.history else { continue };
         table.row([
             r.case.clone(),
-            task.fabric_name().unwrap_or_default().to_string(),
+            task.shown_fabric(),
             history.time.len().to_string(),
             history.time.last().map_or("-".into(), |t| significant(*t)),
             significant(100.0 * history.imbalance),

@@ -1,0 +1,102 @@
+//! What speaks against a simulated value, in a word and in a sentence: for tables of predictions and for the page alike.
+
+use super::outcome::Outcome;
+use super::rests_on::{self, DOUBTFUL};
+use super::solved;
+use super::task::Task;
+use crate::characterise::ValueStatus;
+use crate::finding::{Fact, Finding, StudyFact};
+use crate::instrument::{Direction, Parameter};
+use crate::report::table::{FabricRow, PredictionRow, UnitSystem, fabric_rows};
+use crate::study::Status;
+
+/// Of a value that rests on an assumption.
+const ASSUMED: &str = "assumed";
+
+/// Of a value of a drape on coarse cells.
+const QUICK: &str = "quick";
+
+/// Fills status and remark of the rows of a task.
+pub(super) fn fill(rows: &mut [PredictionRow], task: &Task, outcome: &Outcome) {
+    let (values, findings) = known(task);
+    let quick = quick(&outcome.findings(task));
+    for row in rows {
+        let resting = rests_on::remark(&values, &findings, shown_most(outcome, &row.quantity));
+        row.status = word(outcome, &resting, quick.is_some()).map(String::from);
+        let both = is_of_both(task, row).then(|| "measured for warp and weft together".to_string());
+        let resting = (!resting.is_empty()).then(|| format!("rests on {resting}"));
+        let said: Vec<String> = [quick.clone(), both, resting].into_iter().flatten().collect();
+        row.remark = (!said.is_empty()).then(|| said.join("; "));
+    }
+}
+
+/// Parameters of the fabric of a task, and what was found while they and the section were made.
+fn known(task: &Task) -> (Vec<FabricRow>, Vec<Finding>) {
+    let Some(sheet) = task.fabric else { return Default::default() };
+    let of_section = task.section().ok().and_then(|(_, made)| made).map(|made| made.findings);
+    let findings = sheet.findings.iter().cloned().chain(of_section.into_iter().flatten());
+    (fabric_rows(sheet, UnitSystem::Si), findings.collect())
+}
+
+/// Whether the measured value beside the simulated one of a direction is one value for the fabric.
+fn is_of_both(task: &Task, row: &PredictionRow) -> bool {
+    let Some((symbol, direction)) = row.quantity.split_once(' ').filter(|_| row.measured.is_some()) else {
+        return false;
+    };
+    let direction = Direction::ALL.into_iter().find(|d| d.name() == direction);
+    Parameter::from_symbol(symbol).is_some_and(|parameter| task.is_of_both(parameter, direction))
+}
+
+/// The quantity that shows most of the same inputs: every result of a sheet, at probes and of modes too, is one of its
+/// bending, or of its stretching where it stays in its plane.
+fn shown_most<'q>(outcome: &Outcome, quantity: &'q str) -> &'q str {
+    match outcome {
+        Outcome::Solved(result) if solved::lies_in_its_plane(result) => "E",
+        Outcome::Solved(_) => rests_on::OF_PLATE,
+        Outcome::Draped(_) | Outcome::Tested(_) | Outcome::Bent(..) => quantity,
+    }
+}
+
+/// The word that weighs most; nothing where nothing speaks against the value.
+fn word(outcome: &Outcome, resting: &str, is_quick: bool) -> Option<&'static str> {
+    let of_case = outcome.solved().map_or(Status::Ok, |result| result.status);
+    let of_inputs = || match of_remark(resting) {
+        ValueStatus::Doubtful => Some(DOUBTFUL),
+        ValueStatus::Assumed => Some(ASSUMED),
+        ValueStatus::Measured | ValueStatus::Inferred => is_quick.then_some(QUICK),
+    };
+    if of_case == Status::Ok { of_inputs() } else { Some(solved::status(of_case)) }
+}
+
+/// The status of what a remark says that a value rests on, for the mark behind it.
+pub(super) fn of_remark(remark: &str) -> ValueStatus {
+    match remark {
+        text if text.contains(DOUBTFUL) => ValueStatus::Doubtful,
+        text if text.contains("assum") => ValueStatus::Assumed,
+        _ => ValueStatus::Measured,
+    }
+}
+
+/// What is said of a drape on coarse cells.
+fn quick(findings: &[&Finding]) -> Option<String> {
+    findings.iter().find_map(|finding| match &finding.fact {
+        Fact::Study(StudyFact::QuickDrape { elements, .. }) => Some(format!("quick, {elements} elements")),
+        _ => None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_doubtful_weighs_more_than_what_is_assumed() {
+        assert_eq!(of_remark("rests on an assumed E and a doubtful B warp"), ValueStatus::Doubtful);
+        assert_eq!(
+            of_remark("quick, 1260 elements; rests on a B that rests on an assumption"),
+            ValueStatus::Assumed
+        );
+        assert_eq!(of_remark("rests on an assumed E"), ValueStatus::Assumed);
+        assert_eq!(of_remark("quick, 1260 elements"), ValueStatus::Measured);
+    }
+}
