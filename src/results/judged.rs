@@ -1,7 +1,7 @@
 //! What speaks against a simulated value, in a word and in a sentence: for tables of predictions and for the page alike.
 
 use super::outcome::Outcome;
-use super::rests_on::{self, DOUBTFUL};
+use super::rests_on::{self, DOUBTFUL, Ground};
 use super::solved;
 use super::task::Task;
 use crate::characterise::ValueStatus;
@@ -21,11 +21,11 @@ pub(super) fn fill(rows: &mut [PredictionRow], task: &Task, outcome: &Outcome) {
     let (values, findings) = known(task);
     let quick = quick(&outcome.findings(task));
     for row in rows {
-        let resting = rests_on::remark(&values, &findings, shown_most(outcome, &row.quantity));
-        row.status = word(outcome, &resting, quick.is_some()).map(String::from);
+        let grounds = rests_on::grounds(&values, &findings, shown_most(outcome, &row.quantity));
+        row.status = word(outcome, &grounds, quick.is_some()).map(String::from);
         let both = is_of_both(task, row).then(|| "measured for warp and weft together".to_string());
-        let resting = (!resting.is_empty()).then(|| format!("rests on {resting}"));
-        let said: Vec<String> = [quick.clone(), both, resting].into_iter().flatten().collect();
+        let said: Vec<String> =
+            [quick.clone(), both, rests_on::remark(&grounds)].into_iter().flatten().collect();
         row.remark = (!said.is_empty()).then(|| said.join("; "));
     }
 }
@@ -58,21 +58,24 @@ fn shown_most<'q>(outcome: &Outcome, quantity: &'q str) -> &'q str {
 }
 
 /// The word that weighs most; nothing where nothing speaks against the value.
-fn word(outcome: &Outcome, resting: &str, is_quick: bool) -> Option<&'static str> {
+fn word(outcome: &Outcome, grounds: &[Ground], is_quick: bool) -> Option<&'static str> {
     let of_case = outcome.solved().map_or(Status::Ok, |result| result.status);
-    let of_inputs = || match of_remark(resting) {
+    if of_case == Status::Ok { of_grounds(grounds, is_quick) } else { Some(solved::status(of_case)) }
+}
+
+fn of_grounds(grounds: &[Ground], is_quick: bool) -> Option<&'static str> {
+    match grounds.iter().map(|ground| ground.status).max().unwrap_or_default() {
         ValueStatus::Doubtful => Some(DOUBTFUL),
         ValueStatus::Assumed => Some(ASSUMED),
         ValueStatus::Measured | ValueStatus::Inferred => is_quick.then_some(QUICK),
-    };
-    if of_case == Status::Ok { of_inputs() } else { Some(solved::status(of_case)) }
+    }
 }
 
-/// The status of what a remark says that a value rests on, for the mark behind it.
-pub(super) fn of_remark(remark: &str) -> ValueStatus {
-    match remark {
-        text if text.contains(DOUBTFUL) => ValueStatus::Doubtful,
-        text if text.contains("assum") => ValueStatus::Assumed,
+/// What the status of a prediction says of what it rests on, for the mark behind its value.
+pub(super) fn of_inputs(row: &PredictionRow) -> ValueStatus {
+    match row.status.as_deref() {
+        Some(DOUBTFUL) => ValueStatus::Doubtful,
+        Some(ASSUMED) => ValueStatus::Assumed,
         _ => ValueStatus::Measured,
     }
 }
@@ -91,12 +94,12 @@ mod tests {
 
     #[test]
     fn what_is_doubtful_weighs_more_than_what_is_assumed() {
-        assert_eq!(of_remark("rests on an assumed E and a doubtful B warp"), ValueStatus::Doubtful);
-        assert_eq!(
-            of_remark("quick, 1260 elements; rests on a B that rests on an assumption"),
-            ValueStatus::Assumed
-        );
-        assert_eq!(of_remark("rests on an assumed E"), ValueStatus::Assumed);
-        assert_eq!(of_remark("quick, 1260 elements"), ValueStatus::Measured);
+        let ground = |status| Ground { status, text: String::new() };
+        let [measured, assumed, doubtful] =
+            [ValueStatus::Measured, ValueStatus::Assumed, ValueStatus::Doubtful].map(ground);
+        assert_eq!(of_grounds(&[assumed.clone(), doubtful], true), Some("doubtful"));
+        assert_eq!(of_grounds(&[measured.clone(), assumed], true), Some("assumed"));
+        assert_eq!(of_grounds(std::slice::from_ref(&measured), true), Some("quick"));
+        assert_eq!(of_grounds(&[measured], false), None);
     }
 }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::columns::Columns;
 use super::fabric::FabricReport;
-use super::judged::of_remark;
+use super::judged::of_inputs;
 use super::page_problems::BEYOND_LINEAR;
 use super::sheet_text::{BOTH, BOTH_LEGEND, mark};
 use crate::case::{Analysis, BendingTest, Case, Problem};
@@ -172,7 +172,7 @@ fn predicted<'r>(report: &'r FabricReport, case: &str, quantity: &str) -> Option
 
 /// The mark of a prediction whose inputs something speaks against, as parameters have it.
 fn doubt(row: &PredictionRow) -> &'static str {
-    mark(of_remark(row.remark.as_deref().unwrap_or_default()))
+    mark(of_inputs(row))
 }
 
 /// One line a fabric, with columns of what its cases predict.

@@ -1,6 +1,7 @@
 //! What a simulated value rests on that is not to be relied on: a constant of the section that nobody measured, or a
 //! measured value that a finding speaks against.
 
+use crate::characterise::ValueStatus;
 use crate::finding::{Fact, Finding, SectionFact};
 use crate::instrument::{Direction, Parameter, Test};
 use crate::report::table::FabricRow;
@@ -11,17 +12,38 @@ pub(super) const DOUBTFUL: &str = "doubtful";
 /// What the deflection of a plate rests on.
 pub(super) const OF_PLATE: &str = "w_max";
 
-/// `an assumed E and a doubtful B warp`; nothing for a value of `quantity` that rests on measured values alone.
-pub(super) fn remark(rows: &[FabricRow], findings: &[Finding], quantity: &str) -> String {
+/// Something that a value rests on and that is not to be relied on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Ground {
+    /// `Measured` of what was measured, but of warp and weft together.
+    pub status: ValueStatus,
+    /// `an assumed E`.
+    pub text: String,
+}
+
+impl Ground {
+    fn new(status: ValueStatus, text: impl Into<String>) -> Self {
+        Self { status, text: text.into() }
+    }
+}
+
+/// `an assumed E`, `a doubtful B warp`; nothing for a value of `quantity` that rests on measured values alone.
+pub(super) fn grounds(rows: &[FabricRow], findings: &[Finding], quantity: &str) -> Vec<Ground> {
     let (_, direction) = quantity.split_once(' ').unwrap_or_default();
     let of_input = |symbol: &&str| match stand_in(symbol, direction, findings) {
         // What stands in is one value, of whatever direction.
         Some(stand_in) => std::iter::once(stand_in).chain(doubts(rows, symbol, "")).collect(),
         None => doubts(rows, symbol, direction),
     };
-    let mut remarks: Vec<String> = inputs(quantity).iter().flat_map(of_input).collect();
-    remarks.dedup();
-    remarks.join(" and ")
+    let mut grounds: Vec<Ground> = inputs(quantity).iter().flat_map(of_input).collect();
+    grounds.dedup();
+    grounds
+}
+
+/// `rests on an assumed E and a doubtful B warp`; nothing without grounds.
+pub(super) fn remark(grounds: &[Ground]) -> Option<String> {
+    let texts: Vec<&str> = grounds.iter().map(|ground| ground.text.as_str()).collect();
+    (!texts.is_empty()).then(|| format!("rests on {}", texts.join(" and ")))
 }
 
 /// `an assumed E`, where the stiffness that a test along a direction shows is a stand-in of the section.
@@ -39,13 +61,14 @@ pub(super) fn assumed_of_test(test: Test, direction: Direction, findings: &[Find
 }
 
 /// `an assumed E weft`: what stands for a stiffness in a direction (any, if it is empty) that the sheet does not have.
-fn stand_in(symbol: &str, direction: &str, findings: &[Finding]) -> Option<String> {
+fn stand_in(symbol: &str, direction: &str, findings: &[Finding]) -> Option<Ground> {
     findings.iter().find_map(|finding| {
         if let Fact::Section(SectionFact::OneRigidity { known: None, .. }) = &finding.fact {
-            return (symbol == "B").then(|| "one B for warp and weft".to_string());
+            return (symbol == "B").then(|| Ground::new(ValueStatus::Measured, "one B for warp and weft"));
         }
         let substitute = Substitute::of(&finding.fact)?;
-        substitute.replaces(symbol, direction).then(|| format!("an assumed {}", substitute.name()))
+        let assumed = || Ground::new(ValueStatus::Assumed, format!("an assumed {}", substitute.name()));
+        substitute.replaces(symbol, direction).then(assumed)
     })
 }
 
@@ -104,7 +127,7 @@ fn inputs(quantity: &str) -> &'static [&'static str] {
 }
 
 /// Values of the fabric that are not to be relied on, in a direction (any, if it is empty) or of the fabric as a whole.
-fn doubts(rows: &[FabricRow], symbol: &str, direction: &str) -> Vec<String> {
+fn doubts(rows: &[FabricRow], symbol: &str, direction: &str) -> Vec<Ground> {
     let is_input = |parameter: &str| parameter.split(' ').next() == Some(symbol);
     let is_along = |along: Option<&str>| along.is_none_or(|along| direction.is_empty() || along == direction);
     let rows = rows.iter().filter(|row| is_input(&row.parameter) && is_along(row.direction.as_deref()));
@@ -112,8 +135,10 @@ fn doubts(rows: &[FabricRow], symbol: &str, direction: &str) -> Vec<String> {
         let name = [Some(symbol), row.direction.as_deref()];
         let name = name.into_iter().flatten().collect::<Vec<_>>().join(" ");
         match row.status.as_str() {
-            DOUBTFUL => Some(format!("a doubtful {name}")),
-            "assumed" => Some(format!("a {name} that rests on an assumption")),
+            DOUBTFUL => Some(Ground::new(ValueStatus::Doubtful, format!("a doubtful {name}"))),
+            "assumed" => {
+                Some(Ground::new(ValueStatus::Assumed, format!("a {name} that rests on an assumption")))
+            }
             _ => None,
         }
     })
@@ -137,10 +162,15 @@ mod tests {
         (rows, [Finding::new(assumed)])
     }
 
+    fn said(rows: &[FabricRow], findings: &[Finding], quantity: &str) -> String {
+        let remark = remark(&grounds(rows, findings, quantity)).unwrap_or_default();
+        remark.trim_start_matches("rests on ").to_string()
+    }
+
     #[test]
     fn what_is_doubtful_or_assumed_goes_on_to_what_is_predicted() {
         let (rows, findings) = sheet();
-        let remark = |quantity: &str| remark(&rows, &findings, quantity);
+        let remark = |quantity: &str| said(&rows, &findings, quantity);
         assert_eq!(remark("bending_length warp"), "a doubtful B warp");
         assert_eq!(remark("bending_length weft"), "");
         assert_eq!(remark("E warp"), "an assumed E");
@@ -167,7 +197,7 @@ mod tests {
             Finding::new(SectionFact::OneModulus { fabric: fabric.clone(), known, modulus }),
             Finding::new(SectionFact::OneRigidity { fabric, known: Some(known) }),
         ];
-        let remark = |quantity: &str| remark(&rows, &findings, quantity);
+        let remark = |quantity: &str| said(&rows, &findings, quantity);
         assert_eq!((remark("E warp"), remark("E weft")), (String::new(), "an assumed E weft".into()));
         assert_eq!(remark("bending_length warp"), "a doubtful B warp");
         assert_eq!(remark("bending_length weft"), "an assumed B weft and a doubtful B warp");
@@ -177,6 +207,6 @@ mod tests {
             Some("an assumed B")
         );
         let one = [Finding::new(SectionFact::OneRigidity { fabric: "a".into(), known: None })];
-        assert_eq!(super::remark(&rows[1..], &one, "bending_length warp"), "one B for warp and weft");
+        assert_eq!(said(&rows[1..], &one, "bending_length warp"), "one B for warp and weft");
     }
 }
