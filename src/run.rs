@@ -30,6 +30,7 @@ mod work;
 pub(crate) use document::RunDocument;
 
 use crate::platform::in_pool;
+use crate::report::number::counted;
 use crate::report::table::{FabricRow, PredictionRow, ProblemRow};
 use crate::results::{
     Catalogue, Columns, FabricReport, Failure, Folder, Job, JobInputs, Observer, Record, Sink,
@@ -80,6 +81,15 @@ pub struct RunReport {
 }
 
 impl RunReport {
+    /// `2 failures and 3 findings`, of so many findings.
+    pub fn count_of_problems(&self, findings: usize) -> String {
+        let findings = counted(findings, "finding");
+        match self.failures.len() {
+            0 => findings,
+            failures => format!("{} and {findings}", counted(failures, "failure")),
+        }
+    }
+
     /// Of inputs of which nothing could be read.
     pub fn of_failures(failures: Vec<Failure>) -> Self {
         Self { failures, ..Self::default() }

@@ -74,6 +74,7 @@ const CASES: &[(&str, &str, &str)] = &[
     ("R139", "r139-brackets.csv", "r139-brackets.csv:3:3"),
     ("R142", "r142-stars.csv", "r142-stars.csv:2:3"),
     ("R143", "r143-row-names.csv", "r143-row-names.csv:1"),
+    ("R144", "r144-travel.csv", "r144-travel.csv:1:1"),
     ("R141", "r141-no-origin", "r141-no-origin/fabric.toml"),
     ("R140", "r140-status.csv", "r140-status.csv:3"),
     ("R135", "r135-page.csv", "r135-page.csv"),
@@ -121,6 +122,7 @@ const CASES: &[(&str, &str, &str)] = &[
     ("K064", "k064-loops.json", "k064-loops.json"),
     ("K065", "k065-trigger.csv", "k065-trigger.csv:6"),
     ("K066", "k066-below-zero.csv", "k066-below-zero.csv:7"),
+    ("K067", "k067-force-left.csv", "k067-force-left.csv:4"),
 ];
 
 /// Codes that no file can trigger, because reading refuses it or sets it right before; programs

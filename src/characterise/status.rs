@@ -29,6 +29,13 @@ enum Scope<'a> {
     Moduli,
 }
 
+/// What depends on the zero of a travel that is read as a thickness.
+const OF_TRAVEL: [Key; 3] = [
+    Key { parameter: Parameter::T0, direction: None },
+    Key { parameter: Parameter::Tm, direction: None },
+    Key { parameter: Parameter::Emc, direction: None },
+];
+
 /// What a finding says of a value, and its code.
 type Remark = (ValueStatus, &'static str);
 
@@ -180,6 +187,7 @@ fn of_evaluation(fact: &EvaluationFact) -> Option<(Scope<'_>, ValueStatus)> {
         }
         F::NarrowedWindow { record, slope, .. } => (Scope::Slope(record, slope), Inferred),
         F::Drift { record, .. } => (Scope::Record(record), Doubtful),
+        F::ForceLeft { record, .. } => (Scope::OfRecord(record, Parameter::Rt), Doubtful),
         F::OneSide { record, parameter } => (Scope::OfRecord(record, *parameter), Doubtful),
         F::ShortOfMaximum { record, .. }
         | F::BeyondMaximum { record, .. }
@@ -234,6 +242,7 @@ fn of_reading<'a>(fact: &'a ReadFact, place: Option<&'a Place>) -> Option<(Scope
             Some((Scope::Direction(*direction), ValueStatus::Doubtful))
         }
         ReadFact::RecordsOfStates { record, .. } => Some((Scope::Record(record), ValueStatus::Doubtful)),
+        ReadFact::TravelAsThickness { .. } => Some((Scope::Values(&OF_TRAVEL), ValueStatus::Assumed)),
         ReadFact::SeveralTables { keys, .. }
         | ReadFact::NumbersAsSpecimens { keys }
         | ReadFact::WithoutDirection { keys }

@@ -10,6 +10,8 @@ use crate::quantity::Curve;
 
 /// Part of the strain at the maximum above which the strain that is missing before the first sample is told.
 const BEGINS_UNDER_LOAD: f64 = 0.01;
+/// Part of the maximum force above which a force that is left where loading began is told.
+const FORCE_LEFT: f64 = 0.02;
 
 /// Parameters of a tensile record (x = strain, y = N/m).
 pub(super) fn evaluate(
@@ -41,6 +43,7 @@ pub(super) fn evaluate(
     {
         e.values.insert(Parameter::Rt, regained / work);
     }
+    force_left(&load, &back, fm, notes);
     e.windows.push(Window { parameter: Parameter::Emt, from: strain, to: strain, ordinates: [0.0, fm] });
     for &modulus in &settings.moduli {
         let [low, high] = match modulus {
@@ -124,6 +127,15 @@ pub(super) fn cycle(branches: &[Branch], choice: CycleChoice) -> (Graph, Graph) 
         found.map_or_else(Graph::default, |b| Graph::of(&b.curve))
     };
     (graph(true), graph(false))
+}
+
+/// K067: force that is left where loading began. Cloth has grown by then and hangs slack, so that it is the zero that has moved.
+fn force_left(load: &Graph, back: &Graph, fm: f64, notes: &mut Notes<'_>) {
+    let Some((start, began)) = load.x.first().zip(load.y.first()) else { return };
+    let Some(force) = back.at(*start).map(|end| end - began.max(0.0)) else { return };
+    if force > FORCE_LEFT * fm {
+        notes.add(EvaluationFact::ForceLeft { record: notes.record(), force, part: force / fm });
+    }
 }
 
 /// Work on the unloading branch from strain `top` down to where the force is gone; loading began at strain `start`.

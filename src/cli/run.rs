@@ -91,8 +91,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         ui.note(&format!("{shown}: {note}"));
     }
     if ui.json {
-        let output = options.output.to_string_lossy().into_owned();
-        ui.document(ResultsDocument::new(output, &predictions))?;
+        ui.document(ResultsDocument::new(options.output.to_string_lossy().into(), &predictions))?;
     } else {
         let tables: Vec<String> = report.tables.iter().map(|table| table.text()).collect();
         ui.print(&tables.join("\n"))?;
@@ -105,10 +104,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         }
         let charts = if settings.charts { ", charts" } else { "" };
         let files = format!("index.html, fabrics.csv, predictions.csv{charts}");
-        let failures = report.failures.len();
-        let failed =
-            if failures == 0 { String::new() } else { format!("{} and ", counted(failures, "failure")) };
-        ui.note(&format!("{shown}: {files}; {failed}{} in problems.csv", counted(ui.findings(), "finding")));
+        ui.note(&format!("{shown}: {files}; {} in problems.csv", report.count_of_problems(ui.findings())));
     }
     let strict = options.task.strict && ui.findings() > 0;
     Ok(Exit::of_batch(report.useful, &report.failures).unless(report.fails_a_check || strict))

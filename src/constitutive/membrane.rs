@@ -62,6 +62,12 @@ struct Slope<'a> {
     estimate: &'a Estimate,
 }
 
+impl Slope<'_> {
+    fn source(&self) -> InputSource {
+        InputSource::Modulus(self.modulus.name(), self.direction)
+    }
+}
+
 /// E1 t and E2 t (N/m): the chosen slope, else the next that the sheet has; of one direction, if the other has none; else the
 /// stand-in.
 fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], ConstitutiveError> {
@@ -69,9 +75,11 @@ fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], Cons
     let known = known(chosen, notes);
     if let Modulus::Window(..) = chosen {
         // A direction whose curves do not reach the window has other slopes.
-        let has_others = |direction| slope(Modulus::Secant, direction, notes).is_some();
-        let lacks = |(slope, direction): (&Option<Slope>, _)| slope.is_none() && has_others(direction);
-        if known.iter().zip(DIRECTIONS).any(lacks) || known.iter().all(Option::is_none) {
+        let misses_window = known
+            .iter()
+            .zip(DIRECTIONS)
+            .any(|(found, direction)| found.is_none() && slope(Modulus::Secant, direction, notes).is_some());
+        if misses_window || known.iter().all(Option::is_none) {
             return Err(notes.missing(
                 format!("{chosen} modulus in warp and weft"),
                 "widen the window, or choose tangent_low, secant or energy",
@@ -115,9 +123,10 @@ fn known<'a>(chosen: Modulus, notes: &Notes<'a>) -> [Option<Slope<'a>>; 2] {
     if !matches!(chosen, Modulus::Window(..)) {
         kinds.extend([Modulus::Secant, Modulus::Energy].into_iter().filter(|other| *other != chosen));
     }
-    let of_kind = |kind: &Modulus| DIRECTIONS.map(|direction| slope(*kind, direction, notes));
-    let each = || DIRECTIONS.map(|direction| kinds.iter().find_map(|kind| slope(*kind, direction, notes)));
-    kinds.iter().map(of_kind).find(|both| both.iter().all(Option::is_some)).unwrap_or_else(each)
+    let mut found = kinds.iter().map(|kind| DIRECTIONS.map(|direction| slope(*kind, direction, notes)));
+    found.find(|both| both.iter().all(Option::is_some)).unwrap_or_else(|| {
+        DIRECTIONS.map(|direction| kinds.iter().find_map(|kind| slope(*kind, direction, notes)))
+    })
 }
 
 /// What two moduli rest on.
@@ -149,14 +158,13 @@ fn stated(notes: &Notes) -> Option<String> {
 
 /// Writes two moduli of the sheet down and gives their values.
 fn record(slopes: [Slope; 2], source: Because, notes: &mut Notes) -> [f64; 2] {
-    let from = |slope: &Slope| InputSource::Modulus(slope.modulus.name(), slope.direction);
     if slopes[0].direction == slopes[1].direction {
         let Slope { direction, estimate, .. } = slopes[0];
         let gives = [(Constant::Tensile(0), 1.0), (Constant::Tensile(1), 1.0)];
-        notes.origin(format!("E {direction}"), (estimate, from(&slopes[0])), &gives);
+        notes.origin(format!("E {direction}"), (estimate, slopes[0].source()), &gives);
         return stated_values([estimate.mean; 2], source, notes);
     }
-    write_down(slopes.map(|slope| (slope.estimate, from(&slope))), source, notes)
+    write_down(slopes.map(|slope| (slope.estimate, slope.source())), source, notes)
 }
 
 /// Writes two moduli down, each with where it stands, and gives their values.

@@ -56,6 +56,10 @@ pub(super) fn measurement(
     let mut findings = points.findings;
     findings
         .extend([(&pair.x, x_axis), (&pair.y, y_axis)].into_iter().flat_map(|(c, a)| axes.assumptions(c, a)));
+    if test == Test::Compression && pair.x.role == Role::Displacement {
+        let fact = ReadFact::TravelAsThickness { column: pair.x.name.clone() };
+        findings.push(Finding::new(fact).at(Place::at(context.path, pair.x.line, pair.x.column)));
+    }
     if direction.is_some() && !header.known.contains_key(&Key::Direction) {
         let place = Place::at(context.path, pair.x.line, 0);
         findings.push(Finding::new(ReadFact::DirectionFromName {}).at(place));

@@ -12,6 +12,7 @@ use crate::characterise::{FabricSheet, Key};
 use crate::finding::Place;
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::significant;
+use crate::report::number::counted;
 use crate::report::table::PredictionRow;
 
 /// Headings before the deflections, in KES units.
@@ -223,8 +224,11 @@ impl<'c> Overview<'c> {
             caption += &format!("; {BOTH_LEGEND}");
         }
         if !self.beyond.is_empty() {
-            let named: Vec<String> =
-                self.beyond.iter().map(|(case, fabrics)| format!("{case} of {fabrics} fabrics")).collect();
+            let named: Vec<String> = self
+                .beyond
+                .iter()
+                .map(|(case, fabrics)| format!("{case} of {}", counted(*fabrics, "fabric")))
+                .collect();
             caption += &format!("\nbeyond linear (S101), a stiffness and no shape: {}", named.join(", "));
         }
         self.table.with_note(&caption)
@@ -262,10 +266,7 @@ mod tests {
             name: "poplin".into(),
             cells: vec!["-".into(); HEADINGS.len() - 1],
             predictions: vec![
-                PredictionRow {
-                    remark: Some("rests on an assumed E and a doubtful B warp".into()),
-                    ..row("drape", "drape_coefficient", 0.5)
-                },
+                PredictionRow { status: Some("doubtful".into()), ..row("drape", "drape_coefficient", 0.5) },
                 row("cantilever", "bending_length warp", 0.02),
             ],
             relative_deflections: vec![("seed_clamped".into(), 1e-5)],

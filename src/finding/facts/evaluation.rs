@@ -105,6 +105,16 @@ super::facts! {
             pressure: f64,
         } = "{record}: the record begins at {}, below zero, and has no approach from which the zero could be told: pressures are taken as \
              they stand, and T0 is low and LC high if they are too low throughout", in_unit(*pressure, "gf/cm²");
+        /// Force that is left where loading began.
+        "K067" ForceLeft {
+            /// The record.
+            record: RecordName,
+            /// The force (N/m).
+            force: f64,
+            /// The same over the maximum.
+            part: f64,
+        } = "{record}: {} ({} % of the maximum) are left where loading began, although cloth hangs slack there: the zero of the force has \
+             moved, and RT is too high", in_unit(*force, "gf/cm"), significant(100.0 * part);
         /// Noise of the ordinate.
         "K009" Noise {
             /// The record.

@@ -268,6 +268,12 @@ super::facts! {
         /// A line of heads with one field less than the rows.
         "R143" NamesOfRows {} = "the line of headings has one field less than the rows, as `write.table` of R has it: the first column is read \
              as the names of the rows; write a heading over it if it is something else";
+        /// A travel in the place of a thickness.
+        "R144" TravelAsThickness {
+            /// Heading of its column.
+            column: String,
+        } = "{column:?} is a travel, and is read as the thickness: T0, Tm and EMC hold only if it is 0 where the foot meets the \
+             anvil; call the column `thickness` if it is one";
         /// Blank cells below a direction or a parameter.
         "R124" MergedCells {} = "blank cells are read as the direction or parameter above them, as of merged cells: fill them in \
              if they are something else";
