@@ -1,6 +1,7 @@
 //! A library of results.
 
 use std::collections::{BTreeMap, HashMap};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -62,10 +63,12 @@ impl Shelf {
     /// # Errors
     /// O050.
     pub fn refuse_ending(path: &Path) -> Result<(), LibraryError> {
-        match path.extension() {
-            Some(ending) if ending.eq_ignore_ascii_case("parquet") => Ok(()),
-            _ => Err(LibraryError::Ending { path: path.to_path_buf() }),
+        const OTHERS: [&str; 5] = ["csv", "tsv", "json", "txt", "xlsx"];
+        let ending = path.extension().unwrap_or(OsStr::new(""));
+        if OTHERS.iter().any(|other| ending.eq_ignore_ascii_case(other)) {
+            return Err(LibraryError::Ending { path: path.to_path_buf() });
         }
+        Ok(())
     }
 
     /// Adds the fabrics of results on disk.

@@ -5,6 +5,11 @@ use crate::finding::Place;
 use crate::kes::{Direction, Key, Parameter, RecordName, Relation, Test, ValueStatus, series};
 use crate::quantity::{STANDARD_GRAVITY, in_unit, significant, without_rounding};
 
+use super::sentences::{
+    correction, implausible, jump, level_within, micro, no_loop, not_together, range, range_in, repeat_name,
+    stated_status, strip_lengths, warned,
+};
+
 super::facts! {
     /// What a reader of a parameter sheet must know.
     EvaluationFact {
@@ -464,124 +469,5 @@ super::facts! {
             place: Place,
         } = "{}: specimen {} is left out: its samples are those of specimen {original} ({place}), number by number, so that it is \
              a copy and no repeat", record.series(), record.specimen;
-    }
-}
-
-/// A range in the unit of an axis.
-fn range_in(range: [f64; 2], unit: &str) -> String {
-    let [from, to] = range.map(|x| in_unit(x, unit));
-    format!("{from} to {to}")
-}
-
-fn repeat_name(repeat: usize, in_table: bool) -> String {
-    if in_table { format!("repeat {repeat} of the table") } else { format!("specimen {repeat}") }
-}
-
-fn correction(test: Test, axis: RecordAxis, taken_off: f64, limit: f64) -> String {
-    let [abscissa, ordinate] = test.kes_axes();
-    if axis == RecordAxis::Abscissa {
-        let shown = in_unit(taken_off, abscissa);
-        return format!(
-            "slack of {shown} was taken off, more than {:.0} % of the strain at the maximum",
-            100.0 * limit
-        );
-    }
-    let from = match test {
-        Test::Tensile => " the force",
-        Test::Compression => " the pressure",
-        Test::Shear | Test::Bending | Test::Friction | Test::Roughness => "",
-    };
-    format!("a zero offset of {} was taken off{from}", in_unit(taken_off, ordinate))
-}
-
-fn not_together(relation: Relation, keys: &[Key], ratio: f64) -> String {
-    let names: Vec<String> = keys.iter().map(ToString::to_string).collect();
-    let [low, high] = relation.range();
-    format!(
-        "{} do not go together: {} is {}, and of cloth it is {low} to {high}: look at the unit and the place of each",
-        names.join(", "),
-        relation.text(),
-        significant(ratio)
-    )
-}
-
-/// How near to one ordinate samples stay: `at exactly`, or `within 2 gf/cm at`.
-fn level_within(within: f64, test: Test) -> String {
-    if within == 0.0 {
-        "at exactly".into()
-    } else {
-        format!("within {} of each other at", in_unit(within, test.kes_axes()[1]))
-    }
-}
-
-/// What a table says of a value that it does not call measured.
-fn stated_status(status: ValueStatus) -> String {
-    match status {
-        ValueStatus::Doubtful => "doubtful, as its source says".to_string(),
-        ValueStatus::Measured | ValueStatus::Inferred | ValueStatus::Assumed => {
-            format!("{} by its source, not measured", status.name())
-        }
-    }
-}
-
-fn implausible(key: Key, range: Option<[f64; 2]>) -> String {
-    match range {
-        Some([low, high]) => format!(
-            "is outside {low} to {high}, the range of woven apparel fabrics: check unit, specimen width and conditions"
-        ),
-        None if key.parameter.is_width() => "is negative: the loop runs backwards".into(),
-        None => "is negative, which it cannot be: check the sign and the column".into(),
-    }
-}
-
-fn strip_lengths(strips: &[StripLength]) -> String {
-    let text = |s: &StripLength| {
-        format!("{} {} cm in cycle {}", s.direction, significant(100.0 * s.length), s.cycle)
-    };
-    strips.iter().map(text).collect::<Vec<_>>().join(", ")
-}
-
-fn warned(warnings: &[String]) -> String {
-    if warnings.is_empty() { "no warning".into() } else { format!("warnings: {}", warnings.join(", ")) }
-}
-
-fn micro(values: &[f64]) -> String {
-    values.iter().map(|b| significant(1e6 * b)).collect::<Vec<_>>().join(", ")
-}
-
-/// Ends of a range in millionths.
-fn range(ends: [f64; 2]) -> String {
-    let [low, high] = ends.map(|v| significant(1e6 * v));
-    format!("{low} to {high}")
-}
-
-fn no_loop(reason: Option<&str>, missed: &[Missed]) -> String {
-    let list: Vec<String> =
-        missed.iter().map(|m| format!("{} {:+.0} %", m.parameter, 100.0 * m.relative_error)).collect();
-    match reason {
-        Some(reason) => format!("no friction law of the summary values: {reason}"),
-        None => format!(
-            "the friction law of the summary values misses some of them ({}): they do not belong to one loop of its kind",
-            list.join(", ")
-        ),
-    }
-}
-
-fn jump(test: Test, axis: RecordAxis, step: f64, times: Option<f64>, samples: &Samples) -> String {
-    let [abscissa, ordinate] = test.kes_axes();
-    match (axis, times) {
-        (RecordAxis::Abscissa, Some(times)) => format!(
-            "the abscissa steps by {} in {samples}, {times:.0} times the usual step: are samples lost there? The values rest on a \
-             straight line across",
-            in_unit(step, abscissa)
-        ),
-        (RecordAxis::Abscissa, None) => {
-            format!("the abscissa steps by {} in {samples}", in_unit(step, abscissa))
-        }
-        (RecordAxis::Ordinate, _) => format!(
-            "the ordinate steps by {} in {samples}, while the drive runs on: did the specimen slip or tear, or was the range \
-             switched?",
-            in_unit(step, ordinate)
-        ),
     }
 }

@@ -9,6 +9,7 @@ mod exchange;
 mod parts;
 mod reading;
 mod section;
+mod sentences;
 mod study;
 mod usage;
 
