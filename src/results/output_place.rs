@@ -19,7 +19,9 @@ pub fn refuse_inputs(root: &Path, inputs: &[Input]) -> Result<(), Failure> {
     if [MANIFEST, JOURNAL].iter().any(|name| files::is_file(&real.join(name))) {
         return Ok(());
     }
-    let on_disk = inputs.iter().filter(|input| matches!(input, Input::Path(_)));
+    // Cases are no exports: results may stand beside them.
+    let is_export = |input: &&Input| matches!(input, Input::Path(path) if path.extension().is_none_or(|ending| ending != "toml"));
+    let on_disk = inputs.iter().filter(is_export);
     let paths: Vec<PathBuf> = on_disk.filter_map(|input| files::canonicalize(input.path()).ok()).collect();
     let held = if paths.contains(&real) {
         "is itself an input"
@@ -59,6 +61,8 @@ mod tests {
         for output in ["out", "data/results", "nowhere"] {
             assert_eq!(of(output, "data"), None, "{output}");
         }
+        std::fs::write(root.join("case.toml"), "").unwrap();
+        assert_eq!(of("", "case.toml"), None, "beside a case");
         std::fs::write(root.join("data").join(MANIFEST), "{}").unwrap();
         assert_eq!(of("data", "data/poplin"), None);
     }

@@ -48,7 +48,7 @@ fn a_run_tells_origins_assumptions_and_what_was_measured() {
     );
     assert_eq!(
         (of("B warp")["status"].as_str(), of("B warp")["remark"].as_str()),
-        ("", "measured for warp and weft together")
+        ("", "measured for warp and weft together; rests on one B for warp and weft")
     );
     let page = fs::read_to_string(out.join("index.html")).unwrap();
     assert!(page.contains("Measured drape coefficient") && page.contains("82.9 % (Cusick drape"));

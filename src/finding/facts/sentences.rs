@@ -2,7 +2,7 @@
 
 use super::parts::{Missed, RecordAxis, Samples, StripLength};
 use crate::kes::{Key, Relation, Test, ValueStatus};
-use crate::quantity::{in_unit, significant, without_rounding};
+use crate::quantity::{in_unit, significant};
 
 /// A range in the unit of an axis.
 pub(super) fn range_in(range: [f64; 2], unit: &str) -> String {
