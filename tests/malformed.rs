@@ -123,6 +123,7 @@ const CASES: &[(&str, &str, &str)] = &[
     ("K065", "k065-trigger.csv", "k065-trigger.csv:6"),
     ("K066", "k066-below-zero.csv", "k066-below-zero.csv:7"),
     ("K067", "k067-force-left.csv", "k067-force-left.csv:4"),
+    ("K068", "k068-noisy-width.csv", "k068-noisy-width.csv:6"),
 ];
 
 /// Codes that no file can trigger, because reading refuses it or sets it right before; programs

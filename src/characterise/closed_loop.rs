@@ -2,6 +2,7 @@
 
 use super::evaluation::{Evaluation, Notes};
 use super::graph::Graph;
+use super::specimen::noise_of;
 use super::tensile::shift;
 use super::{Branch, CycleChoice, Settings, Sides, SlopeMethod, Window, branch};
 use crate::finding::{EvaluationFact, RecordAxis};
@@ -11,6 +12,15 @@ use crate::quantity::{Curve, in_unit};
 /// Part of the abscissa where the drive turned up to which a width is read: nearer to the turn the yarns have not slid
 /// back yet, and at the turn itself every loop has no width.
 pub(super) const TURNED: f64 = 0.9;
+
+/// Part of a loop width that single samples may scatter by: where they scatter more, it is read from lines through those around.
+const NOISY: f64 = 0.03;
+/// Samples that a line takes at least.
+const LINE_SAMPLES: usize = 5;
+/// On both sides of the curvature of a reading (1/m): 0.15 1/cm.
+const BENDING_AROUND: f64 = 15.0;
+/// On both sides of the angle of a reading (rad): 0.25°, the half of the nearest one.
+const SHEAR_AROUND: f64 = 0.25 * std::f64::consts::PI / 180.0;
 
 /// What is read from the loop.
 struct Readings {
@@ -22,6 +32,8 @@ struct Readings {
     slope: [f64; 2],
     /// Loop widths and the abscissae (absolute) at which they are read.
     widths: [(Parameter, f64); 2],
+    /// How far on both sides of these the samples of a noisy record are looked at.
+    around: f64,
 }
 
 /// Parameters of a shear record (x = rad, y = N/m): G, 2HG, 2HG5.
@@ -32,6 +44,7 @@ pub(super) fn shear(curve: &Curve, settings: &Settings, notes: &mut Notes<'_>) -
         sides: [(Parameter::G, "G+"), (Parameter::G, "G-")],
         slope: settings.shear_slope.map(|a| a.si()),
         widths: [(Parameter::Hg, near), (Parameter::Hg5, far)],
+        around: SHEAR_AROUND,
     };
     if settings.tension_correction {
         // Part of the constant tension W along the sheared specimen: W tan φ.
@@ -54,6 +67,7 @@ pub(super) fn bending(
         sides: [(Parameter::Bf, "Bf"), (Parameter::Bb, "Bb")],
         slope: settings.bending_slope.map(|k| k.si()),
         widths: [(Parameter::Hb, at_one), (Parameter::Hb05, at_half)],
+        around: BENDING_AROUND,
     };
     evaluate(curve, &readings, settings, notes)
 }
@@ -63,6 +77,23 @@ struct Side {
     sign: f64,
     out: Graph,
     back: Graph,
+}
+
+impl Side {
+    /// The standard deviation of the noise of its samples in the order of the abscissa; 0 where they have none to be seen.
+    fn noise(&self) -> f64 {
+        [&self.out, &self.back].into_iter().filter_map(|branch| noise_of(&branch.y)).fold(0.0, f64::max)
+    }
+
+    /// The ordinates of both branches at an abscissa, on straight lines through the samples around it, and how many the shorter of
+    /// these has; `None` where there are too few.
+    fn lines(&self, x: f64, around: f64) -> Option<([f64; 2], usize)> {
+        let [out, back] = [&self.out, &self.back].map(|branch| branch.fit("", x - around, x + around));
+        let (out, back) = (out?, back?);
+        let samples = out.n.min(back.n);
+        let ends = [out, back].map(|line| line.intercept + line.slope * x);
+        (samples >= LINE_SAMPLES).then_some((ends, samples))
+    }
 }
 
 fn evaluate(
@@ -80,8 +111,8 @@ fn evaluate(
         return Err("no branch leads away from zero".into());
     }
     slopes(&mut e, &sides, readings, settings, notes);
-    for &(parameter, at) in &readings.widths {
-        width(&mut e, &sides, (parameter, at), settings, notes);
+    for &reading in &readings.widths {
+        width(&mut e, &sides, reading, readings.around, settings, notes);
     }
     for side in sides.iter().flatten() {
         let observed = side.out.x.iter().copied().map(f64::abs).fold(0.0, f64::max);
@@ -199,10 +230,11 @@ fn width(
     e: &mut Evaluation,
     sides: &[Option<Side>; 2],
     (parameter, at): (Parameter, f64),
+    around: f64,
     settings: &Settings,
     notes: &mut Notes<'_>,
 ) {
-    let mut found = Vec::new();
+    let (mut found, mut lines) = (Vec::new(), Vec::new());
     let [unit, _] = notes.measurement.test.kes_axes();
     for side in sides.iter().flatten().filter(|side| settings.sides.has(side.sign)) {
         let x = side.sign * at;
@@ -220,12 +252,24 @@ fn width(
             ));
             continue;
         }
+        // Each end of a width scatters as much as the samples beside it.
+        let scatter = std::f64::consts::SQRT_2 * side.noise();
+        let line = (scatter > NOISY * (out - back).abs()).then(|| side.lines(x, around)).flatten();
+        let [out, back] = line.map_or([out, back], |(ends, _)| ends);
         found.push(side.sign * (out - back));
+        lines.extend(line.map(|(_, samples)| (scatter, samples)));
         e.windows.push(Window { parameter, from: x, to: x, ordinates: [out.min(back), out.max(back)] });
     }
     one_side_only(found.len(), parameter, settings, notes);
-    if !found.is_empty() {
-        e.values.insert(parameter, found.iter().sum::<f64>() / found.len() as f64);
+    if found.is_empty() {
+        return;
+    }
+    let width = found.iter().sum::<f64>() / found.len() as f64;
+    e.values.insert(parameter, width);
+    if let Some(&(scatter, samples)) = lines.iter().min_by_key(|line| line.1) {
+        let [single, left] =
+            [1.0, samples as f64].map(|n| scatter / (n * found.len() as f64).sqrt() / width.abs());
+        notes.add(EvaluationFact::NoisyWidth { record: notes.record(), parameter, single, samples, left });
     }
 }
 

@@ -308,3 +308,25 @@ fn a_copy_is_no_repeat() {
     let sheet = sheet_of(vec![bending_record(8e-6, warp, 1), rounded], &Settings::default());
     assert_eq!(codes(&sheet), ["K047"]);
 }
+
+/// Noise of a tenth of the width: between single samples 2HB scatters by a tenth, along lines by a third of that.
+#[test]
+fn widths_of_noisy_records_are_read_along_lines() {
+    use rand::{RngExt, SeedableRng};
+    let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(7);
+    let mut read = |noise: f64| {
+        let mut gauss = || (0..12).map(|_| random.random_range(-0.5..0.5)).sum::<f64>();
+        let mut points = cycle(250.0, 100, |k, s| 8e-6 * k + 1e-4 * s);
+        points.iter_mut().for_each(|point| point.1 += noise * gauss());
+        evaluate(measurement(Test::Bending, 250.0, points))
+    };
+    let error = |sheet: &FabricSheet| sheet.get(P::Hb, Some(Direction::Warp)).unwrap().mean / 2e-4 - 1.0;
+    let sheets: Vec<FabricSheet> = (0..40).map(|_| read(2e-5)).collect();
+    assert!(sheets.iter().all(|sheet| codes(sheet).contains(&"K068")), "{:?}", sheets[0].findings);
+    let rms = (sheets.iter().map(|sheet| error(sheet).powi(2)).sum::<f64>() / 40.0).sqrt();
+    let worst = sheets.iter().map(|sheet| error(sheet).abs()).fold(0.0, f64::max);
+    // Two samples a side, each off by a tenth, and twelve in the place of one.
+    assert!((0.015..0.04).contains(&rms) && worst < 0.12, "rms {rms}, worst {worst}");
+    let clean = read(2e-7);
+    assert!(!codes(&clean).contains(&"K068") && error(&clean).abs() < 0.01, "{:?}", clean.findings);
+}

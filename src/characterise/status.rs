@@ -29,6 +29,9 @@ enum Scope<'a> {
     Moduli,
 }
 
+/// Part of a loop width that noise may leave uncertain.
+const SCATTER: f64 = 0.05;
+
 /// What depends on the zero of a travel that is read as a thickness.
 const OF_TRAVEL: [Key; 3] = [
     Key { parameter: Parameter::T0, direction: None },
@@ -187,6 +190,9 @@ fn of_evaluation(fact: &EvaluationFact) -> Option<(Scope<'_>, ValueStatus)> {
         }
         F::NarrowedWindow { record, slope, .. } => (Scope::Slope(record, slope), Inferred),
         F::Drift { record, .. } => (Scope::Record(record), Doubtful),
+        F::NoisyWidth { record, parameter, left, .. } if *left > SCATTER => {
+            (Scope::OfRecord(record, *parameter), Doubtful)
+        }
         F::ForceLeft { record, .. } => (Scope::OfRecord(record, Parameter::Rt), Doubtful),
         F::OneSide { record, parameter } => (Scope::OfRecord(record, *parameter), Doubtful),
         F::ShortOfMaximum { record, .. }
@@ -216,7 +222,8 @@ fn of_evaluation(fact: &EvaluationFact) -> Option<(Scope<'_>, ValueStatus)> {
         F::FabThickness { .. } => (value(Parameter::T0, None), Inferred),
         F::ModuliOfTable { .. } | F::StatedStiffness { .. } => (Scope::Moduli, Inferred),
         F::StatedThickness {} => (value(Parameter::T0, None), Assumed),
-        F::NotEvaluated { .. }
+        F::NoisyWidth { .. }
+        | F::NotEvaluated { .. }
         | F::Missing { .. }
         | F::NoDirection { .. }
         | F::NoArealDensity {}

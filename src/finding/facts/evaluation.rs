@@ -120,6 +120,20 @@ super::facts! {
             part: f64,
         } = "{record}: {} ({} % of the maximum) are left where loading began, although cloth hangs slack there: the zero of the force has \
              moved, and RT is too high", in_unit(*force, "gf/cm"), significant(100.0 * part);
+        /// A loop width that is read from lines.
+        "K068" NoisyWidth {
+            /// The record.
+            record: RecordName,
+            /// The width.
+            parameter: Parameter,
+            /// Standard deviation of the width between single samples over the width.
+            single: f64,
+            /// Samples of each branch that a line was laid through.
+            samples: usize,
+            /// What is left of the standard deviation.
+            left: f64,
+        } = "{record}: {parameter} is read from straight lines through {samples} samples of each branch, as single ones scatter by {} % of \
+             it; {} % are left", significant(100.0 * single), significant(100.0 * left);
         /// Noise of the ordinate.
         "K009" Noise {
             /// The record.
