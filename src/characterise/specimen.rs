@@ -81,10 +81,14 @@ pub(super) fn noise_of(y: &[f64]) -> Option<f64> {
     if 3 * turns < bends.len() {
         return None;
     }
+    if bends.is_empty() {
+        return None;
+    }
     bends.iter_mut().for_each(|b| *b = b.abs());
-    bends.sort_by(f64::total_cmp);
+    let middle = bends.len() / 2;
+    let (_, median, _) = bends.select_nth_unstable_by(middle, f64::total_cmp);
     // SD of white noise s: second differences have SD s √6, their median absolute value is 0.6745 of it.
-    bends.get(bends.len() / 2).map(|median| median / (0.6745 * 6f64.sqrt()))
+    Some(*median / (0.6745 * 6f64.sqrt()))
 }
 
 /// K009: the noise of the ordinate, from the median second difference, against its range.
