@@ -13,8 +13,9 @@ use crate::quantity::{Curve, in_unit};
 /// back yet, and at the turn itself every loop has no width.
 pub(super) const TURNED: f64 = 0.9;
 
-/// Part of a loop width that single samples may scatter by: where they scatter more, it is read from lines through those around.
-const NOISY: f64 = 0.03;
+/// Part of a loop width that it may scatter by between single samples, as specimens of one cloth do: where it scatters more, it is read
+/// from lines through the samples around.
+const NOISY: f64 = 0.05;
 /// Samples that a line takes at least.
 const LINE_SAMPLES: usize = 5;
 /// On both sides of the curvature of a reading (1/m): 0.15 1/cm.

@@ -21,7 +21,7 @@ class Table:
     >>> sheet = kesf.characterise("kesf_data/petrak_m1")
     >>> table = sheet.parameters()
     >>> table.column_names[:4], len(table), table["parameter"][-1]
-    (['fabric', 'parameter', 'direction', 'mean'], 9, 'E secant')
+    (['fabric', 'parameter', 'direction', 'mean'], 10, 'drape_coefficient')
     >>> table.units["cv"]
     '1'
     """
