@@ -221,7 +221,7 @@ fn figures(sheet: &FabricSheet, one: &Loop<'_>) -> Vec<Row> {
         value("  straight line", percent(fit.fitted.line_nrmse)),
         value("  noise floor", percent(fit.noise)),
         value("R²", format!("{:.5}", fit.fitted.r_squared)),
-        value("error of the energy", fit.fitted.loop_energy.map_or("no loop".into(), percent)),
+        value("energy error", fit.fitted.loop_energy.map_or("no loop".into(), percent)),
     ];
     if let Some(memory) = &law.memory {
         rows.push(value("set of the greatest strain", percent(memory.set)));
@@ -239,7 +239,7 @@ fn figures(sheet: &FabricSheet, one: &Loop<'_>) -> Vec<Row> {
         (m.test, m.direction, m.specimen) == (law.test, law.direction, law.specimen)
     });
     if let Some(specimen) = mine.filter(|_| law.basis == Basis::Loop) {
-        rows.push(Row::Remark("re-extracted | measured, KES units".into(), GREY));
+        rows.push(Row::Remark("law | measured, KES units".into(), GREY));
         for (p, ours) in &law.values {
             if let Some(theirs) = specimen.values.get(p) {
                 rows.push(pair(*p, *ours, *theirs));
