@@ -151,7 +151,11 @@ fn sheets_left_out(shapes: &Shapes) -> String {
 #[cfg(feature = "workbook")]
 fn workbooks(reports: &[FabricReport]) -> Option<Workbooks> {
     let rows = |units: UnitSystem| -> Vec<FabricRow> {
-        reports.iter().flat_map(|r| &r.rows).map(|row| row.in_units(units)).collect()
+        let rows = reports.iter().flat_map(|r| &r.rows);
+        // The same as the table: without what `fabric.toml` states.
+        rows.filter(|row| row.mean.is_none() || row.is_of_parameter())
+            .map(|row| row.in_units(units))
+            .collect()
     };
     let [kes, si] = [UnitSystem::Kes, UnitSystem::Si].map(|units| workbook::parameters(&rows(units)));
     (!reports.is_empty()).then_some(Workbooks { kes: kes.ok()?, si: si.ok()? })

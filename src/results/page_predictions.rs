@@ -102,6 +102,8 @@ fn add_measured_drape(columns: &mut Vec<Column>) {
 fn leading_caption(columns: &[Column], friction: bool) -> String {
     let has = |drape: bool| columns.iter().any(|c| is_drape(&c.quantity) == drape);
     let parts = [(has(true), "drape"), (has(false), "the bending length of the cantilever")];
+    // A column of drapes that were measured and not simulated has no case.
+    let is_simulated = columns.iter().any(|c| is_drape(&c.quantity) && !c.case.is_empty());
     let named: Vec<&str> = parts.into_iter().filter_map(|(has, name)| has.then_some(name)).collect();
     let subject = if friction {
         "What a laboratory measures, of cloth with friction"
@@ -109,7 +111,7 @@ fn leading_caption(columns: &[Column], friction: bool) -> String {
         "What a laboratory measures"
     };
     let mut caption = format!("{subject}: {}.", named.join(", and "));
-    if has(true) {
+    if is_simulated {
         caption += " A drape coefficient is that of the state of lowest energy; the least and the greatest of the \
                     states of nearly that energy stand in brackets, and then how many folds it has.";
     }
