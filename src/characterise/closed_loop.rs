@@ -78,14 +78,11 @@ struct Side {
     sign: f64,
     out: Graph,
     back: Graph,
+    /// Standard deviation of the noise of its samples in the order of the abscissa; 0 where there is none to be seen.
+    noise: f64,
 }
 
 impl Side {
-    /// The standard deviation of the noise of its samples in the order of the abscissa; 0 where they have none to be seen.
-    fn noise(&self) -> f64 {
-        [&self.out, &self.back].into_iter().filter_map(|branch| noise_of(&branch.y)).fold(0.0, f64::max)
-    }
-
     /// The ordinates of both branches at an abscissa, on straight lines through the samples around it, and how many the shorter of
     /// these has; `None` where there are too few.
     fn lines(&self, x: f64, around: f64) -> Option<([f64; 2], usize)> {
@@ -164,7 +161,9 @@ fn side(branches: &[Branch], sign: f64, choice: CycleChoice) -> Option<Side> {
     }?;
     let back = branches.iter().filter(|b| !b.outgoing && b.cycle == out.cycle).find(on_side);
     let back = back.map_or_else(Graph::default, |b| Graph::of(&b.curve));
-    Some(Side { sign, out: Graph::of(&out.curve), back })
+    let out = Graph::of(&out.curve);
+    let noise = [&out, &back].into_iter().filter_map(|branch| noise_of(&branch.y)).fold(0.0, f64::max);
+    Some(Side { sign, out, back, noise })
 }
 
 fn slopes(
@@ -254,8 +253,9 @@ fn width(
             continue;
         }
         // Each end of a width scatters as much as the samples beside it.
-        let scatter = std::f64::consts::SQRT_2 * side.noise();
-        let line = (scatter > NOISY * (out - back).abs()).then(|| side.lines(x, around)).flatten();
+        let scatter = std::f64::consts::SQRT_2 * side.noise;
+        let is_noisy = scatter > NOISY * (out - back).abs() && at + around <= TURNED * turn;
+        let line = is_noisy.then(|| side.lines(x, around)).flatten();
         let [out, back] = line.map_or([out, back], |(ends, _)| ends);
         found.push(side.sign * (out - back));
         lines.extend(line.map(|(_, samples)| (scatter, samples)));

@@ -330,10 +330,11 @@ fn clipped(curve: &Curve, usual: f64, kept: &[usize], notes: &mut Notes<'_>) {
     let [low, high] = ends(&curve.y);
     let two_sided = m.test.shape() == Shape::Loop;
     // The low end of the other tests is the zero before contact and after it.
-    let extremes = [(high, "greatest"), (low, "least")];
+    let extremes = [(high, "greatest", 1.0), (low, "least", -1.0)];
     let runs = level_runs(curve, usual);
-    for (extreme, name) in extremes.into_iter().take(if two_sided { 2 } else { 1 }) {
-        if flickers(curve, usual, (extreme, name), kept, notes) {
+    let noise = noise_of(&curve.y).unwrap_or_default();
+    for (extreme, name, sign) in extremes.into_iter().take(if two_sided { 2 } else { 1 }) {
+        if noise > 0.0 && flickers(curve, [usual, noise, sign], name, kept, notes) {
             continue;
         }
         let (at, near): (Vec<_>, Vec<_>) = (runs.iter())
@@ -357,16 +358,14 @@ fn clipped(curve: &Curve, usual: f64, kept: &[usize], notes: &mut Notes<'_>) {
     }
 }
 
-/// K044 of samples that are level within their noise.
+/// K044 of samples at the greatest (`sign` 1) or the least ordinate (-1) that are level within their noise.
 fn flickers(
     curve: &Curve,
-    usual: f64,
-    (extreme, name): (f64, &str),
+    [usual, noise, sign]: [f64; 3],
+    name: &str,
     kept: &[usize],
     notes: &mut Notes<'_>,
 ) -> bool {
-    let Some(noise) = noise_of(&curve.y).filter(|noise| *noise > 0.0) else { return false };
-    let sign = if extreme == ends(&curve.y)[1] { 1.0 } else { -1.0 };
     let turned = Curve::from_points(curve.points().map(|(x, y)| (x, sign * y)));
     let steps = |run: Range<usize>| 1 + steps_made(&curve.x[run], usual);
     let Some(run) = saturation::plateau(&turned, noise, usual, steps) else { return false };

@@ -78,10 +78,7 @@ pub(super) fn noise_of(y: &[f64]) -> Option<f64> {
     let mut bends: Vec<f64> = y.windows(3).map(|w| w[0] - 2.0 * w[1] + w[2]).collect();
     // Those of noise change their sign twice in three steps; those of a curve that is sampled far apart keep it.
     let turns = bends.windows(2).filter(|w| w[0] * w[1] < 0.0).count();
-    if 3 * turns < bends.len() {
-        return None;
-    }
-    if bends.is_empty() {
+    if bends.is_empty() || 3 * turns < bends.len() {
         return None;
     }
     bends.iter_mut().for_each(|b| *b = b.abs());

@@ -86,10 +86,8 @@ fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], Cons
             ));
         }
     }
-    let others: Vec<Slope> = known.into_iter().flatten().filter(|slope| slope.modulus != chosen).collect();
-    if let Some(other) = others.first() {
-        // Of one direction alone, where the other has the chosen one.
-        let direction = (others.len() == 1 && known.iter().all(Option::is_some)).then_some(other.direction);
+    if let Some(other) = known.into_iter().flatten().find(|slope| slope.modulus != chosen) {
+        let direction = lacks(chosen, notes);
         let (fabric, chosen, used) = (notes.fabric(), chosen.to_string(), other.modulus.to_string());
         notes.finding(SectionFact::OtherModulus { fabric, chosen, used, direction });
     }
@@ -129,6 +127,12 @@ fn known<'a>(chosen: Modulus, notes: &Notes<'a>) -> [Option<Slope<'a>>; 2] {
     })
 }
 
+/// The one direction that lacks a modulus which the other has.
+fn lacks(modulus: Modulus, notes: &Notes) -> Option<Direction> {
+    let [warp, weft] = DIRECTIONS.map(|direction| slope(modulus, direction, notes).is_some());
+    (warp != weft).then_some(if warp { Direction::Weft } else { Direction::Warp })
+}
+
 /// What two moduli rest on.
 fn both(chosen: Modulus, slopes: [Slope; 2], notes: &Notes) -> Because {
     let [warp, weft] = slopes.map(|slope| slope.modulus);
@@ -138,7 +142,10 @@ fn both(chosen: Modulus, slopes: [Slope; 2], notes: &Notes) -> Because {
             (Provenance::Inferred, format!("{chosen} of {what}").into())
         }
         _ if [warp, weft] == [chosen; 2] => because(&values, chosen.to_string()),
-        _ if warp == weft => because(&values, format!("{warp}, because there is no {chosen} modulus")),
+        _ if warp == weft => {
+            let of = lacks(chosen, notes).map_or(String::new(), |direction| format!(" of the {direction}"));
+            because(&values, format!("{warp}, because there is no {chosen} modulus{of}"))
+        }
         _ => because(&values, format!("{warp} of the warp, {weft} of the weft")),
     }
 }

@@ -83,19 +83,11 @@ pub(super) fn because(known: &[Known], why: impl Into<String>) -> Because {
 
 /// What is said where the one direction that is known stands for both.
 pub(super) fn for_both(known: Direction, why: &str) -> Because {
-    let other = if known == Direction::Warp { Direction::Weft } else { Direction::Warp };
+    let across = known.across();
     (
         Provenance::Assumed,
-        format!("{why}; that of the {known} stands for the {other}, which is not known").into(),
+        format!("{why}; that of the {known} stands for the {across}, which is not known").into(),
     )
-}
-
-/// The symbol of a parameter and its direction, e.g. `B warp`.
-fn name_of(Key { parameter, direction }: Key) -> String {
-    match direction {
-        Some(direction) => format!("{parameter} {direction}"),
-        None => parameter.symbol().to_string(),
-    }
 }
 
 /// An estimate of the sheet, and where it stands.
@@ -136,7 +128,7 @@ impl Notes<'_> {
         gives: &[(Constant, f64)],
     ) {
         if let Some((estimate, from)) = value(self.sheet, parameter, direction) {
-            self.origin(name_of(Key { parameter, direction }), (&estimate, from), gives);
+            self.origin(Key { parameter, direction }.to_string(), (&estimate, from), gives);
         }
     }
 
@@ -148,7 +140,7 @@ impl Notes<'_> {
     /// A parameter of the sheet as what a constant rests on.
     pub fn known(&self, parameter: Parameter, direction: Option<Direction>) -> Known {
         let (key, sheet) = (Key { parameter, direction }, self.sheet);
-        Known { name: name_of(key), status: sheet.status(key), causes: sheet.causes(key) }
+        Known { name: key.to_string(), status: sheet.status(key), causes: sheet.causes(key) }
     }
 
     /// A tensile modulus of the sheet as what a constant rests on.

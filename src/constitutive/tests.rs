@@ -196,6 +196,8 @@ fn one_direction_stands_for_both() {
     warp.moduli.insert(("secant".into(), Direction::Weft), Estimate::single(2000.0));
     let c = section(&warp, &assumptions).unwrap();
     assert_eq!((c.section.d_m[(0, 0)], c.section.d_m[(1, 1)]), (4000.0, 2000.0));
+    let used = c.used.iter().find(|u| u.name == "tensile modulus").unwrap();
+    assert_eq!(used.source, "measured: secant, because there is no tangent_low modulus of the weft");
     // Slopes of two kinds, each said.
     warp.moduli.remove(&("secant".into(), Direction::Warp));
     let c = section(&warp, &assumptions).unwrap();

@@ -33,6 +33,15 @@ impl Direction {
             Self::Bias => "bias",
         }
     }
+
+    /// The direction at right angles to it; on the bias that is the bias again.
+    pub fn across(self) -> Self {
+        match self {
+            Self::Warp => Self::Weft,
+            Self::Weft => Self::Warp,
+            Self::Bias => Self::Bias,
+        }
+    }
 }
 
 impl fmt::Display for Direction {

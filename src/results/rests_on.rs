@@ -88,11 +88,7 @@ impl Substitute {
             Fact::Section(SectionFact::OneRigidity { known: Some(known), .. }) => ("B", Some(*known)),
             _ => return None,
         };
-        let direction = known.map(|known| match known {
-            Direction::Warp => Direction::Weft,
-            Direction::Weft | Direction::Bias => Direction::Warp,
-        });
-        Some(Self { symbol, direction })
+        Some(Self { symbol, direction: known.map(Direction::across) })
     }
 
     /// Whether it stands for that stiffness in a direction; in any, if `along` is empty.

@@ -22,7 +22,7 @@ super::facts! {
             chosen: String,
             /// The one that is used.
             used: String,
-            /// The direction that lacks the chosen one, if the other has it.
+            /// The direction that lacks the chosen one, where the other has it.
             direction: Option<Direction>,
         } = "{fabric}: there is no {chosen} modulus{}; the {used} modulus is used instead",
             direction.map_or(String::new(), |direction| format!(" of the {direction}"));
