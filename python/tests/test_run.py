@@ -15,7 +15,7 @@ import kesf
 
 ROOT = Path(__file__).resolve().parents[2]
 
-#: What the order of summation may change on a machine with other vector instructions (tests/recorded.rs).
+#: What the order of summation may change on a machine with other vector instructions (tests/command/recorded.rs).
 ROUNDING = 1e-7
 
 #: The value of a line of the suite may itself be a rounding error.

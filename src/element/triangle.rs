@@ -84,7 +84,7 @@ pub(super) fn metric(xy: &Corners) -> Matrix2<f64> {
 /// Quads need it for the digits of very thin sheets, triangles against locking: their sides are as many as there are dofs, and a
 /// thin sheet without it bends along straight lines of the mesh alone. With seven times the α of quads, 0.35 by default, pressed
 /// squares of 2 x 16 x 16 triangles are within 1.0 % of the series, clamped or simply supported, whichever way their diagonals
-/// run; with as much as quads they are up to 5.0 % too stiff. The seven was chosen on these squares (`tests/triangles.rs`). More makes them too soft, and so the larger α of
+/// run; with as much as quads they are up to 5.0 % too stiff. The seven was chosen on these squares (`tests/mechanics/triangles.rs`). More makes them too soft, and so the larger α of
 /// [`Formulation::fourth_order`](super::Formulation) is not for them.
 pub(super) fn stabilisation(of_quads: f64) -> f64 {
     (7.0 * of_quads).min(0.35)

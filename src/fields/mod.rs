@@ -176,7 +176,7 @@ pub fn nodal(model: &Model, displacement: &[f64]) -> Result<Vec<Resultants>, Mod
 /// as the divergence of M; but not next to nodes inside that are held, loaded or rigid, where moments have kinks and shear forces jump.
 ///
 /// On a simply supported square of 32 x 32 elements whose nodes were moved at random by up to a quarter of their side, M is 0.2 % and Q 1 % off
-/// in the mean where averages are 1.2 % and 20 % off, whatever the number of elements (`tests/recovery.rs`). At clamped
+/// in the mean where averages are 1.2 % and 20 % off, whatever the number of elements (`tests/mechanics/recovery.rs`). At clamped
 /// edges averages are first order (M 12 % and Q 5 % off at 32 x 32 elements of a clamped square, where the patch recovery has 0.2 % of M
 /// and 0.1 % of Q). Where the mesh
 /// has too few elements for a parabola (less than three across) the averages are kept. For clamped edges

@@ -70,7 +70,7 @@ fn every_key_of_a_case_file_stands_in_the_reference() {
     }
 }
 
-/// Defaults are as a file states them; `tests/documents.rs` holds the files of this repository against the schemas.
+/// Defaults are as a file states them; `tests/command/documents.rs` holds the files of this repository against the schemas.
 #[test]
 fn defaults_are_written_as_a_file_writes_them() {
     let files = generated();

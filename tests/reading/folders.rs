@@ -1,13 +1,13 @@
 //! Reading of whole folders: the shipped fabrics, and the real FAB record where it is present.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
 use approx::assert_relative_eq;
 use kesf::characterise::{Key, Settings, ValueStatus, characterise};
 use kesf::instrument::fab::FabKind;
 use kesf::instrument::{Direction, FabricInput, Parameter, ReadSettings, Shape, Test, parse, read_fabrics};
+
+use crate::common;
 
 /// Every synthetic fabric has 3 specimens of 4 tests in 2 directions (compression has none).
 #[test]

@@ -7,9 +7,7 @@ use std::path::Path;
 use approx::assert_relative_eq;
 use kesf::instrument::{Direction, FileContent, Parameter, ReadError, ReadSettings, parse};
 
-#[path = "common/content.rs"]
-mod content;
-use content::{findings_of, value};
+use crate::content::{findings_of, value};
 
 fn read(text: &[u8]) -> Result<FileContent, ReadError> {
     parse(Path::new("lab.csv"), text, &ReadSettings::default())

@@ -11,8 +11,8 @@ use kesf::instrument::{FileContent, Parameter, ReadError, ReadSettings, parse};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-const XLSX: &[u8] = include_bytes!("workbooks/twill.xlsx");
-const XLS: &[u8] = include_bytes!("workbooks/twill.xls");
+const XLSX: &[u8] = include_bytes!("../workbooks/twill.xlsx");
+const XLS: &[u8] = include_bytes!("../workbooks/twill.xls");
 
 fn read(bytes: &[u8]) -> Result<FileContent, ReadError> {
     parse(Path::new("lab_warp_1.xlsx"), bytes, &ReadSettings::default())
@@ -224,10 +224,10 @@ fn cells_that_are_struck_out_or_were_never_calculated() {
     let message = |content: &FileContent, code: &str| {
         content.findings.iter().find(|f| f.code() == code).unwrap().message()
     };
-    let struck_out = read(include_bytes!("workbooks/struck-out.xlsx")).unwrap();
+    let struck_out = read(include_bytes!("../workbooks/struck-out.xlsx")).unwrap();
     assert_eq!(b(&struck_out), [0.1, 0.06]);
     assert!(message(&struck_out, "R113").contains("cells A3, B3, C3, D3, E3, struck out"));
-    let formula = read(include_bytes!("malformed/r129-formula.xlsx")).unwrap();
+    let formula = read(include_bytes!("../malformed/r129-formula.xlsx")).unwrap();
     assert_eq!(b(&formula), [0.06]);
     assert!(message(&formula, "R129").contains("cell C2 of sheet"));
 }

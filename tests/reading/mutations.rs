@@ -37,8 +37,8 @@ fn seeds() -> Vec<Vec<u8>> {
     seeds.push(utf16);
     seeds.push(encoding_rs::SHIFT_JIS.encode(japanese).0.into_owned());
     seeds.push(encoding_rs::WINDOWS_1252.encode(portuguese).0.into_owned());
-    seeds.push(include_bytes!("workbooks/twill.xlsx").to_vec());
-    seeds.push(include_bytes!("workbooks/twill.xls").to_vec());
+    seeds.push(include_bytes!("../workbooks/twill.xlsx").to_vec());
+    seeds.push(include_bytes!("../workbooks/twill.xls").to_vec());
     seeds
 }
 

@@ -3,8 +3,6 @@
 //! References: `truth.toml` of the synthetic fabrics (analytical: closed forms and dense sums of the
 //! generator, which shares no code with the evaluation) and the published tables themselves.
 
-mod common;
-
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -13,6 +11,8 @@ use kesf::characterise::{Basis, FabricSheet, Key, Settings, characterise};
 use kesf::instrument::{Direction, Parameter, ReadSettings, Test, read_fabrics};
 use kesf::quantity::Unit;
 use serde::Deserialize;
+
+use crate::common;
 
 fn data() -> PathBuf {
     std::env::var_os("KESF_DATA")

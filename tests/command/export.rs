@@ -3,14 +3,14 @@
 
 #![cfg(feature = "cli")]
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
 use kesf::report::cards::EXPORTERS;
 use serde_json::Value;
+
+use crate::common;
 
 fn kesf(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_kesf"))

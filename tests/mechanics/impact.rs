@@ -5,7 +5,7 @@
 //!   ____________  ground                        ____/ slides down: g (sin a - µ cos a)
 //! ```
 //! References (analytical): free fall, Coulomb's block on an inclined plane, a rope over a drum; the equilibrium of the
-//! same strip by the statics of this program, which has references of its own (`tests/contact.rs`).
+//! same strip by the statics of this program, which has references of its own (`tests/mechanics/contact.rs`).
 
 use std::f64::consts::PI;
 use std::ops::ControlFlow;

@@ -197,7 +197,7 @@ fn a_column_buckles_by_itself_and_every_method_ends_in_one_shape() {
 /// A stiff sheet under next to nothing moves no further than rounding, whatever its forces do: that is told.
 #[test]
 fn loads_below_rounding_are_told() {
-    let text = include_str!("../cases/self_weight_clamped.toml");
+    let text = include_str!("../../cases/self_weight_clamped.toml");
     let (text, _) = text.split_once("[[checks]]").unwrap();
     let text = text.replace("10000 N/m", "1e8 N/m").replace("6000 N/m", "6e7 N/m");
     let solved_under = |pressure: &str| {
@@ -357,7 +357,7 @@ fn keys_that_a_method_does_not_have_are_refused() {
 /// meets the largest turns of a step.
 #[test]
 fn a_damped_strip_that_is_dropped_balances_its_energies() {
-    let example = include_str!("../examples/large_rotations/falling_strip.toml");
+    let example = include_str!("../../examples/large_rotations/falling_strip.toml");
     let (_, sheet) = example.split_once("[sheet]").unwrap();
     let own = text_of("", "");
     let (head, _) = own.split_once("[sheet]").unwrap();

@@ -4,16 +4,14 @@
 //! Data: the shipped poplin (synthetic), by the command. Reference: `analytical` (clamped orthotropic plate), uniaxial
 //! membrane stiffness, `w = F a² / (4 D66)` of a twisted square. Skipped where `ccx` is not installed.
 
-#![cfg(feature = "cli")]
-
-mod common;
-
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
 
 use kesf::analytical::Plate;
 use kesf::section::ShellSection;
+
+use crate::common;
 
 /// Whether the node at two half steps is of a set.
 type Inside = fn(usize, usize) -> bool;

@@ -6,7 +6,7 @@
 //!        '.  .'          the plane in its middle
 //!   clamp==)(==clamp
 //! ```
-//! Reference: half of the strip against a rigid plane of symmetry, which `tests/contact.rs` holds against the elastica. The two are
+//! Reference: half of the strip against a rigid plane of symmetry, which `tests/mechanics/contact.rs` holds against the elastica. The two are
 //! apart by the thickness of the sheet, in proportion to it.
 
 use std::ops::ControlFlow;

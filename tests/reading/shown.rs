@@ -9,9 +9,7 @@ use approx::assert_relative_eq;
 use kesf::instrument::{Direction, FileContent, Parameter, ReadError, ReadSettings, parse};
 use rust_xlsxwriter::{Format, Workbook};
 
-#[path = "common/content.rs"]
-mod content;
-use content::{findings_of, value};
+use crate::content::{findings_of, value};
 
 const WARP: Option<Direction> = Some(Direction::Warp);
 const WEFT: Option<Direction> = Some(Direction::Weft);
@@ -137,7 +135,7 @@ fn curves_take_the_units_of_their_cells() {
 
 #[test]
 fn an_old_workbook_shows_the_same() {
-    let content = read("formats.xls", include_bytes!("workbooks/formats.xls")).unwrap();
+    let content = read("formats.xls", include_bytes!("../workbooks/formats.xls")).unwrap();
     assert_relative_eq!(value(&content, Parameter::B, WARP), 0.81 * TENTH, max_relative = 1e-12);
     assert_relative_eq!(value(&content, Parameter::B, WEFT), 0.5 * TENTH, max_relative = 1e-12);
     assert_relative_eq!(value(&content, Parameter::Emt, WARP), 0.042, max_relative = 1e-12);

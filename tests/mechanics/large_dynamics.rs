@@ -5,7 +5,7 @@
 //! ```
 //! References (analytical): the compound pendulum, ω₀² = 3g/2L, quarter period K(sin 45°)/ω₀ with the complete
 //! elliptic integral K = 1.85407467730137; the linear method of this program where amplitudes are small,
-//! which has references of its own (`tests/dynamics.rs`); conservation of energy.
+//! which has references of its own (`tests/mechanics/dynamics.rs`); conservation of energy.
 
 use std::ops::ControlFlow;
 

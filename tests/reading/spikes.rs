@@ -4,13 +4,13 @@
 //! ten times, a tenth of, or the opposite of what it was. With `KESF_SPIKES=all` every sample is taken in turn; else the
 //! first and the last ones, those about the reversals, and every eleventh. `-- --nocapture` prints the counts.
 
-mod common;
-
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use kesf::characterise::{FabricSheet, Settings, characterise};
 use kesf::instrument::{FabricInput, Measurement, ReadSettings, Test, read_fabrics};
+
+use crate::common;
 
 /// Difference of a value that the clean record and the one without its spike may have.
 const SAME: f64 = 0.02;

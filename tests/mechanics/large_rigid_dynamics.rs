@@ -2,7 +2,7 @@
 //!
 //! References: the compound pendulum, ω₀² = 3g/2L, quarter period K(sin 45°)/ω₀ (analytical); Euler's
 //! equations of a lamina on a ball joint by a Runge-Kutta method of its own; the linear method of this program,
-//! which has references of its own (`tests/rigid.rs`), where amplitudes are small; conservation of energy.
+//! which has references of its own (`tests/mechanics/rigid.rs`), where amplitudes are small; conservation of energy.
 
 use std::ops::ControlFlow;
 

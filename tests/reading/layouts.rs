@@ -406,7 +406,7 @@ fn inference_is_told() {
 /// Two sheets: side-by-side curves with typed numbers, and a result table.
 #[test]
 fn a_workbook_is_read_like_text() {
-    let bytes = include_bytes!("workbooks/twill.xlsx");
+    let bytes = include_bytes!("../workbooks/twill.xlsx");
     let content = parse(Path::new("twill.xlsx"), bytes, &ReadSettings::default()).unwrap();
     let found: Vec<_> =
         content.measurements.iter().map(|m| (m.test, m.direction, m.specimen, m.curve.len())).collect();

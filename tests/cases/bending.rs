@@ -9,8 +9,6 @@
 //! References: heavy elastica, hanging loops and slack strips of `kesf::analytical` (analytical, no code
 //! shared), Peirce's formula (published), a FAB record of a cupro weave (measured, where it is at hand).
 
-mod common;
-
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -33,6 +31,8 @@ use kesf::study::bending::{
     BendLoops, BendingResult, LoopSettings, bend_loops, cantilever, heart_cells, heart_loop, simulate_records,
 };
 use nalgebra::{Matrix2, Matrix3};
+
+use crate::common;
 
 /// 1 gf·cm²/cm.
 const KES: f64 = 9.80665e-5;

@@ -8,9 +8,11 @@
 //! skipped. A program that is not there is skipped and counted; with `KESF_EXCHANGE_LEAST=6` fewer than six
 //! distinct programs that executed are a failure: newton, which is given two cards, counts once. The table stands in `docs/src/exchange.md`; `KESF_EXCHANGE_WRITE=1` writes it anew.
 
+#[cfg(feature = "cli")]
+mod calculix;
+#[path = "../common/mod.rs"]
 mod common;
 #[cfg(feature = "cli")]
-#[path = "exchange/drape.rs"]
 mod drape;
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,11 +1,6 @@
 //! Every JSON document that the command writes or prints is as its schema says, has no key that its schema does not know, and is
 //! read to what was written. Every TOML file that is shipped is as its schema says.
 
-mod common;
-#[path = "drape_image/generator.rs"]
-#[expect(dead_code, reason = "one picture is enough here")]
-mod generator;
-
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -23,6 +18,9 @@ use kesf::results::{CheckDocument, ComparisonDocument, SolutionDocument};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
+
+use crate::common;
+use crate::generator;
 
 /// The schema of a document by its name, closed: a key that is not in it is an error.
 fn validator(name: &str) -> Validator {
