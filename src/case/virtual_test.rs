@@ -82,14 +82,12 @@ pub enum ShellTest {
 }
 
 impl ShellTest {
+    /// Every one of them.
+    pub const ALL: [Self; 3] = [Self::Tensile, Self::Shear, Self::Bending];
+
     /// A KES test, if a shell has it.
     pub fn of(test: Test) -> Option<Self> {
-        match test {
-            Test::Tensile => Some(Self::Tensile),
-            Test::Shear => Some(Self::Shear),
-            Test::Bending => Some(Self::Bending),
-            Test::Compression | Test::Friction | Test::Roughness => None,
-        }
+        Self::ALL.into_iter().find(|own| own.test() == test)
     }
 
     /// As a test of the instruments.
@@ -143,6 +141,9 @@ impl VirtualTest {
     }
 }
 
+/// What to do in the place of a test that is not simulated.
+const TAKE: &str = "take tensile, shear, bending or compression";
+
 impl VirtualTestTable {
     /// The test of the table at a node; none for compression, which is a closed form.
     pub fn checked(&self, at: &Node<'_>) -> Result<Option<VirtualTest>, CaseError> {
@@ -150,13 +151,14 @@ impl VirtualTestTable {
         if self.test.shape() == Shape::Sweep {
             return refused(
                 at.key_place("test"),
-                format!(
-                    "a {} test feels the surface, which no shell has: take tensile, shear, bending or compression",
-                    self.test.name()
-                ),
+                format!("a {} test feels the surface, which no shell has: {TAKE}", self.test.name()),
             );
         }
         let Some(kind) = ShellTest::of(self.test) else {
+            if self.test != Test::Compression {
+                let message = format!("there is no model of a {} test: {TAKE}", self.test.name());
+                return refused(at.key_place("test"), message);
+            }
             return match ["cells", "formulation", "curvature", "pretension"].into_iter().find(|k| at.has(k)) {
                 Some(key) => refused(
                     at.key_place(key),

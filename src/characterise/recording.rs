@@ -417,11 +417,10 @@ fn steps_made(x: &[f64], usual: f64) -> usize {
 fn cycles(curve: &Curve, kept: &[usize], settings: &Settings, notes: &mut Notes<'_>) {
     let m = notes.measurement;
     let reversal = settings.reversal.si();
-    let branches = match (m.test, m.test.shape()) {
-        (Test::Compression, _) => branch::one_sided(curve, -1.0, reversal),
-        (_, Shape::Rise) => branch::one_sided(curve, 1.0, reversal),
-        (_, Shape::Loop) => branch::two_sided(curve, reversal),
-        (_, Shape::Sweep) => branch::swept(curve, reversal),
+    let branches = match m.test.shape() {
+        Shape::Rise => branch::one_sided(curve, if m.test.spec().x_falls { -1.0 } else { 1.0 }, reversal),
+        Shape::Loop => branch::two_sided(curve, reversal),
+        Shape::Sweep => branch::swept(curve, reversal),
     };
     let branches = branches.unwrap_or_default();
     let length = |x: &[f64]| (x[x.len() - 1] - x[0]).abs();

@@ -7,10 +7,11 @@ use thiserror::Error;
 
 use super::choices::{CycleChoice, Modulus, Sides, SlopeMethod, Sweeps, in_gf_per_cm, round};
 use crate::finding::{Place, TomlError, TomlFile, array, arrays};
+use crate::kes::TENSILE;
 use crate::kes::Test;
 use crate::kes::specimen::{
     BENDING_READINGS, BENDING_SLOPE, COMPRESSION_START, DEGREE, GF_PER_CM, SHEAR_READINGS, SHEAR_SLOPE,
-    SURFACE_LENGTH, TENSILE, TENSILE_SLOPE,
+    SURFACE_LENGTH, TENSILE_SLOPE,
 };
 use crate::quantity::{Angle, Curvature, Length, LineForce, Pressure, Ratio, STANDARD_GRAVITY};
 
@@ -202,7 +203,15 @@ impl Settings {
         match test {
             Test::Tensile => self.tensile_maximum.map(LineForce::si),
             Test::Compression => self.compression_maximum.map(Pressure::si),
-            Test::Shear | Test::Bending | Test::Friction | Test::Roughness => None,
+            _ => None,
+        }
+    }
+
+    /// The maximum of a test that tables hold values of: that of the instrument, unless it can be set here (SI).
+    pub(super) fn maximum_of_tables(&self, test: Test) -> f64 {
+        match test {
+            Test::Tensile => self.table_maximum.si(),
+            _ => test.spec().maximum,
         }
     }
 
@@ -211,7 +220,7 @@ impl Settings {
         match test {
             Test::Shear => Some(self.shear_slope.map(Angle::si)),
             Test::Bending => Some(self.bending_slope.map(Curvature::si)),
-            Test::Tensile | Test::Compression | Test::Friction | Test::Roughness => None,
+            _ => None,
         }
     }
 

@@ -163,11 +163,7 @@ impl FabricSheet {
     pub fn conditions(&self, test: Test, direction: Option<Direction>) -> Conditions {
         self.run_to.get(&(test, direction)).map(|r| r.conditions.clone()).unwrap_or_else(|| {
             let standard = standard_conditions(test);
-            let maximum = match test {
-                Test::Tensile => self.settings.table_maximum.si(),
-                _ => standard.maximum,
-            };
-            Conditions { maximum, ..standard }
+            Conditions { maximum: self.settings.maximum_of_tables(test), ..standard }
         })
     }
 

@@ -20,15 +20,16 @@ use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize, Serializer};
 
+pub use crate::kes::Divisor;
 pub(crate) use arrays::{array, arrays, optional_array};
 #[cfg(feature = "results")]
 pub(crate) use error::is_of_memory;
 pub use error::{Coded, FailureKind};
 pub(crate) use error::{as_text, errors, fields_of};
 pub use facts::{
-    CoarseQuantity, Divisor, DrapeFact, EvaluationFact, Excess, ExchangeFact, Fact, Fields, LeftOutLine,
-    Missed, ReadFact, RecordAxis, RefinementEnd, Renaming, Samples, SectionFact, StripLength, StudyFact,
-    Subject, UsageFact,
+    CoarseQuantity, DrapeFact, EvaluationFact, Excess, ExchangeFact, Fact, Fields, LeftOutLine, Missed,
+    ReadFact, RecordAxis, RefinementEnd, Renaming, Samples, SectionFact, StripLength, StudyFact, Subject,
+    UsageFact,
 };
 pub use toml_file::Located;
 pub(crate) use toml_file::{Node, ReadLater, TomlError, TomlFile, position};

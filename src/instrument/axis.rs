@@ -9,8 +9,9 @@ use super::unit_text::{is_angular, is_volt, known_unit};
 use super::volts;
 use super::words::folded;
 use super::{Conditions, Test};
-use crate::finding::{Divisor, Finding, Place, ReadFact};
+use crate::finding::{Finding, Place, ReadFact};
 use crate::kes::specimen::FOOT_AREA;
+use crate::kes::{Divisor, TestSpec};
 use crate::quantity::{Dimension, Unit, divides_by_length, parse_quantity};
 
 /// How a number of a column becomes SI.
@@ -44,13 +45,13 @@ impl Scale {
 pub(super) struct Axis {
     pub scale: Scale,
     /// Width, gauge, foot area or contact load, by which raw force, moment or travel is divided.
-    pub by: Option<Key>,
+    pub by: Option<Divisor>,
     /// Whether volts were divided by the customary full scale, as none is stated.
     pub by_customary_voltage: bool,
 }
 
 impl Axis {
-    fn of(scale: Scale, by: Option<Key>) -> Self {
+    fn of(scale: Scale, by: Option<Divisor>) -> Self {
         Self { scale, by, by_customary_voltage: false }
     }
 }
@@ -58,11 +59,7 @@ impl Axis {
 const RATIO: Dimension = Dimension { kg: 0, m: 0, s: 0 };
 const LENGTH: Dimension = Dimension { kg: 0, m: 1, s: 0 };
 const AREA: Dimension = Dimension { kg: 0, m: 2, s: 0 };
-const PER_LENGTH: Dimension = Dimension { kg: 0, m: -1, s: 0 };
 const FORCE: Dimension = Dimension { kg: 1, m: 1, s: -2 };
-const LINE_FORCE: Dimension = Dimension { kg: 1, m: 0, s: -2 };
-const MOMENT: Dimension = Dimension { kg: 1, m: 2, s: -2 };
-const PRESSURE: Dimension = Dimension { kg: 1, m: -1, s: -2 };
 
 /// What the axes of a curve depend on beside the column itself.
 pub(super) struct Axes<'a> {
@@ -122,33 +119,42 @@ impl Axes<'_> {
         unit: Unit,
         text: &str,
     ) -> Result<Result<Axis, &'static str>, ReadError> {
+        let TestSpec { x, y, .. } = self.test.spec();
+        let spec = if abscissa { x } else { y };
         let is_angle = is_angular(text);
-        let (f, Conditions { width, gauge, .. }) = (unit.factor, self.conditions);
-        let plain = Axis::of(Scale::Linear(f), None);
-        let over = |by, size: f64| Axis::of(Scale::Linear(f / size), Some(by));
+        // No force and no moment is per angle: gf/(cm·deg) has the dimension of gf/cm and is the unit of G.
+        if !abscissa && is_angle {
+            return Ok(Err(spec.accepted));
+        }
+        let own = Unit::parse(spec.si).map_or(RATIO, |u| u.dimension);
         // A raw force or moment has no length below: gf·cm²/cm has the dimension of a moment and is the unit of B.
-        let raw = || !divides_by_length(text);
-        Ok(Ok(match (self.test, abscissa, unit.dimension) {
-            // No force and no moment is per angle: gf/(cm·deg) has the dimension of gf/cm and is the unit of G.
-            (_, false, _) if is_angle => return Ok(Err(expected(self.test, abscissa))),
-            (Test::Tensile, true, RATIO) if !is_angle => plain,
-            (Test::Tensile, true, LENGTH) => over(Key::Gauge, *gauge),
-            (Test::Shear, true, RATIO) if is_angle => plain,
-            (Test::Shear, true, LENGTH) => Axis::of(Scale::Atan(f / gauge), Some(Key::Gauge)),
-            (Test::Bending, true, PER_LENGTH) | (Test::Compression, true, LENGTH) => plain,
-            (Test::Tensile | Test::Shear, false, LINE_FORCE) => plain,
-            (Test::Tensile | Test::Shear, false, FORCE) if raw() => over(Key::Width, *width),
+        let is_raw = abscissa || !divides_by_length(text);
+        if unit.dimension == own && (own != RATIO || is_angle == is_angular(spec.si)) {
             // A moment per width has the dimension of a force; a force is no moment, and nobody knows its arm.
-            (Test::Bending, false, FORCE) if role == Role::Force && raw() => return Ok(Err(OF_MOMENT)),
-            (Test::Bending, false, FORCE) => plain,
-            (Test::Bending, false, MOMENT) if raw() => over(Key::Width, *width),
-            (Test::Compression, false, PRESSURE) => plain,
-            (Test::Compression, false, FORCE) if raw() => over(Key::Area, self.foot_area()?),
-            (Test::Friction | Test::Roughness, true, LENGTH) | (Test::Roughness, false, LENGTH) => plain,
-            (Test::Friction, false, RATIO) => plain,
-            (Test::Friction, false, FORCE) if raw() => over(Key::Contact, self.conditions.contact),
-            _ => return Ok(Err(expected(self.test, abscissa))),
-        }))
+            let is_force = own == FORCE && role == Role::Force && is_raw;
+            return Ok(if is_force {
+                Err(OF_MOMENT)
+            } else {
+                Ok(Axis::of(Scale::Linear(unit.factor), None))
+            });
+        }
+        let Some(by) = spec.raw_by.filter(|by| is_raw && unit.dimension == raw(own, *by)) else {
+            return Ok(Err(spec.accepted));
+        };
+        let factor = unit.factor / self.size(by)?;
+        let scale = if is_angular(spec.si) { Scale::Atan(factor) } else { Scale::Linear(factor) };
+        Ok(Ok(Axis::of(scale, Some(by))))
+    }
+
+    /// What raw values are divided by (SI).
+    fn size(&self, by: Divisor) -> Result<f64, ReadError> {
+        Ok(match by {
+            Divisor::Area => self.foot_area()?,
+            Divisor::Gauge => self.conditions.gauge,
+            Divisor::Width => self.conditions.width,
+            Divisor::Contact => self.conditions.contact,
+            Divisor::Voltage => volts::FULL_SCALE,
+        })
     }
 
     /// What is said of a column that was divided by what nobody stated.
@@ -173,25 +179,22 @@ impl Axes<'_> {
 
     /// What is said of a column that was divided by a dimension which nobody stated.
     fn assumed(&self, column: &Column, axis: Axis) -> Option<Finding> {
-        let by = axis.by.filter(|key| {
-            let by_size = match (key, size(self.test, self.header, self.context)) {
-                (Key::Area | Key::Contact, _) | (_, None) => false,
-                (Key::Gauge, Some((_, gauge))) => gauge.is_some(),
+        let dimension = axis.by.filter(|by| {
+            let by_size = match (by, size(self.test, self.header, self.context)) {
+                (Divisor::Area | Divisor::Contact, _) | (_, None) => false,
+                (Divisor::Gauge, Some((_, gauge))) => gauge.is_some(),
                 (_, Some(_)) => true,
             };
-            let in_header = match key {
-                Key::Gauge => self.states_gauge(),
-                key => self.header.known.contains_key(key),
+            let in_header = match by {
+                Divisor::Gauge => self.states_gauge(),
+                by => self.header.known.contains_key(&key(*by)),
             };
-            !by_size && !in_header && !self.context.conditions.states(self.test, *key)
+            !by_size && !in_header && !self.context.conditions.states(self.test, key(*by))
         })?;
+        let by = key(dimension);
+        let value = self.size(dimension).unwrap_or(FOOT_AREA);
         // The same for all columns of a kind: one finding a file.
-        let (dimension, value, test) = match by {
-            Key::Area => (Divisor::Area, FOOT_AREA, None),
-            Key::Contact => (Divisor::Contact, self.conditions.contact, None),
-            Key::Gauge => (Divisor::Gauge, self.conditions.gauge, Some(self.test)),
-            _ => (Divisor::Width, self.conditions.width, None),
-        };
+        let test = (dimension == Divisor::Gauge).then_some(self.test);
         let not_understood = self.sizes_not_understood(by);
         let fact = ReadFact::AssumedDimension { dimension, value, test, not_understood };
         Some(Finding::new(fact).at(Place::at(self.context.path, column.line, 0)))
@@ -231,19 +234,25 @@ impl Axes<'_> {
 /// What would do for a force in bending.
 const OF_MOMENT: &str = "gf·cm/cm or gf·cm: multiply the force by its arm, and call the column moment";
 
-/// Units that would do.
-fn expected(test: Test, abscissa: bool) -> &'static str {
-    match (test, abscissa) {
-        (Test::Tensile, true) => "% or mm",
-        (Test::Shear, true) => "deg, rad or mm",
-        (Test::Bending, true) => "1/cm",
-        (Test::Compression, true) => "mm",
-        (Test::Tensile | Test::Shear, false) => "gf/cm or gf",
-        (Test::Bending, false) => "gf·cm/cm or gf·cm",
-        (Test::Compression, false) => "gf/cm² or gf",
-        (Test::Friction | Test::Roughness, true) => "cm or mm",
-        (Test::Friction, false) => "1 or gf",
-        (Test::Roughness, false) => "µm or mm",
+/// The dimension of an axis before its values are divided.
+fn raw(own: Dimension, by: Divisor) -> Dimension {
+    let by = match by {
+        Divisor::Area => AREA,
+        Divisor::Gauge | Divisor::Width => LENGTH,
+        Divisor::Contact => FORCE,
+        Divisor::Voltage => RATIO,
+    };
+    Dimension { kg: own.kg + by.kg, m: own.m + by.m, s: own.s + by.s }
+}
+
+/// The header line that states it.
+fn key(by: Divisor) -> Key {
+    match by {
+        Divisor::Area => Key::Area,
+        Divisor::Gauge => Key::Gauge,
+        Divisor::Width => Key::Width,
+        Divisor::Contact => Key::Contact,
+        Divisor::Voltage => Key::Voltage,
     }
 }
 

@@ -101,16 +101,28 @@ impl SurfaceConditions {
         }
     }
 
-    fn of(stated: &StatedConditions, test: Test) -> Option<&Self> {
-        match test {
-            Test::Friction => Some(&stated.friction),
-            Test::Roughness => Some(&stated.roughness),
-            _ => None,
+    fn stated(&self) -> Stated {
+        Stated {
+            maximum: self.maximum.map(Length::si),
+            pretension: self.pretension,
+            contact: self.contact,
+            ..Stated::default()
         }
     }
 }
 
-/// The standard set of conditions of a test; see [`specimen`](crate::kes::specimen).
+/// What is stated of one test.
+#[derive(Default)]
+struct Stated {
+    width: Option<Length>,
+    gauge: Option<Length>,
+    /// SI.
+    maximum: Option<f64>,
+    pretension: Option<LineForce>,
+    contact: Option<Force>,
+}
+
+/// The standard set of conditions of a test; see [`TestSpec`](crate::kes::TestSpec).
 pub fn standard_conditions(test: Test) -> Conditions {
     let spec = test.spec();
     Conditions {
@@ -168,50 +180,48 @@ impl StatedConditions {
         }
     }
 
+    fn of(&self, test: Test) -> Stated {
+        match test {
+            Test::Tensile => {
+                let TensileConditions { width, gauge, maximum } = self.tensile;
+                Stated { width, gauge, maximum: maximum.map(LineForce::si), ..Stated::default() }
+            }
+            Test::Shear => {
+                let ShearConditions { width, gauge, maximum, pretension } = self.shear;
+                Stated { width, gauge, maximum: maximum.map(Angle::si), pretension, ..Stated::default() }
+            }
+            Test::Bending => {
+                let BendingConditions { width, gauge, maximum } = self.bending;
+                Stated { width, gauge, maximum: maximum.map(Curvature::si), ..Stated::default() }
+            }
+            Test::Compression => {
+                Stated { maximum: self.compression.maximum.map(Pressure::si), ..Stated::default() }
+            }
+            Test::Friction => self.friction.stated(),
+            Test::Roughness => self.roughness.stated(),
+        }
+    }
+
     /// Whether the width, the gauge or the contact load of a test is stated; otherwise it is that of the standard set.
     pub(super) fn states(&self, test: Test, key: Key) -> bool {
-        let (width, gauge) = match test {
-            Test::Tensile => (self.tensile.width, self.tensile.gauge),
-            Test::Shear => (self.shear.width, self.shear.gauge),
-            Test::Bending => (self.bending.width, self.bending.gauge),
-            Test::Compression | Test::Friction | Test::Roughness => (None, None),
-        };
+        let stated = self.of(test);
         match key {
-            Key::Contact => SurfaceConditions::of(self, test).is_some_and(|s| s.contact.is_some()),
-            Key::Width => width.or(self.width).is_some(),
-            Key::Gauge => gauge.is_some(),
+            Key::Contact => stated.contact.is_some(),
+            Key::Width => stated.width.or(self.width).is_some(),
+            Key::Gauge => stated.gauge.is_some(),
             _ => false,
         }
     }
 
     /// The standard set with everything that is stated here put over it.
     pub fn over_standard(&self, test: Test) -> Conditions {
-        let mut c = standard_conditions(test);
-        let (width, gauge, maximum) = match test {
-            Test::Tensile => {
-                let t = &self.tensile;
-                (t.width, t.gauge, t.maximum.map(LineForce::si))
-            }
-            Test::Shear => {
-                let t = &self.shear;
-                c.pretension = t.pretension.map_or(c.pretension, LineForce::si);
-                (t.width, t.gauge, t.maximum.map(Angle::si))
-            }
-            Test::Bending => {
-                let t = &self.bending;
-                (t.width, t.gauge, t.maximum.map(Curvature::si))
-            }
-            Test::Compression => (None, None, self.compression.maximum.map(Pressure::si)),
-            Test::Friction | Test::Roughness => {
-                let s = SurfaceConditions::of(self, test);
-                c.contact = s.and_then(|s| s.contact).map_or(c.contact, Force::si);
-                c.pretension = s.and_then(|s| s.pretension).map_or(c.pretension, LineForce::si);
-                (None, None, s.and_then(|s| s.maximum).map(Length::si))
-            }
-        };
-        c.width = width.or(self.width).map_or(c.width, Length::si);
-        c.gauge = gauge.map_or(c.gauge, Length::si);
-        c.maximum = maximum.unwrap_or(c.maximum);
-        c
+        let (stated, standard) = (self.of(test), standard_conditions(test));
+        Conditions {
+            width: stated.width.or(self.width).map_or(standard.width, Length::si),
+            gauge: stated.gauge.map_or(standard.gauge, Length::si),
+            maximum: stated.maximum.unwrap_or(standard.maximum),
+            pretension: stated.pretension.map_or(standard.pretension, LineForce::si),
+            contact: stated.contact.map_or(standard.contact, Force::si),
+        }
     }
 }

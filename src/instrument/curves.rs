@@ -3,7 +3,7 @@
 use super::axis::Axes;
 use super::dialect::{Key, Role};
 use super::error::{Problem, ReadError};
-use super::header_value::{positive, quantity_of};
+use super::header_value::{positive, quantity_by, quantity_of};
 use super::inference;
 use super::label::SPECIMENS;
 use super::layout::{Context, Header, Pair};
@@ -15,7 +15,7 @@ use super::value::value;
 use super::words::folded;
 use super::{Conditions, Direction, Measurement, Shape, Source, Test};
 use crate::finding::{Finding, Place, ReadFact};
-use crate::quantity::{Angle, Curvature, Curve, Force, Length, LineForce, Pressure};
+use crate::quantity::{Curve, Force, LineForce};
 
 /// The measurement of one column pair, with what was noticed on the way; `None` if the pair holds
 /// no value at all (an empty column block).
@@ -123,22 +123,7 @@ fn test_of(pair: &Pair, context: &Context<'_>) -> Result<(Test, &'static str), R
         let (line, column) = header.map_or((pair.x.line, pair.x.column), |e| (e.line, e.column));
         context.error(line, column, Problem::TestUnclear { found })
     };
-    let by_x = match pair.x.role {
-        Role::Strain => Some(Test::Tensile),
-        Role::Angle => Some(Test::Shear),
-        Role::Curvature => Some(Test::Bending),
-        Role::Thickness => Some(Test::Compression),
-        _ => None,
-    };
-    let by_y = match pair.y.role {
-        Role::ShearForce => Some(Test::Shear),
-        Role::Moment => Some(Test::Bending),
-        Role::Pressure => Some(Test::Compression),
-        Role::FrictionCoefficient | Role::FrictionForce => Some(Test::Friction),
-        Role::Height => Some(Test::Roughness),
-        _ => None,
-    };
-    let columns = match (by_x, by_y) {
+    let columns = match (Test::of_abscissa(pair.x.role), Test::of_ordinate(pair.y.role)) {
         (Some(a), Some(b)) if a != b => {
             let found = format!(
                 "columns {:?} and {:?} belong to different tests ({} and {})",
@@ -292,16 +277,8 @@ fn bare_force(header: &Header) -> Option<f64> {
 
 /// The stated maximum of the driven axis (SI).
 fn maximum(test: Test, header: &Header, context: &Context<'_>) -> Result<Option<f64>, ReadError> {
-    let (key, name, unit) = (Key::Maximum, "maximum", driven(test).kes_unit());
-    Ok(match test {
-        Test::Tensile => quantity_of::<LineForce>(header, key, name, unit, context)?.map(LineForce::si),
-        Test::Shear => quantity_of::<Angle>(header, key, name, unit, context)?.map(Angle::si),
-        Test::Bending => quantity_of::<Curvature>(header, key, name, unit, context)?.map(Curvature::si),
-        Test::Compression => quantity_of::<Pressure>(header, key, name, unit, context)?.map(Pressure::si),
-        Test::Friction | Test::Roughness => {
-            quantity_of::<Length>(header, key, name, unit, context)?.map(Length::si)
-        }
-    })
+    let Some(entry) = header.known.get(&Key::Maximum) else { return Ok(None) };
+    quantity_by(test.spec().read_maximum, entry, "maximum", test.kes_maximum(), context).map(Some)
 }
 
 /// Part of a maximum by which a printed peak may differ from it, and a round number from its value in other units.
@@ -312,8 +289,7 @@ const OFF_SETTING: f64 = 0.1;
 
 /// The largest value of the driven axis.
 fn peak(test: Test, curve: &Curve) -> f64 {
-    let of_abscissa = matches!(driven(test), Role::Angle | Role::Curvature | Role::Position);
-    let values = if of_abscissa { &curve.x } else { &curve.y };
+    let values = if test.shape() == Shape::Rise { &curve.y } else { &curve.x };
     values.iter().fold(0.0f64, |peak, v| peak.max(v.abs()))
 }
 
@@ -324,7 +300,7 @@ fn is_peak(test: Test, header: &Header, stated: f64, curve: &Curve) -> bool {
     let text = header.known.get(&Key::Maximum).map_or(String::new(), |e| folded(&e.text).into_owned());
     let start = text.trim_start_matches(|c: char| !c.is_ascii_digit());
     let number: String = start.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
-    let customary = unit_text::unit(driven(test).kes_unit()).map_or(f64::NAN, |u| stated / u.factor);
+    let customary = unit_text::unit(test.kes_maximum()).map_or(f64::NAN, |u| stated / u.factor);
     let is_set = is_round(customary) || number.parse().is_ok_and(is_round);
     header.known.contains_key(&Key::Maximum) && !is_set && (peak / stated - 1.0).abs() <= PRINTED
 }
@@ -333,17 +309,6 @@ fn is_peak(test: Test, header: &Header, stated: f64, curve: &Curve) -> bool {
 fn is_round(value: f64) -> bool {
     let unit = 10f64.powf(value.abs().log10().floor() - 1.0);
     ((value / unit).round() * unit / value - 1.0).abs() <= PRINTED
-}
-
-/// The axis that has a set maximum.
-pub(super) fn driven(test: Test) -> Role {
-    match test {
-        Test::Tensile => Role::Force,
-        Test::Shear => Role::Angle,
-        Test::Bending => Role::Curvature,
-        Test::Compression => Role::Pressure,
-        Test::Friction | Test::Roughness => Role::Position,
-    }
 }
 
 struct Points {

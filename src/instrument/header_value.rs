@@ -43,6 +43,17 @@ pub(super) fn quantity<Q: FromStr<Err = QuantityError>>(
     kes_unit: &'static str,
     context: &Context<'_>,
 ) -> Result<Q, ReadError> {
+    quantity_by(str::parse, entry, name, kes_unit, context)
+}
+
+/// See [`quantity_of`]; `parse` reads the number with its unit.
+pub(super) fn quantity_by<Q>(
+    parse: impl Fn(&str) -> Result<Q, QuantityError>,
+    entry: &Entry,
+    name: &str,
+    kes_unit: &'static str,
+    context: &Context<'_>,
+) -> Result<Q, ReadError> {
     let mut text =
         folded(&entry.text).trim_start_matches(['±', '<', '=', ' ']).trim_start_matches("+-").to_string();
     if context.decimal == ',' {
@@ -51,7 +62,7 @@ pub(super) fn quantity<Q: FromStr<Err = QuantityError>>(
     if context.kes_units && matches!(number(&text, '.'), Number::Value(_)) {
         text = format!("{text} {kes_unit}");
     }
-    text.parse().map_err(|e: QuantityError| {
+    parse(&text).map_err(|e| {
         let problem = match e {
             QuantityError::NoUnit { found, .. } => {
                 Problem::UnitMissing { found: format!("{name} {found}"), expected: kes_unit }

@@ -2,7 +2,6 @@
 
 use super::axis::Scale;
 use super::conditions::standard_conditions;
-use super::curves::driven;
 use super::dialect::Key;
 use super::layout::{Column, Context, Header, Pair};
 use super::unit_text::unit as unit_of;
@@ -52,7 +51,7 @@ pub(super) fn conditions(test: Test, c: &Conditions, header: &Header) -> String 
     let all = [
         (Key::Width, "width", c.width, standard.width, "cm"),
         (Key::Gauge, "gauge", c.gauge, standard.gauge, "cm"),
-        (Key::Maximum, "maximum", c.maximum, standard.maximum, driven(test).kes_unit()),
+        (Key::Maximum, "maximum", c.maximum, standard.maximum, test.kes_maximum()),
         (Key::Pretension, "tension", c.pretension, standard.pretension, "gf/cm"),
         (Key::Contact, "contact load", c.contact, standard.contact, "gf"),
     ];

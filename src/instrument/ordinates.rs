@@ -1,5 +1,6 @@
 //! Ordinates over one abscissa: which are repeats of one another, and which were recorded beside them.
 
+use super::Test;
 use super::dialect::Role;
 use super::layout::{Context, Pair, Scanner};
 use super::raw::Row;
@@ -74,16 +75,13 @@ fn is_repeat(pair: &Pair, curves: &[&Pair], context: &Context<'_>) -> bool {
 
 /// Whether the ordinate is the one that the test of the abscissa has, where any is: a shear force, not a force beside it.
 fn belongs(pair: &Pair, abscissa: Role, curves: &[&Pair]) -> bool {
-    let own = match abscissa {
-        Role::Strain => Some(Role::Force),
-        Role::Angle => Some(Role::ShearForce),
-        Role::Curvature => Some(Role::Moment),
-        Role::Thickness => Some(Role::Pressure),
-        Role::Position if curves.iter().any(|p| p.y.role.is_of_sweep()) => {
+    let own = match Test::of_abscissa(abscissa) {
+        Some(test) => test.spec().y.columns.first().copied(),
+        None if abscissa == Role::Position && curves.iter().any(|p| p.y.role.is_of_sweep()) => {
             return pair.y.role.is_of_sweep();
         }
         // A travel is that of the test whose ordinate stands beside it.
-        _ => curves.iter().map(|p| p.y.role).find(|role| *role != Role::Force),
+        None => curves.iter().map(|p| p.y.role).find(|role| *role != Role::Force),
     };
     own.is_none_or(|own| pair.y.role == own || curves.iter().all(|p| p.y.role != own))
 }

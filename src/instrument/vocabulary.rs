@@ -261,10 +261,7 @@ impl<'a> Vocabulary<'a> {
     pub fn test(self, text: &str) -> Option<Test> {
         // "KES-FB1 せん断": the longest word decides, and FB1 alone decides nothing.
         let word = normalised(text);
-        self.find(&word, true, |d| &d.tests, &index().tests).or_else(|| {
-            let instrument = [("fb2", Test::Bending), ("fb3", Test::Compression)];
-            instrument.into_iter().find(|(w, _)| word.contains(w)).map(|(_, t)| t)
-        })
+        self.find(&word, true, |d| &d.tests, &index().tests).or_else(|| Test::of_instrument(&word))
     }
 
     /// The test that a whole word names.

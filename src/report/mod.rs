@@ -25,7 +25,6 @@ pub mod vtu;
 pub mod workbook;
 pub mod write;
 
-mod axes;
 // Charts need all of it, the page a part.
 #[cfg_attr(not(feature = "results"), allow(dead_code))]
 pub(crate) mod number;

@@ -111,8 +111,8 @@ fn point(row: &CurveRow) -> Result<(Name, f64, f64), String> {
     let names = || Test::ALL.map(Test::name).join(", ");
     let test = test.ok_or_else(|| format!("`{}` is no test; there are {}", row.test, names()))?;
     let direction = match row.direction.as_deref() {
-        None if test == Test::Compression => None,
-        Some(_) if test == Test::Compression => return Err("compression has no direction".into()),
+        None if !test.is_directional() => None,
+        Some(_) if !test.is_directional() => return Err(format!("{} has no direction", test.name())),
         None => {
             return Err(format!(
                 "a {} curve has no direction where warp, weft or bias was expected",

@@ -48,12 +48,7 @@ pub(super) fn remark(grounds: &[Ground]) -> Option<String> {
 
 /// `an assumed E`, where the stiffness that a test along a direction shows is a stand-in of the section.
 pub(super) fn assumed_of_test(test: Test, direction: Direction, findings: &[Finding]) -> Option<String> {
-    let symbol = match test {
-        Test::Tensile => "E",
-        Test::Shear => "G",
-        Test::Bending => "B",
-        Test::Compression | Test::Friction | Test::Roughness => return None,
-    };
+    let symbol = test.spec().stiffness.as_ref()?.symbol;
     let is_stand_in = |finding: &Finding| {
         Substitute::of(&finding.fact).is_some_and(|substitute| substitute.replaces(symbol, direction.name()))
     };
@@ -111,10 +106,7 @@ fn inputs(quantity: &str) -> &'static [&'static str] {
         Parameter::from_symbol(name).and_then(Parameter::test)
     };
     match test {
-        Some(Test::Tensile) => &["E"],
-        Some(Test::Shear) => &["G"],
-        Some(Test::Bending) => &["B"],
-        Some(Test::Compression | Test::Friction | Test::Roughness) => &[],
+        Some(test) => test.spec().stiffness.as_ref().map_or(&[], |shown| std::slice::from_ref(&shown.symbol)),
         None if name.starts_with("drape_") => &["E", "G", "B", "W"],
         None if name.starts_with("bending_length") || name.starts_with("heart_loop") => &["B", "W"],
         None if name == OF_PLATE => &["B"],

@@ -15,6 +15,7 @@ use super::sheet_text::{BOTH, BOTH_LEGEND};
 use super::task::Task;
 use crate::characterise::{FabricSheet, Modulus};
 use crate::instrument::{Direction, Parameter, Test};
+use crate::kes::StiffnessSpec;
 use crate::law::Mode;
 use crate::quantity::{Band, Curve, Estimate, significant};
 use crate::report::chart::{self, ParityPoint, SimulatedCurve};
@@ -105,17 +106,15 @@ fn stiffness(
     test: Test,
     direction: Option<Direction>,
 ) -> Option<Stiffness> {
-    let parameter = |p: Parameter| sheet.get(p, direction).or_else(|| sheet.get(p, None)).cloned();
-    let is_of_both = |p: Parameter| sheet.get(p, direction).is_none() && sheet.get(p, None).is_some();
-    let (symbol, unit, measured, is_of_both) = match test {
-        Test::Tensile => {
-            let name = case.assumptions().map_or(Modulus::TangentLow, |a| a.modulus).name();
-            ("E", "N/m", direction.and_then(|d| sheet.moduli.get(&(name, d)).cloned()), false)
-        }
-        Test::Shear => ("G", "N/m", parameter(Parameter::G), is_of_both(Parameter::G)),
-        Test::Bending => ("B", "N·m", parameter(Parameter::B), is_of_both(Parameter::B)),
-        Test::Compression | Test::Friction | Test::Roughness => return None,
+    let StiffnessSpec { symbol, unit, parameter, .. } = *test.spec().stiffness.as_ref()?;
+    let Some(parameter) = parameter else {
+        let name = case.assumptions().map_or(Modulus::TangentLow, |a| a.modulus).name();
+        let measured = direction.and_then(|d| sheet.moduli.get(&(name, d)).cloned());
+        return Some(Stiffness { symbol, unit, measured, is_of_both: false });
     };
+    let own = sheet.get(parameter, direction);
+    let of_fabric = sheet.get(parameter, None);
+    let (measured, is_of_both) = (own.or(of_fabric).cloned(), own.is_none() && of_fabric.is_some());
     Some(Stiffness { symbol, unit, measured, is_of_both })
 }
 

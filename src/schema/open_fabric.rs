@@ -2,6 +2,8 @@
 
 use serde_json::{Value, json};
 
+use crate::instrument::Test;
+
 /// The schema (draft 7) of `kesf.fabric/1`.
 pub fn schema() -> Value {
     let text = json!({"type": ["string", "null"]});
@@ -70,7 +72,7 @@ fn curve() -> Value {
         "type": "object",
         "required": ["test", "direction", "specimen", "sha256", "conditions", "correction", "x", "y"],
         "properties": {
-            "test": {"enum": ["tensile", "shear", "bending", "compression", "friction", "roughness"]},
+            "test": {"enum": Test::ALL.map(Test::name)},
             "direction": {"enum": ["warp", "weft", "bias", null]},
             "specimen": {"type": "integer", "minimum": 1},
             "file": {"type": ["string", "null"]},

@@ -177,8 +177,9 @@ fn of_specimen(
             }
             None => {
                 let value = prepared.simulate(direction, &made.section, &sheet.settings)?.apparent;
-                let (symbol, unit) = stiffness(specimen.test.test());
-                readings.push(Reading::new(format!("{symbol} {direction}"), value, unit));
+                let shown = specimen.test.test().spec().stiffness.iter();
+                readings
+                    .extend(shown.map(|s| Reading::new(format!("{} {direction}", s.symbol), value, s.unit)));
             }
         }
     }
@@ -197,15 +198,6 @@ fn of_sheet(prepared: &PreparedCase<'_>, made: &Constitutive) -> Result<Vec<Read
         readings.extend(components.map(|(c, v)| Reading::new(format!("{}.{c}", probe.name), v, "m")));
     }
     Ok(readings)
-}
-
-/// Symbol and SI unit of what an elastic test reads.
-fn stiffness(test: Test) -> (&'static str, &'static str) {
-    match test {
-        Test::Tensile => ("E", "N/m"),
-        Test::Shear => ("G", "N/m"),
-        _ => ("B", "N·m"),
-    }
 }
 
 fn of_strips(result: &BendingResult) -> Vec<Reading> {

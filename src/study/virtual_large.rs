@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 use super::StudyError;
 use crate::case::{ShellTest, VirtualTest};
 use crate::element::Formulation;
-use crate::kes::specimen::TestSpec;
+use crate::kes::TestSpec;
 use crate::mesh;
 use crate::model::{Dof, Load, Model, RigidBody, Support};
 use crate::quantity::Curve;

@@ -23,7 +23,7 @@ use crate::characterise::{FabricSheet, Settings as Evaluation, parameters};
 use crate::constitutive::{Constitutive, tension};
 use crate::element::Formulation;
 use crate::instrument::{Conditions, Direction, Parameter, Test};
-use crate::kes::specimen::TestSpec;
+use crate::kes::TestSpec;
 use crate::law::{Channel, Mode};
 use crate::mesh;
 use crate::model::{Dof, Load, Model, RigidBody, Support};

@@ -22,7 +22,7 @@ use crate::case::{ShellSpecimen, ShellTest};
 use crate::characterise::{FabricSheet, Settings};
 use crate::constitutive::Input;
 use crate::instrument::{Direction, Parameter, Test};
-use crate::kes::specimen::TestSpec;
+use crate::kes::TestSpec;
 use crate::mesh;
 use crate::model::{Dof, Model, Support};
 use crate::quantity::{Band, Bands, Curve, Estimate};
@@ -184,7 +184,7 @@ impl VirtualCurve {
 /// specimen, clamps, order of elimination and symbolic factorisation.
 #[derive(Debug)]
 pub struct PreparedTest {
-    test: Test,
+    test: ShellTest,
     /// The unit of the abscissa that is applied.
     x: f64,
     /// What is read at the moving clamp.
@@ -238,7 +238,7 @@ impl PreparedTest {
         };
         let options = case.options(options)?;
         let plan = Plan::of(&model, &options)?;
-        Ok(Self { test: spec.test(), x, reading, right, model, plan, options, large })
+        Ok(Self { test, x, reading, right, model, plan, options, large })
     }
 
     /// Simulates the test of a specimen cut along `direction`; the slope is read in the window of `settings`.
@@ -274,11 +274,11 @@ impl PreparedTest {
         let along = section.rotated(warp.y.atan2(warp.x));
         let ideal = match self.test {
             // A wide strip between free edges: uniaxial stiffness, 1 over the compliance.
-            Test::Tensile => uniaxial(&along, 0),
-            Test::Shear => along.d_m[(2, 2)],
-            _ => along.d_b[(0, 0)],
+            ShellTest::Tensile => uniaxial(&along, 0),
+            ShellTest::Shear => along.d_m[(2, 2)],
+            ShellTest::Bending => along.d_b[(0, 0)],
         };
-        let window = settings.slope_window(self.test);
+        let window = settings.slope_window(self.test.test());
         if let Some(large) = &self.large {
             let reading = large.read(section, warp, window, &self.options)?;
             let apparent = slope(window, &reading.curve);
@@ -292,13 +292,13 @@ impl PreparedTest {
                 window,
                 unstable_from: reading.unstable_from,
                 law: Law::Points(reading.curve),
-                ..VirtualCurve::line(self.test, Some(direction), apparent)
+                ..VirtualCurve::line(self.test.test(), Some(direction), apparent)
             });
         }
         let model = Model { section: section.clone(), warp, ..self.model.clone() };
         let solution = solve::solve_with(&model, &self.plan, &self.options)?;
         let at = |n: &u32| solution.reaction[6 * *n as usize + self.reading as usize];
-        let apparent = self.right.iter().map(at).sum::<f64>() / self.test.spec().width / self.x;
+        let apparent = self.right.iter().map(at).sum::<f64>() / self.test.test().spec().width / self.x;
         let edge = Some(self.edge(apparent / ideal, &along));
         let uncertainty = (!inputs.is_empty())
             .then(|| self.uncertainty(&model, &solution.displacement, apparent, inputs))
@@ -308,26 +308,26 @@ impl PreparedTest {
             edge,
             window,
             uncertainty,
-            ..VirtualCurve::line(self.test, Some(direction), apparent)
+            ..VirtualCurve::line(self.test.test(), Some(direction), apparent)
         })
     }
 
     /// The ratio beside its closed form, material axes along the specimen.
     fn edge(&self, ratio: f64, along: &ShellSection) -> EdgeEffect {
-        let spec = self.test.spec();
+        let spec = self.test.test().spec();
         let (slenderness, shear) = (spec.gauge / spec.width, along.d_m[(2, 2)]);
         let (closed_form, formula) = match self.test {
-            Test::Tensile => {
+            ShellTest::Tensile => {
                 let reach = 0.5 / slenderness * (shear / uniaxial(along, 1)).sqrt();
                 let coupling = along.d_m[(0, 1)].powi(2) / (along.d_m[(0, 0)] * along.d_m[(1, 1)]);
                 let ratio = 1.0 + reach * (1.0 / (1.0 - coupling) - 1.0);
                 ((reach < 0.4).then_some(ratio), "1 + φ (1/(1 - ν12 ν21) - 1), φ = 0.5 (W/L) √(G/E2) < 0.4")
             }
-            Test::Shear => {
+            ShellTest::Shear => {
                 let ratio = 1.0 - 0.54 * slenderness * (shear / uniaxial(along, 0)).sqrt();
                 (Some(ratio), "1 - 0.54 (L/W) √(G/E1)")
             }
-            _ => (Some(1.0), "1: a wide specimen bends to a cylinder"),
+            ShellTest::Bending => (Some(1.0), "1: a wide specimen bends to a cylinder"),
         };
         EdgeEffect { ratio, closed_form, formula: formula.into(), tension: None }
     }
@@ -343,15 +343,15 @@ impl PreparedTest {
         inputs: &[Input],
     ) -> Result<Prediction, StudyError> {
         let [low, high] = model.mesh.bounds();
-        let scale = 2.0 / (self.test.spec().width * self.x * self.x * (high.x - low.x));
+        let scale = 2.0 / (self.test.test().spec().width * self.x * self.x * (high.x - low.x));
         let groups = Plan::groups(model, &self.options);
         let derivatives = inputs
             .iter()
             .map(|i| Ok(scale * energy_derivative(model, &i.derivative, u, &groups)?))
             .collect::<Result<_, StudyError>>()?;
         let (name, unit) = match self.test {
-            Test::Bending => ("rigidity", "N·m"),
-            _ => ("stiffness", "N/m"),
+            ShellTest::Bending => ("rigidity", "N·m"),
+            ShellTest::Tensile | ShellTest::Shear => ("stiffness", "N/m"),
         };
         Ok(Prediction::new(name.into(), unit, apparent, derivatives, inputs))
     }

@@ -9,19 +9,8 @@ use super::record::extract_backbone;
 use super::{Basis, FrictionLaw};
 use crate::characterise::{FabricSheet, Settings};
 use crate::instrument::{Conditions, Direction, Parameter, Shape, Test};
+use crate::kes::TestSpec;
 use crate::law::Channel;
-
-/// The parameters that a law is brought to: stiffness and width of a loop.
-fn leading(test: Test) -> (Parameter, Option<Parameter>) {
-    match test {
-        Test::Tensile => (Parameter::Wt, None),
-        Test::Shear => (Parameter::G, Some(Parameter::Hg)),
-        Test::Bending => (Parameter::B, Some(Parameter::Hb)),
-        Test::Compression => (Parameter::Wc, None),
-        Test::Friction => (Parameter::Miu, None),
-        Test::Roughness => (Parameter::Smd, None),
-    }
-}
 
 impl FrictionLaw {
     /// The law with B and 2HB, or G and 2HG, of the given sizes (SI); of tension and compression with the work
@@ -32,7 +21,7 @@ impl FrictionLaw {
             let part = wanted? / own?;
             (part.is_finite() && part > 0.0).then_some(part)
         };
-        let (leads, widens) = leading(self.test);
+        let TestSpec { leading: leads, loop_width: widens, .. } = *self.test.spec();
         let stiffer = ratio(stiffness, own(leads));
         let made = match self.test.shape() {
             Shape::Sweep => None,
@@ -58,7 +47,7 @@ impl FrictionLaw {
 
     /// What the backbone gives of B or G (SI): the rest is that of sliders that still give way, or widen.
     pub(super) fn elastic(&self, conditions: &Conditions, settings: &Settings) -> Option<f64> {
-        let (leads, widens) = leading(self.test);
+        let TestSpec { leading: leads, loop_width: widens, .. } = *self.test.spec();
         widens?;
         let mut tangents = self.channel.backbone().tangents();
         let first = tangents.next()?;
@@ -80,7 +69,7 @@ impl FabricSheet {
         let mut found: Vec<&FrictionLaw> = (self.laws.iter())
             .filter(|l| l.test == test && l.direction == direction && l.basis != Basis::Strip)
             .collect();
-        let value = |l: &FrictionLaw| l.values.get(&leading(test).0).copied().unwrap_or(0.0);
+        let value = |l: &FrictionLaw| l.values.get(&test.spec().leading).copied().unwrap_or(0.0);
         found.sort_by(|a, b| value(a).total_cmp(&value(b)));
         found.get(found.len().saturating_sub(1) / 2).copied()
     }
@@ -90,7 +79,7 @@ impl FabricSheet {
         let law = self.law(test, direction)?;
         // A law of the fabric as a whole has the values of the whole.
         let mean = |p: Parameter| self.get(p, law.direction).map(|e| e.mean);
-        let (leads, widens) = leading(test);
+        let TestSpec { leading: leads, loop_width: widens, .. } = *test.spec();
         // Works up to different forces have no mean.
         let by_force = test.shape() == Shape::Rise;
         if by_force && self.run_to.get(&(test, law.direction)).is_some_and(|r| !r.alike) {
@@ -133,7 +122,7 @@ mod tests {
         let law = FrictionLaw { channel: channel.clone(), ..of.clone() };
         let conditions: Conditions = standard_conditions(law.test);
         let found = extract(&law, &conditions, &Settings::default());
-        let (leads, widens) = leading(law.test);
+        let TestSpec { leading: leads, loop_width: widens, .. } = *law.test.spec();
         [found[&leads], widens.map_or(f64::NAN, |p| found[&p])]
     }
 

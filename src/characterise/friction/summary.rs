@@ -7,7 +7,7 @@ use crate::characterise::closed_loop::TURNED;
 use crate::characterise::{FabricSheet, Settings};
 use crate::finding::{EvaluationFact, Finding, Missed};
 use crate::instrument::{Conditions, Direction, Parameter, Test};
-use crate::kes::specimen::BENDING;
+use crate::kes::BENDING;
 use crate::law::{Backbone, Channel, Family, LawError, Slider, Widening};
 use crate::quantity::{LineForce, significant};
 
@@ -21,12 +21,15 @@ const MISSED: f64 = 0.05;
 /// Knots of the backbone of a tensile law.
 const KNOTS: usize = 25;
 
+/// The tests of whose values a law can be made: each has an arm in [`channel`].
+const TESTS: [Test; 3] = [Test::Tensile, Test::Shear, Test::Bending];
+
 /// Adds a law where a test has no loop, but its summary values, with K040.
 pub(super) fn add(sheet: &mut FabricSheet, settings: &Settings) {
     let directions = Direction::ALL.map(Some).into_iter().chain([None]);
     let mut made = Vec::new();
     for direction in directions {
-        for test in [Test::Tensile, Test::Shear, Test::Bending] {
+        for test in TESTS {
             // Strips have laws of their own, which nothing is calculated with.
             let known = |l: &FrictionLaw| {
                 let here = l.direction == direction || direction.is_none();
@@ -96,12 +99,7 @@ fn law(test: Test, direction: Option<Direction>, channel: Channel, settings: &Se
 
 /// The standard cycle of a test.
 fn conditions(test: Test, settings: &Settings) -> Conditions {
-    let maximum = match test {
-        Test::Bending | Test::Shear => test.spec().maximum,
-        Test::Tensile => settings.table_maximum.si(),
-        Test::Compression | Test::Friction | Test::Roughness => f64::NAN,
-    };
-    Conditions { maximum, ..Conditions::default() }
+    Conditions { maximum: settings.maximum_of_tables(test), ..Conditions::default() }
 }
 
 /// The law of the values in a direction, or why there is none; `None` if they are not there.
@@ -143,7 +141,7 @@ fn channel(
                 ))
             }
         }
-        Test::Compression | Test::Friction | Test::Roughness => return None,
+        _ => return None,
     })
 }
 

@@ -101,22 +101,6 @@ pub struct LeftOutLine {
     pub word: String,
 }
 
-/// A dimension of a specimen or of the instrument by which something was divided.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Divisor {
-    /// Area of the foot (m²).
-    Area,
-    /// Length between the jaws (m).
-    Gauge,
-    /// Width of the specimen (m).
-    Width,
-    /// Load on the contactor (N).
-    Contact,
-    /// Full scale of an analogue output (V).
-    Voltage,
-}
-
 /// How a linear result is beyond its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -1,7 +1,7 @@
 //! Facts of files.
 
-use super::parts::{Divisor, LeftOutLine};
-use crate::kes::{Direction, Key, Parameter, RecordName, Test};
+use super::parts::LeftOutLine;
+use crate::kes::{Direction, Divisor, Key, Parameter, RecordName, Test};
 use crate::quantity::{STANDARD_GRAVITY, without_rounding};
 
 super::facts! {

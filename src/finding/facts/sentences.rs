@@ -23,11 +23,7 @@ pub(super) fn correction(test: Test, axis: RecordAxis, taken_off: f64, limit: f6
             100.0 * limit
         );
     }
-    let from = match test {
-        Test::Tensile => " the force",
-        Test::Compression => " the pressure",
-        Test::Shear | Test::Bending | Test::Friction | Test::Roughness => "",
-    };
+    let from = test.spec().load.map_or_else(String::new, |load| format!(" the {load}"));
     format!("a zero offset of {} was taken off{from}", in_unit(taken_off, ordinate))
 }
 

@@ -16,7 +16,7 @@ use super::card::{Card, CardError, Exporter, Material};
 use super::constants::{Property, no_place};
 use super::fabric::file_names;
 use crate::characterise::SpecimenResult;
-use crate::instrument::Test;
+use crate::kes::AxisSpec;
 use crate::report::json::{section_document, sheet_document, text};
 use crate::section::ShellSection;
 
@@ -135,24 +135,16 @@ fn document(material: &Material<'_>, checked: &ShellSection) -> Result<Card, Car
 /// What a specimen was recorded to do, in the form that `docs/src/exchange.md` proposes.
 fn tested(specimen: &SpecimenResult, climate: Option<&str>) -> Value {
     let m = &specimen.measurement;
-    let names = match m.test {
-        Test::Tensile => ["strain", "force per width"],
-        Test::Shear => ["shear angle", "force per width"],
-        Test::Bending => ["curvature", "moment per width"],
-        Test::Compression => ["thickness", "pressure"],
-        Test::Friction => ["position", "coefficient of friction"],
-        Test::Roughness => ["position", "height"],
-    };
-    let units = m.test.axes();
-    let axis = |k: usize, values: &[f64]| json!({"name": names[k], "unit": units[k], "values": values});
+    let spec = m.test.spec();
+    let axis = |of: &AxisSpec, values: &[f64]| json!({"name": of.name, "unit": of.si, "values": values});
     json!({
         "standard": m.test.instrument(),
         "quantity": m.test,
         "direction": m.direction,
         "specimen": {"width": m.conditions.width, "length": m.conditions.gauge, "unit": "m", "number": m.specimen},
         "climate": climate,
-        "x": axis(0, &m.curve.x),
-        "y": axis(1, &m.curve.y),
+        "x": axis(&spec.x, &m.curve.x),
+        "y": axis(&spec.y, &m.curve.y),
     })
 }
 

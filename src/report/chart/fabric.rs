@@ -111,7 +111,7 @@ pub fn of_test(sheet: &FabricSheet, test: Test, simulated: &[SimulatedCurve]) ->
         return Err(ChartError::NothingToDraw {
             chart: test.name().into(),
             name: sheet.name.clone(),
-            missing: schematic::needs(test).into(),
+            missing: schematic::needs(test),
         });
     }
     let overlay: Vec<Vec<Point>> = simulated.iter().map(|s| axes.convert(&s.curve)).collect();

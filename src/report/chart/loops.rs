@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::characterise::{FabricSheet, SpecimenResult, Window};
 use crate::instrument::{Direction, Parameter, Test};
+use crate::kes::{AxisSpec, TestSpec};
 use crate::quantity::Curve;
-use crate::report::axes::{Axis, axes};
 use crate::report::number::unit_text;
 
 use super::axes::Label;
@@ -22,22 +22,21 @@ pub(super) struct TestAxes {
 
 impl TestAxes {
     pub(super) fn of(test: Test) -> Self {
-        let [x, y] = axes(test);
-        let second = |axis: Axis| axis.si.map(|(text, factor)| (factor / axis.kes_factor, text.to_string()));
+        let TestSpec { x, y, .. } = test.spec();
         Self {
-            x_factor: x.kes_factor,
-            y_factor: y.kes_factor,
-            y_unit: y.kes_unit,
+            x_factor: x.kes_factor(),
+            y_factor: y.kes_factor(),
+            y_unit: y.kes,
             x: Label {
-                quantity: x.quantity.into(),
-                unit: match x.kes_unit {
+                quantity: x.label.into(),
+                unit: match x.kes {
                     "deg" => "°".into(),
                     "1/cm" => "cm⁻¹".into(),
                     unit => unit_text(unit),
                 },
                 second: second(x),
             },
-            y: Label { quantity: y.quantity.into(), unit: unit_text(y.kes_unit), second: second(y) },
+            y: Label { quantity: y.label.into(), unit: unit_text(y.kes), second: second(y) },
         }
     }
 
@@ -66,16 +65,9 @@ pub(super) struct Trace {
     pub values: BTreeMap<Parameter, f64>,
 }
 
-/// The parameter whose middle specimen is emphasised, per test.
-pub(super) fn leading(test: Test) -> Parameter {
-    match test {
-        Test::Tensile => Parameter::Wt,
-        Test::Shear => Parameter::G,
-        Test::Bending => Parameter::B,
-        Test::Compression => Parameter::Wc,
-        Test::Friction => Parameter::Miu,
-        Test::Roughness => Parameter::Smd,
-    }
+/// The unit beside that of an axis: its size in the KES unit, and its text.
+fn second(axis: &AxisSpec) -> Option<(f64, String)> {
+    axis.beside.map(|(text, factor)| (factor / axis.kes_factor(), text.to_string()))
 }
 
 /// All specimens of a test; per direction the one nearest to the mean is emphasised.
@@ -87,8 +79,9 @@ pub(super) fn traces(sheet: &FabricSheet, test: Test, axes: &TestAxes) -> Vec<Tr
     directions.sort();
     directions.dedup();
     for direction in directions {
-        let mean = sheet.get(leading(test), direction).map(|e| e.mean);
-        let distance = |s: &SpecimenResult| match (mean, s.values.get(&leading(test))) {
+        let leading = test.spec().leading;
+        let mean = sheet.get(leading, direction).map(|e| e.mean);
+        let distance = |s: &SpecimenResult| match (mean, s.values.get(&leading)) {
             (Some(mean), Some(value)) => (value - mean).abs(),
             _ => f64::INFINITY,
         };

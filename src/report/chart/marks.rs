@@ -125,11 +125,11 @@ impl Marks<'_> {
     }
 
     fn area_labels(&self, canvas: &mut Canvas, trace: &Trace, labels: &mut Labels) -> Result<(), ChartError> {
-        let names = match self.test {
-            Test::Tensile => ["WT", "WT′"],
-            Test::Compression => ["WC", "WC′"],
-            _ => return Ok(()),
-        };
+        if self.test.shape() != Shape::Rise {
+            return Ok(());
+        }
+        let energy = self.test.spec().leading.symbol();
+        let names = [energy, &format!("{energy}′")];
         let height_at = |outgoing: bool, x: f64| {
             let part = &trace.parts.iter().rfind(|p| p.0 == outgoing)?.1;
             let pair = part.windows(2).find(|w| (w[0].0 - x) * (w[1].0 - x) <= 0.0)?;

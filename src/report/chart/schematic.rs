@@ -8,10 +8,10 @@ use std::collections::BTreeMap;
 
 use crate::characterise::FabricSheet;
 use crate::instrument::{Direction, Parameter, Test};
-use crate::kes::specimen::{BENDING, SHEAR};
+use crate::kes::{BENDING, SHEAR};
 use crate::quantity::{Angle, Curve};
 
-use super::loops::{TestAxes, Trace, leading};
+use super::loops::{TestAxes, Trace};
 
 /// Samples of a drawn power law.
 const SAMPLES: usize = 60;
@@ -21,22 +21,14 @@ const SAMPLES: usize = 60;
 pub(super) fn traces(sheet: &FabricSheet, test: Test, axes: &TestAxes) -> Vec<Trace> {
     let directional: Vec<Trace> = Direction::ALL
         .into_iter()
-        .filter(|d| sheet.get(leading(test), Some(*d)).is_some())
+        .filter(|d| sheet.get(test.spec().leading, Some(*d)).is_some())
         .filter_map(|d| trace(sheet, test, Some(d), axes))
         .collect();
     if directional.is_empty() { trace(sheet, test, None, axes).into_iter().collect() } else { directional }
 }
 
 fn trace(sheet: &FabricSheet, test: Test, direction: Option<Direction>, axes: &TestAxes) -> Option<Trace> {
-    let value = |p: Parameter| sheet.get(p, direction).or_else(|| sheet.get(p, None)).map(|e| e.mean);
-    let parts = match test {
-        Test::Tensile => tensile(value)?,
-        Test::Shear => shear(value, sheet.settings.shear_readings.map(Angle::si))?,
-        Test::Bending => bending(value)?,
-        Test::Compression => compression(value)?,
-        // A mean deviation draws no profile.
-        Test::Friction | Test::Roughness => return None,
-    };
+    let parts = (drawing(test)?.draw)(&Values { sheet, direction })?;
     let parts = parts.into_iter().map(|(out, curve)| (out, axes.convert(&curve))).collect();
     Some(Trace {
         direction,
@@ -49,30 +41,57 @@ fn trace(sheet: &FabricSheet, test: Test, direction: Option<Direction>, axes: &T
 }
 
 /// What [`traces`] needs of a table.
-pub(super) fn needs(test: Test) -> &'static str {
-    match test {
-        Test::Tensile => "neither curves nor the values LT, WT and EMT",
-        Test::Shear => "neither curves nor the values G and 2HG",
-        Test::Bending => "neither curves nor the values B and 2HB",
-        Test::Compression => "neither curves nor the values LC, WC, T0 and Tm",
-        Test::Friction | Test::Roughness => "no curves",
+pub(super) fn needs(test: Test) -> String {
+    drawing(test)
+        .map_or("no curves".into(), |drawing| format!("neither curves nor the values {}", drawing.values))
+}
+
+/// The drawing of a test, if its values make one: a mean deviation draws no profile.
+fn drawing(test: Test) -> Option<&'static Drawing> {
+    DRAWINGS.iter().find(|drawing| drawing.test == test)
+}
+
+struct Drawing {
+    test: Test,
+    /// The parameters without which nothing is drawn.
+    values: &'static str,
+    draw: fn(&Values<'_>) -> Option<Parts>,
+}
+
+const DRAWINGS: [Drawing; 4] = [
+    Drawing { test: Test::Tensile, values: "LT, WT and EMT", draw: tensile },
+    Drawing { test: Test::Shear, values: "G and 2HG", draw: shear },
+    Drawing { test: Test::Bending, values: "B and 2HB", draw: bending },
+    Drawing { test: Test::Compression, values: "LC, WC, T0 and Tm", draw: compression },
+];
+
+/// The means of a direction, or of the fabric as a whole.
+struct Values<'a> {
+    sheet: &'a FabricSheet,
+    direction: Option<Direction>,
+}
+
+impl Values<'_> {
+    fn get(&self, parameter: Parameter) -> Option<f64> {
+        let own = self.sheet.get(parameter, self.direction);
+        own.or_else(|| self.sheet.get(parameter, None)).map(|e| e.mean)
     }
 }
 
 type Parts = Vec<(bool, Curve)>;
 
-fn tensile(value: impl Fn(Parameter) -> Option<f64>) -> Option<Parts> {
-    let (lt, wt, em) = (value(Parameter::Lt)?, value(Parameter::Wt)?, value(Parameter::Emt)?);
+fn tensile(of: &Values<'_>) -> Option<Parts> {
+    let (lt, wt, em) = (of.get(Parameter::Lt)?, of.get(Parameter::Wt)?, of.get(Parameter::Emt)?);
     // LT = WT / (Fm em / 2) gives the maximum force.
     let maximum = 2.0 * wt / (lt * em);
-    power_laws(lt, value(Parameter::Rt), |t, f| (em * t, maximum * f))
+    power_laws(lt, of.get(Parameter::Rt), |t, f| (em * t, maximum * f))
 }
 
-fn compression(value: impl Fn(Parameter) -> Option<f64>) -> Option<Parts> {
-    let (lc, wc) = (value(Parameter::Lc)?, value(Parameter::Wc)?);
-    let (t0, tm) = (value(Parameter::T0)?, value(Parameter::Tm)?);
+fn compression(of: &Values<'_>) -> Option<Parts> {
+    let (lc, wc) = (of.get(Parameter::Lc)?, of.get(Parameter::Wc)?);
+    let (t0, tm) = (of.get(Parameter::T0)?, of.get(Parameter::Tm)?);
     let maximum = 2.0 * wc / (lc * (t0 - tm));
-    power_laws(lc, value(Parameter::Rc), |t, f| (t0 - (t0 - tm) * t, maximum * f))
+    power_laws(lc, of.get(Parameter::Rc), |t, f| (t0 - (t0 - tm) * t, maximum * f))
 }
 
 /// Loading t^n with 2/(n+1) = linearity; unloading t^m with (n+1)/(m+1) = resilience.
@@ -100,15 +119,15 @@ fn power_laws(
     Some(parts)
 }
 
-fn bending(value: impl Fn(Parameter) -> Option<f64>) -> Option<Parts> {
-    let (b, width) = (value(Parameter::B)?, value(Parameter::Hb)?);
+fn bending(of: &Values<'_>) -> Option<Parts> {
+    let (b, width) = (of.get(Parameter::B)?, of.get(Parameter::Hb)?);
     Some(trapezoid(BENDING.maximum, |k| b * k, |_| 0.5 * width))
 }
 
-/// With the angles at which 2HG and 2HG5 are read (rad).
-fn shear(value: impl Fn(Parameter) -> Option<f64>, [near, far]: [f64; 2]) -> Option<Parts> {
-    let (g, narrow) = (value(Parameter::G)?, value(Parameter::Hg)?);
-    let wide = value(Parameter::Hg5).unwrap_or(narrow);
+fn shear(of: &Values<'_>) -> Option<Parts> {
+    let (g, narrow) = (of.get(Parameter::G)?, of.get(Parameter::Hg)?);
+    let wide = of.get(Parameter::Hg5).unwrap_or(narrow);
+    let [near, far] = of.sheet.settings.shear_readings.map(Angle::si);
     // A straight line between the two widths, and as far as the test goes.
     let half = |phi: f64| {
         let t = (phi.abs() - near) / (far - near);

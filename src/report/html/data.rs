@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::shapes::Shapes;
 use crate::instrument::{Direction, Parameter, Test};
+use crate::kes::TestSpec;
 use crate::quantity::Curve;
-use crate::report::axes::axes;
 use crate::report::number::unit_text;
 use crate::report::population::Population;
 use crate::report::table::{FabricRow, UnitSystem};
@@ -168,10 +168,11 @@ pub(crate) fn shortened(value: f64) -> f64 {
 impl AxisEntry {
     /// Both axes of a test.
     pub fn of(test: Test) -> [Self; 2] {
-        axes(test).map(|axis| {
-            let kes = (unit_text(axis.kes_unit), axis.kes_factor);
-            let si = axis.si.map(|(unit, factor)| (unit.to_string(), factor));
-            Self { quantity: axis.quantity.to_string(), si: si.unwrap_or_else(|| kes.clone()), kes }
+        let TestSpec { x, y, .. } = test.spec();
+        [x, y].map(|axis| {
+            let kes = (unit_text(axis.kes), axis.kes_factor());
+            let si = axis.beside.map(|(unit, factor)| (unit.to_string(), factor));
+            Self { quantity: axis.label.to_string(), si: si.unwrap_or_else(|| kes.clone()), kes }
         })
     }
 }
