@@ -23,6 +23,8 @@ enum Scope<'a> {
     Test(Test),
     /// Every value that a file gave.
     File(&'a Path),
+    /// What the records of compression of a file, from a line on, give that depends on the zero of the travel.
+    Travel(&'a Place),
     /// Every value of a direction.
     Direction(Direction),
     /// The tensile moduli.
@@ -33,11 +35,7 @@ enum Scope<'a> {
 const SCATTER: f64 = 0.05;
 
 /// What depends on the zero of a travel that is read as a thickness.
-const OF_TRAVEL: [Key; 3] = [
-    Key { parameter: Parameter::T0, direction: None },
-    Key { parameter: Parameter::Tm, direction: None },
-    Key { parameter: Parameter::Emc, direction: None },
-];
+const OF_TRAVEL: [Parameter; 3] = [Parameter::T0, Parameter::Tm, Parameter::Emc];
 
 /// What a finding says of a value, and its code.
 type Remark = (ValueStatus, &'static str);
@@ -106,6 +104,7 @@ impl FabricSheet {
             Scope::File(path) => {
                 self.is_of_file(key.parameter.test(), key.direction, path) || self.is_of_table(key, path)
             }
+            Scope::Travel(headings) => OF_TRAVEL.contains(&key.parameter) && self.is_of_travel(key, headings),
             Scope::Direction(direction) => key.direction == Some(*direction),
             Scope::Moduli => false,
         })
@@ -124,6 +123,7 @@ impl FabricSheet {
             Scope::Slope(record, slope) => is_tensile(record) && *slope == name,
             Scope::Test(test) => *test == Test::Tensile,
             Scope::File(path) => self.is_of_file(Some(Test::Tensile), Some(direction), path),
+            Scope::Travel(_) => false,
             Scope::Direction(of) => *of == direction,
             Scope::Moduli => true,
         })
@@ -148,13 +148,33 @@ impl FabricSheet {
         self.table_files.get(&key).is_some_and(|files| files.contains(path))
     }
 
+    /// Whether the record below these headings gave the value: what another record or a table gave is not of it.
+    fn is_of_travel(&self, key: Key, headings: &Place) -> bool {
+        let of_file = self.specimens.iter().filter(|s| {
+            let m = &s.measurement;
+            m.test == Test::Compression
+                && is_within(&headings.path, &m.source.path)
+                && m.place().line > headings.line
+        });
+        let first = of_file.clone().map(|s| s.measurement.place().line).min();
+        of_file
+            .filter(|s| Some(s.measurement.place().line) == first)
+            .any(|s| s.values.contains_key(&key.parameter))
+    }
+
     fn is_of_file(&self, test: Option<Test>, direction: Option<Direction>, path: &Path) -> bool {
         self.specimens.iter().map(|s| &s.measurement).any(|m| {
-            m.source.path == path
+            is_within(path, &m.source.path)
                 && Some(m.test) == test
                 && (direction.is_none() || m.direction.is_none() || m.direction == direction)
         })
     }
+}
+
+/// Whether a place is in a file: the sheets of a workbook and the files of an archive are, `book.xlsx[warp]`.
+fn is_within(place: &Path, file: &Path) -> bool {
+    let (place, file) = (place.to_string_lossy(), file.to_string_lossy());
+    place.strip_prefix(&*file).is_some_and(|rest| rest.is_empty() || rest.starts_with('['))
 }
 
 fn is_of_record(key: Key, record: &RecordName) -> bool {
@@ -249,7 +269,7 @@ fn of_reading<'a>(fact: &'a ReadFact, place: Option<&'a Place>) -> Option<(Scope
             Some((Scope::Direction(*direction), ValueStatus::Doubtful))
         }
         ReadFact::RecordsOfStates { record, .. } => Some((Scope::Record(record), ValueStatus::Doubtful)),
-        ReadFact::TravelAsThickness { .. } => Some((Scope::Values(&OF_TRAVEL), ValueStatus::Assumed)),
+        ReadFact::TravelAsThickness { .. } => Some((Scope::Travel(place?), ValueStatus::Assumed)),
         ReadFact::SeveralTables { keys, .. }
         | ReadFact::NumbersAsSpecimens { keys }
         | ReadFact::WithoutDirection { keys }

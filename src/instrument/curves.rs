@@ -7,7 +7,9 @@ use super::header_value::{positive, quantity_by, quantity_of};
 use super::inference;
 use super::label::SPECIMENS;
 use super::layout::{Context, Header, Pair};
+use super::means;
 use super::raw::Row;
+use super::sample_cells::Samples;
 use super::sniff::{Number, number};
 use super::specimen_size::{gauge, length_of, size};
 use super::unit_text;
@@ -109,7 +111,7 @@ pub(super) fn measurement(
         lines: points.rows.iter().map(|p| p.0).collect(),
         source: Source::default(),
         metadata: header.other.clone(),
-        caption: header.caption.clone(),
+        caption: mean_of_specimens(header, context).or_else(|| header.caption.clone()),
     };
     Ok(Some((measurement, findings)))
 }
@@ -215,6 +217,9 @@ fn is_opposite(test: Test, curve: &Curve) -> bool {
 
 fn specimen(header: &Header, context: &Context<'_>) -> Result<Option<usize>, ReadError> {
     let Some(entry) = header.known.get(&Key::Specimen) else { return Ok(context.label.specimen) };
+    if means::names_mean(&entry.text, context.vocabulary) {
+        return Ok(None);
+    }
     let digits: String =
         entry.text.chars().skip_while(|c| !c.is_ascii_digit()).take_while(char::is_ascii_digit).collect();
     if digits.trim_start_matches('0').is_empty() {
@@ -224,6 +229,12 @@ fn specimen(header: &Header, context: &Context<'_>) -> Result<Option<usize>, Rea
     }
     // A longer number is that of an order or a date: specimens are then counted in file order.
     Ok(digits.parse().ok().filter(|n| *n < SPECIMENS))
+}
+
+/// `Specimen,Mean`: the record is called after the mean, and is one beside others.
+fn mean_of_specimens(header: &Header, context: &Context<'_>) -> Option<String> {
+    let text = &header.known.get(&Key::Specimen)?.text;
+    means::names_mean(text, context.vocabulary).then(|| text.clone())
 }
 
 /// Conditions: the header, else what was stated elsewhere, else the standard set.
@@ -280,6 +291,9 @@ fn maximum(test: Test, header: &Header, context: &Context<'_>) -> Result<Option<
     let Some(entry) = header.known.get(&Key::Maximum) else { return Ok(None) };
     quantity_by(test.spec().read_maximum, entry, "maximum", test.kes_maximum(), context).map(Some)
 }
+
+/// Samples on each side of one without an ordinate that say where it must lie.
+const BESIDE: usize = 3;
 
 /// Part of a maximum by which a printed peak may differ from it, and a round number from its value in other units.
 const PRINTED: f64 = 1e-3;
@@ -338,32 +352,51 @@ fn points(
     context: &Context<'_>,
 ) -> Result<Points, ReadError> {
     let mut out = Points { rows: Vec::with_capacity(rows.len()), findings: Vec::new() };
+    let [mut abscissa, mut ordinate] = [&pair.x, &pair.y].map(|column| Samples::new(column, rows, context));
+    let (mut samples, mut lacking) = (Vec::with_capacity(rows.len()), Vec::new());
     for (i, row) in rows.iter().enumerate() {
         let cells = [row.get(pair.x.index), row.get(pair.y.index)];
-        let last = ends_file && i + 1 == rows.len();
-        match cells {
-            [None, None] => {}
-            [Some(x), Some(y)] => {
-                // The file ends behind the sign or the mark of its last number.
-                let cut = |c: &str| c.trim_matches(['+', '-', '.', ',']).is_empty();
-                if last && cut(y) && !cut(x) {
-                    out.findings.push(truncated(row, context));
-                    continue;
-                }
-                let x = finite(row, pair.x.index, x, context)?;
-                let y = finite(row, pair.y.index, y, context)?;
-                out.rows.push((row.line, x, y));
-            }
-            _ if last => out.findings.push(truncated(row, context)),
-            [x, _] => {
-                let (column, index) =
-                    if x.is_none() { (&pair.x, pair.x.index) } else { (&pair.y, pair.y.index) };
-                let found = format!("the row has no value of {:?}", column.name);
-                return Err(context.error(row.line, row.column(index), Problem::RaggedRow { found }));
-            }
+        if cells == [None, None] {
+            continue;
+        }
+        if ends_file && i + 1 == rows.len() && is_cut(cells) {
+            out.findings.push(truncated(row, context));
+            continue;
+        }
+        samples.push(*row);
+        // A sample without an abscissa is told of once.
+        let Some(x) = abscissa.value(row, context)? else { continue };
+        match ordinate.value(row, context)? {
+            Some(y) => out.rows.push((row.line, x, y)),
+            None => lacking.push((out.rows.len(), x)),
         }
     }
+    // A number alone below a curve, such as that of the next specimen, is no sample.
+    ordinate.gaps_are_real &= lacking.iter().all(|&(at, x)| lies_between(&out.rows, at, x));
+    for column in [abscissa, ordinate] {
+        out.findings.extend(column.told(&samples, context)?);
+    }
     Ok(out)
+}
+
+/// Whether an abscissa lies between those of the samples beside it, or next to them where the drive turns.
+fn lies_between(samples: &[(usize, f64, f64)], at: usize, x: f64) -> bool {
+    let near = &samples[at.saturating_sub(BESIDE)..(at + BESIDE).min(samples.len())];
+    let low = near.iter().map(|s| s.1).fold(f64::INFINITY, f64::min);
+    let high = near.iter().map(|s| s.1).fold(f64::NEG_INFINITY, f64::max);
+    (low - (high - low)..=high + (high - low)).contains(&x)
+}
+
+/// Whether a row ends within a sample: before its second number, or behind the sign or the mark of it.
+fn is_cut(cells: [Option<&str>; 2]) -> bool {
+    match cells {
+        [Some(x), Some(y)] => is_bare_sign(y) && !is_bare_sign(x),
+        _ => true,
+    }
+}
+
+fn is_bare_sign(cell: &str) -> bool {
+    cell.trim_matches(['+', '-', '.', ',']).is_empty()
 }
 
 fn truncated(row: &Row<'_>, context: &Context<'_>) -> Finding {

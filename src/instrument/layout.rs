@@ -9,11 +9,13 @@ use std::path::Path;
 use super::Direction;
 use super::column_name::ColumnName;
 use super::conditions::StatedConditions;
+use super::continued::{Above, Part};
 use super::dialect::{Dialect, Key, Role};
 use super::error::{Problem, ReadError};
 use super::label::Label;
 use super::pairs;
 use super::raw::Row;
+use super::sample_cells::{begins_with_overflow, is_text, is_without_values};
 use super::shape::{self, Region, has_numbers, is_numeric};
 use super::sniff::{Number, number};
 use super::suggest;
@@ -107,7 +109,8 @@ pub(super) fn blocks<'t>(
 ) -> Result<(Vec<Block<'t>>, Vec<Finding>), ReadError> {
     let (header, lists, findings) = (Header::default(), Vec::new(), Vec::new());
     let (labels, caption_line) = (Vec::new(), 0);
-    let mut scanner = Scanner { rows, context, at: 0, header, lists, labels, caption_line, findings };
+    let mut scanner =
+        Scanner { rows, context, at: 0, header, lists, labels, caption_line, findings, above: None };
     let mut blocks = Vec::new();
     let mut words: Vec<String> = Vec::new();
     // The first row of numbers under headings that nobody knows; a remark may look like one, so that it is an error only
@@ -118,7 +121,8 @@ pub(super) fn blocks<'t>(
             above.clear();
             scanner.at += 1;
         } else if let Some(columns) = scanner.headings(row) {
-            blocks.push(scanner.curves(columns)?);
+            let (block, part) = scanner.curves(columns)?;
+            scanner.add(&mut blocks, block, part);
         } else if let Some((region, end)) = shape::region(rows, scanner.at, context) {
             scanner.at = end;
             // Nothing heads the table: a row with a number right above it may be its first.
@@ -126,9 +130,13 @@ pub(super) fn blocks<'t>(
             // What stood over columns of curves before is over.
             scanner.lists.clear();
             scanner.labels.clear();
+            scanner.above = None;
             blocks.push(Block::Table { header: scanner.header.clone(), region });
         } else if scanner.labels(row) {
             scanner.at += 1;
+        } else if let Some(columns) = scanner.columns_above() {
+            let (block, part) = scanner.curves(columns)?;
+            scanner.add(&mut blocks, block, part);
         } else if is_numeric(row, context.decimal) {
             return Err(unknown_layout(context, row, &words));
         } else {
@@ -145,6 +153,7 @@ pub(super) fn blocks<'t>(
                 None => above.extend(shape::unknown_number(row, context).map(|name| (row.line, name))),
             }
             words = row.filled().map(|(_, c)| folded(&c.text).into_owned()).collect();
+            scanner.note_line_between(row);
             scanner.header_line(row);
             scanner.at += 1;
         }
@@ -189,6 +198,8 @@ pub(super) struct Scanner<'t, 'a> {
     pub(super) caption_line: usize,
     /// Curves that were left out.
     pub(super) findings: Vec<Finding>,
+    /// The columns of the block above, where numbers below may be theirs.
+    pub(super) above: Option<Above>,
 }
 
 impl<'t> Scanner<'t, '_> {
@@ -252,12 +263,14 @@ impl<'t> Scanner<'t, '_> {
         Some(order.iter().enumerate().map(column).collect())
     }
 
-    fn curves(&mut self, mut columns: Vec<Column>) -> Result<Block<'t>, ReadError> {
+    fn curves(&mut self, mut columns: Vec<Column>) -> Result<(Block<'t>, Option<Part>), ReadError> {
         let heading = &self.rows[self.at];
         if !is_numeric(heading, self.context.decimal) {
             self.at += 1;
             self.unit_row(&mut columns);
+            self.lines_below_headings();
         }
+        let part = self.part();
         let mut rows = self.data_rows(&columns);
         while let Some(next) = self.next_page(heading, &rows, &columns) {
             self.at = next;
@@ -266,12 +279,13 @@ impl<'t> Scanner<'t, '_> {
         self.direction_above();
         self.check_width(heading, &rows)?;
         self.note_strange_columns(heading, &columns, &rows);
+        self.above = Some(Above::new(&columns));
         let mut pairs = self.pairs(columns, &rows)?;
         self.distribute(&mut pairs)?;
         self.leave_out_statistics(&mut pairs);
         self.note_words(&pairs);
         self.header.caption = None;
-        Ok(Block::Curves { pairs, rows })
+        Ok((Block::Curves { pairs, rows }, part))
     }
 
     /// A row of units below headings that have none.
@@ -335,19 +349,26 @@ impl<'t> Scanner<'t, '_> {
         let is_error = text.starts_with(char::is_alphabetic)
             && (text.ends_with(['!', '?'])
                 || !row.filled().skip(1).filter(|(i, _)| used(*i)).all(|(_, c)| is_word(&c.text)));
-        !is_error && key.is_none_or(|k| matches!(k, Key::Remark | Key::Circumstance))
+        !is_error
+            && !begins_with_overflow(row)
+            && key.is_none_or(|k| matches!(k, Key::Remark | Key::Circumstance))
     }
 
     fn ends_data(&self, row: &Row<'_>, columns: &[Column], after_blank: bool) -> bool {
         let used = |i: usize| columns.iter().any(|c| c.index == i && c.role != Role::Ignored);
         let Some((first, cell)) = row.filled().next() else { return false };
-        let text = |cell: &str| number(cell, self.context.decimal) == Number::Text;
-        if !text(&cell.text) {
+        let decimal = self.context.decimal;
+        if !is_text(&cell.text, decimal) {
+            return false;
+        }
+        let columns_used: Vec<&Column> = columns.iter().filter(|c| c.role != Role::Ignored).collect();
+        if is_without_values(row, &columns_used, decimal) {
             return false;
         }
         let key = split_unit(cell.text.split([':', '=']).next().unwrap_or_default()).0;
-        let known = self.context.vocabulary.key(&key).is_some() || self.headings(row).is_some();
-        let no_number = row.filled().filter(|(i, _)| used(*i)).all(|(_, c)| text(&c.text));
+        let known = !begins_with_overflow(row)
+            && (self.context.vocabulary.key(&key).is_some() || self.headings(row).is_some());
+        let no_number = row.filled().filter(|(i, _)| used(*i)).all(|(_, c)| is_text(&c.text, decimal));
         known || no_number || (after_blank && used(first))
     }
 
@@ -370,7 +391,7 @@ impl<'t> Scanner<'t, '_> {
     }
 
     /// Keeps what a header line says: `key,value`, `key: value`, several pairs, or a list of values.
-    fn header_line(&mut self, row: &Row<'_>) {
+    pub(super) fn header_line(&mut self, row: &Row<'_>) {
         let filled: Vec<(String, usize)> =
             row.filled().map(|(_, c)| (folded(&c.text).into_owned(), c.column)).collect();
         let vocabulary = self.context.vocabulary;

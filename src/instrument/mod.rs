@@ -4,6 +4,7 @@
 //! and `result_table` turn cells into [`Measurement`]s and [`ResultValue`]s. Nothing here computes a
 //! parameter, and raw data are never altered beyond their units.
 
+mod abscissae;
 mod across;
 pub mod anonymise;
 mod assembled;
@@ -16,6 +17,7 @@ mod code_page;
 mod column_name;
 mod condition;
 mod conditions;
+mod continued;
 mod contradictions;
 mod curves;
 mod dialect;
@@ -50,6 +52,7 @@ mod raw;
 mod read;
 mod result_table;
 mod row_names;
+mod sample_cells;
 mod samples;
 mod section;
 mod shape;

@@ -2,7 +2,7 @@
 
 use super::Test;
 use super::dialect::Role;
-use super::layout::{Context, Pair, Scanner};
+use super::layout::{Column, Context, Pair, Scanner};
 use super::raw::Row;
 use super::sniff::{Number, number};
 use super::unit_text::{is_volt, unit};
@@ -24,7 +24,7 @@ impl Scanner<'_, '_> {
     /// of the curve over whose abscissa they stand.
     pub(super) fn leave_out_companions(&mut self, pairs: &mut Vec<Pair>, rows: &[&Row<'_>]) {
         let all = pairs.len();
-        let is_curve: Vec<bool> = pairs.iter().map(|p| changes(p, rows, self.context.decimal)).collect();
+        let is_curve: Vec<bool> = pairs.iter().map(|p| changes(&p.y, rows, self.context.decimal)).collect();
         let curves: Vec<&Pair> = pairs.iter().zip(&is_curve).filter(|(_, is)| **is).map(|(p, _)| p).collect();
         let kept: Vec<bool> = pairs
             .iter()
@@ -43,9 +43,9 @@ impl Scanner<'_, '_> {
     }
 }
 
-/// Whether the numbers of an ordinate change at all.
-fn changes(pair: &Pair, rows: &[&Row<'_>], decimal: char) -> bool {
-    let mut values = rows.iter().filter_map(|row| match number(row.get(pair.y.index)?, decimal) {
+/// Whether the numbers of a column change at all.
+pub(super) fn changes(column: &Column, rows: &[&Row<'_>], decimal: char) -> bool {
+    let mut values = rows.iter().filter_map(|row| match number(row.get(column.index)?, decimal) {
         Number::Value(value) => Some(value),
         _ => None,
     });

@@ -104,8 +104,10 @@ impl Scanner<'_, '_> {
     /// A single abscissa serves all ordinates that are repeats.
     pub(super) fn pairs(&mut self, columns: Vec<Column>, rows: &[&Row<'_>]) -> Result<Vec<Pair>, ReadError> {
         let mut halves: Vec<Halves> = vec![(None, None)];
+        let used = columns.into_iter().filter(|c| c.role != Role::Ignored).collect();
+        let columns = self.one_abscissa_each(used, rows);
         let shared = columns.iter().filter(|c| c.role.is_abscissa()).count() == 1;
-        for column in columns.into_iter().filter(|c| c.role != Role::Ignored) {
+        for column in columns {
             let abscissa = column.role.is_abscissa();
             let full = halves.last().is_none_or(|(x, y)| if abscissa { x.is_some() } else { y.is_some() });
             if full {

@@ -147,7 +147,8 @@ fn text(
         let rows = web_page::rows(&text).map_err(|p| error((0, 0, p)))?;
         let decimal =
             settings.decimal.or(dialect.and_then(|d| d.decimal)).unwrap_or_else(|| workbook::mark(&rows));
-        return table(&rows, &context(path, settings, dialect, '\t', decimal), true, content);
+        let unread = table(&rows, &context(path, settings, dialect, '\t', decimal), true, content)?;
+        return beside_curves(unread, content);
     }
     let delimiter = settings.delimiter.or(dialect.and_then(|d| d.delimiter));
     let decimal = settings.decimal.or(dialect.and_then(|d| d.decimal));
@@ -171,7 +172,25 @@ fn text(
         let line = rows.iter().find(|row| !row.is_blank()).map_or(0, |row| row.line);
         content.findings.push(Finding::new(ReadFact::NamesOfRows {}).at(Place::at(path, line, 0)));
     }
-    table(&rows, &context, text.ends_with('\n'), content)
+    let unread = table(&rows, &context, text.ends_with('\n'), content)?;
+    beside_curves(unread, content)
+}
+
+/// R123: result tables that cannot be read cost nothing but themselves beside curves, and are told.
+///
+/// # Errors
+/// The first of them, where there is no curve.
+fn beside_curves(unread: Vec<ReadError>, content: &mut FileContent) -> Result<(), ReadError> {
+    if content.measurements.is_empty() {
+        return unread.into_iter().next().map_or(Ok(()), Err);
+    }
+    content.findings.extend(unread.into_iter().map(not_understood));
+    Ok(())
+}
+
+fn not_understood(error: ReadError) -> Finding {
+    let fact = ReadFact::SheetNotUnderstood { reason: error.problem.to_string() };
+    Finding::new(fact).at(error.place)
 }
 
 fn context<'a>(
@@ -233,7 +252,7 @@ fn sheets(
     let letters = letters::in_names(&names, Vocabulary::new(&settings.dialects));
     let several = sheets.len() > 1;
     let (mut with_curves, mut unread, mut of_letters) = (Vec::new(), Vec::new(), Vec::new());
-    let mut of_sheets: Vec<String> = Vec::new();
+    let (mut of_sheets, mut tables) = (Vec::<String>::new(), Vec::new());
     for sheet in &sheets {
         // The place of a cell needs its sheet: `book.xlsx[sheet]:line:column`.
         let named = PathBuf::from(format!("{}[{}]", path.display(), sheet.name));
@@ -256,7 +275,7 @@ fn sheets(
                 content.inference.truncate(before);
                 unread.push(e);
             }
-            result => result?,
+            result => tables.extend(result?),
         }
         of_sheets.resize(content.measurements.len(), sheet.name.clone());
         let is_used = content.measurements.len() > curves || content.results.len() > values;
@@ -273,12 +292,11 @@ fn sheets(
         content.findings.push(Finding::new(fact).at(Place::file(path)));
     }
     if content.measurements.is_empty() && content.results.is_empty() {
-        return Err(unread.into_iter().next().unwrap_or_else(|| error(Problem::Empty)));
+        let first = tables.into_iter().chain(unread).next();
+        return Err(first.unwrap_or_else(|| error(Problem::Empty)));
     }
-    content.findings.extend(unread.into_iter().map(|e| {
-        let fact = ReadFact::SheetNotUnderstood { reason: e.problem.to_string() };
-        Finding::new(fact).at(e.place)
-    }));
+    content.findings.extend(unread.into_iter().map(not_understood));
+    beside_curves(tables, content)?;
     let vocabulary = Vocabulary::new(&settings.dialects);
     let means = means::leave_out(&mut content.measurements, &of_sheets, "sheets", path, vocabulary);
     if let Some(means) = means {
@@ -328,13 +346,14 @@ fn archive(
     Ok(())
 }
 
-/// Reads a table of cells into `content`; `complete` says that its last row ended properly.
+/// Reads a table of cells into `content`; `complete` says that its last row ended properly. Returns what is wrong with result
+/// tables that cannot be read.
 fn table(
     rows: &[Row<'_>],
     context: &Context<'_>,
     complete: bool,
     content: &mut FileContent,
-) -> Result<(), ReadError> {
+) -> Result<Vec<ReadError>, ReadError> {
     let restored = code_page::restored(rows);
     if let Some((_, fact)) = &restored {
         content.findings.push(Finding::new(fact.clone()).at(Place::file(context.path)));
@@ -347,7 +366,7 @@ fn table(
     let (blocks, findings) = layout::blocks(rows, context)?;
     content.findings.extend(findings);
     content.source.dialect = dialect_name(rows, context, &mut content.inference);
-    let count = blocks.len();
+    let (count, mut unread) = (blocks.len(), Vec::new());
     for (i, block) in blocks.into_iter().enumerate() {
         let ends_file = !complete && i + 1 == count;
         match block {
@@ -374,18 +393,22 @@ fn table(
                 }
             }
             Block::Table { header, region } => {
-                let read = result_table::read(&header, &region, context, &mut content.inference)?;
-                content.results.extend(read.values);
-                content.stiffnesses.extend(read.stiffnesses);
-                content.findings.extend(read.findings);
-                content.failures.extend(read.failures);
+                match result_table::read(&header, &region, context, &mut content.inference) {
+                    Ok(read) => {
+                        content.results.extend(read.values);
+                        content.stiffnesses.extend(read.stiffnesses);
+                        content.findings.extend(read.findings);
+                        content.failures.extend(read.failures);
+                    }
+                    Err(error) => unread.push(error),
+                }
             }
         }
     }
     let mut seen = BTreeSet::new();
     content.inference.retain(|line| seen.insert(line.clone()));
     content.findings.dedup();
-    Ok(())
+    Ok(unread)
 }
 
 /// An areal density in the header of a curve file is a result value of its own.

@@ -38,7 +38,7 @@ use super::layout::{Context, Header};
 use super::raw::Row;
 use super::shape::{self, Region};
 use super::sniff::{Number, number};
-use super::value::is_gap;
+use super::value::{is_gap, is_significance};
 use super::words::{folded, normalised};
 use super::{Direction, Parameter, ResultValue, StatedStiffness};
 use crate::finding::{Finding, LeftOutLine};
@@ -127,7 +127,7 @@ pub(super) fn read(
         above: None,
         marked: None,
         bounds: None,
-        overflows: None,
+        signs: Vec::new(),
         unknown_statuses: Vec::new(),
         factors: BTreeSet::new(),
         odd_names: Vec::new(),
@@ -191,8 +191,8 @@ struct Table<'t, 'a> {
     marked: noted::Cells,
     /// The same of cells that bound a value.
     bounds: noted::Cells,
-    /// Those that an instrument could not show.
-    overflows: noted::Cells,
+    /// Signs in the place of values.
+    signs: Vec<noted::Sign>,
     /// Words for statuses that are not known, with their lines.
     unknown_statuses: Vec<LeftOutLine>,
     /// Columns of factors that were told.
@@ -427,23 +427,25 @@ impl<'t> Table<'t, '_> {
         let mut deviations = Vec::new();
         let first = self.data.len();
         for column in &columns {
-            let Some(cell) = row.get(column.index).filter(|c| !self.is_not_measured(row, column.index, c))
-            else {
-                continue;
-            };
-            if self.states_no_value(row, column.index, cell) {
-                continue;
-            }
+            let Some(cell) = row.get(column.index) else { continue };
             let all = column.facets.or(&facts.facets);
             // A deviation in per cent is no value of the parameter, and its unit is its own.
             let own_unit = !all.sd && matches!(all.statistic, Some(Statistic::Spread | Statistic::Other));
+            let of_row = facts.facets.statistic.is_some();
+            if own_unit && is_significance(cell) {
+                self.summary_only(facts, column, of_row, row.line);
+                continue;
+            }
+            if self.is_not_measured(row, column.index, cell) || self.states_no_value(row, column.index, cell)
+            {
+                continue;
+            }
             if !own_unit {
                 let units = [&column.facets, &facts.facets].map(|f| f.unit.as_deref());
                 self.one_unit(row, column.index, units[0], units[1])?;
             }
             let unit_place = self.unit_place(row, column, facts);
             let fabric = column.fabric_of(facts.fabric.as_deref()).filter(|_| !facts.summary_of_fabrics);
-            let of_row = facts.facets.statistic.is_some();
             if let Some(fast) = all.fast.filter(|_| all.parameter.is_none()) {
                 let reading = self.reading(row, column.index, cell)?;
                 let (text, place) =

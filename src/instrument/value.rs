@@ -84,12 +84,25 @@ fn without_raised(cell: &str) -> Option<String> {
         .then_some(bare)
 }
 
+/// A number without what a test of significance has behind it, `0.081 n.s.` and `0.081 (**)`.
+fn without_significance(text: &str) -> Option<&str> {
+    let in_brackets = text.strip_suffix(')').and_then(|t| t.rsplit_once('('));
+    let bare = match in_brackets {
+        Some((bare, inner)) => Some(bare).filter(|_| is_significance(inner)),
+        None => text.rfind(['n', 'N']).filter(|at| is_significance(&text[*at..])).map(|at| &text[..at]),
+    };
+    bare.map(str::trim_end).filter(|bare| bare.ends_with(|c: char| c.is_ascii_digit() || c == ')'))
+}
+
 /// A number without `*`, `†` or up to four letters of groups behind it. Letters need decimals before them: `2b` is a
 /// name, and so is a sole `e`, which may be a power that was cut off.
 fn without_mark(text: &str, decimal: char) -> &str {
     let text = text.trim();
     let bare = text.trim_end_matches(['*', '†', '‡', '§', '¶']).trim_end();
     if bare.len() < text.len() {
+        return bare;
+    }
+    if let Some(bare) = without_significance(text) {
         return bare;
     }
     let is_letter = |c: char| matches!(c, 'a'..='h' | 'A'..='H');
@@ -151,6 +164,13 @@ pub(super) fn is_overflow(cell: &str) -> bool {
     text.len() >= 3 && ['*', '#'].iter().any(|sign| text.chars().all(|c| c == *sign))
 }
 
+/// What a test of significance says of a value, and no value: `*`, `**`, `***`, `n.s.`.
+pub(super) fn is_significance(cell: &str) -> bool {
+    let text = cell.trim();
+    let is_stars = (1..=4).contains(&text.len()) && text.bytes().all(|b| b == b'*');
+    is_stars || ["ns", "n.s", "n.s."].iter().any(|word| text.eq_ignore_ascii_case(word))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -183,6 +203,11 @@ mod tests {
         for text in ["8.0x10^-6", "8.0 × 10⁻⁶", "8.0·10-6", "8.0*10^(-6)", "8.0E-06"] {
             close(text, 8.0e-6);
         }
+        for text in ["0.0812 ns", "0.0812ns", "0.0812 n.s.", "0.0812 (NS)", "0.0812 (**)", "0.0812(n.s.)"] {
+            assert_eq!(printed(text, '.'), Printed::Marked(0.0812, None), "{text}");
+        }
+        assert_eq!(printed("0.081 ± 0.003 ns", '.'), Printed::Marked(0.081, Some(0.003)));
+        assert_eq!(printed("0.081 (0.003) n.s.", '.'), Printed::Marked(0.081, Some(0.003)));
         for text in ["0.0812a", "0.0812 ab", "0.0812A,B", "0.0812*", "0.0812**", "0.0812†", "0.0812ᵃ"] {
             assert_eq!(printed(text, '.'), Printed::Marked(0.0812, None), "{text}");
         }
@@ -210,5 +235,7 @@ mod tests {
         }
         assert!(is_gap("***") && is_gap("#####") && !is_gap("**"));
         assert!(!is_gap("nm") && !is_gap("no"));
+        assert!(is_significance("**") && is_significance(" N.S. ") && is_significance("***"));
+        assert!(!is_significance("*****") && !is_significance("") && !is_significance("n"));
     }
 }

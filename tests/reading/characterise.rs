@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use approx::assert_relative_eq;
-use kesf::characterise::{Basis, FabricSheet, Key, Settings, characterise};
+use kesf::characterise::{Basis, FabricSheet, Key, Settings, ValueStatus, characterise};
 use kesf::instrument::{Direction, Parameter, ReadSettings, Test, read_fabrics};
 use kesf::quantity::Unit;
 use serde::Deserialize;
@@ -229,5 +229,28 @@ fn compression_begins_in_the_air() {
         assert_relative_eq!(found(Parameter::Wc), 0.0980665 * work, max_relative = 2e-2);
         assert_relative_eq!(found(Parameter::Lc), work / (25.0 * (t0 - tm)), max_relative = 2e-2);
         assert!(sheet.get(Parameter::Rc, None).is_some(), "{air} mm: {:?}", sheet.findings);
+    }
+}
+
+/// R144 marks what the record of the travel gives, and not what a table gives where that record gives nothing.
+#[test]
+fn a_travel_marks_the_values_of_its_record_only() {
+    let travel = |samples: i32| {
+        let rise = (0..samples).map(|i| f64::from(i) / 40.0);
+        let rows = rise.map(|s| format!("{},{}\n", 0.6 - 0.2 * s.sqrt(), 50.0 * s * s)).collect::<String>();
+        format!("displacement (mm),pressure (gf/cm2)\n{rows}")
+    };
+    let table = "parameter,mean,n,unit\nT0,0.6,3,mm\nTm,0.4,3,mm\n";
+    for (samples, expected) in [(41, ValueStatus::Assumed), (5, ValueStatus::Measured)] {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("x_FB3_1.csv"), travel(samples)).unwrap();
+        std::fs::write(folder.path().join("results.csv"), table).unwrap();
+        let batch = read_fabrics(&[folder.path()], &ReadSettings::default(), &|_: &Path| ());
+        let sheet = characterise(&batch.fabrics[0], &Settings::default());
+        assert!(sheet.findings.iter().any(|f| f.code() == "R144"), "{:?}", batch.failures);
+        for parameter in [Parameter::T0, Parameter::Tm] {
+            let key = Key { parameter, direction: None };
+            assert_eq!(sheet.status(key), expected, "{parameter} of {samples} samples");
+        }
     }
 }

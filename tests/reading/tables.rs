@@ -135,3 +135,36 @@ fn a_list_of_records_is_refused_with_what_to_do() {
     let error = attempt("[{\"fabric\":\"x\",\"B\":0.1}]").unwrap_err();
     assert!(error.code() == "R023" && error.to_string().contains("to_csv"), "{error}");
 }
+
+/// Signs of a test of significance are no values and no lost ones: behind a number, alone, and in a row of their own.
+#[test]
+fn signs_of_significance_are_no_missing_values() {
+    let behind = read("fabric,B warp,LT warp\nx,0.1**,0.6 n.s.\ny,0.2 ns,0.7 (***)\n");
+    assert_eq!(values(&behind).iter().map(|v| v.3).collect::<Vec<_>>(), [0.6, 0.1, 0.7, 0.2]);
+    assert!(told(&behind, "R142").is_empty() && told(&behind, "R130").len() == 1, "{:?}", behind.findings);
+    for (alone, signs) in [
+        ("fabric,B warp,B warp,LT warp,LT warp\nx,0.1,***,0.6,**\n", "\"***\", \"**\""),
+        ("fabric,B warp,LT warp\nx,0.1,0.6\nSig.,***,*\n", "\"***\", \"*\""),
+        ("fabric,B warp,LT warp\nx,0.1,0.6\nSignificance,***,***\n", "\"***\", \"***\""),
+    ] {
+        let content = read(alone);
+        assert_eq!(values(&content).iter().map(|v| v.3).collect::<Vec<_>>(), [0.6, 0.1], "{alone}");
+        assert!(told(&content, "R147")[0].contains(signs), "{alone}: {:?}", content.findings);
+        let others = ["R142", "R138"].map(|code| told(&content, code).len());
+        assert!(others == [0, 0] && content.failures.is_empty(), "{alone}: {:?}", content.findings);
+    }
+}
+
+/// A table without units beside a record costs itself, and is told; alone it is refused.
+#[test]
+fn a_table_that_cannot_be_read_does_not_cost_the_curves() {
+    let table = "Parameter,Value\nB,0.08\n2HB,0.05\n";
+    let curve = "test,bending\ndirection,warp\n\ncurvature (1/cm),moment (gf·cm/cm)\n0,0\n1,0.1\n2,0.2\n";
+    let settings = ReadSettings::default();
+    for text in [format!("{curve}\n{table}"), format!("{table}\n{curve}")] {
+        let content = parse(Path::new("t.csv"), text.as_bytes(), &settings).unwrap();
+        assert_eq!((content.measurements.len(), content.results.len()), (1, 0));
+        assert!(told(&content, "R123")[0].contains("no unit"), "{:?}", content.findings);
+    }
+    assert_eq!(parse(Path::new("t.csv"), table.as_bytes(), &settings).unwrap_err().code(), "R008");
+}

@@ -231,3 +231,22 @@ fn cells_that_are_struck_out_or_were_never_calculated() {
     assert_eq!(b(&formula), [0.06]);
     assert!(message(&formula, "R129").contains("cell C2 of sheet"));
 }
+
+/// A summary without units beside sheets of curves costs itself, and is told.
+#[test]
+fn a_summary_without_units_does_not_cost_the_curves() {
+    let curve = [
+        row(1, &["curvature (1/cm)", "moment (gf·cm/cm)"]),
+        row(2, &["0", "0"]),
+        row(3, &["1", "0.1"]),
+        row(4, &["2", "0.2"]),
+    ];
+    let summary = [row(1, &["Parameter", "Value"]), row(2, &["B", "0.08"]), row(3, &["G", "0.7"])].concat();
+    for sheets in [[curve.concat(), summary.clone()], [summary.clone(), curve.concat()]] {
+        let content = read(&xlsx(&[&sheets[0], &sheets[1]], "")).unwrap();
+        assert_eq!((content.measurements.len(), content.results.len()), (1, 0));
+        let told: Vec<_> = content.findings.iter().filter(|f| f.code() == "R123").collect();
+        assert!(told.len() == 1 && told[0].message().contains("\"B\" has no unit"), "{:?}", content.findings);
+    }
+    assert!(error(&xlsx(&[&summary], "")).contains("R008"));
+}

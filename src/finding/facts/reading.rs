@@ -140,12 +140,12 @@ super::facts! {
             value: String,
         } = "the header states `{name}: {value}`, which was not applied: remove the line if the numbers are already those \
              of the cloth, else correct them";
-        /// A sheet with numbers under headings that are not known.
+        /// A sheet with numbers under headings that are not known, or a table that cannot be read beside curves.
         "R123" SheetNotUnderstood {
             /// What was met.
             reason: String,
-        } = "this sheet holds numbers that were not read: {reason}; remove or hide the sheet if it holds something else, \
-             or write a dialect file that names its columns";
+        } = "this sheet or table holds numbers that were not read: {reason}; correct it if they matter, remove or hide it if it holds \
+             something else, or write a dialect file that names its columns";
         /// A direction among words that are not understood.
         "R125" MoreThanDirection {
             /// The text.
@@ -274,6 +274,25 @@ super::facts! {
             column: String,
         } = "{column:?} is a travel, and is read as the thickness: T0, Tm and EMC hold only if it is 0 where the foot meets the \
              anvil; call the column `thickness` if it is one";
+        /// Samples of a curve without a value.
+        "R145" SamplesMissing {
+            /// Heading of the column.
+            column: String,
+            /// What stands in the place of the values, with the lines.
+            cells: Vec<LeftOutLine>,
+        } = "samples without a value of {column:?} are left out of the curve: {}; enter the values if they are known", lines(cells);
+        /// Negative numbers as accounts have them.
+        "R146" NegativeOfAccounts {
+            /// Heading of the column.
+            column: String,
+        } = "numbers in brackets or with the sign behind them are read as negative in {column:?}, where no number has a sign before \
+             it: write the signs before the numbers";
+        /// Signs of significance in the place of values.
+        "R147" SignificanceAlone {
+            /// What stands in the cells.
+            cells: Vec<String>,
+        } = "signs of a test of significance stand where values are expected, and are left out: {}; enter the values if they are known",
+            some(cells);
         /// Blank cells below a direction or a parameter.
         "R124" MergedCells {} = "blank cells are read as the direction or parameter above them, as of merged cells: fill them in \
              if they are something else";

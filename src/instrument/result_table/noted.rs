@@ -6,11 +6,20 @@ use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::cell::parts;
 use crate::instrument::raw::Row;
 use crate::instrument::sniff::{Number, number};
-use crate::instrument::value::{Printed, is_gap, is_overflow};
+use crate::instrument::value::{Printed, is_gap, is_overflow, is_significance};
 use crate::instrument::words::folded;
 
 /// Where the first of some cells stands (line, column), and what they say.
 pub(super) type Cells = Option<((usize, usize), Vec<String>)>;
+
+/// A sign in the place of a value.
+pub(super) struct Sign {
+    line: usize,
+    column: usize,
+    /// Index of its cell.
+    index: usize,
+    text: String,
+}
 
 impl Table<'_, '_> {
     /// Whether a cell bounds a value and is none; such cells, and marks behind numbers, are noted.
@@ -28,13 +37,41 @@ impl Table<'_, '_> {
         found == Printed::Bound
     }
 
-    /// Whether a cell holds no value; one that an instrument could not show, `***`, is noted.
+    /// Whether a cell holds no value; signs in its place, `***` and `n.s.`, are noted.
     pub(super) fn is_not_measured(&mut self, row: &Row<'_>, index: usize, cell: &str) -> bool {
-        if is_overflow(cell) {
-            let first = || ((row.line, row.column(index)), Vec::new());
-            self.overflows.get_or_insert_with(first).1.push(cell.trim().to_string());
+        let is_sign = is_overflow(cell) || is_significance(cell);
+        if is_sign {
+            let (line, column, text) = (row.line, row.column(index), cell.trim().to_string());
+            self.signs.push(Sign { line, column, index, text });
         }
-        is_gap(cell)
+        is_sign || is_gap(cell)
+    }
+
+    /// R142 and R147: `***` is what an instrument could not show, unless signs that only a test of significance has stand in the
+    /// same row or column.
+    fn note_signs(&mut self) {
+        let signs = std::mem::take(&mut self.signs);
+        // A row called `Sig.` that has nothing else is no fabric.
+        let data = &self.data;
+        let (rows_of_tests, odd_names): (Vec<_>, Vec<_>) =
+            std::mem::take(&mut self.odd_names).into_iter().partition(|(line, _)| {
+                signs.iter().any(|s| s.line == *line) && data.iter().all(|d| d.line != *line)
+            });
+        self.odd_names = odd_names;
+        let (of_tests, others): (Vec<&Sign>, Vec<&Sign>) = signs.iter().partition(|sign| {
+            rows_of_tests.iter().any(|(line, _)| *line == sign.line)
+                || signs
+                    .iter()
+                    .any(|s| !is_overflow(&s.text) && (s.line == sign.line || s.index == sign.index))
+        });
+        if let Some(first) = of_tests.first() {
+            let fact = ReadFact::SignificanceAlone { cells: texts(&of_tests) };
+            self.findings.push(Finding::new(fact).at(Place::at(self.context.path, first.line, first.column)));
+        }
+        if let Some(first) = others.first() {
+            let fact = ReadFact::Overflow { cells: texts(&others) };
+            self.findings.push(Finding::new(fact).at(Place::at(self.context.path, first.line, first.column)));
+        }
     }
 
     /// R122: the first factor of a column that is not 1 in any spelling (`1.0`, `x1`, `10^0`, `E+00`).
@@ -65,12 +102,14 @@ impl Table<'_, '_> {
         if let Some((place, cells)) = self.bounds.take() {
             tell(ReadFact::BoundsLeftOut { cells }, place);
         }
-        if let Some((place, cells)) = self.overflows.take() {
-            tell(ReadFact::Overflow { cells }, place);
-        }
         if let Some(first) = self.unknown_statuses.first() {
             let place = (first.line, 0);
             tell(ReadFact::UnknownStatus { cells: std::mem::take(&mut self.unknown_statuses) }, place);
         }
+        self.note_signs();
     }
+}
+
+fn texts(signs: &[&Sign]) -> Vec<String> {
+    signs.iter().map(|sign| sign.text.clone()).collect()
 }
