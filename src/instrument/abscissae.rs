@@ -76,14 +76,7 @@ fn are_of_one_curve(a: &Column, b: &Column) -> bool {
 
 /// How far a column is from the abscissa of the test: first by its role, then by its unit.
 fn remoteness(column: &Column, test: Option<Test>, context: &Context<'_>) -> (u8, u8) {
-    let own = match test {
-        Some(Test::Tensile) => Some(Role::Strain),
-        Some(Test::Shear) => Some(Role::Angle),
-        Some(Test::Bending) => Some(Role::Curvature),
-        Some(Test::Compression) => Some(Role::Thickness),
-        Some(Test::Friction | Test::Roughness) => Some(Role::Position),
-        None => None,
-    };
+    let own = test.and_then(|test| test.spec().x.columns.first().copied());
     let of_role = match own {
         Some(own) if column.role == own => 0,
         None if column.role != Role::Displacement => 0,

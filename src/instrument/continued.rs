@@ -3,7 +3,7 @@
 
 use super::dialect::{BranchColumn, Key};
 use super::label::Label;
-use super::layout::{Block, Column, Pair, Scanner};
+use super::layout::{Block, Column, Pair, Part, Scanner};
 use super::raw::Row;
 use super::sniff::{Number, number};
 use super::unit_text::split_unit;
@@ -16,35 +16,11 @@ const FEWEST: usize = 3;
 const CYCLE: [&str; 10] =
     ["cycle", "zyklus", "ciclo", "cyclus", "cyklus", "cykl", "çevrim", "サイクル", "循环", "循環"];
 
-/// What stood above, as long as nothing came between that is not understood.
-pub(super) struct Above {
-    columns: Vec<Column>,
-    /// Whether a line between tells another record, or another part of one.
-    tells: bool,
-}
-
-impl Above {
-    pub fn new(columns: &[Column]) -> Self {
-        Self { columns: columns.to_vec(), tells: false }
-    }
-}
-
-/// A part of the record that the block above began.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Part {
-    Unloading,
-    /// A cycle, from the second on.
-    Cycle,
-}
-
 impl<'t> Scanner<'t, '_> {
     /// Keeps in mind what a line behind a block says of the numbers that may follow.
     pub(super) fn note_line_between(&mut self, row: &Row<'_>) {
-        let Some(above) = &self.above else { return };
         match says(row, self.context.vocabulary) {
-            Some(tells) => {
-                self.above = Some(Above { columns: above.columns.clone(), tells: above.tells || tells })
-            }
+            Some(tells) => self.tells_another |= tells,
             None => self.above = None,
         }
     }
@@ -64,10 +40,10 @@ impl<'t> Scanner<'t, '_> {
 
     /// The columns of numbers that have no headings of their own, from the row that is looked at.
     pub(super) fn columns_above(&self) -> Option<Vec<Column>> {
-        let above = self.above.as_ref().filter(|above| above.tells)?;
+        let above = self.above.as_ref().filter(|_| self.tells_another)?;
         let rows = self.rows[self.at..].iter().filter(|r| !r.is_blank()).take(FEWEST);
-        let full = rows.filter(|r| above.columns.iter().all(|c| is_number(r, c, self.context.decimal)));
-        (full.count() == FEWEST).then(|| above.columns.clone())
+        let full = rows.filter(|r| above.iter().all(|c| is_number(r, c, self.context.decimal)));
+        (full.count() == FEWEST).then(|| above.clone())
     }
 
     /// Which part of a record the line above the next block announces.

@@ -1,6 +1,7 @@
 //! Column pairs to measurements: which test it is, its conditions, and SI.
 
 use super::axis::Axes;
+use super::column_values::Samples;
 use super::dialect::{Key, Role};
 use super::error::{Problem, ReadError};
 use super::header_value::{positive, quantity_by, quantity_of};
@@ -9,11 +10,8 @@ use super::label::SPECIMENS;
 use super::layout::{Context, Header, Pair};
 use super::means;
 use super::raw::Row;
-use super::sample_cells::Samples;
-use super::sniff::{Number, number};
 use super::specimen_size::{gauge, length_of, size};
 use super::unit_text;
-use super::value::value;
 use super::words::folded;
 use super::{Conditions, Direction, Measurement, Shape, Source, Test};
 use crate::finding::{Finding, Place, ReadFact};
@@ -401,24 +399,4 @@ fn is_bare_sign(cell: &str) -> bool {
 
 fn truncated(row: &Row<'_>, context: &Context<'_>) -> Finding {
     Finding::new(ReadFact::RowIncomplete {}).at(Place::at(context.path, row.line, 0))
-}
-
-/// A cell as a finite number, or the error that names its place.
-pub(super) fn finite(
-    row: &Row<'_>,
-    index: usize,
-    cell: &str,
-    context: &Context<'_>,
-) -> Result<f64, ReadError> {
-    let problem = match number(cell, context.decimal) {
-        Number::Value(value) => return Ok(value),
-        Number::NotFinite => Problem::NotFinite { found: cell.to_string() },
-        Number::Broken | Number::Text => {
-            if let (Number::Value(grouped), None) = value(cell, context.decimal) {
-                return Ok(grouped);
-            }
-            Problem::NotANumber { found: cell.to_string(), decimal: context.decimal }
-        }
-    };
-    Err(context.error(row.line, row.column(index), problem))
 }

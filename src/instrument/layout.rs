@@ -9,7 +9,6 @@ use std::path::Path;
 use super::Direction;
 use super::column_name::ColumnName;
 use super::conditions::StatedConditions;
-use super::continued::{Above, Part};
 use super::dialect::{Dialect, Key, Role};
 use super::error::{Problem, ReadError};
 use super::label::Label;
@@ -93,6 +92,14 @@ pub(super) struct Pair {
     pub header: Header,
 }
 
+/// A part of the record that the block above began.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Part {
+    Unloading,
+    /// A cycle, from the second on.
+    Cycle,
+}
+
 /// A part of the file that holds values.
 pub(super) enum Block<'t> {
     Curves { pairs: Vec<Pair>, rows: Vec<&'t Row<'t>> },
@@ -109,8 +116,18 @@ pub(super) fn blocks<'t>(
 ) -> Result<(Vec<Block<'t>>, Vec<Finding>), ReadError> {
     let (header, lists, findings) = (Header::default(), Vec::new(), Vec::new());
     let (labels, caption_line) = (Vec::new(), 0);
-    let mut scanner =
-        Scanner { rows, context, at: 0, header, lists, labels, caption_line, findings, above: None };
+    let mut scanner = Scanner {
+        rows,
+        context,
+        at: 0,
+        header,
+        lists,
+        labels,
+        caption_line,
+        findings,
+        above: None,
+        tells_another: false,
+    };
     let mut blocks = Vec::new();
     let mut words: Vec<String> = Vec::new();
     // The first row of numbers under headings that nobody knows; a remark may look like one, so that it is an error only
@@ -198,8 +215,10 @@ pub(super) struct Scanner<'t, 'a> {
     pub(super) caption_line: usize,
     /// Curves that were left out.
     pub(super) findings: Vec<Finding>,
-    /// The columns of the block above, where numbers below may be theirs.
-    pub(super) above: Option<Above>,
+    /// The columns of the block above, as long as nothing came between that is not understood.
+    pub(super) above: Option<Vec<Column>>,
+    /// Whether a line behind that block tells another record, or another part of one.
+    pub(super) tells_another: bool,
 }
 
 impl<'t> Scanner<'t, '_> {
@@ -279,7 +298,7 @@ impl<'t> Scanner<'t, '_> {
         self.direction_above();
         self.check_width(heading, &rows)?;
         self.note_strange_columns(heading, &columns, &rows);
-        self.above = Some(Above::new(&columns));
+        (self.above, self.tells_another) = (Some(columns.clone()), false);
         let mut pairs = self.pairs(columns, &rows)?;
         self.distribute(&mut pairs)?;
         self.leave_out_statistics(&mut pairs);
@@ -361,7 +380,8 @@ impl<'t> Scanner<'t, '_> {
         if !is_text(&cell.text, decimal) {
             return false;
         }
-        let columns_used: Vec<&Column> = columns.iter().filter(|c| c.role != Role::Ignored).collect();
+        let columns_used: Vec<usize> =
+            columns.iter().filter(|c| c.role != Role::Ignored).map(|c| c.index).collect();
         if is_without_values(row, &columns_used, decimal) {
             return false;
         }

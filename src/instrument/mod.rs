@@ -15,6 +15,7 @@ mod cell;
 mod cell_units;
 mod code_page;
 mod column_name;
+mod column_values;
 mod condition;
 mod conditions;
 mod continued;

@@ -210,7 +210,11 @@ fn a_specimen_called_mean_sums_up_others() {
     let folder = tempfile::tempdir().unwrap();
     let text = format!("test,bending\n{}{}{}", record("1", 0.08), record("2", 0.1), record("Mean", 0.09));
     std::fs::write(folder.path().join("x_warp.csv"), text).unwrap();
-    let batch = kesf::instrument::read_fabrics(&[folder.path()], &ReadSettings::default(), &|_: &Path| ());
+    let batch = kesf::instrument::read_fabrics(
+        &[folder.path().to_path_buf()],
+        &ReadSettings::default(),
+        &|_: &Path| (),
+    );
     assert_eq!(batch.fabrics[0].measurements.len(), 2, "{:?}", batch.failures);
     assert!(batch.fabrics[0].findings.iter().any(|f| f.code() == "R110"), "{:?}", batch.fabrics[0].findings);
 }
