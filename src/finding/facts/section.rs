@@ -57,7 +57,8 @@ super::facts! {
             fabric: String,
             /// What stands in for it (m).
             assumed: f64,
-        } = "{fabric}: no thickness is known; {assumed} m stands in for it (statics do not depend on it)";
+        } = "{fabric}: no thickness is known; {} mm stands in for it: rotary inertia, layers in contact and `torsion = \"shear\"` depend on it, \
+             no other stiffness does", significant(1e3 * *assumed);
         /// The torsional rigidity is zero.
         "C016" NoTorsion {
             /// Name of the fabric.
