@@ -7,8 +7,8 @@ use kesf::constitutive::{Assumptions, section};
 use kesf::finding::Place;
 use kesf::report::cards::{EXPORTERS, named};
 use kesf::report::json::{section_document, text};
-use kesf::report::read_back::{self, Document};
-use kesf::results::{Card, Failure, Sectioned, cards};
+use kesf::report::read_back::{self, ReadDocument};
+use kesf::results::{FabricCard, Failure, Sectioned, cards};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -50,7 +50,7 @@ impl Section {
     }
 
     fn written(text: &str) -> Result<Vec<Self>, Failure> {
-        let Some(Document::Sections(sections)) = read_back::read(text.as_bytes())? else {
+        let Some(ReadDocument::Sections(sections)) = read_back::read(text.as_bytes())? else {
             return Err(Failure::new("O042", "the document is no kesf.section/1")
                 .hint("give what Section.to_json() or `kesf section -o section.json` wrote"));
         };
@@ -152,7 +152,7 @@ pub fn export(py: Python<'_>, section: &Section, to: &str) -> PyResult<(String, 
     let (card, messages) = follow(py, &follower, move |observer| {
         let (cards, failures) = cards(std::slice::from_ref(&*sectioned), &[target], None, observer);
         match (cards.into_iter().next(), failures.into_iter().next()) {
-            (Some(Card { text, .. }), _) => Ok(text),
+            (Some(FabricCard { text, .. }), _) => Ok(text),
             (None, failure) => Err(failure.unwrap_or_else(Failure::interrupted)),
         }
     })?;

@@ -9,7 +9,7 @@ use kesf::finding::Finding;
 use kesf::instrument::{Direction, FabricInput, Parameter, Test};
 use kesf::report::chart;
 use kesf::report::json::{sheet_document, text};
-use kesf::report::read_back::{self, Document};
+use kesf::report::read_back::{self, ReadDocument};
 use kesf::report::table::{UnitSystem, Values, curve_units, fabric_rows};
 use kesf::results::{Fabric as Evaluated, Failure, Reading, distinguish_fabrics};
 use pyo3::exceptions::PyValueError;
@@ -78,7 +78,7 @@ impl Sheet {
 
     fn written(text: String) -> Result<Vec<Self>, Failure> {
         let document = read_back::read(text.as_bytes())?;
-        let Some(Document::Sheets(sheets)) = document else {
+        let Some(ReadDocument::Sheets(sheets)) = document else {
             return Err(Failure::new("O042", "the document is no kesf.sheet/1")
                 .hint("give what Sheet.to_json() or `kesf characterise -o sheet.json` wrote"));
         };

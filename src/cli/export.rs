@@ -18,7 +18,7 @@ use crate::report::OutputFolder;
 use crate::report::cards::targets;
 use crate::report::write::write_file;
 use crate::results::{
-    Card, CardOptions, Curves, Failure, cards_with, sections_with, stated_crimp, write_cards,
+    CardOptions, Curves, FabricCard, Failure, cards_with, sections_with, stated_crimp, write_cards,
 };
 use target::TargetName;
 
@@ -85,7 +85,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
 /// One card goes to a file or to standard output, several into a folder. Where they went.
 fn write(
     options: &Options,
-    cards: &[Card],
+    cards: &[FabricCard],
     failures: &mut Vec<Failure>,
     ui: &Ui,
 ) -> Result<Vec<PathBuf>, Failure> {

@@ -40,7 +40,7 @@ use notes::{Because, Notes, because, value};
 pub use notes::{Provenance, Used};
 pub use perturbed::{InputSource, law_inputs, perturbed};
 use sensitivity::Constant;
-pub use sensitivity::{Entry, Input, SectionDerivative, bands, entries};
+pub use sensitivity::{Entry, MeasuredInput, SectionDerivative, bands, entries};
 pub use tension::tension;
 
 /// A section with everything that went into it.
@@ -53,7 +53,7 @@ pub struct Constitutive {
     /// Inputs and assumptions in the order in which they were used.
     pub used: Vec<Used>,
     /// Measured inputs with their spread, and how the section depends on each.
-    pub inputs: Vec<Input>,
+    pub inputs: Vec<MeasuredInput>,
     /// Coefficient of friction of the sheet on steel, the mean of MIU over warp and weft; `None` if it was not measured.
     pub surface_friction: Option<f64>,
     /// What a reader of the section must know.

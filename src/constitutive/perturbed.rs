@@ -1,6 +1,6 @@
 //! A fabric at other values of its inputs, for results that are no linear function of them.
 
-use super::{Assumptions, Input, SectionDerivative};
+use super::{Assumptions, MeasuredInput, SectionDerivative};
 use crate::characterise::{FabricSheet, Key};
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::{ArealDensity, Estimate, Length, LineForce};
@@ -27,7 +27,7 @@ pub enum InputSource {
 pub fn perturbed(
     sheet: &FabricSheet,
     assumptions: &Assumptions,
-    inputs: &[Input],
+    inputs: &[MeasuredInput],
     values: &[f64],
 ) -> (FabricSheet, Assumptions) {
     let (mut sheet, mut assumptions) = (sheet.clone(), assumptions.clone());
@@ -54,10 +54,10 @@ pub fn perturbed(
 }
 
 /// A parameter as inputs that only friction laws follow: 2HB of a cantilever, WT of a simulated tension test.
-pub fn law_inputs(sheet: &FabricSheet, parameter: Parameter) -> Vec<Input> {
+pub fn law_inputs(sheet: &FabricSheet, parameter: Parameter) -> Vec<MeasuredInput> {
     let input = |direction: Option<Direction>| {
         let key = Key { parameter, direction };
-        sheet.values.get(&key).map(|estimate| Input {
+        sheet.values.get(&key).map(|estimate| MeasuredInput {
             name: direction.map_or(parameter.symbol().into(), |d| format!("{parameter} {d}")),
             estimate: estimate.clone(),
             source: InputSource::Value(key),

@@ -15,7 +15,7 @@ use crate::section::ShellSection;
 
 /// A measured input of a section, or the stand-in for one that was not measured.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Input {
+pub struct MeasuredInput {
     /// Symbol and direction, e.g. `B warp`.
     pub name: String,
     /// Value (SI) with its spread over repeats; a stand-in is a single value.
@@ -83,7 +83,7 @@ pub struct Entry {
 ///
 /// # Errors
 /// Those names, in the order of the inputs.
-pub fn bands(inputs: &[Input], derivatives: &[f64]) -> Result<Bands, Vec<String>> {
+pub fn bands(inputs: &[MeasuredInput], derivatives: &[f64]) -> Result<Bands, Vec<String>> {
     let terms: Vec<(&Estimate, f64)> =
         inputs.iter().zip(derivatives).map(|(input, d)| (&input.estimate, *d)).collect();
     Bands::propagated(&terms).map_err(|first| {
@@ -95,7 +95,7 @@ pub fn bands(inputs: &[Input], derivatives: &[f64]) -> Result<Bands, Vec<String>
 }
 
 /// Every entry on and above the diagonals that is not zero, with its bands: D_m, D_b, then D_s.
-pub fn entries(section: &ShellSection, inputs: &[Input]) -> Vec<Entry> {
+pub fn entries(section: &ShellSection, inputs: &[MeasuredInput]) -> Vec<Entry> {
     let entry =
         |matrix: &'static str, i: usize, j: usize, value: f64, of: &dyn Fn(&SectionDerivative) -> f64| {
             let derivatives: Vec<f64> = inputs.iter().map(|input| of(&input.derivative)).collect();
@@ -140,7 +140,11 @@ pub(super) struct Origin {
 }
 
 /// The inputs of a section from the origins of its constants.
-pub(super) fn inputs(section: &ShellSection, assumptions: &Assumptions, origins: Vec<Origin>) -> Vec<Input> {
+pub(super) fn inputs(
+    section: &ShellSection,
+    assumptions: &Assumptions,
+    origins: Vec<Origin>,
+) -> Vec<MeasuredInput> {
     let bias = origins.iter().find(|o| o.gives.iter().any(|g| g.0 == Constant::Bias));
     let bias = bias.map_or(0.0, |o| o.estimate.mean);
     origins
@@ -150,7 +154,7 @@ pub(super) fn inputs(section: &ShellSection, assumptions: &Assumptions, origins:
             for (constant, share) in gives {
                 derivative.add(&of_constant(section, assumptions, bias, constant), share);
             }
-            Input { name, estimate, source, derivative }
+            MeasuredInput { name, estimate, source, derivative }
         })
         .collect()
 }

@@ -13,7 +13,7 @@ use crate::finding::Explanation;
 use crate::instrument::FabricInput;
 use crate::report::json::FindingEntry;
 use crate::report::table::PredictionRow;
-use crate::results::{Card, FailureEntry};
+use crate::results::{FabricCard, FailureEntry};
 
 #[cfg(feature = "parquet")]
 pub use tables::{FoundDocument, LibraryDocument, MergedDocument, PartDocument, PartRows};
@@ -69,7 +69,7 @@ pub struct ExportDocument<'a> {
     pub target: String,
     /// The cards themselves, where they go to standard output.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub cards: Option<Cow<'a, [Card]>>,
+    pub cards: Option<Cow<'a, [FabricCard]>>,
     /// Paths of the files.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub files: Option<Vec<String>>,

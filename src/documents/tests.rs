@@ -48,7 +48,7 @@ fn generated() -> Vec<GeneratedSchema> {
         document::<SectionDocument>("section", "kesf.section/1, of kesf section, and section.json"),
         document::<SheetDocument>("sheet", "kesf.sheet/1, of kesf characterise, and sheet.json"),
         document::<SolutionDocument>("solution", "kesf.solution/1, of kesf solve and of cases with a sheet"),
-        document::<verify::Document>("verify", "kesf.verify/1, of kesf verify"),
+        document::<verify::VerifyDocument>("verify", "kesf.verify/1, of kesf verify"),
     ]);
     all.extend([
         document::<FoundDocument>("found", "kesf.found/1, of kesf library find"),

@@ -52,10 +52,10 @@ pub enum Operator {
 }
 
 /// What is wrong with a text, and at which byte.
-pub type Problem = (String, usize);
+pub type GrammarError = (String, usize);
 
 /// The expression that the text is.
-pub fn expression(text: &str) -> Result<Expression, Problem> {
+pub fn expression(text: &str) -> Result<Expression, GrammarError> {
     let mut depth = 0_usize;
     for (at, sign) in text.char_indices() {
         match sign {

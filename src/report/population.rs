@@ -17,12 +17,12 @@ pub struct Population {
     /// Where it comes from, as it is named in the chart.
     pub source: String,
     /// What is known of it, each parameter once.
-    pub parameters: Vec<Reference>,
+    pub parameters: Vec<ReferenceParameter>,
 }
 
 /// Mean and standard deviation of a parameter over the fabrics of a population, in KES units.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Reference {
+pub struct ReferenceParameter {
     /// E.g. `2HB`; the mean of warp and weft where there are both.
     pub symbol: String,
     /// Whether mean and standard deviation are those of the decadic logarithm.
@@ -54,14 +54,14 @@ pub struct Written {
 
 /// What is wrong in a line of a file (0 if nobody knows which).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Problem {
+pub struct PopulationError {
     /// The line, from 1.
     pub line: usize,
     /// What was found and what was expected.
     pub message: String,
 }
 
-impl Reference {
+impl ReferenceParameter {
     /// The parameter of a file, in KES units.
     ///
     /// # Errors
@@ -112,14 +112,14 @@ fn in_kes(parameter: Parameter, unit: &str) -> Result<f64, String> {
 ///
 /// # Errors
 /// The first line that is not understood, or that there are too few fabrics.
-pub fn of_csv(bytes: &[u8], source: &str) -> Result<Population, Problem> {
+pub fn of_csv(bytes: &[u8], source: &str) -> Result<Population, PopulationError> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes);
     let is_of_fabrics = reader.headers().map_err(|e| problem(&e))?.iter().any(|name| name == "fabric");
     if is_of_fabrics {
         let rows: Result<Vec<FabricRow>, csv::Error> = reader.deserialize().collect();
         let rows = rows.map_err(|e| problem(&e))?;
-        return of_rows(&rows, source).map_err(|message| Problem { line: 0, message });
+        return of_rows(&rows, source).map_err(|message| PopulationError { line: 0, message });
     }
     let mut written = Vec::new();
     for (at, row) in reader.deserialize::<Written>().enumerate() {
@@ -128,9 +128,9 @@ pub fn of_csv(bytes: &[u8], source: &str) -> Result<Population, Problem> {
     of_written(written.iter().map(|(line, row)| (*line, row)), source)
 }
 
-fn problem(error: &csv::Error) -> Problem {
+fn problem(error: &csv::Error) -> PopulationError {
     let line = error.position().map_or(1, |at| usize::try_from(at.line()).unwrap_or(0));
-    Problem { line, message: error.to_string() }
+    PopulationError { line, message: error.to_string() }
 }
 
 /// The population of parameters as they are written, with the line of each.
@@ -140,18 +140,18 @@ fn problem(error: &csv::Error) -> Problem {
 pub fn of_written<'w>(
     written: impl Iterator<Item = (usize, &'w Written)>,
     source: &str,
-) -> Result<Population, Problem> {
-    let mut parameters: Vec<Reference> = Vec::new();
+) -> Result<Population, PopulationError> {
+    let mut parameters: Vec<ReferenceParameter> = Vec::new();
     for (line, row) in written {
-        let reference = Reference::of(row).map_err(|message| Problem { line, message })?;
+        let reference = ReferenceParameter::of(row).map_err(|message| PopulationError { line, message })?;
         if parameters.iter().any(|known| known.symbol == reference.symbol) {
             let message = format!("`{}` is there twice", reference.symbol);
-            return Err(Problem { line, message });
+            return Err(PopulationError { line, message });
         }
         parameters.push(reference);
     }
     if parameters.is_empty() {
-        return Err(Problem { line: 0, message: "there is no parameter in it".into() });
+        return Err(PopulationError { line: 0, message: "there is no parameter in it".into() });
     }
     Ok(Population { source: source.into(), parameters })
 }
@@ -180,9 +180,9 @@ fn of_rows(rows: &[FabricRow], source: &str) -> Result<Population, String> {
         let estimate = Estimate::of(&shown).filter(|_| shown.len() >= LEAST)?;
         let sd = estimate.sd.filter(|sd| *sd > 1e-9 * estimate.mean.abs())?;
         let n = Some(shown.len() as u64);
-        Some(Reference { symbol: parameter.symbol().into(), log, mean: estimate.mean, sd, n })
+        Some(ReferenceParameter { symbol: parameter.symbol().into(), log, mean: estimate.mean, sd, n })
     });
-    let parameters: Vec<Reference> = parameters.collect();
+    let parameters: Vec<ReferenceParameter> = parameters.collect();
     if parameters.is_empty() {
         return Err(format!("no parameter has different values of {LEAST} fabrics"));
     }

@@ -47,7 +47,7 @@ impl From<serde_json::Error> for DocumentError {
 
 /// A document of ours.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Document {
+pub enum ReadDocument {
     /// Parameters of fabrics.
     Sheets(Vec<FabricSheet>),
     /// Sections with their assumptions; of each sheet only the name and the origin are known, unless the document has
@@ -59,7 +59,7 @@ pub enum Document {
 ///
 /// # Errors
 /// See [`DocumentError`].
-pub fn read(bytes: &[u8]) -> Result<Option<Document>, DocumentError> {
+pub fn read(bytes: &[u8]) -> Result<Option<ReadDocument>, DocumentError> {
     #[derive(Deserialize)]
     struct Schema {
         schema: String,
@@ -68,25 +68,25 @@ pub fn read(bytes: &[u8]) -> Result<Option<Document>, DocumentError> {
     match schema.as_str() {
         "kesf.sheet/1" => {
             let document: SheetDocument = serde_json::from_slice(bytes)?;
-            Ok(Some(Document::Sheets(document.fabrics.into_iter().map(sheet).collect::<Result<_, _>>()?)))
+            Ok(Some(ReadDocument::Sheets(document.fabrics.into_iter().map(sheet).collect::<Result<_, _>>()?)))
         }
         "kesf.section/1" => {
             let document: SectionDocument = serde_json::from_slice(bytes)?;
             let read = document.sections.into_iter().map(section).collect::<Result<_, _>>()?;
-            Ok(Some(Document::Sections(read)))
+            Ok(Some(ReadDocument::Sections(read)))
         }
         "kesf.fabric/1" => {
             let open: Open = serde_json::from_slice(bytes)?;
             let sheets = open.sheet.fabrics.into_iter().map(sheet);
             let sections = open.section.sections.into_iter().map(section);
             let read = sheets.zip(sections).map(|(sheet, section)| Ok((sheet?, section?.1)));
-            Ok(Some(Document::Sections(read.collect::<Result<_, DocumentError>>()?)))
+            Ok(Some(ReadDocument::Sections(read.collect::<Result<_, DocumentError>>()?)))
         }
         // Every program writes U3M: ours has the section in its own corner.
         "1.1" => match serde_json::from_slice(bytes) {
             Ok(Material { custom: Custom { kesf: Corner { section: document } } }) => {
                 let read = document.sections.into_iter().map(section).collect::<Result<_, _>>()?;
-                Ok(Some(Document::Sections(read)))
+                Ok(Some(ReadDocument::Sections(read)))
             }
             Err(e) if has_corner(bytes) => Err(e.into()),
             Err(_) => Ok(None),
@@ -243,7 +243,7 @@ mod tests {
     #[test]
     fn a_sheet_gives_the_section_of_the_fabric() {
         let written = text(&sheet_document([&sheet()], None)).unwrap();
-        let Some(Document::Sheets(read)) = super::read(written.as_bytes()).unwrap() else {
+        let Some(ReadDocument::Sheets(read)) = super::read(written.as_bytes()).unwrap() else {
             panic!("no sheets")
         };
         assert_eq!((read[0].values.clone(), read[0].info.origin), (sheet().values, Origin::Published));
@@ -255,7 +255,8 @@ mod tests {
     fn a_section_comes_back_to_the_last_digit() {
         let made = section(&sheet(), &Assumptions::default()).unwrap();
         let document = section_document([(&sheet(), &made)]);
-        let Some(Document::Sections(read)) = super::read(text(&document).unwrap().as_bytes()).unwrap() else {
+        let Some(ReadDocument::Sections(read)) = super::read(text(&document).unwrap().as_bytes()).unwrap()
+        else {
             panic!("no sections")
         };
         assert_eq!((&read[0].1.section, &read[0].1.used), (&made.section, &made.used));
@@ -268,7 +269,9 @@ mod tests {
         let made = section(&sheet(), &Assumptions::default()).unwrap();
         let material = cards::Material { sheet: &sheet(), made: &made, stamp: None, crimp: None };
         let written = card(cards::named("u3m").unwrap(), &material).unwrap().text;
-        let Some(Document::Sections(read)) = super::read(written.as_bytes()).unwrap() else { panic!("none") };
+        let Some(ReadDocument::Sections(read)) = super::read(written.as_bytes()).unwrap() else {
+            panic!("none")
+        };
         assert_eq!((&read[0].1.section, &read[0].1.used), (&made.section, &made.used));
         assert_eq!((read[0].0.name.as_str(), read[0].0.info.origin), ("köper", Origin::Published));
         let error = super::read(written.replace("\"d_m\"", "\"a\"").as_bytes()).unwrap_err().to_string();

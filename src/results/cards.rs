@@ -18,7 +18,7 @@ use crate::report::cards::{Material, Target, card, named};
 /// The material file of a fabric.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct Card {
+pub struct FabricCard {
     /// Its name.
     pub fabric: String,
     /// The program.
@@ -69,7 +69,7 @@ pub fn cards(
     targets: &[Target],
     stamp: Option<&str>,
     observer: &Observer,
-) -> (Vec<Card>, Vec<Failure>) {
+) -> (Vec<FabricCard>, Vec<Failure>) {
     cards_with(sections, targets, CardOptions { stamp, ..CardOptions::default() }, observer)
 }
 
@@ -79,7 +79,7 @@ pub fn cards_with(
     targets: &[Target],
     CardOptions { stamp, crimp }: CardOptions<'_>,
     observer: &Observer,
-) -> (Vec<Card>, Vec<Failure>) {
+) -> (Vec<FabricCard>, Vec<Failure>) {
     let (mut cards, mut failures) = (Vec::new(), Vec::new());
     let pairs = targets.iter().flat_map(|target| sections.iter().map(move |section| (*target, section)));
     for (target, Sectioned { path, sheet, made }) in pairs {
@@ -88,7 +88,11 @@ pub fn cards_with(
                 for finding in card.findings {
                     observer.found(Some(&sheet.name), &finding.at(Place::file(path)));
                 }
-                cards.push(Card { fabric: sheet.name.clone(), target: target.name.into(), text: card.text });
+                cards.push(FabricCard {
+                    fabric: sheet.name.clone(),
+                    target: target.name.into(),
+                    text: card.text,
+                });
             }
             Err(error) => {
                 let failure = Failure::from(error).of(&sheet.name).at(Place::file(path));
@@ -101,10 +105,14 @@ pub fn cards_with(
 }
 
 /// Writes a file for each card, `<fabric>.<ending>`; the names of those that are there, and why others are not.
-pub fn write_cards(cards: &[Card], sink: &dyn Sink, observer: &Observer) -> (Vec<String>, Vec<Failure>) {
+pub fn write_cards(
+    cards: &[FabricCard],
+    sink: &dyn Sink,
+    observer: &Observer,
+) -> (Vec<String>, Vec<Failure>) {
     let (mut names, mut failures) = (Vec::new(), Vec::new());
     let mut taken = BTreeSet::new();
-    for Card { fabric, target, text } in cards {
+    for FabricCard { fabric, target, text } in cards {
         let ending = named(target).map_or("txt", |target| target.ending);
         let name = free_name(fabric, ending, &mut taken);
         match sink.write(&name, text.as_bytes()) {
@@ -140,7 +148,7 @@ mod tests {
 
     #[test]
     fn every_name_is_one_of_windows_and_macos() {
-        let card = |name: &str| Card { fabric: name.into(), target: "u3m".into(), text: name.into() };
+        let card = |name: &str| FabricCard { fabric: name.into(), target: "u3m".into(), text: name.into() };
         let sink = MemorySink::default();
         let cards = ["../out", "NUL", "Poplin", "poplin", "a:b."].map(card);
         let (names, failures) = write_cards(&cards, &sink, &Observer::default());
@@ -150,7 +158,8 @@ mod tests {
 
     #[test]
     fn two_fabrics_of_one_name_have_a_file_each() {
-        let card = |text: &str| Card { fabric: "poplin".into(), target: "u3m".into(), text: text.into() };
+        let card =
+            |text: &str| FabricCard { fabric: "poplin".into(), target: "u3m".into(), text: text.into() };
         let sink = MemorySink::default();
         let (names, failures) = write_cards(&[card("a"), card("b")], &sink, &Observer::default());
         assert_eq!((names, failures), (vec!["poplin.u3m".to_string(), "poplin-2.u3m".into()], Vec::new()));

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::finding::explain;
-use crate::report::html::{Problem, ProblemGroup, local};
+use crate::report::html::{ProblemGroup, ProblemLine, local};
 use crate::report::number::counted;
 use crate::report::table::ProblemRow;
 
@@ -33,7 +33,7 @@ struct OfCode {
     fabrics: BTreeSet<String>,
     /// Where it was found, of linear solves beyond their meaning.
     places: BTreeSet<String>,
-    lines: Vec<Problem>,
+    lines: Vec<ProblemLine>,
 }
 
 impl Problems {
@@ -89,7 +89,7 @@ impl OfCode {
         if self.code == BEYOND_LINEAR {
             self.places.insert(row.place.clone());
         } else if self.lines.len() < KEPT {
-            self.lines.push(Problem {
+            self.lines.push(ProblemLine {
                 fabric: row.fabric.clone(),
                 page: None,
                 place: row.place.clone(),

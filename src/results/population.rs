@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::failure::Failure;
 use crate::finding::{Place, in_words};
 use crate::platform::files;
-use crate::report::population::{Population, Problem, Written, of_csv, of_written};
+use crate::report::population::{Population, PopulationError, Written, of_csv, of_written};
 
 /// The table of a folder of results.
 const TABLE: &str = "fabrics.csv";
@@ -27,12 +27,12 @@ struct Document {
 /// O074 with the place, for what cannot be read or used.
 pub fn population(path: &Path) -> Result<Population, Failure> {
     let table = if files::is_folder(path) { path.join(TABLE) } else { path.to_path_buf() };
-    let refused = |problem: Problem| {
+    let refused = |problem: PopulationError| {
         let place = Place { path: table.clone(), line: problem.line, ..Place::default() };
         let failure = Failure::new("O074", format!("no population of fabrics: {}", problem.message));
         failure.at(place).hint("`kesf explain O074` shows what such a file looks like")
     };
-    let unreadable = |e: std::io::Error| refused(Problem { line: 0, message: e.to_string() });
+    let unreadable = |e: std::io::Error| refused(PopulationError { line: 0, message: e.to_string() });
     let bytes = files::read(&table).map_err(unreadable)?;
     if table.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
         return of_toml(&bytes).map_err(refused);
@@ -41,10 +41,10 @@ pub fn population(path: &Path) -> Result<Population, Failure> {
     of_csv(&bytes, &name).map_err(refused)
 }
 
-fn of_toml(bytes: &[u8]) -> Result<Population, Problem> {
-    let text = std::str::from_utf8(bytes).map_err(|e| Problem { line: 0, message: e.to_string() })?;
+fn of_toml(bytes: &[u8]) -> Result<Population, PopulationError> {
+    let text = std::str::from_utf8(bytes).map_err(|e| PopulationError { line: 0, message: e.to_string() })?;
     let line_at = |at: usize| 1 + text.bytes().take(at).filter(|byte| *byte == b'\n').count();
-    let document: Document = toml::from_str(text).map_err(|e| Problem {
+    let document: Document = toml::from_str(text).map_err(|e| PopulationError {
         line: e.span().map_or(0, |span| line_at(span.start)),
         message: in_words(&e),
     })?;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::columns::Columns;
 use super::task::Task;
-use crate::constitutive::Input;
+use crate::constitutive::MeasuredInput;
 use crate::quantity::{Sampled, significant};
 use crate::report::table::PredictionRow;
 use crate::study::{SampledQuantity, Sampling};
@@ -62,14 +62,14 @@ pub struct SamplingEntry {
     seed: u32,
     level: f64,
     exact: Vec<String>,
-    inputs: Vec<InputEntry>,
+    inputs: Vec<MeasuredInputEntry>,
     quantities: IndexMap<String, QuantityEntry>,
 }
 
 /// A measured input (SI).
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct InputEntry {
+pub struct MeasuredInputEntry {
     name: String,
     mean: f64,
     sd: Option<f64>,
@@ -86,9 +86,9 @@ struct QuantityEntry {
     without_spread: Vec<String>,
 }
 
-impl InputEntry {
+impl MeasuredInputEntry {
     /// The entry of an input.
-    pub(super) fn new(input: &Input) -> Self {
+    pub(super) fn new(input: &MeasuredInput) -> Self {
         let e = &input.estimate;
         Self { name: input.name.clone(), mean: e.mean, sd: e.sd, n: e.n }
     }
@@ -116,7 +116,7 @@ impl SamplingEntry {
             seed: sampling.seed,
             level: 0.95,
             exact: sampling.exact.clone(),
-            inputs: sampling.inputs.iter().map(InputEntry::new).collect(),
+            inputs: sampling.inputs.iter().map(MeasuredInputEntry::new).collect(),
             quantities: mine.map(|q| (q.quantity.clone(), QuantityEntry::new(q))).collect(),
         }
     }

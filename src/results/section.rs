@@ -18,7 +18,7 @@ use crate::instrument::{FabricInfo, Origin, Parameter};
 use crate::platform::files;
 use crate::quantity::{Bands, repeats_text, significant};
 use crate::report::cards::{self, read::StatedSection};
-use crate::report::read_back::{self, Document};
+use crate::report::read_back::{self, ReadDocument};
 
 /// A sheet and its section.
 #[derive(Clone, Debug)]
@@ -34,7 +34,7 @@ pub struct Sectioned {
 /// Inputs that are documents of this program or cards of another, and the others.
 #[derive(Default)]
 struct Sorted {
-    documents: Vec<(PathBuf, Document)>,
+    documents: Vec<(PathBuf, ReadDocument)>,
     others: Vec<Input>,
     failures: Vec<Failure>,
 }
@@ -55,14 +55,14 @@ impl Sorted {
 }
 
 /// The document or the card of another program that an input is, if it is one.
-fn document(input: &Input, assumptions: &Assumptions) -> Result<Option<Document>, Failure> {
+fn document(input: &Input, assumptions: &Assumptions) -> Result<Option<ReadDocument>, Failure> {
     let Some(bytes) = document_bytes(input) else { return Ok(None) };
     if let Some(document) = read_back::read(&bytes)? {
         return Ok(Some(document));
     }
     let card =
         cards::read::section_in(&String::from_utf8_lossy(&bytes), assumptions.thickness.si()).transpose()?;
-    Ok(card.map(|card| Document::Sections(vec![of_card(input, card, assumptions)])))
+    Ok(card.map(|card| ReadDocument::Sections(vec![of_card(input, card, assumptions)])))
 }
 
 /// A section that the card of another program states, with what the card leaves open.
@@ -149,10 +149,10 @@ pub fn sections_with(
     let mut ready = Vec::new();
     for (path, document) in documents {
         match document {
-            Document::Sheets(sheets) => {
+            ReadDocument::Sheets(sheets) => {
                 fabrics.extend(sheets.into_iter().map(|sheet| Fabric { path: path.clone(), sheet }));
             }
-            Document::Sections(sections) => {
+            ReadDocument::Sections(sections) => {
                 observer.note(&format!("{}: a section; its own assumptions stand", path.display()));
                 let sectioned = |(sheet, made)| Sectioned { path: path.clone(), sheet, made };
                 ready.extend(sections.into_iter().map(sectioned));

@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::AcqRel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use self::assemble::Update;
-use self::front::{BadPivot, Input, Workspace, eliminate};
+use self::front::{BadPivot, FrontInput, Workspace, eliminate};
 use self::symbolic::Tree;
 pub use self::symbolic::work;
 use super::factor::{Counts, FactorError, Form};
@@ -108,7 +108,7 @@ impl Symbolic {
         threads: usize,
     ) -> Result<Numeric, FactorError> {
         let (mut l, cleared) = self.storage()?;
-        let input = Input { values: &a.values, form, cleared };
+        let input = FrontInput { values: &a.values, form, cleared };
         let result = if threads > 1 {
             self.eliminate_tasks(input, &mut l, threads)
         } else {
@@ -143,7 +143,7 @@ impl Symbolic {
         lock(&self.workspaces).pop().unwrap_or_else(|| Workspace::new(self.width))
     }
 
-    fn eliminate_all(&self, input: Input<'_>, l: &mut [f64]) -> Result<(), Halt> {
+    fn eliminate_all(&self, input: FrontInput<'_>, l: &mut [f64]) -> Result<(), Halt> {
         let mut workspace = self.workspace();
         let last = self.tree.supernodes.len().saturating_sub(1);
         let result = self.eliminate_range((0, last), input, l, Vec::new(), &mut workspace);
@@ -156,7 +156,7 @@ impl Symbolic {
     fn eliminate_range(
         &self,
         (first, last): (usize, usize),
-        input: Input<'_>,
+        input: FrontInput<'_>,
         mut panels: &mut [f64],
         mut waiting: Vec<Update>,
         workspace: &mut Workspace,
@@ -180,7 +180,7 @@ impl Symbolic {
         Ok(waiting)
     }
 
-    fn eliminate_tasks(&self, input: Input<'_>, l: &mut [f64], threads: usize) -> Result<(), Halt> {
+    fn eliminate_tasks(&self, input: FrontInput<'_>, l: &mut [f64], threads: usize) -> Result<(), Halt> {
         let tasks = self.tasks(l);
         let failed: Mutex<Option<Halt>> = Mutex::new(None);
         let run = |mut t: usize| {

@@ -7,7 +7,7 @@ use super::of_fabric::OfFabric;
 use super::result::{CaseResult, Status};
 use super::{PreparedCase, StudyError, Watch, build};
 use crate::case::{Adaptive, Outline, SheetProblem, unit_of};
-use crate::constitutive::Input;
+use crate::constitutive::MeasuredInput;
 use crate::finding::{Finding, Located, RefinementEnd, StudyFact};
 use crate::mesh::{GridLines, Refinement};
 use crate::section::ShellSection;
@@ -69,7 +69,7 @@ impl<'a> PreparedCase<'a> {
         &self,
         to: &Located<Adaptive>,
         section: &ShellSection,
-        (fabric, inputs): (OfFabric<'_>, &[Input]),
+        (fabric, inputs): (OfFabric<'_>, &[MeasuredInput]),
         watch: Watch<'_>,
     ) -> Result<(CaseResult, Option<Self>), StudyError> {
         let Adaptive { error: goal, meshes, elements } = to.value;

@@ -16,7 +16,7 @@ use super::result::{CaseResult, Kept, Outcome, Probe, Status};
 use super::uncertainty::{linear_uncertainty, modal_uncertainty};
 use super::{Case, PreparedCase, StudyError, Watch, build};
 use crate::case::{Analysis, ProbePoint};
-use crate::constitutive::{Constitutive, Input};
+use crate::constitutive::{Constitutive, MeasuredInput};
 use crate::fields::{Locator, Recovery};
 use crate::finding::{Finding, Place, StudyFact};
 use crate::model::Model;
@@ -48,7 +48,11 @@ impl PreparedCase<'_> {
     ///
     /// # Errors
     /// See [`StudyError`].
-    pub fn solve_measured(&self, section: ShellSection, inputs: &[Input]) -> Result<CaseResult, StudyError> {
+    pub fn solve_measured(
+        &self,
+        section: ShellSection,
+        inputs: &[MeasuredInput],
+    ) -> Result<CaseResult, StudyError> {
         self.solve_of(section, OfFabric::default(), inputs, Watch::default())
     }
 
@@ -85,7 +89,7 @@ impl PreparedCase<'_> {
         &self,
         section: ShellSection,
         fabric: OfFabric<'_>,
-        inputs: &[Input],
+        inputs: &[MeasuredInput],
         watch: Watch<'_>,
     ) -> Result<CaseResult, StudyError> {
         let case = self.case;
@@ -163,7 +167,7 @@ impl PreparedCase<'_> {
         &self,
         section: ShellSection,
         fabric: OfFabric<'_>,
-        inputs: &[Input],
+        inputs: &[MeasuredInput],
         watch: Watch<'_>,
     ) -> Result<CaseResult, StudyError> {
         let case = self.case;

@@ -20,7 +20,7 @@ use crate::case::{
     BendingTest, DrapeProblem, FabricMaterial, InstrumentTest, Problem, SamplingPlan, ShellSpecimen,
 };
 use crate::characterise::FabricSheet;
-use crate::constitutive::{self, Assumptions, Constitutive, Input, law_inputs, perturbed};
+use crate::constitutive::{self, Assumptions, Constitutive, MeasuredInput, law_inputs, perturbed};
 use crate::finding::{Finding, Place, StudyFact};
 use crate::instrument::{Direction, Parameter, Test};
 use crate::law::Mode;
@@ -31,7 +31,7 @@ use crate::solve::Options;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sampling {
     /// Measured inputs and stand-ins.
-    pub inputs: Vec<Input>,
+    pub inputs: Vec<MeasuredInput>,
     /// Points of each band.
     pub points: u32,
     /// Seed of the points.
@@ -221,7 +221,7 @@ struct Sampler<'a> {
     case: &'a Case,
     assumptions: &'a Assumptions,
     plan: &'a SamplingPlan,
-    inputs: Vec<Input>,
+    inputs: Vec<MeasuredInput>,
     evaluate: Evaluate<'a>,
 }
 
@@ -249,7 +249,7 @@ impl Sampler<'_> {
             );
             return Err(refused(self.case, unknown, text));
         }
-        let (spread, single): (Vec<Input>, Vec<Input>) =
+        let (spread, single): (Vec<MeasuredInput>, Vec<MeasuredInput>) =
             self.inputs.iter().cloned().partition(|i| i.estimate.n > 1 && i.estimate.cv().is_some());
         if let Some(measured) =
             self.plan.exact.iter().find(|name| spread.iter().any(|i| i.name == name.value))
@@ -291,7 +291,7 @@ impl Sampler<'_> {
     fn band(
         &self,
         sheet: &FabricSheet,
-        inputs: &[Input],
+        inputs: &[MeasuredInput],
         population: SampledPopulation,
         quantities: &mut [SampledQuantity],
         watch: Watch<'_>,
@@ -321,7 +321,7 @@ impl Sampler<'_> {
         &self,
         sheet: &FabricSheet,
         quantities: &[SampledQuantity],
-        inputs: &[Input],
+        inputs: &[MeasuredInput],
         values: &[f64],
     ) -> Vec<f64> {
         let (sheet, assumptions) = perturbed(sheet, self.assumptions, inputs, values);

@@ -9,7 +9,7 @@
 use serde::Serialize;
 
 use super::StudyError;
-use crate::constitutive::{Input, SectionDerivative, bands};
+use crate::constitutive::{MeasuredInput, SectionDerivative, bands};
 use crate::element::Mass;
 use crate::fields::{Locator, Recovery, Resultants};
 use crate::model::{Dof, DofGroup, Load, Model, ModelError};
@@ -22,7 +22,7 @@ use crate::solve::{Factors, Solution, VibrationMode};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
     /// Measured inputs.
-    pub inputs: Vec<Input>,
+    pub inputs: Vec<MeasuredInput>,
     /// `w_max`, the displacements, rotations and resultants of the probes as far as they were solved for,
     /// `strain_energy`; of modes `frequency_1` and so on.
     pub predictions: Vec<Prediction>,
@@ -85,7 +85,7 @@ enum Reading {
 pub(super) fn linear_uncertainty(
     model: &Model,
     (solution, factors): (&Solution, &Factors),
-    inputs: &[Input],
+    inputs: &[MeasuredInput],
     probes: &[(&str, Locator)],
     recovery: &Recovery,
 ) -> Result<Uncertainty, StudyError> {
@@ -151,7 +151,7 @@ impl AtProbes<'_> {
     fn slopes(
         &mut self,
         (section, u): (&ShellSection, &[f64]),
-        input: &Input,
+        input: &MeasuredInput,
         motion: Option<&[f64]>,
     ) -> Result<Vec<[f64; 8]>, ModelError> {
         let Some(motion) = motion else { return Ok(vec![[0.0; 8]; self.probes.len()]) };
@@ -174,7 +174,7 @@ const APART: f64 = 1e-4;
 pub(super) fn modal_uncertainty(
     model: &Model,
     (modes, mass): (&[VibrationMode], Mass),
-    inputs: &[Input],
+    inputs: &[MeasuredInput],
 ) -> Result<Uncertainty, StudyError> {
     let mut predictions = Vec::new();
     for (i, mode) in modes.iter().enumerate() {
@@ -231,7 +231,7 @@ impl Prediction {
         unit: &'static str,
         value: f64,
         derivatives: Vec<f64>,
-        inputs: &[Input],
+        inputs: &[MeasuredInput],
     ) -> Self {
         let that_matter: Vec<f64> = (inputs.iter().zip(&derivatives))
             .map(|(input, d)| {

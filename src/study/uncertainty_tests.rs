@@ -37,16 +37,21 @@ const MIXED: &str = "distortion = 0.3\nwarp_angle_deg = 20.0\n\
     [[loads]]\nkind = \"prescribed\"\nset = \"top\"\ndof = \"w\"\nvalue = \"1 mm\"\n\
     [[probes]]\nname = \"point\"\nat = [\"13 cm\", \"7 cm\"]\n";
 
-fn solved(case: &Case, section: &ShellSection, inputs: &[Input]) -> CaseResult {
+fn solved(case: &Case, section: &ShellSection, inputs: &[MeasuredInput]) -> CaseResult {
     PreparedCase::new(case, &Options::default()).unwrap().solve_measured(section.clone(), inputs).unwrap()
 }
 
-fn input(name: &str, derivative: SectionDerivative) -> Input {
-    Input { name: name.into(), estimate: Estimate::single(1.0), source: InputSource::Shear, derivative }
+fn input(name: &str, derivative: SectionDerivative) -> MeasuredInput {
+    MeasuredInput {
+        name: name.into(),
+        estimate: Estimate::single(1.0),
+        source: InputSource::Shear,
+        derivative,
+    }
 }
 
 /// A bending stiffness D11, D22, D66 and each of them as an input, with the shear as a fourth.
-fn plate([b1, b2, h]: [f64; 3]) -> (ShellSection, Vec<Input>) {
+fn plate([b1, b2, h]: [f64; 3]) -> (ShellSection, Vec<MeasuredInput>) {
     let section = ShellSection {
         d_m: Matrix3::new(6000.0, 900.0, 0.0, 900.0, 4000.0, 0.0, 0.0, 0.0, 50.0),
         d_b: Matrix3::from_diagonal(&[b1, b2, h].into()),

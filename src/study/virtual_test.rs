@@ -20,7 +20,7 @@ use super::virtual_loop::VirtualLoop;
 use super::{Case, StudyError};
 use crate::case::{ShellSpecimen, ShellTest};
 use crate::characterise::{FabricSheet, Settings};
-use crate::constitutive::Input;
+use crate::constitutive::MeasuredInput;
 use crate::instrument::{Direction, Parameter, Test};
 use crate::kes::TestSpec;
 use crate::mesh;
@@ -264,7 +264,7 @@ impl PreparedTest {
         direction: Direction,
         section: &ShellSection,
         settings: &Settings,
-        inputs: &[Input],
+        inputs: &[MeasuredInput],
     ) -> Result<VirtualCurve, StudyError> {
         let warp: Vector3<f64> = match direction {
             Direction::Warp => Vector3::x(),
@@ -340,7 +340,7 @@ impl PreparedTest {
         model: &Model,
         u: &[f64],
         apparent: f64,
-        inputs: &[Input],
+        inputs: &[MeasuredInput],
     ) -> Result<Prediction, StudyError> {
         let [low, high] = model.mesh.bounds();
         let scale = 2.0 / (self.test.test().spec().width * self.x * self.x * (high.x - low.x));

@@ -99,14 +99,14 @@ fn bands_agree_with_monte_carlo() {
             );
             d
         };
-        let inputs: Vec<Input> = [
+        let inputs: Vec<MeasuredInput> = [
             ("E warp", five(6000.0, 0.05), section_derivative([1.0, 0.0, 0.5, 0.0], [0.0; 3])),
             ("E weft", five(3000.0, 0.06), section_derivative([0.0, 1.0, 0.5, 0.0], [0.0; 3])),
             ("G", five(60.0, 0.08), section_derivative([0.0, 0.0, 0.0, 1.0], [0.0; 3])),
             ("B warp", five(1e-5, 0.07), section_derivative([0.0; 4], [1.0, 0.0, 0.0])),
             ("B weft", five(6e-6, 0.07), section_derivative([0.0; 4], [0.0, 1.0, 0.0])),
         ]
-        .map(|(name, estimate, derivative)| Input {
+        .map(|(name, estimate, derivative)| MeasuredInput {
             name: name.into(),
             estimate,
             source: InputSource::Shear,

@@ -25,7 +25,7 @@ pub use paper_table::{CheckedClaim, paper_document, paper_text};
 pub use problem::Problem;
 pub use problem::plate::BentPlate;
 pub use suite::suite;
-pub use table::{CheckedLine, Document, LineEntry, document, text};
+pub use table::{CheckedLine, LineEntry, VerifyDocument, document, text};
 
 use crate::platform;
 

@@ -2,7 +2,7 @@
 
 use super::line::{Expected, Line, LineOutcome};
 use super::paper::Claim;
-use super::table::{CheckedLine, ClaimEntry, Document, aligned, document, given, row, summary};
+use super::table::{CheckedLine, ClaimEntry, VerifyDocument, aligned, document, given, row, summary};
 
 /// A claim with what came out of its lines.
 pub type CheckedClaim<'a> = (&'a Claim, Vec<CheckedLine<'a>>);
@@ -57,7 +57,7 @@ fn claimed(checked: &CheckedLine<'_>) -> [String; 7] {
 }
 
 /// `kesf.verify/1` with the claims.
-pub fn paper_document(all: &[CheckedClaim<'_>], seconds: f64) -> Document {
+pub fn paper_document(all: &[CheckedClaim<'_>], seconds: f64) -> VerifyDocument {
     let lines: Vec<CheckedLine<'_>> = all.iter().flat_map(|(_, lines)| lines).copied().collect();
     let claims = all.iter().map(|(claim, _)| ClaimEntry {
         id: claim.id.clone(),

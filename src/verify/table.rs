@@ -144,7 +144,7 @@ fn digits(value: f64) -> String {
 /// `kesf.verify/1`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct Document {
+pub struct VerifyDocument {
     #[cfg_attr(test, schemars(extend("const" = "kesf.verify/1")))]
     schema: Cow<'static, str>,
     lines: Vec<LineEntry>,
@@ -199,8 +199,8 @@ pub struct LineEntry {
 }
 
 /// The document of checked lines.
-pub fn document(all: &[CheckedLine<'_>], seconds: f64) -> Document {
-    Document {
+pub fn document(all: &[CheckedLine<'_>], seconds: f64) -> VerifyDocument {
+    VerifyDocument {
         schema: "kesf.verify/1".into(),
         lines: all.iter().map(line_entry).collect(),
         failed: all.iter().filter(|(_, outcome)| !outcome.pass).count(),

@@ -180,7 +180,7 @@ fn readers(document: &Value) -> Option<[Again; 2]> {
         "kesf.section/1" => readers!(SectionDocument),
         "kesf.sheet/1" => [again::<SheetDocument>, again::<WithFailures<SheetDocument>>],
         "kesf.solution/1" => readers!(SolutionDocument),
-        "kesf.verify/1" => readers!(kesf::verify::Document),
+        "kesf.verify/1" => readers!(kesf::verify::VerifyDocument),
         "kesf.found/1" | "kesf.manifest/1" | "kesf.merged/1" | "kesf.run/1" => return None,
         other => panic!("no reader of {other}"),
     })

@@ -7,7 +7,7 @@ use kesf::constitutive::{Assumptions, Constitutive, section};
 use kesf::instrument::{ReadSettings, read_fabrics};
 use kesf::report::cards::{EXPORTERS, Material, card, read::section_in};
 use kesf::report::json::{section_document, sheet_document, text};
-use kesf::report::read_back::{self, Document};
+use kesf::report::read_back::{self, ReadDocument};
 
 use crate::{Damage, Target, corpus};
 
@@ -67,10 +67,10 @@ fn assert_alike(a: &str, b: &str) {
 
 fn document_holds(bytes: &[u8]) -> bool {
     match read_back::read(bytes) {
-        Ok(Some(Document::Sheets(sheets))) => {
+        Ok(Some(ReadDocument::Sheets(sheets))) => {
             let written = sheet_text(&sheets);
             let again = read_back::read(written.as_bytes()).unwrap_or_else(|e| panic!("{e}\n{written}"));
-            let Some(Document::Sheets(again)) = again else { panic!("another document\n{written}") };
+            let Some(ReadDocument::Sheets(again)) = again else { panic!("another document\n{written}") };
             for (a, b) in sheets.iter().zip(&again) {
                 assert_eq!((&a.name, &a.values, &a.statuses), (&b.name, &b.values, &b.statuses));
                 assert_eq!((&a.moduli, &a.info), (&b.moduli, &b.info));
@@ -84,10 +84,10 @@ fn document_holds(bytes: &[u8]) -> bool {
             }
             true
         }
-        Ok(Some(Document::Sections(sections))) => {
+        Ok(Some(ReadDocument::Sections(sections))) => {
             let written = section_text(&sections);
             let again = read_back::read(written.as_bytes()).unwrap_or_else(|e| panic!("{e}\n{written}"));
-            let Some(Document::Sections(again)) = again else { panic!("another document\n{written}") };
+            let Some(ReadDocument::Sections(again)) = again else { panic!("another document\n{written}") };
             for ((a, of_a), (b, of_b)) in sections.iter().zip(&again) {
                 assert_eq!((&a.name, a.info.origin), (&b.name, b.info.origin));
                 assert_eq!((&of_a.section, &of_a.used), (&of_b.section, &of_b.used));

@@ -315,9 +315,9 @@ fn lsdyna_has_fields_of_ten_columns() {
 /// The open fabric file is an input like a section, and loses nothing of it.
 #[test]
 fn the_open_fabric_file_is_read_back() {
-    use crate::report::read_back::{Document, read};
+    use crate::report::read_back::{ReadDocument, read};
     let text = written("fabric", section()).unwrap();
-    let Some(Document::Sections(found)) = read(text.as_bytes()).unwrap() else { panic!("no section") };
+    let Some(ReadDocument::Sections(found)) = read(text.as_bytes()).unwrap() else { panic!("no section") };
     let [(sheet, made)] = &found[..] else { panic!("{}", found.len()) };
     assert_eq!((sheet.name.as_str(), &made.section), ("Köper 65", &section()));
     assert!(read(text.replace("\"d_m\"", "\"a\"").as_bytes()).is_err());

@@ -30,7 +30,7 @@ pub use data::{
 };
 pub use figure::{Figure, FigureKind};
 pub use one_file::{LIMIT, OneFile, self_contained};
-pub use problems::{DoubtfulValue, Problem, ProblemGroup};
+pub use problems::{DoubtfulValue, ProblemGroup, ProblemLine};
 pub use shapes::{DeflectedShape, ShapeField, Shapes};
 pub use tables::{IndexLine, TableCell};
 pub use text::{fabric_id, local, without_folders};

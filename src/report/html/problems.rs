@@ -13,12 +13,12 @@ pub struct ProblemGroup {
     /// How many it concerns, e.g. `13 of 13 fabrics`.
     pub count: String,
     /// Where and what; none if the count says it all.
-    pub lines: Vec<Problem>,
+    pub lines: Vec<ProblemLine>,
 }
 
 /// One of them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Problem {
+pub struct ProblemLine {
     /// The fabric, if it is about one.
     pub fabric: Option<String>,
     /// The page that shows this fabric, empty for the page itself; `None` if none does.
@@ -120,7 +120,7 @@ fn cause(code: &str, page: &str) -> String {
     format!("<a href=\"{page}#problem-{code}\">{code}</a>{}", known.unwrap_or_default(), code = escape(code))
 }
 
-fn lines(out: &mut String, lines: &[Problem]) {
+fn lines(out: &mut String, lines: &[ProblemLine]) {
     if lines.is_empty() {
         return;
     }

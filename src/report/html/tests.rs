@@ -104,7 +104,7 @@ fn data_cannot_end_their_element() {
 
 #[test]
 fn problems_of_a_code_have_one_cure_and_no_absolute_path() {
-    let line = |place: &str| Problem {
+    let line = |place: &str| ProblemLine {
         fabric: Some("a b".into()),
         page: Some(String::new()),
         place: place.into(),

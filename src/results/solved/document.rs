@@ -10,7 +10,7 @@ use super::search::{SearchEntry, StepEntry, step_entries};
 use crate::finding::Finding;
 use crate::model::Model;
 use crate::quantity::Band;
-use crate::results::sampled::{InputEntry, SamplingEntry};
+use crate::results::sampled::{MeasuredInputEntry, SamplingEntry};
 use crate::results::task::Task;
 use crate::study::{
     AdaptedMeshes, CaseResult, CheckResult, ContactResult, Convergence, History, Prediction, Probe, Status,
@@ -140,7 +140,7 @@ enum UncertaintyEntry {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct FirstOrderEntry {
-    inputs: Vec<InputEntry>,
+    inputs: Vec<MeasuredInputEntry>,
     quantities: IndexMap<String, PredictionEntry>,
 }
 
@@ -221,7 +221,7 @@ const ROUNDING: f64 = 1e-9;
 impl FirstOrderEntry {
     fn new(u: &Uncertainty) -> Self {
         Self {
-            inputs: u.inputs.iter().map(InputEntry::new).collect(),
+            inputs: u.inputs.iter().map(MeasuredInputEntry::new).collect(),
             quantities: u
                 .predictions
                 .iter()

@@ -59,7 +59,7 @@ pub struct BadPivot {
 
 /// The blocks of the matrix and what to make of them.
 #[derive(Clone, Copy)]
-pub struct Input<'a> {
+pub struct FrontInput<'a> {
     pub values: &'a [f64],
     pub form: Form,
     /// Whether the panels are zero already: pages that the system has just cleared.
@@ -74,7 +74,7 @@ pub struct Input<'a> {
 pub fn eliminate(
     tree: &Tree,
     node: &Supernode,
-    input: Input<'_>,
+    input: FrontInput<'_>,
     panel: &mut [f64],
     children: &[Update],
     workspace: &mut Workspace,
