@@ -45,7 +45,9 @@ impl<'c> Samples<'c> {
             self.miss(row, "blank", context.error(row.line, row.column(index), Problem::RaggedRow { found }));
             return Ok(None);
         };
-        if let Some(value) = of_accounts(cell, context.decimal).filter(|_| self.of_accounts) {
+        if self.of_accounts
+            && let Some(value) = of_accounts(cell, context.decimal)
+        {
             return Ok(Some(value));
         }
         match finite(row, index, cell, context) {

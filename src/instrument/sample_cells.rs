@@ -7,8 +7,10 @@ use super::words::folded;
 
 /// `(0.0417)` and `0.0417-`: negative numbers as accounts and old programs write them.
 pub(super) fn of_accounts(cell: &str, decimal: char) -> Option<f64> {
-    // Most cells are settled by their last character.
-    if !cell.trim_end().ends_with([')', '）', '-', '−']) {
+    // Most cells are settled by their last byte.
+    if cell.as_bytes().last().is_none_or(u8::is_ascii_digit)
+        || !cell.trim_end().ends_with([')', '）', '-', '−'])
+    {
         return None;
     }
     let text = folded(cell);
