@@ -49,12 +49,7 @@ impl Scanner<'_, '_> {
     /// The test that an ordinate belongs to, or that the header or the name of the file states.
     fn test_of_columns(&self, columns: &[Column]) -> Option<Test> {
         let stated = self.header.known.get(&Key::Test).and_then(|e| self.context.vocabulary.test(&e.text));
-        let of_columns = columns.iter().find_map(|c| match c.role {
-            Role::ShearForce => Some(Test::Shear),
-            Role::Moment => Some(Test::Bending),
-            Role::Pressure => Some(Test::Compression),
-            _ => None,
-        });
+        let of_columns = columns.iter().find_map(|c| Test::of_ordinate(c.role));
         of_columns.or(stated).or(self.context.label.test)
     }
 }

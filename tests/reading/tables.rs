@@ -92,7 +92,7 @@ fn names_of_rows_have_no_heading_in_tables_of_r() {
     assert!(attempt("\"fabric\",\"B\"\n\"Uno\",0.1,0.2\n").is_err());
 }
 
-/// What a program could not show is missing, and told; signs of significance are as they were.
+/// What a program could not show is missing, and told.
 #[test]
 fn signs_in_the_place_of_numbers_are_told() {
     let content = read("fabric,B warp,LT warp,EMT warp\nx,***,0.6,5\ny,0.1,####,6\n");
