@@ -28,4 +28,24 @@ impl ValueStatus {
             Self::Doubtful => "doubtful",
         }
     }
+
+    /// What stands behind a value in tables and charts; nothing where it was plainly measured.
+    pub fn mark(self) -> &'static str {
+        match self {
+            Self::Measured => "",
+            Self::Inferred => "~",
+            Self::Assumed => "*",
+            Self::Doubtful => "?",
+        }
+    }
+
+    /// What [`mark`](Self::mark) means.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::Measured => "measured",
+            Self::Inferred => "inferred",
+            Self::Assumed => "rests on an assumption",
+            Self::Doubtful => "doubtful (see its findings)",
+        }
+    }
 }

@@ -329,6 +329,7 @@ mod tests {
             simulated_half_width: None,
             simulated_band: None,
             is_closed_loop: false,
+            status: crate::characterise::ValueStatus::Measured,
         }
     }
 

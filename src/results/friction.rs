@@ -128,6 +128,7 @@ pub(super) fn parity_points(sheet: &FabricSheet) -> Vec<ParityPoint> {
                 simulated_half_width: None,
                 simulated_band: None,
                 is_closed_loop: false,
+                status: sheet.status(r.key),
             }
         })
         .collect()

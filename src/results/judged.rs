@@ -64,11 +64,17 @@ fn word(outcome: &Outcome, grounds: &[Ground], is_quick: bool) -> Option<&'stati
 }
 
 fn of_grounds(grounds: &[Ground], is_quick: bool) -> Option<&'static str> {
-    match grounds.iter().map(|ground| ground.status).max().unwrap_or_default() {
+    match rests_on::status(grounds) {
         ValueStatus::Doubtful => Some(DOUBTFUL),
         ValueStatus::Assumed => Some(ASSUMED),
         ValueStatus::Measured | ValueStatus::Inferred => is_quick.then_some(QUICK),
     }
+}
+
+/// What a quantity of the fabric of a task rests on that is not to be relied on.
+pub(super) fn grounds(task: &Task, quantity: &str) -> Vec<Ground> {
+    let (values, findings) = known(task);
+    rests_on::grounds(&values, &findings, quantity)
 }
 
 /// What the status of a prediction says of what it rests on, for the mark behind its value.

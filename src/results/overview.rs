@@ -146,7 +146,7 @@ impl<'c> Prediction<'c> {
                 format!("- ({} measured)", significant(1e2 * measured))
             }
             (value, ..) => value.map_or("-".into(), |value| {
-                format!("{}{}", significant(value), self.row(report).map_or("", doubt))
+                format!("{}{}", significant(value), self.row(report).map(doubt).unwrap_or_default())
             }),
         }
     }
@@ -172,7 +172,7 @@ fn predicted<'r>(report: &'r FabricReport, case: &str, quantity: &str) -> Option
 }
 
 /// The mark of a prediction whose inputs something speaks against, as parameters have it.
-fn doubt(row: &PredictionRow) -> &'static str {
+fn doubt(row: &PredictionRow) -> String {
     mark(of_inputs(row))
 }
 

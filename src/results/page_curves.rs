@@ -42,9 +42,8 @@ fn specimen(specimen: &SpecimenResult) -> SpecimenCurves {
 
 fn simulated_line(tested: &Tested) -> SimulatedLine {
     let how = if tested.simulated.cycle.is_some() { "with friction" } else { "elastic" };
-    let on = tested.assumed.as_ref().map_or(String::new(), |assumed| format!(" on {assumed}"));
     SimulatedLine {
-        label: format!("simulated{on}, {how}"),
+        label: format!("simulated{}, {how}", tested.rests_on(" on ")),
         case: tested.case.clone(),
         direction: tested.simulated.direction.map(|d| d.name().to_string()),
         line: Polyline::of(&tested.curve),

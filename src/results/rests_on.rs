@@ -42,17 +42,18 @@ pub(super) fn grounds(rows: &[FabricRow], findings: &[Finding], quantity: &str) 
 
 /// `rests on an assumed E and a doubtful B warp`; nothing without grounds.
 pub(super) fn remark(grounds: &[Ground]) -> Option<String> {
-    let texts: Vec<&str> = grounds.iter().map(|ground| ground.text.as_str()).collect();
-    (!texts.is_empty()).then(|| format!("rests on {}", texts.join(" and ")))
+    (!grounds.is_empty()).then(|| format!("rests on {}", joined(grounds)))
 }
 
-/// `an assumed E`, where the stiffness that a test along a direction shows is a stand-in of the section.
-pub(super) fn assumed_of_test(test: Test, direction: Direction, findings: &[Finding]) -> Option<String> {
-    let symbol = test.spec().stiffness.as_ref()?.symbol;
-    let is_stand_in = |finding: &Finding| {
-        Substitute::of(&finding.fact).is_some_and(|substitute| substitute.replaces(symbol, direction.name()))
-    };
-    findings.iter().any(is_stand_in).then(|| format!("an assumed {symbol}"))
+/// `an assumed E and a doubtful B warp`.
+pub(super) fn joined<'g>(grounds: impl IntoIterator<Item = &'g Ground>) -> String {
+    let texts: Vec<&str> = grounds.into_iter().map(|ground| ground.text.as_str()).collect();
+    texts.join(" and ")
+}
+
+/// The status that prevails among them.
+pub(super) fn status(grounds: &[Ground]) -> ValueStatus {
+    grounds.iter().map(|ground| ground.status).max().unwrap_or_default()
 }
 
 /// `an assumed E weft`: what stands for a stiffness in a direction (any, if it is empty) that the sheet does not have.
@@ -159,20 +160,17 @@ mod tests {
     fn what_is_doubtful_or_assumed_goes_on_to_what_is_predicted() {
         let (rows, findings) = sheet();
         let remark = |quantity: &str| said(&rows, &findings, quantity);
+        let status = |quantity: &str| super::status(&grounds(&rows, &findings, quantity));
+        assert_eq!((status("B warp"), status("B weft")), (ValueStatus::Doubtful, ValueStatus::Measured));
+        assert_eq!(
+            (status("E warp"), status("drape_coefficient")),
+            (ValueStatus::Assumed, ValueStatus::Doubtful)
+        );
         assert_eq!(remark("bending_length warp"), "a doubtful B warp");
         assert_eq!(remark("bending_length weft"), "");
         assert_eq!(remark("E warp"), "an assumed E");
         assert_eq!(remark("drape_coefficient"), "an assumed E and a doubtful B warp");
         assert_eq!((remark("G warp"), remark(OF_PLATE)), (String::new(), "a doubtful B warp".into()));
-    }
-
-    #[test]
-    fn a_test_that_shows_a_stand_in_says_so() {
-        let (_, findings) = sheet();
-        let assumed = |test, findings: &[Finding]| assumed_of_test(test, Direction::Weft, findings);
-        assert_eq!(assumed(Test::Tensile, &findings).as_deref(), Some("an assumed E"));
-        assert_eq!(assumed(Test::Bending, &findings), None);
-        assert_eq!(assumed(Test::Tensile, &[]), None);
     }
 
     /// A sheet with tests of the warp alone: what is said of the weft rests on them.
@@ -189,11 +187,6 @@ mod tests {
         assert_eq!((remark("E warp"), remark("E weft")), (String::new(), "an assumed E weft".into()));
         assert_eq!(remark("bending_length warp"), "a doubtful B warp");
         assert_eq!(remark("bending_length weft"), "an assumed B weft and a doubtful B warp");
-        assert_eq!(assumed_of_test(Test::Tensile, Direction::Warp, &findings), None);
-        assert_eq!(
-            assumed_of_test(Test::Bending, Direction::Weft, &findings).as_deref(),
-            Some("an assumed B")
-        );
         let one = [Finding::new(SectionFact::OneRigidity { fabric: "a".into(), known: None })];
         assert_eq!(said(&rows[1..], &one, "bending_length warp"), "one B for warp and weft");
     }

@@ -98,14 +98,9 @@ fn band(sheet: &FabricSheet, key: Key, factor: f64) -> String {
     ends.map(|[low, high]| format!(" [{low} to {high}]")).unwrap_or_default()
 }
 
-/// What stands behind a value that is not plainly measured.
-pub(super) fn mark(status: ValueStatus) -> &'static str {
-    match status {
-        ValueStatus::Measured => "",
-        ValueStatus::Inferred => " ~",
-        ValueStatus::Assumed => " *",
-        ValueStatus::Doubtful => " ?",
-    }
+/// What stands behind a value that is not plainly measured, after a blank.
+pub(super) fn mark(status: ValueStatus) -> String {
+    if status == ValueStatus::Measured { String::new() } else { format!(" {}", status.mark()) }
 }
 
 /// Behind a value in the place of a direction that is one for the fabric as a whole.
@@ -114,15 +109,19 @@ pub(super) const BOTH: &str = " both";
 /// What [`BOTH`] means.
 pub(super) const BOTH_LEGEND: &str = "both: one value for warp and weft together, not a measurement of each";
 
-/// What the marks mean, in the order in which they prevail.
-pub(super) const MARKS: &str = "? doubtful (see its findings), * rests on an assumption, ~ inferred";
-
 /// The meaning of the marks, where there are any.
 fn legend(sheet: &FabricSheet) -> String {
     let values = sheet.values.keys().map(|key| sheet.status(*key));
     let moduli = sheet.moduli.keys().map(|(name, direction)| sheet.modulus_status(name, *direction));
     match values.chain(moduli).all(|status| status == ValueStatus::Measured) {
         true => String::new(),
-        false => format!("{MARKS}\n"),
+        false => format!("{}\n", marks()),
     }
+}
+
+/// What the marks mean, in the order in which they prevail.
+fn marks() -> String {
+    let meanings = [ValueStatus::Doubtful, ValueStatus::Assumed, ValueStatus::Inferred]
+        .map(|status| format!("{} {}", status.mark(), status.meaning()));
+    meanings.join(", ")
 }

@@ -3,7 +3,6 @@
 use super::failure::Failure;
 use super::observer::Observer;
 use super::outcome::Outcome;
-use super::rests_on::assumed_of_test;
 use super::task::Task;
 use super::tested::Tested;
 use crate::case::{BendingTest, Case, InstrumentTest, Problem, ShellSpecimen};
@@ -158,8 +157,8 @@ fn test_specimen(task: &Task, specimen: &ShellSpecimen, sheet: &FabricSheet) -> 
             let options = task.options().single();
             curve.cycle = study::simulate_cycle(specimen, direction, sheet, made, &options)?;
         }
-        let assumed = made.as_ref().and_then(|made| assumed_of_test(curve.test, direction, &made.findings));
-        tested.push(Tested { assumed, ..Tested::new(task.case, sheet, curve) });
+        let tested_curve = Tested::new(task.case, sheet, curve);
+        tested.push(Tested { grounds: tested_curve.grounds(task), ..tested_curve });
     }
     Ok(tested)
 }

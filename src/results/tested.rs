@@ -10,10 +10,12 @@ use serde::{Deserialize, Serialize};
 use super::columns::Columns;
 use super::failure::Failure;
 use super::folder::Folder;
+use super::judged;
+use super::rests_on::{self, Ground};
 use super::sampled::{self, SamplingEntry};
 use super::sheet_text::{BOTH, BOTH_LEGEND};
 use super::task::Task;
-use crate::characterise::{FabricSheet, Modulus};
+use crate::characterise::{FabricSheet, Modulus, ValueStatus};
 use crate::instrument::{Direction, Parameter, Test};
 use crate::kes::StiffnessSpec;
 use crate::law::Mode;
@@ -41,8 +43,8 @@ pub struct Tested {
     pub comparison: Option<Comparison>,
     /// The stiffness that the test is meant to measure; none of compression.
     pub stiffness: Option<Stiffness>,
-    /// `an assumed E`, where the section has a stand-in for this stiffness.
-    pub assumed: Option<String>,
+    /// What the simulated curve rests on that is not to be relied on: a stand-in of the section, a doubtful stiffness.
+    pub(super) grounds: Vec<Ground>,
 }
 
 /// The stiffness that a test measures.
@@ -74,9 +76,23 @@ impl Tested {
             curve,
             comparison: compare_curves(sheet, &simulated),
             stiffness: stiffness(case, sheet, test, direction),
-            assumed: None,
+            grounds: Vec::new(),
             simulated,
         }
+    }
+
+    /// What its stiffness rests on that is not to be relied on.
+    pub(super) fn grounds(&self, task: &Task) -> Vec<Ground> {
+        let of_stiffness =
+            |s: &Stiffness| judged::grounds(task, &format!("{} {}", s.symbol, self.direction()));
+        self.stiffness.as_ref().map_or_else(Vec::new, of_stiffness)
+    }
+
+    /// ` an assumed E and a doubtful B warp`, with the words before it; nothing where all was measured.
+    pub(super) fn rests_on(&self, before: &str) -> String {
+        let weak = self.grounds.iter().filter(|ground| ground.status != ValueStatus::Measured);
+        let text = rests_on::joined(weak);
+        if text.is_empty() { text } else { format!("{before}{text}") }
     }
 
     fn direction(&self) -> &'static str {
@@ -280,6 +296,7 @@ fn parity_point(task: &Task, t: &Tested) -> Option<ParityPoint> {
         simulated_half_width: t.band().map(|b| b.half_width),
         simulated_band: None,
         is_closed_loop: true,
+        status: rests_on::status(&t.grounds),
     })
 }
 
@@ -337,9 +354,8 @@ fn curve(task: Option<&Task>, t: &Tested) -> SimulatedCurve {
         Some(Mode::Elastic | Mode::Friction) => "with friction",
     };
     let comparison = t.comparison.as_ref();
-    let on = t.assumed.as_ref().map_or(String::new(), |assumed| format!(", on {assumed}"));
     SimulatedCurve {
-        label: format!("{label}{on}"),
+        label: format!("{label}{}", t.rests_on(", on ")),
         direction: t.simulated.direction,
         curve: t.curve.clone(),
         rmse: comparison.map(|c| c.rmse),

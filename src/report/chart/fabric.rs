@@ -1,7 +1,11 @@
 //! The charts of a fabric, one for each test.
 
+use std::collections::BTreeSet;
+
+use crate::characterise::Key;
 use crate::characterise::{FabricSheet, mean_branches};
 use crate::instrument::{Direction, Origin, Parameter, Shape, Test};
+use crate::kes::ValueStatus;
 use crate::quantity::{Curve, Estimate, stated_repeats};
 use crate::report::number::{fixed, plain_exponent, power_of_ten, significant, unit_text, with_spread};
 use crate::study::Comparison;
@@ -283,20 +287,29 @@ fn value_rows(sheet: &FabricSheet, test: Test) -> Vec<Row> {
     let parameters: Vec<Parameter> =
         Parameter::ALL.iter().copied().filter(|p| p.test() == Some(test)).collect();
     let estimates = |p: Parameter| {
-        [None, Some(Direction::Warp), Some(Direction::Weft), Some(Direction::Bias)]
-            .into_iter()
-            .filter_map(move |d| sheet.get(p, d).map(|e| (d, e)))
+        [None, Some(Direction::Warp), Some(Direction::Weft), Some(Direction::Bias)].into_iter().filter_map(
+            move |direction| {
+                let key = Key { parameter: p, direction };
+                sheet.values.get(&key).map(|estimate| Stated {
+                    direction,
+                    estimate,
+                    status: sheet.status(key),
+                })
+            },
+        )
     };
     let counts: Vec<Option<u64>> = parameters
         .iter()
         .flat_map(|&p| estimates(p))
-        .map(|(_, e)| stated_repeats(e.n as u64, e.sd))
+        .map(|s| stated_repeats(s.estimate.n as u64, s.estimate.sd))
         .collect();
     let Some(heading) = heading_of(&counts) else { return Vec::new() };
     let mut rows = vec![Row::Heading(heading)];
+    let mut statuses = BTreeSet::new();
     for p in parameters {
-        let found: Vec<(Option<Direction>, &Estimate)> = estimates(p).collect();
-        let largest = found.iter().fold(0f64, |a, (_, e)| a.max(e.mean.abs())) / p.kes_factor();
+        let found: Vec<Stated> = estimates(p).collect();
+        statuses.extend(found.iter().map(|s| s.status));
+        let largest = found.iter().fold(0f64, |a, s| a.max(s.estimate.mean.abs())) / p.kes_factor();
         let exponent = plain_exponent(largest);
         let factor = p.kes_factor() * 10f64.powi(exponent);
         let power = (exponent != 0).then(|| power_of_ten(exponent));
@@ -305,20 +318,43 @@ fn value_rows(sheet: &FabricSheet, test: Test) -> Vec<Row> {
         match found.as_slice() {
             [] => {}
             // A short unit leaves room for the value in the same line.
-            [(None, only)] if unit.chars().count() <= 2 => {
-                let value = format!("{} {unit}", with_spread(only, factor));
-                rows.push(Row::Value(symbol(p).into(), value.trim_end().into()));
+            [only @ Stated { direction: None, .. }] if unit.chars().count() <= 2 => {
+                rows.push(Row::Value(symbol(p).into(), only.text(factor, &unit)));
             }
             several => {
                 rows.push(Row::Value(symbol(p).into(), unit));
-                rows.extend(several.iter().map(|(direction, estimate)| {
-                    let name = direction.map_or("  fabric".into(), |d| format!("  {d}"));
-                    Row::Value(name, with_spread(estimate, factor))
+                rows.extend(several.iter().map(|stated| {
+                    let name = stated.direction.map_or("  fabric".into(), |d| format!("  {d}"));
+                    Row::Value(name, stated.text(factor, ""))
                 }));
             }
         }
     }
+    rows.extend(meanings(&statuses));
     rows
+}
+
+/// A value of the sheet as it stands beside the plot.
+struct Stated<'s> {
+    direction: Option<Direction>,
+    estimate: &'s Estimate,
+    status: ValueStatus,
+}
+
+impl Stated<'_> {
+    /// Mean ± SD, unit, and the mark of a value that was not plainly measured.
+    fn text(&self, factor: f64, unit: &str) -> String {
+        let words = [&with_spread(self.estimate, factor), unit, self.status.mark()];
+        words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// What the marks mean that stand behind values.
+fn meanings(statuses: &BTreeSet<ValueStatus>) -> impl Iterator<Item = Row> {
+    statuses.iter().rev().filter(|status| !status.mark().is_empty()).map(|status| {
+        let color = if *status == ValueStatus::Inferred { GREY } else { palette::WARNING };
+        Row::Remark(format!("{} {}", status.mark(), status.meaning()), color)
+    })
 }
 
 /// What stands over values with so many repeats each; `None` where nobody stated how many.

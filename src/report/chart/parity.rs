@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::kes::ValueStatus;
 use crate::report::number::{fixed, prefixed, significant};
 
 use super::axes::{Frame, Label, Range};
@@ -9,7 +10,7 @@ use super::canvas::{Canvas, Point, Stroke, Type, WIDTH};
 use super::error::ChartError;
 use super::head::Head;
 use super::output::Chart;
-use super::palette::{GREY, INK, lighter};
+use super::palette::{GREY, INK, WHITE, lighter};
 use super::panel::{self, Row, marker};
 
 /// Values that differ by less than this part of their mean are one.
@@ -39,6 +40,9 @@ pub struct ParityPoint {
     /// Whether the model was made of the measured value itself: agreement then validates nothing, and has no statistics.
     #[serde(default)]
     pub is_closed_loop: bool,
+    /// How far the values can be relied on: what prevails of the measured value and of what the simulated one rests on.
+    #[serde(default)]
+    pub status: ValueStatus,
 }
 
 /// How far simulated values are from measured ones.
@@ -91,9 +95,10 @@ pub fn parity(points: &[ParityPoint], title: &str, subtitle: &str) -> Result<Cha
     let groups = in_order(usable.iter().map(|p| p.group.as_str()));
     let mut canvas = Canvas::new();
     Head { title, kind: "", subtitle, origin: "" }.draw(&mut canvas)?;
+    let mut without_name = 0;
     for (cell, quantity) in cells(quantities.len()).into_iter().zip(&quantities) {
         let mine: Vec<&ParityPoint> = usable.iter().copied().filter(|p| p.quantity == *quantity).collect();
-        draw_panel(&mut canvas, cell, quantity, &mine, &groups)?;
+        without_name += draw_panel(&mut canvas, cell, quantity, &mine, &groups)?;
     }
     let mut rows = vec![
         Row::Sample(Stroke::solid(INK, 3.0), "equal (1:1)".into()),
@@ -113,6 +118,16 @@ pub fn parity(points: &[ParityPoint], title: &str, subtitle: &str) -> Result<Cha
     if usable.iter().any(|p| p.simulated_band.is_some()) {
         rows.push(Row::Gap);
         rows.push(Row::Remark("Upright bars: lowest to highest simulated value.".into(), GREY));
+    }
+    if usable.iter().any(|p| is_weak(p)) {
+        rows.push(Row::Gap);
+        let text = "Hollow: rests on a value that is assumed or doubtful (see the tables).";
+        rows.push(Row::Remark(text.into(), GREY));
+    }
+    if without_name > 0 {
+        rows.push(Row::Gap);
+        let text = format!("Names left out for want of room: {without_name} (see the tables).");
+        rows.push(Row::Remark(text, GREY));
     }
     panel::draw(&mut canvas, &rows, [1420.0, WIDTH as f64 - 40.0], [200.0, 1300.0])?;
     Ok(canvas.chart())
@@ -149,13 +164,14 @@ fn cells(count: usize) -> Vec<[f64; 4]> {
         .collect()
 }
 
+/// Draws the points of a quantity; how many of them have no room for their name.
 fn draw_panel(
     canvas: &mut Canvas,
     [left, top, right, bottom]: [f64; 4],
     quantity: &str,
     points: &[&ParityPoint],
     groups: &[&str],
-) -> Result<(), ChartError> {
+) -> Result<usize, ChartError> {
     let largest = points.iter().fold(0f64, |a, p| a.max(p.measured.abs()).max(p.simulated.abs()));
     let (factor, unit) = prefixed(largest, &points[0].unit);
     let range = range(points, factor);
@@ -199,8 +215,16 @@ fn draw_panel(
     for (point, at) in points.iter().zip(&places) {
         let group = groups.iter().position(|g| *g == point.group).unwrap_or(0);
         marker(canvas, *at, 10.0, group)?;
+        if is_weak(point) {
+            canvas.dot(*at, 5.0, WHITE)?;
+        }
     }
     labels(canvas, points, &places, &frame)
+}
+
+/// Whether a point rests on what was assumed or is doubtful; its marker is hollow.
+fn is_weak(point: &ParityPoint) -> bool {
+    matches!(point.status, ValueStatus::Assumed | ValueStatus::Doubtful)
 }
 
 /// What stands above a panel: how well its points agree, or that this is no validation.
@@ -260,14 +284,15 @@ fn bands(canvas: &mut Canvas, frame: &Frame) -> Result<(), ChartError> {
     Ok(())
 }
 
-/// Names beside the points, each where it meets no other name, point or edge; else it is left out.
+/// Names beside the points, each where it meets no other name, point or edge; how many are left out.
 fn labels(
     canvas: &mut Canvas,
     points: &[&ParityPoint],
     places: &[Point],
     frame: &Frame,
-) -> Result<(), ChartError> {
+) -> Result<usize, ChartError> {
     let kind = Type::new(22.0, INK);
+    let mut without_name = 0;
     let mut taken: Vec<[f64; 4]> =
         places.iter().map(|p| [p.0 - 11.0, p.1 - 11.0, p.0 + 11.0, p.1 + 11.0]).collect();
     for (point, &(x, y)) in points.iter().zip(places) {
@@ -300,9 +325,11 @@ fn labels(
         if let Some(at) = free {
             taken.push([at.0, at.1 - 18.0, at.0 + width, at.1 + 5.0]);
             canvas.text(at, &point.label, kind)?;
+        } else {
+            without_name += 1;
         }
     }
-    Ok(())
+    Ok(without_name)
 }
 
 /// Whether a box on the page is crossed by the 1:1 line.

@@ -11,7 +11,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 use super::*;
-use crate::characterise::{self, Branch, FabricSheet, Key, SpecimenResult, Window};
+use crate::characterise::{self, Branch, FabricSheet, Key, SpecimenResult, ValueStatus, Window};
 use crate::instrument::{self, Direction, FabricInfo, Measurement, Origin, Parameter, Test};
 use crate::quantity::{Curve, Estimate};
 use crate::study;
@@ -347,6 +347,7 @@ fn parity_of_one_and_of_four_quantities() {
         simulated_half_width: Some(0.05 * scale * (1.0 + 0.9 * i as f64)),
         simulated_band: i.is_multiple_of(3).then_some([0.9 * scale, 1.2 * scale * (1.0 + i as f64)]),
         is_closed_loop: false,
+        status: if i == 3 { ValueStatus::Doubtful } else { ValueStatus::Measured },
     };
     let one: Vec<ParityPoint> = (0..10).map(|i| point(i, "Bending rigidity B", "N·m", 1.1e-6)).collect();
     drawn("parity-one.png", || parity(&one, "Simulated against measured", "ten fabrics"));
@@ -369,7 +370,40 @@ fn parity_of_one_and_of_four_quantities() {
     let chart = parity(&four, "Simulated against measured", "ten fabrics").unwrap();
     let texts = svg_texts(&chart.svg().unwrap());
     assert!(texts.contains("published") && texts.contains("data") && !texts.contains('…'), "{texts}");
+    let names = |texts: &str| texts.lines().filter(|line| names.contains(line)).count();
+    let left_out = four.len() - names(&texts);
+    assert!(
+        left_out > 0 && one_line(&texts).contains(&format!("Names left out for want of room: {left_out} "))
+    );
+    assert!(one_line(&texts).contains("Hollow: rests on a value that is assumed or doubtful"), "{texts}");
     keep("parity-names.png", &chart.png().unwrap());
+}
+
+/// The lines of a chart as one.
+fn one_line(texts: &str) -> String {
+    texts.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// A value that a finding speaks against looks in the chart as it does in the table.
+#[test]
+fn values_that_are_not_plainly_measured_have_their_marks() {
+    let mut mock = Mock::new("Cotton poplin", Origin::Synthetic);
+    mock.bending(WARP, 0.092, 0.058, 3);
+    mock.bending(WEFT, 0.051, 0.031, 3);
+    let texts = |sheet: &FabricSheet| svg_texts(&bending(sheet, &[]).unwrap().svg().unwrap());
+    let has_marks = |texts: &str| texts.lines().any(|line| line.ends_with(['?', '*', '~']));
+    assert!(!has_marks(&texts(&mock.sheet)));
+    let key = |parameter, direction| Key { parameter, direction };
+    mock.sheet.statuses.insert(key(Parameter::B, WARP), ValueStatus::Doubtful);
+    mock.sheet.statuses.insert(key(Parameter::Hb, WEFT), ValueStatus::Assumed);
+    let texts = texts(&mock.sheet);
+    let ending_in = |mark: &str| texts.lines().filter(|line| line.ends_with(mark)).count();
+    assert_eq!((ending_in(" ?"), ending_in(" *"), ending_in(" ~")), (1, 1, 0), "{texts}");
+    assert!(
+        texts.contains("? doubtful (see its findings)") && texts.contains("* rests on an assumption"),
+        "{texts}"
+    );
+    drawn("bending-marks.png", || bending(&mock.sheet, &[]));
 }
 
 #[test]
