@@ -65,28 +65,63 @@ pub(super) enum BendingKind {
     FabBendLoop,
 }
 
-/// A bending test of a strip.
+/// A bending test.
 #[derive(Clone, Debug)]
 pub enum BendingTest {
+    /// Of a strip with a section, along warp and weft.
+    Strip(StripBending),
+    /// The bend loops of FAB, with the records of a fabric.
+    FabBendLoop(FabBendLoop),
+}
+
+/// A bending test of a strip.
+#[derive(Clone, Debug)]
+pub struct StripBending {
+    /// How the strip is bent.
+    pub kind: StripKind,
+    /// The strip.
+    pub strip: Strip,
+}
+
+/// How a strip is bent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StripKind {
     /// Peirce, Shirley, FAST-2: the overhang at 41.5°.
-    Cantilever(Strip),
-    /// A strip hung by both ends, which point upwards.
+    Cantilever,
+    /// Hung by both ends, which point upwards.
     HeartLoop {
-        /// The strip.
-        strip: Strip,
         /// Its length.
         length: Length,
     },
-    /// FAB: force against the distance of two clamps, with the records of a fabric.
-    FabBendLoop {
-        /// The fabric.
-        fabric: FabricMaterial,
-        /// Elements along half of the strip, 4 at least, where the case says so.
-        cells: Option<usize>,
-        /// The tests that serve to identify the law; empty for all.
-        from: Vec<FabKind>,
-    },
 }
+
+impl StripKind {
+    /// Whether the strip is simulated with the friction of its fabric too.
+    pub fn has_friction(&self) -> bool {
+        match self {
+            Self::Cantilever => true,
+            Self::HeartLoop { .. } => false,
+        }
+    }
+}
+
+/// FAB: force against the distance of two clamps, beside the records of a fabric.
+#[derive(Clone, Debug)]
+pub struct FabBendLoop {
+    /// The fabric.
+    pub fabric: FabricMaterial,
+    /// Elements along half of the strip, 4 at least, where the case says so.
+    pub cells: Option<usize>,
+    /// The tests that serve to identify the law; empty for all.
+    pub from: Vec<FabKind>,
+}
+
+/// The name of each bending test in a case, and what it gives.
+pub(crate) const BENDING_TESTS: [(&str, &str); 3] = [
+    ("cantilever", "overhang at 41.5 degrees, bending length"),
+    ("heart_loop", "strip hung by both ends: height, and B from it"),
+    ("fab_bend_loop", "FAB force against clamp distance: B, predictions"),
+];
 
 /// A strip that is bent.
 #[derive(Clone, Debug)]
@@ -126,7 +161,10 @@ impl BendingTestTable {
                 return refused(at.value_place(key), message);
             }
         }
-        let (cells, width) = (self.cells, self.width);
+        let cells = self.cells;
+        let of_strip = |kind, material| {
+            Ok(BendingTest::Strip(StripBending { kind, strip: Strip { material, cells, width: self.width } }))
+        };
         let from: Vec<FabKind> = self.from.iter().flatten().map(|t| t.kind()).collect();
         if self.from.is_some() && !self.uses_records() {
             return refused(at.key_place("from"), "only a fab_bend_loop has `from`: remove it");
@@ -137,20 +175,18 @@ impl BendingTestTable {
             return refused(at.value_place("from"), message);
         }
         match (self.test, self.length, material) {
-            (BendingKind::Cantilever, None, material) => {
-                Ok(BendingTest::Cantilever(Strip { material, cells, width }))
-            }
+            (BendingKind::Cantilever, None, material) => of_strip(StripKind::Cantilever, material),
             (BendingKind::Cantilever, Some(_), _) => {
                 refused(at.key_place("length"), "a cantilever finds its own length: remove `length`")
             }
             (BendingKind::HeartLoop, Some(length), material) => {
-                Ok(BendingTest::HeartLoop { strip: Strip { material, cells, width }, length })
+                of_strip(StripKind::HeartLoop { length }, material)
             }
             (BendingKind::HeartLoop, None, _) => {
                 let message = "a heart_loop needs the `length` of its strip, such as \"15 cm\"";
                 refused(at.place(), message)
             }
-            (BendingKind::FabBendLoop, length, _) if length.or(width).is_some() => {
+            (BendingKind::FabBendLoop, length, _) if length.or(self.width).is_some() => {
                 let key = if length.is_some() { "length" } else { "width" };
                 refused(
                     at.key_place(key),
@@ -158,12 +194,27 @@ impl BendingTestTable {
                 )
             }
             (BendingKind::FabBendLoop, _, Material::Fabric(fabric)) => {
-                Ok(BendingTest::FabBendLoop { fabric, cells, from })
+                Ok(BendingTest::FabBendLoop(FabBendLoop { fabric, cells, from }))
             }
             (BendingKind::FabBendLoop, _, Material::Section(_)) => refused(
                 case.key_place("section"),
                 "a fab_bend_loop needs the records of a fabric: name a `fabric` in the place of the [section]",
             ),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_bending_test_is_listed_under_its_name() {
+        for (name, _) in BENDING_TESTS {
+            let kind: Result<BendingKind, _> = serde_json::from_value(name.into());
+            assert!(kind.is_ok(), "{name}");
+        }
+        let schema = schemars::schema_for!(BendingKind);
+        assert_eq!(schema.get("oneOf").unwrap().as_array().unwrap().len(), BENDING_TESTS.len());
     }
 }

@@ -47,7 +47,8 @@ use crate::solve::{Method, Options};
 
 pub use adaptive::Adaptive;
 pub use analysis::{Analysis, Buckling, Linear, Modal, Nonlinear};
-pub use bending_test::{BendingTest, Strip};
+pub(crate) use bending_test::BENDING_TESTS;
+pub use bending_test::{BendingTest, FabBendLoop, Strip, StripBending, StripKind};
 pub use check::{Check, ProbePoint, Reference, ReferenceKind};
 pub(crate) use check::{numbered, unit_of};
 pub use error::CaseError;
@@ -209,7 +210,7 @@ impl Case {
 
     /// Whether the case compares with FAB bend records, which few fabrics have.
     pub fn is_for_fab_records(&self) -> bool {
-        matches!(self.problem, Problem::BendingTest(BendingTest::FabBendLoop { .. }))
+        matches!(self.problem, Problem::BendingTest(BendingTest::FabBendLoop(_)))
     }
 
     /// The problem of a case that is solved; none of another kind.

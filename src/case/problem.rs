@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::analysis::Analysis;
-use super::bending_test::BendingTest;
+use super::bending_test::{BendingTest, FabBendLoop};
 use super::check::{Check, ProbePoint};
 use super::loads::SheetLoad;
 use super::material::{FabricMaterial, Material, SectionTable};
@@ -151,7 +151,7 @@ impl Problem {
     pub fn fabric(&self) -> Option<&FabricMaterial> {
         match self {
             Self::InstrumentTest(InstrumentTest::Compression(fabric))
-            | Self::BendingTest(BendingTest::FabBendLoop { fabric, .. }) => Some(fabric),
+            | Self::BendingTest(BendingTest::FabBendLoop(FabBendLoop { fabric, .. })) => Some(fabric),
             other => other.material().and_then(Material::fabric),
         }
     }
@@ -167,11 +167,9 @@ impl Problem {
             Self::Sheet(problem) => Some(&problem.material),
             Self::Drape(problem) => Some(&problem.material),
             Self::InstrumentTest(InstrumentTest::Shell(specimen)) => Some(&specimen.material),
-            Self::BendingTest(BendingTest::Cantilever(strip) | BendingTest::HeartLoop { strip, .. }) => {
-                Some(&strip.material)
-            }
+            Self::BendingTest(BendingTest::Strip(test)) => Some(&test.strip.material),
             Self::InstrumentTest(InstrumentTest::Compression(_))
-            | Self::BendingTest(BendingTest::FabBendLoop { .. }) => None,
+            | Self::BendingTest(BendingTest::FabBendLoop(_)) => None,
         }
     }
 }

@@ -9,8 +9,6 @@ mod branch;
 mod buckled;
 mod checks;
 mod choices;
-mod closed_loop;
-mod compression;
 mod crossing;
 #[cfg(test)]
 mod doubtful;
@@ -33,9 +31,7 @@ mod statistics;
 mod status;
 mod strip;
 mod strip_bending;
-mod surface;
 mod tables;
-mod tensile;
 
 pub use crate::kes::{Key, ValueStatus};
 pub use choices::{CycleChoice, Modulus, Sides, SlopeMethod, Sweeps};

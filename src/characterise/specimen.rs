@@ -1,8 +1,15 @@
-//! One specimen in one test: the record checked, split, corrected and evaluated.
+//! One specimen in one test: the record checked, split, corrected and evaluated, in a file a definition.
 
+mod closed_loop;
+mod compression;
+mod surface;
+mod tensile;
+
+pub(super) use closed_loop::TURNED;
+
+use super::Settings;
 use super::evaluation::Notes;
 use super::sheet::SpecimenResult;
-use super::{Settings, closed_loop, compression, surface, tensile};
 use crate::finding::{EvaluationFact, Finding, Subject};
 use crate::instrument::{Measurement, Parameter, Shape, Test};
 use crate::quantity::Curve;

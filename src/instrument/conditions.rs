@@ -1,125 +1,234 @@
 //! Test conditions: what a file states, else what its owner states, else the standard set.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use serde::Deserialize;
+use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, Visitor};
 
 use super::dialect::Key;
 use super::{Conditions, Direction, Measurement, Source, Test};
-use crate::quantity::{Angle, Curvature, Curve, Force, Length, LineForce, Pressure};
+#[cfg(test)]
+use crate::quantity::schema;
+use crate::quantity::{Curve, Force, Length, LineForce, deserialize_by};
 
 /// Conditions that files leave out; the `[conditions]` of fabric.toml and of dialects.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct StatedConditions {
     /// Specimen width in every test.
     pub width: Option<Length>,
-    /// FB1 tensile.
-    pub tensile: TensileConditions,
-    /// FB1 shear.
-    pub shear: ShearConditions,
-    /// FB2 pure bending.
-    pub bending: BendingConditions,
-    /// FB3 compression.
-    pub compression: CompressionConditions,
-    /// FB4 surface friction.
-    pub friction: SurfaceConditions,
-    /// FB4 surface roughness.
-    pub roughness: SurfaceConditions,
-}
-
-/// Conditions of FB1 tensile.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, default)]
-pub struct TensileConditions {
-    /// Specimen width.
-    pub width: Option<Length>,
-    /// Distance between the jaws.
-    pub gauge: Option<Length>,
-    /// Set maximum of the force per width.
-    pub maximum: Option<LineForce>,
-}
-
-/// Conditions of FB1 shear.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, default)]
-pub struct ShearConditions {
-    /// Specimen width.
-    pub width: Option<Length>,
-    /// Distance between the jaws.
-    pub gauge: Option<Length>,
-    /// Set maximum of the angle.
-    pub maximum: Option<Angle>,
-    /// Constant tension per width.
-    pub pretension: Option<LineForce>,
-}
-
-/// Conditions of FB2.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, default)]
-pub struct BendingConditions {
-    /// Specimen width.
-    pub width: Option<Length>,
-    /// Distance between the clamps.
-    pub gauge: Option<Length>,
-    /// Set maximum of the curvature.
-    pub maximum: Option<Curvature>,
-}
-
-/// Conditions of FB3.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, default)]
-pub struct CompressionConditions {
-    /// Set maximum of the pressure.
-    pub maximum: Option<Pressure>,
-}
-
-/// Conditions of FB4.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, default)]
-pub struct SurfaceConditions {
-    /// Load on the contactor: a friction force is divided by it.
-    pub contact: Option<Force>,
-    /// Length of the sweep.
-    pub maximum: Option<Length>,
-    /// Tension per width along the sweep.
-    pub pretension: Option<LineForce>,
-}
-
-impl SurfaceConditions {
-    fn or(&self, other: &Self) -> Self {
-        Self {
-            contact: self.contact.or(other.contact),
-            maximum: self.maximum.or(other.maximum),
-            pretension: self.pretension.or(other.pretension),
-        }
-    }
-
-    fn stated(&self) -> Stated {
-        Stated {
-            maximum: self.maximum.map(Length::si),
-            pretension: self.pretension,
-            contact: self.contact,
-            ..Stated::default()
-        }
-    }
+    /// What is stated of single tests, `[conditions.tensile]` and so on.
+    pub tests: BTreeMap<Test, TestConditions>,
 }
 
 /// What is stated of one test.
-#[derive(Default)]
-struct Stated {
-    width: Option<Length>,
-    gauge: Option<Length>,
-    /// SI.
-    maximum: Option<f64>,
-    pretension: Option<LineForce>,
-    contact: Option<Force>,
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TestConditions {
+    /// Specimen width.
+    pub width: Option<Length>,
+    /// Distance between jaws or clamps.
+    pub gauge: Option<Length>,
+    /// The set maximum (SI): see [`TestSpec::maximum`](crate::kes::TestSpec::maximum).
+    pub maximum: Option<f64>,
+    /// Constant tension per width, across the specimen or along a sweep.
+    pub pretension: Option<LineForce>,
+    /// Load on a contactor: a friction force is divided by it.
+    pub contact: Option<Force>,
+}
+
+impl TestConditions {
+    fn or(&self, other: &Self) -> Self {
+        Self {
+            width: self.width.or(other.width),
+            gauge: self.gauge.or(other.gauge),
+            maximum: self.maximum.or(other.maximum),
+            pretension: self.pretension.or(other.pretension),
+            contact: self.contact.or(other.contact),
+        }
+    }
+}
+
+/// The width of all specimens, beside the tables of tests.
+const WIDTH: &str = "width";
+
+/// What may be stated of a test: a specimen has a size where there are jaws or clamps, and a tension or a load on a
+/// contactor where the test has one.
+fn keys(test: Test) -> Vec<&'static str> {
+    let spec = test.spec();
+    let all = [
+        (WIDTH, spec.gauge != 0.0),
+        ("gauge", spec.gauge != 0.0),
+        ("maximum", true),
+        ("pretension", spec.pretension != 0.0),
+        ("contact", spec.contact != 0.0),
+    ];
+    all.into_iter().filter(|(_, is_known)| *is_known).map(|(key, _)| key).collect()
+}
+
+impl<'de> Deserialize<'de> for StatedConditions {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        d.deserialize_map(OfTests)
+    }
+}
+
+/// Reads the table of all tests.
+struct OfTests;
+
+impl<'de> Visitor<'de> for OfTests {
+    type Value = StatedConditions;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a map")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<StatedConditions, A::Error> {
+        let known: Vec<&str> = std::iter::once(WIDTH).chain(Test::ALL.map(Test::name)).collect();
+        let mut stated = StatedConditions::default();
+        while let Some(key) = map.next_key_seed(KeyOf(&known))? {
+            match Test::ALL.into_iter().find(|test| test.name() == key) {
+                Some(test) => {
+                    let of_test = map.next_value_seed(OfTest(test))?;
+                    stated.tests.insert(test, of_test);
+                }
+                None => stated.width = Some(map.next_value()?),
+            }
+        }
+        Ok(stated)
+    }
+}
+
+/// Reads the table of a test.
+struct OfTest(Test);
+
+impl<'de> DeserializeSeed<'de> for OfTest {
+    type Value = TestConditions;
+
+    fn deserialize<D: Deserializer<'de>>(self, d: D) -> Result<TestConditions, D::Error> {
+        d.deserialize_map(self)
+    }
+}
+
+impl<'de> Visitor<'de> for OfTest {
+    type Value = TestConditions;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a map")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<TestConditions, A::Error> {
+        let mut stated = TestConditions::default();
+        while let Some(key) = map.next_key_seed(KeyOf(&keys(self.0)))? {
+            match key {
+                WIDTH => stated.width = Some(map.next_value()?),
+                "gauge" => stated.gauge = Some(map.next_value()?),
+                "pretension" => stated.pretension = Some(map.next_value()?),
+                "contact" => stated.contact = Some(map.next_value()?),
+                _ => stated.maximum = Some(map.next_value_seed(MaximumOf(self.0))?),
+            }
+        }
+        Ok(stated)
+    }
+}
+
+/// Reads the maximum of a test.
+struct MaximumOf(Test);
+
+impl<'de> DeserializeSeed<'de> for MaximumOf {
+    type Value = f64;
+
+    fn deserialize<D: Deserializer<'de>>(self, d: D) -> Result<f64, D::Error> {
+        deserialize_by(d, self.0.spec().read_maximum, self.0.spec().customary_maximum)
+    }
+}
+
+/// Reads one of the known keys.
+struct KeyOf<'k>(&'k [&'static str]);
+
+impl<'de> DeserializeSeed<'de> for KeyOf<'_> {
+    type Value = &'static str;
+
+    fn deserialize<D: Deserializer<'de>>(self, d: D) -> Result<&'static str, D::Error> {
+        d.deserialize_identifier(self)
+    }
+}
+
+impl Visitor<'_> for KeyOf<'_> {
+    type Value = &'static str;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a key")
+    }
+
+    fn visit_str<E: Error>(self, found: &str) -> Result<&'static str, E> {
+        // In the words of derived deserialisers, which are worded anew in one place.
+        let unknown = || {
+            let known: Vec<String> = self.0.iter().map(|key| format!("`{key}`")).collect();
+            E::custom(format!("unknown field `{found}`, expected one of {}", known.join(", ")))
+        };
+        self.0.iter().find(|key| **key == found).copied().ok_or_else(unknown)
+    }
+}
+
+#[cfg(test)]
+impl schemars::JsonSchema for StatedConditions {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "StatedConditions".into()
+    }
+
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        let mut properties = serde_json::Map::new();
+        let width = described(generator.subschema_for::<Length>(), "Specimen width in every test.");
+        properties.insert(WIDTH.into(), width);
+        for test in Test::ALL {
+            properties.insert(test.name().into(), schema_of(test, generator));
+        }
+        schemars::json_schema!({
+            "type": "object",
+            "additionalProperties": false,
+            "properties": properties,
+            "description": "Conditions that files leave out; the `[conditions]` of fabric.toml and of dialects.",
+        })
+    }
+}
+
+#[cfg(test)]
+fn schema_of(test: Test, generator: &mut schemars::SchemaGenerator) -> serde_json::Value {
+    let spec = test.spec();
+    let mut properties = serde_json::Map::new();
+    for key in keys(test) {
+        let (schema, text) = match key {
+            WIDTH => (generator.subschema_for::<Length>(), "Specimen width.".to_string()),
+            "gauge" => (generator.subschema_for::<Length>(), "Distance between jaws or clamps.".to_string()),
+            "pretension" => {
+                (generator.subschema_for::<LineForce>(), "Constant tension per width.".to_string())
+            }
+            "contact" => {
+                let text = "Load on the contactor: a friction force is divided by it.";
+                (generator.subschema_for::<Force>(), text.to_string())
+            }
+            _ => {
+                let schema = schema(
+                    spec.driven().si,
+                    spec.customary_maximum,
+                    &schemars::generate::Contract::Deserialize,
+                );
+                (schema, format!("Set maximum: {}.", spec.driven().name))
+            }
+        };
+        properties.insert(key.into(), described(schema, &text));
+    }
+    serde_json::json!({
+        "type": "object",
+        "additionalProperties": false,
+        "properties": properties,
+        "description": format!("{}, {}.", spec.instrument, spec.name),
+    })
+}
+
+#[cfg(test)]
+fn described(mut schema: schemars::Schema, text: &str) -> serde_json::Value {
+    schema.insert("description".into(), text.into());
+    schema.to_value()
 }
 
 /// The standard set of conditions of a test; see [`TestSpec`](crate::kes::TestSpec).
@@ -155,51 +264,15 @@ impl Measurement {
 impl StatedConditions {
     /// `self` where it states something, else `other`.
     pub(super) fn or(&self, other: &Self) -> Self {
-        let (a, b) = (self, other);
-        Self {
-            width: a.width.or(b.width),
-            tensile: TensileConditions {
-                width: a.tensile.width.or(b.tensile.width),
-                gauge: a.tensile.gauge.or(b.tensile.gauge),
-                maximum: a.tensile.maximum.or(b.tensile.maximum),
-            },
-            shear: ShearConditions {
-                width: a.shear.width.or(b.shear.width),
-                gauge: a.shear.gauge.or(b.shear.gauge),
-                maximum: a.shear.maximum.or(b.shear.maximum),
-                pretension: a.shear.pretension.or(b.shear.pretension),
-            },
-            bending: BendingConditions {
-                width: a.bending.width.or(b.bending.width),
-                gauge: a.bending.gauge.or(b.bending.gauge),
-                maximum: a.bending.maximum.or(b.bending.maximum),
-            },
-            compression: CompressionConditions { maximum: a.compression.maximum.or(b.compression.maximum) },
-            friction: a.friction.or(&b.friction),
-            roughness: a.roughness.or(&b.roughness),
+        let mut tests = other.tests.clone();
+        for (test, stated) in &self.tests {
+            tests.entry(*test).and_modify(|of_other| *of_other = stated.or(of_other)).or_insert(*stated);
         }
+        Self { width: self.width.or(other.width), tests }
     }
 
-    fn of(&self, test: Test) -> Stated {
-        match test {
-            Test::Tensile => {
-                let TensileConditions { width, gauge, maximum } = self.tensile;
-                Stated { width, gauge, maximum: maximum.map(LineForce::si), ..Stated::default() }
-            }
-            Test::Shear => {
-                let ShearConditions { width, gauge, maximum, pretension } = self.shear;
-                Stated { width, gauge, maximum: maximum.map(Angle::si), pretension, ..Stated::default() }
-            }
-            Test::Bending => {
-                let BendingConditions { width, gauge, maximum } = self.bending;
-                Stated { width, gauge, maximum: maximum.map(Curvature::si), ..Stated::default() }
-            }
-            Test::Compression => {
-                Stated { maximum: self.compression.maximum.map(Pressure::si), ..Stated::default() }
-            }
-            Test::Friction => self.friction.stated(),
-            Test::Roughness => self.roughness.stated(),
-        }
+    fn of(&self, test: Test) -> TestConditions {
+        self.tests.get(&test).copied().unwrap_or_default()
     }
 
     /// Whether the width, the gauge or the contact load of a test is stated; otherwise it is that of the standard set.
@@ -223,5 +296,56 @@ impl StatedConditions {
             pretension: stated.pretension.map_or(standard.pretension, LineForce::si),
             contact: stated.contact.map_or(standard.contact, Force::si),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<StatedConditions, String> {
+        toml::from_str(text).map_err(|error: toml::de::Error| {
+            let from = error.span().map_or(0, |span| span.start);
+            format!("{} at {}", error.message(), &text[from..])
+        })
+    }
+
+    #[test]
+    fn what_is_stated_goes_over_the_standard_and_wider_statements_give_way() {
+        let own =
+            read("width = \"10 cm\"\n[tensile]\ngauge = \"20 cm\"\n[shear]\nmaximum = \"4 deg\"").unwrap();
+        let other =
+            read("[tensile]\ngauge = \"1 cm\"\nmaximum = \"50 gf/cm\"\n[friction]\ncontact = \"25 gf\"")
+                .unwrap();
+        let both = own.or(&other);
+        let tensile = both.over_standard(Test::Tensile);
+        assert_eq!((tensile.width, tensile.gauge), (0.10, 0.20));
+        approx::assert_relative_eq!(tensile.maximum, 49.03325);
+        approx::assert_relative_eq!(both.over_standard(Test::Shear).maximum, 4f64.to_radians());
+        approx::assert_relative_eq!(
+            both.over_standard(Test::Friction).contact,
+            0.245166,
+            max_relative = 1e-5
+        );
+        assert!(both.states(Test::Tensile, Key::Gauge) && !both.states(Test::Shear, Key::Gauge));
+        assert_eq!(
+            both.over_standard(Test::Roughness),
+            StatedConditions { width: both.width, ..Default::default() }.over_standard(Test::Roughness)
+        );
+    }
+
+    #[test]
+    fn what_a_test_does_not_have_cannot_be_stated() {
+        let refused = |text: &str| read(text).unwrap_err();
+        assert_eq!(
+            refused("[compression]\ngauge = \"5 cm\""),
+            "unknown field `gauge`, expected one of `maximum` at gauge = \"5 cm\""
+        );
+        assert!(
+            refused("[stretch]\n").starts_with("unknown field `stretch`, expected one of `width`, `tensile`")
+        );
+        assert!(refused("[tensile]\ncontact = \"5 gf\"").starts_with("unknown field `contact`"));
+        assert!(refused("[tensile]\nmaximum = 500").contains("500 gf/cm"));
+        assert!(refused("[tensile]\nmaximum = \"5 cm\"").ends_with("at \"5 cm\""));
     }
 }

@@ -73,10 +73,7 @@ mod words;
 mod workbook;
 
 pub use crate::kes::{Direction, Parameter, Shape, Test};
-pub use conditions::{
-    BendingConditions, CompressionConditions, ShearConditions, StatedConditions, TensileConditions,
-    standard_conditions,
-};
+pub use conditions::{StatedConditions, TestConditions, standard_conditions};
 pub use dialect::{BranchColumn, DIALECT_FILES, Dialect, Key, Role, Statistic, TableColumn, dialects};
 pub use error::{About, Problem, ReadError};
 #[cfg(test)]

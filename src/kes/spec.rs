@@ -106,6 +106,8 @@ pub struct TestSpec {
     pub maximum: f64,
     /// A text such as `500 gf/cm` as a maximum (SI).
     pub read_maximum: fn(&str) -> Result<f64, QuantityError>,
+    /// The set maximum as people write it.
+    pub customary_maximum: &'static str,
     /// Constant tension across the specimen, or along a sweep (N/m); 0 of the others.
     pub pretension: f64,
     /// Load on a contactor (N); 0 but of the surface.

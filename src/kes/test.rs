@@ -138,6 +138,7 @@ pub const TENSILE: TestSpec = TestSpec {
     gauge: 0.05,
     maximum: 500.0 * GF_PER_CM,
     read_maximum: |text| text.parse().map(LineForce::si),
+    customary_maximum: "500 gf/cm",
     pretension: 0.0,
     contact: 0.0,
     range: [0.0, 0.05],
@@ -178,6 +179,7 @@ pub const SHEAR: TestSpec = TestSpec {
     gauge: 0.05,
     maximum: 8.0 * DEGREE,
     read_maximum: |text| text.parse().map(Angle::si),
+    customary_maximum: "8 deg",
     pretension: 10.0 * GF_PER_CM,
     contact: 0.0,
     range: [-8.0 * DEGREE, 8.0 * DEGREE],
@@ -218,6 +220,7 @@ pub const BENDING: TestSpec = TestSpec {
     gauge: 0.01,
     maximum: 250.0,
     read_maximum: |text| text.parse().map(Curvature::si),
+    customary_maximum: "2.5 1/cm",
     pretension: 0.0,
     contact: 0.0,
     range: [-250.0, 250.0],
@@ -258,6 +261,7 @@ pub const COMPRESSION: TestSpec = TestSpec {
     gauge: 0.0,
     maximum: 50.0 * GF_PER_CM2,
     read_maximum: |text| text.parse().map(Pressure::si),
+    customary_maximum: "50 gf/cm²",
     pretension: 0.0,
     contact: 0.0,
     // From one thickness to another: there is none without a record.
@@ -299,6 +303,7 @@ pub const FRICTION: TestSpec = TestSpec {
     gauge: 0.0,
     maximum: 0.03,
     read_maximum: |text| text.parse().map(Length::si),
+    customary_maximum: "30 mm",
     pretension: 20.0 * GF_PER_CM,
     contact: FRICTION_LOAD,
     range: [0.0, 0.0],
@@ -337,7 +342,10 @@ mod tests {
         let angle = |text: &str| text.parse::<Angle>().unwrap().si();
         let curvature = |text: &str| text.parse::<Curvature>().unwrap().si();
         let pressure = |text: &str| text.parse::<Pressure>().unwrap().si();
-        near(TENSILE.maximum, force("500 gf/cm"));
+        for test in Test::ALL {
+            let spec = test.spec();
+            near(spec.maximum, (spec.read_maximum)(spec.customary_maximum).unwrap());
+        }
         near(TENSILE_SLOPE[1], force("20 gf/cm"));
         near(SHEAR.maximum, angle("8 deg"));
         near(SHEAR.pretension, force("10 gf/cm"));

@@ -21,6 +21,9 @@ pub use polygon::{polygon_area, polygon_centre};
 pub use propagation::{Band, Bands, NoSpread};
 pub use sobol::{Sampled, SampledPopulation, sampled, sobol_points};
 pub use text::{in_unit, significant, without_rounding};
+pub(crate) use unit::deserialize_by;
+#[cfg(test)]
+pub(crate) use unit::schema;
 pub use unit::{Dimension, QuantityError, UNITS, Unit, counts_angles, divides_by_length, parse_quantity};
 
 /// Standard gravity in m/s², the value that defines the gram-force (exact).

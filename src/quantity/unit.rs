@@ -1,7 +1,6 @@
 //! Unit symbols: products, quotients and powers of a short table of atoms.
 
 use std::fmt;
-use std::marker::PhantomData;
 use std::str::FromStr;
 
 use serde::Deserializer;
@@ -349,7 +348,7 @@ pub fn divides_by_length(text: &str) -> bool {
 
 /// The schema of a quantity: a text such as the example where it is read, a number in SI where it is written.
 #[cfg(test)]
-pub(super) fn schema(
+pub(crate) fn schema(
     si: &'static str,
     example: &'static str,
     contract: &schemars::generate::Contract,
@@ -372,17 +371,29 @@ where
     D: Deserializer<'de>,
     Q: FromStr<Err = QuantityError>,
 {
+    deserialize_by(d, Q::from_str, example)
+}
+
+/// Deserialises what is read of a text such as the example, and answers a bare number with what to write.
+pub(crate) fn deserialize_by<'de, D, Q>(
+    d: D,
+    read: fn(&str) -> Result<Q, QuantityError>,
+    example: &'static str,
+) -> Result<Q, D::Error>
+where
+    D: Deserializer<'de>,
+{
     // Not an untagged enum: that would hide which key is missing.
     struct Text<Q> {
+        read: fn(&str) -> Result<Q, QuantityError>,
         example: &'static str,
-        quantity: PhantomData<Q>,
     }
-    impl<Q: FromStr<Err = QuantityError>> Text<Q> {
+    impl<Q> Text<Q> {
         fn without_unit<E: de::Error>(self, number: impl fmt::Display) -> Result<Q, E> {
             Err(E::custom(QuantityError::NoUnit { found: number.to_string(), example: self.example }))
         }
     }
-    impl<Q: FromStr<Err = QuantityError>> Visitor<'_> for Text<Q> {
+    impl<Q> Visitor<'_> for Text<Q> {
         type Value = Q;
 
         fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -390,7 +401,7 @@ where
         }
 
         fn visit_str<E: de::Error>(self, text: &str) -> Result<Q, E> {
-            text.parse().map_err(E::custom)
+            (self.read)(text).map_err(E::custom)
         }
 
         fn visit_i64<E: de::Error>(self, number: i64) -> Result<Q, E> {
@@ -405,7 +416,7 @@ where
             self.without_unit(number)
         }
     }
-    d.deserialize_any(Text { example, quantity: PhantomData })
+    d.deserialize_any(Text { read, example })
 }
 
 #[cfg(test)]

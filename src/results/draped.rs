@@ -9,7 +9,6 @@ use super::deflected::Deflected;
 use super::draped_stage;
 use super::failure::Failure;
 use super::folder::Folder;
-use super::judged;
 use super::rests_on;
 use super::sampled::{self, SamplingEntry};
 use super::solved::{ModelEntry, mesh_fields, resultants};
@@ -300,7 +299,7 @@ pub(super) fn point(task: &Task, d: &Drape) -> Option<DrapePoint> {
         simulated_half_width: None,
         simulated_band: Some(d.band().map(|b| 100.0 * b)),
         is_closed_loop: false,
-        status: rests_on::status(&judged::grounds(task, "drape_coefficient")),
+        status: rests_on::status(&rests_on::of_task(task, "drape_coefficient")),
     };
     Some(DrapePoint { law: task.case.law(), point })
 }

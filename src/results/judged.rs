@@ -1,5 +1,8 @@
 //! What speaks against a simulated value, in a word and in a sentence: for tables of predictions and for the page alike.
 
+use std::borrow::Cow;
+
+use super::bent;
 use super::outcome::Outcome;
 use super::rests_on::{self, DOUBTFUL, Ground};
 use super::solved;
@@ -7,7 +10,7 @@ use super::task::Task;
 use crate::characterise::ValueStatus;
 use crate::finding::{Fact, Finding, StudyFact};
 use crate::instrument::{Direction, Parameter};
-use crate::report::table::{FabricRow, PredictionRow, UnitSystem, fabric_rows};
+use crate::report::table::PredictionRow;
 use crate::study::Status;
 
 /// Of a value that rests on an assumption.
@@ -18,24 +21,16 @@ const QUICK: &str = "quick";
 
 /// Fills status and remark of the rows of a task.
 pub(super) fn fill(rows: &mut [PredictionRow], task: &Task, outcome: &Outcome) {
-    let (values, findings) = known(task);
+    let (values, findings) = rests_on::known(task);
     let quick = quick(&outcome.findings(task));
     for row in rows {
-        let grounds = rests_on::grounds(&values, &findings, shown_most(outcome, &row.quantity));
+        let grounds = rests_on::grounds(&values, &findings, &shown_most(outcome, &row.quantity));
         row.status = word(outcome, &grounds, quick.is_some()).map(String::from);
         let both = is_of_both(task, row).then(|| "measured for warp and weft together".to_string());
         let said: Vec<String> =
             [quick.clone(), both, rests_on::remark(&grounds)].into_iter().flatten().collect();
         row.remark = (!said.is_empty()).then(|| said.join("; "));
     }
-}
-
-/// Parameters of the fabric of a task, and what was found while they and the section were made.
-fn known(task: &Task) -> (Vec<FabricRow>, Vec<Finding>) {
-    let Some(sheet) = task.fabric else { return Default::default() };
-    let of_section = task.section().ok().and_then(|(_, made)| made).map(|made| made.findings);
-    let findings = sheet.findings.iter().cloned().chain(of_section.into_iter().flatten());
-    (fabric_rows(sheet, UnitSystem::Si), findings.collect())
 }
 
 /// Whether the measured value beside the simulated one of a direction is one value for the fabric.
@@ -49,11 +44,12 @@ fn is_of_both(task: &Task, row: &PredictionRow) -> bool {
 
 /// The quantity that shows most of the same inputs: every result of a sheet, at probes and of modes too, is one of its
 /// bending, or of its stretching where it stays in its plane.
-fn shown_most<'q>(outcome: &Outcome, quantity: &'q str) -> &'q str {
+fn shown_most<'q>(outcome: &Outcome, quantity: &'q str) -> Cow<'q, str> {
     match outcome {
-        Outcome::Solved(result) if solved::lies_in_its_plane(result) => "E",
-        Outcome::Solved(_) => rests_on::OF_PLATE,
-        Outcome::Draped(_) | Outcome::Tested(_) | Outcome::Bent(..) => quantity,
+        Outcome::Solved(result) if solved::lies_in_its_plane(result) => "E".into(),
+        Outcome::Solved(_) => rests_on::OF_PLATE.into(),
+        Outcome::Bent(result, _) => bent::shown_most(result, quantity),
+        Outcome::Draped(_) | Outcome::Tested(_) => quantity.into(),
     }
 }
 
@@ -69,12 +65,6 @@ fn of_grounds(grounds: &[Ground], is_quick: bool) -> Option<&'static str> {
         ValueStatus::Assumed => Some(ASSUMED),
         ValueStatus::Measured | ValueStatus::Inferred => is_quick.then_some(QUICK),
     }
-}
-
-/// What a quantity of the fabric of a task rests on that is not to be relied on.
-pub(super) fn grounds(task: &Task, quantity: &str) -> Vec<Ground> {
-    let (values, findings) = known(task);
-    rests_on::grounds(&values, &findings, quantity)
 }
 
 /// What the status of a prediction says of what it rests on, for the mark behind its value.

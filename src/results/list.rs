@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::columns::Columns;
+use crate::case::BENDING_TESTS;
 use crate::finding::explanations;
 use crate::instrument::dialects;
 use crate::quantity::UNITS;
@@ -98,13 +99,6 @@ const ANALYSES: &[&[&str]] = &[
     &["shear", "[virtual_test] test = \"shear\"", "KES-FB1 specimen, sheared"],
     &["bending", "[virtual_test] test = \"bending\"", "KES-FB2 specimen, bent to an arc"],
     &["compression", "[virtual_test] test = \"compression\"", "exponential through T0 and Tm; not a shell"],
-    &["cantilever", "[bending_test] test = \"cantilever\"", "overhang at 41.5 degrees, bending length"],
-    &["heart_loop", "[bending_test] test = \"heart_loop\"", "strip hung by both ends: height, and B from it"],
-    &[
-        "fab_bend_loop",
-        "[bending_test] test = \"fab_bend_loop\"",
-        "FAB force against clamp distance: B, predictions",
-    ],
 ];
 
 fn fixed(headings: &'static [&'static str], rows: &[&[&str]]) -> List {
@@ -118,7 +112,12 @@ pub fn formats() -> List {
 
 /// What a case can compute.
 pub fn analyses() -> List {
-    fixed(&["name", "in the case file", "meaning"], ANALYSES)
+    let mut list = fixed(&["name", "in the case file", "meaning"], ANALYSES);
+    let bending = BENDING_TESTS.map(|(name, meaning)| {
+        vec![json!(name), json!(format!("[bending_test] test = \"{name}\"")), json!(meaning)]
+    });
+    list.rows.extend(bending);
+    list
 }
 
 /// Layouts of measurement files that are known without a dialect file.

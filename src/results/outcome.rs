@@ -281,7 +281,7 @@ impl Outcome {
         match self {
             Self::Solved(result) => result.status != Status::NotConverged,
             Self::Draped(_) | Self::Tested(_) => true,
-            Self::Bent(result, failures) => failures.is_empty() || bent::is_useful(result),
+            Self::Bent(result, failures) => failures.is_empty() || !result.is_empty(),
         }
     }
 

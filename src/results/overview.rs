@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::bent;
 use super::columns::Columns;
 use super::fabric::FabricReport;
 use super::judged::of_inputs;
 use super::page_problems::BEYOND_LINEAR;
 use super::sheet_text::{BOTH, BOTH_LEGEND, mark};
-use crate::case::{Analysis, BendingTest, Case, Problem};
+use crate::case::{Analysis, Case, Problem};
 use crate::characterise::{FabricSheet, Key};
 use crate::finding::Place;
 use crate::instrument::{Direction, Parameter};
@@ -71,8 +72,8 @@ fn modulus(sheet: &FabricSheet, direction: Direction) -> String {
 enum Prediction<'c> {
     /// The coefficient of a drape, and whether it is a quick one.
     Drape(&'c str, bool),
-    /// The bending length of a cantilever.
-    BendingLength(&'c str, Direction),
+    /// A length that a bending test has along a direction, by its quantity.
+    Length(&'c str, &'static str, Direction),
     /// Largest deflection over the bending thickness: what a linear solve can say of any cloth.
     Relative(&'c str),
     /// Largest deflection.
@@ -92,17 +93,20 @@ impl<'c> Prediction<'c> {
         let name = case.name.as_str();
         match &case.problem {
             Problem::Drape(_) => vec![Self::Drape(name, case.is_quick())],
-            Problem::BendingTest(BendingTest::Cantilever(_)) => [Direction::Warp, Direction::Weft]
-                .map(|direction| Self::BendingLength(name, direction))
-                .into(),
+            Problem::BendingTest(test) => {
+                let along = |quantity| {
+                    [Direction::Warp, Direction::Weft]
+                        .map(|direction| Self::Length(name, quantity, direction))
+                };
+                bent::shown_length(test).into_iter().flat_map(along).collect()
+            }
             Problem::Sheet(sheet) => vec![match sheet.analysis {
                 Analysis::Linear(_) => Self::Relative(name),
                 Analysis::Modal(_) => Self::Frequency(name),
                 Analysis::Buckling(_) => Self::LoadFactor(name),
                 Analysis::Newmark(_) | Analysis::Nonlinear(_) | Analysis::Steps(_) => Self::Deflection(name),
             }],
-            Problem::BendingTest(BendingTest::HeartLoop { .. } | BendingTest::FabBendLoop { .. })
-            | Problem::InstrumentTest(_) => Vec::new(),
+            Problem::InstrumentTest(_) => Vec::new(),
         }
     }
 
@@ -110,7 +114,7 @@ impl<'c> Prediction<'c> {
     fn rank(&self) -> u8 {
         match self {
             Self::Drape(..) => 0,
-            Self::BendingLength(..) => 1,
+            Self::Length(..) => 1,
             Self::Relative(_) | Self::Deflection(_) | Self::Frequency(_) | Self::LoadFactor(_) => 2,
         }
     }
@@ -119,7 +123,7 @@ impl<'c> Prediction<'c> {
         match self {
             Self::Drape(case, false) => format!("{case} (%)"),
             Self::Drape(case, true) => format!("{case}, quick (%)"),
-            Self::BendingLength(case, direction) => format!("{case} {direction} (mm)"),
+            Self::Length(case, _, direction) => format!("{case} {direction} (mm)"),
             Self::Relative(case) => format!("{case} (w/t_b)"),
             Self::Deflection(case) => format!("w_max {case} (mm)"),
             Self::Frequency(case) => format!("frequency_1 {case} (Hz)"),
@@ -134,8 +138,8 @@ impl<'c> Prediction<'c> {
         let predicted = |case: &str, quantity: &str| predicted(report, case, quantity)?.simulated;
         let value = match self {
             Self::Drape(case, _) => predicted(case, "drape_coefficient").map(|part| 1e2 * part),
-            Self::BendingLength(case, direction) => {
-                predicted(case, &format!("bending_length {direction}")).map(|length| 1e3 * length)
+            Self::Length(case, quantity, direction) => {
+                predicted(case, &format!("{quantity} {direction}")).map(|length| 1e3 * length)
             }
             Self::Relative(case) => of_case(&report.relative_deflections, case),
             Self::Deflection(case) => of_case(&report.deflections, case).map(|w| 1e3 * w),
@@ -155,8 +159,8 @@ impl<'c> Prediction<'c> {
     fn row<'r>(&self, report: &'r FabricReport) -> Option<&'r PredictionRow> {
         match self {
             Self::Drape(case, _) => predicted(report, case, "drape_coefficient"),
-            Self::BendingLength(case, direction) => {
-                predicted(report, case, &format!("bending_length {direction}"))
+            Self::Length(case, quantity, direction) => {
+                predicted(report, case, &format!("{quantity} {direction}"))
             }
             Self::Relative(case)
             | Self::Deflection(case)

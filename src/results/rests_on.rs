@@ -1,16 +1,20 @@
 //! What a simulated value rests on that is not to be relied on: a constant of the section that nobody measured, or a
 //! measured value that a finding speaks against.
 
+use super::task::Task;
 use crate::characterise::ValueStatus;
 use crate::finding::{Fact, Finding, SectionFact};
 use crate::instrument::{Direction, Parameter, Test};
-use crate::report::table::FabricRow;
+use crate::report::table::{FabricRow, UnitSystem, fabric_rows};
 
 /// Status of a value that a finding speaks against.
 pub(super) const DOUBTFUL: &str = "doubtful";
 
 /// What the deflection of a plate rests on.
 pub(super) const OF_PLATE: &str = "w_max";
+
+/// What a strip under its own weight rests on, before the direction.
+pub(super) const OF_STRIP: &str = "strip";
 
 /// Something that a value rests on and that is not to be relied on.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,6 +29,20 @@ impl Ground {
     fn new(status: ValueStatus, text: impl Into<String>) -> Self {
         Self { status, text: text.into() }
     }
+}
+
+/// Parameters of the fabric of a task, and what was found while they and the section were made.
+pub(super) fn known(task: &Task) -> (Vec<FabricRow>, Vec<Finding>) {
+    let Some(sheet) = task.fabric else { return Default::default() };
+    let of_section = task.section().ok().and_then(|(_, made)| made).map(|made| made.findings);
+    let findings = sheet.findings.iter().cloned().chain(of_section.into_iter().flatten());
+    (fabric_rows(sheet, UnitSystem::Si), findings.collect())
+}
+
+/// What a quantity of the fabric of a task rests on that is not to be relied on.
+pub(super) fn of_task(task: &Task, quantity: &str) -> Vec<Ground> {
+    let (values, findings) = known(task);
+    grounds(&values, &findings, quantity)
 }
 
 /// `an assumed E`, `a doubtful B warp`; nothing for a value of `quantity` that rests on measured values alone.
@@ -109,7 +127,7 @@ fn inputs(quantity: &str) -> &'static [&'static str] {
     match test {
         Some(test) => test.spec().stiffness.as_ref().map_or(&[], |shown| std::slice::from_ref(&shown.symbol)),
         None if name.starts_with("drape_") => &["E", "G", "B", "W"],
-        None if name.starts_with("bending_length") || name.starts_with("heart_loop") => &["B", "W"],
+        None if name == OF_STRIP => &["B", "W"],
         None if name == OF_PLATE => &["B"],
         None => &[],
     }
@@ -166,8 +184,8 @@ mod tests {
             (status("E warp"), status("drape_coefficient")),
             (ValueStatus::Assumed, ValueStatus::Doubtful)
         );
-        assert_eq!(remark("bending_length warp"), "a doubtful B warp");
-        assert_eq!(remark("bending_length weft"), "");
+        assert_eq!(remark("strip warp"), "a doubtful B warp");
+        assert_eq!(remark("strip weft"), "");
         assert_eq!(remark("E warp"), "an assumed E");
         assert_eq!(remark("drape_coefficient"), "an assumed E and a doubtful B warp");
         assert_eq!((remark("G warp"), remark(OF_PLATE)), (String::new(), "a doubtful B warp".into()));
@@ -185,9 +203,9 @@ mod tests {
         ];
         let remark = |quantity: &str| said(&rows, &findings, quantity);
         assert_eq!((remark("E warp"), remark("E weft")), (String::new(), "an assumed E weft".into()));
-        assert_eq!(remark("bending_length warp"), "a doubtful B warp");
-        assert_eq!(remark("bending_length weft"), "an assumed B weft and a doubtful B warp");
+        assert_eq!(remark("strip warp"), "a doubtful B warp");
+        assert_eq!(remark("strip weft"), "an assumed B weft and a doubtful B warp");
         let one = [Finding::new(SectionFact::OneRigidity { fabric: "a".into(), known: None })];
-        assert_eq!(said(&rows[1..], &one, "bending_length warp"), "one B for warp and weft");
+        assert_eq!(said(&rows[1..], &one, "strip warp"), "one B for warp and weft");
     }
 }

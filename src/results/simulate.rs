@@ -12,7 +12,7 @@ use crate::finding::{Finding, Place, StudyFact};
 use crate::instrument::Direction;
 use crate::platform::within;
 use crate::solve::SolveError;
-use crate::study::bending::{BendingResult, simulate_cantilever, simulate_heart_loop, simulate_records};
+use crate::study::bending::{BendingResult, simulate_records, simulate_strip};
 use crate::study::{self, CaseResult, Drape, StudyError, Watch};
 
 /// Simulates what the case describes, its bands included; `observer` is told of every stage.
@@ -113,18 +113,14 @@ fn bend(task: &Task, spec: &BendingTest) -> Result<(BendingResult, Vec<Failure>)
     let nothing = FabricSheet::default();
     let sheet = task.fabric.unwrap_or(&nothing);
     match spec {
+        BendingTest::Strip(test) => {
+            let (section, _) = task.section()?;
+            Ok((simulate_strip(test, sheet, &section)?, Vec::new()))
+        }
         // It finds a rigidity of its own and needs no section.
-        BendingTest::FabBendLoop { cells, from, .. } => {
-            let (result, failed) = simulate_records(task.case, *cells, from, sheet)?;
+        BendingTest::FabBendLoop(test) => {
+            let (result, failed) = simulate_records(task.case, test, sheet)?;
             Ok((result, failed.into_iter().map(|(d, e)| failed_direction(task, d, e)).collect()))
-        }
-        BendingTest::Cantilever(strip) => {
-            let (section, _) = task.section()?;
-            Ok((simulate_cantilever(strip, sheet, &section)?, Vec::new()))
-        }
-        BendingTest::HeartLoop { strip, length } => {
-            let (section, _) = task.section()?;
-            Ok((simulate_heart_loop(strip, *length, &section)?, Vec::new()))
         }
     }
 }

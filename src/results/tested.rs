@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 use super::columns::Columns;
 use super::failure::Failure;
 use super::folder::Folder;
-use super::judged;
 use super::rests_on::{self, Ground};
 use super::sampled::{self, SamplingEntry};
 use super::sheet_text::{BOTH, BOTH_LEGEND};
@@ -84,7 +83,7 @@ impl Tested {
     /// What its stiffness rests on that is not to be relied on.
     pub(super) fn grounds(&self, task: &Task) -> Vec<Ground> {
         let of_stiffness =
-            |s: &Stiffness| judged::grounds(task, &format!("{} {}", s.symbol, self.direction()));
+            |s: &Stiffness| rests_on::of_task(task, &format!("{} {}", s.symbol, self.direction()));
         self.stiffness.as_ref().map_or_else(Vec::new, of_stiffness)
     }
 

@@ -2,13 +2,13 @@
 //! as the rods that they were identified with.
 
 use crate::characterise::FabricSheet;
-use crate::instrument::fab::FabKind;
-use crate::instrument::{Direction, Parameter, Test};
+use crate::instrument::{Direction, Parameter};
 use crate::quantity::Length;
 use crate::section::ShellSection;
 
+use super::reading::Reading;
 use super::{Case, StudyError, refused};
-use crate::case::Strip;
+use crate::case::{FabBendLoop, StripBending, StripKind};
 use crate::finding::Located;
 
 mod cantilever;
@@ -32,39 +32,46 @@ pub enum BendingResult {
     FabBendLoop(Vec<BendLoops>),
 }
 
-/// Simulates a cantilever of a section along warp and weft. Where the sheet has a law of bending with friction, from
-/// loops or from B and 2HB, it is simulated with it too.
+impl BendingResult {
+    /// Whether there is nothing in it: a FAB test may have lost every direction.
+    pub fn is_empty(&self) -> bool {
+        match self {
+            Self::Cantilever(tests) => tests.is_empty(),
+            Self::HeartLoop(tests) => tests.is_empty(),
+            Self::FabBendLoop(directions) => directions.is_empty(),
+        }
+    }
+
+    /// What bands are sampled of; nothing of records, which are of one specimen.
+    pub(super) fn readings(&self) -> Vec<Reading> {
+        match self {
+            Self::Cantilever(tests) => tests.iter().flat_map(Cantilever::readings).collect(),
+            Self::HeartLoop(tests) => tests.iter().map(HeartLoop::reading).collect(),
+            Self::FabBendLoop(_) => Vec::new(),
+        }
+    }
+}
+
+/// Simulates the bending test of a strip with a section, along warp and weft. Where the sheet has a law of bending with friction,
+/// from loops or from B and 2HB, a test that shows it is simulated with it too.
 ///
 /// # Errors
 /// See [`StudyError`].
-pub fn simulate_cantilever(
-    strip: &Strip,
+pub fn simulate_strip(
+    StripBending { kind, strip }: &StripBending,
     sheet: &FabricSheet,
     section: &ShellSection,
 ) -> Result<BendingResult, StudyError> {
-    let (width, cells) = (strip.width.map(Length::si), strip.cells.unwrap_or(strip::CELLS));
-    let along = |direction| {
-        let law = sheet.mean_law(Test::Bending, Some(direction));
-        cantilever(section, direction, law.as_ref(), width, cells)
-    };
-    Ok(BendingResult::Cantilever(WARP_AND_WEFT.into_iter().map(along).collect::<Result<_, _>>()?))
-}
-
-/// Simulates a heart loop of a section along warp and weft.
-///
-/// # Errors
-/// See [`StudyError`].
-pub fn simulate_heart_loop(
-    strip: &Strip,
-    length: Length,
-    section: &ShellSection,
-) -> Result<BendingResult, StudyError> {
-    let width = strip.width.map(Length::si);
-    let along = |direction| {
-        let cells = strip.cells.unwrap_or_else(|| heart_cells(section, direction, length.si()));
-        heart_loop(section, direction, length.si(), width, cells)
-    };
-    Ok(BendingResult::HeartLoop(WARP_AND_WEFT.into_iter().map(along).collect::<Result<_, _>>()?))
+    Ok(match kind {
+        StripKind::Cantilever => {
+            let along = |direction| Cantilever::simulate(strip, direction, sheet, section);
+            BendingResult::Cantilever(WARP_AND_WEFT.into_iter().map(along).collect::<Result<_, _>>()?)
+        }
+        StripKind::HeartLoop { length } => {
+            let along = |direction| HeartLoop::simulate(strip, *length, direction, section);
+            BendingResult::HeartLoop(WARP_AND_WEFT.into_iter().map(along).collect::<Result<_, _>>()?)
+        }
+    })
 }
 
 const WARP_AND_WEFT: [Direction; 2] = [Direction::Warp, Direction::Weft];
@@ -77,8 +84,7 @@ const WARP_AND_WEFT: [Direction; 2] = [Direction::Warp, Direction::Weft];
 /// S003 for a sheet without areal density.
 pub fn simulate_records(
     case: &Case,
-    cells: Option<usize>,
-    from: &[FabKind],
+    test: &FabBendLoop,
     sheet: &FabricSheet,
 ) -> Result<(BendingResult, Vec<(Direction, StudyError)>), StudyError> {
     let density = sheet.get(Parameter::W, None).map(|e| e.mean).or(sheet.info.areal_density);
@@ -87,8 +93,12 @@ pub fn simulate_records(
         refused(case, &Located::from(()), message)
     })?;
     let usual = LoopSettings::default();
-    let settings =
-        LoopSettings { cells: cells.unwrap_or(usual.cells), from: from.to_vec(), held_out: true, ..usual };
+    let settings = LoopSettings {
+        cells: test.cells.unwrap_or(usual.cells),
+        from: test.from.clone(),
+        held_out: true,
+        ..usual
+    };
     let BendRecords { directions, failed } =
         bend_loops(&sheet.bend_tests, density, &settings, &sheet.settings);
     let failed = failed.into_iter().map(|(d, e)| (d, e.into())).collect();

@@ -8,6 +8,7 @@
 use super::{Case, StudyError, placed};
 use crate::case::{
     Analysis, Annulus, BendingTest, InstrumentTest, Outline, Problem, SheetProblem, StepAnalysis,
+    StripBending,
 };
 use crate::finding::Located;
 use crate::solve::{Method, Options, SolveError};
@@ -57,14 +58,14 @@ pub fn within_limits(case: &Case, options: &Options) -> Result<(), StudyError> {
             let quads = specimen.test.cells.map_or(0.0, |[a, b]| a as f64 * b as f64);
             placed(case, &Located::from(()), fits(of_system(quads, 6.0, false)))
         }
-        Problem::BendingTest(BendingTest::Cantilever(strip) | BendingTest::HeartLoop { strip, .. }) => {
+        Problem::BendingTest(BendingTest::Strip(StripBending { strip, .. })) => {
             // A wide strip has at most as many cells across as along.
             let cells = strip.cells.map_or(0.0, |n| n as f64);
             let across = if strip.width.is_some() { cells } else { 1.0 };
             placed(case, &Located::from(()), fits(of_system(cells * across, 6.0, false)))
         }
-        Problem::BendingTest(BendingTest::FabBendLoop { cells, .. }) => {
-            let cells = cells.map_or(0.0, |n| n as f64);
+        Problem::BendingTest(BendingTest::FabBendLoop(test)) => {
+            let cells = test.cells.map_or(0.0, |n| n as f64);
             placed(case, &Located::from(()), fits(of_system(cells, 6.0, false)))
         }
         Problem::InstrumentTest(InstrumentTest::Compression(_)) => Ok(()),

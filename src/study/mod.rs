@@ -23,6 +23,7 @@ mod mesh_series;
 mod nonlinear;
 mod of_fabric;
 mod prepared;
+mod reading;
 mod result;
 mod run;
 mod sampling;

@@ -12,7 +12,8 @@
 //! Inputs are independent. One without a spread stays at its value; a result that moves with it has
 //! no band, as it would be too narrow.
 
-use super::bending::{BendingResult, simulate_cantilever, simulate_heart_loop};
+use super::bending::simulate_strip;
+use super::reading::Reading;
 use super::{
     Case, PreparedCase, PreparedTest, Status, StudyError, Watch, as_measured, drape, refused, simulate_cycle,
 };
@@ -68,19 +69,6 @@ impl Sampling {
     }
 }
 
-/// A result of one solution.
-struct Reading {
-    quantity: String,
-    unit: &'static str,
-    value: f64,
-}
-
-impl Reading {
-    fn new(quantity: impl Into<String>, value: f64, unit: &'static str) -> Self {
-        Self { quantity: quantity.into(), unit, value }
-    }
-}
-
 /// Solves a case for a sheet and what was made of it.
 type Evaluate<'a> = &'a (dyn Fn(&FabricSheet, &Constitutive) -> Result<Vec<Reading>, StudyError> + Sync);
 
@@ -113,16 +101,12 @@ pub fn sample(
     let sampler =
         |inputs, evaluate| Sampler { case, assumptions, plan, inputs, evaluate }.run(sheet, made, watch);
     match &case.problem {
-        Problem::BendingTest(BendingTest::Cantilever(strip)) => {
-            inputs.extend(law_inputs(sheet, Parameter::Hb));
+        Problem::BendingTest(BendingTest::Strip(test)) => {
+            if test.kind.has_friction() {
+                inputs.extend(law_inputs(sheet, Parameter::Hb));
+            }
             let bend = |sheet: &FabricSheet, made: &Constitutive| {
-                simulate_cantilever(strip, sheet, &made.section).map(|r| of_strips(&r))
-            };
-            sampler(inputs, &bend).map(Some)
-        }
-        Problem::BendingTest(BendingTest::HeartLoop { strip, length }) => {
-            let bend = |_: &FabricSheet, made: &Constitutive| {
-                simulate_heart_loop(strip, *length, &made.section).map(|r| of_strips(&r))
+                simulate_strip(test, sheet, &made.section).map(|result| result.readings())
             };
             sampler(inputs, &bend).map(Some)
         }
@@ -154,7 +138,7 @@ pub fn sample(
             sampler(inputs, &solve).map(Some)
         }
         // Records are of one specimen, and the closed form of compression has bands of its own.
-        Problem::BendingTest(BendingTest::FabBendLoop { .. })
+        Problem::BendingTest(BendingTest::FabBendLoop(_))
         | Problem::InstrumentTest(InstrumentTest::Compression(_)) => Ok(None),
     }
 }
@@ -198,23 +182,6 @@ fn of_sheet(prepared: &PreparedCase<'_>, made: &Constitutive) -> Result<Vec<Read
         readings.extend(components.map(|(c, v)| Reading::new(format!("{}.{c}", probe.name), v, "m")));
     }
     Ok(readings)
-}
-
-fn of_strips(result: &BendingResult) -> Vec<Reading> {
-    match result {
-        BendingResult::Cantilever(tests) => (tests.iter())
-            .flat_map(|c| {
-                let elastic = Reading::new(format!("bending_length {}", c.direction), c.bending_length, "m");
-                let name = format!("bending_length_friction {}", c.direction);
-                let friction = c.friction.as_ref().map(|f| Reading::new(name, f.bending_length, "m"));
-                std::iter::once(elastic).chain(friction)
-            })
-            .collect(),
-        BendingResult::HeartLoop(tests) => (tests.iter())
-            .map(|h| Reading::new(format!("heart_loop_height {}", h.direction), h.height, "m"))
-            .collect(),
-        BendingResult::FabBendLoop(_) => Vec::new(),
-    }
 }
 
 struct Sampler<'a> {

@@ -14,6 +14,7 @@ use std::path::Path;
 
 use kesf::analytical::beam::heart_load;
 use kesf::analytical::hanging::slack_strip;
+use kesf::case::{BendingTest, Problem};
 use kesf::characterise::bend_loop::simulate_loop;
 use kesf::characterise::{FabricSheet, Key, Settings};
 use kesf::element::Formulation;
@@ -198,13 +199,12 @@ fn a_direction_that_fails_leaves_the_others() {
     let mut sheet = FabricSheet { bend_tests: vec![good, torn], ..FabricSheet::default() };
     let case = "title = \"t\"\nfabric = \"*\"\n[bending_test]\ntest = \"fab_bend_loop\"\ncells = 12\n";
     let case = Case::parse(Path::new("t.toml"), case).unwrap();
-    assert_eq!(
-        simulate_records(&case, Some(12), &[], &sheet).unwrap_err().code(),
-        "S003",
-        "no areal density"
-    );
+    let Problem::BendingTest(BendingTest::FabBendLoop(test)) = &case.problem else {
+        unreachable!("it is a FAB case")
+    };
+    assert_eq!(simulate_records(&case, test, &sheet).unwrap_err().code(), "S003", "no areal density");
     sheet.values.insert(Key { parameter: Parameter::W, direction: None }, Estimate::single(density));
-    let (result, failed) = simulate_records(&case, Some(12), &[], &sheet).unwrap();
+    let (result, failed) = simulate_records(&case, test, &sheet).unwrap();
     let BendingResult::FabBendLoop(found) = result else { unreachable!("it is a FAB case") };
     assert!(found.len() == 1 && found[0].direction == Direction::Warp);
     assert!(failed.len() == 1 && failed[0].0 == Direction::Weft, "{failed:?}");

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Basis, FrictionLaw, extract};
-use crate::characterise::closed_loop::TURNED;
+use crate::characterise::specimen::TURNED;
 use crate::characterise::{FabricSheet, Settings};
 use crate::finding::{EvaluationFact, Finding, Missed};
 use crate::instrument::{Conditions, Direction, Parameter, Test};

@@ -1,92 +1,154 @@
-//! A bending test of a strip beside its measurement: rows, document, charts and text.
+//! A bending test beside its measurement: rows, document, charts and text, in a file a kind of test.
 
-mod charts;
-mod document;
-mod measured;
-mod text;
+mod cantilever;
+mod fab;
+mod heart;
+mod report;
+mod strip;
 
-pub(super) use charts::write_charts;
-pub use document::BendingEntry;
-pub(super) use document::entries;
-pub(super) use text::texts;
+use std::borrow::Cow;
 
-use measured::measured;
+use indexmap::IndexMap;
+use serde::{Deserialize, Deserializer, Serialize};
 
+use cantilever::CantileverEntry;
+use fab::FabEntry;
+use heart::HeartEntry;
+use report::BendingReport;
+
+use super::columns::Columns;
+use super::failure::Failure;
+use super::folder::Folder;
+use super::rests_on::OF_STRIP;
+use super::sampled::SamplingEntry;
 use super::task::Task;
-use crate::report::table::{PredictionRow, relative_error};
-use crate::study::bending::{BendLoop, BendLoops, BendingResult, Cantilever, HeartLoop, Simulated};
+use crate::case::{BendingTest, StripKind};
+use crate::instrument::Direction;
+use crate::report::table::PredictionRow;
+use crate::study::bending::BendingResult;
 
-/// Whether there is anything in a result: a FAB test may have lost every direction.
-pub(super) fn is_useful(result: &BendingResult) -> bool {
+fn report(result: &BendingResult) -> &dyn BendingReport {
     match result {
-        BendingResult::Cantilever(_) | BendingResult::HeartLoop(_) => true,
-        BendingResult::FabBendLoop(directions) => !directions.is_empty(),
+        BendingResult::Cantilever(tests) => tests,
+        BendingResult::HeartLoop(tests) => tests,
+        BendingResult::FabBendLoop(directions) => directions,
+    }
+}
+
+/// The quantity, a length along each direction, that a table of fabrics has of a test; none of tests that few laboratories
+/// do.
+pub(super) fn shown_length(test: &BendingTest) -> Option<&'static str> {
+    match test {
+        BendingTest::Strip(test) => match test.kind {
+            StripKind::Cantilever => Some("bending_length"),
+            StripKind::HeartLoop { .. } => None,
+        },
+        BendingTest::FabBendLoop(_) => None,
+    }
+}
+
+/// The quantity that rests on the same inputs as one of a result.
+pub(super) fn shown_most<'q>(result: &BendingResult, quantity: &'q str) -> Cow<'q, str> {
+    let (_, direction) = quantity.split_once(' ').unwrap_or_default();
+    match result {
+        BendingResult::Cantilever(_) | BendingResult::HeartLoop(_) => {
+            format!("{} {direction}", OF_STRIP).into()
+        }
+        // It finds a rigidity of its own.
+        BendingResult::FabBendLoop(_) => quantity.into(),
+    }
+}
+
+/// An entry of `kesf.comparison/1`: a bending test of a strip (SI).
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct BendingEntry {
+    name: String,
+    case: String,
+    fabric: Option<String>,
+    #[serde(flatten)]
+    test: BendingTestEntry,
+    /// Of tests with sampled bands, or `null`; a FAB test has none.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "stated")]
+    uncertainty: Option<Option<SamplingEntry>>,
+    /// Origin of the data of the fabric: `measured`, `published` or `synthetic`.
+    #[serde(default)]
+    origin: Option<String>,
+}
+
+/// What is there, `null` too; what is not there has its default.
+fn stated<'d, T: Deserialize<'d>, D: Deserializer<'d>>(value: D) -> Result<Option<T>, D::Error> {
+    T::deserialize(value).map(Some)
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+enum BendingTestEntry {
+    Cantilever(CantileverEntry),
+    HeartLoop(HeartEntry),
+    FabBendLoop(FabEntry),
+}
+
+fn entry(
+    task: &Task,
+    name: &str,
+    direction: Direction,
+    test: BendingTestEntry,
+    has_bands: bool,
+) -> BendingEntry {
+    let sampling = || task.sampling().map(|s| SamplingEntry::ending_with(s, direction.name()));
+    BendingEntry {
+        name: format!("{name} {direction}"),
+        case: task.case.name.clone(),
+        fabric: task.fabric_name().map(str::to_string),
+        test,
+        uncertainty: has_bands.then(sampling),
+        origin: task.origin_name(),
     }
 }
 
 /// Rows of `predictions.csv`.
 pub(super) fn rows(task: &Task, result: &BendingResult) -> Vec<PredictionRow> {
+    report(result).rows(task)
+}
+
+/// Entries of `kesf.comparison/1`, one a direction.
+pub(super) fn entries(task: &Task, result: &BendingResult) -> Vec<BendingEntry> {
+    use BendingTestEntry::{Cantilever, FabBendLoop, HeartLoop};
     match result {
-        BendingResult::Cantilever(tests) => tests.iter().flat_map(|c| cantilever_rows(task, c)).collect(),
-        BendingResult::HeartLoop(tests) => tests.iter().map(|h| heart_row(task, h)).collect(),
-        BendingResult::FabBendLoop(directions) => directions.iter().flat_map(|d| fab_rows(task, d)).collect(),
+        BendingResult::Cantilever(tests) => tests
+            .iter()
+            .map(|c| entry(task, "cantilever", c.direction, Cantilever(CantileverEntry::new(task, c)), true))
+            .collect(),
+        BendingResult::HeartLoop(tests) => tests
+            .iter()
+            .map(|h| entry(task, "heart_loop", h.direction, HeartLoop(HeartEntry::new(h)), true))
+            .collect(),
+        BendingResult::FabBendLoop(directions) => directions
+            .iter()
+            .map(|d| entry(task, "fab_bend_loop", d.direction, FabBendLoop(FabEntry::new(d)), false))
+            .collect(),
     }
 }
 
-fn row(
+/// Writes the chart `<stem>`, or one a direction of a FAB test, `<stem>_<direction>`; the names of those that there are.
+pub(super) fn write_charts(
     task: &Task,
-    quantity: String,
-    simulated: Option<f64>,
-    measured: Option<f64>,
-    unit: &str,
-) -> PredictionRow {
-    PredictionRow {
-        quantity,
-        simulated,
-        measured,
-        unit: unit.into(),
-        error: simulated.zip(measured).and_then(|(s, m)| relative_error(s, m)),
-        ..task.row()
+    result: &BendingResult,
+    folder: &Folder,
+) -> Result<Vec<String>, Failure> {
+    report(result).write_charts(task, folder)
+}
+
+/// One table for each kind of test among the results.
+pub(super) fn texts(results: &[(&Task, &BendingResult)]) -> Vec<String> {
+    let mut tables = IndexMap::new();
+    for (task, result) in results {
+        let report = report(result);
+        let headings = report.headings();
+        let table = tables.entry(headings).or_insert_with(|| Columns::new(headings.iter().copied()));
+        report.lines(task).into_iter().for_each(|line| table.row(line));
     }
-}
-
-fn cantilever_rows(task: &Task, c: &Cantilever) -> Vec<PredictionRow> {
-    let lengths =
-        [("", Some(c.bending_length)), ("_friction", c.friction.as_ref().map(|f| f.bending_length))];
-    let known = lengths.into_iter().filter(|(_, length)| length.is_some());
-    known
-        .map(|(law, length)| {
-            row(task, format!("bending_length{law} {}", c.direction), length, measured(task, c), "m")
-        })
-        .collect()
-}
-
-fn heart_row(task: &Task, h: &HeartLoop) -> PredictionRow {
-    row(task, format!("heart_loop_height {}", h.direction), Some(h.height), None, "m")
-}
-
-fn fab_rows(task: &Task, d: &BendLoops) -> Vec<PredictionRow> {
-    let friction = d.friction.as_ref();
-    let found = [
-        ("fab_B_elastic", Some(d.elastic.rigidity), "N·m"),
-        ("fab_B_friction", friction.map(|f| f.kes_rigidity), "N·m"),
-        ("fab_HB_friction", friction.map(|f| f.kes_couple), "N"),
-    ];
-    let mut rows: Vec<PredictionRow> = found
-        .into_iter()
-        .map(|(name, value, unit)| row(task, format!("{name} {}", d.direction), value, None, unit))
-        .collect();
-    for l in &d.loops {
-        let [line, law] = l.held_out.each_ref().map(Option::as_ref);
-        rows.push(nrmse_row(task, d, l, "nrmse_elastic", Some(&l.elastic)));
-        rows.push(nrmse_row(task, d, l, "nrmse_friction", l.friction.as_ref()));
-        rows.push(nrmse_row(task, d, l, "nrmse_held_out_elastic", line));
-        rows.push(nrmse_row(task, d, l, "nrmse_held_out_friction", law));
-    }
-    rows
-}
-
-fn nrmse_row(task: &Task, d: &BendLoops, l: &BendLoop, name: &str, s: Option<&Simulated>) -> PredictionRow {
-    let value = s.and_then(|s| s.outer).map(|agreement| agreement.nrmse);
-    row(task, format!("{name} {} {}", l.kind.name(), d.direction), value, None, "1")
+    tables.into_values().filter_map(Columns::filled).map(|table| table.text()).collect()
 }

@@ -11,13 +11,16 @@
 
 use crate::analytical::beam::{bending_length, peirce_ratio};
 use crate::analytical::elastica::bending_length_ratio;
-use crate::instrument::Direction;
+use crate::case;
+use crate::characterise::FabricSheet;
+use crate::instrument::{Direction, Test};
 use crate::law::{Channel, Mode};
 use crate::model::Support;
-use crate::quantity::{Curve, STANDARD_GRAVITY};
+use crate::quantity::{Curve, Length, STANDARD_GRAVITY};
 use crate::section::{SheetLaw, ShellSection};
 use crate::solve::nonlinear::Settings;
 use crate::study::StudyError;
+use crate::study::reading::Reading;
 
 use super::strip::{Strip, rigidity};
 
@@ -72,6 +75,30 @@ pub struct WithFriction {
 }
 
 impl Cantilever {
+    /// Simulates the test of a case in one direction, with the friction of the sheet too where it has a law.
+    pub(super) fn simulate(
+        strip: &case::Strip,
+        direction: Direction,
+        sheet: &FabricSheet,
+        section: &ShellSection,
+    ) -> Result<Self, StudyError> {
+        let law = sheet.mean_law(Test::Bending, Some(direction));
+        let cells = strip.cells.unwrap_or(super::strip::CELLS);
+        cantilever(section, direction, law.as_ref(), strip.width.map(Length::si), cells)
+    }
+
+    /// What bands are sampled of: the bending lengths.
+    pub(super) fn readings(&self) -> impl Iterator<Item = Reading> {
+        let lengths = [
+            ("bending_length", Some(self.bending_length)),
+            ("bending_length_friction", self.friction.as_ref().map(|f| f.bending_length)),
+        ];
+        let direction = self.direction;
+        lengths
+            .into_iter()
+            .filter_map(move |(name, length)| Some(Reading::new(format!("{name} {direction}"), length?, "m")))
+    }
+
     /// How much too high Peirce's formula reads the rigidity: 0.0575.
     pub fn peirce_excess(&self) -> f64 {
         (self.peirce / self.bending_length).powi(3) - 1.0

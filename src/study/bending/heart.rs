@@ -9,13 +9,15 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 use crate::analytical::hanging::{Loop, loop_height};
+use crate::case;
 use crate::instrument::Direction;
 use crate::model::{Dof, Support};
-use crate::quantity::{Curve, STANDARD_GRAVITY};
+use crate::quantity::{Curve, Length, STANDARD_GRAVITY};
 use crate::section::ShellSection;
 use crate::solve::Options;
 use crate::solve::nonlinear::{Leg, Settings, drive};
 use crate::study::StudyError;
+use crate::study::reading::Reading;
 
 use super::strip::{Strip, rigidity};
 
@@ -45,6 +47,24 @@ pub struct HeartLoop {
     pub iterations: usize,
     /// Whether the equilibrium is stable.
     pub stable: bool,
+}
+
+impl HeartLoop {
+    /// Simulates the test of a case in one direction.
+    pub(super) fn simulate(
+        strip: &case::Strip,
+        length: Length,
+        direction: Direction,
+        section: &ShellSection,
+    ) -> Result<Self, StudyError> {
+        let cells = strip.cells.unwrap_or_else(|| heart_cells(section, direction, length.si()));
+        heart_loop(section, direction, length.si(), strip.width.map(Length::si), cells)
+    }
+
+    /// What a band is sampled of: the height.
+    pub(super) fn reading(&self) -> Reading {
+        Reading::new(format!("heart_loop_height {}", self.direction), self.height, "m")
+    }
 }
 
 /// Steps in which the clamp turns: an eighth of a turn and a bit.

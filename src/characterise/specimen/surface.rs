@@ -4,10 +4,10 @@
 //! MIU = 1/X ∫ µ dx, MMD = 1/X ∫ |µ − MIU| dx, SMD = 1/X ∫ |T − T̄| dx. Each sweep has its own mean; the value is that of
 //! both. The integrals are those of the straight lines between samples, exactly.
 
-use super::evaluation::{Evaluation, Notes};
-use super::graph::Graph;
 use super::tensile::cycle;
-use super::{Branch, Settings, Window, branch};
+use crate::characterise::evaluation::{Evaluation, Notes};
+use crate::characterise::graph::Graph;
+use crate::characterise::{Branch, Settings, Window, branch};
 use crate::finding::EvaluationFact;
 use crate::instrument::Parameter;
 use crate::quantity::Curve;

@@ -1,9 +1,9 @@
 //! FB1 tensile: EMT, WT, LT, RT and moduli from force per width against strain.
 
-use super::evaluation::{Evaluation, Notes, Regained};
-use super::graph::Graph;
-use super::onset::onset;
-use super::{Branch, CycleChoice, Modulus, Settings, Window, branch};
+use crate::characterise::evaluation::{Evaluation, Notes, Regained};
+use crate::characterise::graph::Graph;
+use crate::characterise::onset::onset;
+use crate::characterise::{Branch, CycleChoice, Modulus, Settings, Window, branch};
 use crate::finding::{EvaluationFact, RecordAxis};
 use crate::instrument::Parameter;
 use crate::quantity::Curve;

@@ -1,17 +1,17 @@
 //! FB1 shear and FB2 bending: slopes and loop widths of a cycle to both sides of zero.
 
-use super::evaluation::{Evaluation, Notes};
-use super::graph::Graph;
-use super::specimen::noise_of;
+use super::noise_of;
 use super::tensile::shift;
-use super::{Branch, CycleChoice, Settings, Sides, SlopeMethod, Window, branch};
+use crate::characterise::evaluation::{Evaluation, Notes};
+use crate::characterise::graph::Graph;
+use crate::characterise::{Branch, CycleChoice, Settings, Sides, SlopeMethod, Window, branch};
 use crate::finding::{EvaluationFact, RecordAxis};
 use crate::instrument::{Parameter, Test, standard_conditions};
 use crate::quantity::{Curve, in_unit};
 
 /// Part of the abscissa where the drive turned up to which a width is read: nearer to the turn the yarns have not slid
 /// back yet, and at the turn itself every loop has no width.
-pub(super) const TURNED: f64 = 0.9;
+pub(in crate::characterise) const TURNED: f64 = 0.9;
 
 /// Part of a loop width that it may scatter by between single samples, as specimens of one cloth do: where it scatters more, it is read
 /// from lines through the samples around.

@@ -1,10 +1,10 @@
 //! FB3 compression: T0, Tm, WC, LC, RC, EMC from pressure against thickness.
 
-use super::evaluation::{Evaluation, Notes, Regained};
-use super::graph::Graph;
-use super::onset::onset;
 use super::tensile::{cycle, shift};
-use super::{Branch, Settings, Window, branch};
+use crate::characterise::evaluation::{Evaluation, Notes, Regained};
+use crate::characterise::graph::Graph;
+use crate::characterise::onset::onset;
+use crate::characterise::{Branch, Settings, Window, branch};
 use crate::finding::{EvaluationFact, RecordAxis};
 use crate::instrument::Parameter;
 use crate::quantity::{Curve, in_unit};
